@@ -1,0 +1,109 @@
+// jointgen: sample the joints of a section and cut it into blocks.
+//
+//   jointgen data/column/scene.toml -o network.h5
+//   jointgen data/slope/scene.toml --realization 7 -o network-7.h5
+//
+// Reads   SCENE.toml   the scene                         (docs/scene.md)
+// Writes  network.h5   joints, traces, blocks and edges  (docs/file-format.md)
+
+#include "program.hpp"
+
+#include "blocks/cut.hpp"
+#include "model/units.hpp"
+#include "model/version.hpp"
+#include "sampling/joint_sets.hpp"
+#include "scene/scene.hpp"
+#include "store/files.hpp"
+
+#include <iostream>
+#include <limits>
+#include <numeric>
+
+using namespace jointcreep;
+
+namespace
+{
+
+const Program program{
+    .name = "jointgen",
+    .summary = "Samples the joints of a section and cuts it into blocks.",
+    .input = "SCENE.toml",
+    .output = "network.h5",
+    .options = {{"seed", "N", "seed of the joint sets (default: the scene's)"},
+                {"realization", "R", "which of the seed's networks (default 0)"},
+                {"check", "", "read the scene, cut it, report, and write nothing"},
+                {"scene-keys", "", "print every scene key as a table, tab separated"},
+                {"scene-keys-markdown", "", "print docs/scene.md"}},
+    .example = "jointgen data/column/scene.toml -o network.h5",
+};
+
+void report(const Network& network)
+{
+    const Blocks& blocks = network.blocks;
+    std::array<std::size_t, 3> edges{};
+    for (const Index kind : blocks.edge_kind)
+        ++edges[kind];
+    Summary summary;
+    summary.add("joints", network.joints.set.size());
+    summary.add("joint traces", network.joints.trace_joint.size());
+    summary.add("blocks", blocks.block_area.size());
+    summary.add("edges on joints", edges[static_cast<std::size_t>(EdgeKind::joint)]);
+    summary.add("edges welded", edges[static_cast<std::size_t>(EdgeKind::welded)]);
+    summary.add("area", std::accumulate(blocks.block_area.begin(), blocks.block_area.end(), 0.0), "m2");
+    summary.add("shortest edge", blocks.report.shortest_edge, "m");
+    summary.add("smallest angle", blocks.report.smallest_angle / unit::deg, "deg");
+    summary.add("merged vertices", blocks.report.merged_vertices);
+    summary.add("merged edges", blocks.report.merged_edge_length, "m");
+    summary.add("merged blocks", blocks.report.merged_block_area, "m2");
+    summary.add("largest move", blocks.report.largest_move, "m");
+    summary.add("joints cut back", blocks.report.pruned_length, "m");
+    summary.print();
+}
+
+void generate(const Arguments& arguments)
+{
+    if (arguments.has("scene-keys") || arguments.has("scene-keys-markdown")) {
+        std::cout << (arguments.has("scene-keys") ? scene_keys_tsv() : scene_keys_markdown());
+        return;
+    }
+    const std::string& input = arguments.input();
+    const bool check = arguments.has("check");
+    if (!check)
+        check_writable(arguments.output());
+
+    // 1. The scene.
+    const std::string text = read_scene_text(input);
+    const Scene scene = parse_scene(text, input);
+    const std::uint64_t seed =
+        arguments.whole_number("seed", 0, std::numeric_limits<std::uint64_t>::max()).value_or(scene.seed);
+    const auto realization = static_cast<std::int32_t>(
+        arguments.whole_number("realization", 0, std::numeric_limits<std::int32_t>::max()).value_or(0));
+
+    // 2. Its joints.
+    Network network;
+    network.names = names_of(scene);
+    network.joints = sample_joints(scene, seed, realization);
+
+    // 3. Its blocks.
+    network.blocks = blocks::cut(scene, network.joints);
+
+    if (!check)
+        write_network(arguments.output(),
+                      {.scene = text,
+                       .seed = seed,
+                       .realization = realization,
+                       .program = {program.name},
+                       .version = {std::string(version())},
+                       .input_sha256 = {sha256_of(input)},
+                       .options = {""}},
+                      network);
+    if (!arguments.quiet())
+        report(network);
+}
+
+} // namespace
+
+int main(int argc, char** argv)
+{
+    return run(program, argc, argv, generate);
+}

@@ -1,0 +1,287 @@
+#include "program.hpp"
+
+#include "model/error.hpp"
+#include "model/version.hpp"
+
+#include <boost/program_options.hpp>
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <iostream>
+#include <new>
+#include <sstream>
+
+namespace jointcreep
+{
+
+namespace po = boost::program_options;
+
+namespace
+{
+
+constexpr unsigned text_width = 100; // of the help [columns]
+
+po::options_description described(const Program& program)
+{
+    po::options_description options("Options", text_width, text_width / 2);
+    const auto value = [](const std::string& name) {
+        return po::value<std::string>()->value_name(name.empty() ? "FILE" : name);
+    };
+    options.add_options()("output,o", value(program.output), "the file to write");
+    for (const Option& option : program.options) {
+        if (option.value.empty())
+            options.add_options()(option.name.c_str(), option.text.c_str());
+        else
+            options.add_options()(option.name.c_str(), value(option.value), option.text.c_str());
+    }
+    options.add_options()("quiet,q", "no progress bar and no closing screen");
+    options.add_options()("help,h", "show this text");
+    options.add_options()("version", "show the version, and the commit it was built from");
+    return options;
+}
+
+std::string usage(const Program& program)
+{
+    return "usage: " + program.name + ' ' + program.input + " -o " + program.output +
+           (program.options.empty() ? "" : " [options]") + '\n';
+}
+
+std::string help(const Program& program)
+{
+    std::ostringstream text;
+    text << program.name << ": " << program.summary << "\n\n"
+         << usage(program) << '\n'
+         << described(program) << '\n'
+         << "Exit codes:\n"
+            "  0  done\n"
+            "  2  the command line or an input file is not what was wanted\n"
+            "  3  no equilibrium was found\n"
+            "  4  a file could not be read or written\n"
+            "  5  internal error, or out of memory\n\n"
+            "Example:\n  "
+         << program.example << '\n';
+    return text.str();
+}
+
+// The command line as Boost reads it: no abbreviated options, no option twice, one argument at most.
+po::variables_map parsed(const Program& program, int argc, char** argv)
+{
+    po::options_description options = described(program);
+    options.add_options()("input", po::value<std::string>());
+    po::positional_options_description positional;
+    positional.add("input", 1);
+    po::variables_map given;
+    try {
+        using namespace po::command_line_style;
+        po::store(po::command_line_parser(argc, argv)
+                      .options(options)
+                      .positional(positional)
+                      .style(unix_style & ~allow_guessing)
+                      .run(),
+                  given);
+    } catch (const po::too_many_positional_options_error&) {
+        throw input_error("more than one " + program.input + " is given");
+    } catch (const po::error& error) {
+        throw input_error(error.what());
+    }
+    return given;
+}
+
+// Every line of a message says which program it comes from.
+void complain(const std::string& program, std::string_view message)
+{
+    while (!message.empty()) {
+        const std::size_t end = std::min(message.find('\n'), message.size());
+        std::cerr << program << ": " << message.substr(0, end) << '\n';
+        message.remove_prefix(std::min(end + 1, message.size()));
+    }
+}
+
+// Leaves without exit handlers: the one of HDF5 1.10 crashes once a file could not be closed.
+[[noreturn]] void leave(ExitCode code)
+{
+    std::cout.flush();
+    std::cerr.flush();
+    std::_Exit(code);
+}
+
+// Columns that UTF-8 text takes, combining characters aside.
+std::size_t columns(std::string_view text)
+{
+    return static_cast<std::size_t>(
+        std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }));
+}
+
+// The beginning of a UTF-8 text, no wider than `most` columns.
+std::string_view shortened(std::string_view text, std::size_t most)
+{
+    std::size_t size = text.size();
+    while (columns(text.substr(0, size)) > most)
+        --size;
+    while (size < text.size() && (text[size] & 0xC0) == 0x80)
+        ++size;
+    return text.substr(0, size);
+}
+
+} // namespace
+
+const std::string& Arguments::wanted(const std::string& name) const
+{
+    const auto found = given_.find(name);
+    if (found == given_.end())
+        throw input_error(shown_.at(name) + " is not given");
+    if (found->second.empty())
+        throw input_error(shown_.at(name) + " is empty; it must be the name of a file");
+    return found->second;
+}
+
+std::optional<std::string> Arguments::text(const std::string& option) const
+{
+    const auto found = given_.find(option);
+    return found == given_.end() ? std::nullopt : std::optional(found->second);
+}
+
+std::optional<std::uint64_t> Arguments::whole_number(const std::string& option, std::uint64_t least,
+                                                     std::uint64_t most) const
+{
+    const std::optional<std::string> given = text(option);
+    if (!given)
+        return {};
+    std::uint64_t value = 0;
+    const char* const end = given->data() + given->size();
+    const auto read = std::from_chars(given->data(), end, value);
+    if (read.ec != std::errc() || read.ptr != end || value < least || value > most)
+        throw input_error(shown_.at(option) + " is '" + *given + "'; it must be a whole number from " +
+                          std::to_string(least) + " to " + std::to_string(most));
+    return value;
+}
+
+std::optional<double> Arguments::number(const std::string& option) const
+{
+    const std::optional<std::string> given = text(option);
+    if (!given)
+        return {};
+    double value = 0;
+    const char* const end = given->data() + given->size();
+    const auto read = std::from_chars(given->data(), end, value);
+    if (read.ec != std::errc() || read.ptr != end || !std::isfinite(value))
+        throw input_error(shown_.at(option) + " is '" + *given + "'; it must be a finite number");
+    return value;
+}
+
+int run(const Program& program, int argc, char** argv, const std::function<void(const Arguments&)>& body)
+{
+    std::signal(SIGXFSZ, SIG_IGN); // a file that grows past the limit is then a write error with a message
+    try {
+        if (argc < 2) {
+            std::cerr << program.name << ": " << program.summary << '\n'
+                      << usage(program) << program.name << " --help says more\n";
+            return exit_input;
+        }
+        Arguments arguments;
+        arguments.shown_ = {{"input", program.input}, {"output", "-o " + program.output}};
+        for (const Option& option : program.options)
+            arguments.shown_[option.name] = "--" + option.name;
+        for (const auto& [name, value] : parsed(program, argc, argv)) {
+            const auto* text = boost::any_cast<std::string>(&value.value());
+            arguments.given_[name] = text ? *text : "";
+        }
+        if (arguments.has("help"))
+            std::cout << help(program);
+        else if (arguments.has("version"))
+            std::cout << program.name << ' ' << version() << '\n';
+        else
+            body(arguments);
+        std::cout.flush();
+        if (!std::cout)
+            throw file_error("stdout could not be written");
+        return exit_ok;
+    } catch (const input_error& error) {
+        complain(program.name, error.what());
+        leave(exit_input);
+    } catch (const equilibrium_error& error) {
+        complain(program.name, error.what());
+        leave(exit_no_equilibrium);
+    } catch (const file_error& error) {
+        complain(program.name, error.what());
+        leave(exit_file);
+    } catch (const std::bad_alloc&) {
+        complain(program.name, "out of memory");
+        leave(exit_internal);
+    } catch (const std::exception& error) {
+        complain(program.name, std::string("internal error: ") + error.what());
+        leave(exit_internal);
+    }
+}
+
+Progress::Progress(bool quiet) : on_terminal_(!quiet && isatty(STDERR_FILENO)) {}
+
+Progress::~Progress()
+{
+    if (drawn_)
+        std::cerr << "\r\x1b[K" << std::flush;
+}
+
+void Progress::show(double fraction, std::string_view what)
+{
+    if (!on_terminal_)
+        return;
+    const auto now = std::chrono::steady_clock::now();
+    if (now < next_)
+        return;
+    next_ = now + std::chrono::milliseconds(100);
+    drawn_ = true;
+
+    constexpr std::size_t bar_width = 30, what_width = 40;
+    fraction = std::clamp(fraction, 0.0, 1.0);
+    const auto full = static_cast<std::size_t>(fraction * bar_width);
+    std::cerr << "\r[" << std::string(full, '#') << std::string(bar_width - full, ' ') << "] "
+              << static_cast<int>(100 * fraction) << "% " << shortened(what, what_width) << "\x1b[K"
+              << std::flush;
+}
+
+void Summary::add(std::string label, std::string value, std::string unit)
+{
+    lines_.emplace_back(std::move(label), unit.empty() ? std::move(value) : value + ' ' + unit);
+}
+
+void Summary::add(std::string label, double value, std::string unit)
+{
+    std::array<char, 32> text{};
+    const auto end =
+        std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::general, 6).ptr;
+    add(std::move(label), std::string(text.data(), end), std::move(unit));
+}
+
+void Summary::add(std::string label, std::int64_t value, std::string unit)
+{
+    add(std::move(label), std::to_string(value), std::move(unit));
+}
+
+void Summary::add(std::string label, std::size_t value, std::string unit)
+{
+    add(std::move(label), std::to_string(value), std::move(unit));
+}
+
+void Summary::add(std::string label, std::int32_t value, std::string unit)
+{
+    add(std::move(label), std::to_string(value), std::move(unit));
+}
+
+void Summary::print() const
+{
+    std::size_t width = 0;
+    for (const auto& [label, value] : lines_)
+        width = std::max(width, columns(label));
+    for (const auto& [label, value] : lines_)
+        std::cout << label << std::string(width - columns(label) + 2, ' ') << value << '\n';
+}
+
+} // namespace jointcreep

@@ -1,0 +1,119 @@
+// What the programs share: their command line, their exit codes (docs/programs.md), a progress bar and the
+// closing screen.
+//
+//     int main(int argc, char** argv)
+//     {
+//         return run({.name = "jointgen",
+//                     .summary = "Makes the joints and blocks of a section.",
+//                     .input = "SCENE.toml",
+//                     .output = "network.h5",
+//                     .options = {{"seed", "N", "seed of the joint sets (default: the scene's)"}, {"check",
+//                     "", "..."}}, .example = "jointgen data/column/scene.toml -o network.h5"},
+//                    argc, argv, generate);
+//     }
+
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace jointcreep
+{
+
+enum ExitCode {
+    exit_ok = 0,
+    exit_input = 2,          // command line, scene or input file: input_error
+    exit_no_equilibrium = 3, // equilibrium_error
+    exit_file = 4,           // not readable or not writable: file_error
+    exit_internal = 5        // anything else, memory that ran out among it
+};
+
+// An option of one program. All options are long ones (--name), and are given at most once.
+struct Option {
+    std::string name;  // without the dashes
+    std::string value; // what stands for the value in the usage, "N" or "NAME"; empty: a flag
+    std::string text;  // what it does, with unit and default
+};
+
+// A program as its user sees it. Besides its own options every program has -o, --quiet, --help and --version.
+struct Program {
+    std::string name;
+    std::string summary; // one line
+    std::string input;   // the one argument: "SCENE.toml"
+    std::string output;  // the value of -o: "network.h5"
+    std::vector<Option> options;
+    std::string example; // a whole command line
+};
+
+// What was given on the command line. Every accessor throws input_error when what is given is not what is
+// wanted.
+class Arguments
+{
+public:
+    // The file to read, and the file to write; both refuse if not given.
+    const std::string& input() const { return wanted("input"); }
+    const std::string& output() const { return wanted("output"); }
+
+    bool has(const std::string& option) const { return given_.contains(option); }
+    bool quiet() const { return has("quiet"); }
+
+    // The value of an option, or nothing if it is not given.
+    std::optional<std::string> text(const std::string& option) const;
+    std::optional<std::uint64_t> whole_number(const std::string& option, std::uint64_t least,
+                                              std::uint64_t most) const;
+    std::optional<double> number(const std::string& option) const; // finite
+
+private:
+    friend int run(const Program&, int, char**, const std::function<void(const Arguments&)>&);
+    const std::string& wanted(const std::string& name) const;
+
+    std::map<std::string, std::string> given_;
+    std::map<std::string, std::string> shown_; // how messages name them: "--seed", "SCENE.toml"
+};
+
+// The whole of a main(): reads the command line, answers --help and --version, or else calls `body`. What
+// `body` throws becomes a message on stderr, "jointgen: scene.toml:12: ...", and an exit code.
+int run(const Program& program, int argc, char** argv, const std::function<void(const Arguments&)>& body);
+
+// A progress bar on stderr, if that is a terminal; in a pipe it writes nothing. The destructor wipes it out.
+class Progress
+{
+public:
+    explicit Progress(bool quiet);
+    ~Progress();
+    Progress(const Progress&) = delete;
+    Progress& operator=(const Progress&) = delete;
+
+    // `fraction` done, from 0 to 1, and what is being done. Cheap to call often: redraws 10 times a second at
+    // most.
+    void show(double fraction, std::string_view what);
+
+private:
+    bool on_terminal_;
+    bool drawn_ = false;
+    std::chrono::steady_clock::time_point next_{};
+};
+
+// The closing screen: lines "label   value unit", their values aligned.
+class Summary
+{
+public:
+    void add(std::string label, std::string value, std::string unit = "");
+    void add(std::string label, double value, std::string unit = ""); // to six digits
+    void add(std::string label, std::int64_t value, std::string unit = "");
+    void add(std::string label, std::size_t value, std::string unit = "");
+    void add(std::string label, std::int32_t value, std::string unit = "");
+    void print() const; // to stdout
+
+private:
+    std::vector<std::pair<std::string, std::string>> lines_; // label, value with unit
+};
+
+} // namespace jointcreep

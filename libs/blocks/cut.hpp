@@ -1,0 +1,25 @@
+// Cuts the section into blocks along its joints, stage outlines and borders between rocks.
+
+#pragma once
+
+#include "model/network.hpp"
+#include "model/scene.hpp"
+
+namespace jointcreep::blocks
+{
+
+// The blocks of the section. `joints` may cross, touch, overlap, reach beyond the outline or run along it.
+//
+//  - Every crossing is found by exact arithmetic (one CGAL arrangement); then vertices closer than
+//    scene.cutting.shortest_edge to each other, or than half of it to an edge, are merged, and wedges
+//    narrower than scene.cutting.smallest_angle closed where that moves little; vertices on the outline stay
+//    on it, so the blocks' areas add up to the section's.
+//  - A joint that ends inside a block is cut back to the last block border it met (pruned).
+//  - An edge on several joints belongs to the one with the largest joint fraction, then to the first.
+//  - Joint edges run the way their joint runs; boundary edges have the rock on their left.
+//
+// Throws input_error where a boundary condition does not lie on the outline, or where merging does not
+// settle.
+Blocks cut(const Scene& scene, const Joints& joints);
+
+} // namespace jointcreep::blocks

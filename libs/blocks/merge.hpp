@@ -1,0 +1,25 @@
+// Keeps edges and angles above stated limits: vertices that lie close together become one, and edges that
+// pass close by a vertex go through it. Inside libs/blocks only.
+
+#pragma once
+
+#include "blocks/graph.hpp"
+
+namespace jointcreep::blocks
+{
+
+struct MergeLimits {
+    double shortest_edge; // vertices closer than this to each other, or than half of it to an edge, merge [m]
+    double smallest_angle; // wedges narrower than this are closed if that moves no vertex by more than
+                           // `farthest_closing` shortest edges [rad]
+    static constexpr double farthest_closing = 5;
+};
+
+// One pass of merging over a planar graph. Vertices give way in this order: a vertex between joints moves to
+// a stage outline or rock border, and both move to the section's outline; corners of the outline never move,
+// and vertices on a side of the outline stay on it. The result may cross itself where much moved: arrange()
+// it again, and repeat until a pass changes nothing (returns false).
+bool merge_pass(Graph& graph, const std::vector<Source>& sources, const Polygon& outline,
+                const MergeLimits& limits, CuttingReport& report);
+
+} // namespace jointcreep::blocks

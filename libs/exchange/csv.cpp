@@ -1,0 +1,160 @@
+#include "exchange/csv.hpp"
+
+#include "model/error.hpp"
+
+#include <array>
+#include <string_view>
+
+namespace jointcreep
+{
+
+namespace
+{
+
+// Text as one field: in quotes if it holds what would end a field.
+std::string field(const std::string& text)
+{
+    if (text.find_first_of(",\"\r\n") == std::string::npos)
+        return text;
+    std::string quoted = "\"";
+    for (const char c : text)
+        quoted.append(c == '"' ? 2 : 1, c);
+    return quoted + '"';
+}
+
+std::string field(double value)
+{
+    return shown(value);
+}
+
+std::string field(Index value)
+{
+    return std::to_string(value);
+}
+
+std::string field(const Eigen::Vector2d& vector)
+{
+    return shown(vector.x()) + ',' + shown(vector.y());
+}
+
+// The name that an index stands for; empty for none.
+std::string name_of(const std::vector<std::string>& names, Index index)
+{
+    return index < 0 ? "" : field(names[index]);
+}
+
+template <class... Fields>
+void add_row(std::string& table, const Fields&... fields)
+{
+    std::string_view separator;
+    ((table.append(separator).append(fields), separator = ","), ...);
+    table += '\n';
+}
+
+// Summed over triangles between the first vertex and every edge: exact for any ring, holes counting negative,
+// and as accurate far from the origin as near it.
+Eigen::Vector2d centroid(const Blocks& blocks, std::size_t block)
+{
+    const Eigen::Vector2d origin =
+        blocks.vertex[blocks.ring_vertex[blocks.ring_start[blocks.block_ring[block]]]];
+    double twice_area = 0;
+    Eigen::Vector2d moment(0, 0);
+    for (Index ring = blocks.block_ring[block]; ring < blocks.block_ring[block + 1]; ++ring) {
+        const Index first = blocks.ring_start[ring], end = blocks.ring_start[ring + 1];
+        for (Index i = first; i < end; ++i) {
+            const Eigen::Vector2d p = blocks.vertex[blocks.ring_vertex[i]] - origin;
+            const Eigen::Vector2d q = blocks.vertex[blocks.ring_vertex[i + 1 < end ? i + 1 : first]] - origin;
+            const double cross = p.x() * q.y() - p.y() * q.x();
+            twice_area += cross;
+            moment += cross * (p + q);
+        }
+    }
+    return origin + moment / (3 * twice_area);
+}
+
+Index vertices_of(const Blocks& blocks, std::size_t block)
+{
+    return blocks.ring_start[blocks.block_ring[block + 1]] - blocks.ring_start[blocks.block_ring[block]];
+}
+
+} // namespace
+
+std::string joints_csv(const Network& network)
+{
+    const Joints& joints = network.joints;
+    std::string table = "set,number,x1_m,y1_m,x2_m,y2_m\n";
+    for (std::size_t trace = 0; trace < joints.trace_joint.size(); ++trace) {
+        const Index joint = joints.trace_joint[trace];
+        add_row(table, name_of(network.names.joint_set, joints.set[joint]), field(joints.number[joint]),
+                field(joints.trace_from[trace]), field(joints.trace_to[trace]));
+    }
+    return table;
+}
+
+std::string blocks_csv(const Network& network)
+{
+    const Blocks& blocks = network.blocks;
+    std::string table = "block,rock,stage,area_m2,x_m,y_m,vertices,holes\n";
+    for (std::size_t block = 0; block < blocks.block_area.size(); ++block)
+        add_row(table, std::to_string(block), name_of(network.names.rock, blocks.block_rock[block]),
+                name_of(network.names.stage, blocks.block_stage[block]), field(blocks.block_area[block]),
+                field(centroid(blocks, block)), field(vertices_of(blocks, block)),
+                field(blocks.block_ring[block + 1] - blocks.block_ring[block] - 1));
+    return table;
+}
+
+std::string edges_csv(const Network& network, const EquivalentJoints* equivalent)
+{
+    constexpr std::array kinds = {"boundary", "joint", "welded"}; // by EdgeKind
+    const Blocks& blocks = network.blocks;
+    const Joints& joints = network.joints;
+    std::string table = "edge,x1_m,y1_m,x2_m,y2_m,left_block,right_block,kind,set,number,joint_fraction";
+    if (equivalent)
+        table += ",normal_stiffness_Pa_per_m,shear_stiffness_Pa_per_m,cohesion_Pa,friction_angle_rad,"
+                 "tensile_strength_Pa,normal_kelvin_stiffness_Pa_per_m,shear_kelvin_stiffness_Pa_per_m,"
+                 "normal_kelvin_viscosity_Pa_s_per_m,shear_kelvin_viscosity_Pa_s_per_m";
+    table += '\n';
+    for (std::size_t edge = 0; edge < blocks.edge_vertex.size(); ++edge) {
+        const auto [first, second] = blocks.edge_vertex[edge];
+        const auto [left, right] = blocks.edge_block[edge];
+        const Index joint = blocks.edge_joint[edge];
+        add_row(table, std::to_string(edge), field(blocks.vertex[first]), field(blocks.vertex[second]),
+                left < 0 ? "" : field(left), right < 0 ? "" : field(right), kinds.at(blocks.edge_kind[edge]),
+                joint < 0 ? "" : name_of(network.names.joint_set, joints.set[joint]),
+                joint < 0 ? "" : field(joints.number[joint]),
+                joint < 0 ? "" : field(blocks.edge_joint_fraction[edge]));
+        if (equivalent) {
+            table.back() = ',';
+            add_row(table, field(equivalent->normal_stiffness[edge]),
+                    field(equivalent->shear_stiffness[edge]), field(equivalent->cohesion[edge]),
+                    field(equivalent->friction_angle[edge]), field(equivalent->tensile_strength[edge]),
+                    field(equivalent->normal_kelvin_stiffness[edge]),
+                    field(equivalent->shear_kelvin_stiffness[edge]),
+                    field(equivalent->normal_kelvin_viscosity[edge]),
+                    field(equivalent->shear_kelvin_viscosity[edge]));
+        }
+    }
+    return table;
+}
+
+std::string histories_csv(const History& history)
+{
+    const std::size_t points = history.point.size();
+    std::string table = "time_day,event";
+    for (const std::string& point : history.point)
+        for (const char* column : {"_x_m", "_y_m", "_present"})
+            table.append(",").append(field(point + column));
+    table += '\n';
+    for (std::size_t row = 0; row < history.time.size(); ++row) {
+        table.append(field(history.time[row])).append(",").append(field(history.event[row]));
+        for (std::size_t at = row * points; at < (row + 1) * points; ++at)
+            table.append(",")
+                .append(field(history.displacement[at]))
+                .append(",")
+                .append(field(history.present[at]));
+        table += '\n';
+    }
+    return table;
+}
+
+} // namespace jointcreep

@@ -1,0 +1,40 @@
+// Blocks, joints, zones and contacts as VTK XML unstructured grids, for ParaView and everything else that
+// reads VTK. Pure functions from records to the text of a file: the same records give the same bytes, and
+// every number reads back as the same double. SI units and the signs of model/signs.hpp.
+//
+// Codes that stand for a name (rock, stage, joint set) count from 0 in the field data array of names beside
+// them: block 3 with rock = 1 is of the second rock of "rock_names". -1 means none.
+
+#pragma once
+
+#include "model/network.hpp"
+#include "model/result.hpp"
+
+#include <cstddef>
+#include <string>
+
+namespace jointcreep
+{
+
+// One polygon a block; cell i is block i. A hole is joined to the outer ring by a bridge without width, there
+// and back between their nearest vertices. VTK draws a concave polygon as if it were convex: for a true
+// picture apply its filter Triangulate first. Cells: block, rock, stage (that removes it), area [m2].
+std::string blocks_vtu(const Network& network);
+
+// One line an edge that has joint properties: the joint edges, and boundary edges that rest on a joint (these
+// only with `equivalent`, which is null where strength-averaging has not yet been). Cells: edge, kind
+// (EdgeKind), joint, set, joint_fraction [-], then every array of EquivalentJoints, by its name.
+std::string joints_vtu(const Network& network, const EquivalentJoints* equivalent);
+
+// The zones present in a state, one triangle each, at their positions at the start. `state` is a row of
+// result.states; one that does not exist throws input_error. Its time [day] is the field data array
+// TimeValue. Points: gridpoint, displacement [m]. Cells: zone, block, rock, stage, stress_xx, stress_yy,
+// stress_xy [Pa].
+std::string zones_vtu(const Network& network, const Result& result, std::size_t state);
+
+// The contacts present in a state, one point each, at their centres at the start.
+// Points: contact, edge, normal (from side a to side b), length [m], displacement (mean of the two sides)
+// [m], normal_traction, shear_traction [Pa], normal_jump, shear_jump [m], status (ContactStatus).
+std::string contacts_vtu(const Result& result, std::size_t state);
+
+} // namespace jointcreep

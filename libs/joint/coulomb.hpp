@@ -1,0 +1,60 @@
+// A joint's instantaneous law: springs along the normal and along the joint, no tension beyond the strength
+// of its bonds, and Coulomb friction.
+//
+//     sigma_n = sigma_0 + k_n u_n          up to the tensile strength; beyond, the joint opens
+//     tau     = tau_0   + k_s (u_s - slip) with |tau| <= c - sigma_n tan(phi)
+//
+// Opening breaks the joint's bonds: its cohesion and tensile strength are lost for good. (A cohesion that
+// came back on closing would let a contact flicker between open and closed.) Slip alone leaves them. Signs as
+// in model/signs.hpp: tension and opening positive.
+
+#pragma once
+
+#include "model/result.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace jointcreep::joint
+{
+
+struct Coulomb {
+    double k_n, k_s;         // [Pa/m]
+    double cohesion;         // [Pa]
+    double tan_phi;          // [-]
+    double tensile_strength; // [Pa]
+};
+
+// What the joint remembers.
+struct CoulombState {
+    double slip = 0; // [m]
+    bool is_broken = false;
+};
+
+struct Response {
+    double sigma_n, tau; // [Pa]
+    ContactStatus status;
+};
+
+// The traction at displacements u_n, u_s [m] from a state of traction sigma_0, tau_0 [Pa]; takes slip and
+// breaking into `state`. sigma_0 may be above the tensile strength: the joint is open then, by sigma_0 / k_n.
+inline Response respond(const Coulomb& law, CoulombState& state, double sigma_0, double tau_0, double u_n,
+                        double u_s)
+{
+    const double sigma_n = sigma_0 + law.k_n * u_n;
+    const double tau_trial = tau_0 + law.k_s * (u_s - state.slip);
+    const double give = law.k_s > 0 ? 1 / law.k_s : 0.0;
+    if (sigma_n > (state.is_broken ? 0.0 : law.tensile_strength)) {
+        state.is_broken = true;
+        state.slip += tau_trial * give; // the joint closes again without shear
+        return {0, 0, ContactStatus::open};
+    }
+    const double limit = std::max(0.0, (state.is_broken ? 0.0 : law.cohesion) - sigma_n * law.tan_phi);
+    if (std::abs(tau_trial) <= limit)
+        return {sigma_n, tau_trial, ContactStatus::stuck};
+    const double tau = std::copysign(limit, tau_trial);
+    state.slip += (tau_trial - tau) * give;
+    return {sigma_n, tau, ContactStatus::slipping};
+}
+
+} // namespace jointcreep::joint

@@ -1,0 +1,275 @@
+#include "mechanics/assembly.hpp"
+
+#include "model/signs.hpp"
+
+#include <cmath>
+
+namespace jointcreep::mechanics
+{
+
+namespace
+{
+
+void add_zones(Assembly& assembly, const Scene& scene, const Network& network, const Mesh& mesh)
+{
+    Zones& zones = assembly.zones;
+    const std::size_t n = mesh.zone_gridpoint.size();
+    zones.gridpoint = mesh.zone_gridpoint;
+    zones.is_present.assign(n, 1);
+    for (std::size_t z = 0; z < n; ++z) {
+        std::array<Vector2d, 3> p;
+        for (int i = 0; i < 3; ++i)
+            p[i] = mesh.gridpoint[mesh.zone_gridpoint[z][i]];
+        const Vector2d d1 = p[1] - p[0], d2 = p[2] - p[0];
+        const double twice_area = d1.x() * d2.y() - d1.y() * d2.x();
+        std::array<Vector2d, 3> gradient;
+        for (int i = 0; i < 3; ++i) {
+            const Vector2d opposite = p[(i + 2) % 3] - p[(i + 1) % 3];
+            gradient[i] = normal_of(opposite) / twice_area;
+        }
+        const Rock& rock = scene.rocks[network.blocks.block_rock[mesh.zone_block[z]]];
+        const double E = rock.youngs_modulus, nu = rock.poissons_ratio;
+        const double factor = E / ((1 + nu) * (1 - 2 * nu));
+        zones.gradient.push_back(gradient);
+        zones.area.push_back(twice_area / 2);
+        zones.mass.push_back(rock.density * twice_area / 2);
+        zones.weight.push_back(rock.density * twice_area / 2 * scene.gravity);
+        zones.stiffness.emplace_back(factor * (1 - nu), factor * nu, E / (2 * (1 + nu)));
+        zones.initial_stress.push_back(scene.in_situ_stress.at((p[0] + p[1] + p[2]) / 3));
+    }
+    zones.stress = zones.initial_stress;
+    assembly.zone_force.resize(n);
+}
+
+void add_contacts(Assembly& assembly, const Scene& scene, const EquivalentJoints& joints, const Mesh& mesh)
+{
+    Contacts& contacts = assembly.contacts;
+    const std::size_t n = mesh.contact_edge.size();
+    contacts.gridpoint = mesh.contact_gridpoint;
+    contacts.normal = mesh.contact_normal;
+    contacts.length = mesh.contact_length;
+    for (std::size_t c = 0; c < n; ++c) {
+        const Index e = mesh.contact_edge[c];
+        contacts.law.push_back({joints.normal_stiffness[e], joints.shear_stiffness[e], joints.cohesion[e],
+                                std::tan(joints.friction_angle[e]), joints.tensile_strength[e]});
+        const Vector3d stress = scene.in_situ_stress.at(mesh.contact_centre[c]);
+        const Vector2d normal = mesh.contact_normal[c], tangent(normal.y(), -normal.x());
+        const Vector2d pull(stress[0] * normal.x() + stress[2] * normal.y(),
+                            stress[2] * normal.x() + stress[1] * normal.y());
+        contacts.initial_traction.emplace_back(pull.dot(normal), pull.dot(tangent));
+    }
+    contacts.state.resize(n);
+    contacts.offset.assign(n, Vector2d::Zero());
+    contacts.traction = contacts.initial_traction;
+    contacts.jump.assign(n, Vector2d::Zero());
+    contacts.status.assign(n, ContactStatus::stuck);
+    assembly.contact_force.resize(n);
+}
+
+// Lists of (item, corner) per gridpoint, in the order of items.
+template <std::size_t N>
+void list_by_gridpoint(const std::vector<std::array<Index, N>>& gridpoints, std::size_t n_gridpoints,
+                       std::vector<Index>& start, std::vector<Index>& entry)
+{
+    start.assign(n_gridpoints + 1, 0);
+    for (const auto& item : gridpoints)
+        for (const Index g : item)
+            ++start[g + 1];
+    for (std::size_t g = 0; g < n_gridpoints; ++g)
+        start[g + 1] += start[g];
+    entry.resize(N * gridpoints.size());
+    std::vector<Index> next(start.begin(), start.end() - 1);
+    for (std::size_t i = 0; i < gridpoints.size(); ++i)
+        for (std::size_t k = 0; k < N; ++k)
+            entry[next[gridpoints[i][k]]++] = static_cast<Index>(N * i + k);
+}
+
+} // namespace
+
+Assembly assemble(const Scene& scene, const Network& network, const EquivalentJoints& equivalent,
+                  const Mesh& mesh)
+{
+    Assembly assembly;
+    const std::size_t n = mesh.gridpoint.size();
+    assembly.position = mesh.gridpoint;
+    assembly.displacement.assign(n, Vector2d::Zero());
+    assembly.force.assign(n, Vector2d::Zero());
+    assembly.load.assign(n, Vector2d::Zero());
+    for (const Index held : mesh.gridpoint_fixed)
+        assembly.is_free.emplace_back((held & 1) != 0 ? 0.0 : 1.0, (held & 2) != 0 ? 0.0 : 1.0);
+    add_zones(assembly, scene, network, mesh);
+    add_contacts(assembly, scene, equivalent, mesh);
+    list_by_gridpoint(assembly.zones.gridpoint, n, assembly.incidence.zone_start,
+                      assembly.incidence.zone_corner);
+    list_by_gridpoint(assembly.contacts.gridpoint, n, assembly.incidence.contact_start,
+                      assembly.incidence.contact_side);
+    for (std::size_t z = 0; z < assembly.zones.gridpoint.size(); ++z)
+        for (const Index g : assembly.zones.gridpoint[z])
+            assembly.load[g].y() -= assembly.zones.weight[z] / 3;
+    return assembly;
+}
+
+void find_forces(Assembly& assembly)
+{
+    Zones& zones = assembly.zones;
+    Contacts& contacts = assembly.contacts;
+    const auto n_zones = static_cast<Index>(zones.gridpoint.size());
+    const auto n_contacts = static_cast<Index>(contacts.gridpoint.size());
+    const auto n_gridpoints = static_cast<Index>(assembly.position.size());
+    const Incidence& incidence = assembly.incidence;
+    const std::vector<Vector2d>& u = assembly.displacement;
+
+#pragma omp parallel num_threads(assembly.threads) if (assembly.threads > 1)
+    {
+#pragma omp for schedule(static) nowait
+        for (Index z = 0; z < n_zones; ++z) {
+            if (!zones.is_present[z])
+                continue;
+            const auto& g = zones.gridpoint[z];
+            const auto& gradient = zones.gradient[z];
+            double exx = 0, eyy = 0, gxy = 0;
+            for (int i = 0; i < 3; ++i) {
+                const Vector2d& ui = u[g[i]];
+                exx += gradient[i].x() * ui.x();
+                eyy += gradient[i].y() * ui.y();
+                gxy += gradient[i].y() * ui.x() + gradient[i].x() * ui.y();
+            }
+            const Vector3d& c = zones.stiffness[z];
+            const Vector3d stress = zones.initial_stress[z] +
+                                    Vector3d(c[0] * exx + c[1] * eyy, c[1] * exx + c[0] * eyy, c[2] * gxy);
+            zones.stress[z] = stress;
+            for (int i = 0; i < 3; ++i)
+                assembly.zone_force[z][i] =
+                    -zones.area[z] * Vector2d(stress[0] * gradient[i].x() + stress[2] * gradient[i].y(),
+                                              stress[2] * gradient[i].x() + stress[1] * gradient[i].y());
+        }
+#pragma omp for schedule(static)
+        for (Index c = 0; c < n_contacts; ++c) {
+            if (contacts.status[c] == ContactStatus::removed)
+                continue;
+            const auto [a, b] = contacts.gridpoint[c];
+            const Vector2d normal = contacts.normal[c], tangent(normal.y(), -normal.x());
+            const Vector2d jump = u[b] - u[a];
+            contacts.jump[c] = {jump.dot(normal), jump.dot(tangent)};
+            const Vector2d sprung = contacts.jump[c] - contacts.offset[c];
+            const joint::Response response =
+                joint::respond(contacts.law[c], contacts.state[c], contacts.initial_traction[c].x(),
+                               contacts.initial_traction[c].y(), sprung.x(), sprung.y());
+            contacts.traction[c] = {response.sigma_n, response.tau};
+            contacts.status[c] = response.status;
+            assembly.contact_force[c] =
+                contacts.length[c] * (response.sigma_n * normal + response.tau * tangent);
+        }
+#pragma omp for schedule(static)
+        for (Index g = 0; g < n_gridpoints; ++g) {
+            Vector2d force = assembly.load[g];
+            for (Index k = incidence.zone_start[g]; k < incidence.zone_start[g + 1]; ++k) {
+                const Index corner = incidence.zone_corner[k];
+                force += assembly.zone_force[corner / 3][corner % 3];
+            }
+            for (Index k = incidence.contact_start[g]; k < incidence.contact_start[g + 1]; ++k) {
+                const Index side = incidence.contact_side[k];
+                if (side % 2 == 0)
+                    force += assembly.contact_force[side / 2];
+                else
+                    force -= assembly.contact_force[side / 2];
+            }
+            assembly.force[g] = force;
+        }
+    }
+}
+
+Balance balance_of(const Assembly& assembly)
+{
+    const Incidence& incidence = assembly.incidence;
+    Balance balance{0, 0, 0};
+    double sum = 0;
+    Index n = 0;
+    for (std::size_t g = 0; g < assembly.position.size(); ++g) {
+        const double force = assembly.force[g].cwiseProduct(assembly.is_free[g]).norm();
+        if (force > balance.largest) {
+            balance.largest = force;
+            balance.worst = static_cast<Index>(g);
+        }
+        double magnitudes = assembly.load[g].norm();
+        for (Index k = incidence.zone_start[g]; k < incidence.zone_start[g + 1]; ++k) {
+            const Index corner = incidence.zone_corner[k];
+            magnitudes += assembly.zone_force[corner / 3][corner % 3].norm();
+        }
+        for (Index k = incidence.contact_start[g]; k < incidence.contact_start[g + 1]; ++k)
+            magnitudes += assembly.contact_force[incidence.contact_side[k] / 2].norm();
+        if (magnitudes > 0) {
+            sum += magnitudes;
+            ++n;
+        }
+    }
+    balance.mean = n > 0 ? sum / n : 0.0;
+    return balance;
+}
+
+void start_from_here(Assembly& assembly)
+{
+    find_forces(assembly);
+    Contacts& contacts = assembly.contacts;
+    for (std::size_t c = 0; c < contacts.gridpoint.size(); ++c) {
+        // An open contact keeps its gap as the tension its spring would have.
+        const double normal = contacts.initial_traction[c].x() +
+                              contacts.law[c].k_n * (contacts.jump[c].x() - contacts.offset[c].x());
+        contacts.initial_traction[c] = {normal, contacts.traction[c].y()};
+        contacts.state[c].slip = 0;
+        contacts.offset[c].setZero();
+    }
+    assembly.zones.initial_stress = assembly.zones.stress;
+    assembly.displacement.assign(assembly.displacement.size(), Vector2d::Zero());
+    find_forces(assembly);
+}
+
+std::vector<double> stiffness_row_sums(const Assembly& assembly)
+{
+    const Zones& zones = assembly.zones;
+    const Contacts& contacts = assembly.contacts;
+    std::vector<Vector2d> sums(assembly.position.size(), Vector2d::Zero());
+    for (std::size_t z = 0; z < zones.gridpoint.size(); ++z) {
+        if (!zones.is_present[z])
+            continue;
+        const Vector3d& c = zones.stiffness[z];
+        for (int i = 0; i < 3; ++i) {
+            const Vector2d& p = zones.gradient[z][i];
+            for (int j = 0; j < 3; ++j) {
+                const Vector2d& q = zones.gradient[z][j];
+                const double xx = c[0] * p.x() * q.x() + c[2] * p.y() * q.y();
+                const double yy = c[0] * p.y() * q.y() + c[2] * p.x() * q.x();
+                const double xy = c[1] * p.x() * q.y() + c[2] * p.y() * q.x();
+                const double yx = c[1] * p.y() * q.x() + c[2] * p.x() * q.y();
+                sums[zones.gridpoint[z][i]] +=
+                    zones.area[z] * Vector2d(std::abs(xx) + std::abs(xy), std::abs(yy) + std::abs(yx));
+            }
+        }
+    }
+    for (std::size_t c = 0; c < contacts.gridpoint.size(); ++c) {
+        if (contacts.status[c] == ContactStatus::removed)
+            continue;
+        const Vector2d n = contacts.normal[c].cwiseAbs(), t(n.y(), n.x());
+        const Vector2d row =
+            2 * contacts.length[c] *
+            (contacts.law[c].k_n * n * (n.x() + n.y()) + contacts.law[c].k_s * t * (t.x() + t.y()));
+        for (const Index g : contacts.gridpoint[c])
+            sums[g] += row;
+    }
+    std::vector<double> larger;
+    for (const Vector2d& s : sums)
+        larger.push_back(s.maxCoeff());
+    return larger;
+}
+
+std::vector<double> lumped_masses(const Assembly& assembly)
+{
+    std::vector<double> mass(assembly.position.size(), 0.0);
+    for (std::size_t z = 0; z < assembly.zones.gridpoint.size(); ++z)
+        if (assembly.zones.is_present[z])
+            for (const Index g : assembly.zones.gridpoint[z])
+                mass[g] += assembly.zones.mass[z] / 3;
+    return mass;
+}
+
+} // namespace jointcreep::mechanics

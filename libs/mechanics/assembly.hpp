@@ -1,0 +1,114 @@
+// A zoned section in mechanical terms: what moves, what resists, and how far from equilibrium it is. Both the
+// explicit engine and any other work on this.
+
+#pragma once
+
+#include "joint/coulomb.hpp"
+#include "model/network.hpp"
+#include "model/result.hpp"
+#include "model/scene.hpp"
+
+#include <Eigen/Core>
+
+#include <array>
+#include <vector>
+
+namespace jointcreep::mechanics
+{
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+// Zones: constant-strain triangles, elastic, plane strain, small strain.
+struct Zones {
+    std::vector<std::array<Index, 3>> gridpoint;
+    std::vector<std::array<Vector2d, 3>> gradient; // of each corner's shape function [1/m]
+    std::vector<double> area;                      // [m2]
+    std::vector<double> weight;                    // area x density x gravity, downward [N/m]
+    std::vector<double> mass;                      // [kg/m]
+    std::vector<Vector3d> stiffness;               // {C11, C12, C33} of the rock [Pa]
+    std::vector<Vector3d> initial_stress;          // {xx, yy, xy} at zero displacement [Pa]
+    std::vector<Vector3d> stress;                  // now [Pa]
+    std::vector<char> is_present;
+};
+
+// Contacts: springs between two gridpoints that a joint has split. Pairs are {normal, shear}.
+struct Contacts {
+    std::vector<std::array<Index, 2>> gridpoint; // {on side a, on side b}
+    std::vector<Vector2d> normal;                // unit, from a to b
+    std::vector<double> length;                  // [m]
+    std::vector<joint::Coulomb> law;
+    std::vector<joint::CoulombState> state;
+    std::vector<Vector2d>
+        initial_traction;              // at zero displacement; where open, the normal part is k_n x gap [Pa]
+    std::vector<Vector2d> offset;      // displacement at which the springs are as at the start: creep [m]
+    std::vector<Vector2d> traction;    // now [Pa]
+    std::vector<Vector2d> jump;        // displacement of b minus that of a, now [m]
+    std::vector<ContactStatus> status; // now; removed once a side is gone
+};
+
+// What a gridpoint is part of, for gathering forces in a fixed order whatever the number of threads.
+struct Incidence {
+    std::vector<Index> zone_start;    // [gridpoints + 1]
+    std::vector<Index> zone_corner;   // 3 zone + corner
+    std::vector<Index> contact_start; // [gridpoints + 1]
+    std::vector<Index> contact_side;  // 2 contact + side (0 a, 1 b)
+};
+
+struct Assembly {
+    Zones zones;
+    Contacts contacts;
+    Incidence incidence;
+
+    // Gridpoints.
+    std::vector<Vector2d> position;     // at the start [m]
+    std::vector<Vector2d> displacement; // [m]
+    std::vector<Vector2d> is_free;      // 1 or 0 in {x, y}
+    std::vector<Vector2d> load;         // weight and applied forces [N/m]
+    std::vector<Vector2d> force;        // out of balance, also where held; filled by find_forces [N/m]
+
+    // Forces of zones on their corners and of contacts on their side a; filled by find_forces [N/m].
+    std::vector<std::array<Vector2d, 3>> zone_force;
+    std::vector<Vector2d> contact_force;
+
+    int threads = 1;
+};
+
+// The assembly under the scene's in-situ stress, at zero displacement, all rock present. Contact tractions
+// are the in-situ ones at the contacts' centres.
+Assembly assemble(const Scene& scene, const Network& network, const EquivalentJoints& equivalent,
+                  const Mesh& mesh);
+
+// Stresses, tractions and forces at the present displacements. Slip and breaking of contacts are taken into
+// their states: calling it again changes nothing more.
+void find_forces(Assembly& assembly);
+
+struct Balance {
+    double largest; // out-of-balance force on a free gridpoint [N/m]
+    Index worst;    // that gridpoint
+    double mean;    // over gridpoints: summed magnitudes of the forces of zones, contacts and load [N/m]
+    double ratio() const { return mean == 0 ? 0.0 : largest / mean; } // not a number if a force is not
+};
+
+// How far the forces of the last find_forces are from equilibrium.
+Balance balance_of(const Assembly& assembly);
+
+// Makes the present state the one displacements count from.
+void start_from_here(Assembly& assembly);
+
+// Row sums of the stiffness matrix's magnitudes, the larger of x and y, of every gridpoint [Pa]: no
+// eigenvalue of stiffness over mass is above the largest row sum over its mass (Gershgorin).
+std::vector<double> stiffness_row_sums(const Assembly& assembly);
+
+// Mass of every gridpoint: a third of each present zone around it [kg/m].
+std::vector<double> lumped_masses(const Assembly& assembly);
+
+// How an equilibrium was reached.
+struct Certificate {
+    Index steps = 0;
+    double out_of_balance_ratio = 0;
+    double contact_force_change =
+        0; // largest over the last 100 steps, over the mean force on a gridpoint [-]
+};
+
+} // namespace jointcreep::mechanics

@@ -1,0 +1,163 @@
+#include "mechanics/recorder.hpp"
+
+#include "model/error.hpp"
+#include "model/units.hpp"
+
+#include <algorithm>
+#include <limits>
+
+namespace jointcreep::mechanics
+{
+
+namespace
+{
+
+std::string named_place(const std::string& what, const std::string& name, const Vector2d& at)
+{
+    return what + " \"" + name + "\" at [" + shown(at.x()) + ", " + shown(at.y()) + "] m";
+}
+
+} // namespace
+
+Recorder::Recorder(const Scene& scene, const Blocks& blocks, const Mesh& mesh)
+{
+    Vector2d low = mesh.gridpoint[0], high = low;
+    for (const Vector2d& p : mesh.gridpoint) {
+        low = low.cwiseMin(p);
+        high = high.cwiseMax(p);
+    }
+    // A point on a slanting face is, in doubles, a little off it; cutting may have moved the face a little,
+    // too.
+    const double reach = std::max(1e-6 * (high - low).norm(), scene.cutting.shortest_edge);
+
+    for (const MeasuringPoint& point : scene.points) {
+        Place best{};
+        double best_outside = std::numeric_limits<double>::infinity();
+        Index best_stage = -2;
+        const auto stays_longer = [](Index a, Index b) { return a != b && b != -1 && (a == -1 || a > b); };
+        for (std::size_t z = 0; z < mesh.zone_gridpoint.size(); ++z) {
+            const auto& corners = mesh.zone_gridpoint[z];
+            std::array<double, 3> share{};
+            std::array<Vector2d, 3> p;
+            for (int i = 0; i < 3; ++i)
+                p[i] = mesh.gridpoint[corners[i]];
+            const auto twice = [](const Vector2d& a, const Vector2d& b) {
+                return a.x() * b.y() - a.y() * b.x();
+            };
+            const double area = twice(p[1] - p[0], p[2] - p[0]);
+            double outside = 0; // how far the point is outside [m]
+            for (int i = 0; i < 3; ++i) {
+                const Vector2d &a = p[(i + 1) % 3], &b = p[(i + 2) % 3];
+                share[i] = twice(b - a, point.at - a) / area;
+                outside = std::max(outside, -share[i] * area / (b - a).norm());
+            }
+            if (outside > reach)
+                continue;
+            const Index stage = blocks.block_stage[mesh.zone_block[z]];
+            const double tie = 1e-9 * reach;
+            if (best_stage == -2 || stays_longer(stage, best_stage) ||
+                (stage == best_stage && outside < best_outside - tie)) {
+                best = {corners, share, static_cast<Index>(z)};
+                best_outside = outside;
+                best_stage = stage;
+            }
+        }
+        if (best_stage == -2)
+            throw input_error(named_place("point", point.name, point.at) +
+                              " is not in the rock; it must lie in the section or on its outline");
+        point_.push_back(best);
+        point_name_.push_back(point.name);
+        point_position_.push_back(point.at);
+        first_reading_.push_back(point.first_reading);
+    }
+    for (const Gauge& gauge : scene.gauges) {
+        Index nearest = -1;
+        double distance = std::numeric_limits<double>::infinity();
+        for (std::size_t c = 0; c < mesh.contact_edge.size(); ++c) {
+            const double d = (mesh.gridpoint[mesh.contact_gridpoint[c][1]] - gauge.at).norm();
+            if (d < distance) {
+                distance = d;
+                nearest = static_cast<Index>(c);
+            }
+        }
+        if (nearest < 0)
+            throw input_error(named_place("gauge", gauge.name, gauge.at) + ": the section has no joint");
+        gauge_name_.push_back(gauge.name);
+        gauge_contact_.push_back(nearest);
+    }
+}
+
+Vector2d Recorder::displacement(const Place& place, const Assembly& assembly) const
+{
+    Vector2d u = Vector2d::Zero();
+    for (int i = 0; i < 3; ++i)
+        u += place.share[i] * assembly.displacement[place.gridpoint[i]];
+    return u;
+}
+
+void Recorder::record_history(Result& result, double time, const std::string& event,
+                              const Assembly& assembly) const
+{
+    History& history = result.history;
+    if (history.time.empty()) {
+        history.point = point_name_;
+        history.point_position = point_position_;
+        history.first_reading_row.assign(point_.size(), 0);
+    }
+    const std::size_t n = point_.size();
+    for (std::size_t p = 0; p < n; ++p) {
+        const bool present = assembly.zones.is_present[point_[p].zone] != 0;
+        history.present.push_back(present ? 1 : 0);
+        const Vector2d now = present ? displacement(point_[p], assembly)
+                                     : history.displacement[history.displacement.size() - n];
+        history.displacement.push_back(now);
+    }
+    history.time.push_back(time / unit::day);
+    history.event.push_back(event);
+}
+
+void Recorder::start_readings(Result& result, double time) const
+{
+    for (std::size_t p = 0; p < point_.size(); ++p)
+        if (first_reading_[p] == time)
+            result.history.first_reading_row[p] = static_cast<Index>(result.history.time.size()) - 1;
+}
+
+void Recorder::record_state(Result& result, double time, const std::string& event,
+                            const Assembly& assembly) const
+{
+    States& states = result.states;
+    states.time.push_back(time / unit::day);
+    states.event.push_back(event);
+    const auto append = [](auto& to, const auto& from) { to.insert(to.end(), from.begin(), from.end()); };
+    append(states.displacement, assembly.displacement);
+    append(states.stress, assembly.zones.stress);
+    append(states.zone_present, assembly.zones.is_present);
+    append(states.traction, assembly.contacts.traction);
+    append(states.jump, assembly.contacts.jump);
+    for (const ContactStatus status : assembly.contacts.status)
+        states.contact_status.push_back(static_cast<Index>(status));
+}
+
+void Recorder::record_equilibrium(Result& result, double time, const Certificate& certificate) const
+{
+    result.equilibria.time.push_back(time / unit::day);
+    result.equilibria.steps.push_back(certificate.steps);
+    result.equilibria.out_of_balance_ratio.push_back(certificate.out_of_balance_ratio);
+    result.equilibria.contact_force_change.push_back(certificate.contact_force_change);
+}
+
+void Recorder::record_trace(Result& result, double time, double solver_time, const Assembly& assembly) const
+{
+    Trace& trace = result.trace;
+    trace.gauge = gauge_name_;
+    trace.gauge_contact = gauge_contact_;
+    trace.time.push_back(time / unit::day);
+    trace.solver_time.push_back(solver_time);
+    for (const Place& place : point_)
+        trace.displacement.push_back(displacement(place, assembly));
+    for (const Index c : gauge_contact_)
+        trace.traction.push_back(assembly.contacts.traction[c]);
+}
+
+} // namespace jointcreep::mechanics

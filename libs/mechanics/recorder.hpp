@@ -1,0 +1,50 @@
+// Writes down what happens at the measuring points, in the whole section, and between steps of the solver.
+
+#pragma once
+
+#include "mechanics/assembly.hpp"
+
+#include <string>
+#include <vector>
+
+namespace jointcreep::mechanics
+{
+
+class Recorder
+{
+public:
+    // Finds every measuring point's zone; on a border between blocks, that of the block removed last. The
+    // nearest contact to every gauge. Throws input_error for a point outside the rock, and a gauge where
+    // there is no joint.
+    Recorder(const Scene& scene, const Blocks& blocks, const Mesh& mesh);
+
+    // A row of the histories at `time` since start [s]; `event` is the stage it is the first after, or "".
+    void record_history(Result& result, double time, const std::string& event,
+                        const Assembly& assembly) const;
+
+    // Counts the readings of the points whose date of first reading is `time` from the last recorded row.
+    void start_readings(Result& result, double time) const;
+
+    void record_state(Result& result, double time, const std::string& event, const Assembly& assembly) const;
+
+    void record_equilibrium(Result& result, double time, const Certificate& certificate) const;
+
+    void record_trace(Result& result, double time, double solver_time, const Assembly& assembly) const;
+
+private:
+    struct Place {
+        std::array<Index, 3> gridpoint;
+        std::array<double, 3> share;
+        Index zone;
+    };
+    Vector2d displacement(const Place& place, const Assembly& assembly) const;
+
+    std::vector<Place> point_;
+    std::vector<double> first_reading_;
+    std::vector<std::string> point_name_;
+    std::vector<Vector2d> point_position_;
+    std::vector<std::string> gauge_name_;
+    std::vector<Index> gauge_contact_;
+};
+
+} // namespace jointcreep::mechanics

@@ -1,0 +1,25 @@
+#include "model/error.hpp"
+
+#include <array>
+#include <charconv>
+
+namespace jointcreep
+{
+
+void require(bool holds, std::string_view name, double value, std::string_view unit, std::string_view wanted)
+{
+    if (holds)
+        return;
+    std::string message(name);
+    message.append(" is ").append(shown(value)).append(" ").append(unit).append("; it ").append(wanted);
+    throw input_error(message);
+}
+
+std::string shown(double value)
+{
+    std::array<char, 32> text{};
+    const auto end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
+    return {text.data(), end};
+}
+
+} // namespace jointcreep

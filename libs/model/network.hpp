@@ -1,0 +1,103 @@
+// The blocks of a section and the joints that made them: flat arrays, the same in memory and in a file
+// (libs/store/schema.cpp gives each one's dataset, shape, unit and range). An index of -1 means none.
+
+#pragma once
+
+#include <Eigen/Core>
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace jointcreep
+{
+
+using Index = std::int32_t;
+
+enum class EdgeKind : Index {
+    boundary = 0, // on the section's outline: rock on one side only
+    joint = 1,
+    welded = 2 // a stage outline or a border between rocks: no joint, the blocks hold together
+};
+
+// Where the rows of other arrays that name something by index find its name.
+struct Names {
+    std::vector<std::string> rock;           // as in the scene's [[rock]]
+    std::vector<std::string> joint_material; // [[joint_material]]
+    std::vector<std::string> joint_set;      // [[joint_set]], then each single [[joint]] as a set of its own
+    std::vector<std::string> stage;          // [[stage]]
+};
+
+// The names of a scene, in the scene's order.
+struct Scene;
+Names names_of(const Scene& scene);
+
+// Joints: straight lines through the section, each made of joint traces and the rock bridges between them.
+struct Joints {
+    std::vector<Index> set;      // into Names::joint_set
+    std::vector<Index> number;   // within the set; with the set's name it identifies the joint for good
+    std::vector<Index> material; // into Names::joint_material
+    std::vector<Eigen::Vector2d> from, to; // ends of the line [m]
+
+    // The joint traces. What a line has between its traces is rock bridge.
+    std::vector<Index> trace_joint;                    // the joint it lies on
+    std::vector<Eigen::Vector2d> trace_from, trace_to; // [m]
+};
+
+// What cutting had to change to keep edges and angles above the scene's limits.
+struct CuttingReport {
+    Index merged_vertices = 0;
+    double merged_edge_length = 0; // of the edges that vanished [m]
+    double merged_block_area = 0;  // of the blocks that vanished into their neighbours [m2]
+    double largest_move = 0;       // of a vertex [m]
+    double pruned_length = 0;      // of joints that ended inside a block, and were cut back [m]
+    double shortest_edge = 0;      // that is left [m]
+    double smallest_angle = 0;     // between neighbouring edges that is left [rad]
+};
+
+// The cut section: a planar map whose faces are the blocks.
+struct Blocks {
+    std::vector<Eigen::Vector2d> vertex; // [m]
+
+    // Edges run from their first vertex to their second; the left block is side b (model/signs.hpp).
+    std::vector<std::array<Index, 2>> edge_vertex;
+    std::vector<std::array<Index, 2>> edge_block; // {left, right}; -1 outside the section
+    std::vector<Index> edge_kind;                 // EdgeKind
+    std::vector<Index> edge_joint;                // into Joints, on joint edges
+    std::vector<double> edge_joint_fraction;      // joint length / edge length, on joint edges [-]
+    std::vector<Index> edge_boundary;             // into the scene's [[boundary]]; on boundary edges
+
+    // Blocks. Several blocks on welded edges hold together as one.
+    std::vector<Index> block_rock;  // into Names::rock
+    std::vector<Index> block_stage; // that removes it, into Names::stage; -1 stays
+    std::vector<double> block_area; // [m2]
+    std::vector<Index>
+        block_ring; // [blocks + 1] its rings are rows block_ring[i] .. block_ring[i + 1] of ring_start;
+                    // the first is the outer one, counter-clockwise, the others are holes, clockwise
+    std::vector<Index> ring_start;  // [rings + 1] its vertices are rows ring_start[r] .. of ring_vertex
+    std::vector<Index> ring_vertex; // into vertex
+
+    CuttingReport report;
+};
+
+// What jointgen makes.
+struct Network {
+    Names names;
+    Joints joints;
+    Blocks blocks;
+};
+
+// The equivalent continuous joint of every joint edge, and of every boundary edge that rests on a joint;
+// rows are edges, and on all other edges every value is 0. Made by strength-averaging.
+struct EquivalentJoints {
+    std::vector<double> normal_stiffness, shear_stiffness; // [Pa/m]
+    std::vector<double> cohesion;                          // [Pa]
+    std::vector<double> friction_angle;                    // [rad]
+    std::vector<double> tensile_strength;                  // [Pa]
+    // Kelvin element; a stiffness of 0 means that the joint does not creep.
+    std::vector<double> normal_kelvin_stiffness, shear_kelvin_stiffness; // [Pa/m]
+    std::vector<double> normal_kelvin_viscosity, shear_kelvin_viscosity; // [Pa s/m]
+};
+
+} // namespace jointcreep

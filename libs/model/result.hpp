@@ -1,0 +1,84 @@
+// What demsolve adds: the zoned section, its histories, its states, and a trace of the solver on request.
+// Arrays with several dimensions are flat, the last dimension running fastest.
+
+#pragma once
+
+#include "model/network.hpp"
+
+namespace jointcreep
+{
+
+enum class ContactStatus : Index {
+    removed = 0, // one of its sides has been excavated
+    stuck = 1,
+    slipping = 2,
+    open = 3
+};
+
+// Zones (constant-strain triangles), the gridpoints that carry them, and the contacts between gridpoints that
+// a joint has split.
+struct Mesh {
+    std::vector<Eigen::Vector2d> gridpoint;              // position at the start [m]
+    std::vector<Index> gridpoint_fixed;                  // 0 free, 1 held in x, 2 in y, 3 in both
+    std::vector<std::array<Index, 3>> zone_gridpoint;    // counter-clockwise
+    std::vector<Index> zone_block;                       // into Blocks
+    std::vector<std::array<Index, 2>> contact_gridpoint; // {on side a, on side b}
+    std::vector<Index> contact_edge;                     // into Blocks' edges
+    std::vector<Eigen::Vector2d> contact_normal;         // unit, from side a to side b
+    std::vector<double> contact_length;                  // tributary length [m]
+    std::vector<Eigen::Vector2d> contact_centre;         // where a traction linear in space has its mean [m]
+};
+
+// Displacements of the measuring points, one row a recorded time: the start, the two sides of every stage,
+// every creep step and every first reading.
+struct History {
+    std::vector<double> time;                    // since start [day], the one unit in files that is not SI
+    std::vector<std::string> event;              // name of the stage that this row is the first after, or ""
+    std::vector<std::string> point;              // names
+    std::vector<Eigen::Vector2d> point_position; // [m]
+    std::vector<Index> first_reading_row;        // [point] the row a point's own readings count from
+    std::vector<Eigen::Vector2d> displacement;   // [time, point] since the in-situ equilibrium [m]
+    std::vector<Index> present; // [time, point] 0 once removed; the last displacement is held
+};
+
+// The whole section at chosen times: the in-situ equilibrium, after every stage, before the next, the end.
+struct States {
+    std::vector<double> time;                  // since start [day]
+    std::vector<std::string> event;            // as in History
+    std::vector<Eigen::Vector2d> displacement; // [state, gridpoint] since the in-situ equilibrium [m]
+    std::vector<Eigen::Vector3d> stress;       // [state, zone] {xx, yy, xy} [Pa]
+    std::vector<Index> zone_present;           // [state, zone] 0 or 1
+    std::vector<Eigen::Vector2d> traction;     // [state, contact] {normal, shear} [Pa]
+    std::vector<Eigen::Vector2d>
+        jump; // [state, contact] displacement of side b minus side a {normal, shear} [m]
+    std::vector<Index> contact_status; // [state, contact] ContactStatus
+};
+
+// How every equilibrium was reached, one row each.
+struct Equilibria {
+    std::vector<double> time;                 // since start [day]
+    std::vector<Index> steps;                 // of the solver
+    std::vector<double> out_of_balance_ratio; // [-]
+    std::vector<double>
+        contact_force_change; // over the last 100 steps, over the mean force on a gridpoint [-]
+};
+
+// Every n-th step of the solver, on request.
+struct Trace {
+    std::vector<double> time;                  // since start [day]
+    std::vector<double> solver_time;           // accumulated over all equilibria [s]
+    std::vector<Eigen::Vector2d> displacement; // [row, point] as in History [m]
+    std::vector<std::string> gauge;            // names
+    std::vector<Index> gauge_contact;          // [gauge] into Mesh
+    std::vector<Eigen::Vector2d> traction;     // [row, gauge] {normal, shear} [Pa]
+};
+
+struct Result {
+    Mesh mesh;
+    History history;
+    States states;
+    Equilibria equilibria;
+    Trace trace;
+};
+
+} // namespace jointcreep

@@ -1,0 +1,13 @@
+# Writes OUTPUT with the project's version and, in a git checkout, the commit: "0.1.0+1a2b3c4d".
+execute_process(COMMAND git -C ${SOURCE} rev-parse --short=8 HEAD
+                OUTPUT_VARIABLE commit OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET RESULT_VARIABLE failed)
+set(text "${VERSION}")
+if(NOT failed)
+  string(APPEND text "+${commit}")
+  execute_process(COMMAND git -C ${SOURCE} status --porcelain -- apps libs CMakeLists.txt
+                  OUTPUT_VARIABLE changes ERROR_QUIET)
+  if(changes)
+    string(APPEND text ".modified")
+  endif()
+endif()
+file(CONFIGURE OUTPUT ${OUTPUT} CONTENT "#define JOINTCREEP_VERSION \"${text}\"\n")

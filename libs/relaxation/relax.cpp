@@ -1,0 +1,203 @@
+#include "relaxation/relax.hpp"
+
+#include "model/error.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace jointcreep::relaxation
+{
+
+using Eigen::Vector2d;
+using mechanics::Assembly;
+using mechanics::Balance;
+using mechanics::Certificate;
+
+namespace
+{
+
+constexpr Index check_every = 20, window = 100; // [steps]
+constexpr double safety = 0.9;                  // of the largest stable step
+constexpr Index chunk = 512;                    // gridpoints summed together, whatever the number of threads
+
+// Contact forces at the last few checks.
+class ForceMemory
+{
+public:
+    // Takes the present forces and returns the largest change over the last `window` steps, infinite before.
+    double change_since_window(const Assembly& assembly)
+    {
+        std::vector<Vector2d>& oldest = kept_[n_ % kept_.size()];
+        double change = std::numeric_limits<double>::infinity();
+        if (n_ >= kept_.size()) {
+            change = 0;
+            for (std::size_t c = 0; c < oldest.size(); ++c)
+                change = std::max(change, (assembly.contact_force[c] - oldest[c]).norm());
+        }
+        oldest = assembly.contact_force;
+        ++n_;
+        return change;
+    }
+
+private:
+    std::array<std::vector<Vector2d>, window / check_every> kept_;
+    std::size_t n_ = 0;
+};
+
+class Relaxation
+{
+public:
+    Relaxation(Assembly& assembly, const Equilibrium& settings)
+        : a_(assembly), settings_(settings), velocity_(assembly.position.size(), Vector2d::Zero()),
+          start_(assembly.displacement)
+    {
+        if (settings.damping == Damping::mass && settings.masses == Masses::scaled)
+            throw input_error("equilibrium: damping \"mass\" needs masses = \"real\"; scaled masses have no "
+                              "frequency of their own");
+        const std::vector<double> row_sums = stiffness_row_sums(assembly);
+        const double local = settings.damping == Damping::local ? 1 + settings.local_damping : 1.0;
+        if (settings.masses == Masses::real) {
+            mass_ = lumped_masses(assembly);
+            double highest = 0; // frequency squared
+            for (std::size_t g = 0; g < mass_.size(); ++g)
+                if (mass_[g] > 0)
+                    highest = std::max(highest, row_sums[g] / mass_[g]);
+            dt_ = safety * 2 / std::sqrt(highest * local);
+        } else {
+            dt_ = 1;
+            for (const double sum : row_sums)
+                mass_.push_back(sum * local / (4 * safety * safety));
+        }
+        for (double& m : mass_)
+            m = m > 0 ? 1 / m : 0.0; // from here on inverse; gridpoints without any rock do not move
+        Vector2d low = assembly.position[0], high = low;
+        for (const Vector2d& p : assembly.position) {
+            low = low.cwiseMin(p);
+            high = high.cwiseMax(p);
+        }
+        too_far_ = (high - low).norm() / 10;
+        const std::size_t n_chunks = (assembly.position.size() + chunk - 1) / chunk;
+        energy_.resize(n_chunks);
+        quotient_.resize(n_chunks);
+        if (settings.damping == Damping::adaptive)
+            last_force_ = assembly.force;
+    }
+
+    double dt() const { return dt_; }
+
+    void step()
+    {
+        const auto n = static_cast<Index>(velocity_.size());
+        const auto n_chunks = static_cast<Index>(energy_.size());
+        const double alpha = settings_.damping == Damping::mass ? settings_.mass_damping : alpha_;
+        const double keep = (1 - alpha * dt_ / 2) / (1 + alpha * dt_ / 2), gain = dt_ / (1 + alpha * dt_ / 2);
+        const double local = settings_.damping == Damping::local ? settings_.local_damping : 0.0;
+        const bool kinetic = settings_.damping == Damping::kinetic;
+        const bool adaptive = settings_.damping == Damping::adaptive;
+#pragma omp parallel for schedule(static) num_threads(a_.threads) if (a_.threads > 1)
+        for (Index k = 0; k < n_chunks; ++k) {
+            double energy = 0, work = 0;
+            for (Index g = k * chunk; g < std::min(n, (k + 1) * chunk); ++g) {
+                Vector2d force = a_.force[g].cwiseProduct(a_.is_free[g]);
+                Vector2d& v = velocity_[g];
+                if (adaptive) { // how the force has answered to the last step's motion
+                    work -= v.dot(force - last_force_[g]);
+                    last_force_[g] = force;
+                    if (mass_[g] > 0)
+                        energy += v.squaredNorm() / mass_[g];
+                }
+                if (local > 0)
+                    force -= local * Vector2d(v.x() == 0 ? 0 : std::copysign(std::abs(force.x()), v.x()),
+                                              v.y() == 0 ? 0 : std::copysign(std::abs(force.y()), v.y()));
+                v = keep * v + gain * mass_[g] * force;
+                if (kinetic && mass_[g] > 0)
+                    energy += v.squaredNorm() / mass_[g];
+                a_.displacement[g] += dt_ * v;
+            }
+            energy_[k] = energy;
+            quotient_[k] = work;
+        }
+        double energy = 0, work = 0;
+        for (Index k = 0; k < n_chunks; ++k) {
+            energy += energy_[k];
+            work += quotient_[k];
+        }
+        if (adaptive)
+            alpha_ = energy > 0 && work > 0 ? std::min(2 * std::sqrt(work / (dt_ * energy)), 1.9 / dt_) : 0.0;
+        if (kinetic) {
+            if (energy < last_energy_) {
+                std::fill(velocity_.begin(), velocity_.end(), Vector2d::Zero());
+                energy = 0;
+            }
+            last_energy_ = energy;
+        }
+        find_forces(a_);
+    }
+
+    void check_motion() const
+    {
+        for (std::size_t g = 0; g < velocity_.size(); ++g) {
+            const double moved = (a_.displacement[g] - start_[g]).norm();
+            if (moved <= too_far_)
+                continue;
+            throw equilibrium_error(
+                "no equilibrium: rock at [" + shown(a_.position[g].x()) + ", " + shown(a_.position[g].y()) +
+                "] m has moved " +
+                (std::isfinite(moved) ? shown(moved) + " m" : std::string("without bound")) +
+                " and is still moving; is it held by anything?");
+        }
+    }
+
+private:
+    Assembly& a_;
+    const Equilibrium& settings_;
+    std::vector<Vector2d> velocity_;
+    std::vector<Vector2d> start_, last_force_;
+    std::vector<double> mass_; // inverse [m/kg]
+    std::vector<double> energy_, quotient_;
+    double dt_ = 0, too_far_ = 0, alpha_ = 0, last_energy_ = 0;
+};
+
+} // namespace
+
+Certificate relax(Assembly& assembly, const Equilibrium& settings, const StepObserver& observe)
+{
+    find_forces(assembly);
+    Certificate certificate;
+    certificate.out_of_balance_ratio = balance_of(assembly).ratio();
+    if (certificate.out_of_balance_ratio <= settings.tolerance)
+        return certificate;
+
+    Relaxation relaxation(assembly, settings);
+    ForceMemory memory;
+    memory.change_since_window(assembly);
+    Index steps_in_balance = 0;
+    while (certificate.steps < settings.most_steps) {
+        relaxation.step();
+        ++certificate.steps;
+        if (observe)
+            observe(certificate.steps * relaxation.dt());
+        if (certificate.steps % check_every != 0)
+            continue;
+        relaxation.check_motion();
+        const Balance balance = balance_of(assembly);
+        certificate.out_of_balance_ratio = balance.ratio();
+        certificate.contact_force_change = memory.change_since_window(assembly) / balance.mean;
+        if (!std::isfinite(certificate.out_of_balance_ratio))
+            throw equilibrium_error("no equilibrium: forces are no longer finite numbers after " +
+                                    std::to_string(certificate.steps) + " steps");
+        steps_in_balance =
+            certificate.out_of_balance_ratio <= settings.tolerance ? steps_in_balance + check_every : 0;
+        if (steps_in_balance >= window && certificate.contact_force_change <= settings.tolerance)
+            return certificate;
+    }
+    const Balance balance = balance_of(assembly);
+    throw equilibrium_error(
+        "no equilibrium after " + std::to_string(certificate.steps) + " steps: the out-of-balance ratio is " +
+        shown(certificate.out_of_balance_ratio) + ", wanted " + shown(settings.tolerance) +
+        "; farthest from balance is the rock at [" + shown(assembly.position[balance.worst].x()) + ", " +
+        shown(assembly.position[balance.worst].y()) + "] m");
+}
+
+} // namespace jointcreep::relaxation

@@ -1,0 +1,33 @@
+// Explicit equilibrium: gridpoints move by the central difference of the paper's Eqs. 1 and 2 until forces
+// balance.
+//
+//     v <- (v (1 - alpha dt / 2) + F / m dt) / (1 + alpha dt / 2),    u <- u + v dt
+//
+// Masses are the real ones or scaled: for a state of rest only the forces matter, so every gridpoint may have
+// the mass that just allows the common step (dt = 1 s then; solver time means nothing). Damping is one of
+//   kinetic   none, but whenever the kinetic energy passes a peak all gridpoints are stopped;
+//   adaptive  alpha = 2 w, critical for the lowest frequency w that the present motion shows (Rayleigh
+//   quotient); local     a fraction of the out-of-balance force, against the velocity (Cundall 1987); mass
+//   alpha as given: the paper's way.
+
+#pragma once
+
+#include "mechanics/assembly.hpp"
+
+#include <functional>
+
+namespace jointcreep::relaxation
+{
+
+// Called after every step with the solver time since this equilibrium began [s].
+using StepObserver = std::function<void(double solver_time)>;
+
+// Moves the assembly to equilibrium: every 20 steps in 100 the out-of-balance ratio was at most the
+// tolerance, and over these 100 steps no contact force changed by more than the tolerance times the mean
+// force on a gridpoint. Starts from rest; a state that is in balance already is left as it is, after 0 steps.
+// Throws equilibrium_error when a gridpoint has moved by a tenth of the section's size, when forces are no
+// longer numbers, and after settings.most_steps.
+mechanics::Certificate relax(mechanics::Assembly& assembly, const Equilibrium& settings,
+                             const StepObserver& observe = {});
+
+} // namespace jointcreep::relaxation

@@ -1,0 +1,124 @@
+#include "sampling/laws.hpp"
+
+#include "model/error.hpp"
+
+#include <boost/random/exponential_distribution.hpp>
+#include <boost/random/normal_distribution.hpp>
+#include <boost/random/uniform_01.hpp>
+
+#include <cmath>
+#include <numbers>
+
+namespace jointcreep
+{
+
+namespace
+{
+
+constexpr int most_tries = 10000;
+
+double draw_normal(double mean, double deviation, Stream& stream)
+{
+    return mean + deviation * boost::random::normal_distribution<double>()(stream);
+}
+
+// Of the normal law that a lognormal quantity's logarithm follows.
+struct LogParameters {
+    double mean, deviation;
+};
+
+LogParameters log_parameters(const Law& law)
+{
+    const double ratio = law.deviation / law.mean;
+    const double variance = std::log1p(ratio * ratio);
+    return {std::log(law.mean) - variance / 2, std::sqrt(variance)};
+}
+
+[[noreturn]] void refuse(const Law& law)
+{
+    throw input_error("a law of mean " + shown(law.mean) + " and deviation " + shown(law.deviation) +
+                      " has next to no values above 0, which a length or spacing has to be");
+}
+
+// The density x exp(-(x - mean)^2 / (2 deviation^2)) has its mode at the positive root m of
+// m^2 - mean m - deviation^2 = 0. Because x <= m exp(x/m - 1) it lies under a multiple of the normal density
+// of mean m, from which values are taken with probability x/m exp(1 - x/m).
+double draw_size_biased_normal(const Law& law, Stream& stream)
+{
+    const double mode = (law.mean + std::hypot(law.mean, 2 * law.deviation)) / 2;
+    if (mode > 0)
+        for (int i = 0; i < most_tries; ++i) {
+            const double x = draw_normal(mode, law.deviation, stream);
+            if (uniform(stream) < x / mode * std::exp(1 - x / mode))
+                return x;
+        }
+    refuse(law);
+}
+
+} // namespace
+
+double uniform(Stream& stream)
+{
+    return boost::random::uniform_01<double>()(stream);
+}
+
+double draw_exponential(double mean, Stream& stream)
+{
+    return mean * boost::random::exponential_distribution<double>()(stream);
+}
+
+double draw(const Law& law, Stream& stream)
+{
+    switch (law.kind) {
+    case Law::Kind::constant:
+        break;
+    case Law::Kind::normal:
+        return draw_normal(law.mean, law.deviation, stream);
+    case Law::Kind::lognormal: {
+        const LogParameters log = log_parameters(law);
+        return std::exp(draw_normal(log.mean, log.deviation, stream));
+    }
+    case Law::Kind::negative_exponential:
+        return draw_exponential(law.mean, stream);
+    }
+    return law.mean;
+}
+
+double draw_positive(const Law& law, Stream& stream)
+{
+    for (int i = 0; i < most_tries; ++i)
+        if (const double x = draw(law, stream); x > 0)
+            return x;
+    refuse(law);
+}
+
+double mean_of_positive(const Law& law)
+{
+    if (law.kind != Law::Kind::normal || law.deviation == 0)
+        return law.mean;
+    const double a = law.mean / law.deviation;
+    const double density = std::exp(-a * a / 2) / std::sqrt(2 * std::numbers::pi);
+    const double above = std::erfc(-a / std::numbers::sqrt2) / 2;
+    return law.mean + law.deviation * density / above;
+}
+
+double draw_size_biased(const Law& law, Stream& stream)
+{
+    switch (law.kind) {
+    case Law::Kind::constant:
+        break;
+    case Law::Kind::normal:
+        return draw_size_biased_normal(law, stream);
+    case Law::Kind::lognormal: {
+        const LogParameters log = log_parameters(law);
+        return std::exp(draw_normal(log.mean + log.deviation * log.deviation, log.deviation, stream));
+    }
+    case Law::Kind::negative_exponential: { // gamma of shape 2
+        const double first = draw_exponential(law.mean, stream);
+        return first + draw_exponential(law.mean, stream);
+    }
+    }
+    return law.mean;
+}
+
+} // namespace jointcreep

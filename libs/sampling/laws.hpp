@@ -1,0 +1,32 @@
+// Draws from the probability laws of a scene. A Law's mean and deviation are those of the quantity itself.
+
+#pragma once
+
+#include "model/scene.hpp"
+#include "sampling/streams.hpp"
+
+namespace jointcreep
+{
+
+// Uniform in [0, 1).
+double uniform(Stream& stream);
+
+// Negative exponential of the given mean, > 0.
+double draw_exponential(double mean, Stream& stream);
+
+// From the law as it is; in the law's unit.
+double draw(const Law& law, Stream& stream);
+
+// From the law's values above 0, as lengths and spacings have to be: the lower tail of a normal law is drawn
+// again. Throws input_error if the law has next to no values above 0.
+double draw_positive(const Law& law, Stream& stream);
+
+// Mean of draw_positive. It is the law's own but for a normal law, which loses its lower tail: it is 1e-4
+// higher where the deviation is 0.27 times the mean, 3 percent at 0.5.
+double mean_of_positive(const Law& law);
+
+// From the values above 0, of density f, as a point sees them that falls anywhere on a line laid out with
+// such intervals: of density x f(x) / mean.
+double draw_size_biased(const Law& law, Stream& stream);
+
+} // namespace jointcreep

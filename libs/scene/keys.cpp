@@ -1,0 +1,253 @@
+#include "scene/keys.hpp"
+
+#include "model/error.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace jointcreep
+{
+namespace
+{
+
+constexpr std::size_t most_corners = 10000; // of a polygon
+constexpr std::size_t longest_text = 200;   // [byte]
+
+const TomlValue::List* as_list(const TomlValue& value)
+{
+    return std::get_if<TomlValue::List>(&value.content);
+}
+
+std::optional<double> as_number(const TomlValue& value)
+{
+    if (const auto* const integer = std::get_if<std::int64_t>(&value.content))
+        return static_cast<double>(*integer);
+    if (const auto* const number = std::get_if<double>(&value.content))
+        return *number;
+    return {};
+}
+
+std::optional<std::chrono::sys_days> as_date(const TomlValue& value)
+{
+    if (const auto* const date = std::get_if<TomlValue::Date>(&value.content))
+        return std::chrono::sys_days(*date);
+    return {};
+}
+
+// Changes of one letter that turn `a` into `b`, looking at their first letters only: names can be long.
+std::size_t letters_between(std::string_view a, std::string_view b)
+{
+    a = a.substr(0, 60);
+    b = b.substr(0, 60);
+    std::vector<std::size_t> row(b.size() + 1);
+    std::iota(row.begin(), row.end(), std::size_t{0});
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        std::size_t diagonal = row[0]++;
+        for (std::size_t j = 0; j < b.size(); ++j) {
+            const std::size_t replaced = diagonal + (a[i] != b[j]);
+            diagonal = row[j + 1];
+            row[j + 1] = std::min({replaced, row[j] + 1, diagonal + 1});
+        }
+    }
+    return row.back();
+}
+
+} // namespace
+
+std::string TableInfo::shown() const
+{
+    if (written == Written::once)
+        return "[" + name + "]";
+    const auto dot = name.find('.');
+    const auto inner = dot == std::string::npos ? "" : " " + name.substr(dot + 1);
+    return "[[" + name.substr(0, dot) + "]]" + inner;
+}
+
+bool Range::holds(double value) const
+{
+    return (least_open ? value > least : value >= least) && (most_open ? value < most : value <= most);
+}
+
+std::string lower_bound(const Range& range)
+{
+    return (range.least_open ? "(" : "[") + shown(range.least);
+}
+
+std::string upper_bound(const Range& range)
+{
+    return shown(range.most) + (range.most_open ? ")" : "]");
+}
+
+std::string shown(const Range& range, const Unit& unit)
+{
+    const auto text = lower_bound(range) + ", " + upper_bound(range);
+    return unit.symbol.empty() ? text : text + " " + std::string(unit.symbol);
+}
+
+std::string KeyInfo::wanted() const
+{
+    const auto in_range = range ? " in " + shown(*range, unit) : "";
+    if (kind == "number")
+        return "a number" + in_range;
+    if (kind == "integer")
+        return "an integer" + in_range;
+    if (kind == "text")
+        return "a text of 1 to " + std::to_string(longest_text) + " bytes without control characters";
+    if (kind == "date")
+        return "a date such as 1994-06-15, or a number" + in_range;
+    if (kind == "point")
+        return "a point [x, y] of numbers" + in_range;
+    if (kind == "polygon")
+        return "a polygon [[x, y], [x, y], [x, y], ...] of numbers" + in_range;
+    if (kind == "polygons")
+        return "a list of polygons [[[x, y], [x, y], [x, y], ...], ...] of numbers" + in_range;
+    if (kind == "law")
+        return "a law such as { law = \"constant\", mean = 1 }";
+    return kind;
+}
+
+void Place::refuse(std::int64_t line, const std::string& what) const
+{
+    throw input_error(reading.name + ", line " + std::to_string(line) + ": " + what);
+}
+
+void Place::refuse(const KeyInfo& key, const TomlValue& value, const std::string& more) const
+{
+    const bool has_unit = !key.unit.symbol.empty() && as_number(value);
+    refuse(value.line, table + (table.empty() ? "" : " ") + key.name + " = " + shown(value) +
+                           (has_unit ? " " + std::string(key.unit.symbol) : "") + ": wanted " + key.wanted() +
+                           (more.empty() ? "" : "; " + more));
+}
+
+double read_number(const KeyInfo& key, const TomlValue& value, const Place& place)
+{
+    const auto number = as_number(value);
+    if (!number || !key.range->holds(*number))
+        place.refuse(key, value);
+    return *number * key.unit.in_si;
+}
+
+std::int64_t read_integer(const KeyInfo& key, const TomlValue& value, const Place& place)
+{
+    const auto* const integer = std::get_if<std::int64_t>(&value.content);
+    if (!integer || !key.range->holds(static_cast<double>(*integer)))
+        place.refuse(key, value);
+    return *integer;
+}
+
+std::string read_text(const KeyInfo& key, const TomlValue& value, const Place& place)
+{
+    const auto* const text = std::get_if<std::string>(&value.content);
+    const auto is_control = [](char c) { return (c >= 0 && c < 0x20) || c == 0x7f; };
+    if (!text || text->empty() || text->size() > longest_text ||
+        std::any_of(text->begin(), text->end(), is_control))
+        place.refuse(key, value);
+    return *text;
+}
+
+double read_date(const KeyInfo& key, const TomlValue& value, const Place& place)
+{
+    const Calendar& calendar = place.reading.calendar;
+    if (const auto date = as_date(value)) {
+        if (!calendar.start_date)
+            place.refuse(key, value, "a date needs a date as [schedule] start");
+        const auto since_start = static_cast<double>((*date - *calendar.start_date).count());
+        if (!key.range->holds(since_start))
+            place.refuse(key, value);
+        return since_start * unit::day;
+    }
+    return read_number(key, value, place) - calendar.start;
+}
+
+Calendar read_start(const KeyInfo& key, const TomlValue& value, const Place& place)
+{
+    if (const auto date = as_date(value))
+        return {date, 0};
+    return {{}, read_number(key, value, place)};
+}
+
+Eigen::Vector2d read_point(const KeyInfo& key, const TomlValue& value, const Place& place)
+{
+    const auto* const list = as_list(value);
+    if (!list || list->size() != 2)
+        place.refuse(key, value);
+    return {read_number(key, list->front(), place), read_number(key, list->back(), place)};
+}
+
+Polygon read_polygon(const KeyInfo& key, const TomlValue& value, const Place& place)
+{
+    const auto* const list = as_list(value);
+    if (!list || list->size() < 3)
+        place.refuse(key, value, "at least 3 corners");
+    if (list->size() > most_corners)
+        place.refuse(key, value, "at most " + std::to_string(most_corners) + " corners");
+    Polygon corners;
+    for (const TomlValue& corner : *list)
+        corners.push_back(read_point(key, corner, place));
+    return corners;
+}
+
+std::vector<Polygon> read_polygons(const KeyInfo& key, const TomlValue& value, const Place& place)
+{
+    const auto* const list = as_list(value);
+    if (!list || list->empty())
+        place.refuse(key, value);
+    std::vector<Polygon> all;
+    for (const TomlValue& one : *list)
+        all.push_back(read_polygon(key, one, place));
+    return all;
+}
+
+void check_keys(const TomlValue& value, const std::vector<const KeyInfo*>& known, const Place& place)
+{
+    const auto* const entries = std::get_if<TomlValue::Table>(&value.content);
+    if (!entries)
+        place.refuse(value.line, place.table + " is " + shown(value) + ": wanted a table");
+    std::vector<std::string> names;
+    for (const KeyInfo* const key : known)
+        names.push_back(key->name);
+    for (const TomlEntry& entry : *entries) {
+        if (std::find(names.begin(), names.end(), entry.key) != names.end())
+            continue;
+        const auto meant = nearest(entry.key, names);
+        std::string all;
+        for (const auto& name : names)
+            all += (all.empty() ? "" : ", ") + name;
+        const TomlValue as_text{.content = entry.key};
+        place.refuse(entry.value.line, place.table + " has no key " + shown(as_text) +
+                                           (meant.empty() ? "" : "; did you mean " + meant + "?") +
+                                           " Its keys are: " + all);
+    }
+}
+
+void check_present(const TomlValue& value, const std::vector<const KeyInfo*>& known, const Place& place)
+{
+    const KeyInfo* given = nullptr;
+    for (const KeyInfo* const key : known)
+        if (key->need == Need::together && value.find(key->name))
+            given = key;
+    for (const KeyInfo* const key : known) {
+        if (value.find(key->name))
+            continue;
+        const auto missing = place.table + " has no " + key->name + ": wanted " + key->wanted();
+        if (key->need == Need::required)
+            place.refuse(value.line, missing);
+        if (key->need == Need::together && given)
+            place.refuse(value.line, missing + ", as it comes together with " + given->name);
+    }
+}
+
+std::string nearest(const std::string& name, const std::vector<std::string>& known)
+{
+    std::string best;
+    std::size_t fewest = std::max<std::size_t>(2, name.size() / 3) + 1; // further ones are another word
+    for (const auto& candidate : known)
+        if (const auto changes = letters_between(name, candidate); changes < fewest) {
+            fewest = changes;
+            best = candidate;
+        }
+    return best;
+}
+
+} // namespace jointcreep

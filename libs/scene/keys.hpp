@@ -1,0 +1,291 @@
+// How a scene's keys are declared and read. One call declares a key with its unit, range, need, documentation
+// and the member it fills; reading, the check for unknown keys, docs/scene.md and the key list follow from
+// it.
+//
+//     number("poissons_ratio", &Rock::poissons_ratio, none, from(0).below(0.5), "Poisson's ratio.")
+//     number("azimuth_deg", &Scene::azimuth, deg, from(0).to(360), "Bearing of +x.").optional()
+
+#pragma once
+
+#include "model/scene.hpp"
+#include "model/units.hpp"
+#include "scene/toml_text.hpp"
+
+#include <algorithm>
+#include <concepts>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <type_traits>
+#include <utility>
+
+namespace jointcreep
+{
+
+// A key's unit as the user sees it, and what one of it is in SI units.
+struct Unit {
+    std::string_view symbol; // "" without unit
+    double in_si = 1;
+};
+
+// Allowed values, in the key's unit: from(0) and above(0), then .to(1) or .below(1). Every range is finite.
+struct Range {
+    double least = 0, most = 0;
+    bool least_open = false, most_open = false;
+
+    Range to(double bound) const { return {least, bound, least_open, false}; }
+    Range below(double bound) const { return {least, bound, least_open, true}; }
+    bool holds(double value) const; // false for NaN
+};
+inline Range from(double bound)
+{
+    return {bound, bound, false, false};
+}
+inline Range above(double bound)
+{
+    return {bound, bound, true, false};
+}
+inline Range within(double bound)
+{
+    return from(-bound).to(bound);
+}
+
+// "[0", "0.5)" and both with the unit, "[0, 0.5) MPa".
+std::string lower_bound(const Range& range);
+std::string upper_bound(const Range& range);
+std::string shown(const Range& range, const Unit& unit);
+
+enum class Need { required, optional, together }; // together: all such keys of one table, or none
+
+// What is known of a key without knowing the record it fills.
+struct KeyInfo {
+    std::string name;
+    std::string kind{}; // number, integer, text, date, point, polygon, polygons, law or the allowed words
+    Unit unit{};
+    std::optional<Range> range{};
+    std::string doc{};
+    Need need = Need::required;
+    std::string otherwise{}; // the default as text
+
+    std::string wanted() const; // "a number in [0, 0.5)"
+};
+
+// Start of the scene's time: a date, or a number of days on the axis that all dates then share.
+struct Calendar {
+    std::optional<std::chrono::sys_days> start_date;
+    double start = 0; // [s], without start_date
+};
+
+// What reading carries along.
+struct Reading {
+    std::string name; // of the text
+    Calendar calendar;
+};
+
+// Where a value stands: for messages.
+struct Place {
+    const Reading& reading;
+    std::string table; // as the user writes it: "[section]", "[[rock]]", "[[joint_set]] spacing"
+
+    [[noreturn]] void refuse(std::int64_t line, const std::string& what) const;
+    // "[[rock]] poissons_ratio = 0.7: wanted a number in [0, 0.5)", with more words behind the key's own.
+    [[noreturn]] void refuse(const KeyInfo& key, const TomlValue& value, const std::string& more = "") const;
+};
+
+// Reading one value of a kind, in SI units. They throw input_error through Place::refuse.
+double read_number(const KeyInfo& key, const TomlValue& value, const Place& place);
+std::int64_t read_integer(const KeyInfo& key, const TomlValue& value, const Place& place);
+std::string read_text(const KeyInfo& key, const TomlValue& value, const Place& place);
+double read_date(const KeyInfo& key, const TomlValue& value, const Place& place); // since start [s]
+Calendar read_start(const KeyInfo& key, const TomlValue& value, const Place& place);
+Eigen::Vector2d read_point(const KeyInfo& key, const TomlValue& value, const Place& place);
+Polygon read_polygon(const KeyInfo& key, const TomlValue& value, const Place& place);
+std::vector<Polygon> read_polygons(const KeyInfo& key, const TomlValue& value, const Place& place);
+
+template <class Record>
+struct Key {
+    KeyInfo info;
+    std::function<void(Record&, const KeyInfo&, const TomlValue&, const Place&)> read;
+    std::optional<TomlValue> fallback; // read in place of a missing value
+
+    Key optional(std::string otherwise = "") &&
+    {
+        info.need = Need::optional;
+        info.otherwise = std::move(otherwise);
+        return std::move(*this);
+    }
+    Key together() &&
+    {
+        info.need = Need::together;
+        return std::move(*this);
+    }
+    template <class Default>
+    Key or_else(Default value) &&
+    {
+        fallback = TomlValue{.content = value};
+        return std::move(*this).optional(shown(*fallback));
+    }
+};
+
+// A table of the scene that fills one Record: once in a scene, in a list of any length, or inside a table.
+enum class Written { once, in_list, inside };
+
+struct TableInfo {
+    std::string name; // "section", "rock"; inside another table "joint_set.spacing"
+    Written written = Written::once;
+    Need need = Need::required;
+    std::string doc{};
+
+    std::string shown() const; // "[section]", "[[rock]]", "[[joint_set]] spacing"
+};
+
+template <class Record>
+struct Table {
+    TableInfo info;
+    std::vector<Key<Record>> keys;
+};
+
+// --- Declaring keys
+// ------------------------------------------------------------------------------------------- `member` is a
+// pointer to the member of Record that the key fills, an optional one included, or a function Record& ->
+// reference to what it fills; then Record is named: number<Rock>(...).
+
+template <class Record, class Member, class Read>
+Key<Record> key_of(KeyInfo info, Member member, Read read)
+{
+    return {std::move(info),
+            [member, read](Record& record, const KeyInfo& key, const TomlValue& value, const Place& place) {
+                auto& slot = std::invoke(member, record);
+                slot = static_cast<std::remove_reference_t<decltype(slot)>>(read(key, value, place));
+            },
+            {}};
+}
+
+template <class Member, class Record>
+concept MemberOf = std::invocable<Member, Record&>;
+
+template <class Record, MemberOf<Record> Member>
+Key<Record> number(std::string name, Member member, Unit unit, Range range, std::string doc)
+{
+    return key_of<Record>({std::move(name), "number", unit, range, std::move(doc)}, member, read_number);
+}
+template <class Record, class Value>
+Key<Record> number(std::string name, Value Record::*member, Unit unit, Range range, std::string doc)
+{
+    return number<Record, Value Record::*>(std::move(name), member, unit, range, std::move(doc));
+}
+
+template <class Record, class Value>
+Key<Record> integer(std::string name, Value Record::*member, Range range, std::string doc)
+{
+    return key_of<Record>({std::move(name), "integer", {}, range, std::move(doc)}, member, read_integer);
+}
+
+template <class Record>
+Key<Record> text(std::string name, std::string Record::*member, std::string doc)
+{
+    return key_of<Record>({std::move(name), "text", {}, {}, std::move(doc)}, member, read_text);
+}
+
+inline constexpr Unit days{"days", unit::day};
+inline constexpr Unit metres{"m", unit::m};
+constexpr double farthest_day = 1e6, farthest_metre = 1e6; // from the start, from the origin
+
+template <class Record>
+Key<Record> date(std::string name, double Record::*member, std::string doc)
+{
+    return key_of<Record>({std::move(name), "date", days, within(farthest_day), std::move(doc)}, member,
+                          read_date);
+}
+
+template <class Record>
+Key<Record> point(std::string name, Eigen::Vector2d Record::*member, std::string doc)
+{
+    return key_of<Record>({std::move(name), "point", metres, within(farthest_metre), std::move(doc)}, member,
+                          read_point);
+}
+
+template <class Record, class Value>
+Key<Record> polygon(std::string name, Value Record::*member, std::string doc)
+{
+    return key_of<Record>({std::move(name), "polygon", metres, within(farthest_metre), std::move(doc)},
+                          member, read_polygon);
+}
+
+template <class Record>
+Key<Record> polygons(std::string name, std::vector<Polygon> Record::*member, std::string doc)
+{
+    return key_of<Record>({std::move(name), "polygons", metres, within(farthest_metre), std::move(doc)},
+                          member, read_polygons);
+}
+
+// One of some words, each standing for a value, which assign(record, value) stores.
+template <class Record, class Value, std::invocable<Record&, Value> Assign>
+Key<Record> choice(std::string name, Assign assign, std::vector<std::pair<std::string, Value>> words,
+                   std::string doc)
+{
+    std::string kind;
+    for (const auto& [word, meaning] : words)
+        kind += (kind.empty() ? "\"" : " | \"") + word + '"';
+    return {{std::move(name), kind, {}, {}, std::move(doc)},
+            [assign, words](Record& record, const KeyInfo& key, const TomlValue& value, const Place& place) {
+                const auto* const given = std::get_if<std::string>(&value.content);
+                const auto found = std::find_if(words.begin(), words.end(), [&](const auto& word) {
+                    return given && word.first == *given;
+                });
+                if (found == words.end())
+                    place.refuse(key, value);
+                assign(record, found->second);
+            },
+            {}};
+}
+template <class Record, class Value>
+Key<Record> choice(std::string name, Value Record::*member, std::vector<std::pair<std::string, Value>> words,
+                   std::string doc)
+{
+    const auto assign = [member](Record& record, Value value) { record.*member = value; };
+    return choice<Record, Value>(std::move(name), assign, std::move(words), std::move(doc));
+}
+
+// --- Reading a table
+// -------------------------------------------------------------------------------------------
+
+// Throws unless `value` is a table whose keys are all among `known`.
+void check_keys(const TomlValue& value, const std::vector<const KeyInfo*>& known, const Place& place);
+// Throws for a required key that is missing, or for one missing of those that come together.
+void check_present(const TomlValue& value, const std::vector<const KeyInfo*>& known, const Place& place);
+
+template <class Record>
+std::vector<const KeyInfo*> key_infos(const Table<Record>& table)
+{
+    std::vector<const KeyInfo*> infos;
+    for (const Key<Record>& key : table.keys)
+        infos.push_back(&key.info);
+    return infos;
+}
+
+// Fills the record from what is given, and from defaults.
+template <class Record>
+void fill(const Table<Record>& table, const TomlValue& value, const Place& place, Record& record)
+{
+    for (const Key<Record>& key : table.keys) {
+        if (const TomlValue* const given = value.find(key.info.name))
+            key.read(record, key.info, *given, place);
+        else if (key.fallback)
+            key.read(record, key.info, *key.fallback, place);
+    }
+}
+
+template <class Record>
+void read_table(const Table<Record>& table, const TomlValue& value, const Place& place, Record& record)
+{
+    const auto infos = key_infos(table);
+    check_keys(value, infos, place);
+    check_present(value, infos, place);
+    fill(table, value, place, record);
+}
+
+// The name among `known` that is most like `name`, or "" if none is near; for "did you mean".
+std::string nearest(const std::string& name, const std::vector<std::string>& known);
+
+} // namespace jointcreep

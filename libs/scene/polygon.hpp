@@ -1,0 +1,29 @@
+// What the checks of a scene ask of polygons and lines.
+
+#pragma once
+
+#include "model/scene.hpp"
+
+namespace jointcreep
+{
+
+// What is wrong with a polygon, in words, or "": it wants three corners at least, none twice, and sides that
+// meet only at their common corners.
+std::string polygon_fault(const Polygon& polygon);
+
+// Diagonal of the bounding box [m].
+double polygon_size(const Polygon& polygon);
+
+// Whether a point lies inside a simple polygon, or within `tolerance` [m] of its sides.
+bool covers(const Polygon& polygon, const Eigen::Vector2d& point, double tolerance);
+
+// Length [m] of the line from `from` to `to` that runs along sides of the polygon, within `tolerance` [m].
+double length_on_sides(const Polygon& polygon, const Eigen::Vector2d& from, const Eigen::Vector2d& to,
+                       double tolerance);
+
+// Length [m] that the line `c` to `d` has in common with the line `a` to `b`, 0 unless `c` and `d` are within
+// `tolerance` [m] of the first line's straight extension.
+double common_length(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c,
+                     const Eigen::Vector2d& d, double tolerance);
+
+} // namespace jointcreep

@@ -1,0 +1,31 @@
+// A scene's TOML text -> Scene, in SI units and checked. The keys are declared in scene_keys.cpp;
+// docs/scene.md and the table below are made from the same declarations.
+
+#pragma once
+
+#include "model/scene.hpp"
+
+#include <string>
+#include <string_view>
+
+namespace jointcreep
+{
+
+// Reads and checks a whole scene. `name` is what messages call the text: a file, or a file and its dataset.
+// Throws input_error naming the line, key, value, unit and what was wanted. On a text that makes toml++ stop
+// itself, ends the process with exit code 2.
+Scene parse_scene(std::string_view text, const std::string& name);
+
+// The text of a scene file. Throws file_error if it cannot be read, input_error if it is empty or larger than
+// 16 MiB.
+std::string read_scene_text(const std::string& path);
+
+// docs/scene.md, whole.
+std::string scene_keys_markdown();
+
+// One row a key, separated by tabs, with a head: table, key, kind, unit, required, minimum, maximum, default.
+// Bounds are written with their bracket, "[0" closed and "(0" open; "-" means none; tables inside a table are
+// written joint_set.spacing; required is yes, no or together (all keys marked so in one table, or none).
+std::string scene_keys_tsv();
+
+} // namespace jointcreep

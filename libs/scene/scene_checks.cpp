@@ -1,0 +1,328 @@
+#include "scene/scene_checks.hpp"
+
+#include "model/error.hpp"
+#include "scene/polygon.hpp"
+
+#include <cmath>
+#include <map>
+#include <set>
+
+namespace jointcreep
+{
+namespace
+{
+
+constexpr double same_place =
+    1e-9; // of the section's size: points and boundaries this near the outline are on it
+constexpr double least_trace =
+    0.05; // of a joint plane's unit normal in the section's plane: else nearly parallel
+constexpr std::size_t most_names_shown = 10;
+
+// The table that a record was read from; knows the lines of its keys.
+struct Given {
+    const Reading& reading;
+    const TomlValue& table;
+    std::string title; // "[[rock]] "granite""
+
+    const TomlValue* find(std::string_view key) const { return table.find(key); }
+
+    // "[[joint]] "F1" material = "gouge": what is wrong", at the key's line, or the table's if it is missing.
+    [[noreturn]] void refuse(const std::string& key, const std::string& what) const
+    {
+        const TomlValue* const value = find(key);
+        const Place place{reading, title};
+        if (value)
+            place.refuse(value->line, title + " " + key + " = " + shown(*value) + ": " + what);
+        place.refuse(table.line, title + " has no " + key + ": " + what);
+    }
+};
+
+class Checker
+{
+public:
+    Checker(const Scene& scene, const TomlValue& root, const Reading& reading)
+        : scene_(scene), root_(root), reading_(reading)
+    {
+    }
+
+    void check() const
+    {
+        check_names();
+        check_references();
+        check_polygons();
+        check_joints();
+        check_joint_sets();
+        check_boundaries();
+        check_times();
+        check_places();
+        check_numbers();
+    }
+
+private:
+    const Scene& scene_;
+    const TomlValue& root_;
+    const Reading& reading_;
+
+    Given once(const std::string& name) const
+    {
+        const TomlValue* const table = root_.find(name);
+        return {reading_, table ? *table : root_, "[" + name + "]"};
+    }
+
+    Given in_list(const std::string& name, std::size_t i) const
+    {
+        const TomlValue& table = std::get<TomlValue::List>(root_.find(name)->content)[i];
+        const TomlValue* const own_name = table.find("name");
+        return {reading_, table, "[[" + name + "]]" + (own_name ? " " + shown(*own_name) : "")};
+    }
+
+    // --- Names and references
+    // ----------------------------------------------------------------------------------
+
+    template <class Record>
+    void check_unique(const std::string& table, const std::vector<Record>& records,
+                      std::map<std::string, std::int64_t>& line_of) const
+    {
+        for (std::size_t i = 0; i < records.size(); ++i) {
+            const Given given = in_list(table, i);
+            const auto [other, is_new] = line_of.try_emplace(records[i].name, given.find("name")->line);
+            if (!is_new)
+                given.refuse("name", "the name is taken in line " + std::to_string(other->second));
+        }
+    }
+
+    template <class Record>
+    void check_unique(const std::string& table, const std::vector<Record>& records) const
+    {
+        std::map<std::string, std::int64_t> line_of;
+        check_unique(table, records, line_of);
+    }
+
+    void check_names() const
+    {
+        check_unique("rock", scene_.rocks);
+        check_unique("joint_material", scene_.joint_materials);
+        check_unique("stage", scene_.stages);
+        check_unique("point", scene_.points);
+        check_unique("gauge", scene_.gauges);
+        std::map<std::string, std::int64_t> line_of; // a joint is a set of its own in all files
+        check_unique("joint_set", scene_.joint_sets, line_of);
+        check_unique("joint", scene_.joints, line_of);
+    }
+
+    template <class Record>
+    static std::set<std::string> names_of(const std::vector<Record>& records)
+    {
+        std::set<std::string> names;
+        for (const Record& record : records)
+            names.insert(record.name);
+        return names;
+    }
+
+    static void check_reference(const Given& given, const std::string& key, const std::string& name,
+                                const std::set<std::string>& known, const std::string& what)
+    {
+        if (known.contains(name))
+            return;
+        if (known.empty())
+            given.refuse(key, "there is no " + what);
+        std::string all;
+        std::size_t shown_names = 0;
+        for (const auto& one : known)
+            if (shown_names++ < most_names_shown)
+                all += (all.empty() ? "\"" : ", \"") + one + '"';
+        if (known.size() > most_names_shown)
+            all += ", ...";
+        const auto meant = nearest(name, {known.begin(), known.end()});
+        given.refuse(key, "wanted the name of a " + what + ": " + all +
+                              (meant.empty() ? "" : "; did you mean \"" + meant + "\"?"));
+    }
+
+    void check_references() const
+    {
+        const auto rocks = names_of(scene_.rocks);
+        const auto materials = names_of(scene_.joint_materials);
+        check_reference(once("section"), "rock", scene_.rock, rocks, "[[rock]]");
+        for (std::size_t i = 0; i < scene_.regions.size(); ++i)
+            check_reference(in_list("region", i), "rock", scene_.regions[i].rock, rocks, "[[rock]]");
+        for (std::size_t i = 0; i < scene_.joints.size(); ++i)
+            check_reference(in_list("joint", i), "material", scene_.joints[i].material, materials,
+                            "[[joint_material]]");
+        for (std::size_t i = 0; i < scene_.joint_sets.size(); ++i)
+            check_reference(in_list("joint_set", i), "material", scene_.joint_sets[i].material, materials,
+                            "[[joint_material]]");
+        for (std::size_t i = 0; i < scene_.boundaries.size(); ++i)
+            if (!scene_.boundaries[i].joint.empty())
+                check_reference(in_list("boundary", i), "joint", scene_.boundaries[i].joint, materials,
+                                "[[joint_material]]");
+    }
+
+    // --- Geometry
+    // ----------------------------------------------------------------------------------------------
+
+    static void check_polygon(const Given& given, const std::string& key, const Polygon& polygon)
+    {
+        if (const auto fault = polygon_fault(polygon); !fault.empty())
+            given.refuse(key, fault + "; wanted a simple polygon of at least 3 corners, not closed");
+    }
+
+    void check_polygons() const
+    {
+        check_polygon(once("section"), "outline_m", scene_.outline);
+        for (std::size_t i = 0; i < scene_.regions.size(); ++i)
+            check_polygon(in_list("region", i), "outline_m", scene_.regions[i].outline);
+        for (std::size_t i = 0; i < scene_.joint_sets.size(); ++i)
+            if (scene_.joint_sets[i].region)
+                check_polygon(in_list("joint_set", i), "region_m", *scene_.joint_sets[i].region);
+        for (std::size_t i = 0; i < scene_.stages.size(); ++i)
+            for (const Polygon& polygon : scene_.stages[i].remove)
+                check_polygon(in_list("stage", i), "remove_m", polygon);
+    }
+
+    double tolerance() const { return same_place * polygon_size(scene_.outline); }
+
+    void check_joints() const
+    {
+        for (std::size_t i = 0; i < scene_.joints.size(); ++i)
+            if (scene_.joints[i].from == scene_.joints[i].to)
+                in_list("joint", i).refuse("to_m", "wanted another point than from_m");
+    }
+
+    void check_boundaries() const
+    {
+        const auto& all = scene_.boundaries;
+        for (std::size_t i = 0; i < all.size(); ++i) {
+            const Given given = in_list("boundary", i);
+            if (!given.find("fix") && !given.find("joint"))
+                given.refuse("fix",
+                             "wanted either fix = \"x\", \"y\" or \"xy\", or joint = a joint material");
+            if (given.find("fix") && given.find("joint"))
+                given.refuse("fix", "wanted either fix or joint, not both");
+            const double length = (all[i].to - all[i].from).norm();
+            if (!(length > tolerance()))
+                given.refuse("to_m", "wanted another point than from_m");
+            if (length_on_sides(scene_.outline, all[i].from, all[i].to, tolerance()) <
+                length - 2 * tolerance())
+                given.refuse("to_m", "wanted from_m and to_m on one straight piece of the section's outline");
+            for (std::size_t j = 0; j < i; ++j)
+                if (common_length(all[i].from, all[i].to, all[j].from, all[j].to, tolerance()) >
+                    2 * tolerance())
+                    given.refuse("to_m", "it runs over the boundary of line " +
+                                             std::to_string(in_list("boundary", j).table.line));
+        }
+    }
+
+    void check_places() const
+    {
+        const auto check = [this](const std::string& table, const auto& records) {
+            for (std::size_t i = 0; i < records.size(); ++i)
+                if (!covers(scene_.outline, records[i].at, tolerance()))
+                    in_list(table, i).refuse(
+                        "at_m", "[" + shown(records[i].at.x()) + ", " + shown(records[i].at.y()) +
+                                    "] is outside the section's outline; wanted a point inside");
+        };
+        check("point", scene_.points);
+        check("gauge", scene_.gauges);
+    }
+
+    // --- Joint sets
+    // --------------------------------------------------------------------------------------------
+
+    void check_orientation(const JointSet& set, const Given& given) const
+    {
+        const std::string wanted = "wanted either trace_angle, or dip and dip_direction";
+        if (set.trace_angle) {
+            if (set.dip || set.dip_direction)
+                given.refuse(set.dip ? "dip" : "dip_direction", wanted + ", not both");
+            return;
+        }
+        if (!set.dip && !set.dip_direction)
+            given.refuse("trace_angle", wanted);
+        if (!set.dip || !set.dip_direction)
+            given.refuse(set.dip ? "dip_direction" : "dip", wanted);
+        if (!scene_.azimuth)
+            once("section").refuse("azimuth_deg",
+                                   "the dip of " + given.title + " needs the bearing of the section");
+        // The mean plane's unit normal is {sin(dip) cos(a), cos(dip), sin(dip) sin(a)} along x, y and across.
+        const double a = set.dip_direction->mean - *scene_.azimuth;
+        const double across = std::sin(set.dip->mean) * std::sin(a);
+        if (std::sqrt(std::max(0.0, 1 - across * across)) <= least_trace)
+            given.refuse("dip_direction",
+                         "the set's mean plane is parallel to the section, or nearly so, and leaves no "
+                         "trace; wanted another dip or direction, or no such set");
+    }
+
+    void check_joint_sets() const
+    {
+        for (std::size_t i = 0; i < scene_.joint_sets.size(); ++i) {
+            const JointSet& set = scene_.joint_sets[i];
+            const Given given = in_list("joint_set", i);
+            check_orientation(set, given);
+            if (!set.length && set.persistence > 0 && set.persistence < 1)
+                given.refuse("length", "a persistence of " + shown(set.persistence) + " needs it");
+            for (const Rock& rock : scene_.rocks)
+                if (set.persistence < 1 && !rock.strength)
+                    given.refuse("persistence", "its rock bridges need cohesion_MPa, friction_angle_deg and "
+                                                "tensile_strength_MPa of [[rock]] \"" +
+                                                    rock.name + "\"");
+        }
+        if (!scene_.joint_sets.empty() && !root_.find("random"))
+            Place{reading_, ""}.refuse(in_list("joint_set", 0).table.line,
+                                       "the scene has no [random] seed: [[joint_set]] needs it");
+    }
+
+    // --- Time, and numbers that depend on others
+    // ---------------------------------------------------------------
+
+    static std::string days(double time) { return shown(time / unit::day) + " days since the start"; }
+
+    void check_times() const
+    {
+        if (!(scene_.end > 0))
+            once("schedule").refuse("end", "it is " + days(scene_.end) + "; wanted an end after the start");
+        double before = 0;
+        for (std::size_t i = 0; i < scene_.stages.size(); ++i) {
+            const double time = scene_.stages[i].time;
+            if (!(time > before))
+                in_list("stage", i)
+                    .refuse("date", "it is " + days(time) + "; wanted later than " +
+                                        (i == 0 ? "the start" : "the stage before, " + days(before)));
+            if (time > scene_.end)
+                in_list("stage", i)
+                    .refuse("date",
+                            "it is " + days(time) + "; wanted not after the end, " + days(scene_.end));
+            before = time;
+        }
+        for (std::size_t i = 0; i < scene_.points.size(); ++i) {
+            const double time = scene_.points[i].first_reading;
+            if (!(time >= 0 && time <= scene_.end))
+                in_list("point", i)
+                    .refuse("first_reading", "it is " + days(time) + "; wanted from the start to the end, " +
+                                                 days(scene_.end));
+        }
+    }
+
+    void check_numbers() const
+    {
+        const Given cutting = once("cutting");
+        if (scene_.cutting.shortest_edge > scene_.zone_size)
+            cutting.refuse("shortest_edge_m",
+                           "wanted at most [zones] size_m, " + shown(scene_.zone_size) + " m");
+
+        const Given equilibrium = once("equilibrium");
+        const Damping damping = scene_.equilibrium.damping;
+        if ((damping == Damping::mass) != (equilibrium.find("mass_damping_per_s") != nullptr))
+            equilibrium.refuse("mass_damping_per_s", "damping = \"mass\" needs it, and nothing else does");
+        if (damping != Damping::local && equilibrium.find("local_damping"))
+            equilibrium.refuse("local_damping", "only damping = \"local\" uses it");
+    }
+};
+
+} // namespace
+
+void check_scene(const Scene& scene, const TomlValue& root, const Reading& reading)
+{
+    Checker(scene, root, reading).check();
+}
+
+} // namespace jointcreep

@@ -1,0 +1,410 @@
+#include "scene/scene_keys.hpp"
+
+#include "model/error.hpp"
+
+namespace jointcreep
+{
+namespace
+{
+
+using enum Need;
+using enum Written;
+
+constexpr Unit none{""};
+constexpr Unit degrees{"deg", unit::deg};
+constexpr Unit kg_per_m3{"kg/m3", unit::kg / (unit::m * unit::m * unit::m)};
+constexpr Unit m_per_s2{"m/s2", unit::m / (unit::s * unit::s)};
+constexpr Unit per_s{"1/s", 1 / unit::s};
+constexpr Unit GPa{"GPa", unit::GPa};
+constexpr Unit MPa{"MPa", unit::MPa};
+constexpr Unit MPa_per_m{"MPa/m", unit::MPa / unit::m};
+constexpr Unit MPa_day_per_m{"MPa day/m", unit::MPa* unit::day / unit::m};
+constexpr Unit mm_per_day{"mm/day", unit::mm / unit::day};
+
+// Upper bounds far above any rock: they catch slips of unit, and keep all products finite.
+const Range strength = from(0).to(1e4);           // [MPa]
+const Range friction = from(0).below(90);         // [deg]
+const Range stiffness = above(0).to(1e9);         // [MPa/m]
+const Range viscosity = above(0).to(1e12);        // [MPa day/m]
+const Range length = above(0).to(farthest_metre); // [m]
+const Range coordinate = within(farthest_metre);  // [m]
+const Range stress = within(1e4);                 // [MPa]
+const Range gradient = within(100);               // [MPa/m]
+
+// A member of an optional part of a record; reading it makes the part.
+template <auto Part, auto Member>
+constexpr auto part = [](auto& record) -> double& {
+    auto& all = record.*Part;
+    if (!all)
+        all.emplace();
+    return (*all).*Member;
+};
+
+Table<Scene> top()
+{
+    return {{"", once, optional, "Keys before the first table."},
+            {text("title", &Scene::title, "What the scene is, in a line.").optional()}};
+}
+
+Table<Scene> section()
+{
+    return {
+        {"section", once, required, "The section: a vertical plane through the rock, x to the right, y up."},
+        {polygon("outline_m", &Scene::outline, "Its outline, either way round."),
+         text("rock", &Scene::rock, "Name of the rock that no region covers."),
+         number("gravity_m_per_s2", &Scene::gravity, m_per_s2, from(0).to(100), "Gravity, downward."),
+         number("azimuth_deg", &Scene::azimuth, degrees, from(0).to(360),
+                "Bearing of the x axis, clockwise from north. Needed by joint sets with a dip.")
+             .optional()}};
+}
+
+Table<Rock> rock()
+{
+    return {
+        {"rock", in_list, required,
+         "Intact rock: elastic, plane strain. Its strength is that of the rock bridges, and is needed where "
+         "a joint set has a persistence below 1."},
+        {text("name", &Rock::name, "Name, once among the rocks."),
+         number("density_kg_per_m3", &Rock::density, kg_per_m3, above(0).to(3e4), "Density."),
+         number("youngs_modulus_GPa", &Rock::youngs_modulus, GPa, above(0).to(1e4), "Young's modulus."),
+         number("poissons_ratio", &Rock::poissons_ratio, none, from(0).below(0.5), "Poisson's ratio."),
+         number<Rock>("cohesion_MPa", part<&Rock::strength, &RockStrength::cohesion>, MPa, strength,
+                      "Cohesion.")
+             .together(),
+         number<Rock>("friction_angle_deg", part<&Rock::strength, &RockStrength::friction_angle>, degrees,
+                      friction, "Friction angle.")
+             .together(),
+         number<Rock>("tensile_strength_MPa", part<&Rock::strength, &RockStrength::tensile_strength>, MPa,
+                      strength, "Tensile strength, a positive number.")
+             .together()}};
+}
+
+Table<Region> region()
+{
+    return {
+        {"region", in_list, optional,
+         "A part of the section made of another rock. Later ones cover earlier ones."},
+        {text("rock", &Region::rock, "Name of its rock."),
+         polygon("outline_m", &Region::outline, "Its outline; what reaches out of the section is cut off.")}};
+}
+
+Table<JointMaterial> joint_material()
+{
+    constexpr auto kelvin = &JointMaterial::kelvin;
+    return {
+        {"joint_material", in_list, optional,
+         "What joints are made of: springs of stress per displacement, Coulomb friction, and a Kelvin "
+         "element "
+         "(spring beside dashpot) in series. Without the Kelvin constants the joint does not creep."},
+        {text("name", &JointMaterial::name, "Name, once among the joint materials."),
+         number("normal_stiffness_MPa_per_m", &JointMaterial::normal_stiffness, MPa_per_m, stiffness,
+                "Normal stiffness."),
+         number("shear_stiffness_MPa_per_m", &JointMaterial::shear_stiffness, MPa_per_m, from(0).to(1e9),
+                "Shear stiffness; 0 is a smooth joint."),
+         number("cohesion_MPa", &JointMaterial::cohesion, MPa, strength, "Cohesion."),
+         number("friction_angle_deg", &JointMaterial::friction_angle, degrees, friction, "Friction angle."),
+         number("tensile_strength_MPa", &JointMaterial::tensile_strength, MPa, strength,
+                "Tensile strength, a positive number."),
+         number<JointMaterial>("normal_kelvin_stiffness_MPa_per_m", part<kelvin, &Kelvin::normal_stiffness>,
+                               MPa_per_m, stiffness, "Kelvin spring, normal.")
+             .together(),
+         number<JointMaterial>("normal_kelvin_viscosity_MPa_day_per_m",
+                               part<kelvin, &Kelvin::normal_viscosity>, MPa_day_per_m, viscosity,
+                               "Kelvin dashpot, normal.")
+             .together(),
+         number<JointMaterial>("shear_kelvin_stiffness_MPa_per_m", part<kelvin, &Kelvin::shear_stiffness>,
+                               MPa_per_m, stiffness, "Kelvin spring, shear.")
+             .together(),
+         number<JointMaterial>("shear_kelvin_viscosity_MPa_day_per_m", part<kelvin, &Kelvin::shear_viscosity>,
+                               MPa_day_per_m, viscosity, "Kelvin dashpot, shear.")
+             .together()}};
+}
+
+Table<SingleJoint> joint()
+{
+    return {{"joint", in_list, optional,
+             "One joint or fault given by its ends: all of it joint, no rock bridges."},
+            {text("name", &SingleJoint::name, "Name, once among the joints and joint sets."),
+             text("material", &SingleJoint::material, "Name of its joint material."),
+             point("from_m", &SingleJoint::from, "One end."),
+             point("to_m", &SingleJoint::to, "The other end.")}};
+}
+
+// --- Laws
+// -------------------------------------------------------------------------------------------------------
+
+constexpr double fewest_deviations = 3; // in the mean of a normal law of a length
+
+const std::pair<std::string, Law::Kind> constant{"constant", Law::Kind::constant};
+const std::pair<std::string, Law::Kind> normal{"normal", Law::Kind::normal};
+const std::pair<std::string, Law::Kind> lognormal{"lognormal", Law::Kind::lognormal};
+const std::pair<std::string, Law::Kind> exponential{"negative exponential", Law::Kind::negative_exponential};
+
+Table<Law> angle_law(const std::string& name, Range range, const std::string& doc)
+{
+    return {{"joint_set." + name, inside, optional, doc},
+            {choice("law", &Law::kind, {normal, constant}, "Probability law."),
+             number("mean_deg", &Law::mean, degrees, range, "Mean."),
+             number("deviation_deg", &Law::deviation, degrees, above(0).to(90),
+                    "Standard deviation: needed by the normal law, refused by the constant.")
+                 .optional()}};
+}
+
+Table<Law> length_law(const std::string& name, Need need, const std::string& doc)
+{
+    return {
+        {"joint_set." + name, inside, need, doc},
+        {choice("law", &Law::kind, {normal, lognormal, exponential, constant}, "Probability law."),
+         number("mean_m", &Law::mean, metres, length, "Mean of the quantity itself, never of its logarithm."),
+         number(
+             "deviation_m", &Law::deviation, metres, length,
+             "Standard deviation of the quantity itself: needed by the normal and lognormal laws, refused by "
+             "the others. With the normal law the mean must be at least 3 deviations: values of 0 or less "
+             "are drawn again, and that must hardly move the mean.")
+             .optional()}};
+}
+
+Law read_law(const Table<Law>& table, const TomlValue& value, const Place& outer)
+{
+    const Place place{outer.reading, table.info.shown()};
+    Law law;
+    read_table(table, value, place, law);
+    const KeyInfo& mean = table.keys[1].info;
+    const KeyInfo& deviation = table.keys[2].info;
+    const TomlValue* const given = value.find(deviation.name);
+    const bool wanted = law.kind == Law::Kind::normal || law.kind == Law::Kind::lognormal;
+    const auto kind = shown(*value.find("law"));
+    if (wanted && !given)
+        place.refuse(value.line,
+                     place.table + " has no " + deviation.name + ": the law " + kind + " needs it");
+    if (!wanted && given)
+        place.refuse(deviation, *given, "the law " + kind + " has no deviation of its own");
+    const bool is_length = deviation.unit.symbol == metres.symbol;
+    if (is_length && law.kind == Law::Kind::normal && law.mean < fewest_deviations * law.deviation)
+        place.refuse(mean, *value.find(mean.name),
+                     "the law \"normal\" needs a mean of at least 3 deviations, here " +
+                         shown(fewest_deviations * law.deviation) + " m; a lognormal law has no such limit");
+    if (law.kind == Law::Kind::negative_exponential)
+        law.deviation = law.mean;
+    return law;
+}
+
+template <class Member>
+Key<JointSet> law(std::string name, Member member, const Table<Law>& table, std::string doc)
+{
+    return key_of<JointSet>({std::move(name), "law", {}, {}, std::move(doc)}, member,
+                            [table](const KeyInfo&, const TomlValue& value, const Place& place) {
+                                return read_law(table, value, place);
+                            });
+}
+
+Table<JointSet> joint_set(const SceneTables& laws)
+{
+    return {
+        {"joint_set", in_list, optional,
+         "Joints sharing their statistics: parallel lines, along each of which joint traces and rock bridges "
+         "alternate. Its orientation is either trace_angle, or dip and dip_direction."},
+        {text("name", &JointSet::name, "Name, once among the joints and joint sets."),
+         text("material", &JointSet::material, "Name of the joint material of its traces."),
+         law("trace_angle", &JointSet::trace_angle, laws.trace_angle, "Angle of the traces in the section.")
+             .optional(),
+         law("dip", &JointSet::dip, laws.dip, "Dip of the joint planes.").optional(),
+         law("dip_direction", &JointSet::dip_direction, laws.dip_direction,
+             "Dip direction of the joint planes.")
+             .optional(),
+         law("spacing", &JointSet::spacing, laws.spacing, "Distance between neighbouring joint planes."),
+         law("length", &JointSet::length, laws.length,
+             "Length of the joint traces. Needed unless the persistence is 0 or 1.")
+             .optional(),
+         number("persistence", &JointSet::persistence, none, from(0).to(1),
+                "Fraction of a line that is joint."),
+         polygon("region_m", &JointSet::region, "Where the set exists.").optional("the whole section")}};
+}
+
+// ----------------------------------------------------------------------------------------------------------------
+
+Table<InSituStress> in_situ_stress()
+{
+    using S = InSituStress;
+    return {{"in_situ_stress", once, required,
+             "Stress before excavation, linear in depth: compression(y) = compression + gradient x "
+             "(elevation - y). "
+             "Compression is positive here; shear_xy is the stress component sigma_xy itself."},
+            {number("elevation_m", &S::elevation, metres, coordinate, "Elevation y where the depth is 0."),
+             number("compression_xx_MPa", &S::compression_xx, MPa, stress, "Horizontal compression there."),
+             number("compression_yy_MPa", &S::compression_yy, MPa, stress, "Vertical compression there."),
+             number("shear_xy_MPa", &S::shear_xy, MPa, stress, "Shear stress there."),
+             number("compression_xx_gradient_MPa_per_m", &S::gradient_xx, MPa_per_m, gradient,
+                    "Increase per metre of depth."),
+             number("compression_yy_gradient_MPa_per_m", &S::gradient_yy, MPa_per_m, gradient,
+                    "Increase per metre of depth."),
+             number("shear_xy_gradient_MPa_per_m", &S::gradient_xy, MPa_per_m, gradient,
+                    "Increase per metre of depth.")}};
+}
+
+Table<Boundary> boundary()
+{
+    struct Fixed {
+        bool x, y;
+    };
+    const auto fix = [](Boundary& held, Fixed fixed) {
+        held.fix_x = fixed.x;
+        held.fix_y = fixed.y;
+    };
+    return {
+        {"boundary", in_list, required,
+         "What holds a straight piece of the outline, either by fix or by joint. Elsewhere the outline is "
+         "free."},
+        {point("from_m", &Boundary::from, "One end, on the outline."),
+         point("to_m", &Boundary::to, "The other end, on the same straight piece of the outline."),
+         choice<Boundary, Fixed>("fix", fix,
+                                 {{"x", {true, false}}, {"y", {false, true}}, {"xy", {true, true}}},
+                                 "It does not move in these directions.")
+             .optional(),
+         text("joint", &Boundary::joint, "It rests on fixed ground through a joint of this joint material.")
+             .optional()}};
+}
+
+Table<Schedule> schedule()
+{
+    const KeyInfo start{
+        "start", "date", days, within(farthest_day),
+        "Start of time. With a date here all others may be dates, or numbers of days since it; with "
+        "a number all are numbers on its axis."};
+    const auto calendar = [](Schedule& all) -> Calendar& { return all.calendar; };
+    return {{"schedule", once, required, "From when to when."},
+            {key_of<Schedule>(start, calendar, read_start).or_else(std::int64_t{0}),
+             date("end", &Schedule::end, "End of time, after the start.")}};
+}
+
+Table<Stage> stage()
+{
+    return {{"stage", in_list, optional, "One excavation step, later than the one before it."},
+            {text("name", &Stage::name, "Name, once among the stages."),
+             date("date", &Stage::time, "When: after the start, not after the end."),
+             polygons("remove_m", &Stage::remove, "The rock inside these leaves.")}};
+}
+
+Table<MeasuringPoint> measuring_point()
+{
+    return {{"point", in_list, optional, "A place whose displacement is recorded."},
+            {text("name", &MeasuringPoint::name, "Name, once among the points."),
+             point("at_m", &MeasuringPoint::at, "Where, inside the section."),
+             date("first_reading", &MeasuringPoint::first_reading, "When its own readings begin.")
+                 .optional("the start")}};
+}
+
+Table<Gauge> gauge()
+{
+    return {
+        {"gauge", in_list, optional, "A place on a joint whose traction is recorded: the nearest contact."},
+        {text("name", &Gauge::name, "Name, once among the gauges."),
+         point("at_m", &Gauge::at, "Where, inside the section.")}};
+}
+
+Table<Creep> creep()
+{
+    return {{"creep", once, optional, "Creep of the joints. Without this table nothing creeps."},
+            {number("step_days", &Creep::step, days, above(0).to(farthest_day), "Time step."),
+             choice("scheme", &Creep::scheme, {{"published", CreepScheme::published}}, "Time scheme."),
+             number("stop_rate_mm_per_day", &Creep::stop_rate, mm_per_day, above(0).to(1e6),
+                    "Ends creep after the last stage once no point moves faster.")
+                 .optional()}};
+}
+
+Table<Scene> zones()
+{
+    return {{"zones", once, required, "Zones: the constant-strain triangles inside the blocks."},
+            {number("size_m", &Scene::zone_size, metres, length, "Longest zone side aimed at.")}};
+}
+
+Table<Cutting> cutting()
+{
+    return {{"cutting", once, optional, "What is too small to keep when the section is cut into blocks."},
+            {number("shortest_edge_m", &Cutting::shortest_edge, metres, from(0).to(farthest_metre),
+                    "Closer vertices, and vertices closer to an edge, are merged. At most the zone size.")
+                 .optional("0.02 x zones.size_m"),
+             number("smallest_angle_deg", &Cutting::smallest_angle, degrees, from(0).to(30),
+                    "Narrower wedges between edges are closed where that moves nothing far.")
+                 .or_else(std::int64_t{1})}};
+}
+
+Table<Equilibrium> equilibrium()
+{
+    using E = Equilibrium;
+    return {{"equilibrium", once, optional, "How equilibrium is found."},
+            {number("tolerance", &E::tolerance, none, from(1e-12).to(1e-2), "Of the out-of-balance ratio.")
+                 .or_else(1e-6),
+             choice("masses", &E::masses, {{"scaled", Masses::scaled}, {"real", Masses::real}},
+                    "Nodal masses: scaled for a fast way to the same equilibrium, or the real ones.")
+                 .or_else(std::string("scaled")),
+             choice("damping", &E::damping,
+                    {{"kinetic", Damping::kinetic},
+                     {"adaptive", Damping::adaptive},
+                     {"local", Damping::local},
+                     {"mass", Damping::mass}},
+                    "How motion is damped.")
+                 .or_else(std::string("kinetic")),
+             number("mass_damping_per_s", &E::mass_damping, per_s, above(0).to(1e12),
+                    "Mass-proportional damping; with damping = \"mass\", and only then.")
+                 .optional(),
+             number("local_damping", &E::local_damping, none, above(0).below(1),
+                    "Fraction of the out-of-balance force; with damping = \"local\" only.")
+                 .optional("0.8"),
+             integer("unloading_increments", &E::unloading_increments, from(1).to(1000),
+                     "In which the rock of a stage is taken away.")
+                 .or_else(std::int64_t{1}),
+             integer("most_steps", &E::most_steps, from(1).to(2147483647),
+                     "Without equilibrium after so many steps the program gives up.")
+                 .or_else(std::int64_t{1000000})}};
+}
+
+Table<Scene> random_numbers()
+{
+    return {{"random", once, optional, "Needed by joint sets."},
+            {integer("seed", &Scene::seed,
+                     from(0).to(static_cast<double>(std::numeric_limits<std::int64_t>::max())),
+                     "Another seed gives another network of the same statistics.")}};
+}
+
+SceneTables all_tables()
+{
+    SceneTables all;
+    all.top = top();
+    all.section = section();
+    all.rock = rock();
+    all.region = region();
+    all.joint_material = joint_material();
+    all.joint = joint();
+    all.trace_angle =
+        angle_law("trace_angle", within(180), "Angle of a trace, counter-clockwise from the x axis.");
+    all.dip = angle_law("dip", from(0).to(90),
+                        "Dip below the horizontal, with dip_direction and section.azimuth_deg.");
+    all.dip_direction =
+        angle_law("dip_direction", from(0).to(360), "Bearing of the dip, clockwise from north.");
+    all.spacing = length_law("spacing", required, "Spacing along the set's mean normal in space.");
+    all.length = length_law("length", optional, "Length of the joint traces.");
+    all.joint_set = joint_set(all);
+    all.in_situ_stress = in_situ_stress();
+    all.boundary = boundary();
+    all.schedule = schedule();
+    all.stage = stage();
+    all.point = measuring_point();
+    all.gauge = gauge();
+    all.creep = creep();
+    all.zones = zones();
+    all.cutting = cutting();
+    all.equilibrium = equilibrium();
+    all.random = random_numbers();
+    return all;
+}
+
+} // namespace
+
+const SceneTables& scene_tables()
+{
+    static const SceneTables tables = all_tables();
+    return tables;
+}
+
+} // namespace jointcreep

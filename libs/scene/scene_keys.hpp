@@ -1,0 +1,50 @@
+// Every table and key of a scene.
+
+#pragma once
+
+#include "scene/keys.hpp"
+
+namespace jointcreep
+{
+
+struct Schedule {
+    Calendar& calendar; // filled by the first key, and used by all later dates
+    double end = 0;     // since start [s]
+};
+
+// The tables in the order they are read and documented.
+struct SceneTables {
+    Table<Scene> top; // keys outside any table
+    Table<Scene> section;
+    Table<Rock> rock;
+    Table<Region> region;
+    Table<JointMaterial> joint_material;
+    Table<SingleJoint> joint;
+    Table<JointSet> joint_set;
+    Table<Law> trace_angle, dip, dip_direction, spacing, length; // inside joint_set
+    Table<InSituStress> in_situ_stress;
+    Table<Boundary> boundary;
+    Table<Schedule> schedule;
+    Table<Stage> stage;
+    Table<MeasuringPoint> point;
+    Table<Gauge> gauge;
+    Table<Creep> creep;
+    Table<Scene> zones;
+    Table<Cutting> cutting;
+    Table<Equilibrium> equilibrium;
+    Table<Scene> random;
+
+    // Calls visit(table) for each, in order.
+    template <class Visit>
+    void each(Visit visit) const
+    {
+        visit(top), visit(section), visit(rock), visit(region), visit(joint_material), visit(joint);
+        visit(joint_set), visit(trace_angle), visit(dip), visit(dip_direction), visit(spacing), visit(length);
+        visit(in_situ_stress), visit(boundary), visit(schedule), visit(stage), visit(point), visit(gauge);
+        visit(creep), visit(zones), visit(cutting), visit(equilibrium), visit(random);
+    }
+};
+
+const SceneTables& scene_tables();
+
+} // namespace jointcreep

@@ -1,0 +1,42 @@
+// TOML text as a tree of values that know their line. Its source is the only place that sees toml++.
+
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace jointcreep
+{
+
+struct TomlEntry;
+
+struct TomlValue {
+    struct Time {
+    }; // a time of day, or a date with one: no key wants it
+    using Date = std::chrono::year_month_day;
+    using List = std::vector<TomlValue>;
+    using Table = std::vector<TomlEntry>; // sorted by key
+
+    std::variant<bool, std::int64_t, double, std::string, Date, Time, List, Table> content;
+    std::int64_t line = 1;
+
+    // The value of a key, or null if this is no table or has no such key.
+    const TomlValue* find(std::string_view key) const;
+};
+
+struct TomlEntry {
+    std::string key;
+    TomlValue value;
+};
+
+// The value as messages show it: short, on one line.
+std::string shown(const TomlValue& value);
+
+// Throws input_error naming the line on anything that is not TOML; see also parse_scene.
+TomlValue parse_toml(std::string_view text, const std::string& name);
+
+} // namespace jointcreep

@@ -1,0 +1,187 @@
+#include "store/files.hpp"
+
+#include "model/error.hpp"
+#include "store/hdf5.hpp"
+#include "store/save.hpp"
+
+#include <algorithm>
+
+namespace jointcreep
+{
+
+using schema::Dimensions;
+using schema::Field;
+using schema::fields_of;
+using schema::invariants_of;
+using schema::reading;
+
+namespace
+{
+
+// Runs `work`, putting the file's name before the message of what it throws.
+template <class Work>
+auto naming(const std::string& path, Work work)
+{
+    try {
+        return work();
+    } catch (const input_error& error) {
+        throw input_error(path + ": " + error.what());
+    } catch (const file_error& error) {
+        throw file_error(path + ": " + error.what());
+    }
+}
+
+template <class Item>
+void append(std::vector<Item>& items, std::vector<Item> more)
+{
+    std::ranges::move(more, std::back_inserter(items));
+}
+
+// What a file holds, part by part.
+struct Contents {
+    std::vector<Field> fields;
+    std::vector<schema::Invariant> invariants;
+
+    Contents(const Provenance& provenance, const Network& network)
+        : fields(fields_of(reading(provenance))), invariants(invariants_of(network))
+    {
+        append(fields, fields_of(reading(network)));
+    }
+    void add(const EquivalentJoints& equivalent) { append(fields, fields_of(reading(equivalent))); }
+    void add(const Result& result, bool with_trace)
+    {
+        append(fields, fields_of(reading(result)));
+        append(invariants, invariants_of(result.mesh));
+        if (with_trace)
+            append(fields, fields_of(reading(result.trace)));
+    }
+};
+
+void write(const std::string& path, FileKind kind, const Provenance& provenance, const Contents& contents)
+{
+    naming(path, [&] {
+        Dimensions dimensions;
+        if (const schema::Fault fault = schema::fault_in(contents.fields, contents.invariants, dimensions))
+            throw file_error("not written: " + *fault);
+        if (provenance.program.empty())
+            throw file_error("not written: the provenance names no program");
+
+        hdf5::Image image;
+        image.set_text("filetype", schema::file_type(kind));
+        image.set_integers("format_version", {schema::major_version, schema::minor_version});
+        image.set_text("program", provenance.program.back());
+        image.set_text("program_version", provenance.version.back());
+        image.set_natural("seed", provenance.seed);
+        image.set_integers("realization", {provenance.realization});
+        for (const Field& field : contents.fields)
+            image.add(field, dimensions);
+        image.set_integers("complete", {1});
+        save(path, image.close());
+    });
+}
+
+FileKind checked_kind(const hdf5::Source& source)
+{
+    const std::string type = source.text("filetype");
+    const Index major = source.integers("format_version", 2)[0];
+    if (!type.starts_with("jointcreep "))
+        throw input_error("this is a \"" + type + "\" file; wanted one of jointcreep's");
+    if (major > schema::major_version || major < 1)
+        throw input_error("the file has format version " + std::to_string(major) +
+                          "; this program reads version " + std::to_string(schema::major_version));
+    for (const FileKind kind : {FileKind::network, FileKind::joints, FileKind::result})
+        if (type == schema::file_type(kind)) {
+            if (source.integers("complete", 1)[0] != 1)
+                throw input_error("the file is not complete");
+            return kind;
+        }
+    throw input_error("this is a \"" + type + "\" file, which this program does not know");
+}
+
+// Any kind that holds all of the wanted one will do.
+hdf5::Source open(const std::string& path, FileKind kind)
+{
+    hdf5::Source source(path);
+    const FileKind actual = checked_kind(source);
+    if (actual < kind)
+        throw input_error("this is a \"" + schema::file_type(actual) + "\" file; wanted a \"" +
+                          schema::file_type(kind) + "\" file, which " + schema::maker(kind) + " makes");
+    return source;
+}
+
+void fill(const hdf5::Source& source, Provenance& provenance, const Contents& contents)
+{
+    provenance.seed = source.natural("seed");
+    provenance.realization = source.integers("realization", 1)[0];
+    Dimensions dimensions;
+    for (const Field& field : contents.fields)
+        source.read(field, dimensions);
+    if (const schema::Fault fault = schema::fault_in(contents.fields, contents.invariants, dimensions))
+        throw input_error(*fault);
+}
+
+} // namespace
+
+FileKind kind_of(const std::string& path)
+{
+    return naming(path, [&] { return checked_kind(hdf5::Source(path)); });
+}
+
+NetworkFile read_network(const std::string& path)
+{
+    return naming(path, [&] {
+        const hdf5::Source source = open(path, FileKind::network);
+        NetworkFile file;
+        fill(source, file.provenance, Contents(file.provenance, file.network));
+        return file;
+    });
+}
+
+JointsFile read_joints(const std::string& path)
+{
+    return naming(path, [&] {
+        const hdf5::Source source = open(path, FileKind::joints);
+        JointsFile file;
+        Contents contents(file.provenance, file.network);
+        contents.add(file.equivalent);
+        fill(source, file.provenance, contents);
+        return file;
+    });
+}
+
+ResultFile read_result(const std::string& path)
+{
+    return naming(path, [&] {
+        const hdf5::Source source = open(path, FileKind::result);
+        ResultFile file;
+        Contents contents(file.provenance, file.network);
+        contents.add(file.equivalent);
+        contents.add(file.result, source.has_group("/trace"));
+        fill(source, file.provenance, contents);
+        return file;
+    });
+}
+
+void write_network(const std::string& path, const Provenance& provenance, const Network& network)
+{
+    write(path, FileKind::network, provenance, Contents(provenance, network));
+}
+
+void write_joints(const std::string& path, const Provenance& provenance, const Network& network,
+                  const EquivalentJoints& equivalent)
+{
+    Contents contents(provenance, network);
+    contents.add(equivalent);
+    write(path, FileKind::joints, provenance, contents);
+}
+
+void write_result(const std::string& path, const Provenance& provenance, const Network& network,
+                  const EquivalentJoints& equivalent, const Result& result)
+{
+    Contents contents(provenance, network);
+    contents.add(equivalent);
+    contents.add(result, !result.trace.time.empty());
+    write(path, FileKind::result, provenance, contents);
+}
+
+} // namespace jointcreep

@@ -1,0 +1,61 @@
+// The files of the chain: records to HDF5 and back. docs/file-format.md describes what is in them.
+//
+// A joints file holds all of a network file, and a result file all of a joints file. A file appears under its
+// name only when it is complete, and equal records give equal bytes. Readers check everything that the schema
+// declares. HDF5 is not thread-safe: call these functions from one thread only.
+//
+// Errors: file_error when a file cannot be read or written, input_error when it is readable but not what was
+// wanted. A program that uses these should ignore SIGXFSZ, so that a file size limit becomes a file_error.
+
+#pragma once
+
+#include "model/network.hpp"
+#include "model/provenance.hpp"
+#include "model/result.hpp"
+
+#include <string>
+
+namespace jointcreep
+{
+
+enum class FileKind { network, joints, result };
+
+struct NetworkFile {
+    Provenance provenance;
+    Network network;
+};
+
+struct JointsFile : NetworkFile {
+    EquivalentJoints equivalent;
+};
+
+struct ResultFile : JointsFile {
+    Result result;
+};
+
+// What the file says it is, after checking that this program understands its version and that it is complete.
+FileKind kind_of(const std::string& path);
+
+// Each reads its own kind of file, and what it needs from the kinds that hold more.
+NetworkFile read_network(const std::string& path);
+JointsFile read_joints(const std::string& path);
+ResultFile read_result(const std::string& path);
+
+// The records must keep to the schema too. What was under `path` stays if writing fails. The trace is written
+// only if it has rows.
+void write_network(const std::string& path, const Provenance& provenance, const Network& network);
+void write_joints(const std::string& path, const Provenance& provenance, const Network& network,
+                  const EquivalentJoints& equivalent);
+void write_result(const std::string& path, const Provenance& provenance, const Network& network,
+                  const EquivalentJoints& equivalent, const Result& result);
+
+// Throws file_error if a file could not be written there later; for the start of a long run.
+void check_writable(const std::string& path);
+
+// Hexadecimal SHA-256 of the file's bytes.
+std::string sha256_of(const std::string& path);
+
+// docs/file-format.md, made from the schema.
+std::string schema_markdown();
+
+} // namespace jointcreep

@@ -1,0 +1,126 @@
+#include "store/schema.hpp"
+
+#include <sstream>
+
+namespace jointcreep
+{
+
+using schema::Field;
+
+namespace
+{
+
+std::string type_of(const Field& field)
+{
+    struct {
+        std::string operator()(std::span<double>) const { return "float64"; }
+        std::string operator()(std::span<Index>) const { return "int32"; }
+        std::string operator()(std::span<std::string>) const { return "text"; }
+    } const name;
+    return std::visit(name, schema::flat(field.values));
+}
+
+// "[edge, 2]"
+std::string shape_of(const Field& field)
+{
+    std::string text;
+    for (const std::string& name : field.dimensions)
+        text.append(text.empty() ? "[" : ", ").append(name);
+    if (field.dimensions.empty())
+        text = "[1";
+    if (const std::size_t count = schema::components(field.values); count > 1)
+        text.append(", ").append(std::to_string(count));
+    return text.append("]");
+}
+
+std::string wanted_of(const Field& field)
+{
+    return type_of(field) == "text" ? "" : schema::wanted(field.limits);
+}
+
+void list(std::ostream& page, const std::string& title, const std::vector<Field>& fields,
+          const std::vector<schema::Invariant>& invariants = {})
+{
+    page << "\n## " << title << "\n\n"
+         << "| dataset | shape | type | unit | values | |\n"
+         << "|---|---|---|---|---|---|\n";
+    for (const Field& field : fields)
+        page << "| `" << field.path << "` | " << shape_of(field) << " | " << type_of(field) << " | "
+             << field.units << " | " << wanted_of(field) << " | " << field.description << " |\n";
+    if (!invariants.empty())
+        page << "\nBesides, in every row:\n\n";
+    for (const schema::Invariant& invariant : invariants)
+        page << "- " << invariant.sentence << " (`" << invariant.path << "`).\n";
+}
+
+void list(std::ostream& page, const std::string& title, const std::vector<schema::Described>& rows)
+{
+    page << "| " << title << " | |\n|---|---|\n";
+    for (const schema::Described& row : rows)
+        page << "| `" << row.name << "` | " << row.description << " |\n";
+}
+
+} // namespace
+
+std::string schema_markdown()
+{
+    Provenance provenance;
+    Network network;
+    EquivalentJoints equivalent;
+    Result result;
+    std::ostringstream page;
+    page << R"(# File format
+
+<!-- Made from libs/store/schema.cpp by: jointexport --file-format > docs/file-format.md -->
+
+The programs hand each other HDF5 files. A file holds all that later programs need:
+
+| `filetype` | made by | holds |
+|---|---|---|
+| `jointcreep network` | jointgen | provenance, network |
+| `jointcreep joints` | strength-averaging | the same, and equivalent joints |
+| `jointcreep result` | demsolve | the same, and mesh, history, states, equilibria; a trace if asked for |
+
+This is format version )"
+         << schema::major_version << "." << schema::minor_version << R"(.
+
+- Every dataset has the attributes `units` and `description`. Everything is in SI units, angles in radians,
+  except times since the start, which are in days. The unit `1` is that of plain numbers and of text.
+- Tension, extension and opening are positive, angles run counter-clockwise, x points to the right and y up.
+- An edge runs from its first vertex to its second; side b is on its left, side a on its right.
+- Arrays are in C order: in [time, point, 2] the component runs fastest. A single value is an array of one element.
+- Indices count from 0. An index of -1 means none. No number is ever NaN or infinite.
+- Text is UTF-8 of fixed length, padded with zero bytes.
+- Equal input gives equal bytes: a file holds no dates, paths or user names.
+- Datasets are compressed and carry checksums. A damaged file is refused; a file made to do harm may not be.
+- Readers ignore datasets they do not know. A file of another major version, or one that is not complete, is refused.
+- While a file is written it is called `NAME.partial-` and a number; it is renamed when it is whole.
+
+```python
+import h5py
+
+with h5py.File("result.h5") as file:
+    time = file["/history/time"][:]                  # days
+    points = file["/history/point"].asstr()[:]
+    displacement = file["/history/displacement"][:]  # [time, point, {x, y}], metres
+    scene = file["/scene"].asstr()[0]
+```
+
+## Attributes of the file
+
+)";
+    list(page, "attribute", schema::root_attributes());
+    page << "\n## Dimensions\n\nArrays that share a dimension have the same number of rows along it; "
+            "\"+1\" is one more.\n\n";
+    list(page, "dimension", schema::dimensions());
+    list(page, "Provenance", schema::fields_of(provenance));
+    list(page, "Network", schema::fields_of(network), schema::invariants_of(network));
+    list(page, "Equivalent joints", schema::fields_of(equivalent));
+    page << "\nRows of edges that are neither a joint nor rest on one are 0.\n";
+    list(page, "Result", schema::fields_of(result), schema::invariants_of(result.mesh));
+    list(page, "Trace", schema::fields_of(result.trace));
+    page << "\nThe group `/trace` is there only if a trace was asked for.\n";
+    return page.str();
+}
+
+} // namespace jointcreep

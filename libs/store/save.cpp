@@ -1,0 +1,145 @@
+#include "store/save.hpp"
+
+#include "model/error.hpp"
+#include "store/files.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <random>
+#include <utility>
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+namespace jointcreep
+{
+
+namespace
+{
+
+namespace fs = std::filesystem;
+
+[[noreturn]] void fail(const std::string& what)
+{
+    throw file_error("cannot " + what + ": " + std::strerror(errno));
+}
+
+fs::path folder_of(const fs::path& path)
+{
+    return path.has_parent_path() ? path.parent_path() : fs::path(".");
+}
+
+class Descriptor
+{
+public:
+    explicit Descriptor(int number) : number_(number) {}
+    Descriptor(const Descriptor&) = delete;
+    Descriptor& operator=(const Descriptor&) = delete;
+    ~Descriptor()
+    {
+        if (number_ >= 0)
+            ::close(number_);
+    }
+    int number() const { return number_; }
+    bool close() { return ::close(std::exchange(number_, -1)) == 0; } // tells of late errors
+
+private:
+    int number_;
+};
+
+// A file that is removed again unless it is renamed.
+class Partial
+{
+public:
+    // A name of its own, so that two programs with the same output do not write into one file.
+    explicit Partial(const std::string& path)
+        : name_(path + ".partial-" + std::to_string(std::random_device{}())),
+          file_(::open(name_.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0666))
+    {
+        if (file_.number() < 0)
+            fail("create " + name_);
+    }
+    Partial(const Partial&) = delete;
+    Partial& operator=(const Partial&) = delete;
+    ~Partial()
+    {
+        if (!name_.empty())
+            ::unlink(name_.c_str());
+    }
+
+    void write(std::span<const std::byte> bytes)
+    {
+        while (!bytes.empty()) {
+            const ssize_t written = ::write(file_.number(), bytes.data(), bytes.size());
+            if (written < 0 && errno != EINTR)
+                fail("write");
+            bytes = bytes.subspan(static_cast<std::size_t>(std::max<ssize_t>(written, 0)));
+        }
+        if (::fsync(file_.number()) != 0 || !file_.close())
+            fail("write");
+    }
+
+    void rename_to(const std::string& path)
+    {
+        if (std::rename(name_.c_str(), path.c_str()) != 0)
+            fail("rename the finished file");
+        name_.clear();
+    }
+
+private:
+    std::string name_;
+    Descriptor file_;
+};
+
+// Makes the renaming itself last. Some file systems cannot; the file is in place all the same.
+void sync_folder(const fs::path& folder)
+{
+    const Descriptor descriptor(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+    if (descriptor.number() < 0 || (::fsync(descriptor.number()) != 0 && errno != EINVAL))
+        fail("sync the folder");
+}
+
+// Renaming onto anything but a regular file would destroy it: a device, a pipe.
+void require_place(const std::string& path)
+{
+    struct stat status {
+    };
+    if (path.empty() || path.ends_with('/'))
+        throw file_error("cannot write: this is not the name of a file");
+    if (::stat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode))
+        throw file_error(std::string("cannot write: there is a ") +
+                         (S_ISDIR(status.st_mode) ? "folder" : "device or pipe") + " of this name");
+    const fs::path folder = folder_of(path);
+    if (::stat(folder.c_str(), &status) != 0)
+        fail("write into the folder " + folder.string());
+    if (!S_ISDIR(status.st_mode))
+        throw file_error("cannot write: " + folder.string() + " is not a folder");
+    if (::access(folder.c_str(), W_OK | X_OK) != 0)
+        fail("write into the folder " + folder.string());
+}
+
+} // namespace
+
+void save(const std::string& path, std::span<const std::byte> bytes)
+{
+    require_place(path);
+    Partial partial(path);
+    partial.write(bytes);
+    partial.rename_to(path);
+    sync_folder(folder_of(path));
+}
+
+void check_writable(const std::string& path)
+{
+    try {
+        require_place(path);
+    } catch (const file_error& error) {
+        throw file_error(path + ": " + error.what());
+    }
+}
+
+} // namespace jointcreep

@@ -1,0 +1,506 @@
+#include "store/schema.hpp"
+
+#include "model/error.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <numbers>
+
+namespace jointcreep::schema
+{
+
+namespace
+{
+
+Limits any()
+{
+    return {};
+}
+
+Limits positive()
+{
+    return {.positive = true};
+}
+
+Limits at_least(double least)
+{
+    return {.least = least};
+}
+
+Limits between(double least, double most)
+{
+    return {.least = least, .most = most};
+}
+
+Limits index_of(std::string dimension)
+{
+    return {.index_of = std::move(dimension)};
+}
+
+Limits index_or_none(std::string dimension)
+{
+    return {.index_of = std::move(dimension), .or_none = true};
+}
+
+Limits ascending()
+{
+    return {.least = 0, .ascending = true};
+}
+
+// For "first" arrays: rows first[i] .. first[i + 1] belong to i.
+Limits rows_in(std::string dimension)
+{
+    return {.least = 0, .ascending = true, .rows_of = std::move(dimension)};
+}
+
+void append(std::vector<Field>& fields, std::vector<Field> more)
+{
+    std::ranges::move(more, std::back_inserter(fields));
+}
+
+std::vector<Field> fields_of(Names& names)
+{
+    // clang-format off
+    return {
+        {"/names/rock", &names.rock, {"rock"}, "1", any(), "Rocks, as named in the scene."},
+        {"/names/joint_material", &names.joint_material, {"joint_material"}, "1", any(),
+         "Joint materials, as named in the scene."},
+        {"/names/joint_set", &names.joint_set, {"joint_set"}, "1", any(),
+         "Joint sets, then the single joints, each as a set of its own."},
+        {"/names/stage", &names.stage, {"stage"}, "1", any(), "Excavation stages, as named in the scene."},
+    };
+    // clang-format on
+}
+
+std::vector<Field> fields_of(Joints& joints)
+{
+    // clang-format off
+    return {
+        {"/joints/set", &joints.set, {"joint"}, "1", index_of("joint_set"), "Set the joint belongs to."},
+        {"/joints/number", &joints.number, {"joint"}, "1", any(),
+         "Number within the set; with the set's name it identifies the joint."},
+        {"/joints/material", &joints.material, {"joint"}, "1", index_of("joint_material"), "Joint material."},
+        {"/joints/from", &joints.from, {"joint"}, "m", any(), "One end of the joint's line {x, y}."},
+        {"/joints/to", &joints.to, {"joint"}, "m", any(), "The other end {x, y}."},
+
+        {"/traces/joint", &joints.trace_joint, {"trace"}, "1", index_of("joint"), "Joint the trace lies on."},
+        {"/traces/from", &joints.trace_from, {"trace"}, "m", any(), "One end of the joint trace {x, y}."},
+        {"/traces/to", &joints.trace_to, {"trace"}, "m", any(),
+         "The other end {x, y}; between its traces a joint's line is rock bridge."},
+    };
+    // clang-format on
+}
+
+std::vector<Field> fields_of(Blocks& blocks)
+{
+    CuttingReport& report = blocks.report;
+    // clang-format off
+    return {
+        {"/vertices/position", &blocks.vertex, {"vertex"}, "m", any(), "Position of the vertex {x, y}."},
+
+        {"/edges/vertex", &blocks.edge_vertex, {"edge"}, "1", index_of("vertex"), "First and second vertex."},
+        {"/edges/block", &blocks.edge_block, {"edge"}, "1", index_or_none("block"),
+         "Block on the left (side b) and on the right (side a); -1 is outside the section."},
+        {"/edges/kind", &blocks.edge_kind, {"edge"}, "1", between(0, 2),
+         "0 boundary (outline of the section), 1 joint, 2 welded (no joint: the blocks hold together)."},
+        {"/edges/joint", &blocks.edge_joint, {"edge"}, "1", index_or_none("joint"), "Joint of a joint edge."},
+        {"/edges/joint_fraction", &blocks.edge_joint_fraction, {"edge"}, "1", between(0, 1),
+         "Joint length over edge length, on joint edges; the rest is rock bridge."},
+        {"/edges/boundary", &blocks.edge_boundary, {"edge"}, "1", at_least(-1),
+         "Which of the scene's boundary entries holds a boundary edge, counted from 0; -1 none."},
+
+        {"/blocks/rock", &blocks.block_rock, {"block"}, "1", index_of("rock"), "Rock of the block."},
+        {"/blocks/stage", &blocks.block_stage, {"block"}, "1", index_or_none("stage"),
+         "Stage that removes the block; -1 if it stays."},
+        {"/blocks/area", &blocks.block_area, {"block"}, "m2", positive(), "Area of the block."},
+        {"/blocks/first_ring", &blocks.block_ring, {"block+1"}, "1", rows_in("ring"),
+         "Block i has the rings first_ring[i] up to, not including, first_ring[i + 1]: its outline, "
+         "counter-clockwise, then its holes, clockwise."},
+        {"/rings/first_corner", &blocks.ring_start, {"ring+1"}, "1", rows_in("corner"),
+         "Ring r has the corners first_corner[r] up to, not including, first_corner[r + 1]."},
+        {"/rings/vertex", &blocks.ring_vertex, {"corner"}, "1", index_of("vertex"), "Vertex at the corner."},
+
+        {"/cutting/merged_vertices", &report.merged_vertices, {}, "1", at_least(0),
+         "Vertices that cutting merged into others."},
+        {"/cutting/merged_edge_length", &report.merged_edge_length, {}, "m", at_least(0),
+         "Total length of the edges that vanished."},
+        {"/cutting/merged_block_area", &report.merged_block_area, {}, "m2", at_least(0),
+         "Total area of the blocks that vanished into their neighbours."},
+        {"/cutting/largest_move", &report.largest_move, {}, "m", at_least(0),
+         "Largest distance by which a vertex was moved."},
+        {"/cutting/pruned_length", &report.pruned_length, {}, "m", at_least(0),
+         "Total length of joints that ended inside a block and were cut back."},
+        {"/cutting/shortest_edge", &report.shortest_edge, {}, "m", at_least(0),
+         "Shortest edge that is left."},
+        {"/cutting/smallest_angle", &report.smallest_angle, {}, "rad", at_least(0),
+         "Smallest angle between neighbouring edges that is left."},
+    };
+    // clang-format on
+}
+
+std::vector<Field> fields_of(Mesh& mesh)
+{
+    // clang-format off
+    return {
+        {"/mesh/gridpoint_position", &mesh.gridpoint, {"gridpoint"}, "m", any(),
+         "Position of the gridpoint at the start {x, y}."},
+        {"/mesh/gridpoint_fixed", &mesh.gridpoint_fixed, {"gridpoint"}, "1", between(0, 3),
+         "0 free, 1 held in x, 2 held in y, 3 held in both."},
+        {"/mesh/zone_gridpoint", &mesh.zone_gridpoint, {"zone"}, "1", index_of("gridpoint"),
+         "Corners of the zone, counter-clockwise."},
+        {"/mesh/zone_block", &mesh.zone_block, {"zone"}, "1", index_of("block"),
+         "Block the zone is part of."},
+        {"/mesh/contact_gridpoint", &mesh.contact_gridpoint, {"contact"}, "1", index_of("gridpoint"),
+         "Gridpoint on side a and on side b."},
+        {"/mesh/contact_edge", &mesh.contact_edge, {"contact"}, "1", index_of("edge"),
+         "Edge the contact lies on."},
+        {"/mesh/contact_normal", &mesh.contact_normal, {"contact"}, "1", any(),
+         "Unit normal {x, y}, from side a to side b."},
+        {"/mesh/contact_length", &mesh.contact_length, {"contact"}, "m", positive(),
+         "Length of edge that the contact stands for."},
+        {"/mesh/contact_centre", &mesh.contact_centre, {"contact"}, "m", any(),
+         "Where a traction that is linear along the edge has its mean over the contact {x, y}."},
+    };
+    // clang-format on
+}
+
+std::vector<Field> fields_of(History& history)
+{
+    // clang-format off
+    return {
+        {"/history/time", &history.time, {"time"}, "day", ascending(),
+         "Time since the start; two rows at a stage's time, before and after it."},
+        {"/history/event", &history.event, {"time"}, "1", any(),
+         "Stage that this row is the first after, or an empty text."},
+        {"/history/point", &history.point, {"point"}, "1", any(), "Names of the measuring points."},
+        {"/history/point_position", &history.point_position, {"point"}, "m", any(),
+         "Position of the measuring point {x, y}."},
+        {"/history/first_reading_row", &history.first_reading_row, {"point"}, "1", index_of("time"),
+         "Row of time from which the point's own readings count."},
+        {"/history/displacement", &history.displacement, {"time", "point"}, "m", any(),
+         "Displacement {x, y} since the in-situ equilibrium; the last one is held once the point is "
+         "removed."},
+        {"/history/present", &history.present, {"time", "point"}, "1", between(0, 1),
+         "1 while the point is there, 0 once it is removed."},
+    };
+    // clang-format on
+}
+
+std::vector<Field> fields_of(States& states)
+{
+    // clang-format off
+    return {
+        {"/states/time", &states.time, {"state"}, "day", ascending(), "Time since the start."},
+        {"/states/event", &states.event, {"state"}, "1", any(),
+         "Stage that this state is the first after, or an empty text."},
+        {"/states/displacement", &states.displacement, {"state", "gridpoint"}, "m", any(),
+         "Displacement {x, y} since the in-situ equilibrium."},
+        {"/states/stress", &states.stress, {"state", "zone"}, "Pa", any(),
+         "Stress {xx, yy, xy}, tension positive."},
+        {"/states/zone_present", &states.zone_present, {"state", "zone"}, "1", between(0, 1),
+         "1 while the zone is there, 0 once it is removed."},
+        {"/states/traction", &states.traction, {"state", "contact"}, "Pa", any(),
+         "Traction {normal, shear} that side b exerts on side a, tension positive."},
+        {"/states/jump", &states.jump, {"state", "contact"}, "m", any(),
+         "Displacement of side b minus that of side a {normal, shear}, opening positive."},
+        {"/states/contact_status", &states.contact_status, {"state", "contact"}, "1", between(0, 3),
+         "0 removed (a side has been excavated), 1 stuck, 2 slipping, 3 open."},
+    };
+    // clang-format on
+}
+
+std::vector<Field> fields_of(Equilibria& equilibria)
+{
+    // clang-format off
+    return {
+        {"/equilibria/time", &equilibria.time, {"equilibrium"}, "day", ascending(), "Time since the start."},
+        {"/equilibria/steps", &equilibria.steps, {"equilibrium"}, "1", at_least(0), "Steps of the solver."},
+        {"/equilibria/out_of_balance_ratio", &equilibria.out_of_balance_ratio, {"equilibrium"},
+         "1", at_least(0),
+         "Out-of-balance ratio at the end."},
+        {"/equilibria/contact_force_change", &equilibria.contact_force_change, {"equilibrium"},
+         "1", at_least(0),
+         "Change of contact forces over the last 100 steps, over the mean force on a gridpoint."},
+    };
+    // clang-format on
+}
+
+} // namespace
+
+std::vector<Field> fields_of(Provenance& provenance)
+{
+    // clang-format off
+    return {
+        {"/scene", &provenance.scene, {}, "1", any(), "The scene's text, as it was read."},
+        {"/provenance/program", &provenance.program, {"program"}, "1", any(),
+         "Programs that led to this file, in the order they ran; the last one wrote it."},
+        {"/provenance/version", &provenance.version, {"program"}, "1", any(), "Version of the program."},
+        {"/provenance/input_sha256", &provenance.input_sha256, {"program"}, "1", any(),
+         "SHA-256 of the file that the program read."},
+        {"/provenance/options", &provenance.options, {"program"}, "1", any(),
+         "Options given to the program that can change its result, or an empty text."},
+    };
+    // clang-format on
+}
+
+std::vector<Field> fields_of(Network& network)
+{
+    std::vector<Field> fields = fields_of(network.names);
+    append(fields, fields_of(network.joints));
+    append(fields, fields_of(network.blocks));
+    return fields;
+}
+
+std::vector<Field> fields_of(EquivalentJoints& joints)
+{
+    const std::vector<std::string> edge = {"edge"};
+    // clang-format off
+    return {
+        {"/equivalent/normal_stiffness", &joints.normal_stiffness, edge, "Pa/m", at_least(0),
+         "Normal stiffness of the equivalent joint."},
+        {"/equivalent/shear_stiffness", &joints.shear_stiffness, edge, "Pa/m", at_least(0),
+         "Shear stiffness."},
+        {"/equivalent/cohesion", &joints.cohesion, edge, "Pa", at_least(0), "Cohesion."},
+        {"/equivalent/friction_angle", &joints.friction_angle, edge, "rad", between(0, std::numbers::pi / 2),
+         "Friction angle."},
+        {"/equivalent/tensile_strength", &joints.tensile_strength, edge, "Pa", at_least(0),
+         "Tensile strength."},
+        {"/equivalent/normal_kelvin_stiffness", &joints.normal_kelvin_stiffness, edge, "Pa/m", at_least(0),
+         "Normal stiffness of the Kelvin element; 0 if the joint does not creep."},
+        {"/equivalent/shear_kelvin_stiffness", &joints.shear_kelvin_stiffness, edge, "Pa/m", at_least(0),
+         "Shear stiffness of the Kelvin element; 0 if the joint does not creep."},
+        {"/equivalent/normal_kelvin_viscosity", &joints.normal_kelvin_viscosity, edge, "Pa s/m", at_least(0),
+         "Normal viscosity of the Kelvin element."},
+        {"/equivalent/shear_kelvin_viscosity", &joints.shear_kelvin_viscosity, edge, "Pa s/m", at_least(0),
+         "Shear viscosity of the Kelvin element."},
+    };
+    // clang-format on
+}
+
+std::vector<Field> fields_of(Result& result)
+{
+    std::vector<Field> fields = fields_of(result.mesh);
+    append(fields, fields_of(result.history));
+    append(fields, fields_of(result.states));
+    append(fields, fields_of(result.equilibria));
+    return fields;
+}
+
+std::vector<Field> fields_of(Trace& trace)
+{
+    // clang-format off
+    return {
+        {"/trace/time", &trace.time, {"row"}, "day", ascending(), "Time since the start."},
+        {"/trace/solver_time", &trace.solver_time, {"row"}, "s", ascending(),
+         "Time of the solver, accumulated over all equilibria."},
+        {"/trace/displacement", &trace.displacement, {"row", "point"}, "m", any(),
+         "Displacement {x, y} of the measuring point, as in the history."},
+        {"/trace/gauge", &trace.gauge, {"gauge"}, "1", any(), "Names of the gauges."},
+        {"/trace/gauge_contact", &trace.gauge_contact, {"gauge"}, "1", index_of("contact"),
+         "Contact the gauge reads."},
+        {"/trace/traction", &trace.traction, {"row", "gauge"}, "Pa", any(),
+         "Traction {normal, shear} at the gauge, as in the states."},
+    };
+    // clang-format on
+}
+
+std::vector<Invariant> invariants_of(const Network& network)
+{
+    const Blocks& blocks = network.blocks;
+    const auto is = [&blocks](std::size_t edge, EdgeKind kind) {
+        return blocks.edge_kind[edge] == static_cast<Index>(kind);
+    };
+    return {
+        {"/edges/vertex", "the two vertices of an edge differ", "edge",
+         [&blocks](std::size_t edge) { return blocks.edge_vertex[edge][0] != blocks.edge_vertex[edge][1]; }},
+        {"/edges/block", "a boundary edge has a block on one side, any other edge on both", "edge",
+         [&blocks, is](std::size_t edge) {
+             const auto [left, right] = blocks.edge_block[edge];
+             return is(edge, EdgeKind::boundary) ? (left < 0) != (right < 0) : left >= 0 && right >= 0;
+         }},
+        {"/edges/joint", "a joint edge has a joint, any other edge none", "edge",
+         [&blocks, is](std::size_t edge) {
+             return (blocks.edge_joint[edge] >= 0) == is(edge, EdgeKind::joint);
+         }},
+    };
+}
+
+std::vector<Invariant> invariants_of(const Mesh& mesh)
+{
+    return {
+        {"/mesh/zone_gridpoint", "the corners of a zone run counter-clockwise around an area", "zone",
+         [&mesh](std::size_t zone) {
+             const auto [first, second, third] = mesh.zone_gridpoint[zone];
+             const Eigen::Vector2d to_second = mesh.gridpoint[second] - mesh.gridpoint[first];
+             const Eigen::Vector2d to_third = mesh.gridpoint[third] - mesh.gridpoint[first];
+             return to_second.x() * to_third.y() - to_second.y() * to_third.x() > 0;
+         }},
+        {"/mesh/contact_gridpoint", "the two gridpoints of a contact differ", "contact",
+         [&mesh](std::size_t contact) {
+             return mesh.contact_gridpoint[contact][0] != mesh.contact_gridpoint[contact][1];
+         }},
+        {"/mesh/contact_normal", "the normal of a contact has length 1", "contact",
+         [&mesh](std::size_t contact) { return std::abs(mesh.contact_normal[contact].norm() - 1) < 1e-9; }},
+    };
+}
+
+const std::vector<Described>& dimensions()
+{
+    static const std::vector<Described> all = {
+        {"program", "a program of the chain that has run"},
+        {"rock", "a rock of the scene"},
+        {"joint_material", "a joint material of the scene"},
+        {"joint_set", "a joint set or single joint of the scene"},
+        {"stage", "an excavation stage of the scene"},
+        {"joint", "a joint: a straight line of traces and rock bridges"},
+        {"trace", "a joint trace: an open piece of a joint"},
+        {"vertex", "a point where edges meet"},
+        {"edge", "a straight piece of the cut between blocks"},
+        {"block", "a face of the cut section"},
+        {"ring", "a closed outline of a block, outer or hole"},
+        {"corner", "a corner of a ring"},
+        {"gridpoint", "a corner of zones, split along joints"},
+        {"zone", "a constant-strain triangle"},
+        {"contact", "a pair of gridpoints that face each other across a joint"},
+        {"time", "a recorded time of the history"},
+        {"point", "a measuring point of the scene"},
+        {"state", "a recorded state of the whole section"},
+        {"equilibrium", "an equilibrium that was found"},
+        {"row", "a recorded step of the solver"},
+        {"gauge", "a gauge of the scene"},
+    };
+    return all;
+}
+
+const std::vector<Described>& root_attributes()
+{
+    static const std::vector<Described> all = {
+        {"filetype", "text: `jointcreep network`, `jointcreep joints` or `jointcreep result`"},
+        {"format_version",
+         "two int32 {major, minor}; readers refuse a higher major and accept a higher minor"},
+        {"program", "text: the program that wrote the file"},
+        {"program_version", "text: its version"},
+        {"seed", "uint64: seed of the joint sets"},
+        {"realization", "int32: number of the realization drawn with that seed"},
+        {"complete", "int32: 1, written last"},
+    };
+    return all;
+}
+
+std::string file_type(FileKind kind)
+{
+    switch (kind) {
+    case FileKind::network:
+        return "jointcreep network";
+    case FileKind::joints:
+        return "jointcreep joints";
+    case FileKind::result:
+        return "jointcreep result";
+    }
+    return {};
+}
+
+std::string maker(FileKind kind)
+{
+    switch (kind) {
+    case FileKind::network:
+        return "jointgen";
+    case FileKind::joints:
+        return "strength-averaging";
+    case FileKind::result:
+        return "demsolve";
+    }
+    return {};
+}
+
+std::string wanted(const Limits& limits)
+{
+    if (!limits.index_of.empty())
+        return "index of " + limits.index_of + (limits.or_none ? " or -1" : "");
+    if (!limits.rows_of.empty())
+        return "0, not decreasing, up to the number of " + limits.rows_of + "s";
+    std::string text = "finite";
+    if (limits.positive)
+        text = "> 0";
+    else if (std::isfinite(limits.least) && std::isfinite(limits.most))
+        text = shown(limits.least) + " to " + shown(limits.most);
+    else if (std::isfinite(limits.least))
+        text = ">= " + shown(limits.least);
+    return limits.ascending ? text + ", not decreasing" : text;
+}
+
+namespace
+{
+
+template <class Number, int rows>
+std::span<double> spread(std::vector<Eigen::Matrix<Number, rows, 1>>& values)
+{
+    static_assert(sizeof values[0] == rows * sizeof(Number));
+    return {reinterpret_cast<double*>(values.data()), rows * values.size()};
+}
+
+template <std::size_t size>
+std::span<Index> spread(std::vector<std::array<Index, size>>& values)
+{
+    static_assert(sizeof values[0] == size * sizeof(Index));
+    return {reinterpret_cast<Index*>(values.data()), size * values.size()};
+}
+
+template <class Value>
+std::span<Value> spread(std::vector<Value>& values)
+{
+    return values;
+}
+
+template <class Value>
+std::span<Value> spread(Value& value)
+{
+    return {&value, 1};
+}
+
+template <class Value>
+void resize_array(std::vector<Value>& values, std::size_t count)
+{
+    values.resize(count);
+}
+
+template <class Value>
+void resize_array(Value&, std::size_t)
+{
+    // a single value
+}
+
+template <class Value>
+inline constexpr std::size_t components_in = 1;
+template <>
+inline constexpr std::size_t components_in<std::vector<Eigen::Vector2d>> = 2;
+template <>
+inline constexpr std::size_t components_in<std::vector<Eigen::Vector3d>> = 3;
+template <std::size_t size>
+inline constexpr std::size_t components_in<std::vector<std::array<Index, size>>> = size;
+
+} // namespace
+
+Flat flat(const Values& values)
+{
+    return std::visit([](auto* place) -> Flat { return spread(*place); }, values);
+}
+
+std::size_t components(const Values& values)
+{
+    return std::visit([](auto* place) { return components_in<std::remove_reference_t<decltype(*place)>>; },
+                      values);
+}
+
+std::size_t rows(const Values& values)
+{
+    return std::visit([](auto span) { return span.size(); }, flat(values)) / components(values);
+}
+
+void resize(const Values& values, std::size_t count)
+{
+    std::visit([count](auto* place) { resize_array(*place, count); }, values);
+}
+
+} // namespace jointcreep::schema

@@ -1,0 +1,33 @@
+// One constrained triangulation of the whole section. Inside libs/zoning only.
+
+#pragma once
+
+#include "model/network.hpp"
+
+#include <array>
+#include <vector>
+
+namespace jointcreep::zoning
+{
+
+// A piece of a block edge between two neighbouring vertices of the triangulation.
+struct Side {
+    Index edge;                    // into Blocks
+    std::array<Index, 2> vertex;   // the way the edge runs
+    std::array<Index, 2> triangle; // on its {left, right}; -1 outside the section
+};
+
+struct Triangulation {
+    std::vector<Eigen::Vector2d> vertex;
+    std::vector<std::array<Index, 3>> triangle; // counter-clockwise
+    std::vector<Index> block;                   // of each triangle
+    std::vector<Side> side;                     // all pieces of all block edges
+    std::vector<std::array<Index, 3>>
+        neighbour; // across the side opposite each corner; -1 across block edges
+};
+
+// Delaunay refinement of all blocks at once, with the block edges kept: no side longer than `size` [m], no
+// angle below about 20 degrees except where the blocks' own corners are sharper.
+Triangulation triangulate(const Blocks& blocks, double size);
+
+} // namespace jointcreep::zoning

@@ -1,0 +1,29 @@
+// Divides blocks into zones and splits the gridpoints that a joint runs through.
+
+#pragma once
+
+#include "model/network.hpp"
+#include "model/result.hpp"
+#include "model/scene.hpp"
+
+namespace jointcreep::zoning
+{
+
+// Zones, gridpoints and contacts of the section.
+//
+// All blocks are triangulated together, so the zones on the two sides of any edge match. Then every gridpoint
+// on a joint is split into one for each piece of rock around it; blocks on a welded edge share theirs. A
+// contact joins two gridpoints that were one, carrying half of each piece of the block edge beside them. A
+// boundary edge that rests on a joint gets contacts to gridpoints of the fixed ground, which no zone uses and
+// which are held.
+Mesh zone(const Scene& scene, const Blocks& blocks);
+
+// What decides cost and quality of a mesh.
+struct MeshQuality {
+    double shortest_side;     // [m]
+    double smallest_altitude; // of a zone: the explicit step with real masses goes with it [m]
+    double smallest_angle;    // [rad]
+};
+MeshQuality quality_of(const Mesh& mesh);
+
+} // namespace jointcreep::zoning

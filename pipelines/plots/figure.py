@@ -1,0 +1,136 @@
+"""What the plots share: one look, the way files are opened, and the scene inside them.
+
+The look is for print: widths of one or two columns, 8-point text, and sets, stages and points told apart by line
+style, marker or shade, so that nothing is lost in grey.
+"""
+
+import argparse
+import sys
+import tomllib
+from pathlib import Path
+
+import h5py
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.patheffects
+import matplotlib.pyplot as plt
+import numpy as np
+
+ONE_COLUMN = 3.35  # [in]
+TWO_COLUMNS = 6.9  # [in]
+
+# Different shades in grey too; where shades are not enough, markers and line styles repeat the distinction.
+COLORS = ["#1b2a5c", "#b5403a", "#2f9e77", "#d9a22b", "#6fb1e0", "#8a8a8a"]
+LINES = ["-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (1, 3))]
+MARKERS = ["o", "s", "^", "D", "v", "P"]
+HALO = [matplotlib.patheffects.withStroke(linewidth=2, foreground="white")]
+
+plt.rcParams.update({
+    "font.size": 8,
+    "axes.labelsize": 8,
+    "axes.titlesize": 8,
+    "legend.fontsize": 7,
+    "xtick.labelsize": 7,
+    "ytick.labelsize": 7,
+    "axes.linewidth": 0.6,
+    "lines.linewidth": 1.0,
+    "lines.markersize": 3.5,
+    "legend.frameon": False,
+    "figure.constrained_layout.use": True,
+    "savefig.dpi": 300,
+})
+
+
+class NotWanted(Exception):
+    """The file, or an option, is not what the plot needs."""
+
+
+def arguments_of(description, *options):
+    """The command line FILE.h5 -o NAME.png and `options`, each a pair (names, keywords) for argparse."""
+    parser = argparse.ArgumentParser(description=description)
+    parser.add_argument("file", metavar="FILE.h5")
+    parser.add_argument("-o", "--output", metavar="NAME.png", required=True, help="or .pdf, .svg")
+    for names, keywords in options:
+        parser.add_argument(*names, **keywords)
+    return parser.parse_args()
+
+
+def run(draw, arguments):
+    """Opens the file, draws, saves. Whatever is not as wanted ends in one line on stderr and exit code 2."""
+    program = Path(sys.argv[0]).name
+    try:
+        with h5py.File(arguments.file, "r") as file:
+            if not file_type(file).startswith("jointcreep"):
+                raise NotWanted("this is not a file of jointcreep")
+            figure = draw(file, arguments)
+    except (OSError, NotWanted) as error:
+        print(f"{program}: {arguments.file}: {error}", file=sys.stderr)
+        sys.exit(2)
+    try:
+        figure.savefig(arguments.output)
+    except (OSError, ValueError) as error:
+        print(f"{program}: {arguments.output}: {error}", file=sys.stderr)
+        sys.exit(4)
+
+
+def text_of(value):
+    return value.decode() if isinstance(value, bytes) else str(value)
+
+
+def file_type(file):
+    """"jointcreep network", "jointcreep joints" or "jointcreep result"."""
+    return text_of(file.attrs.get("filetype", ""))
+
+
+def array(file, path):
+    """A dataset as an array of numbers."""
+    if path not in file:
+        raise NotWanted(f"there is no {path} in this {file_type(file)} file")
+    return file[path][()]
+
+
+def texts(file, path):
+    """A dataset as a list of str."""
+    return [text_of(text) for text in np.ravel(array(file, path))]
+
+
+def scene_of(file):
+    """The scene that the file was made from, as tomllib reads it."""
+    return tomllib.loads(texts(file, "/scene")[0])
+
+
+def name_index(names, wanted, what):
+    """Row of a name, the first one if none is wanted."""
+    if not names:
+        raise NotWanted(f"there is no {what} in this file")
+    if wanted is None:
+        return 0
+    if wanted not in names:
+        raise NotWanted(f"there is no {what} '{wanted}'; there are: {', '.join(names)}")
+    return names.index(wanted)
+
+
+def section_axes(outline):
+    """A figure for a section, with equal scales."""
+    low, high = np.min(outline, axis=0), np.max(outline, axis=0)
+    width, height = high - low
+    scale = min((TWO_COLUMNS - 0.8) / width, 5.5 / height)
+    figure, axes = plt.subplots(figsize=(max(ONE_COLUMN, width * scale + 0.8), height * scale + 0.5))
+    margin = 0.05 * max(width, height)
+    axes.set_xlim(low[0] - margin, high[0] + margin)
+    axes.set_ylim(low[1] - margin, high[1] + margin)
+    axes.set_aspect("equal")
+    axes.set_xlabel("x (m)")
+    axes.set_ylabel("y (m)")
+    return figure, axes
+
+
+def legend_below(axes, entries):
+    """A legend under the axes; the figure grows by its height."""
+    width, height = axes.figure.get_size_inches()
+    columns = max(1, min(len(entries), int(width / 1.6)))
+    rows = -(-len(entries) // columns)
+    axes.figure.set_size_inches(width, height + 0.1 + 0.16 * rows)
+    axes.legend(handles=entries, loc="upper center", bbox_to_anchor=(0.5, -0.45 / (height - 0.5)), ncol=columns,
+                borderaxespad=0)

@@ -1,0 +1,129 @@
+#!/usr/bin/python3
+"""The section: joints with their rock bridges, stages, boundary conditions and measuring points."""
+
+import matplotlib.lines
+import matplotlib.patches
+import matplotlib.path
+import numpy as np
+from matplotlib.collections import LineCollection
+
+import figure
+
+
+def draw_joints(file, axes, inside):
+    """Joint lines thin and dashed, and over them, solid, what of them is joint. Returns legend entries."""
+    sets = figure.texts(file, "/names/joint_set")
+    joint_set = figure.array(file, "/joints/set")
+    lines = np.stack([figure.array(file, "/joints/from"), figure.array(file, "/joints/to")], axis=1)
+    traces = np.stack([figure.array(file, "/traces/from"), figure.array(file, "/traces/to")], axis=1)
+    trace_joint = figure.array(file, "/traces/joint")
+
+    joint_length = np.linalg.norm(lines[:, 1] - lines[:, 0], axis=1)
+    trace_length = np.linalg.norm(traces[:, 1] - traces[:, 0], axis=1)
+    open_length = np.bincount(trace_joint, trace_length, len(lines))
+    has_bridges = open_length < joint_length * (1 - 1e-9)
+
+    width = 1.1 if len(lines) < 200 else 0.6
+    entries = []
+    if np.any(has_bridges):
+        bridges = LineCollection(lines[has_bridges], colors="0.55", linewidths=0.4, linestyles=(0, (4, 3)))
+        bridges.set_clip_path(inside)
+        axes.add_collection(bridges)
+        entries.append(matplotlib.lines.Line2D([], [], color="0.55", lw=0.5, ls=(0, (4, 3)), label="rock bridge"))
+    for i, name in enumerate(sets):
+        of_set = joint_set[trace_joint] == i
+        if not np.any(of_set):
+            continue
+        style = {"color": figure.COLORS[i % 6], "linewidth": width * (1 + 0.5 * (i // 6))}
+        collection = LineCollection(traces[of_set], capstyle="butt", zorder=2, **style)
+        collection.set_clip_path(inside)
+        axes.add_collection(collection)
+        entries.append(matplotlib.lines.Line2D([], [], **style, label=name))
+    if len(entries) > 8:  # many single joints: one entry for all
+        entries = entries[:1] + [matplotlib.lines.Line2D([], [], color=figure.COLORS[0], label="joints")]
+    return entries
+
+
+def number_place(corners, points, size):
+    """Where a stage's number goes: in the middle, or aside of it where a measuring point is there already."""
+    corners = np.array(corners, float)
+    middle = corners.mean(axis=0)
+    for place in [middle, *(middle + corners) / 2]:
+        if all(np.linalg.norm(place - point) > 0.06 * size for point in points):
+            return place
+    return middle
+
+
+def draw_stages(scene, outline, axes, inside):
+    entries = []
+    points = [np.array(point["at_m"], float) for point in scene.get("point", [])]
+    size = np.max(np.ptp(outline, axis=0))
+    for number, stage in enumerate(scene.get("stage", []), 1):
+        for corners in stage["remove_m"]:
+            patch = matplotlib.patches.Polygon(corners, facecolor=str(0.8 + 0.13 * (number % 2)), edgecolor="0.25",
+                                               linewidth=0.8, linestyle=(0, (6, 2, 1, 2)), zorder=0.5)
+            axes.add_patch(patch)
+            patch.set_clip_path(inside)
+            axes.annotate(str(number), number_place(corners, points, size), ha="center", va="center", zorder=4,
+                          bbox={"boxstyle": "circle,pad=0.2", "facecolor": "white", "linewidth": 0.5})
+        when = f"day {stage['date']}" if isinstance(stage["date"], (int, float)) else str(stage["date"])
+        entries.append(matplotlib.lines.Line2D([], [], linestyle="none", marker=f"${number}$", color="k",
+                                               markeredgewidth=0, markersize=5, label=f"{stage['name']}, {when}"))
+    return entries
+
+
+def draw_boundaries(scene, outline, axes):
+    """Signs along the outside of the outline: triangles where it is fixed, circles where it can slide, squares
+    where it rests on a joint."""
+    size = np.max(np.ptp(outline, axis=0))
+    inside = matplotlib.path.Path(outline)
+    entries = {}
+    for boundary in scene.get("boundary", []):
+        first, second = np.array(boundary["from_m"], float), np.array(boundary["to_m"], float)
+        along = second - first
+        length = np.linalg.norm(along)
+        outward = np.array([along[1], -along[0]]) / length
+        if inside.contains_point((first + second) / 2 + 1e-6 * size * outward):
+            outward = -outward
+        if "joint" in boundary:
+            marker, label = "s", f"rests on '{boundary['joint']}'"
+        elif boundary["fix"] == "xy":
+            marker, label = "^", "fixed"
+        else:
+            marker, label = "o", "fixed across, free along"
+        count = max(2, round(14 * length / size))
+        places = first + np.outer((np.arange(count) + 0.5) / count, along) + 0.018 * size * outward
+        axes.plot(*places.T, linestyle="none", marker=marker, markersize=3.5, markerfacecolor="white",
+                  markeredgecolor="k", markeredgewidth=0.6)
+        entries[marker, label] = matplotlib.lines.Line2D([], [], linestyle="none", marker=marker,
+                                                         markerfacecolor="white", markeredgecolor="k", label=label)
+    return list(entries.values())
+
+
+def draw_points(scene, axes):
+    places = {point["name"]: point["at_m"] for point in scene.get("point", [])}
+    if not places:
+        return []
+    for name, place in places.items():
+        axes.plot(*place, marker="o", color="k", markersize=3.5, zorder=5, path_effects=figure.HALO)
+        axes.annotate(name, place, xytext=(4, 3), textcoords="offset points", zorder=5, path_effects=figure.HALO)
+    return [matplotlib.lines.Line2D([], [], linestyle="none", marker="o", color="k", label="measuring point")]
+
+
+def draw(file, _):
+    scene = figure.scene_of(file)
+    outline = np.array(scene["section"]["outline_m"], float)
+    plot, axes = figure.section_axes(outline)
+    inside = matplotlib.patches.Polygon(outline, facecolor="none", edgecolor="k", linewidth=1.0, zorder=3)
+    axes.add_patch(inside)
+
+    entries = draw_joints(file, axes, inside)
+    entries += draw_stages(scene, outline, axes, inside)
+    entries += draw_boundaries(scene, outline, axes)
+    entries += draw_points(scene, axes)
+    figure.legend_below(axes, entries)
+    return plot
+
+
+if __name__ == "__main__":
+    figure.run(draw, figure.arguments_of(__doc__))

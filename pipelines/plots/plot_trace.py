@@ -1,0 +1,55 @@
+#!/usr/bin/python3
+"""The solver's own course: displacement of a point and normal stress at a gauge against accumulated solver time.
+
+Needs a result file whose solver was asked for a trace. Every equilibrium (in situ, stage, creep step) is one piece
+of solver time; the upper axis says which day it belongs to.
+"""
+
+import numpy as np
+
+import figure
+
+
+def draw(file, arguments):
+    if "/trace" not in file:
+        raise figure.NotWanted("there is no trace in this file; demsolve writes one on request")
+    day = figure.array(file, "/trace/time")
+    solver_time = figure.array(file, "/trace/solver_time")
+    points, gauges = figure.texts(file, "/history/point"), figure.texts(file, "/trace/gauge")
+    point = figure.name_index(points, arguments.point, "point")
+    gauge = figure.name_index(gauges, arguments.gauge, "gauge")
+    shown = (day >= arguments.days[0]) & (day <= arguments.days[1])
+    if not np.any(shown):
+        raise figure.NotWanted(f"the trace has no row from day {arguments.days[0]} to {arguments.days[1]}")
+    rise = 1e3 * figure.array(file, "/trace/displacement")[shown, point, 1]
+    stress = -1e-6 * figure.array(file, "/trace/traction")[shown, gauge, 0]
+    day, solver_time = day[shown], solver_time[shown]
+
+    plot, (above, below) = figure.plt.subplots(2, 1, sharex=True, figsize=(figure.TWO_COLUMNS * 0.8, 4.2))
+    above.plot(solver_time, rise, color="k", linewidth=0.8)
+    above.set_ylabel(f"vertical displacement\nof point {points[point]}, upward (mm)")
+    below.plot(solver_time, stress, color="k", linewidth=0.8)
+    below.set_ylabel(f"normal stress at {gauges[gauge]},\ncompressive (MPa)")
+    below.set_xlabel("accumulated solver time (s)")
+    for axes in (above, below):
+        axes.margins(x=0.01)
+
+    days, first = np.unique(day, return_index=True)
+    every = max(1, -(-len(days) // 12))
+    for row in first:
+        for axes in (above, below):
+            axes.axvline(solver_time[row], color="0.85", linewidth=0.5, zorder=0)
+    top = above.secondary_xaxis("top")
+    top.set_xticks(solver_time[first[::every]], [f"{d:g}" for d in days[::every]])
+    top.set_xlabel("day")
+    return plot
+
+
+if __name__ == "__main__":
+    figure.run(draw, figure.arguments_of(
+        __doc__,
+        (["--point"], {"help": "default: the first"}),
+        (["--gauge"], {"help": "default: the first"}),
+        (["--days"], {"nargs": 2, "type": float, "default": [-np.inf, np.inf], "metavar": ("FROM", "TO"),
+                      "help": "default: all"}),
+    ))

@@ -1,0 +1,29 @@
+#!/bin/sh
+# Installs what jointcreep is built and tested with (Debian 12 packages), and builds it into build/release.
+set -eu
+cd "$(dirname "$0")/.."
+
+packages="
+  g++ cmake ninja-build make git ca-certificates pkg-config
+  libeigen3-dev libcgal-dev libboost-dev libboost-program-options-dev libhdf5-dev libssl-dev
+  libtomlplusplus-dev librandom123-dev
+  googletest libgtest-dev librapidcheck-dev
+  python3 python3-h5py python3-matplotlib python3-numpy"
+
+missing=""
+for package in $packages; do
+  case "$(dpkg-query -W -f '${Status}' "$package" 2>/dev/null)" in
+    *" installed") ;;
+    *) missing="$missing $package" ;;
+  esac
+done
+if [ -n "$missing" ]; then
+  as_root=""
+  [ "$(id -u)" = 0 ] || as_root="sudo"
+  $as_root apt-get update
+  # shellcheck disable=SC2086  # a list of words is wanted
+  $as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends $missing
+fi
+
+cmake --preset release
+cmake --build --preset release

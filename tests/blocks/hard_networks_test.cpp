@@ -1,0 +1,119 @@
+// Networks that break cutters: near-parallel joints, many joints through one point, joints on the boundary
+// and on each other, gaps of a nanometre, slanting outlines. Nothing crashes, no area is lost, no edge is
+// shorter than the limit but between corners of the outline itself.
+
+#include "section.hpp"
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <random>
+
+using namespace jointcreep;
+using namespace jointcreep::test;
+using Eigen::Vector2d;
+
+namespace
+{
+
+const Polygon slope = {{0, 0}, {100, 0}, {100, 37}, {71.3, 39.1}, {52.7, 80.9}, {0, 83.3}};
+
+void expect_sound(const Scene& scene, const Joints& joints, const std::string& what)
+{
+    const Blocks blocks = blocks::cut(scene, joints);
+    EXPECT_EQ(faults(scene, blocks), "") << what;
+    EXPECT_GE(blocks.report.shortest_edge, scene.cutting.shortest_edge * (1 - 1e-9)) << what;
+}
+
+} // namespace
+
+TEST(hard_networks, near_parallel_joints)
+{
+    const Scene scene = section(slope, 0.05);
+    for (const double angle : {1e-1, 1e-3, 1e-6, 1e-9, 1e-12}) {
+        Joints joints;
+        for (int i = 0; i < 20; ++i)
+            add_joint(joints, {-5, 20 + 0.01 * i}, {105, 20 + 0.01 * i + 110 * angle * i});
+        expect_sound(scene, joints, "angle " + std::to_string(angle));
+    }
+}
+
+TEST(hard_networks, fifty_joints_through_one_point)
+{
+    const Scene scene = section(slope, 0.05);
+    Joints joints;
+    for (int i = 0; i < 50; ++i) {
+        const double a = std::numbers::pi * i / 50;
+        const Vector2d d(std::cos(a), std::sin(a));
+        add_joint(joints, Vector2d(30.3, 40.4) - 200 * d, Vector2d(30.3, 40.4) + 200 * d);
+    }
+    expect_sound(scene, joints, "star");
+}
+
+TEST(hard_networks, joints_on_the_outline_and_on_each_other)
+{
+    const Scene scene = section(slope, 0.05);
+    Joints joints;
+    for (std::size_t i = 0; i < slope.size(); ++i)
+        add_joint(joints, slope[i], slope[(i + 1) % slope.size()]);
+    add_joint(joints, {52.7, 80.9}, {20, 0});
+    add_joint(joints, {52.7, 80.9}, {20, 0});
+    add_joint(joints, (Vector2d(52.7, 80.9) + Vector2d(20, 0)) / 2, {20, 0});
+    // From the middle of the slanting face, which no double lies on exactly.
+    add_joint(joints, (slope[3] + slope[4]) / 2, {0, 11});
+    expect_sound(scene, joints, "outline");
+    EXPECT_EQ(blocks::cut(scene, joints).block_area.size(), 4u);
+}
+
+TEST(hard_networks, gaps_of_a_nanometre)
+{
+    const Scene scene = section(slope, 0.05);
+    Joints joints;
+    for (int i = 0; i < 10; ++i) {
+        add_joint(joints, {10.0 + i, 20}, {10.0 + i, 60 - 1e-9 * i});
+        add_joint(joints, {5, 60 + 1e-9 * i}, {30, 60});
+        add_joint(joints, {5, 20 - 1e-9}, {30, 20});
+    }
+    expect_sound(scene, joints, "gaps");
+}
+
+RC_GTEST_PROP(hard_networks, random_lines_of_all_kinds, ())
+{
+    const Scene scene = section(slope, *rc::gen::element(0.02, 0.1, 0.5));
+    const int n = *rc::gen::inRange(1, 60);
+    std::mt19937 random(*rc::gen::arbitrary<unsigned>());
+    std::uniform_real_distribution<double> x(-10, 110), nudge(-1e-3, 1e-3);
+    Joints joints;
+    for (int i = 0; i < n; ++i) {
+        // Places on a coarse lattice, so that joints meet, overlap and run along the outline, often by a
+        // hair.
+        const auto place = [&] {
+            Vector2d p(std::round(x(random) / 5) * 5, std::round(x(random) / 5) * 5);
+            if (random() % 2 == 0)
+                p += Vector2d(nudge(random), nudge(random));
+            return random() % 8 == 0 ? slope[random() % slope.size()] : p;
+        };
+        const Vector2d a = place(), b = place();
+        if ((a - b).norm() > 1)
+            add_joint(joints, a, b);
+    }
+    const Blocks blocks = blocks::cut(scene, joints);
+    RC_ASSERT(faults(scene, blocks) == "");
+    RC_ASSERT(blocks.report.shortest_edge >= scene.cutting.shortest_edge * (1 - 1e-9));
+}
+
+TEST(hard_networks, the_order_of_joints_does_not_change_the_blocks)
+{
+    const Scene scene = section(slope, 0.1);
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> x(-10, 110);
+    Joints joints;
+    for (int i = 0; i < 40; ++i)
+        add_joint(joints, {x(random), -10}, {x(random), 110});
+    Joints reversed;
+    for (int i = 39; i >= 0; --i)
+        add_joint(reversed, joints.from[i], joints.to[i]);
+    const Blocks a = blocks::cut(scene, joints), b = blocks::cut(scene, reversed);
+    EXPECT_EQ(a.vertex, b.vertex);
+    EXPECT_EQ(a.block_area, b.block_area);
+}

@@ -1,0 +1,115 @@
+// The tables hold the records' numbers, and names survive their quotes.
+
+#include "exchange/csv.hpp"
+
+#include "section.hpp"
+
+#include "model/error.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+namespace jointcreep
+{
+namespace
+{
+
+using Row = std::vector<std::string>;
+
+// Rows and fields by RFC 4180.
+std::vector<Row> rows_of(const std::string& table)
+{
+    std::vector<Row> rows(1, Row(1));
+    bool quoted = false;
+    for (std::size_t i = 0; i < table.size(); ++i) {
+        const char c = table[i];
+        if (quoted && c == '"' && i + 1 < table.size() && table[i + 1] == '"')
+            rows.back().back() += table[++i];
+        else if (c == '"')
+            quoted = !quoted;
+        else if (!quoted && c == ',')
+            rows.back().emplace_back();
+        else if (!quoted && c == '\n')
+            rows.emplace_back(1);
+        else
+            rows.back().back() += c;
+    }
+    rows.pop_back();
+    for (const Row& row : rows)
+        EXPECT_EQ(row.size(), rows.front().size());
+    return rows;
+}
+
+double number(const std::string& text)
+{
+    return std::strtod(text.c_str(), nullptr);
+}
+
+TEST(joints_csv, has_a_row_a_trace)
+{
+    const auto rows = rows_of(joints_csv(small_network()));
+    ASSERT_EQ(rows.size(), 3u);
+    EXPECT_EQ(rows[0], (Row{"set", "number", "x1_m", "y1_m", "x2_m", "y2_m"}));
+    EXPECT_EQ(rows[1], (Row{"the \"other\" set", "7", "0", "5", "4", "5"}));
+    EXPECT_EQ(number(rows[2][4]), 1.0 / 3.0 + 9);
+}
+
+TEST(blocks_csv, has_area_and_centroid_with_holes_taken_out)
+{
+    Network network = small_network();
+    for (const double offset : {0.0, 1e7}) { // as accurate in a national grid
+        for (Eigen::Vector2d& vertex : network.blocks.vertex)
+            vertex.x() += offset;
+        const auto rows = rows_of(blocks_csv(network));
+        ASSERT_EQ(rows.size(), 4u);
+        EXPECT_EQ(rows[1], (Row{"0", "upper", "dig", "50", shown(5 + offset), "7.5", "4", "0"}));
+        EXPECT_EQ(rows[2][1], "lower");
+        EXPECT_EQ(rows[2][2], "");
+        EXPECT_NEAR(number(rows[2][4]), 5 + offset, 1e-8);
+        EXPECT_NEAR(number(rows[2][5]), (50 * 2.5 - 4 * 2) / 46, 1e-12);
+        EXPECT_EQ(rows[2][6], "8");
+        EXPECT_EQ(rows[2][7], "1");
+        EXPECT_EQ(rows[3][3], "4");
+    }
+}
+
+TEST(edges_csv, names_sides_joint_and_kind)
+{
+    const auto rows = rows_of(edges_csv(small_network(), nullptr));
+    ASSERT_EQ(rows.size(), 12u);
+    EXPECT_EQ(rows[1], (Row{"0", "0", "0", "10", "0", "1", "", "boundary", "", "", ""}));
+    EXPECT_EQ(rows[3], (Row{"2", "0", "5", "10", "5", "0", "1", "joint", "the \"other\" set", "7", "0.7"}));
+    EXPECT_EQ(rows[8][7], "welded");
+}
+
+TEST(edges_csv, adds_the_equivalent_joints)
+{
+    const EquivalentJoints equivalent = small_equivalent();
+    const auto rows = rows_of(edges_csv(small_network(), &equivalent));
+    ASSERT_EQ(rows[0].size(), 20u);
+    EXPECT_EQ(rows[0][11], "normal_stiffness_Pa_per_m");
+    EXPECT_EQ(number(rows[3][11]), 1e9 / 3);
+    EXPECT_EQ(rows[0][14], "friction_angle_rad");
+    EXPECT_EQ(number(rows[3][14]), 0.6);
+    EXPECT_EQ(rows[0][19], "shear_kelvin_viscosity_Pa_s_per_m");
+    EXPECT_EQ(number(rows[3][19]), 8e13);
+    EXPECT_EQ(number(rows[2][11]), 0);
+}
+
+TEST(histories_csv, has_a_row_a_time_and_three_columns_a_point)
+{
+    const auto rows = rows_of(histories_csv(small_result().history));
+    ASSERT_EQ(rows.size(), 4u);
+    EXPECT_EQ(rows[0], (Row{"time_day", "event", "A_x_m", "A_y_m", "A_present", "B, deep_x_m", "B, deep_y_m",
+                            "B, deep_present"}));
+    EXPECT_EQ(rows[1], (Row{"0", "", "0", "0", "1", "0", "0", "1"}));
+    EXPECT_EQ(rows[3][1], "dig");
+    EXPECT_EQ(rows[3][4], "0");
+    EXPECT_EQ(number(rows[3][5]), 0.1 + 0.2);
+    EXPECT_EQ(number(rows[3][6]), -1.0 / 3.0);
+    EXPECT_EQ(rows[3][7], "1");
+}
+
+} // namespace
+} // namespace jointcreep

@@ -1,0 +1,205 @@
+// What a reader of the grids gets back is what was in the records.
+
+#include "exchange/vtu.hpp"
+
+#include "section.hpp"
+
+#include "model/error.hpp"
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <cstdlib>
+#include <sstream>
+
+namespace jointcreep
+{
+namespace
+{
+
+// The numbers of a data array, as any reader of text would take them.
+std::vector<double> array_of(const std::string& grid, const std::string& name)
+{
+    const std::size_t found = grid.find(" Name=\"" + name + "\"");
+    if (found == std::string::npos)
+        throw std::runtime_error("there is no array " + name);
+    const std::size_t start = grid.find('>', found) + 1;
+    std::istringstream words(grid.substr(start, grid.find('<', start) - start));
+    std::vector<double> values;
+    for (std::string word; words >> word;)
+        values.push_back(std::strtod(word.c_str(), nullptr));
+    return values;
+}
+
+std::vector<std::string> names_of(const std::string& grid, const std::string& name)
+{
+    std::vector<std::string> names(1);
+    for (const double byte : array_of(grid, name)) {
+        if (byte == 0)
+            names.emplace_back();
+        else
+            names.back() += static_cast<char>(byte);
+    }
+    names.pop_back();
+    return names;
+}
+
+std::string attribute(const std::string& grid, const std::string& name)
+{
+    const std::size_t start = grid.find(name + "=\"") + name.size() + 2;
+    return grid.substr(start, grid.find('"', start) - start);
+}
+
+using Numbers = std::vector<double>;
+
+TEST(blocks_vtu, has_one_polygon_a_block_with_its_area)
+{
+    const Network network = small_network();
+    const std::string grid = blocks_vtu(network);
+    EXPECT_EQ(attribute(grid, "NumberOfPoints"), "10");
+    EXPECT_EQ(attribute(grid, "NumberOfCells"), "3");
+    EXPECT_EQ(array_of(grid, "types"), Numbers(3, 7));
+
+    const Numbers position = array_of(grid, "position"), offsets = array_of(grid, "offsets"),
+                  connectivity = array_of(grid, "connectivity");
+    ASSERT_EQ(position.size(), 30u);
+    ASSERT_EQ(offsets.size(), 3u);
+    ASSERT_EQ(offsets.back(), static_cast<double>(connectivity.size()));
+    std::size_t first = 0;
+    for (std::size_t block = 0; block < 3; ++block) { // the hole's area must be missing from block 1
+        const auto end = static_cast<std::size_t>(offsets[block]);
+        double twice_area = 0;
+        for (std::size_t i = first; i < end; ++i) {
+            const auto p = 3 * static_cast<std::size_t>(connectivity[i]);
+            const auto q = 3 * static_cast<std::size_t>(connectivity[i + 1 < end ? i + 1 : first]);
+            twice_area += position[p] * position[q + 1] - position[p + 1] * position[q];
+        }
+        EXPECT_EQ(twice_area / 2, network.blocks.block_area[block]) << "block " << block;
+        first = end;
+    }
+}
+
+TEST(blocks_vtu, joins_a_hole_by_a_bridge_between_nearest_vertices)
+{
+    const Numbers connectivity = array_of(blocks_vtu(small_network()), "connectivity");
+    // Block 1: from corner 0 over the bridge to 6, round the hole, and back.
+    EXPECT_EQ(Numbers(connectivity.begin() + 4, connectivity.begin() + 14),
+              (Numbers{0, 6, 9, 8, 7, 6, 0, 1, 2, 3}));
+}
+
+TEST(blocks_vtu, says_rock_and_stage_by_codes_with_names)
+{
+    Network network = small_network();
+    network.names.stage = {"Fu\u00dfstrecke <1> & \"2\""}; // must neither break the XML nor change
+    const std::string grid = blocks_vtu(network);
+    EXPECT_EQ(array_of(grid, "rock"), (Numbers{0, 1, 0}));
+    EXPECT_EQ(array_of(grid, "stage"), (Numbers{0, -1, -1}));
+    EXPECT_EQ(names_of(grid, "rock_names"), network.names.rock);
+    EXPECT_EQ(names_of(grid, "stage_names"), network.names.stage);
+}
+
+TEST(joints_vtu, has_the_joint_edges_and_without_equivalent_joints_no_others)
+{
+    const std::string grid = joints_vtu(small_network(), nullptr);
+    EXPECT_EQ(array_of(grid, "edge"), Numbers{2});
+    EXPECT_EQ(array_of(grid, "connectivity"), (Numbers{3, 2}));
+    EXPECT_EQ(array_of(grid, "types"), Numbers{3});
+    EXPECT_EQ(array_of(grid, "set"), Numbers{1});
+    EXPECT_EQ(array_of(grid, "joint_fraction"), Numbers{0.7});
+    EXPECT_THROW(array_of(grid, "cohesion"), std::runtime_error);
+}
+
+TEST(joints_vtu, has_the_strengths_and_the_boundary_on_a_joint_once_they_are_known)
+{
+    const EquivalentJoints equivalent = small_equivalent();
+    const std::string grid = joints_vtu(small_network(), &equivalent);
+    EXPECT_EQ(array_of(grid, "edge"), (Numbers{0, 2}));
+    EXPECT_EQ(array_of(grid, "kind"), (Numbers{0, 1}));
+    EXPECT_EQ(array_of(grid, "joint"), (Numbers{-1, 0}));
+    EXPECT_EQ(array_of(grid, "set"), (Numbers{-1, 1}));
+    EXPECT_EQ(array_of(grid, "normal_stiffness"), (Numbers{6.9e8, 1e9 / 3}));
+    EXPECT_EQ(array_of(grid, "shear_stiffness"), (Numbers{0, 2.8e8}));
+    EXPECT_EQ(array_of(grid, "cohesion"), (Numbers{0, 1e5}));
+    EXPECT_EQ(array_of(grid, "friction_angle"), (Numbers{0.5, 0.6}));
+    EXPECT_EQ(array_of(grid, "tensile_strength"), (Numbers{0, 1e4}));
+    EXPECT_EQ(array_of(grid, "normal_kelvin_stiffness"), (Numbers{6.9e8, 7e8}));
+    EXPECT_EQ(array_of(grid, "shear_kelvin_stiffness"), (Numbers{1e8, 2e8}));
+    EXPECT_EQ(array_of(grid, "normal_kelvin_viscosity"), (Numbers{5e13, 6e13}));
+    EXPECT_EQ(array_of(grid, "shear_kelvin_viscosity"), (Numbers{7e13, 8e13}));
+}
+
+TEST(zones_vtu, has_only_what_is_present_in_that_state)
+{
+    const Result result = small_result();
+    const std::string before = zones_vtu(small_network(), result, 0),
+                      after = zones_vtu(small_network(), result, 1);
+    EXPECT_EQ(array_of(before, "zone"), (Numbers{0, 1, 2, 3}));
+    EXPECT_EQ(array_of(after, "zone"), (Numbers{2, 3}));
+    EXPECT_EQ(array_of(after, "gridpoint"), (Numbers{4, 5, 6, 7})); // those of removed rock are gone
+    EXPECT_EQ(array_of(after, "connectivity"), (Numbers{0, 1, 2, 0, 2, 3}));
+    EXPECT_EQ(array_of(after, "offsets"), (Numbers{3, 6}));
+    EXPECT_EQ(array_of(after, "position"), (Numbers{0, 0, 0, 10, 0, 0, 10, 5, 0, 0, 5, 0}));
+    EXPECT_EQ(array_of(after, "TimeValue"), Numbers{1});
+}
+
+TEST(zones_vtu, takes_displacement_and_stress_of_that_state)
+{
+    const Result result = small_result();
+    const std::string after = zones_vtu(small_network(), result, 1);
+    const Numbers displacement = array_of(after, "displacement");
+    ASSERT_EQ(displacement.size(), 12u);
+    for (std::size_t point = 0; point < 4; ++point) {
+        EXPECT_EQ(displacement[3 * point], result.states.displacement[9 + 4 + point].x());
+        EXPECT_EQ(displacement[3 * point + 1], result.states.displacement[9 + 4 + point].y());
+    }
+    EXPECT_EQ(array_of(after, "stress_xx"), (Numbers{6e6 / 3, 7e6 / 3}));
+    EXPECT_EQ(array_of(after, "stress_yy"), (Numbers{-6e5, -7e5}));
+    EXPECT_EQ(array_of(after, "stress_xy"), (Numbers{60, 70}));
+    EXPECT_EQ(array_of(after, "block"), (Numbers{1, 1}));
+    EXPECT_EQ(array_of(after, "rock"), (Numbers{1, 1}));
+    EXPECT_EQ(array_of(after, "stage"), (Numbers{-1, -1}));
+    EXPECT_THROW(zones_vtu(small_network(), result, 2), input_error);
+}
+
+TEST(contacts_vtu, leaves_out_removed_contacts)
+{
+    const Result result = small_result();
+    const std::string before = contacts_vtu(result, 0), after = contacts_vtu(result, 1);
+    EXPECT_EQ(array_of(before, "contact"), (Numbers{0, 1}));
+    EXPECT_EQ(array_of(before, "position"), (Numbers{7.5, 5, 0, 2.5, 0, 0}));
+    EXPECT_EQ(array_of(before, "displacement"),
+              (Numbers{(6 / 3.0 + 1 / 3.0) / 2, (-6 / 7.0 - 1 / 7.0) / 2, 0, (8 / 3.0 + 4 / 3.0) / 2,
+                       (-8 / 7.0 - 4 / 7.0) / 2, 0}));
+    EXPECT_EQ(array_of(after, "contact"), Numbers{1});
+    EXPECT_EQ(array_of(after, "edge"), Numbers{0});
+    EXPECT_EQ(array_of(after, "normal"), (Numbers{0, 1, 0}));
+    EXPECT_EQ(array_of(after, "length"), Numbers{5});
+    EXPECT_EQ(array_of(after, "normal_traction"), Numbers{-1e6});
+    EXPECT_EQ(array_of(after, "shear_traction"), Numbers{3e5});
+    EXPECT_EQ(array_of(after, "normal_jump"), Numbers{-1e-3});
+    EXPECT_EQ(array_of(after, "shear_jump"), Numbers{5e-4});
+    EXPECT_EQ(array_of(after, "status"), Numbers{2});
+    EXPECT_EQ(array_of(after, "types"), Numbers{1});
+}
+
+TEST(vtu, of_nothing_is_still_a_grid)
+{
+    EXPECT_EQ(attribute(blocks_vtu(Network{}), "NumberOfCells"), "0");
+    EXPECT_EQ(attribute(joints_vtu(Network{}, nullptr), "NumberOfCells"), "0");
+}
+
+RC_GTEST_PROP(vtu, every_double_reads_back_as_itself, (const std::vector<double>& values))
+{
+    Network network;
+    for (const double value : values)
+        network.blocks.vertex.emplace_back(value, -value / 3);
+    const Numbers position = array_of(blocks_vtu(network), "position");
+    RC_ASSERT(position.size() == 3 * values.size());
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        RC_ASSERT(position[3 * i] == values[i]);
+        RC_ASSERT(position[3 * i + 1] == -values[i] / 3);
+    }
+}
+
+} // namespace
+} // namespace jointcreep

@@ -1,0 +1,149 @@
+"""Breaks a valid scene in every way a slip of the hand can, one key at a time, and runs jointgen on each.
+
+    /usr/bin/python3 broken_scenes.py JOINTGEN
+
+The keys come from `JOINTGEN --scene-keys`, the valid scene is every_key.toml beside this file. Each broken scene must
+end with exit code 2 and a message that names the file, the line and the key, and must leave no output file behind.
+"""
+
+import concurrent.futures
+import csv
+import io
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+HERE = pathlib.Path(__file__).parent
+WITH_LOCAL_DAMPING = ('damping = "mass"\nmass_damping_per_s = 20', 'damping = "local"\nlocal_damping = 0.8')
+CHECK_TIME = 60  # s, far more than any check takes
+
+
+def keys_of(jointgen):
+    text = subprocess.run([jointgen, "--scene-keys"], check=True, capture_output=True, text=True).stdout
+    return list(csv.DictReader(io.StringIO(text), delimiter="\t", quoting=csv.QUOTE_NONE))
+
+
+def find(lines, table, key):
+    """Index of the line of the table's header and of the key (for a key of a law: of the law)."""
+    outer, _, law = table.partition(".")
+    header = 0
+    for i, line in enumerate(lines):
+        if line.startswith("["):
+            header = i
+        inside = lines[header].strip("[]") == outer or (outer == "-" and header == 0)
+        if inside and line.startswith((law or key) + " =") and (not law or re.search(rf"[{{,] {key} =", line)):
+            return header, i
+    raise SystemExit(f"every_key.toml has no {table} {key}")
+
+
+def wrap(kind, number):
+    """The number where a value of this kind has one."""
+    corners = f"[[{number}, 0], [1, 0], [0, 1]]"
+    return {"point": f"[0, {number}]", "polygon": corners, "polygons": f"[{corners}]"}.get(kind, number)
+
+
+def outside(bound, step):
+    """A number outside the bound: the bound itself if it is open."""
+    number = float(bound.strip("[]()"))
+    return repr(number if bound[0] == "(" or bound[-1] == ")" else number + step * max(1, abs(number)))
+
+
+def broken_values(key):
+    kind = key["kind"]
+    wrong_type = {"text": "1", "number": '"1"', "integer": "1.5", "date": '"1994-06-05"', "point": "[1, 2, 3]",
+                  "polygon": "[[0, 0], [1, 1]]", "polygons": "[[0, 0], [1, 0], [1, 1]]"}
+    yield "wrong type", wrong_type.get(kind, "1")
+    yield "a flag", "true"
+    yield "a time", "12:00:00"
+    yield "a list", "[]"
+    for number in ("nan", "inf", "-inf", "1e300", "-1e300"):
+        yield number, wrap(kind, number)
+    if key["minimum"] != "-":
+        yield "below the minimum", wrap(kind, outside(key["minimum"], -1))
+        yield "above the maximum", wrap(kind, outside(key["maximum"], 1))
+    if kind == "text":
+        yield "empty", '""'
+        yield "control character", '"a\\u0007"'
+    if kind.startswith('"'):
+        yield "no such word", '"none of these"'
+
+
+def variants(key, text):
+    """(what, broken text, line to be named, name to be named)"""
+    lines = text.split("\n")
+    table, name = key["table"], key["key"]
+    header, at = find(lines, table, name)
+    in_law = "." in table
+    entry = rf"(?<=[{{,] ){name} = (\"[^\"]*\"|[^,}}]*[^,}} ])" if in_law else rf"^{name} = .*$"
+
+    def edited(new):
+        return "\n".join(lines[:at] + [re.sub(entry, lambda _: new, lines[at])] + lines[at + 1 :])
+
+    for what, value in broken_values(key):
+        yield what, edited(f"{name} = {value}"), at + 1, name
+    old = re.search(entry, lines[at]).group(0)
+    yield "misspelt", edited(old.replace(name, name + "_x", 1)), at + 1, name + "_x"
+    if in_law:
+        yield "twice", edited(f"{old}, {old}"), at + 1, name
+    else:
+        yield "twice", edited(f"{old}\n{old}"), at + 2, name
+    if key["required"] in ("yes", "together"):
+        if in_law:
+            yield "missing", edited("").replace("{ , ", "{ ").replace(", , ", ", ").replace(",  }", " }"), at + 1, name
+        else:
+            yield "missing", "\n".join(lines[:at] + [""] + lines[at + 1 :]), header + 1, name
+
+
+def fault(jointgen, folder, number, text, line, name):
+    """What is wrong with jointgen's answer to a broken scene, or None."""
+    own = pathlib.Path(folder) / str(number)
+    own.mkdir()
+    scene = own / "broken.toml"
+    scene.write_text(text)
+    command = [jointgen, str(scene), "-o", str(own / "network.h5"), "--check"]
+    run = subprocess.run(command, capture_output=True, text=True, timeout=CHECK_TIME)
+    left = [path.name for path in own.iterdir() if path != scene]
+    if run.returncode != 2:
+        return f"exit code {run.returncode}: {run.stderr.strip()}"
+    if left:
+        return f"left {left}"
+    place = re.search(r"broken\.toml\D*(\d+)", run.stderr)
+    if not place or int(place.group(1)) != line:
+        return f"line {line} is not named: {run.stderr.strip()}"
+    if not re.search(rf"(?<![a-zA-Z_]){name}(?![a-zA-Z_])", run.stderr):
+        return f"{name} is not named: {run.stderr.strip()}"
+    return None
+
+
+def main():
+    jointgen = str(pathlib.Path(sys.argv[1]).resolve())
+    text = (HERE / "every_key.toml").read_text()
+    broken = []
+    for key in keys_of(jointgen):
+        base = text.replace(*WITH_LOCAL_DAMPING) if key["key"] == "local_damping" else text
+        where = f"{key['table']} {key['key']}"
+        broken += [(f"{where}, {what}", *rest) for what, *rest in variants(key, base)]
+
+    failures = 0
+    with tempfile.TemporaryDirectory() as folder:
+        for name, valid in (("every_key.toml", text), ("local.toml", text.replace(*WITH_LOCAL_DAMPING))):
+            scene = pathlib.Path(folder) / name
+            scene.write_text(valid)
+            command = [jointgen, str(scene), "-o", str(scene) + ".h5", "--check"]
+            run = subprocess.run(command, capture_output=True, text=True, timeout=CHECK_TIME)
+            if run.returncode != 0:
+                raise SystemExit(f"the valid scene {name} is refused: {run.stderr}")
+        with concurrent.futures.ThreadPoolExecutor(2) as pool:
+            answers = pool.map(lambda item: fault(jointgen, folder, item[0], *item[1][1:]), enumerate(broken))
+            for (what, *_), wrong in zip(broken, answers):
+                if wrong:
+                    failures += 1
+                    print(f"{what}: {wrong}")
+    print(f"{len(broken)} broken scenes, {failures} not refused as they should be")
+    return 1 if failures else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

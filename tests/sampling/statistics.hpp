@@ -1,0 +1,125 @@
+// Statistical checks, each wrong about a right sampler once in a thousand times. Seeds are fixed, so that a
+// check that has passed goes on passing until the sampler changes.
+
+#pragma once
+
+#include "model/scene.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <vector>
+
+namespace jointcreep::statistics
+{
+
+using Samples = std::vector<double>;
+using Distribution = std::function<double(double)>;
+
+inline double mean(const Samples& samples)
+{
+    double sum = 0;
+    for (const double x : samples)
+        sum += x;
+    return sum / static_cast<double>(samples.size());
+}
+
+inline double variance(const Samples& samples)
+{
+    const double m = mean(samples);
+    double sum = 0;
+    for (const double x : samples)
+        sum += (x - m) * (x - m);
+    return sum / static_cast<double>(samples.size() - 1);
+}
+
+// Kolmogorov-Smirnov, level 1e-3: sqrt(n) D < sqrt(-ln(.0005) / 2) = 1.95.
+inline bool follow(Samples samples, const Distribution& cdf)
+{
+    std::sort(samples.begin(), samples.end());
+    const auto n = static_cast<double>(samples.size());
+    double worst = 0;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        const double p = cdf(samples[i]);
+        worst = std::max({worst, p - static_cast<double>(i) / n, static_cast<double>(i + 1) / n - p});
+    }
+    return std::sqrt(n) * worst < 1.95;
+}
+
+// Normal approximation, level 1e-3: 3.29 standard errors.
+inline bool have_mean(const Samples& samples, double expected)
+{
+    const double error = std::sqrt(variance(samples) / static_cast<double>(samples.size()));
+    return std::abs(mean(samples) - expected) < 3.29 * error;
+}
+
+inline bool have_deviation(const Samples& samples, double expected)
+{
+    const double m = mean(samples);
+    Samples squares;
+    for (const double x : samples)
+        squares.push_back((x - m) * (x - m));
+    return have_mean(squares, expected * expected);
+}
+
+// Density of a law, not normalised.
+inline double density(const Law& law, double x)
+{
+    const auto bell = [](double z) { return std::exp(-z * z / 2); };
+    switch (law.kind) {
+    case Law::Kind::normal:
+        return bell((x - law.mean) / law.deviation);
+    case Law::Kind::lognormal: {
+        const double s2 = std::log(1 + law.deviation * law.deviation / (law.mean * law.mean));
+        return x > 0 ? bell((std::log(x) - std::log(law.mean) + s2 / 2) / std::sqrt(s2)) / x : 0;
+    }
+    case Law::Kind::negative_exponential:
+        return x >= 0 ? std::exp(-x / law.mean) : 0;
+    case Law::Kind::constant:
+        break;
+    }
+    return 0;
+}
+
+// Distribution of a density on x > 0, by the trapezoidal rule up to `end`.
+inline Distribution integrated(const std::function<double(double)>& density, double end)
+{
+    const int steps = 40000;
+    std::vector<double> sum(steps + 1, 0.0);
+    for (int i = 1; i <= steps; ++i)
+        sum[i] = sum[i - 1] + (density(end * (i - 1) / steps) + density(end * i / steps)) / 2;
+    for (double& value : sum)
+        value /= sum.back();
+    return [sum, end](double x) {
+        const double place = std::clamp(x / end, 0.0, 1.0) * steps;
+        const int i = std::min(static_cast<int>(place), steps - 1);
+        return sum[i] + (place - i) * (sum[i + 1] - sum[i]);
+    };
+}
+
+inline double reach(const Law& law)
+{
+    return law.mean + 40 * law.deviation;
+}
+
+// Of a law's values above 0.
+inline Distribution positive_distribution(const Law& law)
+{
+    return integrated([law](double x) { return density(law, x); }, reach(law));
+}
+
+// Of density x f(x) / m: intervals as a point sees them.
+inline Distribution size_biased_distribution(const Law& law)
+{
+    return integrated([law](double x) { return x * density(law, x); }, reach(law));
+}
+
+// Of density (1 - F(x)) / m: what is left of an interval beyond a point.
+inline Distribution residual_distribution(const Law& law)
+{
+    const Distribution cdf = positive_distribution(law);
+    return integrated([cdf](double x) { return 1 - cdf(x); }, reach(law));
+}
+
+} // namespace jointcreep::statistics

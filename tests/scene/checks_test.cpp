@@ -1,0 +1,234 @@
+// Each thing a scene must hold beyond the range of its keys, broken once in a scene that is valid otherwise.
+
+#include "text.hpp"
+
+#include <filesystem>
+#include <fstream>
+
+using namespace jointcreep;
+
+namespace
+{
+
+const std::string text = every_key_text();
+
+// Replacing `old` by `by` is refused at the line where `by` begins, with `wanted` in the message.
+void expect_refused(const std::string& old, const std::string& by, const std::string& wanted,
+                    const std::string& at = "")
+{
+    const auto broken = replaced(text, old, by);
+    const auto message = refusal(broken);
+    expect_part(message, wanted);
+    expect_part(message, "scene.toml, " + line_of(broken, at.empty() ? by : at));
+}
+
+std::string without(const std::string& table)
+{
+    const auto at = text.find(table);
+    const auto next = std::min(text.find("\n[", at), text.size());
+    return text.substr(0, at) + text.substr(next);
+}
+
+TEST(checks, the_scene_is_valid)
+{
+    EXPECT_EQ(refusal(text), "accepted");
+}
+
+TEST(checks, a_value_is_refused_with_its_unit_and_range)
+{
+    expect_refused("gravity_m_per_s2 = 9.81", "gravity_m_per_s2 = -1",
+                   "[section] gravity_m_per_s2 = -1 m/s2: wanted a number in [0, 100] m/s2");
+    expect_refused("poissons_ratio = 0.3", "poissons_ratio = 0.5",
+                   "[[rock]] \"soft\" poissons_ratio = 0.5: wanted a number in [0, 0.5)");
+    expect_refused("mean_deg = 70", "mean_deg = 91",
+                   "[[joint_set]] dip mean_deg = 91 deg: wanted a number in [0, 90] deg");
+}
+
+TEST(checks, an_unknown_key_is_refused_with_the_nearest)
+{
+    expect_refused("gravity_m_per_s2 = 9.81", "gravity = 9.81\ngravity_m_per_s2 = 9.81",
+                   "[section] has no key \"gravity\"");
+    expect_refused("density_kg_per_m3", "density_kg_per_m", "did you mean density_kg_per_m3?");
+    expect_refused("[zones]", "[zone]", "the scene has no key \"zone\"; did you mean zones?");
+}
+
+TEST(checks, a_missing_key_is_refused_at_its_table)
+{
+    expect_refused("[zones]\nsize_m = 4\n", "[zones]\n", "[zones] has no size_m: wanted a number");
+    expect_refused("cohesion_MPa = 0.5\n", "", "has no cohesion_MPa", "[[rock]]\nname = \"soft\"");
+    expect_part(refusal(replaced(text, "shear_kelvin_stiffness_MPa_per_m = 8000\n", "")),
+                "comes together with");
+}
+
+TEST(checks, missing_tables)
+{
+    for (const std::string table : {"[section]", "[zones]", "[schedule]", "[in_situ_stress]"})
+        expect_part(refusal(without(table)), "the scene has no " + table);
+    expect_part(refusal(without("[random]")), "the scene has no [random] seed: [[joint_set]] needs it");
+    auto unheld = text;
+    for (int i = 0; i < 3; ++i)
+        unheld.erase(unheld.find("[[boundary]]"),
+                     unheld.find("\n[", unheld.find("[[boundary]]")) + 1 - unheld.find("[[boundary]]"));
+    expect_part(refusal(unheld), "the scene has no [[boundary]]");
+}
+
+TEST(checks, tables_in_the_wrong_brackets)
+{
+    expect_refused("[zones]", "[[zones]]", "[zones] is a list of 1: wanted a table");
+    expect_refused("[[region]]", "[region]", "region is a table: wanted tables under [[region]]");
+}
+
+TEST(checks, names)
+{
+    expect_refused("name = \"soft\"", "name = \"hard\" # again", "the name is taken in line",
+                   "name = \"hard\" # again");
+    expect_refused("name = \"steep\"", "name = \"flat\"", "the name is taken",
+                   "name = \"flat\"\nmaterial = \"joint\"\ntrace");
+    expect_refused("name = \"lower\"", "name = \"upper\" # again", "the name is taken");
+    expect_refused("name = \"crest\"", "name = \"\"", "wanted a text");
+    expect_refused("name = \"fault\"", "name = \"flat\" # too", "the name is taken in line");
+}
+
+TEST(checks, references)
+{
+    expect_refused("rock = \"soft\"", "rock = \"sofft\"",
+                   "wanted the name of a [[rock]]: \"hard\", \"soft\"; did you mean \"soft\"?");
+    expect_refused("rock = \"hard\"", "rock = \"marble\"",
+                   "wanted the name of a [[rock]]: \"hard\", \"soft\"");
+    expect_refused("material = \"joint\"\nfrom", "material = \"jiont\"\nfrom",
+                   "[[joint]] \"fault\" material = \"jiont\"");
+    expect_refused("material = \"joint\"\ndip", "material = \"jiont\"\ndip", "did you mean \"joint\"?");
+    expect_refused("joint = \"joint\"", "joint = \"jiont\"", "[[boundary]] joint = \"jiont\"");
+}
+
+TEST(checks, polygons)
+{
+    const std::string outline = "outline_m = [[0, 0], [40, 0], [40, 20], [0, 20]]";
+    expect_refused(outline, "outline_m = [[0, 0], [40, 0]]", "at least 3 corners");
+    expect_refused(outline, "outline_m = [[0, 0], [40, 20], [40, 0], [0, 20]]", "meet");
+    expect_refused(outline, "outline_m = [[0, 0], [40, 0], [40, 20], [0, 20], [0, 0]]",
+                   "its last corner repeats its first");
+    expect_refused(outline, "outline_m = [[0, 0], [40, 0], [20, 0]]", "meet");
+    expect_refused("region_m = [[0, 5], [40, 5]", "region_m = [[0, 5], [0, 5]", "comes twice");
+    expect_refused("remove_m = [[[25, 15], [40, 15]", "remove_m = [[[25, 15], [25, 21], [40, 15]", "meet");
+    expect_refused("outline_m = [[0, 0], [40, 0], [40, 5]", "outline_m = [[0, 0], [40, 5], [40, 0]",
+                   "[[region]] outline_m");
+}
+
+TEST(checks, joints_and_boundaries)
+{
+    expect_refused("to_m = [40, 8]", "to_m = [0, 12]", "wanted another point than from_m");
+    expect_refused("to_m = [0, 20]\nfix", "to_m = [0, 0]\nfix", "wanted another point than from_m");
+    expect_refused("to_m = [0, 20]\nfix", "to_m = [1, 20]\nfix", "one straight piece");
+    expect_refused("to_m = [0, 20]\nfix", "to_m = [0, 21]\nfix", "one straight piece");
+    expect_refused("to_m = [40, 20]\nfix", "to_m = [20, 0] # over\nfix", "runs over the boundary of line");
+    expect_refused("fix = \"x\"", "fix = \"x\"\njoint = \"joint\"", "not both");
+    expect_refused("fix = \"x\"\n", "", "wanted either fix", "[[boundary]]\nfrom_m = [0, 0]\nto_m = [0, 20]");
+}
+
+TEST(checks, orientations)
+{
+    const std::string dip = "dip = { law = \"normal\", mean_deg = 70, deviation_deg = 3 }";
+    expect_refused(dip, dip + " # first\ntrace_angle = { law = \"constant\", mean_deg = 1 }", "not both");
+    expect_refused(dip + "\n", "", "has no dip: wanted either trace_angle",
+                   "[[joint_set]]\nname = \"steep\"");
+    expect_refused("trace_angle = { law = \"normal\", mean_deg = 10, deviation_deg = 2 }\n", "",
+                   "has no trace_angle", "[[joint_set]]\nname = \"flat\"");
+    expect_refused("azimuth_deg = 20\n", "", "the dip of [[joint_set]] \"steep\" needs the bearing",
+                   "[section]");
+    const std::string direction = "mean_deg = 20, deviation_deg = 5";
+    expect_refused(
+        "mean_deg = 70",
+        "mean_deg = 90, deviation_deg = 3 }\ndip_direction = { law = \"constant\", mean_deg = 110 } #",
+        "parallel to the section", "dip_direction");
+    expect_refused("\"normal\", mean_deg = 70", "\"lognormal\", mean_deg = 70",
+                   "wanted \"normal\" | \"constant\"");
+}
+
+TEST(checks, steep_planes_nearly_parallel_to_the_section_are_refused_and_others_are_not)
+{
+    // Vertical planes: |n_p| = |cos(dip_direction - azimuth)|, and asin(0.05) = 2.866 degrees.
+    const auto striking = [](double off) {
+        auto all = replaced(text, "mean_deg = 70", "mean_deg = 90");
+        return refusal(replaced(all, "mean_deg = 20", "mean_deg = " + shown(110 - off)));
+    };
+    expect_part(striking(2.86), "parallel to the section");
+    EXPECT_EQ(striking(2.87), "accepted");
+    EXPECT_EQ(refusal(replaced(text, "mean_deg = 20", "mean_deg = 110")), "accepted")
+        << "it dips only 70 degrees";
+}
+
+TEST(checks, laws)
+{
+    const std::string spacing = "spacing = { law = \"normal\", mean_m = 6, deviation_m = 1 }";
+    expect_refused(spacing, "spacing = { law = \"normal\", mean_m = 2.9, deviation_m = 1 }",
+                   "at least 3 deviations, here 3 m");
+    expect_refused(spacing, "spacing = { law = \"normal\", mean_m = 6 }", "has no deviation_m");
+    expect_refused(spacing, "spacing = { law = \"lognormal\", mean_m = 6 }", "has no deviation_m");
+    for (const std::string law : {"\"constant\"", "\"negative exponential\""})
+        expect_refused(spacing, "spacing = { law = " + law + ", mean_m = 6, deviation_m = 1 }",
+                       "has no deviation of its own");
+    expect_refused(spacing, "spacing = 6", "[[joint_set]] spacing is 6: wanted a table");
+    EXPECT_EQ(refusal(replaced(text, spacing, "spacing = { law = \"normal\", mean_m = 3, deviation_m = 1 }")),
+              "accepted");
+}
+
+TEST(checks, rock_bridges)
+{
+    auto weak = text;
+    for (const char* key :
+         {"cohesion_MPa = 0.5\n", "friction_angle_deg = 35\n", "tensile_strength_MPa = 0.2\n"})
+        weak = replaced(weak, key, "");
+    expect_part(refusal(weak), "[[joint_set]] \"steep\" persistence = 0.6");
+    expect_part(refusal(weak), "[[rock]] \"soft\"");
+    expect_refused("length = { law = \"negative exponential\", mean_m = 8 }\n", "",
+                   "a persistence of 0.8 needs it", "[[joint_set]]\nname = \"flat\"");
+}
+
+TEST(checks, times)
+{
+    expect_refused("end = 1994-07-01", "end = 1994-06-01", "wanted an end after the start");
+    expect_refused("date = 1994-06-06", "date = 1994-06-01", "wanted later than the start");
+    expect_refused("date = 14", "date = 5", "wanted later than the stage before, 5 days");
+    expect_refused("date = 14", "date = 30.5", "wanted not after the end");
+    expect_refused("first_reading = 1994-06-07", "first_reading = 1994-05-31",
+                   "wanted from the start to the end");
+    EXPECT_EQ(refusal(replaced(text, "date = 14", "date = 30")), "accepted") << "a stage at the end";
+}
+
+TEST(checks, places)
+{
+    expect_refused("at_m = [24, 19]", "at_m = [24, 21]", "[24, 21] is outside the section's outline");
+    expect_refused("at_m = [20, 10]", "at_m = [-1, 10]", "[[gauge]] \"on the fault\"");
+    EXPECT_EQ(refusal(replaced(text, "at_m = [24, 19]", "at_m = [24, 20]")), "accepted") << "on the outline";
+    EXPECT_EQ(refusal(replaced(text, "at_m = [24, 19]", "at_m = [24, 20.00000004]")), "accepted")
+        << "1e-9 of 45 m";
+    expect_refused("at_m = [24, 19]", "at_m = [24, 20.00000005]", "is outside");
+}
+
+TEST(checks, numbers_that_depend_on_others)
+{
+    expect_refused("shortest_edge_m = 0.2", "shortest_edge_m = 5", "wanted at most [zones] size_m, 4 m");
+    expect_refused("mass_damping_per_s = 20\n", "", "has no mass_damping_per_s", "[equilibrium]");
+    expect_refused("damping = \"mass\"", "damping = \"kinetic\"", "mass_damping_per_s = 20",
+                   "mass_damping_per_s");
+    expect_refused("mass_damping_per_s = 20", "mass_damping_per_s = 20\nlocal_damping = 0.8",
+                   "only damping = \"local\"", "local_damping");
+}
+
+TEST(checks, files)
+{
+    const auto folder = std::filesystem::temp_directory_path() / "jointcreep_scene_files";
+    std::filesystem::create_directories(folder);
+    EXPECT_THROW(read_scene_text(folder.string()), file_error);
+    EXPECT_THROW(read_scene_text((folder / "none.toml").string()), file_error);
+    std::ofstream(folder / "empty.toml").close();
+    EXPECT_THROW(read_scene_text((folder / "empty.toml").string()), input_error);
+    std::ofstream(folder / "large.toml") << std::string(16 * 1024 * 1024 + 1, '#');
+    EXPECT_THROW(read_scene_text((folder / "large.toml").string()), input_error);
+    std::ofstream(folder / "fair.toml", std::ios::binary) << text;
+    EXPECT_EQ(read_scene_text((folder / "fair.toml").string()), text);
+    std::filesystem::remove_all(folder);
+}
+
+} // namespace

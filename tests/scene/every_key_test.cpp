@@ -1,0 +1,87 @@
+// What the column leaves out: sets and their laws, regions, dates, and every table that may be left out.
+
+#include "model/units.hpp"
+#include "text.hpp"
+
+using namespace jointcreep;
+using namespace jointcreep::unit;
+
+namespace
+{
+
+TEST(every_key, sets_and_laws)
+{
+    const Scene scene = parse_scene(every_key_text(), "scene.toml");
+    EXPECT_EQ(scene.azimuth, 20 * deg);
+    ASSERT_EQ(scene.joint_sets.size(), 2u);
+    const JointSet &steep = scene.joint_sets[0], &flat = scene.joint_sets[1];
+
+    EXPECT_FALSE(steep.trace_angle);
+    ASSERT_TRUE(steep.dip && steep.dip_direction);
+    EXPECT_EQ(steep.dip->kind, Law::Kind::normal);
+    EXPECT_EQ(steep.dip->mean, 70 * deg);
+    EXPECT_EQ(steep.dip->deviation, 3 * deg);
+    EXPECT_EQ(steep.dip_direction->mean, 20 * deg);
+    EXPECT_EQ(steep.spacing.kind, Law::Kind::lognormal);
+    EXPECT_EQ(steep.spacing.mean, 5);
+    EXPECT_EQ(steep.spacing.deviation, 1);
+    EXPECT_EQ(steep.persistence, 0.6);
+    EXPECT_FALSE(steep.region);
+
+    ASSERT_TRUE(flat.trace_angle && flat.length && flat.region);
+    EXPECT_EQ(flat.trace_angle->mean, 10 * deg);
+    EXPECT_EQ(flat.spacing.kind, Law::Kind::normal);
+    EXPECT_EQ(flat.length->kind, Law::Kind::negative_exponential);
+    EXPECT_EQ(flat.length->mean, 8);
+    EXPECT_EQ(flat.length->deviation, 8) << "the mean, by its law";
+    EXPECT_EQ(flat.region->size(), 4u);
+    EXPECT_EQ(scene.seed, 1u);
+}
+
+TEST(every_key, all_else)
+{
+    const Scene scene = parse_scene(every_key_text(), "scene.toml");
+    ASSERT_TRUE(scene.rocks[1].strength);
+    EXPECT_EQ(scene.rocks[1].strength->cohesion, 0.5 * MPa);
+    EXPECT_EQ(scene.rocks[1].strength->friction_angle, 35 * deg);
+    EXPECT_EQ(scene.rocks[1].strength->tensile_strength, 0.2 * MPa);
+    EXPECT_EQ(scene.regions.at(0).rock, "soft");
+    EXPECT_TRUE(scene.boundaries.at(1).fix_x);
+    EXPECT_FALSE(scene.boundaries.at(1).fix_y);
+    EXPECT_EQ(scene.creep->stop_rate, 0.001 * (mm / day));
+    EXPECT_EQ(scene.cutting.shortest_edge, 0.2);
+    EXPECT_EQ(scene.cutting.smallest_angle, 3 * deg);
+    EXPECT_EQ(scene.equilibrium.tolerance, 1e-5);
+    EXPECT_EQ(scene.equilibrium.unloading_increments, 2);
+    EXPECT_EQ(scene.equilibrium.most_steps, 100000);
+}
+
+TEST(every_key, optional_tables_may_be_left_out)
+{
+    auto text = every_key_text();
+    text.erase(text.find("[cutting]"), text.find("[random]") - text.find("[cutting]"));
+    text.erase(text.find("[creep]"), text.find("[zones]") - text.find("[creep]"));
+    text.erase(text.find("[[stage]]"), text.find("[zones]") - text.find("[[stage]]"));
+    const Scene scene = parse_scene(text, "scene.toml");
+    EXPECT_FALSE(scene.creep);
+    EXPECT_TRUE(scene.stages.empty() && scene.points.empty() && scene.gauges.empty());
+    EXPECT_EQ(scene.cutting.shortest_edge, 0.02 * 4);
+    EXPECT_EQ(scene.equilibrium.tolerance, 1e-6);
+    EXPECT_EQ(scene.equilibrium.damping, Damping::kinetic);
+    EXPECT_EQ(scene.equilibrium.masses, Masses::scaled);
+}
+
+TEST(every_key, a_fully_persistent_set_needs_neither_length_nor_strength)
+{
+    auto text = every_key_text();
+    for (const char* key : {"cohesion_MPa = 1.5\n", "friction_angle_deg = 45\n", "tensile_strength_MPa = 1\n",
+                            "length = { law = \"lognormal\", mean_m = 6, deviation_m = 2 }\n"})
+        text = replaced(text, key, "");
+    text = replaced(text, "persistence = 0.6", "persistence = 1");
+    text = replaced(text, "persistence = 0.8", "persistence = 1");
+    const Scene scene = parse_scene(text, "scene.toml");
+    EXPECT_FALSE(scene.rocks[0].strength);
+    EXPECT_FALSE(scene.joint_sets[0].length);
+}
+
+} // namespace

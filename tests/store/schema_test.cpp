@@ -1,0 +1,111 @@
+// The schema is whole: every member of every record once, every dimension known, and the page in docs made
+// from it.
+
+#include "random_records.hpp"
+
+#include <set>
+
+namespace jointcreep
+{
+
+namespace
+{
+
+std::vector<schema::Field> all_fields(ResultFile& file)
+{
+    std::vector<schema::Field> all;
+    for (const auto& fields : {schema::fields_of(file.provenance), schema::fields_of(file.network),
+                               schema::fields_of(file.equivalent), schema::fields_of(file.result),
+                               schema::fields_of(file.result.trace)})
+        all.insert(all.end(), fields.begin(), fields.end());
+    return all;
+}
+
+std::string without_one(const std::string& dimension)
+{
+    return dimension.ends_with("+1") ? dimension.substr(0, dimension.size() - 2) : dimension;
+}
+
+} // namespace
+
+// Bytes that no field covers would be a member that files forget. Small members fill 8 bytes each.
+TEST(Schema, CoversEveryMember)
+{
+    ResultFile file;
+    std::size_t covered = sizeof file.provenance.seed + 8; // these two and the realization are attributes
+    std::set<const void*> places;
+    for (const schema::Field& field : all_fields(file))
+        std::visit(
+            [&](auto* place) {
+                covered += (sizeof *place + 7) / 8 * 8;
+                EXPECT_TRUE(places.insert(place).second) << field.path << " has the place of another field";
+            },
+            field.values);
+    EXPECT_EQ(covered, sizeof(ResultFile));
+}
+
+TEST(Schema, NamesEveryDatasetOnce)
+{
+    ResultFile file;
+    std::set<std::string> paths;
+    for (const schema::Field& field : all_fields(file)) {
+        EXPECT_TRUE(paths.insert(field.path).second) << field.path;
+        EXPECT_FALSE(field.units.empty()) << field.path;
+        EXPECT_TRUE(field.description.ends_with(".")) << field.path;
+    }
+}
+
+// Days only for times since the start, text without a unit.
+TEST(Schema, UsesSiUnits)
+{
+    const std::set<std::string> si = {"1", "m", "m2", "rad", "s", "Pa", "Pa/m", "Pa s/m"};
+    ResultFile file;
+    for (const schema::Field& field : all_fields(file)) {
+        EXPECT_TRUE(si.contains(field.units) || (field.units == "day" && field.path.ends_with("/time")))
+            << field.path;
+        const bool is_real = std::holds_alternative<std::span<double>>(schema::flat(field.values));
+        EXPECT_TRUE(is_real || field.units == "1") << field.path;
+    }
+}
+
+// The size of a dimension must be known from an array that has only that one.
+TEST(Schema, KnowsItsDimensions)
+{
+    std::set<std::string> described, sized;
+    for (const schema::Described& dimension : schema::dimensions())
+        described.insert(dimension.name);
+    ResultFile file;
+    for (const schema::Field& field : all_fields(file)) {
+        if (field.dimensions.size() == 1)
+            sized.insert(without_one(field.dimensions[0]));
+        for (const std::string& dimension : field.dimensions)
+            EXPECT_TRUE(sized.contains(without_one(dimension))) << field.path << ": " << dimension;
+    }
+    for (const schema::Field& field : all_fields(file))
+        for (const std::string& dimension : {field.limits.index_of, field.limits.rows_of})
+            EXPECT_TRUE(dimension.empty() || sized.contains(dimension)) << field.path << ": " << dimension;
+    EXPECT_EQ(described, sized);
+}
+
+TEST(Schema, KeepsThePathsThatScriptsRelyOn)
+{
+    ResultFile file;
+    std::map<std::string, schema::Field> fields;
+    for (const schema::Field& field : all_fields(file))
+        fields.emplace(field.path, field);
+    EXPECT_EQ(fields.at("/history/time").units, "day");
+    EXPECT_TRUE(fields.contains("/history/event"));
+    EXPECT_TRUE(fields.contains("/history/point"));
+    const std::vector<std::string> time_point = {"time", "point"};
+    EXPECT_EQ(fields.at("/history/displacement").dimensions, time_point);
+    EXPECT_EQ(schema::components(fields.at("/history/displacement").values), 2u);
+    EXPECT_EQ(fields.at("/history/present").dimensions, time_point);
+}
+
+TEST(Schema, IsDescribedInDocs)
+{
+    EXPECT_EQ(bytes_of(FILE_FORMAT_PAGE), schema_markdown())
+        << "The page is out of date; make it again: jointexport --file-format > docs/file-format.md";
+}
+
+} // namespace jointcreep
