@@ -17,11 +17,6 @@ namespace
 
 using Eigen::Vector2d;
 
-std::string shown_place(const Vector2d& p)
-{
-    return "[" + shown(p.x()) + ", " + shown(p.y()) + "]";
-}
-
 double cross(const Vector2d& a, const Vector2d& b)
 {
     return a.x() * b.y() - a.y() * b.x();
@@ -68,9 +63,8 @@ Polygon outline_with_boundary_ends(const Scene& scene)
             }
             const Vector2d p = outline[side], q = outline[(side + 1) % outline.size()];
             if (nearest > reach)
-                throw input_error("boundary " + std::to_string(b + 1) + ": its end " + shown_place(end) +
-                                  " m lies " + shown(nearest) +
-                                  " m off the section's outline; it must lie on it");
+                throw input_error("boundary " + std::to_string(b + 1) + ": its end " + shown(end) + " lies " +
+                                  shown(nearest) + " m off the section's outline; it must lie on it");
             if ((end - p).norm() > reach && (end - q).norm() > reach)
                 outline.insert(outline.begin() + static_cast<std::ptrdiff_t>(side) + 1, end);
         }
@@ -366,8 +360,8 @@ private:
             const double wanted = (boundary.to - boundary.from).norm();
             if (std::abs(held[b] - wanted) > 1e-3 * wanted + 4 * reach_)
                 throw input_error(
-                    "boundary " + std::to_string(b + 1) + " from " + shown_place(boundary.from) + " to " +
-                    shown_place(boundary.to) + " m: only " + shown(held[b]) + " of its " + shown(wanted) +
+                    "boundary " + std::to_string(b + 1) + " from " + shown(boundary.from) + " to " +
+                    shown(boundary.to) + ": only " + shown(held[b]) + " of its " + shown(wanted) +
                     " m lie on the outline and are not held by an earlier boundary; it must lie on "
                     "a straight part of the outline");
         }

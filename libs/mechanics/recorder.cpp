@@ -14,7 +14,7 @@ namespace
 
 std::string named_place(const std::string& what, const std::string& name, const Vector2d& at)
 {
-    return what + " \"" + name + "\" at [" + shown(at.x()) + ", " + shown(at.y()) + "] m";
+    return what + " \"" + name + "\" at " + shown(at);
 }
 
 } // namespace

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <charconv>
+#include <cstdio>
 
 namespace jointcreep
 {
@@ -20,6 +21,13 @@ std::string shown(double value)
     std::array<char, 32> text{};
     const auto end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
     return {text.data(), end};
+}
+
+std::string shown(const Eigen::Vector2d& place)
+{
+    std::array<char, 64> text{};
+    std::snprintf(text.data(), text.size(), "[%.7g, %.7g] m", place.x(), place.y());
+    return text.data();
 }
 
 } // namespace jointcreep

@@ -2,6 +2,8 @@
 
 #pragma once
 
+#include <Eigen/Core>
+
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -26,6 +28,9 @@ struct file_error : std::runtime_error {
 
 // Refuses a value by name: require(k > 0, "normal stiffness", k, "Pa/m", "must be positive").
 void require(bool holds, std::string_view name, double value, std::string_view unit, std::string_view wanted);
+
+// A place [m] as it is shown in messages, to seven digits: "[22.64951, 67.38134] m".
+std::string shown(const Eigen::Vector2d& place);
 
 // A number as it is shown in messages: the shortest text that reads back as the same double.
 std::string shown(double value);

@@ -91,7 +91,12 @@ public:
         const auto n = static_cast<Index>(velocity_.size());
         const auto n_chunks = static_cast<Index>(energy_.size());
         const double alpha = settings_.damping == Damping::mass ? settings_.mass_damping : alpha_;
-        const double keep = (1 - alpha * dt_ / 2) / (1 + alpha * dt_ / 2), gain = dt_ / (1 + alpha * dt_ / 2);
+        const double keep = (1 - alpha * dt_ / 2) / (1 + alpha * dt_ / 2);
+        // Velocities live half a step before displacements: from rest the first one gets half a step's gain.
+        // With a whole one the stiffest parts would overshoot, and stopping them again and again would blow
+        // them up.
+        const double gain = (starts_from_rest_ ? 0.5 : 1.0) * dt_ / (1 + alpha * dt_ / 2);
+        starts_from_rest_ = false;
         const double local = settings_.damping == Damping::local ? settings_.local_damping : 0.0;
         const bool kinetic = settings_.damping == Damping::kinetic;
         const bool adaptive = settings_.damping == Damping::adaptive;
@@ -128,6 +133,7 @@ public:
         if (kinetic) {
             if (energy < last_energy_) {
                 std::fill(velocity_.begin(), velocity_.end(), Vector2d::Zero());
+                starts_from_rest_ = true;
                 energy = 0;
             }
             last_energy_ = energy;
@@ -142,8 +148,7 @@ public:
             if (moved <= too_far_)
                 continue;
             throw equilibrium_error(
-                "no equilibrium: rock at [" + shown(a_.position[g].x()) + ", " + shown(a_.position[g].y()) +
-                "] m has moved " +
+                "no equilibrium: the rock at " + shown(a_.position[g]) + " has moved " +
                 (std::isfinite(moved) ? shown(moved) + " m" : std::string("without bound")) +
                 " and is still moving; is it held by anything?");
         }
@@ -157,6 +162,7 @@ private:
     std::vector<double> mass_; // inverse [m/kg]
     std::vector<double> energy_, quotient_;
     double dt_ = 0, too_far_ = 0, alpha_ = 0, last_energy_ = 0;
+    bool starts_from_rest_ = true;
 };
 
 } // namespace
@@ -196,8 +202,7 @@ Certificate relax(Assembly& assembly, const Equilibrium& settings, const StepObs
     throw equilibrium_error(
         "no equilibrium after " + std::to_string(certificate.steps) + " steps: the out-of-balance ratio is " +
         shown(certificate.out_of_balance_ratio) + ", wanted " + shown(settings.tolerance) +
-        "; farthest from balance is the rock at [" + shown(assembly.position[balance.worst].x()) + ", " +
-        shown(assembly.position[balance.worst].y()) + "] m");
+        "; farthest from balance is the rock at " + shown(assembly.position[balance.worst]));
 }
 
 } // namespace jointcreep::relaxation

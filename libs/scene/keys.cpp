@@ -103,7 +103,7 @@ std::string KeyInfo::wanted() const
     if (kind == "polygons")
         return "a list of polygons [[[x, y], [x, y], [x, y], ...], ...] of numbers" + in_range;
     if (kind == "law")
-        return "a law such as { law = \"constant\", mean = 1 }";
+        return "a law such as { law = \"constant\", mean_m = 2 }";
     return kind;
 }
 
@@ -211,13 +211,13 @@ void check_keys(const TomlValue& value, const std::vector<const KeyInfo*>& known
         if (std::find(names.begin(), names.end(), entry.key) != names.end())
             continue;
         const auto meant = nearest(entry.key, names);
+        const auto advice = meant.empty() ? "" : "; did you mean " + meant + "?";
         std::string all;
         for (const auto& name : names)
             all += (all.empty() ? "" : ", ") + name;
         const TomlValue as_text{.content = entry.key};
-        place.refuse(entry.value.line, place.table + " has no key " + shown(as_text) +
-                                           (meant.empty() ? "" : "; did you mean " + meant + "?") +
-                                           " Its keys are: " + all);
+        place.refuse(entry.value.line,
+                     place.table + " has no key " + shown(as_text) + advice + " (its keys: " + all + ")");
     }
 }
 

@@ -33,19 +33,19 @@ struct Range {
     double least = 0, most = 0;
     bool least_open = false, most_open = false;
 
-    Range to(double bound) const { return {least, bound, least_open, false}; }
-    Range below(double bound) const { return {least, bound, least_open, true}; }
+    constexpr Range to(double bound) const { return {least, bound, least_open, false}; }
+    constexpr Range below(double bound) const { return {least, bound, least_open, true}; }
     bool holds(double value) const; // false for NaN
 };
-inline Range from(double bound)
+constexpr Range from(double bound)
 {
     return {bound, bound, false, false};
 }
-inline Range above(double bound)
+constexpr Range above(double bound)
 {
     return {bound, bound, true, false};
 }
-inline Range within(double bound)
+constexpr Range within(double bound)
 {
     return from(-bound).to(bound);
 }
@@ -221,12 +221,12 @@ Key<Record> polygons(std::string name, std::vector<Polygon> Record::*member, std
 
 // One of some words, each standing for a value, which assign(record, value) stores.
 template <class Record, class Value, std::invocable<Record&, Value> Assign>
-Key<Record> choice(std::string name, Assign assign, std::vector<std::pair<std::string, Value>> words,
+Key<Record> choice(std::string name, Assign assign, std::vector<std::pair<std::string_view, Value>> words,
                    std::string doc)
 {
     std::string kind;
     for (const auto& [word, meaning] : words)
-        kind += (kind.empty() ? "\"" : " | \"") + word + '"';
+        kind += (kind.empty() ? "\"" : " | \"") + std::string(word) + '"';
     return {{std::move(name), kind, {}, {}, std::move(doc)},
             [assign, words](Record& record, const KeyInfo& key, const TomlValue& value, const Place& place) {
                 const auto* const given = std::get_if<std::string>(&value.content);
@@ -240,8 +240,8 @@ Key<Record> choice(std::string name, Assign assign, std::vector<std::pair<std::s
             {}};
 }
 template <class Record, class Value>
-Key<Record> choice(std::string name, Value Record::*member, std::vector<std::pair<std::string, Value>> words,
-                   std::string doc)
+Key<Record> choice(std::string name, Value Record::*member,
+                   std::vector<std::pair<std::string_view, Value>> words, std::string doc)
 {
     const auto assign = [member](Record& record, Value value) { record.*member = value; };
     return choice<Record, Value>(std::move(name), assign, std::move(words), std::move(doc));

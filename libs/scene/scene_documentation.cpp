@@ -41,7 +41,7 @@ rock in front of the slope is dug away on 15 June 1994, and a point on the crest
 ```toml
 title = "A slope"
 
-[section]                    # a trapezium of ground, 100 m wide; x runs towards the east
+[section]                    # 100 m of ground, 60 m high; x runs towards the east
 outline_m = [[0, 0], [100, 0], [100, 60], [0, 60]]
 rock = "granite"
 gravity_m_per_s2 = 9.81

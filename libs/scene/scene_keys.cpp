@@ -22,14 +22,14 @@ constexpr Unit MPa_day_per_m{"MPa day/m", unit::MPa* unit::day / unit::m};
 constexpr Unit mm_per_day{"mm/day", unit::mm / unit::day};
 
 // Upper bounds far above any rock: they catch slips of unit, and keep all products finite.
-const Range strength = from(0).to(1e4);           // [MPa]
-const Range friction = from(0).below(90);         // [deg]
-const Range stiffness = above(0).to(1e9);         // [MPa/m]
-const Range viscosity = above(0).to(1e12);        // [MPa day/m]
-const Range length = above(0).to(farthest_metre); // [m]
-const Range coordinate = within(farthest_metre);  // [m]
-const Range stress = within(1e4);                 // [MPa]
-const Range gradient = within(100);               // [MPa/m]
+constexpr Range strength = from(0).to(1e4);           // [MPa]
+constexpr Range friction = from(0).below(90);         // [deg]
+constexpr Range stiffness = above(0).to(1e9);         // [MPa/m]
+constexpr Range viscosity = above(0).to(1e12);        // [MPa day/m]
+constexpr Range length = above(0).to(farthest_metre); // [m]
+constexpr Range coordinate = within(farthest_metre);  // [m]
+constexpr Range stress = within(1e4);                 // [MPa]
+constexpr Range gradient = within(100);               // [MPa/m]
 
 // A member of an optional part of a record; reading it makes the part.
 template <auto Part, auto Member>
@@ -135,10 +135,11 @@ Table<SingleJoint> joint()
 
 constexpr double fewest_deviations = 3; // in the mean of a normal law of a length
 
-const std::pair<std::string, Law::Kind> constant{"constant", Law::Kind::constant};
-const std::pair<std::string, Law::Kind> normal{"normal", Law::Kind::normal};
-const std::pair<std::string, Law::Kind> lognormal{"lognormal", Law::Kind::lognormal};
-const std::pair<std::string, Law::Kind> exponential{"negative exponential", Law::Kind::negative_exponential};
+constexpr std::pair<std::string_view, Law::Kind> constant{"constant", Law::Kind::constant};
+constexpr std::pair<std::string_view, Law::Kind> normal{"normal", Law::Kind::normal};
+constexpr std::pair<std::string_view, Law::Kind> lognormal{"lognormal", Law::Kind::lognormal};
+constexpr std::pair<std::string_view, Law::Kind> exponential{"negative exponential",
+                                                             Law::Kind::negative_exponential};
 
 Table<Law> angle_law(const std::string& name, Range range, const std::string& doc)
 {

@@ -221,7 +221,7 @@ bool is_fixed_text(hid_t type)
 
 std::string text_attribute(hid_t object, const std::string& name, const std::string& owner)
 {
-    if (H5Aexists(object, name.c_str()) <= 0)
+    if (!ok(H5Aexists(object, name.c_str()), "find the attribute " + name))
         throw input_error(owner + " has no attribute " + name);
     const Object attribute(H5Aopen(object, name.c_str(), H5P_DEFAULT), H5Aclose,
                            "open the attribute " + name);
@@ -237,7 +237,7 @@ std::string text_attribute(hid_t object, const std::string& name, const std::str
 
 void read_numbers(hid_t file, const std::string& name, hid_t type, void* values, std::size_t count)
 {
-    if (H5Aexists(file, name.c_str()) <= 0)
+    if (!ok(H5Aexists(file, name.c_str()), "find the attribute " + name))
         throw input_error("the file has no attribute " + name);
     const Object attribute(H5Aopen(file, name.c_str(), H5P_DEFAULT), H5Aclose, "open the attribute " + name);
     const Object actual(H5Aget_type(attribute), H5Tclose, "read the type of the attribute " + name);
@@ -271,10 +271,10 @@ bool exists(hid_t file, const std::string& path)
 {
     for (std::size_t end = 0; end != std::string::npos;) {
         end = path.find('/', end + 1);
-        if (H5Lexists(file, path.substr(0, end).c_str(), H5P_DEFAULT) <= 0)
+        if (!ok(H5Lexists(file, path.substr(0, end).c_str(), H5P_DEFAULT), "look for " + path))
             return false;
     }
-    return H5Oexists_by_name(file, path.c_str(), H5P_DEFAULT) > 0;
+    return true;
 }
 
 struct TypeCheck {

@@ -104,6 +104,7 @@ with h5py.File("result.h5") as file:
     points = file["/history/point"].asstr()[:]
     displacement = file["/history/displacement"][:]  # [time, point, {x, y}], metres
     scene = file["/scene"].asstr()[0]
+    units = file["/history/displacement"].attrs["units"].decode()
 ```
 
 ## Attributes of the file

@@ -56,8 +56,7 @@ Cdt::Edge next_piece(const Cdt& cdt, Cdt::Vertex_handle at, Cdt::Vertex_handle t
         }
     } while (++edge != first);
     if (best < 1 - 1e-9)
-        throw std::logic_error("zoning lost a block edge near [" + shown(place(at).x()) + ", " +
-                               shown(place(at).y()) + "]");
+        throw std::logic_error("zoning lost a block edge near " + shown(place(at)));
     // The face from which the piece runs from `at` onwards, counter-clockwise, is on its left.
     if (piece.first->vertex(cdt.ccw(piece.second)) != at)
         piece = cdt.mirror_edge(piece);

@@ -5,6 +5,7 @@ style, marker or shade, so that nothing is lost in grey.
 """
 
 import argparse
+import contextlib
 import sys
 import tomllib
 from pathlib import Path
@@ -56,21 +57,27 @@ def arguments_of(description, *options):
     return parser.parse_args()
 
 
-def run(draw, arguments):
-    """Opens the file, draws, saves. Whatever is not as wanted ends in one line on stderr and exit code 2."""
-    program = Path(sys.argv[0]).name
+@contextlib.contextmanager
+def opened(path):
+    """A file of jointcreep. Whatever is not as wanted in it ends in one line on stderr and exit code 2."""
     try:
-        with h5py.File(arguments.file, "r") as file:
+        with h5py.File(path, "r") as file:
             if not file_type(file).startswith("jointcreep"):
                 raise NotWanted("this is not a file of jointcreep")
-            figure = draw(file, arguments)
+            yield file
     except (OSError, NotWanted) as error:
-        print(f"{program}: {arguments.file}: {error}", file=sys.stderr)
+        print(f"{Path(sys.argv[0]).name}: {path}: {error}", file=sys.stderr)
         sys.exit(2)
+
+
+def run(draw, arguments):
+    """Opens the file, draws, saves."""
+    with opened(arguments.file) as file:
+        figure = draw(file, arguments)
     try:
         figure.savefig(arguments.output)
     except (OSError, ValueError) as error:
-        print(f"{program}: {arguments.output}: {error}", file=sys.stderr)
+        print(f"{Path(sys.argv[0]).name}: {arguments.output}: {error}", file=sys.stderr)
         sys.exit(4)
 
 

@@ -8,6 +8,7 @@ import matplotlib.lines
 import numpy as np
 
 import column_closed_form
+import column_difference
 import figure
 
 LABELS = {
@@ -30,33 +31,21 @@ def component_of(file, displacement, component):
     return displacement[:, :, 0] * np.where(middle >= place, 1.0, -1.0)
 
 
-def before_an_event(time, event):
-    """Which rows are readings just before what happens at the same time."""
-    return np.array([any(time[j] == time[i] and event[j] for j in range(i + 1, len(time)))
-                     for i in range(len(time))])
-
-
-def draw_exact(axes, column, names, time, event, present, values):
-    """The closed form as lines; returns the largest relative difference of what was computed [-]."""
-    largest = 0.0
-    before = before_an_event(time, event)
-    for i, name in enumerate(names):
-        height = column.points[name]
-        exact = np.array([column_closed_form.rise(column, height, t, b) for t, b in zip(time, before)])
-        compared = (present[:, i] == 1) & (exact != 0)
-        if np.any(compared):
-            largest = max(largest, np.max(np.abs(values[compared, i] / exact[compared] - 1)))
-
-        end = time[present[:, i] == 1].max()
-        days = np.linspace(0, end, 400)
-        jumps = [r.day for r in column.removals if r.day <= end]
-        samples = sorted([(t, False) for t in days] + [(t, b) for t in jumps for b in (True, False)],
-                         key=lambda sample: (sample[0], not sample[1]))
-        samples = [(t, b) for t, b in samples if not (t == end and not b and end in jumps)]
-        curve = [1e3 * column_closed_form.rise(column, height, t, b) for t, b in samples]
-        axes.plot([t for t, _ in samples], curve, color=figure.COLORS[i % 6], linewidth=0.9,
-                  linestyle=figure.LINES[i % 6])
-    return largest
+def draw_exact(file, axes, names, looks):
+    """The closed form as lines, each until its point is removed."""
+    column = column_difference.column_of(file)
+    time = figure.array(file, "/history/time")
+    present = figure.array(file, "/history/present")
+    all_names = figure.texts(file, "/history/point")
+    for name, look in zip(names, looks):
+        end = time[present[:, all_names.index(name)] == 1].max()
+        removals = [removal.day for removal in column.removals if removal.day <= end]
+        days = sorted([(day, 1) for day in np.linspace(0, end, 400)] + [(day, side) for day in removals for side in (0, 1)])
+        if column.points[name] > min((r.bottom for r in column.removals if r.day <= end), default=np.inf):
+            days = [(day, side) for day, side in days if (day, side) < (end, 1)]  # it goes with the last removal
+        axes.plot([day for day, _ in days],
+                  [1e3 * column_closed_form.rise(column, column.points[name], day, side == 0) for day, side in days],
+                  color=look["color"], linewidth=0.9, linestyle=look["linestyle"])
 
 
 def draw(file, arguments):
@@ -71,22 +60,21 @@ def draw(file, arguments):
     names, present, values = [names[i] for i in chosen], present[:, chosen], values[:, chosen]
 
     plot, axes = figure.plt.subplots(figsize=(figure.TWO_COLUMNS * 0.8, 3.4))
-    exact = arguments.closed_form == "column"
-    entries, title = [], None
+    looks = [{"color": figure.COLORS[i % 6], "marker": figure.MARKERS[i % 6], "markerfacecolor": "white",
+              "markeredgewidth": 0.8, "linewidth": 1.0, "linestyle": figure.LINES[i % 6]} for i in range(len(names))]
+    exact, title = arguments.closed_form == "column", None
     if exact:
         if arguments.component != "y":
             raise figure.NotWanted("the column's closed form is vertical: --component y")
-        try:
-            column = column_closed_form.column_of(figure.scene_of(file))
-        except (KeyError, column_closed_form.NotAColumn) as error:
-            raise figure.NotWanted(f"the scene is not the closed form's column: {error}") from error
-        largest = draw_exact(axes, column, names, time, event, present, values)
+        draw_exact(file, axes, names, looks)
+        compared = [reading for reading in column_difference.readings(file) if reading.point in names]
+        worst = column_difference.largest(compared)
         title = ("markers: computed\nlines: exact, the column's closed form\n"
-                 f"largest relative difference: {largest:.1e}")
-    for i, name in enumerate(names):
+                 f"largest relative difference: {worst.difference:.1e}\n"
+                 f"({worst.place()}; of {len(compared)} readings)")
+    entries = []
+    for i, (name, look) in enumerate(zip(names, looks)):
         there = present[:, i] == 1
-        look = {"color": figure.COLORS[i % 6], "marker": figure.MARKERS[i % 6], "markerfacecolor": "white",
-                "markeredgewidth": 0.8, "linewidth": 1.0, "linestyle": figure.LINES[i % 6]}
         shown = {**look, "linestyle": "none"} if exact else {**look, "markevery": max(1, len(time) // 25)}
         axes.plot(time[there], 1e3 * values[there, i], zorder=3, **shown)
         entries.append(matplotlib.lines.Line2D([], [], label=f"point {name}", **look))

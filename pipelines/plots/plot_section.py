@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The section: joints with their rock bridges, stages, boundary conditions and measuring points."""
+"""The section: joints with their rock bridges, stages, boundary conditions, measuring points and gauges."""
 
 import matplotlib.lines
 import matplotlib.patches
@@ -100,14 +100,14 @@ def draw_boundaries(scene, outline, axes):
     return list(entries.values())
 
 
-def draw_points(scene, axes):
-    places = {point["name"]: point["at_m"] for point in scene.get("point", [])}
-    if not places:
-        return []
+def draw_places(scene, key, label, marker, axes):
+    """Measuring points, or gauges, with their names."""
+    places = {place["name"]: place["at_m"] for place in scene.get(key, [])}
+    look = {"linestyle": "none", "marker": marker, "color": "k", "markersize": 3.5}
     for name, place in places.items():
-        axes.plot(*place, marker="o", color="k", markersize=3.5, zorder=5, path_effects=figure.HALO)
+        axes.plot(*place, zorder=5, path_effects=figure.HALO, **look)
         axes.annotate(name, place, xytext=(4, 3), textcoords="offset points", zorder=5, path_effects=figure.HALO)
-    return [matplotlib.lines.Line2D([], [], linestyle="none", marker="o", color="k", label="measuring point")]
+    return [matplotlib.lines.Line2D([], [], label=label, **look)] if places else []
 
 
 def draw(file, _):
@@ -120,7 +120,8 @@ def draw(file, _):
     entries = draw_joints(file, axes, inside)
     entries += draw_stages(scene, outline, axes, inside)
     entries += draw_boundaries(scene, outline, axes)
-    entries += draw_points(scene, axes)
+    entries += draw_places(scene, "point", "measuring point", "o", axes)
+    entries += draw_places(scene, "gauge", "gauge on a joint", "D", axes)
     figure.legend_below(axes, entries)
     return plot
 

@@ -2,12 +2,27 @@
 """The solver's own course: displacement of a point and normal stress at a gauge against accumulated solver time.
 
 Needs a result file whose solver was asked for a trace. Every equilibrium (in situ, stage, creep step) is one piece
-of solver time; the upper axis says which day it belongs to.
+of solver time; the upper axis says which day it belongs to. A curve ends when its point or joint is removed.
 """
 
 import numpy as np
 
 import figure
+
+
+def is_removed(file, point, gauge):
+    """Whether the point, and whether the gauge's joint, is gone in the end."""
+    contact = figure.array(file, "/trace/gauge_contact")[gauge]
+    return (figure.array(file, "/history/present")[-1, point] == 0,
+            figure.array(file, "/states/contact_status")[-1, contact] == 0)
+
+
+def draw_until_removed(axes, solver_time, values, removed):
+    """A curve, without the constant end that a removed thing leaves. Returns the time it ends [s]."""
+    changes = np.flatnonzero(values != values[-1])
+    rows = changes[-1] + 1 if removed and len(changes) > 0 else len(values)
+    axes.plot(solver_time[:rows], values[:rows], color="k", linewidth=0.8)
+    return solver_time[rows - 1]
 
 
 def draw(file, arguments):
@@ -26,9 +41,10 @@ def draw(file, arguments):
     day, solver_time = day[shown], solver_time[shown]
 
     plot, (above, below) = figure.plt.subplots(2, 1, sharex=True, figsize=(figure.TWO_COLUMNS * 0.8, 4.2))
-    above.plot(solver_time, rise, color="k", linewidth=0.8)
+    end = max(draw_until_removed(axes, solver_time, values, removed) for axes, values, removed
+              in zip((above, below), (rise, stress), is_removed(file, point, gauge)))
+    day, solver_time = day[solver_time <= end], solver_time[solver_time <= end]
     above.set_ylabel(f"vertical displacement\nof point {points[point]}, upward (mm)")
-    below.plot(solver_time, stress, color="k", linewidth=0.8)
     below.set_ylabel(f"normal stress at {gauges[gauge]},\ncompressive (MPa)")
     below.set_xlabel("accumulated solver time (s)")
     for axes in (above, below):

@@ -2,8 +2,10 @@
 
 #include "scene/polygon.hpp"
 
+#include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+#include <cmath>
 #include <numbers>
 
 using namespace jointcreep;

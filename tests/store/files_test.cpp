@@ -6,6 +6,9 @@
 
 #include <rapidcheck/gtest.h>
 
+#include <chrono>
+#include <thread>
+
 namespace jointcreep
 {
 
@@ -58,6 +61,17 @@ RC_GTEST_PROP(Files, OfEqualRecordsAreEqual, ())
     RC_ASSERT(bytes_of(folder / "one.h5") == bytes_of(folder / "two.h5"));
     RC_ASSERT(sha256_of(folder / "one.h5") == sha256_of(folder / "two.h5"));
     RC_ASSERT((folder.files() == std::vector<std::string>{"one.h5", "two.h5"}));
+}
+
+// HDF5 would note when an object was made, to the second.
+TEST(Files, DoNotTellWhenTheyWereMade)
+{
+    const TemporaryFolder folder;
+    const ResultFile file = RandomRecords(1, 5).result();
+    write(folder / "one.h5", file);
+    std::this_thread::sleep_for(std::chrono::milliseconds(1100));
+    write(folder / "two.h5", file);
+    EXPECT_TRUE(bytes_of(folder / "one.h5") == bytes_of(folder / "two.h5"));
 }
 
 // Several chunks in a dataset, the last of them partly empty.

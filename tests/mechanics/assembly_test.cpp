@@ -1,0 +1,195 @@
+// Forces of zones and contacts: exact for uniform strain, none for rigid motion, in balance with each other.
+
+#include "sections.hpp"
+
+#include "mechanics/excavation.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+using namespace jointcreep;
+using namespace jointcreep::test;
+using namespace jointcreep::mechanics;
+
+namespace
+{
+
+void move_at_random(Assembly& assembly, unsigned seed)
+{
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> u(-1e-3, 1e-3);
+    for (Vector2d& d : assembly.displacement)
+        d = {u(random), u(random)};
+}
+
+} // namespace
+
+TEST(assembly, uniform_strain_gives_hookes_stress_in_every_zone)
+{
+    Section s = jointed_plate();
+    const double E = s.scene.rocks[0].youngs_modulus, nu = s.scene.rocks[0].poissons_ratio;
+    const double exx = 1e-4, eyy = -3e-4, gxy = 2e-4; // plane strain
+    for (std::size_t g = 0; g < s.mesh.gridpoint.size(); ++g) {
+        const Vector2d p = s.mesh.gridpoint[g];
+        s.assembly.displacement[g] = {exx * p.x() + gxy / 2 * p.y(), gxy / 2 * p.x() + eyy * p.y()};
+    }
+    find_forces(s.assembly);
+    const double lame = E * nu / ((1 + nu) * (1 - 2 * nu)), shear = E / (2 * (1 + nu));
+    const Vector3d exact(lame * (exx + eyy) + 2 * shear * exx, lame * (exx + eyy) + 2 * shear * eyy,
+                         shear * gxy);
+    for (const Vector3d& stress : s.assembly.zones.stress)
+        EXPECT_LT((stress - exact).norm(), 1e-9 * exact.norm());
+    for (const Vector2d& traction :
+         s.assembly.contacts.traction) // nothing opens or slides in a continuous field
+        EXPECT_LT(traction.norm(), 1e-3);
+}
+
+TEST(assembly, rigid_translation_gives_no_force)
+{
+    Section s = jointed_plate();
+    for (Vector2d& d : s.assembly.displacement)
+        d = {0.3, -0.2};
+    find_forces(s.assembly);
+    EXPECT_LT(balance_of(s.assembly).largest, 1e-3); // of stiffnesses about 1e10
+}
+
+TEST(assembly, forces_add_up_to_nothing)
+{
+    Section s = jointed_plate();
+    move_at_random(s.assembly, 1);
+    find_forces(s.assembly);
+    Vector2d sum = Vector2d::Zero();
+    double moment = 0, magnitude = 0;
+    for (std::size_t g = 0; g < s.assembly.force.size(); ++g) {
+        const Vector2d f = s.assembly.force[g], p = s.mesh.gridpoint[g];
+        sum += f;
+        moment += p.x() * f.y() - p.y() * f.x();
+        magnitude += f.norm();
+    }
+    EXPECT_LT(sum.norm(), 1e-12 * magnitude);
+    // Contacts join gridpoints at one place, so they make no moment either.
+    EXPECT_LT(std::abs(moment), 1e-12 * 20 * magnitude);
+}
+
+TEST(assembly, contacts_pull_as_their_springs_say)
+{
+    // Two blocks on a level joint; the upper one is lifted and shifted.
+    Scene scene = section({{0, 0}, {10, 0}, {10, 10}, {0, 10}}, 0.05);
+    scene.zone_size = 3;
+    Joints joints;
+    add_joint(joints, {-1, 5}, {11, 5});
+    Section s = assembled(std::move(scene), joints, 4e9, 1e9);
+    for (std::size_t z = 0; z < s.mesh.zone_block.size(); ++z)
+        for (const Index g : s.mesh.zone_gridpoint[z])
+            if (s.mesh.gridpoint[g].y() > 5 || (s.mesh.gridpoint[s.mesh.zone_gridpoint[z][0]] +
+                                                s.mesh.gridpoint[s.mesh.zone_gridpoint[z][1]] +
+                                                s.mesh.gridpoint[s.mesh.zone_gridpoint[z][2]])
+                                                       .y() > 15)
+                s.assembly.displacement[g] = {2e-4, 1e-4};
+    find_forces(s.assembly);
+    Vector2d on_lower = Vector2d::Zero();
+    for (std::size_t c = 0; c < s.mesh.contact_edge.size(); ++c) {
+        EXPECT_NEAR(s.assembly.contacts.traction[c].x(), 4e9 * 1e-4, 1e-3); // tension: it opens
+        EXPECT_NEAR(s.assembly.contacts.traction[c].y(), 1e9 * 2e-4, 1e-3);
+        on_lower += s.assembly.contact_force[c];
+    }
+    EXPECT_NEAR(on_lower.x(), 10 * 1e9 * 2e-4, 1e-2);
+    EXPECT_NEAR(on_lower.y(), 10 * 4e9 * 1e-4, 1e-2);
+}
+
+TEST(assembly, gershgorin_bounds_the_highest_frequency)
+{
+    // Rayleigh quotients of many motions stay below the largest row sum over mass, and the best comes near
+    // it.
+    Section s = jointed_plate();
+    const std::vector<double> sums = stiffness_row_sums(s.assembly), mass = lumped_masses(s.assembly);
+    double bound = 0;
+    for (std::size_t g = 0; g < sums.size(); ++g)
+        bound = std::max(bound, sums[g] / mass[g]);
+    move_at_random(s.assembly, 2);
+    double quotient = 0;
+    for (int i = 0; i < 200; ++i) { // power iteration on M^-1 K
+        find_forces(s.assembly);
+        double work = 0, inertia = 0;
+        for (std::size_t g = 0; g < mass.size(); ++g) {
+            work -= s.assembly.displacement[g].dot(s.assembly.force[g]);
+            inertia += mass[g] * s.assembly.displacement[g].squaredNorm();
+        }
+        quotient = work / inertia;
+        for (std::size_t g = 0; g < mass.size(); ++g)
+            s.assembly.displacement[g] = -s.assembly.force[g] / mass[g] / bound;
+    }
+    EXPECT_LT(quotient, bound);
+    EXPECT_GT(quotient, 0.4 * bound);
+}
+
+TEST(assembly, the_same_bits_for_any_number_of_threads)
+{
+    Section one = jointed_plate(), three = jointed_plate();
+    three.assembly.threads = 3;
+    move_at_random(one.assembly, 3);
+    move_at_random(three.assembly, 3);
+    find_forces(one.assembly);
+    find_forces(three.assembly);
+    EXPECT_EQ(one.assembly.force, three.assembly.force);
+}
+
+TEST(assembly, starting_from_here_keeps_forces_and_open_gaps)
+{
+    Scene scene = section({{0, 0}, {10, 0}, {10, 10}, {0, 10}}, 0.05);
+    scene.zone_size = 3;
+    Joints joints;
+    add_joint(joints, {-1, 5}, {11, 5.5});
+    Section s = assembled(std::move(scene), joints, 4e9, 1e9, 0.5);
+    move_at_random(s.assembly, 4);
+    find_forces(s.assembly);
+    const auto force = s.assembly.force;
+    const auto moved = s.assembly.displacement;
+    start_from_here(s.assembly);
+    for (std::size_t g = 0; g < force.size(); ++g)
+        EXPECT_LT((s.assembly.force[g] - force[g]).norm(), 1e-3);
+    // Going back to where it came from is the same as if nothing had been reset.
+    Section t = assembled(s.scene, joints, 4e9, 1e9, 0.5);
+    t.assembly.displacement = moved;
+    find_forces(t.assembly);
+    for (std::size_t g = 0; g < moved.size(); ++g) {
+        s.assembly.displacement[g] = -moved[g];
+        t.assembly.displacement[g].setZero();
+    }
+    find_forces(s.assembly);
+    find_forces(t.assembly);
+    for (std::size_t g = 0; g < force.size(); ++g)
+        EXPECT_LT((s.assembly.force[g] - t.assembly.force[g]).norm(), 1.0); // of 1e7
+}
+
+TEST(assembly, what_excavation_releases_keeps_the_rest_in_balance)
+{
+    Scene scene = section({{0, 0}, {20, 0}, {20, 10}, {0, 10}}, 0.05);
+    scene.zone_size = 1.5;
+    scene.gravity = 9.81;
+    scene.stages.push_back({"cut", 1, {{{12, 4}, {21, 4}, {21, 11}, {10, 11}}}});
+    scene.in_situ_stress.compression_xx = 1e6;
+    scene.in_situ_stress.compression_yy = 2e6;
+    Joints joints;
+    add_joint(joints, {-1, 3}, {21, 5});
+    add_joint(joints, {6, -1}, {9, 11});
+    Section s = assembled(std::move(scene), joints, 5e9, 2e9);
+    find_forces(s.assembly);
+    const auto before = s.assembly.force;
+    const auto released = excavate(s.assembly, s.network.blocks, s.mesh, 0);
+    for (std::size_t g = 0; g < released.size(); ++g)
+        s.assembly.load[g] += released[g];
+    find_forces(s.assembly);
+    std::size_t gone = 0, near_the_cut = 0;
+    for (std::size_t g = 0; g < before.size(); ++g) {
+        if (s.assembly.is_free[g].isZero()) {
+            ++gone;
+            continue;
+        }
+        near_the_cut += released[g].norm() > 0 ? 1 : 0;
+        EXPECT_LT((s.assembly.force[g] - before[g]).norm(), 1e-6 * 2e6);
+    }
+    EXPECT_GT(gone, 10u);
+    EXPECT_GT(near_the_cut, 5u);
+}

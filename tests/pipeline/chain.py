@@ -1,0 +1,93 @@
+"""Runs the programs for the tests in this folder, on scenes written as changes to a scene.
+
+A test is started as `TEST.py PROGRAMS SOURCE`: the folder of the programs and that of the sources.
+"""
+
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+
+import h5py
+
+LONGEST_RUN = 300  # s; a program that takes longer hangs
+
+
+class Chain:
+    """The programs, and a folder for their files that vanishes with the tests."""
+
+    def __init__(self, programs, source):
+        self.programs = pathlib.Path(programs).resolve()
+        self.source = pathlib.Path(source).resolve()
+        self._folder = tempfile.TemporaryDirectory(prefix="jointcreep-")
+        self.folder = pathlib.Path(self._folder.name)
+
+    def new_folder(self):
+        return pathlib.Path(tempfile.mkdtemp(dir=self.folder))
+
+    def scene_text(self, name):
+        """The text of data/column/scene.toml by the name "column", or of a scene in this folder."""
+        data = self.source / "data" / name / "scene.toml"
+        return (data if data.exists() else pathlib.Path(__file__).parent / f"{name}.toml").read_text()
+
+    def answer(self, program, *arguments):
+        """What the program does, whatever its exit code."""
+        command = [self.programs / program, *map(str, arguments)]
+        return subprocess.run(command, capture_output=True, text=True, timeout=LONGEST_RUN, cwd=self.folder)
+
+    def run(self, program, source, output, *arguments):
+        """The output of a program that must succeed."""
+        done = self.answer(program, source, "-o", output, *arguments)
+        if done.returncode != 0:
+            raise AssertionError(f"{program} ended with exit code {done.returncode}: {done.stderr}")
+        return output
+
+    def network(self, text, *arguments):
+        """Path of the network file of a scene's text."""
+        folder = self.new_folder()
+        scene = folder / "scene.toml"
+        scene.write_text(text)
+        return self.run("jointgen", scene, folder / "network.h5", *arguments)
+
+    def joints(self, text, *arguments):
+        """Path of the joints file of a scene's text; the arguments are jointgen's."""
+        network = self.network(text, *arguments)
+        return self.run("strength-averaging", network, network.with_name("joints.h5"))
+
+    def result(self, text, *arguments):
+        """Path of the result file of a scene's text; the arguments are demsolve's."""
+        joints = self.joints(text)
+        return self.run("demsolve", joints, joints.with_name("result.h5"), *arguments)
+
+
+def changed(text, pattern, replacement, count=1):
+    """The text with `pattern`, a regular expression, replaced wherever it is found: `count` times, or it fails."""
+    new, found = re.subn(pattern, replacement, text, flags=re.MULTILINE)
+    if found != count or new == text:
+        raise AssertionError(f"{pattern!r} is found {found} times in the scene, not {count} times")
+    return new
+
+
+def datasets(path):
+    """Every dataset of a file, by its name; text as str."""
+    values = {}
+
+    def note(name, item):
+        if isinstance(item, h5py.Dataset):
+            is_text = h5py.check_string_dtype(item.dtype) is not None
+            values["/" + name] = item.asstr()[:] if is_text else item[:]
+
+    with h5py.File(path) as file:
+        file.visititems(note)
+    return values
+
+
+def main(tests):
+    """Runs the tests of a module, which find the programs in `tests.chain`."""
+    if len(sys.argv) < 3:
+        sys.exit(f"usage: {sys.argv[0]} PROGRAMS SOURCE [unittest options]")
+    tests.chain = Chain(*sys.argv[1:3])
+    with tests.chain._folder:
+        unittest.main(module=tests, argv=[sys.argv[0], *sys.argv[3:]])

@@ -1,0 +1,164 @@
+// Equilibria with a closed form, by every kind of damping.
+
+#include "../mechanics/sections.hpp"
+
+#include "mechanics/recorder.hpp"
+#include "model/error.hpp"
+#include "relaxation/relax.hpp"
+
+#include <gtest/gtest.h>
+
+using namespace jointcreep;
+using namespace jointcreep::test;
+using Eigen::Vector2d;
+using mechanics::Assembly;
+using mechanics::Certificate;
+
+namespace
+{
+
+Equilibrium settings(Damping damping, Masses masses = Masses::scaled)
+{
+    return {.tolerance = 1e-7,
+            .masses = masses,
+            .damping = damping,
+            .mass_damping = 20,
+            .local_damping = 0.8,
+            .unloading_increments = 1,
+            .most_steps = 200000};
+}
+
+//        ___________
+//       /          /   a thin block (10 m x 1 m) on a joint that dips at `dip`, on a block that is held
+//      /__________/
+//     /__________/
+Section incline(double dip, double friction)
+{
+    const Vector2d along(std::cos(dip), -std::sin(dip)), up(std::sin(dip), std::cos(dip));
+    const auto at = [&](double x, double y) { return Vector2d(x * along + y * up); };
+    Scene scene = section({at(0, -1), at(10, -1), at(10, 1), at(0, 1)}, 0.01);
+    scene.zone_size = 0.5;
+    scene.gravity = 9.81;
+    scene.boundaries = {{at(0, -1), at(10, -1), true, true, ""}};
+    Joints joints;
+    add_joint(joints, at(0, 0), at(10, 0));
+    return assembled(std::move(scene), joints, 1e8, 4e7, friction);
+}
+
+const double deg = std::numbers::pi / 180;
+
+} // namespace
+
+class relax_with : public testing::TestWithParam<std::pair<Damping, Masses>>
+{
+};
+
+// The paper's column under its own weight, put on at once: settlement of a block's centre over its base
+// joint.
+//   u = -sum over the joints below (weight above / K) - integral of (stress above) (1 - nu^2) / E dy
+TEST_P(relax_with, column_settles_under_its_weight)
+{
+    Scene scene = section({{0, 0}, {10, 0}, {10, 40}, {0, 40}}, 0.1);
+    scene.rocks = {{"rock", 2750, 4e10, 0.22, std::nullopt}};
+    scene.zone_size = 2.5;
+    scene.gravity = 9.81;
+    scene.boundaries = {{{0, 0}, {10, 0}, false, false, "joint"}};
+    Joints joints;
+    for (const double y : {10.0, 20.0, 30.0})
+        add_joint(joints, {0, y}, {10, y});
+    for (const double y : {5.0, 15.0, 25.0, 35.0})
+        scene.points.push_back({"block", {5, y}, 0});
+    const double K = 6.9e8;
+    Section s = assembled(std::move(scene), joints, K, 0); // smooth joints: free to widen
+    relaxation::relax(s.assembly, settings(GetParam().first, GetParam().second));
+
+    Result result;
+    mechanics::Recorder(s.scene, s.network.blocks, s.mesh).record_history(result, 0, "", s.assembly);
+    const double weight = 2750 * 9.81;
+    for (int block = 0; block < 4; ++block) {
+        const double y = 10 * block + 5;
+        double exact = 0;
+        for (int joint = 0; joint <= block; ++joint)
+            exact -= weight * (40 - 10 * joint) / K;
+        exact -= weight * (40 * y - y * y / 2) * (1 - 0.22 * 0.22) / 4e10;
+        EXPECT_NEAR(result.history.displacement[block].y(), exact, 1e-3 * std::abs(exact))
+            << "block " << block;
+    }
+}
+
+// W sin(b) / (A K_s) along the joint, W cos(b) / (A K_n) into it.
+TEST_P(relax_with, a_block_on_an_incline_rests_below_the_friction_angle)
+{
+    const double dip = 25 * deg;
+    Section s = incline(dip, 30 * deg);
+    const Certificate certificate =
+        relaxation::relax(s.assembly, settings(GetParam().first, GetParam().second));
+    EXPECT_LE(certificate.out_of_balance_ratio, 1e-7);
+    EXPECT_LE(certificate.contact_force_change, 1e-7);
+    double shear = 0, normal = 0, length = 0;
+    for (std::size_t c = 0; c < s.mesh.contact_edge.size(); ++c) {
+        shear += s.assembly.contacts.length[c] * s.assembly.contacts.traction[c].y();
+        normal += s.assembly.contacts.length[c] * s.assembly.contacts.traction[c].x();
+        length += s.assembly.contacts.length[c];
+    }
+    const double weight = 2700 * 9.81 * 10;
+    EXPECT_NEAR(length, 10, 1e-9);
+    EXPECT_NEAR(std::abs(shear), weight * std::sin(dip), 1e-5 * weight);
+    EXPECT_NEAR(normal, -weight * std::cos(dip), 1e-5 * weight);
+    // The middle of the joint slides by tau / K_s. (Mass damping lets the weight, put on at once, overshoot
+    // and slip.)
+    if (GetParam().first == Damping::mass)
+        return;
+    for (std::size_t c = 0; c < s.mesh.contact_edge.size(); ++c)
+        if ((s.mesh.contact_centre[c] - 5 * Vector2d(std::cos(dip), -std::sin(dip))).norm() < 0.3) {
+            const double exact = weight * std::sin(dip) / 10 / 4e7;
+            EXPECT_NEAR(std::abs(s.assembly.contacts.jump[c].y()), exact, 0.01 * exact);
+        }
+}
+
+INSTANTIATE_TEST_SUITE_P(every_damping, relax_with,
+                         testing::Values(std::pair(Damping::adaptive, Masses::scaled),
+                                         std::pair(Damping::adaptive, Masses::real),
+                                         std::pair(Damping::local, Masses::scaled),
+                                         std::pair(Damping::mass, Masses::real)));
+
+TEST(relax, a_block_on_an_incline_slides_above_the_friction_angle)
+{
+    Section s = incline(35 * deg, 30 * deg);
+    EXPECT_THROW(relaxation::relax(s.assembly, settings(Damping::adaptive)), equilibrium_error);
+}
+
+TEST(relax, a_block_held_by_nothing_has_no_equilibrium)
+{
+    Scene scene = section({{0, 0}, {10, 0}, {10, 10}, {0, 10}}, 0.1);
+    scene.zone_size = 3;
+    scene.gravity = 9.81;
+    Section s = assembled(std::move(scene), {}, 1e9, 1e9);
+    EXPECT_THROW(relaxation::relax(s.assembly, settings(Damping::adaptive)), equilibrium_error);
+}
+
+TEST(relax, a_state_in_balance_stays_as_it_is)
+{
+    Section s = jointed_plate();
+    const Certificate certificate = relaxation::relax(s.assembly, settings(Damping::adaptive));
+    EXPECT_EQ(certificate.steps, 0);
+}
+
+TEST(relax, mass_damping_needs_real_masses)
+{
+    Section s = incline(25 * deg, 30 * deg);
+    EXPECT_THROW(relaxation::relax(s.assembly, settings(Damping::mass, Masses::scaled)), input_error);
+}
+
+TEST(relax, gives_up_after_the_steps_allowed_and_says_how_far_it_was)
+{
+    Section s = incline(25 * deg, 30 * deg);
+    Equilibrium impatient = settings(Damping::adaptive);
+    impatient.most_steps = 40;
+    try {
+        relaxation::relax(s.assembly, impatient);
+        FAIL();
+    } catch (const equilibrium_error& error) {
+        EXPECT_NE(std::string(error.what()).find("after 40 steps"), std::string::npos);
+    }
+}

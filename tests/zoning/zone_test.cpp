@@ -1,0 +1,159 @@
+// Zones cover the blocks, joints split gridpoints, welded edges do not.
+
+#include "zoning/zone.hpp"
+
+#include "../blocks/section.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+using namespace jointcreep;
+using namespace jointcreep::test;
+using Eigen::Vector2d;
+
+namespace
+{
+
+double zone_area(const Mesh& mesh, std::size_t z)
+{
+    const auto& g = mesh.zone_gridpoint[z];
+    const Vector2d a = mesh.gridpoint[g[1]] - mesh.gridpoint[g[0]],
+                   b = mesh.gridpoint[g[2]] - mesh.gridpoint[g[0]];
+    return (a.x() * b.y() - a.y() * b.x()) / 2;
+}
+
+// Zones of every block add up to it, all the right way round; contacts carry the whole length of their edge.
+void expect_sound(const Blocks& blocks, const Mesh& mesh)
+{
+    std::vector<double> area(blocks.block_area.size(), 0.0);
+    for (std::size_t z = 0; z < mesh.zone_block.size(); ++z) {
+        EXPECT_GT(zone_area(mesh, z), 0);
+        area[mesh.zone_block[z]] += zone_area(mesh, z);
+    }
+    for (std::size_t b = 0; b < area.size(); ++b)
+        EXPECT_NEAR(area[b], blocks.block_area[b], 1e-9 * blocks.block_area[b]);
+
+    std::vector<double> length(blocks.edge_vertex.size(), 0.0);
+    for (std::size_t c = 0; c < mesh.contact_edge.size(); ++c) {
+        length[mesh.contact_edge[c]] += mesh.contact_length[c];
+        EXPECT_NE(mesh.contact_gridpoint[c][0], mesh.contact_gridpoint[c][1]);
+        EXPECT_EQ(mesh.gridpoint[mesh.contact_gridpoint[c][0]], mesh.gridpoint[mesh.contact_gridpoint[c][1]]);
+    }
+    for (std::size_t e = 0; e < length.size(); ++e)
+        if (blocks.edge_kind[e] == static_cast<Index>(EdgeKind::joint)) {
+            const auto [a, b] = blocks.edge_vertex[e];
+            EXPECT_NEAR(length[e], (blocks.vertex[a] - blocks.vertex[b]).norm(), 1e-9);
+        }
+}
+
+// Pieces of rock that hold together: gridpoints linked by zones.
+std::size_t pieces(const Mesh& mesh)
+{
+    std::vector<Index> same(mesh.gridpoint.size());
+    for (std::size_t g = 0; g < same.size(); ++g)
+        same[g] = static_cast<Index>(g);
+    const auto root = [&](Index g) {
+        while (same[g] != g)
+            g = same[g] = same[same[g]];
+        return g;
+    };
+    for (const auto& g : mesh.zone_gridpoint) {
+        same[root(g[1])] = root(g[0]);
+        same[root(g[2])] = root(g[0]);
+    }
+    std::set<Index> roots;
+    for (const auto& g : mesh.zone_gridpoint)
+        roots.insert(root(g[0]));
+    return roots.size();
+}
+
+} // namespace
+
+TEST(zone, blocks_on_joints_share_no_gridpoint)
+{
+    Scene scene = section({{0, 0}, {10, 0}, {10, 10}, {0, 10}}, 0.1);
+    scene.zone_size = 2;
+    Joints joints;
+    add_joint(joints, {-1, 4}, {11, 4});
+    add_joint(joints, {3, -1}, {3, 11});
+    const Blocks blocks = blocks::cut(scene, joints);
+    const Mesh mesh = zoning::zone(scene, blocks);
+    expect_sound(blocks, mesh);
+    EXPECT_EQ(pieces(mesh), 4u);
+    for (std::size_t c = 0; c < mesh.contact_edge.size(); ++c) { // side b is above a level joint
+        const Vector2d n = mesh.contact_normal[c];
+        const Index j = blocks.edge_joint[mesh.contact_edge[c]];
+        EXPECT_NEAR((n - (j == 0 ? Vector2d(0, 1) : Vector2d(-1, 0))).norm(), 0, 1e-12);
+    }
+}
+
+TEST(zone, welded_blocks_share_their_gridpoints)
+{
+    Scene scene = section({{0, 0}, {10, 0}, {10, 10}, {0, 10}}, 0.1);
+    scene.zone_size = 2;
+    scene.stages.push_back({"cut", 1, {{{5, 3}, {12, 3}, {12, 12}, {5, 12}}}});
+    const Blocks blocks = blocks::cut(scene, {});
+    const Mesh mesh = zoning::zone(scene, blocks);
+    expect_sound(blocks, mesh);
+    EXPECT_EQ(blocks.block_area.size(), 2u);
+    EXPECT_EQ(pieces(mesh), 1u);
+    EXPECT_TRUE(mesh.contact_edge.empty());
+}
+
+TEST(zone, a_joint_that_ends_on_a_weld_leaves_its_tip_whole)
+{
+    // A level joint from the left side to the middle of a stage outline: the outline holds the two sides
+    // together.
+    Scene scene = section({{0, 0}, {10, 0}, {10, 10}, {0, 10}}, 0.1);
+    scene.zone_size = 2;
+    scene.stages.push_back({"cut", 1, {{{5, -1}, {12, -1}, {12, 12}, {5, 12}}}});
+    Joints joints;
+    add_joint(joints, {-1, 5}, {5, 5});
+    const Blocks blocks = blocks::cut(scene, joints);
+    const Mesh mesh = zoning::zone(scene, blocks);
+    EXPECT_EQ(blocks.block_area.size(), 3u);
+    EXPECT_EQ(pieces(mesh), 1u);
+    for (const auto& [a, b] : mesh.contact_gridpoint)
+        EXPECT_NE(a, b);
+}
+
+TEST(zone, boundaries_are_held_or_rest_on_the_ground)
+{
+    Scene scene = section({{0, 0}, {10, 0}, {10, 10}, {0, 10}}, 0.1);
+    scene.zone_size = 2;
+    scene.boundaries = {{{0, 0}, {10, 0}, false, false, "joint"}, {{0, 0}, {0, 10}, true, false, ""}};
+    const Blocks blocks = blocks::cut(scene, {});
+    const Mesh mesh = zoning::zone(scene, blocks);
+    double length = 0;
+    for (std::size_t c = 0; c < mesh.contact_edge.size(); ++c) {
+        const auto [ground, rock] = mesh.contact_gridpoint[c];
+        EXPECT_EQ(mesh.gridpoint_fixed[ground], 3);
+        EXPECT_EQ(mesh.gridpoint[ground], mesh.gridpoint[rock]);
+        EXPECT_NEAR(mesh.contact_normal[c].y(), 1, 1e-12); // side b, the rock, is above
+        length += mesh.contact_length[c];
+    }
+    EXPECT_NEAR(length, 10, 1e-12);
+    for (std::size_t g = 0; g < mesh.gridpoint.size(); ++g)
+        if (mesh.gridpoint_fixed[g] != 3) {
+            EXPECT_EQ(mesh.gridpoint_fixed[g], mesh.gridpoint[g].x() == 0 ? 1 : 0);
+        }
+}
+
+TEST(zone, random_networks)
+{
+    std::mt19937 random(11);
+    std::uniform_real_distribution<double> x(-10, 110);
+    for (int i = 0; i < 10; ++i) {
+        Scene scene = section({{0, 0}, {100, 0}, {100, 37}, {71.3, 39.1}, {52.7, 80.9}, {0, 83.3}}, 0.1);
+        scene.zone_size = 5;
+        Joints joints;
+        for (int j = 0; j < 25; ++j)
+            add_joint(joints, {x(random), -10}, {x(random), 110});
+        const Blocks blocks = blocks::cut(scene, joints);
+        const Mesh mesh = zoning::zone(scene, blocks);
+        expect_sound(blocks, mesh);
+        EXPECT_EQ(pieces(mesh), blocks.block_area.size());
+        EXPECT_GT(zoning::quality_of(mesh).smallest_altitude, 1e-3);
+    }
+}
