@@ -19,7 +19,13 @@ for package in $packages; do
 done
 if [ -n "$missing" ]; then
   as_root=""
-  [ "$(id -u)" = 0 ] || as_root="sudo"
+  if [ "$(id -u)" != 0 ]; then
+    as_root="sudo"
+    if ! command -v sudo >/dev/null; then
+      echo "setup.sh: only root can install the missing packages:$missing" >&2
+      exit 1
+    fi
+  fi
   $as_root apt-get update
   # shellcheck disable=SC2086  # a list of words is wanted
   $as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends $missing

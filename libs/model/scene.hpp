@@ -137,14 +137,14 @@ struct Creep {
     std::optional<double> stop_rate; // ends creep after the last stage once no point moves faster [m/s]
 };
 
-enum class Damping { kinetic, adaptive, local, mass };
+enum class Damping { adaptive, local, mass };
 enum class Masses { scaled, real };
 
 // How equilibrium is found. Numerical, so it has defaults; they are declared with the keys.
 struct Equilibrium {
     double tolerance = 0; // of the out-of-balance ratio [-]
     Masses masses = Masses::scaled;
-    Damping damping = Damping::kinetic;
+    Damping damping = Damping::adaptive;
     double mass_damping = 0;               // alpha of the paper's Eq. 1, with damping "mass" [1/s]
     double local_damping = 0;              // with damping "local" [-]
     std::int32_t unloading_increments = 1; // in which a stage's rock is taken away

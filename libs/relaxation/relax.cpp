@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
+#include <limits>
 
 namespace jointcreep::relaxation
 {
@@ -18,6 +20,7 @@ namespace
 {
 
 constexpr Index check_every = 20, window = 100; // [steps]
+constexpr Index patience = 5000;                // between looks at what moves on [steps]
 constexpr double safety = 0.9;                  // of the largest stable step
 constexpr Index chunk = 512;                    // gridpoints summed together, whatever the number of threads
 
@@ -50,7 +53,7 @@ class Relaxation
 public:
     Relaxation(Assembly& assembly, const Equilibrium& settings)
         : a_(assembly), settings_(settings), velocity_(assembly.position.size(), Vector2d::Zero()),
-          start_(assembly.displacement)
+          start_(assembly.displacement), patience_ago_(assembly.displacement)
     {
         if (settings.damping == Damping::mass && settings.masses == Masses::scaled)
             throw input_error("equilibrium: damping \"mass\" needs masses = \"real\"; scaled masses have no "
@@ -98,7 +101,6 @@ public:
         const double gain = (starts_from_rest_ ? 0.5 : 1.0) * dt_ / (1 + alpha * dt_ / 2);
         starts_from_rest_ = false;
         const double local = settings_.damping == Damping::local ? settings_.local_damping : 0.0;
-        const bool kinetic = settings_.damping == Damping::kinetic;
         const bool adaptive = settings_.damping == Damping::adaptive;
 #pragma omp parallel for schedule(static) num_threads(a_.threads) if (a_.threads > 1)
         for (Index k = 0; k < n_chunks; ++k) {
@@ -116,8 +118,6 @@ public:
                     force -= local * Vector2d(v.x() == 0 ? 0 : std::copysign(std::abs(force.x()), v.x()),
                                               v.y() == 0 ? 0 : std::copysign(std::abs(force.y()), v.y()));
                 v = keep * v + gain * mass_[g] * force;
-                if (kinetic && mass_[g] > 0)
-                    energy += v.squaredNorm() / mass_[g];
                 a_.displacement[g] += dt_ * v;
             }
             energy_[k] = energy;
@@ -130,38 +130,63 @@ public:
         }
         if (adaptive)
             alpha_ = energy > 0 && work > 0 ? std::min(2 * std::sqrt(work / (dt_ * energy)), 1.9 / dt_) : 0.0;
-        if (kinetic) {
-            if (energy < last_energy_) {
-                std::fill(velocity_.begin(), velocity_.end(), Vector2d::Zero());
-                starts_from_rest_ = true;
-                energy = 0;
-            }
-            last_energy_ = energy;
-        }
         find_forces(a_);
     }
 
-    void check_motion() const
+    // Throws if a piece of rock is on its way: far already, or steadily.
+    void check_motion(Index steps)
     {
-        for (std::size_t g = 0; g < velocity_.size(); ++g) {
-            const double moved = (a_.displacement[g] - start_[g]).norm();
-            if (moved <= too_far_)
-                continue;
+        const auto [moved, g] = largest_move(start_);
+        if (!(moved <= too_far_))
             throw equilibrium_error(
                 "no equilibrium: the rock at " + shown(a_.position[g]) + " has moved " +
-                (std::isfinite(moved) ? shown(moved) + " m" : std::string("without bound")) +
+                (std::isfinite(moved) ? shown_length(moved) : std::string("without bound")) +
                 " and is still moving; is it held by anything?");
-        }
+        if (steps % patience != 0)
+            return;
+        // What comes to rest slows down. What slides or falls does not: damping only lends it a steady speed.
+        const auto [lately, h] = largest_move(patience_ago_);
+        windows_without_slowing_ = lately > 0.95 * moved_before_ ? windows_without_slowing_ + 1 : 0;
+        if (windows_without_slowing_ == 4)
+            throw equilibrium_error("no equilibrium: the rock at " + shown(a_.position[h]) +
+                                    " moves on without slowing down, " + shown_length(lately) +
+                                    " over the last " + std::to_string(patience) +
+                                    " steps; it slides or falls, and nothing stops it");
+        moved_before_ = lately;
+        patience_ago_ = a_.displacement;
     }
 
 private:
+    // The largest move of a gridpoint since it was at `before` [m], and that gridpoint; not a number first of
+    // all.
+    std::pair<double, std::size_t> largest_move(const std::vector<Vector2d>& before) const
+    {
+        std::pair<double, std::size_t> largest(0, 0);
+        for (std::size_t g = 0; g < before.size(); ++g) {
+            const double moved = (a_.displacement[g] - before[g]).norm();
+            if (!std::isfinite(moved))
+                return {moved, g};
+            largest = std::max(largest, {moved, g});
+        }
+        return largest;
+    }
+
+    static std::string shown_length(double length)
+    {
+        std::array<char, 32> text{};
+        std::snprintf(text.data(), text.size(), "%.3g m", length);
+        return text.data();
+    }
+
     Assembly& a_;
     const Equilibrium& settings_;
     std::vector<Vector2d> velocity_;
-    std::vector<Vector2d> start_, last_force_;
+    std::vector<Vector2d> start_, patience_ago_, last_force_;
     std::vector<double> mass_; // inverse [m/kg]
     std::vector<double> energy_, quotient_;
-    double dt_ = 0, too_far_ = 0, alpha_ = 0, last_energy_ = 0;
+    double dt_ = 0, too_far_ = 0, alpha_ = 0;
+    double moved_before_ = std::numeric_limits<double>::infinity(); // in the last window of `patience` steps
+    int windows_without_slowing_ = 0;
     bool starts_from_rest_ = true;
 };
 
@@ -186,7 +211,7 @@ Certificate relax(Assembly& assembly, const Equilibrium& settings, const StepObs
             observe(certificate.steps * relaxation.dt());
         if (certificate.steps % check_every != 0)
             continue;
-        relaxation.check_motion();
+        relaxation.check_motion(certificate.steps);
         const Balance balance = balance_of(assembly);
         certificate.out_of_balance_ratio = balance.ratio();
         certificate.contact_force_change = memory.change_since_window(assembly) / balance.mean;

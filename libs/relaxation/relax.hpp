@@ -5,7 +5,6 @@
 //
 // Masses are the real ones or scaled: for a state of rest only the forces matter, so every gridpoint may have
 // the mass that just allows the common step (dt = 1 s then; solver time means nothing). Damping is one of
-//   kinetic   none, but whenever the kinetic energy passes a peak all gridpoints are stopped;
 //   adaptive  alpha = 2 w, critical for the lowest frequency w that the present motion shows (Rayleigh
 //   quotient); local     a fraction of the out-of-balance force, against the velocity (Cundall 1987); mass
 //   alpha as given: the paper's way.

@@ -322,8 +322,8 @@ Table<Scene> zones()
 Table<Cutting> cutting()
 {
     return {{"cutting", once, optional, "What is too small to keep when the section is cut into blocks."},
-            {number("shortest_edge_m", &Cutting::shortest_edge, metres, from(0).to(farthest_metre),
-                    "Closer vertices, and vertices closer to an edge, are merged. At most the zone size.")
+            {number("shortest_edge_m", &Cutting::shortest_edge, metres, above(0).to(farthest_metre),
+                    "Vertices closer than this, or than half of it to an edge, are merged. At most the zone size.")
                  .optional("0.02 x zones.size_m"),
              number("smallest_angle_deg", &Cutting::smallest_angle, degrees, from(0).to(30),
                     "Narrower wedges between edges are closed where that moves nothing far.")
@@ -340,12 +340,9 @@ Table<Equilibrium> equilibrium()
                     "Nodal masses: scaled for a fast way to the same equilibrium, or the real ones.")
                  .or_else(std::string("scaled")),
              choice("damping", &E::damping,
-                    {{"kinetic", Damping::kinetic},
-                     {"adaptive", Damping::adaptive},
-                     {"local", Damping::local},
-                     {"mass", Damping::mass}},
+                    {{"adaptive", Damping::adaptive}, {"local", Damping::local}, {"mass", Damping::mass}},
                     "How motion is damped.")
-                 .or_else(std::string("kinetic")),
+                 .or_else(std::string("adaptive")),
              number("mass_damping_per_s", &E::mass_damping, per_s, above(0).to(1e12),
                     "Mass-proportional damping; with damping = \"mass\", and only then.")
                  .optional(),

@@ -87,7 +87,7 @@ def runs_of(text):
     for factor in (2, 5, 10):
         runs.append(Run("way to equilibrium", f"real masses, mass damping {factor * damping:g} /s",
                         edited(text, f"mass_damping_per_s = {damping:g}", f"mass_damping_per_s = {factor * damping:g}")))
-    for kind in ("kinetic", "adaptive", "local"):
+    for kind in ("adaptive", "local"):
         settings = f'masses = "scaled"\ndamping = "{kind}"\nmost_steps = 20000000'
         runs.append(Run("way to equilibrium", f"scaled masses, {kind} damping", with_equilibrium(text, settings)))
 
@@ -155,8 +155,12 @@ def draw(answers, folder):
                ("creep step dT", "creep step dT (days)")]
     plot, all_axes = figure.plt.subplots(1, 3, sharey=True, figsize=(figure.TWO_COLUMNS, 2.4))
     for axes, (study, label) in zip(all_axes, studies):
-        points = [(run.number, answer.worst.difference) for run, answer in answers if run.study == study]
-        axes.loglog(*zip(*points), color=figure.COLORS[0], marker="o", markerfacecolor="white")
+        values, differences = zip(*[(run.number, answer.worst.difference) for run, answer in answers
+                                    if run.study == study])
+        axes.loglog(values, differences, color=figure.COLORS[0], marker="o", markerfacecolor="white")
+        if study != "tolerance":
+            axes.set_xticks(values, [f"{value:g}" for value in values])
+            axes.set_xticks([], minor=True)
         axes.axhline(1e-3, color="0.5", linewidth=0.6, linestyle="--")
         axes.set_xlabel(label)
         axes.grid(color="0.9", linewidth=0.4)

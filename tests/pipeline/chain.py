@@ -16,13 +16,10 @@ LONGEST_RUN = 300  # s; a program that takes longer hangs
 
 
 class Chain:
-    """The programs, and a folder for their files that vanishes with the tests."""
+    """The programs, the sources, and a folder for the files of a test."""
 
-    def __init__(self, programs, source):
-        self.programs = pathlib.Path(programs).resolve()
-        self.source = pathlib.Path(source).resolve()
-        self._folder = tempfile.TemporaryDirectory(prefix="jointcreep-")
-        self.folder = pathlib.Path(self._folder.name)
+    def __init__(self, programs, source, folder):
+        self.programs, self.source, self.folder = (pathlib.Path(path).resolve() for path in (programs, source, folder))
 
     def new_folder(self):
         return pathlib.Path(tempfile.mkdtemp(dir=self.folder))
@@ -84,10 +81,17 @@ def datasets(path):
     return values
 
 
-def main(tests):
-    """Runs the tests of a module, which find the programs in `tests.chain`."""
+class ChainTest(unittest.TestCase):
+    """A test of whole programs, which it finds in `chain`."""
+
+    chain: Chain
+
+
+def main():
+    """Runs the tests of the script it is called from."""
     if len(sys.argv) < 3:
         sys.exit(f"usage: {sys.argv[0]} PROGRAMS SOURCE [unittest options]")
-    tests.chain = Chain(*sys.argv[1:3])
-    with tests.chain._folder:
-        unittest.main(module=tests, argv=[sys.argv[0], *sys.argv[3:]])
+    programs, source = sys.argv[1:3]
+    with tempfile.TemporaryDirectory(prefix="jointcreep-") as folder:
+        ChainTest.chain = Chain(programs, source, folder)
+        unittest.main(module="__main__", argv=[sys.argv[0], *sys.argv[3:]])

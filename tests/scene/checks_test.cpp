@@ -207,7 +207,7 @@ TEST(checks, numbers_that_depend_on_others)
 {
     expect_refused("shortest_edge_m = 0.2", "shortest_edge_m = 5", "wanted at most [zones] size_m, 4 m");
     expect_refused("mass_damping_per_s = 20\n", "", "has no mass_damping_per_s", "[equilibrium]");
-    expect_refused("damping = \"mass\"", "damping = \"kinetic\"", "mass_damping_per_s = 20",
+    expect_refused("damping = \"mass\"", "damping = \"adaptive\"", "mass_damping_per_s = 20",
                    "mass_damping_per_s = 20");
     expect_refused("mass_damping_per_s = 20", "mass_damping_per_s = 20\nlocal_damping = 0.8",
                    "only damping = \"local\"", "local_damping = 0.8");

@@ -67,7 +67,7 @@ TEST(every_key, optional_tables_may_be_left_out)
     EXPECT_TRUE(scene.stages.empty() && scene.points.empty() && scene.gauges.empty());
     EXPECT_EQ(scene.cutting.shortest_edge, 0.02 * 4);
     EXPECT_EQ(scene.equilibrium.tolerance, 1e-6);
-    EXPECT_EQ(scene.equilibrium.damping, Damping::kinetic);
+    EXPECT_EQ(scene.equilibrium.damping, Damping::adaptive);
     EXPECT_EQ(scene.equilibrium.masses, Masses::scaled);
 }
 

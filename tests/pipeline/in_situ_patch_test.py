@@ -1,0 +1,82 @@
+"""A uniform stress in a random network of blocks whose joints can carry it: nothing moves."""
+
+import numpy
+
+from chain import ChainTest, changed, datasets, main
+
+STRESS = 6e6  # the largest principal one, about [Pa]
+YOUNGS_MODULUS, SIZE = 20e9, 60  # [Pa], [m]
+
+STAGE_AT_THE_END = """
+[[stage]]
+name = "at the end"
+date = 3
+remove_m = [[[20, 0], [45, 0], [33, 27]]]
+"""
+
+
+class InSituPatch(ChainTest):
+    def moved(self, path):
+        """The largest displacement of all gridpoints and recorded times, as a multiple of sigma L / E."""
+        result = datasets(path)
+        largest = max(numpy.abs(result[f"/{what}/displacement"]).max() for what in ("states", "history"))
+        return largest * YOUNGS_MODULUS / (STRESS * SIZE), result
+
+    def assert_rests(self, path):
+        moved, result = self.moved(path)
+        self.assertLess(moved, 1e-10)
+        self.assertEqual(result["/equilibria/steps"].max(), 0)
+        self.assertLess(result["/equilibria/out_of_balance_ratio"].max(), 1e-13)
+        return result
+
+    def test_random_network(self):
+        text = self.chain.scene_text("patch")
+        for realization in range(4):
+            with self.subTest(realization=realization):
+                joints = self.chain.joints(text, "--realization", realization)
+                for tolerance in "1e-6", "1e-12":
+                    result = self.assert_rests(
+                        self.chain.run("demsolve", joints, joints.with_name(tolerance), "--tolerance", tolerance))
+                blocks = len(result["/blocks/area"])
+                self.assertTrue(210 <= blocks <= 390, f"{blocks} blocks, not 300 by and large")
+                fraction = result["/edges/joint_fraction"][result["/edges/kind"] == 1]
+                self.assertTrue((fraction < 0.99).any(), "there are no rock bridges")
+
+                # Displacements count from the in-situ equilibrium, so no steps to it is the half of the matter. The
+                # stress is the scene's in every zone, and every joint carries its share of it.
+                stress = result["/states/stress"]
+                self.assertTrue(numpy.allclose(stress, [-6e6, -4e6, 1.5e6], rtol=1e-9))
+                normal = result["/mesh/contact_normal"]
+                tensor = numpy.array([[-6e6, 1.5e6], [1.5e6, -4e6]])
+                across = numpy.einsum("ci,ij,cj->c", normal, tensor, normal)
+                self.assertTrue(numpy.allclose(result["/states/traction"][:, :, 0], across, rtol=1e-9))
+
+    def test_free_surface(self):
+        """Where the stress leaves it, a surface is not held at all."""
+        text = self.chain.scene_text("patch")
+        text = changed(text, "^compression_yy_MPa = 4", "compression_yy_MPa = 0")
+        text = changed(text, "^shear_xy_MPa = 1.5", "shear_xy_MPa = 0")
+        text = changed(text, r'^\[\[boundary\]\]\nfrom_m = \[60, 40\]\nto_m = \[0, 40\]\nfix = "xy"\n', "")
+        self.assert_rests(self.chain.result(text))
+
+    def test_with_a_stage_at_the_end(self):
+        """Stage outlines cut through solid rock change nothing before their day."""
+        text = changed(self.chain.scene_text("patch"), r"^end = 3$", "end = 3\n" + STAGE_AT_THE_END)
+        _, result = self.moved(self.chain.result(text, "--tolerance", "1e-4"))
+        before = list(result["/states/event"]).index("at the end")
+        self.assertTrue((result["/edges/kind"] == 2).any())
+        self.assertLess(numpy.abs(result["/states/displacement"][:before]).max() * YOUNGS_MODULUS,
+                        1e-10 * STRESS * SIZE)
+        self.assertGreater(numpy.abs(result["/states/displacement"][before]).max(), 1e-5)
+
+    def test_weak_joints_slip(self):
+        """Joints that cannot carry the stress do move, which the steps of the first equilibrium show."""
+        text = changed(self.chain.scene_text("patch"), "^cohesion_MPa = 10", "cohesion_MPa = 0")
+        text = changed(text, "^friction_angle_deg = 30", "friction_angle_deg = 5")
+        _, result = self.moved(self.chain.result(text, "--tolerance", "1e-3"))
+        self.assertGreater(result["/equilibria/steps"][0], 0)
+        self.assertFalse(numpy.allclose(result["/states/stress"], [-6e6, -4e6, 1.5e6], rtol=1e-9))
+
+
+if __name__ == "__main__":
+    main()
