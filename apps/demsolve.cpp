@@ -23,6 +23,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
 #include <set>
 
@@ -91,6 +92,14 @@ double largest_move(const std::vector<Eigen::Vector2d>& from, const std::vector<
     return largest;
 }
 
+// What an edge's joint is called: its set, or the material of the joint that a boundary rests on.
+std::string joint_name(const Scene& scene, const Network& network, Index edge)
+{
+    const Index joint = network.blocks.edge_joint[edge];
+    return joint < 0 ? scene.boundaries[network.blocks.edge_boundary[edge]].joint
+                     : network.names.joint_set[network.joints.set[joint]];
+}
+
 // The days on which something other than creep happens: stages, first readings, the end.
 std::set<double> dates_of(const Scene& scene)
 {
@@ -106,7 +115,7 @@ std::set<double> dates_of(const Scene& scene)
 struct Solution {
     Result result;
     mechanics::Assembly assembly;
-    Index in_situ_slips = 0, in_situ_openings = 0;
+    std::map<std::string, Index> beyond_strength; // contacts by joint: what the in-situ stress breaks
     std::optional<double> end_of_creep; // since start [s], where the scene's stop rate ended it early
 };
 
@@ -143,10 +152,9 @@ Solution solve(const Scene& scene, const Network& network, const EquivalentJoint
     // 2. The in-situ equilibrium. Everything is counted from here.
     progress.show(0, "in-situ equilibrium");
     equilibrate();
-    for (const ContactStatus status : rock.contacts.status) {
-        solution.in_situ_slips += status == ContactStatus::slipping ? 1 : 0;
-        solution.in_situ_openings += status == ContactStatus::open ? 1 : 0;
-    }
+    for (std::size_t c = 0; c < rock.contacts.status.size(); ++c)
+        if (rock.contacts.status[c] != ContactStatus::stuck)
+            ++solution.beyond_strength[joint_name(scene, network, result.mesh.contact_edge[c])];
     start_from_here(rock);
     creep::Published creep(result.mesh, joints, rock.contacts.traction);
     recorder.record_history(result, now, "", rock);
@@ -234,11 +242,9 @@ void report(const Network& network, const Scene& scene, const Solution& solution
     summary.add("contacts stuck", contacts[static_cast<std::size_t>(ContactStatus::stuck)]);
     summary.add("contacts slipping", contacts[static_cast<std::size_t>(ContactStatus::slipping)]);
     summary.add("contacts open", contacts[static_cast<std::size_t>(ContactStatus::open)]);
-    const Index broken = solution.in_situ_slips + solution.in_situ_openings;
-    if (broken > 0)
-        summary.add("warning: in-situ contacts beyond strength",
-                    std::to_string(solution.in_situ_slips) + " slipping, " +
-                        std::to_string(solution.in_situ_openings) + " open");
+    for (const auto& [joint, n] : solution.beyond_strength)
+        summary.add("warning: beyond strength in situ",
+                    std::to_string(n) + " contacts of joint \"" + joint + "\"");
     summary.print();
 }
 
@@ -248,12 +254,9 @@ void check_creep_step(const Scene& scene, const Network& network, const Equivale
     const creep::StepLimit limit = creep::longest_step(joints);
     if (!scene.creep || scene.creep->step < limit.step)
         return;
-    const Index joint = network.blocks.edge_joint[limit.edge];
-    const std::string name = joint < 0 ? scene.boundaries[network.blocks.edge_boundary[limit.edge]].joint
-                                       : network.names.joint_set[network.joints.set[joint]];
     throw input_error("creep step of " + shown(scene.creep->step / unit::day) +
                       " day: the published scheme is stable only below " + shown(limit.step / unit::day) +
-                      " day, the limit of joint \"" + name + "\"");
+                      " day, the limit of joint \"" + joint_name(scene, network, limit.edge) + "\"");
 }
 
 void solve_and_write(const Arguments& arguments)

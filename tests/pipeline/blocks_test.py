@@ -1,0 +1,120 @@
+"""Random networks as jointgen writes them: blocks fill the section, and every edge is accounted for."""
+
+import math
+import tomllib
+
+import numpy
+
+from chain import ChainTest, changed, datasets, main
+
+REALIZATIONS = 20
+BOUNDARY, JOINT, WELDED = 0, 1, 2  # kinds of edge
+
+
+def area(corners):
+    """By the shoelace formula, about the first corner; counter-clockwise is positive."""
+    x, y = (numpy.asarray(corners) - corners[0]).T
+    return math.fsum(x * numpy.roll(y, -1) - y * numpy.roll(x, -1)) / 2
+
+
+def rings(network):
+    """Block and vertices of every ring."""
+    first_ring, first_corner = network["/blocks/first_ring"], network["/rings/first_corner"]
+    for block in range(len(first_ring) - 1):
+        for ring in range(first_ring[block], first_ring[block + 1]):
+            yield block, network["/rings/vertex"][first_corner[ring] : first_corner[ring + 1]]
+
+
+def distance_to_lines(points, start, end):
+    """Distance of points [n, k, 2] to segments [n, 2]."""
+    along = (end - start)[:, None]
+    share = ((points - start[:, None]) * along).sum(-1) / (along**2).sum(-1)
+    return numpy.linalg.norm(points - start[:, None] - numpy.clip(share, 0, 1)[..., None] * along, axis=-1)
+
+
+class Blocks(ChainTest):
+    def networks(self, name):
+        """Network and scene of every realization."""
+        text = self.chain.scene_text(name)
+        for realization in range(REALIZATIONS):
+            with self.subTest(scene=name, realization=realization):
+                yield datasets(self.chain.network(text, "--realization", realization)), tomllib.loads(text)
+
+    def check_areas(self, network, scene):
+        section = abs(area(scene["section"]["outline_m"]))
+        areas = network["/blocks/area"]
+        self.assertLess(abs(math.fsum(areas) / section - 1), 1e-12)
+        found = numpy.zeros(len(areas))
+        for block, vertices in rings(network):
+            found[block] += area(network["/vertices/position"][vertices])
+        self.assertLess(numpy.abs(found / areas - 1).max(), 1e-12)
+
+    def check_edges(self, network):
+        """Every edge is a boundary, a joint with its id, or welded, and is twice in rings: once for each side."""
+        kind, joint, block = (network["/edges/" + name] for name in ("kind", "joint", "block"))
+        self.assertTrue(numpy.isin(kind, [BOUNDARY, JOINT, WELDED]).all())
+        self.assertTrue(((joint >= 0) == (kind == JOINT)).all())
+        self.assertTrue(((block >= 0).sum(axis=1) == numpy.where(kind == BOUNDARY, 1, 2)).all())
+        self.assertLess(joint.max(), len(network["/joints/set"]))
+
+        on_left = {}  # a block lies on the left of its rings' edges
+        for ring_block, vertices in rings(network):
+            for a, b in zip(vertices, numpy.roll(vertices, -1)):
+                self.assertNotIn((a, b), on_left)
+                on_left[a, b] = ring_block
+        for (a, b), (left, right) in zip(network["/edges/vertex"], block):
+            self.assertEqual(on_left.pop((a, b), -1), left)
+            self.assertEqual(on_left.pop((b, a), -1), right)
+        self.assertFalse(on_left, "rings have edges that are not in the list of edges")
+
+    def check_joints(self, network, scene):
+        """From the edge back to its joint, and on to its set and material."""
+        fraction, joint = network["/edges/joint_fraction"], network["/edges/joint"]
+        self.assertTrue((fraction >= 0).all() and (fraction <= 1).all())
+        self.assertTrue((fraction[joint < 0] == 0).all())
+
+        # The edge lies on its joint's line, but for what cutting reports to have moved.
+        on_joint = joint >= 0
+        ends = network["/vertices/position"][network["/edges/vertex"]][on_joint]
+        start, end = (network["/joints/" + name][joint[on_joint]] for name in ("from", "to"))
+        largest_move = network["/cutting/largest_move"][0]
+        self.assertLess(distance_to_lines(ends, start, end).max(), largest_move + 1e-9)
+
+        declared = [*scene.get("joint_set", []), *scene.get("joint", [])]
+        self.assertEqual(list(network["/names/joint_set"]), [one["name"] for one in declared])
+        materials = [network["/names/joint_material"][m] for m in network["/joints/material"]]
+        self.assertEqual(materials, [declared[s]["material"] for s in network["/joints/set"]])
+        numbers = list(zip(network["/joints/set"], network["/joints/number"]))
+        self.assertEqual(len(numbers), len(set(numbers)))
+
+        # Joint length is neither lost nor made, but for what cutting reports to have changed.
+        length = numpy.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
+        cut_open = (length * fraction[on_joint]).sum()
+        traces = numpy.linalg.norm(network["/traces/to"] - network["/traces/from"], axis=1).sum()
+        changes = sum(network["/cutting/" + name][0] for name in ("merged_edge_length", "pruned_length"))
+        changes += 2 * network["/cutting/merged_vertices"][0] * largest_move
+        print(cut_open, traces, changes, largest_move)
+        self.assertLess(abs(cut_open - traces), changes + 1e-9 * traces)
+
+    def check_stages(self, network, scene):
+        """A block is wholly inside what its stage removes, or wholly outside."""
+        for block, vertices in rings(network):
+            pass
+
+    def test_patch(self):
+        for network, scene in self.networks("patch"):
+            self.check_areas(network, scene)
+            self.check_edges(network)
+            self.check_joints(network, scene)
+            self.assertFalse((network["/edges/kind"] == WELDED).any())
+
+    def test_slope(self):
+        for network, scene in self.networks("slope"):
+            self.check_areas(network, scene)
+            self.check_edges(network)
+            self.check_joints(network, scene)
+            self.assertTrue((network["/edges/kind"] == WELDED).any())
+
+
+if __name__ == "__main__":
+    main()
