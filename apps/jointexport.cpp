@@ -67,7 +67,7 @@ bool wants_vtu(const std::string& output)
 
 std::string chosen(const Arguments& arguments, FileKind kind, bool vtu)
 {
-    const std::string what = arguments.text("what").value_or(std::string(usual(kind, vtu)));
+    std::string what = arguments.text("what").value_or(std::string(usual(kind, vtu)));
     std::string offered;
     for (const View& view : views) {
         if (!is_offered(view, kind, vtu))

@@ -247,32 +247,32 @@ void Progress::show(double fraction, std::string_view what)
               << std::flush;
 }
 
-void Summary::add(std::string label, std::string value, std::string unit)
+void Summary::add(std::string label, std::string value, const std::string& unit)
 {
     lines_.emplace_back(std::move(label), unit.empty() ? std::move(value) : value + ' ' + unit);
 }
 
-void Summary::add(std::string label, double value, std::string unit)
+void Summary::add(std::string label, double value, const std::string& unit)
 {
     std::array<char, 32> text{};
     const auto end =
         std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::general, 6).ptr;
-    add(std::move(label), std::string(text.data(), end), std::move(unit));
+    add(std::move(label), std::string(text.data(), end), unit);
 }
 
-void Summary::add(std::string label, std::int64_t value, std::string unit)
+void Summary::add(std::string label, std::int64_t value, const std::string& unit)
 {
-    add(std::move(label), std::to_string(value), std::move(unit));
+    add(std::move(label), std::to_string(value), unit);
 }
 
-void Summary::add(std::string label, std::size_t value, std::string unit)
+void Summary::add(std::string label, std::size_t value, const std::string& unit)
 {
-    add(std::move(label), std::to_string(value), std::move(unit));
+    add(std::move(label), std::to_string(value), unit);
 }
 
-void Summary::add(std::string label, std::int32_t value, std::string unit)
+void Summary::add(std::string label, std::int32_t value, const std::string& unit)
 {
-    add(std::move(label), std::to_string(value), std::move(unit));
+    add(std::move(label), std::to_string(value), unit);
 }
 
 void Summary::print() const

@@ -105,11 +105,11 @@ private:
 class Summary
 {
 public:
-    void add(std::string label, std::string value, std::string unit = "");
-    void add(std::string label, double value, std::string unit = ""); // to six digits
-    void add(std::string label, std::int64_t value, std::string unit = "");
-    void add(std::string label, std::size_t value, std::string unit = "");
-    void add(std::string label, std::int32_t value, std::string unit = "");
+    void add(std::string label, std::string value, const std::string& unit = "");
+    void add(std::string label, double value, const std::string& unit = ""); // to six digits
+    void add(std::string label, std::int64_t value, const std::string& unit = "");
+    void add(std::string label, std::size_t value, const std::string& unit = "");
+    void add(std::string label, std::int32_t value, const std::string& unit = "");
     void print() const; // to stdout
 
 private:

@@ -42,7 +42,7 @@ bool is_before(const Eigen::Vector2d& centre, const Eigen::Vector2d& a, const Ei
 
 double ring_area(const std::vector<Eigen::Vector2d>& vertex, const std::vector<Index>& ring)
 {
-    const Eigen::Vector2d origin = vertex[ring[0]];
+    const Eigen::Vector2d& origin = vertex[ring[0]];
     double twice = 0;
     for (std::size_t i = 1; i + 1 < ring.size(); ++i) {
         const Eigen::Vector2d a = vertex[ring[i]] - origin, b = vertex[ring[i + 1]] - origin;
@@ -172,8 +172,8 @@ Eigen::Vector2d place_inside(const std::vector<Eigen::Vector2d>& vertex, const F
         if (std::pair(v.y(), v.x()) < std::pair(w.y(), w.x()))
             lowest = i;
     }
-    const Eigen::Vector2d a = vertex[ring[(lowest + n - 1) % n]], b = vertex[ring[lowest]],
-                          c = vertex[ring[(lowest + 1) % n]];
+    const Eigen::Vector2d &a = vertex[ring[(lowest + n - 1) % n]], &b = vertex[ring[lowest]],
+                          &c = vertex[ring[(lowest + 1) % n]];
     const Eigen::Vector2d across = c - a;
     const auto distance = [&](const Eigen::Vector2d& p) {
         return across.x() * (a.y() - p.y()) - across.y() * (a.x() - p.x());

@@ -175,7 +175,7 @@ bool merge_pass(Graph& graph, const std::vector<Source>& sources, const Polygon&
     std::vector<char> has_moved(n, 0);
     std::map<std::pair<Index, Index>, std::vector<Index>> bent;
     for (const auto& [ends, edge_sources] : edges) {
-        const auto [first, second] = ends;
+        const Index first = ends.first, second = ends.second;
         const Vector2d p = graph.vertex[first], q = graph.vertex[second];
         const Level edge_level = level_of({first, second, edge_sources}, sources);
         const double length = (q - p).norm();

@@ -16,9 +16,9 @@ namespace jointcreep
 namespace
 {
 
-constexpr std::size_t largest_text = 16 * 1024 * 1024; // [byte]
-constexpr std::size_t most_tables = 10000;             // in a list
-constexpr double usual_shortest_edge = 0.02;           // of the zone size
+constexpr std::size_t largest_text = 1 << 24; // [byte]
+constexpr std::size_t most_tables = 10000;    // in a list
+constexpr double usual_shortest_edge = 0.02;  // of the zone size
 constexpr double usual_local_damping = 0.8;
 
 void check_tables(const TomlValue& root, const Reading& reading)
