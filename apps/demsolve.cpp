@@ -62,7 +62,7 @@ std::string choose(const Arguments& arguments, Scene& scene)
         note("zone-size", shown(*size));
     }
     if (const auto tolerance = arguments.number("tolerance")) {
-        require(*tolerance >= 1e-12 && *tolerance <= 1e-2, "--tolerance", *tolerance, "",
+        require(*tolerance >= 1e-12 && *tolerance <= 1e-2, "--tolerance", *tolerance, "(ratio)",
                 "must be between 1e-12 and 0.01");
         scene.equilibrium.tolerance = *tolerance;
         note("tolerance", shown(*tolerance));
@@ -160,7 +160,10 @@ Solution solve(const Scene& scene, const Network& network, const EquivalentJoint
     recorder.record_history(result, now, "", rock);
     recorder.record_state(result, now, "", rock);
 
+    const double last_stage = scene.stages.empty() ? 0 : scene.stages.back().time;
     for (const double date : dates_of(scene)) {
+        if (solution.end_of_creep)
+            break;
         // 3. Creep up to the next date, in equal steps no longer than the scene's.
         const double start = now;
         const bool creeps = scene.creep && creep::creeps(joints);
@@ -169,7 +172,7 @@ Solution solve(const Scene& scene, const Network& network, const EquivalentJoint
         for (int i = 1; i <= n_steps; ++i) {
             progress.show(now / scene.end, "day " + std::to_string(std::lround(now / unit::day)));
             const double next = i == n_steps ? date : start + (date - start) * i / n_steps;
-            const bool may_stop = creeps && scene.creep->stop_rate && date == scene.end;
+            const bool may_stop = creeps && scene.creep->stop_rate && start >= last_stage;
             const std::vector<Eigen::Vector2d> before =
                 may_stop ? rock.displacement : std::vector<Eigen::Vector2d>{};
             const double duration = next - now;
@@ -208,6 +211,9 @@ Solution solve(const Scene& scene, const Network& network, const EquivalentJoint
         }
         recorder.start_readings(result, now);
     }
+    for (const MeasuringPoint& point : scene.points)
+        if (point.first_reading > now) // creep has ended before: nothing moves until then
+            recorder.start_readings(result, point.first_reading);
     return solution;
 }
 

@@ -14,6 +14,7 @@
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <iostream>
 #include <new>
 #include <sstream>
@@ -176,6 +177,14 @@ std::optional<double> Arguments::number(const std::string& option) const
     return value;
 }
 
+// Writing over what is read would lose it.
+static void require_other_file(const std::string& input, const std::string& output)
+{
+    std::error_code none; // what does not exist is no other file's twin
+    if (std::filesystem::equivalent(input, output, none))
+        throw input_error("the output " + output + " is the input; give it another name");
+}
+
 int run(const Program& program, int argc, char** argv, const std::function<void(const Arguments&)>& body)
 {
     std::signal(SIGXFSZ, SIG_IGN); // a file that grows past the limit is then a write error with a message
@@ -193,6 +202,8 @@ int run(const Program& program, int argc, char** argv, const std::function<void(
             const auto* text = boost::any_cast<std::string>(&value.value());
             arguments.given_[name] = text ? *text : "";
         }
+        if (arguments.has("input") && arguments.has("output"))
+            require_other_file(arguments.input(), arguments.output());
         if (arguments.has("help"))
             std::cout << help(program);
         else if (arguments.has("version"))

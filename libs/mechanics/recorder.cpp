@@ -87,12 +87,22 @@ Recorder::Recorder(const Scene& scene, const Blocks& blocks, const Mesh& mesh)
     }
 }
 
-Vector2d Recorder::displacement(const Place& place, const Assembly& assembly) const
+bool Recorder::is_present(const Place& place, const Assembly& assembly)
 {
-    Vector2d u = Vector2d::Zero();
-    for (int i = 0; i < 3; ++i)
-        u += place.share[i] * assembly.displacement[place.gridpoint[i]];
-    return u;
+    return assembly.zones.is_present[place.zone] != 0;
+}
+
+void Recorder::append_displacements(std::vector<Vector2d>& rows, const Assembly& assembly) const
+{
+    for (const Place& place : point_) {
+        Vector2d u = Vector2d::Zero();
+        if (is_present(place, assembly))
+            for (int i = 0; i < 3; ++i)
+                u += place.share[i] * assembly.displacement[place.gridpoint[i]];
+        else if (rows.size() >= point_.size()) // the row before this one
+            u = rows[rows.size() - point_.size()];
+        rows.push_back(u);
+    }
 }
 
 void Recorder::record_history(Result& result, double time, const std::string& event,
@@ -104,14 +114,9 @@ void Recorder::record_history(Result& result, double time, const std::string& ev
         history.point_position = point_position_;
         history.first_reading_row.assign(point_.size(), 0);
     }
-    const std::size_t n = point_.size();
-    for (std::size_t p = 0; p < n; ++p) {
-        const bool present = assembly.zones.is_present[point_[p].zone] != 0;
-        history.present.push_back(present ? 1 : 0);
-        const Vector2d now = present ? displacement(point_[p], assembly)
-                                     : history.displacement[history.displacement.size() - n];
-        history.displacement.push_back(now);
-    }
+    for (const Place& place : point_)
+        history.present.push_back(is_present(place, assembly) ? 1 : 0);
+    append_displacements(history.displacement, assembly);
     history.time.push_back(time / unit::day);
     history.event.push_back(event);
 }
@@ -154,8 +159,7 @@ void Recorder::record_trace(Result& result, double time, double solver_time, con
     trace.gauge_contact = gauge_contact_;
     trace.time.push_back(time / unit::day);
     trace.solver_time.push_back(solver_time);
-    for (const Place& place : point_)
-        trace.displacement.push_back(displacement(place, assembly));
+    append_displacements(trace.displacement, assembly);
     for (const Index c : gauge_contact_)
         trace.traction.push_back(assembly.contacts.traction[c]);
 }

@@ -37,7 +37,9 @@ private:
         std::array<double, 3> share;
         Index zone;
     };
-    Vector2d displacement(const Place& place, const Assembly& assembly) const;
+    static bool is_present(const Place& place, const Assembly& assembly);
+    // A row of the points' displacements; a removed point keeps what the last row has.
+    void append_displacements(std::vector<Vector2d>& rows, const Assembly& assembly) const;
 
     std::vector<Place> point_;
     std::vector<double> first_reading_;

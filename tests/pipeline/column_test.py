@@ -25,7 +25,7 @@ PRINTED = {
     ("C", 40, True): 2.36185,
 }
 
-PAPERS_WAY = r'^masses = "real"\ndamping = "mass"\nmass_damping_per_s = 20 .*'
+PAPERS_WAY = r'^masses = "real"\ndamping = "mass"\nmass_damping_per_s = 140 .*'
 
 
 @functools.cache

@@ -100,7 +100,7 @@ TEST(column, settings_and_their_defaults)
     EXPECT_EQ(scene.zone_size, 2.5);
     EXPECT_EQ(scene.equilibrium.masses, Masses::real);
     EXPECT_EQ(scene.equilibrium.damping, Damping::mass);
-    EXPECT_EQ(scene.equilibrium.mass_damping, 20);
+    EXPECT_EQ(scene.equilibrium.mass_damping, 140);
     EXPECT_EQ(scene.equilibrium.tolerance, 1e-6);
     EXPECT_EQ(scene.equilibrium.local_damping, 0.8);
     EXPECT_EQ(scene.equilibrium.unloading_increments, 1);
