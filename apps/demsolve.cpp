@@ -12,6 +12,7 @@
 #include "creep/published.hpp"
 #include "mechanics/assembly.hpp"
 #include "mechanics/excavation.hpp"
+#include "mechanics/loading.hpp"
 #include "mechanics/recorder.hpp"
 #include "model/error.hpp"
 #include "model/units.hpp"
@@ -100,10 +101,13 @@ std::string joint_name(const Scene& scene, const Network& network, Index edge)
                      : network.names.joint_set[network.joints.set[joint]];
 }
 
-// The days on which something other than creep happens: stages, first readings, the end.
-std::set<double> dates_of(const Scene& scene)
+// The times when something other than creep happens: stages, corners of the loading, first readings, the end.
+std::set<double> dates_of(const Scene& scene, const mechanics::Loading& loading)
 {
     std::set<double> dates{scene.end};
+    for (const double time : loading.corners())
+        if (time > 0 && time < scene.end)
+            dates.insert(time);
     for (const Stage& stage : scene.stages)
         dates.insert(stage.time);
     for (const MeasuringPoint& point : scene.points)
@@ -131,6 +135,8 @@ Solution solve(const Scene& scene, const Network& network, const EquivalentJoint
     mechanics::Assembly& rock = solution.assembly = mechanics::assemble(scene, network, joints, result.mesh);
     rock.threads =
         std::min(threads, 1 + static_cast<int>(result.mesh.zone_gridpoint.size()) / zones_per_thread);
+    mechanics::Loading loading(scene, result.mesh);
+    loading.apply(rock, 0);
     const mechanics::Recorder recorder(scene, network.blocks, result.mesh);
 
     double now = 0;         // since start [s]
@@ -156,19 +162,23 @@ Solution solve(const Scene& scene, const Network& network, const EquivalentJoint
         if (rock.contacts.status[c] != ContactStatus::stuck)
             ++solution.beyond_strength[joint_name(scene, network, result.mesh.contact_edge[c])];
     start_from_here(rock);
+    loading.apply(rock, 0);
     creep::Published creep(result.mesh, joints, rock.contacts.traction);
     recorder.record_history(result, now, "", rock);
     recorder.record_state(result, now, "", rock);
 
     const double last_stage = scene.stages.empty() ? 0 : scene.stages.back().time;
-    for (const double date : dates_of(scene)) {
+    for (const double date : dates_of(scene, loading)) {
         if (solution.end_of_creep)
             break;
         // 3. Creep up to the next date, in equal steps no longer than the scene's.
         const double start = now;
         const bool creeps = scene.creep && creep::creeps(joints);
-        const auto n_steps =
-            creeps ? static_cast<int>(std::ceil((date - start) / scene.creep->step * (1 - 1e-12))) : 1;
+        const bool is_loaded = loading.changes(start, date);
+        int n_steps = is_loaded ? scene.equilibrium.unloading_increments : 1;
+        if (creeps)
+            n_steps = std::max(n_steps,
+                               static_cast<int>(std::ceil((date - start) / scene.creep->step * (1 - 1e-12))));
         for (int i = 1; i <= n_steps; ++i) {
             progress.show(now / scene.end, "day " + std::to_string(std::lround(now / unit::day)));
             const double next = i == n_steps ? date : start + (date - start) * i / n_steps;
@@ -176,12 +186,13 @@ Solution solve(const Scene& scene, const Network& network, const EquivalentJoint
             const std::vector<Eigen::Vector2d> before =
                 may_stop ? rock.displacement : std::vector<Eigen::Vector2d>{};
             const double duration = next - now;
-            if (creeps) {
+            if (creeps)
                 creep.advance(duration, rock.contacts.traction, rock.contacts.offset);
-                now = next;
-                equilibrate();
-            }
             now = next;
+            if (is_loaded)
+                loading.apply(rock, now);
+            if (creeps || is_loaded)
+                equilibrate();
             recorder.record_history(result, now, "", rock);
             if (may_stop && largest_move(before, rock.displacement) < *scene.creep->stop_rate * duration) {
                 solution.end_of_creep = now;
@@ -197,7 +208,7 @@ Solution solve(const Scene& scene, const Network& network, const EquivalentJoint
                 continue;
             progress.show(now / scene.end, stage.name);
             const auto released =
-                mechanics::excavate(rock, network.blocks, result.mesh, static_cast<Index>(s));
+                mechanics::excavate(rock, network.blocks, result.mesh, loading, static_cast<Index>(s));
             const std::vector<Eigen::Vector2d> load = rock.load;
             const int n = scene.equilibrium.unloading_increments;
             for (int i = 1; i <= n; ++i) {

@@ -63,7 +63,15 @@ void add_contacts(Assembly& assembly, const Scene& scene, const EquivalentJoints
     contacts.traction = contacts.initial_traction;
     contacts.jump.assign(n, Vector2d::Zero());
     contacts.status.assign(n, ContactStatus::stuck);
+    contacts.dissipated.assign(n, 0.0);
     assembly.contact_force.resize(n);
+}
+
+// What a contact's springs hold at a traction [J/m].
+double stored_in(const joint::Coulomb& law, const Vector2d& traction, double length)
+{
+    const double shear = law.k_s > 0 ? traction.y() * traction.y() / law.k_s : 0.0;
+    return length / 2 * (traction.x() * traction.x() / law.k_n + shear);
 }
 
 // Lists of (item, corner) per gridpoint, in the order of items.
@@ -95,6 +103,7 @@ Assembly assemble(const Scene& scene, const Network& network, const EquivalentJo
     assembly.displacement.assign(n, Vector2d::Zero());
     assembly.force.assign(n, Vector2d::Zero());
     assembly.load.assign(n, Vector2d::Zero());
+    assembly.applied.assign(n, Vector2d::Zero());
     for (const Index held : mesh.gridpoint_fixed)
         assembly.is_free.emplace_back((held & 1) != 0 ? 0.0 : 1.0, (held & 2) != 0 ? 0.0 : 1.0);
     add_zones(assembly, scene, network, mesh);
@@ -118,6 +127,7 @@ void find_forces(Assembly& assembly)
     const auto n_gridpoints = static_cast<Index>(assembly.position.size());
     const Incidence& incidence = assembly.incidence;
     const std::vector<Vector2d>& u = assembly.displacement;
+    const double damping = assembly.stiffness_damping_rate;
 
 #pragma omp parallel num_threads(assembly.threads) if (assembly.threads > 1)
     {
@@ -138,10 +148,15 @@ void find_forces(Assembly& assembly)
             const Vector3d stress = zones.initial_stress[z] +
                                     Vector3d(c[0] * exx + c[1] * eyy, c[1] * exx + c[0] * eyy, c[2] * gxy);
             zones.stress[z] = stress;
+            Vector3d acting = stress;
+            if (damping > 0) {
+                acting += damping * (stress - zones.last_stress[z]);
+                zones.last_stress[z] = stress;
+            }
             for (int i = 0; i < 3; ++i)
                 assembly.zone_force[z][i] =
-                    -zones.area[z] * Vector2d(stress[0] * gradient[i].x() + stress[2] * gradient[i].y(),
-                                              stress[2] * gradient[i].x() + stress[1] * gradient[i].y());
+                    -zones.area[z] * Vector2d(acting[0] * gradient[i].x() + acting[2] * gradient[i].y(),
+                                              acting[2] * gradient[i].x() + acting[1] * gradient[i].y());
         }
 #pragma omp for schedule(static)
         for (Index c = 0; c < n_contacts; ++c) {
@@ -150,19 +165,27 @@ void find_forces(Assembly& assembly)
             const auto [a, b] = contacts.gridpoint[c];
             const Vector2d normal = contacts.normal[c], tangent(normal.y(), -normal.x());
             const Vector2d jump = u[b] - u[a];
+            const joint::Coulomb& law = contacts.law[c];
+            const Vector2d last_jump = contacts.jump[c], last = contacts.traction[c];
             contacts.jump[c] = {jump.dot(normal), jump.dot(tangent)};
             const Vector2d sprung = contacts.jump[c] - contacts.offset[c];
             const joint::Response response =
-                joint::respond(contacts.law[c], contacts.state[c], contacts.initial_traction[c].x(),
+                joint::respond(law, contacts.state[c], contacts.initial_traction[c].x(),
                                contacts.initial_traction[c].y(), sprung.x(), sprung.y());
-            contacts.traction[c] = {response.sigma_n, response.tau};
+            const Vector2d traction(response.sigma_n, response.tau);
+            contacts.traction[c] = traction;
             contacts.status[c] = response.status;
-            assembly.contact_force[c] =
-                contacts.length[c] * (response.sigma_n * normal + response.tau * tangent);
+            const double length = contacts.length[c];
+            contacts.dissipated[c] += length * (last + traction).dot(contacts.jump[c] - last_jump) / 2 -
+                                      (stored_in(law, traction, length) - stored_in(law, last, length));
+            Vector2d acting = traction;
+            if (damping > 0 && response.status == ContactStatus::stuck)
+                acting += damping * (traction - last); // dashpots; none where it slips or is open
+            assembly.contact_force[c] = length * (acting.x() * normal + acting.y() * tangent);
         }
 #pragma omp for schedule(static)
         for (Index g = 0; g < n_gridpoints; ++g) {
-            Vector2d force = assembly.load[g];
+            Vector2d force = assembly.load[g] + assembly.applied[g];
             for (Index k = incidence.zone_start[g]; k < incidence.zone_start[g + 1]; ++k) {
                 const Index corner = incidence.zone_corner[k];
                 force += assembly.zone_force[corner / 3][corner % 3];
@@ -179,6 +202,27 @@ void find_forces(Assembly& assembly)
     }
 }
 
+double stored_energy(const Assembly& assembly)
+{
+    const Zones& zones = assembly.zones;
+    const Contacts& contacts = assembly.contacts;
+    double energy = 0;
+    for (std::size_t z = 0; z < zones.gridpoint.size(); ++z) {
+        if (!zones.is_present[z])
+            continue;
+        // s . C^-1 s / 2, plane strain.
+        const Vector3d &s = zones.stress[z], &c = zones.stiffness[z];
+        const double determinant = c[0] * c[0] - c[1] * c[1];
+        energy += zones.area[z] / 2 *
+                  ((c[0] * (s[0] * s[0] + s[1] * s[1]) - 2 * c[1] * s[0] * s[1]) / determinant +
+                   s[2] * s[2] / c[2]);
+    }
+    for (std::size_t k = 0; k < contacts.gridpoint.size(); ++k)
+        if (contacts.status[k] != ContactStatus::removed)
+            energy += stored_in(contacts.law[k], contacts.traction[k], contacts.length[k]);
+    return energy;
+}
+
 Balance balance_of(const Assembly& assembly)
 {
     const Incidence& incidence = assembly.incidence;
@@ -191,7 +235,7 @@ Balance balance_of(const Assembly& assembly)
             balance.largest = force;
             balance.worst = static_cast<Index>(g);
         }
-        double magnitudes = assembly.load[g].norm();
+        double magnitudes = assembly.load[g].norm() + assembly.applied[g].norm();
         for (Index k = incidence.zone_start[g]; k < incidence.zone_start[g + 1]; ++k) {
             const Index corner = incidence.zone_corner[k];
             magnitudes += assembly.zone_force[corner / 3][corner % 3].norm();

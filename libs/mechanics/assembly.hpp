@@ -29,6 +29,7 @@ struct Zones {
     std::vector<Vector3d> stiffness;               // {C11, C12, C33} of the rock [Pa]
     std::vector<Vector3d> initial_stress;          // {xx, yy, xy} at zero displacement [Pa]
     std::vector<Vector3d> stress;                  // now [Pa]
+    std::vector<Vector3d> last_stress;             // before; kept only with stiffness damping [Pa]
     std::vector<char> is_present;
 };
 
@@ -45,6 +46,7 @@ struct Contacts {
     std::vector<Vector2d> traction;    // now [Pa]
     std::vector<Vector2d> jump;        // displacement of b minus that of a, now [m]
     std::vector<ContactStatus> status; // now; removed once a side is gone
+    std::vector<double> dissipated;    // work done on it that it has not stored [J/m]
 };
 
 // What a gridpoint is part of, for gathering forces in a fixed order whatever the number of threads.
@@ -64,13 +66,16 @@ struct Assembly {
     std::vector<Vector2d> position;     // at the start [m]
     std::vector<Vector2d> displacement; // [m]
     std::vector<Vector2d> is_free;      // 1 or 0 in {x, y}
-    std::vector<Vector2d> load;         // weight and applied forces [N/m]
+    std::vector<Vector2d> load;         // weight, and what excavation still holds [N/m]
+    std::vector<Vector2d> applied;      // from tractions on the outline [N/m]
     std::vector<Vector2d> force;        // out of balance, also where held; filled by find_forces [N/m]
 
     // Forces of zones on their corners and of contacts on their side a; filled by find_forces [N/m].
     std::vector<std::array<Vector2d, 3>> zone_force;
     std::vector<Vector2d> contact_force;
 
+    double stiffness_damping_rate =
+        0; // beta / dt: forces grow by this times their change since the last step [-]
     int threads = 1;
 };
 
@@ -82,6 +87,9 @@ Assembly assemble(const Scene& scene, const Network& network, const EquivalentJo
 // Stresses, tractions and forces at the present displacements. Slip and breaking of contacts are taken into
 // their states: calling it again changes nothing more.
 void find_forces(Assembly& assembly);
+
+// Energy that zones and contacts have stored [J/m]; only differences mean anything.
+double stored_energy(const Assembly& assembly);
 
 struct Balance {
     double largest; // out-of-balance force on a free gridpoint [N/m]
@@ -109,6 +117,9 @@ struct Certificate {
     double out_of_balance_ratio = 0;
     double contact_force_change =
         0; // largest over the last 100 steps, over the mean force on a gridpoint [-]
+    // On the way: work of loads = what zones and contacts store + what contacts dissipate + what damping
+    // takes [J/m].
+    double work_of_loads = 0, stored = 0, dissipated = 0, damped = 0;
 };
 
 } // namespace jointcreep::mechanics

@@ -150,6 +150,10 @@ void Recorder::record_equilibrium(Result& result, double time, const Certificate
     result.equilibria.steps.push_back(certificate.steps);
     result.equilibria.out_of_balance_ratio.push_back(certificate.out_of_balance_ratio);
     result.equilibria.contact_force_change.push_back(certificate.contact_force_change);
+    result.equilibria.work_of_loads.push_back(certificate.work_of_loads);
+    result.equilibria.stored_energy.push_back(certificate.stored);
+    result.equilibria.dissipated_energy.push_back(certificate.dissipated);
+    result.equilibria.damped_energy.push_back(certificate.damped);
 }
 
 void Recorder::record_trace(Result& result, double time, double solver_time, const Assembly& assembly) const

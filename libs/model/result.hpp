@@ -18,10 +18,13 @@ enum class ContactStatus : Index {
 // Zones (constant-strain triangles), the gridpoints that carry them, and the contacts between gridpoints that
 // a joint has split.
 struct Mesh {
-    std::vector<Eigen::Vector2d> gridpoint;              // position at the start [m]
-    std::vector<Index> gridpoint_fixed;                  // 0 free, 1 held in x, 2 in y, 3 in both
-    std::vector<std::array<Index, 3>> zone_gridpoint;    // counter-clockwise
-    std::vector<Index> zone_block;                       // into Blocks
+    std::vector<Eigen::Vector2d> gridpoint;           // position at the start [m]
+    std::vector<Index> gridpoint_fixed;               // 0 free, 1 held in x, 2 in y, 3 in both
+    std::vector<std::array<Index, 3>> zone_gridpoint; // counter-clockwise
+    std::vector<Index> zone_block;                    // into Blocks
+    std::vector<std::array<Index, 2>> side_gridpoint; // zone sides on a boundary condition
+    std::vector<Index> side_zone;
+    std::vector<Index> side_boundary;                    // into the scene's [[boundary]]
     std::vector<std::array<Index, 2>> contact_gridpoint; // {on side a, on side b}
     std::vector<Index> contact_edge;                     // into Blocks' edges
     std::vector<Eigen::Vector2d> contact_normal;         // unit, from side a to side b
@@ -61,6 +64,8 @@ struct Equilibria {
     std::vector<double> out_of_balance_ratio; // [-]
     std::vector<double>
         contact_force_change; // over the last 100 steps, over the mean force on a gridpoint [-]
+    // On the way there, in balance: work_of_loads = stored + dissipated (by contacts) + damped [J/m].
+    std::vector<double> work_of_loads, stored_energy, dissipated_energy, damped_energy;
 };
 
 // Every n-th step of the solver, on request.

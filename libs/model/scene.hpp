@@ -6,9 +6,11 @@
 
 #include <Eigen/Core>
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace jointcreep
@@ -102,11 +104,34 @@ struct InSituStress {
     }
 };
 
-// What holds the outline from `from` to `to`, a straight piece of it. Elsewhere the outline is free.
+// A factor that goes piecewise straight through (time since start [s], factor) pairs, and stays what it is at
+// the ends. Without pairs it is 1.
+struct Course {
+    std::vector<std::pair<double, double>> points; // in order of time
+
+    double at(double time) const
+    {
+        if (points.empty())
+            return 1;
+        const auto after =
+            std::find_if(points.begin(), points.end(), [&](const auto& p) { return p.first > time; });
+        if (after == points.begin() || after == points.end())
+            return after == points.begin() ? points.front().second : points.back().second;
+        const auto& [t0, f0] = *(after - 1);
+        return f0 + (after->second - f0) * (time - t0) / (after->first - t0);
+    }
+};
+
+// What holds or moves the outline from `from` to `to`, a straight piece of it. Elsewhere the outline is free.
 struct Boundary {
     Eigen::Vector2d from, to; // [m]
     bool fix_x = false, fix_y = false;
-    std::string joint; // or: rests on fixed ground through a joint of this material
+    std::string joint{}; // or: rests on fixed ground through a joint of this material
+
+    // On top of the in-situ stress, both times the factor of the course:
+    std::optional<Eigen::Vector2d> traction{};     // force on the rock per area, {x, y} [Pa]
+    std::optional<Eigen::Vector2d> displacement{}; // where fixed, the displacement it is held at, {x, y} [m]
+    Course course{};
 };
 
 // One excavation step.
@@ -145,10 +170,12 @@ struct Equilibrium {
     double tolerance = 0; // of the out-of-balance ratio [-]
     Masses masses = Masses::scaled;
     Damping damping = Damping::adaptive;
-    double mass_damping = 0;               // alpha of the paper's Eq. 1, with damping "mass" [1/s]
-    double local_damping = 0;              // with damping "local" [-]
-    std::int32_t unloading_increments = 1; // in which a stage's rock is taken away
-    std::int32_t most_steps = 0;           // without equilibrium after so many, the program gives up
+    double mass_damping = 0;      // alpha of the paper's Eq. 1, with damping "mass" [1/s]
+    double stiffness_damping = 0; // beta of zones and of the joints' dashpots, with damping "mass" [s]
+    double local_damping = 0;     // with damping "local" [-]
+    std::int32_t unloading_increments =
+        1;                       // in which a stage's rock is taken away, and loads change between dates
+    std::int32_t most_steps = 0; // without equilibrium after so many, the program gives up
 };
 
 struct Cutting {

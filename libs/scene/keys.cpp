@@ -96,6 +96,8 @@ std::string KeyInfo::wanted() const
         return "a text of 1 to " + std::to_string(longest_text) + " bytes without control characters";
     if (kind == "date")
         return "a date such as 1994-06-15, or a number" + in_range;
+    if (kind == "course")
+        return "pairs of a date and a number, [[date, factor], ...]";
     if (kind == "point")
         return "a point [x, y] of numbers" + in_range;
     if (kind == "polygon")
@@ -173,6 +175,26 @@ Eigen::Vector2d read_point(const KeyInfo& key, const TomlValue& value, const Pla
     if (!list || list->size() != 2)
         place.refuse(key, value);
     return {read_number(key, list->front(), place), read_number(key, list->back(), place)};
+}
+
+Course read_course(const KeyInfo& key, const TomlValue& value, const Place& place)
+{
+    const auto* const list = as_list(value);
+    if (!list || list->empty())
+        place.refuse(key, value);
+    KeyInfo when = key;
+    when.unit = days;
+    Course course;
+    for (const TomlValue& pair : *list) {
+        const auto* const both = as_list(pair);
+        if (!both || both->size() != 2)
+            place.refuse(key, value);
+        const double time = read_date(when, both->front(), place);
+        if (!course.points.empty() && time <= course.points.back().first)
+            place.refuse(key, value, "dates in increasing order");
+        course.points.emplace_back(time, read_number(key, both->back(), place));
+    }
+    return course;
 }
 
 Polygon read_polygon(const KeyInfo& key, const TomlValue& value, const Place& place)

@@ -99,6 +99,7 @@ std::string read_text(const KeyInfo& key, const TomlValue& value, const Place& p
 double read_date(const KeyInfo& key, const TomlValue& value, const Place& place); // since start [s]
 Calendar read_start(const KeyInfo& key, const TomlValue& value, const Place& place);
 Eigen::Vector2d read_point(const KeyInfo& key, const TomlValue& value, const Place& place);
+Course read_course(const KeyInfo& key, const TomlValue& value, const Place& place);
 Polygon read_polygon(const KeyInfo& key, const TomlValue& value, const Place& place);
 std::vector<Polygon> read_polygons(const KeyInfo& key, const TomlValue& value, const Place& place);
 
@@ -203,6 +204,21 @@ Key<Record> point(std::string name, Eigen::Vector2d Record::*member, std::string
 {
     return key_of<Record>({std::move(name), "point", metres, within(farthest_metre), std::move(doc)}, member,
                           read_point);
+}
+
+// Two numbers, {x, y}.
+template <class Record, class Value>
+Key<Record> vector(std::string name, Value Record::*member, Unit unit, Range range, std::string doc)
+{
+    return key_of<Record>({std::move(name), "point", unit, range, std::move(doc)}, member, read_point);
+}
+
+// Pairs of a date and a factor.
+template <class Record>
+Key<Record> course(std::string name, Course Record::*member, std::string doc)
+{
+    return key_of<Record>({std::move(name), "course", {}, within(farthest_day), std::move(doc)}, member,
+                          read_course);
 }
 
 template <class Record, class Value>

@@ -193,9 +193,18 @@ private:
         const auto& all = scene_.boundaries;
         for (std::size_t i = 0; i < all.size(); ++i) {
             const Given given = in_list("boundary", i);
-            if (!given.find("fix") && !given.find("joint"))
-                given.refuse("fix",
-                             "wanted either fix = \"x\", \"y\" or \"xy\", or joint = a joint material");
+            if (!given.find("fix") && !given.find("joint") && !given.find("traction_MPa"))
+                given.refuse("fix", "wanted fix = \"x\", \"y\" or \"xy\", or joint = a joint material, or "
+                                    "traction_MPa");
+            if (given.find("joint") && (all[i].traction || all[i].displacement))
+                given.refuse("joint", "wanted no traction_MPa or displacement_mm beside joint");
+            if (all[i].displacement && (!given.find("fix") || !given.find("course")))
+                given.refuse("displacement_mm", "wanted fix and course beside it");
+            if (all[i].displacement && ((!all[i].fix_x && all[i].displacement->x() != 0) ||
+                                        (!all[i].fix_y && all[i].displacement->y() != 0)))
+                given.refuse("displacement_mm", "wanted 0 in the direction that is not fixed");
+            if (given.find("course") && !all[i].traction && !all[i].displacement)
+                given.refuse("course", "wanted traction_MPa or displacement_mm beside it");
             if (given.find("fix") && given.find("joint"))
                 given.refuse("fix", "wanted either fix or joint, not both");
             const double length = (all[i].to - all[i].from).norm();
@@ -311,6 +320,8 @@ private:
 
         const Given equilibrium = once("equilibrium");
         const Damping damping = scene_.equilibrium.damping;
+        if (damping != Damping::mass && equilibrium.find("stiffness_damping_s"))
+            equilibrium.refuse("stiffness_damping_s", "wanted damping = \"mass\" beside it");
         if ((damping == Damping::mass) != (equilibrium.find("mass_damping_per_s") != nullptr))
             equilibrium.refuse("mass_damping_per_s", "damping = \"mass\" needs it, and nothing else does");
         if (damping != Damping::local && equilibrium.find("local_damping"))

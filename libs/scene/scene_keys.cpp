@@ -15,6 +15,8 @@ constexpr Unit degrees{"deg", unit::deg};
 constexpr Unit kg_per_m3{"kg/m3", unit::kg / (unit::m * unit::m * unit::m)};
 constexpr Unit m_per_s2{"m/s2", unit::m / (unit::s * unit::s)};
 constexpr Unit per_s{"1/s", 1 / unit::s};
+constexpr Unit seconds{"s", unit::s};
+constexpr Unit millimetres{"mm", unit::mm};
 constexpr Unit GPa{"GPa", unit::GPa};
 constexpr Unit MPa{"MPa", unit::MPa};
 constexpr Unit MPa_per_m{"MPa/m", unit::MPa / unit::m};
@@ -254,8 +256,9 @@ Table<Boundary> boundary()
     };
     return {
         {"boundary", in_list, required,
-         "What holds a straight piece of the outline, either by fix or by joint. Elsewhere the outline is "
-         "free."},
+         "What holds or loads a straight piece of the outline: fix or joint, traction, or fix and "
+         "displacement. "
+         "Elsewhere the outline is free."},
         {point("from_m", &Boundary::from, "One end, on the outline."),
          point("to_m", &Boundary::to, "The other end, on the same straight piece of the outline."),
          choice<Boundary, Fixed>("fix", fix,
@@ -263,6 +266,19 @@ Table<Boundary> boundary()
                                  "It does not move in these directions.")
              .optional(),
          text("joint", &Boundary::joint, "It rests on fixed ground through a joint of this joint material.")
+             .optional(),
+         vector("traction_MPa", &Boundary::traction, MPa, stress,
+                "Force on the rock per area {x, y}, on top of the in-situ stress.")
+             .optional(),
+         vector("displacement_mm", &Boundary::displacement, millimetres, within(1e6),
+                "Displacement {x, y} it is held at, 0 where it is not fixed; with fix and course.")
+             .optional(),
+         course("course", &Boundary::course,
+                "Factor of traction and displacement over time: pairs of a date and a factor with straight "
+                "lines "
+                "between them, as for a ramp or cycles. Without it a traction acts from the start, and the "
+                "in-situ "
+                "equilibrium is found under it.")
              .optional()}};
 }
 
@@ -321,40 +337,47 @@ Table<Scene> zones()
 
 Table<Cutting> cutting()
 {
-    return {{"cutting", once, optional, "What is too small to keep when the section is cut into blocks."},
-            {number("shortest_edge_m", &Cutting::shortest_edge, metres, above(0).to(farthest_metre),
-                    "Vertices closer than this, or than half of it to an edge, are merged. At most the zone size.")
-                 .optional("0.02 x zones.size_m"),
-             number("smallest_angle_deg", &Cutting::smallest_angle, degrees, from(0).to(30),
-                    "Narrower wedges between edges are closed where that moves nothing far.")
-                 .or_else(std::int64_t{1})}};
+    return {
+        {"cutting", once, optional, "What is too small to keep when the section is cut into blocks."},
+        {number(
+             "shortest_edge_m", &Cutting::shortest_edge, metres, above(0).to(farthest_metre),
+             "Vertices closer than this, or than half of it to an edge, are merged. At most the zone size.")
+             .optional("0.02 x zones.size_m"),
+         number("smallest_angle_deg", &Cutting::smallest_angle, degrees, from(0).to(30),
+                "Narrower wedges between edges are closed where that moves nothing far.")
+             .or_else(std::int64_t{1})}};
 }
 
 Table<Equilibrium> equilibrium()
 {
     using E = Equilibrium;
-    return {{"equilibrium", once, optional, "How equilibrium is found."},
-            {number("tolerance", &E::tolerance, none, from(1e-12).to(1e-2), "Of the out-of-balance ratio.")
-                 .or_else(1e-6),
-             choice("masses", &E::masses, {{"scaled", Masses::scaled}, {"real", Masses::real}},
-                    "Nodal masses: scaled for a fast way to the same equilibrium, or the real ones.")
-                 .or_else(std::string("scaled")),
-             choice("damping", &E::damping,
-                    {{"adaptive", Damping::adaptive}, {"local", Damping::local}, {"mass", Damping::mass}},
-                    "How motion is damped.")
-                 .or_else(std::string("adaptive")),
-             number("mass_damping_per_s", &E::mass_damping, per_s, above(0).to(1e12),
-                    "Mass-proportional damping; with damping = \"mass\", and only then.")
-                 .optional(),
-             number("local_damping", &E::local_damping, none, above(0).below(1),
-                    "Fraction of the out-of-balance force; with damping = \"local\" only.")
-                 .optional("0.8"),
-             integer("unloading_increments", &E::unloading_increments, from(1).to(1000),
-                     "In which the rock of a stage is taken away.")
-                 .or_else(std::int64_t{1}),
-             integer("most_steps", &E::most_steps, from(1).to(2147483647),
-                     "Without equilibrium after so many steps the program gives up.")
-                 .or_else(std::int64_t{1000000})}};
+    return {
+        {"equilibrium", once, optional, "How equilibrium is found."},
+        {number("tolerance", &E::tolerance, none, from(1e-12).to(1e-2), "Of the out-of-balance ratio.")
+             .or_else(1e-6),
+         choice("masses", &E::masses, {{"scaled", Masses::scaled}, {"real", Masses::real}},
+                "Nodal masses: scaled for a fast way to the same equilibrium, or the real ones.")
+             .or_else(std::string("scaled")),
+         choice("damping", &E::damping,
+                {{"adaptive", Damping::adaptive}, {"local", Damping::local}, {"mass", Damping::mass}},
+                "How motion is damped.")
+             .or_else(std::string("adaptive")),
+         number("mass_damping_per_s", &E::mass_damping, per_s, above(0).to(1e12),
+                "Mass-proportional damping; with damping = \"mass\", and only then.")
+             .optional(),
+         number("stiffness_damping_s", &E::stiffness_damping, seconds, above(0).to(1e6),
+                "Stiffness-proportional damping of zones, and dashpots in joints that neither slip nor are "
+                "open; with damping = \"mass\".")
+             .optional(),
+         number("local_damping", &E::local_damping, none, above(0).below(1),
+                "Fraction of the out-of-balance force; with damping = \"local\" only.")
+             .optional("0.8"),
+         integer("unloading_increments", &E::unloading_increments, from(1).to(1000),
+                 "In which the rock of a stage is taken away.")
+             .or_else(std::int64_t{1}),
+         integer("most_steps", &E::most_steps, from(1).to(2147483647),
+                 "Without equilibrium after so many steps the program gives up.")
+             .or_else(std::int64_t{1000000})}};
 }
 
 Table<Scene> random_numbers()

@@ -80,6 +80,12 @@ Mesh zone(const Scene& scene, const Blocks& blocks)
             for (const Index v : side.vertex)
                 mesh.gridpoint_fixed[gridpoint_of(side.triangle[0], v)] |= held;
         }
+        if (boundary >= 0) {
+            mesh.side_gridpoint.push_back({gridpoint_of(side.triangle[0], side.vertex[0]),
+                                           gridpoint_of(side.triangle[0], side.vertex[1])});
+            mesh.side_zone.push_back(side.triangle[0]);
+            mesh.side_boundary.push_back(boundary);
+        }
         if (blocks.edge_kind[e] != static_cast<Index>(EdgeKind::joint) && !rests_on_joint)
             continue;
         const auto [first, second] = blocks.edge_vertex[e];

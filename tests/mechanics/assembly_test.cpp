@@ -177,7 +177,7 @@ TEST(assembly, what_excavation_releases_keeps_the_rest_in_balance)
     Section s = assembled(std::move(scene), joints, 5e9, 2e9);
     find_forces(s.assembly);
     const auto before = s.assembly.force;
-    const auto released = excavate(s.assembly, s.network.blocks, s.mesh, 0);
+    const auto released = excavate(s.assembly, s.network.blocks, s.mesh, Loading(s.scene, s.mesh), 0);
     for (std::size_t g = 0; g < released.size(); ++g)
         s.assembly.load[g] += released[g];
     find_forces(s.assembly);

@@ -38,7 +38,7 @@ TEST(recorder, interpolates_within_zones_and_prefers_rock_that_stays)
     for (int p = 0; p < 3; ++p)
         EXPECT_LT((result.history.displacement[p] - field(s.scene.points[p].at)).norm(), 1e-15);
 
-    excavate(s.assembly, s.network.blocks, s.mesh, 0);
+    excavate(s.assembly, s.network.blocks, s.mesh, Loading(s.scene, s.mesh), 0);
     for (Vector2d& d : s.assembly.displacement)
         d *= 2;
     recorder.record_history(result, 86400, "cut", s.assembly);

@@ -2,6 +2,7 @@
 
 #include "../mechanics/sections.hpp"
 
+#include "mechanics/loading.hpp"
 #include "mechanics/recorder.hpp"
 #include "model/error.hpp"
 #include "relaxation/relax.hpp"
@@ -95,6 +96,11 @@ TEST_P(relax_with, a_block_on_an_incline_rests_below_the_friction_angle)
         relaxation::relax(s.assembly, settings(GetParam().first, GetParam().second));
     EXPECT_LE(certificate.out_of_balance_ratio, 1e-7);
     EXPECT_LE(certificate.contact_force_change, 1e-7);
+    // Energy: what the weight has done is stored, lost in the joint or damped.
+    EXPECT_NEAR(certificate.work_of_loads, certificate.stored + certificate.dissipated + certificate.damped,
+                1e-6 * certificate.work_of_loads);
+    EXPECT_GE(certificate.dissipated, -1e-6 * certificate.work_of_loads);
+    EXPECT_GT(certificate.damped, 0);
     double shear = 0, normal = 0, length = 0;
     for (std::size_t c = 0; c < s.mesh.contact_edge.size(); ++c) {
         shear += s.assembly.contacts.length[c] * s.assembly.contacts.traction[c].y();
@@ -121,6 +127,77 @@ INSTANTIATE_TEST_SUITE_P(every_damping, relax_with,
                                          std::pair(Damping::adaptive, Masses::real),
                                          std::pair(Damping::local, Masses::scaled),
                                          std::pair(Damping::mass, Masses::real)));
+
+// Two blocks on a joint between platens that close by u0: the traction is u0 over the sum of the compliances,
+// through a whole cycle of loading; what the joint gives back when it opens is nothing.
+//     u0 = -sigma_n (H (1 + nu)(1 - 2 nu) / (E (1 - nu)) + 1 / K)        (no strain sideways: smooth rigid
+//     sides)
+TEST(relax, platens_cycle)
+{
+    Scene scene = section({{0, 0}, {2, 0}, {2, 4}, {0, 4}}, 0.01);
+    scene.zone_size = 1;
+    const Course cycle{{{0, 0}, {10, 1}, {30, -1}, {40, 0}}};
+    scene.boundaries = {
+        {.from = {0, 0}, .to = {2, 0}, .fix_y = true},
+        {.from = {0, 4}, .to = {2, 4}, .fix_y = true, .displacement = Vector2d(0, -1e-3), .course = cycle},
+        {.from = {0, 0}, .to = {0, 4}, .fix_x = true},
+        {.from = {2, 0}, .to = {2, 4}, .fix_x = true}};
+    Joints joints;
+    add_joint(joints, {0, 2}, {2, 2});
+    const double K = 1e9;
+    Section s = assembled(std::move(scene), joints, K, 1e9, 0.6);
+    mechanics::Loading loading(s.scene, s.mesh);
+    EXPECT_EQ(loading.corners(), (std::set<double>{0, 10, 30, 40}));
+    EXPECT_TRUE(loading.changes(0, 5));
+    EXPECT_FALSE(loading.changes(50, 60));
+    const double E = s.scene.rocks[0].youngs_modulus, nu = s.scene.rocks[0].poissons_ratio;
+    const double compliance = 4 * (1 + nu) * (1 - 2 * nu) / (E * (1 - nu)) + 1 / K;
+    for (const double time : {5.0, 10.0, 17.5, 25.0, 35.0, 40.0}) {
+        loading.apply(s.assembly, time);
+        relaxation::relax(s.assembly, settings(Damping::adaptive));
+        const double closing = 1e-3 * cycle.at(time);
+        for (const Vector2d& traction : s.assembly.contacts.traction)
+            EXPECT_NEAR(traction.x(), -std::max(0.0, closing) / compliance, 1e-5 * 1e-3 / compliance) << time;
+    }
+}
+
+// A bar of 10 m x 1 m, fixed at one end, pulled at the other by q = 2 MPa.
+Section pulled_bar()
+{
+    Scene scene = section({{0, 0}, {10, 0}, {10, 1}, {0, 1}}, 0.01);
+    scene.zone_size = 0.5;
+    scene.points = {{"end", {10, 0.5}, 0}};
+    scene.boundaries = {{.from = {0, 0}, .to = {0, 1}, .fix_x = true},
+                        {.from = {10, 0}, .to = {10, 1}, .traction = Vector2d(2e6, 0)},
+                        {.from = {0, 0}, .to = {10, 0}, .fix_y = true}};
+    Section s = assembled(std::move(scene), {}, 1e9, 1e9);
+    mechanics::Loading(s.scene, s.mesh).apply(s.assembly, 0);
+    return s;
+}
+
+// u = q L (1 - nu^2) / E, and half of the energy that a constant load brings is stored. Stiffness damping
+// does not change where it rests; it takes fast motion out and brings it to rest sooner.
+TEST(relax, a_bar_under_traction)
+{
+    double last_time = std::numeric_limits<double>::infinity();
+    for (const double stiffness_damping : {0.0, 2e-4}) {
+        Section s = pulled_bar();
+        Equilibrium how = settings(Damping::mass, Masses::real);
+        how.mass_damping = 100;
+        how.stiffness_damping = stiffness_damping;
+        double time = 0;
+        const Certificate certificate = relaxation::relax(s.assembly, how, [&](double t) { time = t; });
+        Result result;
+        mechanics::Recorder(s.scene, s.network.blocks, s.mesh).record_history(result, 0, "", s.assembly);
+        const double exact = 2e6 * 10 * (1 - 0.25 * 0.25) / 3e10;
+        EXPECT_NEAR(result.history.displacement[0].x(), exact, 1e-5 * exact);
+        EXPECT_NEAR(certificate.work_of_loads, 2e6 * exact, 1e-5 * 2e6 * exact);
+        EXPECT_NEAR(certificate.stored, 1e6 * exact, 1e-5 * 2e6 * exact);
+        EXPECT_NEAR(certificate.damped, 1e6 * exact, 1e-5 * 2e6 * exact);
+        EXPECT_LT(time, 0.8 * last_time);
+        last_time = time;
+    }
+}
 
 TEST(relax, a_block_on_an_incline_slides_above_the_friction_angle)
 {

@@ -125,7 +125,7 @@ TEST(checks, joints_and_boundaries)
     expect_refused("to_m = [0, 20]\nfix", "to_m = [0, 21]\nfix", "one straight piece");
     expect_refused("to_m = [40, 20]\nfix", "to_m = [20, 0] # over\nfix", "runs over the boundary of line");
     expect_refused("fix = \"x\"", "fix = \"x\"\njoint = \"joint\"", "not both");
-    expect_refused("fix = \"x\"\n", "", "wanted either fix", "[[boundary]]\nfrom_m = [0, 0]\nto_m = [0, 20]");
+    expect_refused("fix = \"x\"\n", "", "wanted fix", "[[boundary]]\nfrom_m = [0, 0]\nto_m = [0, 20]");
 }
 
 TEST(checks, orientations)

@@ -1,0 +1,63 @@
+#include "mechanics/loading.hpp"
+
+namespace jointcreep::mechanics
+{
+
+Loading::Loading(const Scene& scene, const Mesh& mesh) : boundary_(scene.boundaries)
+{
+    for (std::size_t s = 0; s < mesh.side_zone.size(); ++s) {
+        const auto [a, b] = mesh.side_gridpoint[s];
+        side_.push_back({mesh.side_gridpoint[s], mesh.side_zone[s],
+                         (mesh.gridpoint[a] - mesh.gridpoint[b]).norm(), mesh.side_boundary[s]});
+    }
+}
+
+void Loading::apply(Assembly& assembly, double time)
+{
+    time_ = time;
+    leave_removed(assembly);
+    for (const Side& side : side_) {
+        const Boundary& boundary = boundary_[side.boundary];
+        if (!boundary.displacement || !assembly.zones.is_present[side.zone])
+            continue;
+        const Vector2d u = (boundary.course.at(time) - boundary.course.at(0)) * *boundary.displacement;
+        for (const Index g : side.gridpoint) {
+            if (boundary.fix_x)
+                assembly.displacement[g].x() = u.x();
+            if (boundary.fix_y)
+                assembly.displacement[g].y() = u.y();
+        }
+    }
+}
+
+void Loading::leave_removed(Assembly& assembly) const
+{
+    assembly.applied.assign(assembly.applied.size(), Vector2d::Zero());
+    for (const Side& side : side_) {
+        const Boundary& boundary = boundary_[side.boundary];
+        if (!boundary.traction || !assembly.zones.is_present[side.zone])
+            continue;
+        for (const Index g : side.gridpoint)
+            assembly.applied[g] += boundary.course.at(time_) * side.length / 2 * *boundary.traction;
+    }
+}
+
+bool Loading::changes(double from, double to) const
+{
+    for (const Boundary& boundary : boundary_)
+        if ((boundary.traction || boundary.displacement) &&
+            boundary.course.at(from) != boundary.course.at(to))
+            return true;
+    return false;
+}
+
+std::set<double> Loading::corners() const
+{
+    std::set<double> times;
+    for (const Boundary& boundary : boundary_)
+        for (const auto& [time, factor] : boundary.course.points)
+            times.insert(time);
+    return times;
+}
+
+} // namespace jointcreep::mechanics
