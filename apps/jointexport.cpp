@@ -1,17 +1,19 @@
 // jointexport: what a file of the chain holds, in the formats of other tools.
 //
-//   jointexport result.h5 -o result.vtu                       the zones at the last state, for ParaView
+//   jointexport result.h5 -o result.xdmf2                     the zones at all states, for ParaView
+//   jointexport result.h5 -o result.vtu                       the zones at the last state
 //   jointexport result.h5 -o histories.csv                    the histories of the measuring points
 //   jointexport network.h5 -o joints.csv                      the joint traces
 //   jointexport result.h5 -o base.vtu --what contacts --state 0
 //
 // Reads   network.h5, joints.h5 or result.h5   (from jointgen, strength-averaging, demsolve)
-// Writes  one .vtu or .csv file                (docs/programs.md lists what is in it)
+// Writes  one .vtu, .xdmf2 or .csv file        (docs/programs.md lists what is in it)
 
 #include "program.hpp"
 
 #include "exchange/csv.hpp"
 #include "exchange/vtu.hpp"
+#include "exchange/xdmf.hpp"
 #include "model/error.hpp"
 #include "store/files.hpp"
 #include "store/save.hpp"
@@ -28,56 +30,65 @@ using namespace jointcreep;
 namespace
 {
 
-// What can be exported, from which files and in which formats.
+// What can be exported, in which formats, and from which files.
 struct View {
     std::string_view what;
-    bool vtu, csv;
+    std::string_view formats;
     bool of_result; // only a result file has it
 };
 
 constexpr std::array<View, 6> views = {{
-    {"blocks", true, true, false},
-    {"joints", true, true, false},
-    {"edges", false, true, false},
-    {"zones", true, false, true},
-    {"contacts", true, false, true},
-    {"histories", false, true, true},
+    {"blocks", ".vtu .csv", false},
+    {"joints", ".vtu .csv", false},
+    {"edges", ".csv", false},
+    {"zones", ".vtu .xdmf", true},
+    {"contacts", ".vtu .xdmf", true},
+    {"histories", ".csv", true},
 }};
 
-bool is_offered(const View& view, FileKind kind, bool vtu)
+bool is_offered(const View& view, FileKind kind, const std::string& format)
 {
-    return (vtu ? view.vtu : view.csv) && (!view.of_result || kind == FileKind::result);
+    return view.formats.find(format) != std::string_view::npos &&
+           (!view.of_result || kind == FileKind::result);
 }
 
 // What is meant when --what is not given.
-std::string_view usual(FileKind kind, bool vtu)
+std::string_view usual(FileKind kind, const std::string& format)
 {
     if (kind == FileKind::result)
-        return vtu ? "zones" : "histories";
-    return vtu ? "blocks" : "joints";
+        return format == ".csv" ? "histories" : "zones";
+    return format == ".csv" ? "joints" : "blocks";
 }
 
-bool wants_vtu(const std::string& output)
+// ".vtu", ".xdmf" or ".csv".
+std::string format_of(const std::string& output)
 {
     const std::string extension = std::filesystem::path(output).extension().string();
-    if (extension != ".vtu" && extension != ".csv")
-        throw input_error(output + ": the name must end in .vtu or .csv, which decides the format");
-    return extension == ".vtu";
+    if (extension == ".xdmf2") // so ParaView takes the right reader without asking
+        return ".xdmf";
+    if (extension != ".vtu" && extension != ".xdmf" && extension != ".csv")
+        throw input_error(output +
+                          ": the name must end in .vtu, .xdmf2, .xdmf or .csv, which decides the format");
+    return extension;
 }
 
-std::string chosen(const Arguments& arguments, FileKind kind, bool vtu)
+std::string chosen(const Arguments& arguments, FileKind kind, const std::string& format)
 {
-    std::string what = arguments.text("what").value_or(std::string(usual(kind, vtu)));
+    const std::string what = arguments.text("what").value_or(std::string(usual(kind, format)));
     std::string offered;
     for (const View& view : views) {
-        if (!is_offered(view, kind, vtu))
+        if (!is_offered(view, kind, format))
             continue;
         if (view.what == what)
             return what;
         offered.append(offered.empty() ? "" : ", ").append(view.what);
     }
-    throw input_error("--what is '" + what + "'; from " + arguments.input() + " a " +
-                      (vtu ? ".vtu" : ".csv") + " file can have: " + offered);
+    if (offered.empty())
+        throw input_error(arguments.input() + ": a " + format +
+                          " file shows states, and only a result file "
+                          "has them");
+    throw input_error("--what is '" + what + "'; from " + arguments.input() + " a " + format +
+                      " file can have: " + offered);
 }
 
 // The row of the states that is meant: a number, a stage (its state after removal), or the last.
@@ -105,9 +116,17 @@ std::size_t chosen_state(const Arguments& arguments, const States& states)
     throw input_error(message);
 }
 
-std::string text_of(const Arguments& arguments, FileKind kind, const std::string& what, bool vtu)
+// Where the output finds the input: the path from the output's folder.
+std::string path_between(const std::string& output, const std::string& input)
+{
+    return std::filesystem::relative(input, std::filesystem::absolute(output).parent_path()).string();
+}
+
+std::string text_of(const Arguments& arguments, FileKind kind, const std::string& what,
+                    const std::string& format)
 {
     const std::string& input = arguments.input();
+    const bool vtu = format == ".vtu";
     if (what == "blocks") {
         const Network network = read_network(input).network;
         return vtu ? blocks_vtu(network) : blocks_csv(network);
@@ -125,6 +144,11 @@ std::string text_of(const Arguments& arguments, FileKind kind, const std::string
     const ResultFile file = read_result(input);
     if (what == "histories")
         return histories_csv(file.result.history);
+    if (format == ".xdmf") {
+        const std::string result_file = path_between(arguments.output(), input);
+        return what == "zones" ? zones_xdmf(file.result, result_file)
+                               : contacts_xdmf(file.result, result_file);
+    }
     const std::size_t state = chosen_state(arguments, file.result.states);
     return what == "zones" ? zones_vtu(file.network, file.result, state) : contacts_vtu(file.result, state);
 }
@@ -146,16 +170,18 @@ void export_file(const Arguments& arguments)
     }
     const std::string& input = arguments.input();
     const std::string& output = arguments.output();
-    const bool vtu = wants_vtu(output);
+    const std::string format = format_of(output);
     check_writable(output);
     const FileKind kind = kind_of(input);
     if (std::error_code absent; std::filesystem::equivalent(input, output, absent))
         throw input_error(output + ": this is the file to read; it is not overwritten");
 
-    const std::string what = chosen(arguments, kind, vtu);
+    const std::string what = chosen(arguments, kind, format);
+    if (arguments.has("state") && format == ".xdmf")
+        throw input_error("--state does not go with .xdmf, which has all states");
     if (arguments.has("state") && what != "zones" && what != "contacts")
         throw input_error("--state goes with --what zones or contacts, not with " + what);
-    write(output, text_of(arguments, kind, what, vtu));
+    write(output, text_of(arguments, kind, what, format));
 
     if (!arguments.quiet()) {
         Summary summary;
@@ -175,10 +201,12 @@ int main(int argc, char** argv)
          .output = "NAME.EXT",
          .options = {{"what", "NAME",
                       "blocks (.vtu, .csv), joints (.vtu, .csv), edges (.csv); from a result file also "
-                      "zones (.vtu), contacts (.vtu), histories (.csv). Default: zones or histories from "
+                      "zones (.vtu, .xdmf2), contacts (.vtu, .xdmf2), histories (.csv). Default: zones or "
+                      "histories from "
                       "a result file, blocks or joints from others"},
                      {"state", "STATE",
-                      "of zones and contacts: its number, counted from 0, the stage that it follows, or "
+                      "of zones and contacts in a .vtu file: its number, counted from 0, the stage that it "
+                      "follows, or "
                       "last (default)"},
                      {"file-format", "", "show the format of the HDF5 files of the chain, and no more"}},
          .example = "jointexport result.h5 -o zones.vtu --state \"block 2 removed\""},

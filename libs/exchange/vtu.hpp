@@ -18,7 +18,8 @@ namespace jointcreep
 
 // One polygon a block; cell i is block i. A hole is joined to the outer ring by a bridge without width, there
 // and back between their nearest vertices. VTK draws a concave polygon as if it were convex: for a true
-// picture apply its filter Triangulate first. Cells: block, rock, stage (that removes it), area [m2].
+// picture apply ParaView's filter Tetrahedralize first, which however leaves out blocks with a hole.
+// Cells: block, rock, stage (that removes it), area [m2].
 std::string blocks_vtu(const Network& network);
 
 // One line an edge that has joint properties: the joint edges, and boundary edges that rest on a joint (these

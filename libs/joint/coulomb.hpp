@@ -50,9 +50,10 @@ inline Response respond(const Coulomb& law, CoulombState& state, double sigma_0,
         return {0, 0, ContactStatus::open};
     }
     const double limit = std::max(0.0, (state.is_broken ? 0.0 : law.cohesion) - sigma_n * law.tan_phi);
-    if (std::abs(tau_trial) <= limit)
+    // A joint at its limit counts as slipping, also while it stands still there.
+    if (std::abs(tau_trial) < (1 - 1e-6) * limit || tau_trial == 0)
         return {sigma_n, tau_trial, ContactStatus::stuck};
-    const double tau = std::copysign(limit, tau_trial);
+    const double tau = std::copysign(std::min(limit, std::abs(tau_trial)), tau_trial);
     state.slip += (tau_trial - tau) * give;
     return {sigma_n, tau, ContactStatus::slipping};
 }

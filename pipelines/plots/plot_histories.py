@@ -1,7 +1,8 @@
 #!/usr/bin/python3
 """Displacement histories of the measuring points against days; with --closed-form column beside the exact answer.
 
-A point's history ends when it is removed. Displacements count from the in-situ equilibrium.
+A point's history ends when it is removed. Displacements count from the in-situ equilibrium, or with --readings from
+each point's own first reading, where its curve begins.
 """
 
 import matplotlib.lines
@@ -12,10 +13,31 @@ import column_difference
 import figure
 
 LABELS = {
-    "x": "horizontal displacement, to the right (mm)",
-    "y": "vertical displacement, upward (mm)",
-    "toward": "horizontal displacement, toward the excavation (mm)",
+    "x": "horizontal displacement, to the right",
+    "y": "vertical displacement, upward",
+    "toward": "horizontal displacement, toward the excavation",
 }
+
+
+class Histories:
+    """Times, names and curves of the chosen points, as rows in which a point is there and has been read."""
+
+    def __init__(self, file, arguments):
+        self.time = figure.array(file, "/history/time")
+        self.event = figure.texts(file, "/history/event")
+        names = figure.texts(file, "/history/point")
+        if not names:
+            raise figure.NotWanted("there is no measuring point in this file")
+        chosen = [figure.name_index(names, name, "point") for name in arguments.point] or list(range(len(names)))
+        self.names = [names[i] for i in chosen]
+        first = figure.array(file, "/history/first_reading_row")
+        values = component_of(file, figure.array(file, "/history/displacement"), arguments.component)
+        if arguments.readings:
+            values = values - values[first, np.arange(len(names))]
+        self.values = 1e3 * values[:, chosen]  # [mm]
+        self.shown = figure.array(file, "/history/present")[:, chosen] == 1
+        if arguments.readings:
+            self.shown &= np.arange(len(self.time))[:, None] >= first[chosen]
 
 
 def component_of(file, displacement, component):
@@ -48,24 +70,34 @@ def draw_exact(file, axes, names, looks):
                   color=look["color"], linewidth=0.9, linestyle=look["linestyle"])
 
 
-def draw(file, arguments):
-    time = figure.array(file, "/history/time")
-    event = figure.texts(file, "/history/event")
-    names = figure.texts(file, "/history/point")
-    present = figure.array(file, "/history/present")
-    values = component_of(file, figure.array(file, "/history/displacement"), arguments.component)
-    chosen = [figure.name_index(names, name, "point") for name in arguments.point] or range(len(names))
-    if not names:
-        raise figure.NotWanted("there is no measuring point in this file")
-    names, present, values = [names[i] for i in chosen], present[:, chosen], values[:, chosen]
+def without(arguments, file):
+    """The histories of the result file given with --without."""
+    with figure.opened(arguments.without) as other:
+        if figure.texts(other, "/scene") != figure.texts(file, "/scene"):
+            raise figure.NotWanted(f"this was made from another scene than {arguments.file}")
+        return Histories(other, arguments)
 
+
+def draw_stages(axes, histories):
+    for row, name in enumerate(histories.event):
+        if name:
+            axes.axvline(histories.time[row], color="0.6", linewidth=0.6, zorder=0)
+            axes.annotate(name, (histories.time[row], 1.01), xycoords=("data", "axes fraction"), rotation=25,
+                          ha="left", va="bottom", rotation_mode="anchor", fontsize=6.5)
+
+
+def draw(file, arguments):
+    histories = Histories(file, arguments)
+    names = histories.names
     plot, axes = figure.plt.subplots(figsize=(figure.TWO_COLUMNS * 0.8, 3.4))
     looks = [{"color": figure.COLORS[i % 6], "marker": figure.MARKERS[i % 6], "markerfacecolor": "white",
-              "markeredgewidth": 0.8, "linewidth": 1.0, "linestyle": figure.LINES[i % 6]} for i in range(len(names))]
+              "markeredgewidth": 0.8, "linewidth": 1.0,
+              "linestyle": "-" if arguments.without else figure.LINES[i % 6]} for i in range(len(names))]
     exact, title = arguments.closed_form == "column", None
     if exact:
-        if arguments.component != "y":
-            raise figure.NotWanted("the column's closed form is vertical: --component y")
+        if arguments.component != "y" or arguments.readings or arguments.without:
+            raise figure.NotWanted("the column's closed form is vertical, with creep and since the in-situ "
+                                   "equilibrium: --component y, and neither --readings nor --without")
         draw_exact(file, axes, names, looks)
         compared = [reading for reading in column_difference.readings(file) if reading.point in names]
         worst = column_difference.largest(compared)
@@ -74,20 +106,28 @@ def draw(file, arguments):
                  f"({worst.place()}; of {len(compared)} readings)")
     entries = []
     for i, (name, look) in enumerate(zip(names, looks)):
-        there = present[:, i] == 1
-        shown = {**look, "linestyle": "none"} if exact else {**look, "markevery": max(1, len(time) // 25)}
-        axes.plot(time[there], 1e3 * values[there, i], zorder=3, **shown)
+        shown = histories.shown[:, i]
+        drawn = {**look, "linestyle": "none"} if exact else {**look, "markevery": max(1, len(shown) // 25)}
+        axes.plot(histories.time[shown], histories.values[shown, i], zorder=3, **drawn)
         entries.append(matplotlib.lines.Line2D([], [], label=f"point {name}", **look))
+    if arguments.without:
+        other = without(arguments, file)
+        thin = {"linestyle": (0, (4, 2)), "linewidth": 0.7}
+        for i, look in enumerate(looks):
+            shown = other.shown[:, i]
+            axes.plot(other.time[shown], other.values[shown, i], zorder=2, markevery=[-1], **{**look, **thin})
+        entries.append(matplotlib.lines.Line2D([], [], color="0.3", label="without creep", **thin))
 
     axes.margins(x=0.02, y=0.05)
-    for row, name in enumerate(event):
-        if name:
-            axes.axvline(time[row], color="0.6", linewidth=0.6, zorder=0)
-            axes.annotate(name, (time[row], 1.01), xycoords=("data", "axes fraction"), rotation=25, ha="left",
-                          va="bottom", rotation_mode="anchor", fontsize=6.5)
+    draw_stages(axes, histories)
+    since = "since each point's first reading" if arguments.readings else "since the in-situ equilibrium"
     axes.set_xlabel("time since the start (days)")
-    axes.set_ylabel(LABELS[arguments.component])
-    axes.legend(handles=entries, title=title, title_fontsize=7, alignment="left", loc="best")
+    axes.set_ylabel(f"{LABELS[arguments.component]},\n{since} (mm)")
+    place = {"loc": "best"}
+    if len(entries) > 4:  # too many to find room among the curves
+        plot.set_figwidth(figure.TWO_COLUMNS)
+        place = {"loc": "upper left", "bbox_to_anchor": (1.01, 1), "borderaxespad": 0}
+    axes.legend(handles=entries, title=title, title_fontsize=7, alignment="left", **place)
     return plot
 
 
@@ -96,5 +136,7 @@ if __name__ == "__main__":
         __doc__,
         (["--component"], {"choices": list(LABELS), "default": "y", "help": "default: y"}),
         (["--point"], {"action": "append", "default": [], "help": "only this point; may be given several times"}),
+        (["--readings"], {"action": "store_true", "help": "displacements since each point's own first reading"}),
+        (["--without"], {"metavar": "RESULT.h5", "help": "the same scene without creep, drawn thin and dashed"}),
         (["--closed-form"], {"choices": ["column"], "help": "draw the exact answer beside"}),
     ))

@@ -1,0 +1,267 @@
+#!/usr/bin/python3
+"""The section at one state of a result file: displacement, stress or the state of the contacts. Removed rock is not
+drawn, and positions are those at the start, unless displacements are magnified.
+
+The state is its number, counted from 0, the name of the stage that it follows, or "last".
+"""
+
+import matplotlib.colors
+import matplotlib.lines
+import matplotlib.patheffects
+import matplotlib.tri
+import numpy as np
+from matplotlib.collections import LineCollection
+
+import figure
+
+STUCK, SLIPPING, OPEN = 1, 2, 3  # /states/contact_status
+COMPONENTS = {
+    "major": "larger principal stress",
+    "minor": "smaller principal stress",
+    "mean": "mean stress in the section",
+    "xx": "horizontal stress $\\sigma_{xx}$",
+    "yy": "vertical stress $\\sigma_{yy}$",
+}
+# Pale where there is little, so that black lines and arrows stay visible over it.
+SHADES = matplotlib.colors.ListedColormap(
+    0.2 + 0.8 * matplotlib.colormaps["YlGnBu"](np.linspace(0, 0.95, 256))[:, :3])
+figure.plt.rcParams["savefig.bbox"] = "tight"  # scales and legends leave margins of different widths
+figure.plt.rcParams["savefig.pad_inches"] = 0.03
+
+
+def name_of(file, state):
+    """ "day 31, after bench 1", "day 31, before bench 1" or "day 548"."""
+    time, event = figure.array(file, "/states/time"), figure.texts(file, "/states/event")
+    name = f"day {time[state]:.5g}"
+    if event[state]:
+        return f"{name}, after {event[state]}"
+    if state + 1 < len(time) and event[state + 1] and time[state + 1] == time[state]:
+        return f"{name}, before {event[state + 1]}"
+    return name
+
+
+def state_index(file, wanted):
+    event = figure.texts(file, "/states/event")
+    if not event:
+        raise figure.NotWanted("there is no state in this file")
+    if wanted == "last":
+        return len(event) - 1
+    if wanted.isdecimal() and int(wanted) < len(event):
+        return int(wanted)
+    if wanted and wanted in event:
+        return event.index(wanted)
+    names = "\n".join(f"{state}: {name_of(file, state)}" for state in range(len(event)))
+    raise figure.NotWanted(f"there is no state '{wanted}'; there are:\n{names}")
+
+
+class Section:
+    """The zones that are there in a state, with their gridpoints where the picture has them."""
+
+    def __init__(self, file, state, magnify):
+        self.start = figure.array(file, "/mesh/gridpoint_position")
+        self.displacement = figure.array(file, "/states/displacement")[state]
+        self.position = self.start + magnify * self.displacement
+        self.there = figure.array(file, "/states/zone_present")[state] == 1
+        if not np.any(self.there):
+            raise figure.NotWanted("nothing is there any more in this state")
+        self.zones = figure.array(file, "/mesh/zone_gridpoint")[self.there]
+        self.triangles = matplotlib.tri.Triangulation(*self.position.T, self.zones)
+
+        # A number for every place; the gridpoints on the sides of a joint share it.
+        self.place = np.unique(self.start, axis=0, return_inverse=True)[1].reshape(-1)
+
+    def borders(self):
+        """Sides of zones on the outline of what is there, and those on joints: pairs of gridpoints [side, 2]."""
+        sides = np.vstack([self.zones[:, [i, (i + 1) % 3]] for i in range(3)])
+
+        def met_once(of_sides):
+            _, inverse, count = np.unique(np.sort(of_sides, axis=1), axis=0, return_inverse=True, return_counts=True)
+            return count[inverse.reshape(-1)] == 1
+
+        outline = met_once(self.place[sides])
+        return sides[outline], sides[met_once(sides) & ~outline]
+
+    def on_grid(self, columns):
+        """Zones that lie on a coarse grid with so many columns, and the grid's spacing [m]."""
+        low, high = self.start.min(axis=0), self.start.max(axis=0)
+        spacing = np.max(high - low) / columns
+        middle = self.start[self.zones].mean(axis=1)
+        cell = np.floor((middle - low) / spacing).astype(int)
+        off_centre = np.linalg.norm((middle - low) / spacing - cell - 0.5, axis=1)
+        order = np.argsort(off_centre)
+        _, first = np.unique(cell[order], axis=0, return_index=True)
+        chosen = order[first]
+        return chosen[off_centre[chosen] < 0.35], spacing
+
+
+def draw_borders(section, axes, joints=True):
+    outline, on_joints = section.borders()
+    if joints:
+        axes.add_collection(LineCollection(section.position[on_joints], color="0.35", linewidth=0.25, zorder=2))
+    axes.add_collection(LineCollection(section.position[outline], color="k", linewidth=1.0, capstyle="round",
+                                       zorder=2.5))
+
+
+def add_scale(axes, colored, label, low, high, values):
+    """A colour scale, with a pointed end where values lie beyond it."""
+    extend = {(0, 0): "neither", (1, 0): "min", (0, 1): "max", (1, 1): "both"}
+    beyond = extend[int(np.min(values) < low), int(np.max(values) > high)]
+    axes.figure.colorbar(colored, ax=axes, label=label, shrink=0.75, aspect=25, pad=0.02, extend=beyond)
+
+
+def draw_displacement(file, state, section, axes, arguments):
+    size = 1e3 * np.linalg.norm(section.displacement, axis=1)
+    low, high = arguments.range or (0, size[np.unique(section.zones)].max() or 1)
+    colored = axes.tripcolor(section.triangles, size, shading="gouraud", cmap=SHADES, vmin=low, vmax=high,
+                             rasterized=True)
+    add_scale(axes, colored, "displacement since the in-situ equilibrium (mm)", low, high,
+              size[np.unique(section.zones)])
+    draw_borders(section, axes)
+
+    chosen, spacing = section.on_grid(26)
+    place = section.position[section.zones[chosen]].mean(axis=1)
+    arrow = 1e3 * section.displacement[section.zones[chosen]].mean(axis=1)
+    longest = high if arguments.range else max(np.linalg.norm(arrow, axis=1).max(), 1e-12)
+    axes.quiver(*place.T, *arrow.T, angles="xy", scale_units="xy", scale=longest / (1.25 * spacing), units="inches",
+                width=0.012, headwidth=4, headlength=5, headaxislength=4.5, minlength=0.6, zorder=5)
+    return []
+
+
+def principal(stress):
+    """Principal stresses, compression positive, and the direction of the larger one: {value, value, angle}."""
+    xx, yy, xy = -stress.T
+    mean, radius = (xx + yy) / 2, np.hypot((xx - yy) / 2, xy)
+    return mean + radius, mean - radius, np.arctan2(2 * xy, xx - yy) / 2
+
+
+def draw_crosses(section, stress, axes):
+    """Principal stresses on a coarse grid, as crosses along their directions."""
+    chosen, spacing = section.on_grid(26)
+    major, minor, angle = principal(stress[chosen])
+    place = section.position[section.zones[chosen]].mean(axis=1)
+    usual = np.percentile(np.abs([major, minor]), 95)  # a few in corners are much longer
+    arms = []
+    for value, direction in ((major, angle), (minor, angle + np.pi / 2)):
+        half = 0.5 * spacing * np.abs(value / (usual or 1))
+        along = half[:, None] * np.stack([np.cos(direction), np.sin(direction)], axis=1)
+        arms.append((value, np.stack([place - along, place + along], axis=1)))
+    values, lines = np.concatenate([arm[0] for arm in arms]), np.concatenate([arm[1] for arm in arms])
+    entries = []
+    nothing = 1e-6 * np.max(np.abs(values))  # rounding
+    for chosen_arms, label, look in ((values > nothing, "compressive", {"color": "k", "linewidth": 0.6}),
+                                     (values < -nothing, "tensile", {"color": figure.COLORS[1], "linewidth": 1.6})):
+        if np.any(chosen_arms):
+            axes.add_collection(LineCollection(lines[chosen_arms], zorder=5, **look))
+            largest = 1e-6 * np.abs(values[chosen_arms]).max()
+            label += f" principal stress, up to {largest:.2g} MPa"
+            entries.append(matplotlib.lines.Line2D([], [], label=label, **look))
+    return entries
+
+
+def draw_stress(file, state, section, axes, arguments):
+    stress = figure.array(file, "/states/stress")[state][section.there]
+    major, minor, _ = principal(stress)
+    value = 1e-6 * {"major": major, "minor": minor, "mean": (major + minor) / 2,
+                    "xx": -stress[:, 0], "yy": -stress[:, 1]}[arguments.component]
+    # A few zones in corners would take most of the scale.
+    low, high = arguments.range or np.percentile(value, [0.5, 99.5])
+    if not low < high:
+        low, high = low - 0.5, high + 0.5
+    colored = axes.tripcolor(section.triangles, facecolors=value, cmap=SHADES, vmin=low, vmax=high, edgecolors="face",
+                             linewidth=0.1, rasterized=True)
+    add_scale(axes, colored, f"{COMPONENTS[arguments.component]},\ncompressive (MPa)", low, high, value)
+    draw_borders(section, axes)
+    return draw_crosses(section, stress, axes) if arguments.component in ("major", "minor") else []
+
+
+def contact_lines(file, section):
+    """The pieces of joint that contacts stand for: pairs of places [piece, 2, 2], and the contact of each. A piece is
+    half a zone's side, from its end, where the contact is, to its middle."""
+    contacts = {frozenset(pair): i for i, pair in enumerate(figure.array(file, "/mesh/contact_gridpoint").tolist())}
+    outline, on_joints = section.borders()
+    in_zones = np.unique(figure.array(file, "/mesh/zone_gridpoint"))
+    ground = np.setdiff1d(np.arange(len(section.place)), in_zones)  # that the rock rests on, without zones
+    ground_at = dict(zip(section.place[ground], ground))
+
+    walls = {}  # the two sides of a zone's side on a joint, each as {place: gridpoint}
+    for side in on_joints:
+        walls.setdefault(frozenset(section.place[side]), []).append(dict(zip(section.place[side], side)))
+    for side in outline:
+        if all(place in ground_at for place in section.place[side]):
+            walls[frozenset(section.place[side])] = [dict(zip(section.place[side], side)), ground_at]
+
+    lines, of_contact = [], []
+    for one, other in walls.values():
+        ends = {place: section.position[[one[place], other[place]]].mean(axis=0) for place in one}
+        middle = sum(ends.values()) / 2
+        for place, end in ends.items():
+            contact = contacts.get(frozenset((one[place], other[place])))
+            if contact is not None:
+                lines.append((end, middle))
+                of_contact.append(contact)
+    return np.reshape(lines, (-1, 2, 2)), np.array(of_contact, int)
+
+
+def draw_contacts(file, state, section, axes, _):
+    status = figure.array(file, "/states/contact_status")[state]
+    opening, shear = 1e3 * np.abs(figure.array(file, "/states/jump")[state].T)  # [mm]
+    lines, of_contact = contact_lines(file, section)
+    draw_borders(section, axes, joints=False)
+
+    stuck = {"color": "0.6", "linewidth": 0.5}
+    axes.add_collection(LineCollection(lines[status[of_contact] == STUCK], zorder=2, **stuck))
+    entries = [matplotlib.lines.Line2D([], [], label=f"{np.sum(status == STUCK)} contacts closed", **stuck)]
+    for code, label, jump, color in ((SLIPPING, "slipping", shear, figure.COLORS[0]),
+                                     (OPEN, "open", opening, figure.COLORS[1])):
+        count = np.sum(status == code)
+        largest = jump[status == code].max() if count else 0
+        chosen = status[of_contact] == code
+        width = 1.6 + 2.9 * jump[of_contact[chosen]] / (largest or 1)
+        axes.add_collection(LineCollection(lines[chosen], color=color, linewidth=width, capstyle="round",
+                                           zorder=code + 1))
+        entry = matplotlib.lines.Line2D([], [], color=color, linewidth=2.5, label=f"{count} {label}")
+        if count:
+            entry.set_label(f"{count} {label}, up to {largest:.2g} mm")
+        if code == OPEN:  # two walls with a gap between them, in grey print too
+            axes.add_collection(LineCollection(lines[chosen], color="w", linewidth=0.45 * width, capstyle="round",
+                                               zorder=code + 1.5))
+            entry.set(color="w", linewidth=1.1, path_effects=[
+                matplotlib.patheffects.Stroke(linewidth=2.5, foreground=color), matplotlib.patheffects.Normal()])
+        entries.append(entry)
+    if np.any(status > STUCK):
+        entries.append(matplotlib.lines.Line2D([], [], linestyle="none", label="width: by shear or opening"))
+    return entries
+
+
+def draw(file, arguments):
+    if figure.file_type(file) != "jointcreep result":
+        raise figure.NotWanted("there are no states in this file; demsolve makes one that has them")
+    state = state_index(file, arguments.state)
+    section = Section(file, state, arguments.magnify)
+    plot, axes = figure.section_axes(section.start)
+    plot.set_figheight(plot.get_figheight() + 0.2)  # for the title
+    field = {"displacement": draw_displacement, "stress": draw_stress, "contacts": draw_contacts}[arguments.field]
+    entries = field(file, state, section, axes, arguments)
+    title = name_of(file, state)
+    if arguments.magnify:
+        title += f"; positions displaced {arguments.magnify:g} times"
+    axes.set_title(title, loc="left")
+    if entries:
+        figure.legend_below(axes, entries)
+    return plot
+
+
+if __name__ == "__main__":
+    figure.run(draw, figure.arguments_of(
+        __doc__,
+        (["--state"], {"default": "last", "help": "default: last"}),
+        (["--field"], {"choices": ["displacement", "stress", "contacts"], "default": "displacement",
+                       "help": "default: displacement"}),
+        (["--component"], {"choices": list(COMPONENTS), "default": "major",
+                           "help": "of the stress; major and minor come with crosses along their directions; "
+                                   "default: major"}),
+        (["--magnify"], {"type": float, "default": 0, "metavar": "TIMES",
+                         "help": "draw the rock displaced so many times; default: 0"}),
+        (["--range"], {"nargs": 2, "type": float, "metavar": ("LOW", "HIGH"),
+                       "help": "of the colour scale, in its unit, for pictures to compare; default: what is there"}),
+    ))
