@@ -100,11 +100,12 @@ Scene parse_scene(std::string_view text, const std::string& name)
     scene.joints = read_list(tables.joint, root, reading);
     scene.joint_sets = read_list(tables.joint_set, root, reading);
     read_once(tables.in_situ_stress, root, reading, scene.in_situ_stress);
-    scene.boundaries = read_list(tables.boundary, root, reading);
 
     Schedule schedule{reading.calendar};
     read_once(tables.schedule, root, reading, schedule);
     scene.end = schedule.end;
+    // From here on what has dates.
+    scene.boundaries = read_list(tables.boundary, root, reading);
     scene.stages = read_list(tables.stage, root, reading);
     scene.points = read_list(tables.point, root, reading);
     scene.gauges = read_list(tables.gauge, root, reading);

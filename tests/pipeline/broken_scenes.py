@@ -16,7 +16,10 @@ import sys
 import tempfile
 
 HERE = pathlib.Path(__file__).parent
-WITH_LOCAL_DAMPING = ('damping = "mass"\nmass_damping_per_s = 20', 'damping = "local"\nlocal_damping = 0.8')
+WITH_LOCAL_DAMPING = (
+    'damping = "mass"\nmass_damping_per_s = 20\nstiffness_damping_s = 1e-5',
+    'damping = "local"\nlocal_damping = 0.8',
+)
 CHECK_TIME = 60  # s, far more than any check takes
 
 
@@ -41,7 +44,9 @@ def find(lines, table, key):
 def wrap(kind, number):
     """The number where a value of this kind has one."""
     corners = f"[[{number}, 0], [1, 0], [0, 1]]"
-    return {"point": f"[0, {number}]", "polygon": corners, "polygons": f"[{corners}]"}.get(kind, number)
+    lists = {"point": f"[0, {number}]", "course": f"[[1, 0], [2, {number}]]", "polygon": corners,
+             "polygons": f"[{corners}]"}
+    return lists.get(kind, number)
 
 
 def outside(bound, step):
@@ -53,7 +58,8 @@ def outside(bound, step):
 def broken_values(key):
     kind = key["kind"]
     wrong_type = {"text": "1", "number": '"1"', "integer": "1.5", "date": '"1994-06-05"', "point": "[1, 2, 3]",
-                  "polygon": "[[0, 0], [1, 1]]", "polygons": "[[0, 0], [1, 0], [1, 1]]"}
+                  "course": "[[1, 2, 3]]", "polygon": "[[0, 0], [1, 1]]",
+                  "polygons": "[[0, 0], [1, 0], [1, 1]]"}
     yield "wrong type", wrong_type.get(kind, "1")
     yield "a flag", "true"
     yield "a time", "12:00:00"

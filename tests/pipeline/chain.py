@@ -24,10 +24,9 @@ class Chain:
     def new_folder(self):
         return pathlib.Path(tempfile.mkdtemp(dir=self.folder))
 
-    def scene_text(self, name):
-        """The text of data/column/scene.toml by the name "column", or of a scene in this folder."""
-        data = self.source / "data" / name / "scene.toml"
-        return (data if data.exists() else pathlib.Path(__file__).parent / f"{name}.toml").read_text()
+    def text(self, path):
+        """The text of a file in the source folder."""
+        return (self.source / path).read_text()
 
     def answer(self, program, *arguments):
         """What the program does, whatever its exit code."""

@@ -3,7 +3,7 @@
 
     /usr/bin/python3 damaged_files.py PROGRAM FILE.h5 [N] [ARGS...]
 
-runs `PROGRAM COPY.h5 -o OUT.h5 ARGS` on N (300) copies, each truncated, with flipped bits or zeroed bytes, with
+runs `PROGRAM COPY.h5 -o OUT ARGS` on N (300) copies, each truncated, with flipped bits or zeroed bytes, with
 another type, version or completeness, or without one of its datasets; always the same N copies. Each run must
 either answer as for the undamaged file, or refuse with exit code 2 or 4, a message that names the copy, and no
 output. Exit code 1 if a run did anything else.
@@ -87,7 +87,9 @@ def datasets(file):
 
 
 def content(path):
-    """Every dataset and root attribute of a file."""
+    """Every dataset and root attribute of an HDF5 file; all bytes of another."""
+    if path.suffix != ".h5":
+        return {"bytes": numpy.frombuffer(path.read_bytes(), numpy.uint8)}
     with h5py.File(path) as file:
         values = {name: file[name][()] for name in datasets(file)}
         values |= {"attribute " + name: numpy.asarray(value) for name, value in file.attrs.items()}
@@ -107,7 +109,7 @@ def difference(one, other):
 
 
 def run(program, arguments, source, folder, limit):
-    output = folder / "out.h5"
+    output = folder / ("out.vtu" if pathlib.Path(program).name == "jointexport" else "out.h5")
     command = [program, str(source), "-o", str(output), *arguments]
     return output, subprocess.run(command, capture_output=True, text=True, errors="replace", timeout=limit)
 

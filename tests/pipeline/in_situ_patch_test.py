@@ -30,7 +30,7 @@ class InSituPatch(ChainTest):
         return result
 
     def test_random_network(self):
-        text = self.chain.scene_text("patch")
+        text = self.chain.text("tests/pipeline/patch.toml")
         for realization in range(4):
             with self.subTest(realization=realization):
                 joints = self.chain.joints(text, "--realization", realization)
@@ -53,7 +53,7 @@ class InSituPatch(ChainTest):
 
     def test_free_surface(self):
         """Where the stress leaves it, a surface is not held at all."""
-        text = self.chain.scene_text("patch")
+        text = self.chain.text("tests/pipeline/patch.toml")
         text = changed(text, "^compression_yy_MPa = 4", "compression_yy_MPa = 0")
         text = changed(text, "^shear_xy_MPa = 1.5", "shear_xy_MPa = 0")
         text = changed(text, r'^\[\[boundary\]\]\nfrom_m = \[60, 40\]\nto_m = \[0, 40\]\nfix = "xy"\n', "")
@@ -61,7 +61,7 @@ class InSituPatch(ChainTest):
 
     def test_with_a_stage_at_the_end(self):
         """Stage outlines cut through solid rock change nothing before their day."""
-        text = changed(self.chain.scene_text("patch"), r"^end = 3$", "end = 3\n" + STAGE_AT_THE_END)
+        text = changed(self.chain.text("tests/pipeline/patch.toml"), r"^end = 3$", "end = 3\n" + STAGE_AT_THE_END)
         _, result = self.moved(self.chain.result(text, "--tolerance", "1e-4"))
         before = list(result["/states/event"]).index("at the end")
         self.assertTrue((result["/edges/kind"] == 2).any())
@@ -71,7 +71,7 @@ class InSituPatch(ChainTest):
 
     def test_weak_joints_slip(self):
         """Joints that cannot carry the stress do move, which the steps of the first equilibrium show."""
-        text = changed(self.chain.scene_text("patch"), "^cohesion_MPa = 10", "cohesion_MPa = 0")
+        text = changed(self.chain.text("tests/pipeline/patch.toml"), "^cohesion_MPa = 10", "cohesion_MPa = 0")
         text = changed(text, "^friction_angle_deg = 30", "friction_angle_deg = 5")
         _, result = self.moved(self.chain.result(text, "--tolerance", "1e-3"))
         self.assertGreater(result["/equilibria/steps"][0], 0)

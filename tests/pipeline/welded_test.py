@@ -6,7 +6,7 @@ where the rock bends, the answers must come together as zones get smaller.
 
 import numpy
 
-from chain import ChainTest, changed, datasets, main
+from chain import ChainTest, datasets, main
 
 LAST = "last"  # the added stage
 WELDED = 2  # kind of edge
@@ -37,7 +37,7 @@ class Welded(ChainTest):
         return numpy.abs(before(other, day) - moves).max() / numpy.abs(moves).max()
 
     def test_column(self):
-        text = self.chain.scene_text("column")
+        text = self.chain.text("data/column/scene.toml")
         plain = datasets(self.chain.result(text, "--tolerance", "1e-8"))
         cuts = {
             "one block": ("[[0, 3], [10, 7], [10, 10], [0, 10]]", 10.770),
@@ -49,10 +49,10 @@ class Welded(ChainTest):
                 self.assert_cut(cut, length)
                 difference = self.difference(plain, cut, 40)
                 print(f"column, {name}: {difference:.1e}")
-                self.assertLess(difference, 1e-6)  # 2e-8 seen
+                self.assertLess(difference, 1e-5)  # 4e-7 seen
 
     def test_bending(self):
-        text = self.chain.scene_text("welded")
+        text = self.chain.text("tests/pipeline/welded.toml")
         cut_text = self.with_stage(text, 10, "[[36, 25], [60, 25], [60, 14], [41, 14]]")
         differences = {}
         for size in 4, 2, 1:
@@ -67,7 +67,7 @@ class Welded(ChainTest):
 
     def test_a_joint_would_show(self):
         """What is compared would differ if the outline were a joint."""
-        text = self.chain.scene_text("welded")
+        text = self.chain.text("tests/pipeline/welded.toml")
         joint = '[[joint]]\nname = "wrong"\nmaterial = "joint"\nfrom_m = [36, 25]\nto_m = [42, 0]\n\n'
         plain = datasets(self.chain.result(text))
         cut = datasets(self.chain.result(text.replace("[in_situ_stress]", joint + "[in_situ_stress]")))
