@@ -112,6 +112,7 @@ private:
         graph_.vertex.push_back(b);
         graph_.edge.push_back({n, n + 1, {static_cast<Index>(sources_.size())}});
         sources_.push_back(source);
+        lines_.push_back({a, b});
     }
 
     void add_polygon(const Polygon& polygon, Source::Kind kind)
@@ -381,8 +382,20 @@ private:
             blocks.block_stage.push_back(stage_at(inside));
         }
         blocks.report = report_;
+        measure_moves(blocks);
         measure_limits(blocks);
         return blocks;
+    }
+
+    // What several passes have moved has moved farther than in any one of them: as far as it is off its line.
+    void measure_moves(Blocks& blocks) const
+    {
+        for (const Edge& edge : graph_.edge)
+            for (const Index s : edge.sources)
+                for (const Index v : {edge.first, edge.second})
+                    blocks.report.largest_move =
+                        std::max(blocks.report.largest_move,
+                                 distance_to(lines_[s][0], lines_[s][1], graph_.vertex[v]));
     }
 
     static void measure_limits(Blocks& blocks)
@@ -429,6 +442,7 @@ private:
     const Joints& joints_;
     Polygon outline_;
     double reach_;
+    std::vector<std::array<Vector2d, 2>> lines_; // of the sources, as they were drawn
     std::vector<Source> sources_;
     std::vector<std::vector<std::size_t>> trace_of_joint_;
     Graph graph_;

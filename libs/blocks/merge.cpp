@@ -143,6 +143,8 @@ bool merge_pass(Graph& graph, const std::vector<Source>& sources, const Polygon&
     std::map<std::pair<Index, Index>, std::vector<Index>> edges; // by ends, so that doubles become one
     const auto add_edge = [&](Index a, Index b, const std::vector<Index>& edge_sources) {
         auto& all = edges[std::minmax(a, b)];
+        if (!all.empty()) // two edges have become one
+            report.merged_edge_length += (graph.vertex[a] - graph.vertex[b]).norm();
         all.insert(all.end(), edge_sources.begin(), edge_sources.end());
     };
     for (const Edge& e : graph.edge) {

@@ -68,7 +68,7 @@ TEST(checks, missing_tables)
         expect_part(refusal(without(table)), "the scene has no " + table);
     expect_part(refusal(without("[random]")), "the scene has no [random] seed: [[joint_set]] needs it");
     auto unheld = text;
-    for (int i = 0; i < 3; ++i)
+    while (unheld.find("[[boundary]]") != std::string::npos)
         unheld.erase(unheld.find("[[boundary]]"),
                      unheld.find("\n[", unheld.find("[[boundary]]")) + 1 - unheld.find("[[boundary]]"));
     expect_part(refusal(unheld), "the scene has no [[boundary]]");
@@ -207,10 +207,28 @@ TEST(checks, numbers_that_depend_on_others)
 {
     expect_refused("shortest_edge_m = 0.2", "shortest_edge_m = 5", "wanted at most [zones] size_m, 4 m");
     expect_refused("mass_damping_per_s = 20\n", "", "has no mass_damping_per_s", "[equilibrium]");
-    expect_refused("damping = \"mass\"", "damping = \"adaptive\"", "mass_damping_per_s = 20",
+    expect_refused("damping = \"mass\"", "damping = \"adaptive\"", "stiffness_damping_s = 1e-05",
+                   "stiffness_damping_s = 1e-5");
+    expect_refused("damping = \"mass\"\nmass_damping_per_s = 20\nstiffness_damping_s = 1e-5",
+                   "damping = \"adaptive\"\nmass_damping_per_s = 20", "mass_damping_per_s = 20",
                    "mass_damping_per_s = 20");
     expect_refused("mass_damping_per_s = 20", "mass_damping_per_s = 20\nlocal_damping = 0.8",
                    "only damping = \"local\"", "local_damping = 0.8");
+}
+
+TEST(checks, loads)
+{
+    expect_refused("traction_MPa = [0, -0.01]", "", "wanted fix = ", "[[boundary]]\nfrom_m = [0, 20]");
+    expect_refused("course = [[1, 0], [4, 1]]", "", "wanted fix and course", "displacement_mm = [-0.1, 0]");
+    expect_refused("displacement_mm = [-0.1, 0]", "displacement_mm = [-0.1, 1]", "wanted 0 in the direction",
+                   "displacement_mm = [-0.1, 1]");
+    expect_refused("course = [[1, 0], [4, 1]]", "course = [[4, 0], [1, 1]]", "dates in increasing order",
+                   "course = [[4, 0]");
+    expect_refused("joint = \"joint\"\n\n[[boundary]]",
+                   "joint = \"joint\"\ntraction_MPa = [1, 0]\n\n[[boundary]]", "beside joint",
+                   "joint = \"joint\"\ntraction_MPa");
+    expect_refused("traction_MPa = [0, -0.01]", "fix = \"x\"\ncourse = [[0, 1]]", "beside it",
+                   "course = [[0, 1]]");
 }
 
 TEST(checks, files)

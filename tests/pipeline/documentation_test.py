@@ -1,0 +1,110 @@
+"""What README and docs say of the programs is so."""
+
+import re
+import subprocess
+import sys
+
+import h5py
+
+from chain import ChainTest, main
+
+PROGRAMS = ["jointgen", "strength-averaging", "demsolve", "jointexport"]
+BUILD_AND_RUN = "sh pipelines/setup.sh && make -C pipelines/column"
+BUILD_AND_TEST = "sh pipelines/setup.sh && ctest --preset release"
+
+
+def code_blocks(text, language):
+    return re.findall(rf"^```{language}\n(.*?)^```$", text, flags=re.MULTILINE | re.DOTALL)
+
+
+class Documentation(ChainTest):
+    def output_of(self, program, *arguments):
+        done = self.chain.answer(program, *arguments)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return done.stdout
+
+    def test_generated_pages(self):
+        self.assertEqual(self.output_of("jointgen", "--scene-keys-markdown"), self.chain.text("docs/scene.md"))
+        self.assertEqual(self.output_of("jointexport", "--file-format"), self.chain.text("docs/file-format.md"))
+
+    def test_two_commands(self):
+        commands = [block.strip() for block in code_blocks(self.chain.text("README.md"), "sh")]
+        self.assertEqual(commands[:2], [BUILD_AND_RUN, BUILD_AND_TEST])
+        run = self.chain.text(".ci/run").splitlines()
+        self.assertEqual([line for line in run if "pipelines" in line], [BUILD_AND_TEST])
+        self.assertEqual(run[-1], BUILD_AND_TEST)
+        for path in "pipelines/setup.sh", "pipelines/column/Makefile", ".ci/run":
+            self.assertTrue((self.chain.source / path).is_file(), path)
+
+    def test_readmes_scene_and_chain(self):
+        """The scene in README runs through the commands in README, where they find this build's programs."""
+        readme = self.chain.text("README.md")
+        (scene,) = code_blocks(readme, "toml")
+        (chain,) = (block for block in code_blocks(readme, "sh") if "demsolve" in block)
+        path, *commands = chain.splitlines()
+        self.assertEqual(path, 'export PATH="$PWD/build/release/apps:$PATH"')
+        self.assertEqual([command.split()[0] for command in commands], PROGRAMS)
+
+        folder = self.chain.new_folder()
+        (folder / "two.toml").write_text(scene)
+        script = f'set -eu\nPATH="{self.chain.programs}:$PATH"\n' + "\n".join(commands)
+        done = subprocess.run(["sh", "-c", script], cwd=folder, capture_output=True, text=True, timeout=300)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        with h5py.File(folder / "result.h5") as file:
+            # Below C are 5 m of rock and the base's joint: dF (z (1 - nu^2) / E_r + 1 / K) at once. Later 1 / E comes
+            # on top. The base is rough, which the formula leaves out.
+            at_once = 2750 * 9.81 * 10 * (5 * (1 - 0.22**2) / 40e9 + 1 / 690e6)
+            rise = file["/history/displacement"][:, 0, 1]
+            self.assertAlmostEqual(rise[2] / at_once, 1, delta=1e-2)
+            self.assertGreater(rise[-1], 1.8 * at_once)
+
+    def test_scene_page_example(self):
+        for number, scene in enumerate(code_blocks(self.chain.text("docs/scene.md"), "toml")):
+            path = self.chain.new_folder() / f"{number}.toml"
+            path.write_text(scene)
+            self.output_of("jointgen", path, "--check")
+
+    def test_file_format_example(self):
+        (example,) = code_blocks(self.chain.text("docs/file-format.md"), "python")
+        result = self.chain.result(self.chain.text("data/column/scene.toml"), "--no-creep")
+        check = example + "\nassert len(time) == 8 and list(points) == ['A', 'B', 'C'] and units == 'm'\n"
+        check += "assert displacement.shape == (8, 3, 2) and '[section]' in scene\n"
+        subprocess.run([sys.executable, "-c", check], cwd=result.parent, check=True)
+
+    def test_options(self):
+        """docs/programs.md and --help have the same options."""
+        common, *sections = re.split(r"^## ", self.chain.text("docs/programs.md"), flags=re.MULTILINE)[1:]
+        pages = {section.split("\n")[0].strip(): section for section in sections}
+
+        def documented(section):
+            rows = re.findall(r"^\| (`-.*?) \|", section, flags=re.MULTILINE)
+            return {option for row in rows for option in re.findall(r"`(-[^` ]+)", row)}
+
+        def listed(program):
+            text = self.output_of(program, "--help").split("Options:\n")[1].split("\n\n")[0]
+            found = set()
+            for line in text.splitlines():
+                short_and_long = re.match(r"  (?:(-\w) \[ (--[\w-]+) \]|(--[\w-]+))", line)
+                found |= {option for option in short_and_long.groups() if option} if short_and_long else set()
+            return found
+
+        for program in PROGRAMS:
+            with self.subTest(program):
+                self.assertEqual(documented(common) | documented(pages[program]), listed(program))
+                self.assertGreaterEqual(len(listed(program)), 7)
+
+    def test_exit_codes(self):
+        documented = re.findall(r"^\| (\d) \| (.*?) \|$", self.chain.text("docs/programs.md"), flags=re.MULTILINE)
+        for program in PROGRAMS:
+            listed = re.findall(r"^  (\d)  (.*)$", self.output_of(program, "--help"), flags=re.MULTILINE)
+            self.assertEqual([code for code, _ in listed], [code for code, _ in documented])
+            self.assertEqual([code for code, _ in listed], ["0", "2", "3", "4", "5"])
+
+    def test_version(self):
+        version = re.search(r"VERSION (\S+)", self.chain.text("CMakeLists.txt").split("project(")[1]).group(1)
+        for program in PROGRAMS:
+            self.assertRegex(self.output_of(program, "--version"), rf"^{program} {re.escape(version)}(\+[\w.]+)?\n$")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,216 @@
+"""Everything jointexport writes, read back: the same numbers as in the HDF5 file, bit by bit."""
+
+import csv
+import functools
+import xml.etree.ElementTree
+
+import numpy
+
+from chain import ChainTest, datasets, main
+
+KINDS = ["boundary", "joint", "welded"]
+LINE, POLYGON, TRIANGLE, VERTEX = 3, 7, 5, 1  # cell types of VTK
+EQUIVALENT = {"normal_stiffness": "Pa_per_m", "shear_stiffness": "Pa_per_m", "cohesion": "Pa", "friction_angle": "rad",
+              "tensile_strength": "Pa", "normal_kelvin_stiffness": "Pa_per_m", "shear_kelvin_stiffness": "Pa_per_m",
+              "normal_kelvin_viscosity": "Pa_s_per_m", "shear_kelvin_viscosity": "Pa_s_per_m"}
+
+
+@functools.cache
+def solved(scene):
+    path = ChainTest.chain.result(ChainTest.chain.text(scene), "--no-creep")
+    return path, datasets(path)
+
+
+class Grid:
+    """A VTK XML unstructured grid: its arrays, by name."""
+
+    def __init__(self, path):
+        root = xml.etree.ElementTree.parse(path).getroot()
+        (self.grid,) = root
+        assert (root.tag, root.get("type"), self.grid.tag) == ("VTKFile", "UnstructuredGrid", "UnstructuredGrid")
+        piece = self.grid.find("Piece")
+        n_points, n_cells = int(piece.get("NumberOfPoints")), int(piece.get("NumberOfCells"))
+        self.point, self.cell = self.arrays(piece.find("PointData")), self.arrays(piece.find("CellData"))
+        assert all(len(array) == n_points for array in self.point.values())
+        assert all(len(array) == n_cells for array in self.cell.values())
+        (self.points,) = self.arrays(piece.find("Points")).values()
+        assert self.points.shape == (n_points, 3) and (self.points[:, 2] == 0).all()
+        cells = self.arrays(piece.find("Cells"))
+        self.types = cells["types"]
+        self.connectivity = numpy.split(cells["connectivity"], cells["offsets"][:-1]) if n_cells else []
+        assert len(self.types) == len(self.connectivity) == n_cells
+        self.field = self.arrays(self.grid.find("FieldData"))
+
+    @staticmethod
+    def arrays(element):
+        found = {}
+        for array in element if element is not None else []:
+            words, kind = (array.text or "").split(), array.get("type")
+            if kind == "String":
+                found[array.get("Name")] = bytes(map(int, words)).decode().split("\0")[:-1]
+                continue
+            values = numpy.array([float(word) if kind == "Float64" else int(word) for word in words])
+            components = int(array.get("NumberOfComponents", 1))
+            found[array.get("Name")] = values.reshape(-1, components) if components > 1 else values
+        return found
+
+
+class Export(ChainTest):
+    def export(self, source, name, *arguments):
+        return self.chain.run("jointexport", source, self.chain.new_folder() / name, *arguments)
+
+    def table(self, source, what):
+        with open(self.export(source, what + ".csv", "--what", what), newline="") as file:
+            return list(csv.DictReader(file))
+
+    def assert_same(self, found, wanted):
+        numpy.testing.assert_array_equal(numpy.asarray(found), numpy.asarray(wanted))
+
+    def column(self, table, name, empty=None):
+        return [empty if row[name] == "" else float(row[name]) for row in table]
+
+    def test_histories_csv(self):
+        for path, data in self.results():
+            table = self.table(path, "histories")
+            self.assert_same(self.column(table, "time_day"), data["/history/time"])
+            self.assertEqual([row["event"] for row in table], list(data["/history/event"]))
+            for p, point in enumerate(data["/history/point"]):
+                for axis, letter in enumerate("xy"):
+                    wanted = data["/history/displacement"][:, p, axis]
+                    self.assert_same(self.column(table, f"{point}_{letter}_m"), wanted)
+                self.assert_same(self.column(table, f"{point}_present"), data["/history/present"][:, p])
+            self.assertEqual(len(table[0]), 2 + 3 * len(data["/history/point"]))
+
+    def test_blocks_csv(self):
+        for path, data in self.results():
+            table = self.table(path, "blocks")
+            self.assert_same(self.column(table, "block"), range(len(data["/blocks/area"])))
+            self.assert_same(self.column(table, "area_m2"), data["/blocks/area"])
+            self.assertEqual([row["rock"] for row in table], [data["/names/rock"][r] for r in data["/blocks/rock"]])
+            stages = [*data["/names/stage"], ""]  # -1, the last one, is none
+            self.assertEqual([row["stage"] for row in table], [stages[s] for s in data["/blocks/stage"]])
+
+    def test_joints_csv(self):
+        for path, data in self.results():
+            table, joint = self.table(path, "joints"), data["/traces/joint"]
+            self.assertEqual([row["set"] for row in table], list(data["/names/joint_set"][data["/joints/set"][joint]]))
+            self.assert_same(self.column(table, "number"), data["/joints/number"][joint])
+            for end, n in ("from", 1), ("to", 2):
+                for axis, letter in enumerate("xy"):
+                    self.assert_same(self.column(table, f"{letter}{n}_m"), data["/traces/" + end][:, axis])
+
+    def test_edges_csv(self):
+        for path, data in self.results():
+            table, joint = self.table(path, "edges"), data["/edges/joint"]
+            ends = data["/vertices/position"][data["/edges/vertex"]]
+            for n in 1, 2:
+                for axis, letter in enumerate("xy"):
+                    self.assert_same(self.column(table, f"{letter}{n}_m"), ends[:, n - 1, axis])
+            for side, name in enumerate(["left_block", "right_block"]):
+                self.assert_same(self.column(table, name, empty=-1), data["/edges/block"][:, side])
+            self.assertEqual([row["kind"] for row in table], [KINDS[kind] for kind in data["/edges/kind"]])
+            for row, j in zip(table, joint):
+                wanted = ("", "") if j < 0 else (data["/names/joint_set"][data["/joints/set"][j]],
+                                                str(data["/joints/number"][j]))
+                self.assertEqual((row["set"], row["number"]), wanted)
+            self.assert_same(self.column(table, "joint_fraction", empty=0), data["/edges/joint_fraction"])
+            for name, unit in EQUIVALENT.items():
+                self.assert_same(self.column(table, f"{name}_{unit}", empty=0), data["/equivalent/" + name])
+
+    def test_blocks_vtu(self):
+        for path, data in self.results():
+            grid = Grid(self.export(path, "x.vtu", "--what", "blocks"))
+            self.assertTrue((grid.types == POLYGON).all())
+            self.assert_same(grid.cell["block"], range(len(data["/blocks/area"])))
+            for name in "rock", "stage", "area":
+                self.assert_same(grid.cell[name], data["/blocks/" + name])
+            self.assertEqual(grid.field["rock_names"], list(data["/names/rock"]))
+            self.assertEqual(grid.field["stage_names"], list(data["/names/stage"]))
+            self.assertTrue((numpy.diff(data["/blocks/first_ring"]) == 1).all(), "these sections have no holes")
+            rings = numpy.split(data["/rings/vertex"], data["/rings/first_corner"][1:-1])
+            for corners, ring in zip(grid.connectivity, rings):
+                self.assert_same(grid.points[corners, :2], data["/vertices/position"][ring])
+
+    def test_joints_vtu(self):
+        for path, data in self.results():
+            grid = Grid(self.export(path, "x.vtu", "--what", "joints"))
+            self.assertTrue((grid.types == LINE).all())
+            edge, joint = grid.cell["edge"], data["/edges/joint"]
+            self.assertTrue(set(numpy.flatnonzero(data["/edges/kind"] == 1)) <= set(edge))
+            self.assertTrue((data["/equivalent/normal_stiffness"][edge] > 0).all())
+            self.assertEqual(len(edge), (data["/equivalent/normal_stiffness"] > 0).sum())
+            ends = data["/vertices/position"][data["/edges/vertex"]]
+            for cell, e in zip(grid.connectivity, edge):
+                self.assert_same(grid.points[cell, :2], ends[e])
+            for name in "kind", "joint", "joint_fraction":
+                self.assert_same(grid.cell[name], data["/edges/" + name][edge])
+            self.assert_same(grid.cell["set"], numpy.where(joint >= 0, data["/joints/set"][joint], -1)[edge])
+            for name in EQUIVALENT:
+                self.assert_same(grid.cell[name], data["/equivalent/" + name][edge])
+
+    def test_zones_vtu(self):
+        for path, data in self.results():
+            for state, day in enumerate(data["/states/time"]):
+                grid = Grid(self.export(path, "x.vtu", "--what", "zones", "--state", state))
+                zone, gridpoint = grid.cell["zone"], grid.point["gridpoint"]
+                self.assertTrue((grid.types == TRIANGLE).all())
+                self.assert_same(grid.field["TimeValue"], [day])
+                self.assert_same(zone, numpy.flatnonzero(data["/states/zone_present"][state]))
+                self.assert_same(grid.points[:, :2], data["/mesh/gridpoint_position"][gridpoint])
+                self.assert_same(gridpoint[numpy.array(grid.connectivity)], data["/mesh/zone_gridpoint"][zone])
+                self.assert_same(grid.point["displacement"][:, :2], data["/states/displacement"][state][gridpoint])
+                for component, name in enumerate(["stress_xx", "stress_yy", "stress_xy"]):
+                    self.assert_same(grid.cell[name], data["/states/stress"][state][zone, component])
+                block = data["/mesh/zone_block"][zone]
+                self.assert_same(grid.cell["block"], block)
+                for name in "rock", "stage":
+                    self.assert_same(grid.cell[name], data["/blocks/" + name][block])
+
+    def test_contacts_vtu(self):
+        for path, data in self.results():
+            for state, day in enumerate(data["/states/time"]):
+                grid = Grid(self.export(path, "x.vtu", "--what", "contacts", "--state", state))
+                contact, status = grid.point["contact"], data["/states/contact_status"][state]
+                self.assertTrue((grid.types == VERTEX).all())
+                self.assert_same(grid.field["TimeValue"], [day])
+                self.assert_same(contact, numpy.flatnonzero(status))
+                self.assert_same(grid.points[:, :2], data["/mesh/contact_centre"][contact])
+                self.assert_same(grid.point["edge"], data["/mesh/contact_edge"][contact])
+                self.assert_same(grid.point["normal"][:, :2], data["/mesh/contact_normal"][contact])
+                self.assert_same(grid.point["length"], data["/mesh/contact_length"][contact])
+                self.assert_same(grid.point["status"], status[contact])
+                for component, direction in enumerate(["normal", "shear"]):
+                    for name in "traction", "jump":
+                        wanted = data["/states/" + name][state][contact, component]
+                        self.assert_same(grid.point[f"{direction}_{name}"], wanted)
+
+    def test_states_by_name(self):
+        """A stage stands for the state after it; the last state is the default."""
+        for path, data in self.results():
+            for stage in data["/names/stage"]:
+                row = list(data["/states/event"]).index(stage)
+                by_name = self.export(path, "x.vtu", "--what", "zones", "--state", stage).read_bytes()
+                self.assertEqual(by_name, self.export(path, "x.vtu", "--what", "zones", "--state", row).read_bytes())
+            last = len(data["/states/time"]) - 1
+            by_number = self.export(path, "x.vtu", "--what", "zones", "--state", last).read_bytes()
+            self.assertEqual(self.export(path, "x.vtu", "--what", "zones", "--state", "last").read_bytes(), by_number)
+            self.assertEqual(self.export(path, "x.vtu").read_bytes(), by_number)
+
+    def test_earlier_files(self):
+        """Blocks and joints are the same from every file of the chain."""
+        for path, _ in self.results():
+            for name, what in ("x.vtu", "blocks"), ("x.csv", "blocks"), ("x.csv", "joints"):
+                texts = {self.export(path.with_name(file), name, "--what", what).read_bytes()
+                         for file in ("network.h5", "joints.h5", "result.h5")}
+                self.assertEqual(len(texts), 1)
+            edges = self.table(path.with_name("network.h5"), "edges")
+            full = self.table(path.with_name("joints.h5"), "edges")
+            self.assertEqual([dict(row) for row in edges], [{name: row[name] for name in edges[0]} for row in full])
+
+    def results(self):
+        for scene in "data/column/scene.toml", "tests/pipeline/random_slope.toml":
+            yield solved(scene)
+
+
+if __name__ == "__main__":
+    main()

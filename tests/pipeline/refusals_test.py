@@ -1,0 +1,165 @@
+"""A program that cannot do what is asked says why, ends with the documented exit code, and writes nothing."""
+
+import functools
+import pathlib
+import resource
+import shutil
+import subprocess
+
+from chain import ChainTest, changed, main
+
+BAD_INPUT, NO_EQUILIBRIUM, BAD_FILE = 2, 3, 4  # exit codes, docs/programs.md
+PROGRAMS = ["jointgen", "strength-averaging", "demsolve", "jointexport"]
+OLD = b"what was there before\n"
+COLUMN = "data/column/scene.toml"
+
+
+class Refusals(ChainTest):
+    @functools.cached_property
+    def files(self):
+        """What each program reads, by the program's name, and the result; all of the column."""
+        files = {"jointgen": self.chain.source / COLUMN}
+        files["result"] = self.chain.result(self.chain.text(COLUMN), "--no-creep")
+        files["strength-averaging"] = files["result"].with_name("network.h5")
+        files["demsolve"] = files["result"].with_name("joints.h5")
+        files["jointexport"] = files["result"]
+        return files
+
+    def assert_refuses(self, code, program, source, *arguments, says=(), output=None, limit=None):
+        """Refuses, names `says`, and leaves its folder as it was: empty, then with a file of the output's name."""
+        name = output or ("out.vtu" if program == "jointexport" else "out.h5")
+        for old in None, OLD:
+            folder = self.chain.new_folder()
+            path = folder / name
+            if old and path.parent.exists() and not path.exists():
+                path.write_bytes(old)
+            before = {p: p.read_bytes() for p in folder.rglob("*") if p.is_file()}
+            command = [self.chain.programs / program, source, "-o", path, *arguments]
+            done = subprocess.run([*map(str, command)], capture_output=True, text=True, timeout=300, preexec_fn=limit)
+            self.assertEqual(done.returncode, code, done.stderr)
+            self.assertEqual(done.stdout, "")
+            self.assertTrue(all(line.startswith(program + ": ") for line in done.stderr.splitlines()), done.stderr)
+            for word in [says] if isinstance(says, str) else says:
+                self.assertIn(word, done.stderr)
+            self.assertNotEqual(done.stderr, "")
+            self.assertNotIn("internal error", done.stderr)
+            self.assertEqual({p: p.read_bytes() for p in folder.rglob("*") if p.is_file()}, before)
+
+    def test_the_tests_own_files_are_accepted(self):
+        for program in PROGRAMS:
+            name = "out.vtu" if program == "jointexport" else "out.h5"
+            self.chain.run(program, self.files[program], self.chain.new_folder() / name)
+
+    def test_wrong_kind_of_file(self):
+        """Earlier files lack something; jointgen wants a scene, the others HDF5."""
+        for program in PROGRAMS[1:]:
+            self.assert_refuses(BAD_FILE, program, self.files["jointgen"], says="scene.toml")
+        self.assert_refuses(BAD_INPUT, "demsolve", self.files["strength-averaging"],
+                            says=["network.h5", "jointcreep network", "jointcreep joints"])
+        for name in "strength-averaging", "demsolve", "result":
+            self.assert_refuses(BAD_INPUT, "jointgen", self.files[name], says=self.files[name].name)
+        self.assert_refuses(BAD_INPUT, "jointexport", self.files["demsolve"], "--what", "zones", says="joints.h5")
+
+    def test_text_in_place_of_hdf5(self):
+        for program in PROGRAMS[1:]:
+            for content in b"", b"not HDF5\n", b"\x89HDF\r\n\x1a\n" + bytes(1000):
+                file = self.chain.new_folder() / "nonsense.h5"
+                file.write_bytes(content)
+                self.assert_refuses(BAD_FILE, program, file, says="nonsense.h5")
+
+    def test_missing_input(self):
+        for program in PROGRAMS:
+            self.assert_refuses(BAD_FILE, program, self.chain.folder / "is-not-there", says="is-not-there")
+
+    def test_folder_as_input(self):
+        for program in PROGRAMS:
+            self.assert_refuses(BAD_FILE, program, self.chain.new_folder(), says=str(self.chain.folder))
+
+    def test_missing_output_folder(self):
+        for program in PROGRAMS:
+            name = "missing/out.vtu" if program == "jointexport" else "missing/out.h5"
+            self.assert_refuses(BAD_FILE, program, self.files[program], output=name, says="missing")
+
+    def test_folder_as_output(self):
+        for program in PROGRAMS:
+            folder = self.chain.new_folder() / "folder.vtu"
+            folder.mkdir()
+            done = self.chain.answer(program, self.files[program], "-o", folder)
+            self.assertEqual(done.returncode, BAD_FILE, done.stderr)
+            self.assertIn("folder.vtu", done.stderr)
+            self.assertEqual(list(folder.iterdir()), [])
+            self.assertEqual(list(folder.parent.iterdir()), [folder])
+
+    def test_disk_full(self):
+        """A file size limit stands in for a full disk."""
+        for program in PROGRAMS:
+            self.assert_refuses(BAD_FILE, program, self.files[program], says="out.",
+                                limit=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 1000)))
+
+    def test_output_is_input(self):
+        for program in PROGRAMS:
+            folder = self.chain.new_folder()
+            source = shutil.copy(self.files[program], folder / "file.vtu")
+            content = pathlib.Path(source).read_bytes()
+            done = self.chain.answer(program, source, "-o", folder / "." / "file.vtu")
+            self.assertEqual(done.returncode, BAD_INPUT, done.stderr)
+            self.assertEqual(pathlib.Path(source).read_bytes(), content)
+            self.assertEqual(list(folder.iterdir()), [pathlib.Path(source)])
+
+    def test_command_line(self):
+        cases = [
+            ("jointgen", ["--seed", "-1"], "--seed"),
+            ("jointgen", ["--seed", "1.5"], "--seed"),
+            ("jointgen", ["--realization", "4294967296"], "--realization"),
+            ("jointgen", ["--seed", "1", "--seed", "2"], "seed"),
+            ("demsolve", ["--threads", "0"], "--threads"),
+            ("demsolve", ["--threads", "two"], "--threads"),
+            ("demsolve", ["--threads"], "threads"),
+            ("demsolve", ["--tolerance", "0"], "--tolerance"),
+            ("demsolve", ["--tolerance", "nan"], "--tolerance"),
+            ("demsolve", ["--zone-size", "0"], "--zone-size"),
+            ("demsolve", ["--zone-size", "-1"], "--zone-size"),
+            ("demsolve", ["--creep-step", "0"], "--creep-step"),
+            ("demsolve", ["--creep-step", "inf"], "--creep-step"),
+            ("demsolve", ["--trace", "0"], "--trace"),
+            ("demsolve", ["--trac", "1"], "trac"),
+            ("jointexport", ["--what", "nothing"], "nothing"),
+            ("jointexport", ["--state", "99"], "99"),
+            ("jointexport", ["--what", "blocks", "--state", "0"], "--state"),
+            *((program, ["--no-such-option"], "no-such-option") for program in PROGRAMS),
+            *((program, ["another file"], "more than one") for program in PROGRAMS),
+        ]
+        for program, arguments, says in cases:
+            with self.subTest(program=program, arguments=arguments):
+                self.assert_refuses(BAD_INPUT, program, self.files[program], *arguments, says=says)
+        self.assert_refuses(BAD_INPUT, "jointexport", self.files["result"], output="out.png", says=["out.png", ".vtu"])
+        for program in PROGRAMS:
+            for arguments in [], [self.files[program]], ["-o", "out.h5"], [self.files[program], "-o", ""]:
+                done = self.chain.answer(program, *arguments)
+                self.assertEqual(done.returncode, BAD_INPUT, done.stderr)
+                self.assertNotEqual(done.stderr, "")
+
+    def test_creep_step_beyond_the_limit(self):
+        """(1 - exp(-lam dT)) (1 + K/E) < 2 with K/E = 10 and lam = 0.01 per day: dT < 20.067 days."""
+        text = changed(self.chain.text(COLUMN), r'(^name = "joint"\n(.+\n)*?normal_kelvin_stiffness_MPa_per_m = )690',
+                       r"\g<1>69")
+        says = ["creep step of 25 day", "20.067", '"joint under block']
+        self.assert_refuses(BAD_INPUT, "demsolve", self.chain.joints(text), "--creep-step", "25", says=says)
+        text = changed(text, "^step_days = 1", "step_days = 25")
+        self.assert_refuses(BAD_INPUT, "demsolve", self.chain.joints(text), says=says)
+        text = changed(text, "^step_days = 25", "step_days = 20.06")
+        self.chain.result(text)
+
+    def test_free_fall(self):
+        """A base that is held only sideways."""
+        text = changed(self.chain.text(COLUMN), '^joint = "base joint"', 'fix = "x"')
+        self.assert_refuses(NO_EQUILIBRIUM, "demsolve", self.chain.joints(text), says=["the rock at [", "] m"])
+
+    def test_too_few_steps(self):
+        text = changed(self.chain.text(COLUMN), '^damping = "mass"', 'damping = "mass"\nmost_steps = 50')
+        says = ["after 50 steps", "the rock at ["]
+        self.assert_refuses(NO_EQUILIBRIUM, "demsolve", self.chain.joints(text), says=says)
+
+
+if __name__ == "__main__":
+    main()
