@@ -3,6 +3,7 @@
 #include "model/signs.hpp"
 
 #include <cmath>
+#include <map>
 
 namespace jointcreep::mechanics
 {
@@ -115,11 +116,36 @@ Assembly assemble(const Scene& scene, const Network& network, const EquivalentJo
     for (std::size_t z = 0; z < assembly.zones.gridpoint.size(); ++z)
         for (const Index g : assembly.zones.gridpoint[z])
             assembly.load[g].y() -= assembly.zones.weight[z] / 3;
+    for (std::size_t t = 0; t < mesh.tie_stage.size(); ++t)
+        assembly.ties.push_back({mesh.tie_gridpoint[t], mesh.tie_stage[t]});
+    part_ties(assembly, -1);
     return assembly;
+}
+
+void part_ties(Assembly& assembly, Index stage)
+{
+    std::erase_if(assembly.ties, [&](const Assembly::Tie& tie) { return tie.stage <= stage; });
+    std::map<Index, Index> leader; // union-find over the few gridpoints that are tied
+    const auto root = [&](Index g) {
+        for (auto found = leader.find(g); found != leader.end() && found->second != g; found = leader.find(g))
+            g = found->second;
+        return g;
+    };
+    for (const Assembly::Tie& tie : assembly.ties) {
+        const auto [low, high] = std::minmax({root(tie.gridpoint[0]), root(tie.gridpoint[1])});
+        leader[high] = low;
+    }
+    assembly.tied.clear();
+    for (const auto& [follower, next] : leader)
+        assembly.tied.push_back({follower, root(next)});
+    for (const auto& [follower, first] : assembly.tied)
+        assembly.is_free[first] = assembly.is_free[first].cwiseMin(assembly.is_free[follower]);
 }
 
 void find_forces(Assembly& assembly)
 {
+    for (const auto& [follower, leader] : assembly.tied)
+        assembly.displacement[follower] = assembly.displacement[leader];
     Zones& zones = assembly.zones;
     Contacts& contacts = assembly.contacts;
     const auto n_zones = static_cast<Index>(zones.gridpoint.size());
@@ -199,6 +225,10 @@ void find_forces(Assembly& assembly)
             }
             assembly.force[g] = force;
         }
+    }
+    for (const auto& [follower, leader] : assembly.tied) {
+        assembly.force[leader] += assembly.force[follower];
+        assembly.force[follower].setZero();
     }
 }
 
@@ -300,6 +330,8 @@ std::vector<double> stiffness_row_sums(const Assembly& assembly)
         for (const Index g : contacts.gridpoint[c])
             sums[g] += row;
     }
+    for (const auto& [follower, leader] : assembly.tied)
+        sums[leader] += sums[follower];
     std::vector<double> larger;
     for (const Vector2d& s : sums)
         larger.push_back(s.maxCoeff());
@@ -313,6 +345,8 @@ std::vector<double> lumped_masses(const Assembly& assembly)
         if (assembly.zones.is_present[z])
             for (const Index g : assembly.zones.gridpoint[z])
                 mass[g] += assembly.zones.mass[z] / 3;
+    for (const auto& [follower, leader] : assembly.tied)
+        mass[leader] += mass[follower];
     return mass;
 }
 

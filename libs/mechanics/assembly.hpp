@@ -70,6 +70,15 @@ struct Assembly {
     std::vector<Vector2d> applied;      // from tractions on the outline [N/m]
     std::vector<Vector2d> force;        // out of balance, also where held; filled by find_forces [N/m]
 
+    // Gridpoints that move as one with another until a stage; force and load of {one, other} act on the
+    // other.
+    struct Tie {
+        std::array<Index, 2> gridpoint;
+        Index stage;
+    };
+    std::vector<Tie> ties;
+    std::vector<std::array<Index, 2>> tied; // from the ties still there: {follower, leader}
+
     // Forces of zones on their corners and of contacts on their side a; filled by find_forces [N/m].
     std::vector<std::array<Vector2d, 3>> zone_force;
     std::vector<Vector2d> contact_force;
@@ -83,6 +92,9 @@ struct Assembly {
 // are the in-situ ones at the contacts' centres.
 Assembly assemble(const Scene& scene, const Network& network, const EquivalentJoints& equivalent,
                   const Mesh& mesh);
+
+// Ends the ties that a stage parts.
+void part_ties(Assembly& assembly, Index stage);
 
 // Stresses, tractions and forces at the present displacements. Slip and breaking of contacts are taken into
 // their states: calling it again changes nothing more.

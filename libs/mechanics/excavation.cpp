@@ -44,6 +44,7 @@ std::vector<Vector2d> excavate(Assembly& assembly, const Blocks& blocks, const M
             assembly.load[g].setZero();
             assembly.is_free[g].setZero();
         }
+    part_ties(assembly, stage);
     loading.leave_removed(assembly);
     find_forces(assembly);
     for (std::size_t g = 0; g < released.size(); ++g)

@@ -22,6 +22,10 @@ struct Mesh {
     std::vector<Index> gridpoint_fixed;               // 0 free, 1 held in x, 2 in y, 3 in both
     std::vector<std::array<Index, 3>> zone_gridpoint; // counter-clockwise
     std::vector<Index> zone_block;                    // into Blocks
+    // Gridpoints that are one until a stage takes away the rock that holds them together (a joint's tip on
+    // rock that goes, say), and two from then on.
+    std::vector<std::array<Index, 2>> tie_gridpoint;
+    std::vector<Index> tie_stage;                     // into Names::stage
     std::vector<std::array<Index, 2>> side_gridpoint; // zone sides on a boundary condition
     std::vector<Index> side_zone;
     std::vector<Index> side_boundary;                    // into the scene's [[boundary]]

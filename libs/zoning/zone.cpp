@@ -19,6 +19,92 @@ Index corner_at(const std::array<Index, 3>& triangle, Index vertex)
     return static_cast<Index>(std::find(triangle.begin(), triangle.end(), vertex) - triangle.begin());
 }
 
+// Which corners of zones are one gridpoint. Corner i of zone z is 3 z + i.
+//
+// Two corners at one vertex hold together where their zones share a side there that is no joint, and for as
+// long as both zones are there. Links are taken the longest-lived first. Where one joins parts that both
+// outlive it, the parts get gridpoints of their own and a tie until then: rock that is to go must not leave
+// what it held together hanging on one gridpoint. Otherwise the parts are one gridpoint.
+class Corners
+{
+public:
+    struct Tie {
+        Index a, b; // corners
+        Index stage;
+    };
+
+    Corners(const Triangulation& t, const Blocks& blocks) : same_(3 * t.triangle.size())
+    {
+        std::iota(same_.begin(), same_.end(), 0);
+        held_ = same_;
+        const Index for_good = std::numeric_limits<Index>::max();
+        const auto life_of = [&](Index z) {
+            const Index stage = blocks.block_stage[t.block[z]];
+            return stage < 0 ? for_good : stage;
+        };
+        for (std::size_t z = 0; z < t.triangle.size(); ++z)
+            life_.insert(life_.end(), 3, life_of(static_cast<Index>(z)));
+
+        struct Link {
+            Index life, a, b;
+        };
+        std::vector<Link> links;
+        const auto link = [&](Index zone_a, Index zone_b, Index vertex) {
+            links.push_back({std::min(life_of(zone_a), life_of(zone_b)),
+                             3 * zone_a + corner_at(t.triangle[zone_a], vertex),
+                             3 * zone_b + corner_at(t.triangle[zone_b], vertex)});
+        };
+        for (Index z = 0; z < static_cast<Index>(t.triangle.size()); ++z)
+            for (Index i = 0; i < 3; ++i)
+                if (const Index other = t.neighbour[z][i]; other > z)
+                    for (const Index v : {t.triangle[z][(i + 1) % 3], t.triangle[z][(i + 2) % 3]})
+                        link(z, other, v);
+        for (const Side& side : t.side)
+            if (blocks.edge_kind[side.edge] == static_cast<Index>(EdgeKind::welded))
+                for (const Index v : side.vertex)
+                    link(side.triangle[0], side.triangle[1], v);
+        std::stable_sort(links.begin(), links.end(),
+                         [](const Link& p, const Link& q) { return p.life > q.life; });
+
+        for (const Link& l : links) {
+            const Index a = root(same_, l.a), b = root(same_, l.b);
+            if (a == b || root(held_, l.a) == root(held_, l.b))
+                continue;
+            join(held_, l.a, l.b);
+            if (life_[a] > l.life && life_[b] > l.life) {
+                ties_.push_back({l.a, l.b, l.life});
+                continue;
+            }
+            const Index life = std::max(life_[a], life_[b]);
+            join(same_, a, b);
+            life_[root(same_, a)] = life;
+        }
+    }
+
+    Index gridpoint(Index corner) const
+    {
+        return root(same_, corner);
+    } // the same number for corners that are one
+    const std::vector<Tie>& ties() const { return ties_; }
+
+private:
+    static Index root(const std::vector<Index>& parent, Index c)
+    {
+        while (parent[c] != c)
+            c = parent[c];
+        return c;
+    }
+    static void join(std::vector<Index>& parent, Index a, Index b)
+    {
+        const Index p = root(parent, a), q = root(parent, b);
+        parent[std::max(p, q)] = std::min(p, q);
+    }
+
+    std::vector<Index> same_, held_; // union-find: one gridpoint; held together by links so far
+    std::vector<Index> life_;        // stage that ends the longest-lived corner of a part; at its root
+    std::vector<Tie> ties_;
+};
+
 } // namespace
 
 Mesh zone(const Scene& scene, const Blocks& blocks)
@@ -26,45 +112,29 @@ Mesh zone(const Scene& scene, const Blocks& blocks)
     const Triangulation t = triangulate(blocks, scene.zone_size);
     const auto n_zones = static_cast<Index>(t.triangle.size());
 
-    // Corners of zones that hold together are one gridpoint: those across a side that is no joint.
-    std::vector<Index> same(3 * t.triangle.size());
-    std::iota(same.begin(), same.end(), 0);
-    const auto root = [&](Index c) {
-        while (same[c] != c)
-            c = same[c] = same[same[c]];
-        return c;
-    };
-    const auto join = [&](Index zone_a, Index zone_b, Index vertex) {
-        const Index a = root(3 * zone_a + corner_at(t.triangle[zone_a], vertex)),
-                    b = root(3 * zone_b + corner_at(t.triangle[zone_b], vertex));
-        same[std::max(a, b)] = std::min(a, b);
-    };
-    for (Index z = 0; z < n_zones; ++z)
-        for (Index i = 0; i < 3; ++i)
-            if (const Index other = t.neighbour[z][i]; other > z)
-                for (const Index v : {t.triangle[z][(i + 1) % 3], t.triangle[z][(i + 2) % 3]})
-                    join(z, other, v);
-    for (const Side& side : t.side)
-        if (blocks.edge_kind[side.edge] == static_cast<Index>(EdgeKind::welded))
-            for (const Index v : side.vertex)
-                join(side.triangle[0], side.triangle[1], v);
+    const Corners corners(t, blocks);
+    const auto root = [&](Index c) { return corners.gridpoint(c); };
 
     Mesh mesh;
-    std::vector<Index> gridpoint(same.size(), -1);
+    std::vector<Index> gridpoint(3 * t.triangle.size(), -1);
     for (Index z = 0; z < n_zones; ++z) {
-        std::array<Index, 3> corners{};
+        std::array<Index, 3> of_zone{};
         for (Index i = 0; i < 3; ++i) {
             Index& g = gridpoint[root(3 * z + i)];
             if (g < 0) {
                 g = static_cast<Index>(mesh.gridpoint.size());
                 mesh.gridpoint.push_back(t.vertex[t.triangle[z][i]]);
             }
-            corners[i] = g;
+            of_zone[i] = g;
         }
-        mesh.zone_gridpoint.push_back(corners);
+        mesh.zone_gridpoint.push_back(of_zone);
         mesh.zone_block.push_back(t.block[z]);
     }
     mesh.gridpoint_fixed.assign(mesh.gridpoint.size(), 0);
+    for (const auto& tie : corners.ties()) {
+        mesh.tie_gridpoint.push_back({gridpoint[root(tie.a)], gridpoint[root(tie.b)]});
+        mesh.tie_stage.push_back(tie.stage);
+    }
 
     const auto gridpoint_of = [&](Index z, Index vertex) {
         return gridpoint[root(3 * z + corner_at(t.triangle[z], vertex))];

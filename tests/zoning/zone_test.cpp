@@ -113,9 +113,36 @@ TEST(zone, a_joint_that_ends_on_a_weld_leaves_its_tip_whole)
     const Blocks blocks = blocks::cut(scene, joints);
     const Mesh mesh = zoning::zone(scene, blocks);
     EXPECT_EQ(blocks.block_area.size(), 3u);
-    EXPECT_EQ(pieces(mesh), 1u);
     for (const auto& [a, b] : mesh.contact_gridpoint)
         EXPECT_NE(a, b);
+    // Here the tip is whole only until the stage: two gridpoints, tied.
+    EXPECT_EQ(mesh.tie_stage, (std::vector<Index>{0}));
+}
+
+TEST(zone, what_rock_to_be_removed_holds_together_at_one_gridpoint_is_tied_until_then)
+{
+    // A joint that ends on the outline of a stage, in the face that the stage leaves: when the rock at its
+    // tip has gone, nothing may hold its two sides together any more.
+    Scene scene = section({{0, 0}, {10, 0}, {10, 10}, {0, 10}}, 0.1);
+    scene.zone_size = 2;
+    scene.stages.push_back({"cut", 1, {{{5, -1}, {12, -1}, {12, 12}, {5, 12}}}});
+    Joints joints;
+    add_joint(joints, {-1, 5}, {5, 5});
+    const Mesh mesh = zoning::zone(scene, blocks::cut(scene, joints));
+    ASSERT_EQ(mesh.tie_gridpoint.size(), 1u);
+    EXPECT_EQ(mesh.tie_stage[0], 0);
+    for (const Index g : mesh.tie_gridpoint[0])
+        EXPECT_EQ(mesh.gridpoint[g], Vector2d(5, 5));
+    // With a contact between them that carries the last bit of the joint.
+    bool has_contact = false;
+    for (const auto& [a, b] : mesh.contact_gridpoint)
+        has_contact |= std::minmax(a, b) == std::minmax(mesh.tie_gridpoint[0][0], mesh.tie_gridpoint[0][1]);
+    EXPECT_TRUE(has_contact);
+
+    // Without the stage its tip stays whole.
+    scene.stages[0].remove = {{{7, -1}, {12, -1}, {12, 12}, {7, 12}}};
+    scene.stages.push_back({"never", 2, {{{5, -1}, {5.5, -1}, {5.5, 0.5}, {5, 0.5}}}});
+    EXPECT_TRUE(zoning::zone(scene, blocks::cut(scene, joints)).tie_gridpoint.empty());
 }
 
 TEST(zone, boundaries_are_held_or_rest_on_the_ground)
