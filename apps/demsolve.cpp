@@ -58,7 +58,7 @@ std::string choose(const Arguments& arguments, Scene& scene)
         chosen += (chosen.empty() ? "--" : " --") + std::string(name) + (value.empty() ? "" : " " + value);
     };
     if (const auto size = arguments.number("zone-size")) {
-        require(*size > 0, "--zone-size", *size, "m", "must be positive");
+        require(*size > 0 && *size <= 1e6, "--zone-size", *size, "m", "must be above 0 and at most 1e6");
         scene.zone_size = *size;
         note("zone-size", shown(*size));
     }
@@ -69,7 +69,9 @@ std::string choose(const Arguments& arguments, Scene& scene)
         note("tolerance", shown(*tolerance));
     }
     if (const auto step = arguments.number("creep-step")) {
-        require(*step > 0, "--creep-step", *step, "day", "must be positive");
+        require(*step > 0 && *step <= 1e6, "--creep-step", *step, "day", "must be above 0 and at most 1e6");
+        if (arguments.has("no-creep"))
+            throw input_error("--creep-step and --no-creep do not go together");
         if (!scene.creep)
             throw input_error("--creep-step: the scene has no [creep]");
         scene.creep->step = *step * unit::day;
@@ -101,6 +103,18 @@ std::string joint_name(const Scene& scene, const Network& network, Index edge)
                      : network.names.joint_set[network.joints.set[joint]];
 }
 
+// Steps of equal length, no longer than `step`, from one time to another [s].
+int creep_steps(double from, double to, double step)
+{
+    constexpr double most = 1e6;
+    const double n = std::ceil((to - from) / step * (1 - 1e-12));
+    if (n > most)
+        throw input_error("creep step of " + shown(step / unit::day) + " day: that makes " + shown(n) +
+                          " steps from day " + shown(from / unit::day) + " to day " + shown(to / unit::day) +
+                          "; wanted at most " + shown(most));
+    return static_cast<int>(n);
+}
+
 // The times when something other than creep happens: stages, corners of the loading, first readings, the end.
 std::set<double> dates_of(const Scene& scene, const mechanics::Loading& loading)
 {
@@ -120,6 +134,7 @@ struct Solution {
     Result result;
     mechanics::Assembly assembly;
     std::map<std::string, Index> beyond_strength; // contacts by joint: what the in-situ stress breaks
+    bool creeps = false;
     std::optional<double> end_of_creep; // since start [s], where the scene's stop rate ended it early
 };
 
@@ -166,23 +181,25 @@ Solution solve(const Scene& scene, const Network& network, const EquivalentJoint
     creep::Published creep(result.mesh, joints, rock.contacts.traction);
     recorder.record_history(result, now, "", rock);
     recorder.record_state(result, now, "", rock);
+    solution.creeps = scene.creep && creep::creeps(joints);
 
-    const double last_stage = scene.stages.empty() ? 0 : scene.stages.back().time;
+    // After this nothing happens but creep.
+    const std::set<double> corners = loading.corners();
+    const double last_event = std::max(scene.stages.empty() ? 0.0 : scene.stages.back().time,
+                                       corners.empty() ? 0.0 : *corners.rbegin());
     for (const double date : dates_of(scene, loading)) {
         if (solution.end_of_creep)
             break;
         // 3. Creep up to the next date, in equal steps no longer than the scene's.
         const double start = now;
-        const bool creeps = scene.creep && creep::creeps(joints);
+        const bool creeps = solution.creeps;
         const bool is_loaded = loading.changes(start, date);
-        int n_steps = is_loaded ? scene.equilibrium.unloading_increments : 1;
-        if (creeps)
-            n_steps = std::max(n_steps,
-                               static_cast<int>(std::ceil((date - start) / scene.creep->step * (1 - 1e-12))));
+        const int n_steps = std::max(is_loaded ? scene.equilibrium.unloading_increments : 1,
+                                     creeps ? creep_steps(start, date, scene.creep->step) : 1);
         for (int i = 1; i <= n_steps; ++i) {
             progress.show(now / scene.end, "day " + std::to_string(std::lround(now / unit::day)));
             const double next = i == n_steps ? date : start + (date - start) * i / n_steps;
-            const bool may_stop = creeps && scene.creep->stop_rate && start >= last_stage;
+            const bool may_stop = creeps && scene.creep->stop_rate && start >= last_event;
             const std::vector<Eigen::Vector2d> before =
                 may_stop ? rock.displacement : std::vector<Eigen::Vector2d>{};
             const double duration = next - now;
@@ -254,6 +271,8 @@ void report(const Network& network, const Scene& scene, const Solution& solution
     summary.add("solver steps", steps);
     summary.add("largest out-of-balance ratio", *std::max_element(equilibria.out_of_balance_ratio.begin(),
                                                                   equilibria.out_of_balance_ratio.end()));
+    if (scene.creep && !solution.creeps)
+        summary.add("warning: no creep", std::string("no joint of the section has Kelvin constants"));
     if (solution.end_of_creep)
         summary.add("creep ended early", *solution.end_of_creep / unit::day, "day");
     summary.add("contacts stuck", contacts[static_cast<std::size_t>(ContactStatus::stuck)]);

@@ -57,6 +57,16 @@ void report(const Network& network)
     summary.add("merged blocks", blocks.report.merged_block_area, "m2");
     summary.add("largest move", blocks.report.largest_move, "m");
     summary.add("joints cut back", blocks.report.pruned_length, "m");
+    std::vector<double> on_edges(network.names.joint_set.size(), 0.0);
+    for (std::size_t e = 0; e < blocks.edge_joint.size(); ++e)
+        if (blocks.edge_joint[e] >= 0) {
+            const auto [a, b] = blocks.edge_vertex[e];
+            on_edges[network.joints.set[blocks.edge_joint[e]]] +=
+                (blocks.vertex[a] - blocks.vertex[b]).norm();
+        }
+    for (std::size_t set = 0; set < on_edges.size(); ++set)
+        if (on_edges[set] == 0)
+            summary.add("warning: no edge left on", "\"" + network.names.joint_set[set] + "\"");
     summary.print();
 }
 

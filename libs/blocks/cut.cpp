@@ -381,6 +381,11 @@ private:
             blocks.block_rock.push_back(rock_at(inside));
             blocks.block_stage.push_back(stage_at(inside));
         }
+        for (std::size_t s = 0; s < scene_.stages.size(); ++s)
+            if (std::find(blocks.block_stage.begin(), blocks.block_stage.end(), static_cast<Index>(s)) ==
+                blocks.block_stage.end())
+                throw input_error("stage \"" + scene_.stages[s].name +
+                                  "\" removes nothing: its remove_m holds no rock that earlier stages leave");
         blocks.report = report_;
         measure_moves(blocks);
         measure_limits(blocks);
@@ -390,12 +395,14 @@ private:
     // What several passes have moved has moved farther than in any one of them: as far as it is off its line.
     void measure_moves(Blocks& blocks) const
     {
+        const double rounding = 1e-12 * size_of(outline_);
         for (const Edge& edge : graph_.edge)
             for (const Index s : edge.sources)
-                for (const Index v : {edge.first, edge.second})
-                    blocks.report.largest_move =
-                        std::max(blocks.report.largest_move,
-                                 distance_to(lines_[s][0], lines_[s][1], graph_.vertex[v]));
+                for (const Index v : {edge.first, edge.second}) {
+                    const double off = distance_to(lines_[s][0], lines_[s][1], graph_.vertex[v]);
+                    if (off > rounding)
+                        blocks.report.largest_move = std::max(blocks.report.largest_move, off);
+                }
     }
 
     static void measure_limits(Blocks& blocks)

@@ -28,44 +28,17 @@ Recorder::Recorder(const Scene& scene, const Blocks& blocks, const Mesh& mesh)
     }
     // A point on a slanting face is, in doubles, a little off it; cutting may have moved the face a little,
     // too.
-    const double reach = std::max(1e-6 * (high - low).norm(), scene.cutting.shortest_edge);
+    const double size = (high - low).norm();
+    const double reach = std::max(1e-6 * size, scene.cutting.shortest_edge);
 
     for (const MeasuringPoint& point : scene.points) {
-        Place best{};
-        double best_outside = std::numeric_limits<double>::infinity();
-        Index best_stage = -2;
-        const auto stays_longer = [](Index a, Index b) { return a != b && b != -1 && (a == -1 || a > b); };
-        for (std::size_t z = 0; z < mesh.zone_gridpoint.size(); ++z) {
-            const auto& corners = mesh.zone_gridpoint[z];
-            std::array<double, 3> share{};
-            std::array<Vector2d, 3> p;
-            for (int i = 0; i < 3; ++i)
-                p[i] = mesh.gridpoint[corners[i]];
-            const auto twice = [](const Vector2d& a, const Vector2d& b) {
-                return a.x() * b.y() - a.y() * b.x();
-            };
-            const double area = twice(p[1] - p[0], p[2] - p[0]);
-            double outside = 0; // how far the point is outside [m]
-            for (int i = 0; i < 3; ++i) {
-                const Vector2d &a = p[(i + 1) % 3], &b = p[(i + 2) % 3];
-                share[i] = twice(b - a, point.at - a) / area;
-                outside = std::max(outside, -share[i] * area / (b - a).norm());
-            }
-            if (outside > reach)
-                continue;
-            const Index stage = blocks.block_stage[mesh.zone_block[z]];
-            const double tie = 1e-9 * reach;
-            if (best_stage == -2 || stays_longer(stage, best_stage) ||
-                (stage == best_stage && outside < best_outside - tie)) {
-                best = {corners, share, static_cast<Index>(z)};
-                best_outside = outside;
-                best_stage = stage;
-            }
-        }
-        if (best_stage == -2)
+        std::optional<Place> found = find(point.at, 1e-9 * size, blocks, mesh);
+        if (!found)
+            found = find(point.at, reach, blocks, mesh);
+        if (!found)
             throw input_error(named_place("point", point.name, point.at) +
                               " is not in the rock; it must lie in the section or on its outline");
-        point_.push_back(best);
+        point_.push_back(*found);
         point_name_.push_back(point.name);
         point_position_.push_back(point.at);
         first_reading_.push_back(point.first_reading);
@@ -87,20 +60,56 @@ Recorder::Recorder(const Scene& scene, const Blocks& blocks, const Mesh& mesh)
     }
 }
 
+std::optional<Recorder::Place> Recorder::find(const Vector2d& at, double reach, const Blocks& blocks,
+                                              const Mesh& mesh)
+{
+    const auto twice = [](const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); };
+    const auto stays_longer = [](Index a, Index b) { return a != b && b != -1 && (a == -1 || a > b); };
+    std::optional<Place> best;
+    double best_outside = 0;
+    Index best_stage = -1;
+    for (std::size_t z = 0; z < mesh.zone_gridpoint.size(); ++z) {
+        const auto& corners = mesh.zone_gridpoint[z];
+        std::array<Vector2d, 3> p;
+        for (int i = 0; i < 3; ++i)
+            p[i] = mesh.gridpoint[corners[i]];
+        const double area = twice(p[1] - p[0], p[2] - p[0]);
+        std::array<double, 3> share{};
+        double outside = 0; // how far the point is outside [m]
+        for (int i = 0; i < 3; ++i) {
+            const Vector2d &a = p[(i + 1) % 3], &b = p[(i + 2) % 3];
+            share[i] = twice(b - a, at - a) / area;
+            outside = std::max(outside, -share[i] * area / (b - a).norm());
+        }
+        if (outside > reach)
+            continue;
+        const Index stage = blocks.block_stage[mesh.zone_block[z]];
+        if (!best || stays_longer(stage, best_stage) || (stage == best_stage && outside < best_outside)) {
+            best = {corners, share, static_cast<Index>(z)};
+            best_outside = outside;
+            best_stage = stage;
+        }
+    }
+    return best;
+}
+
 bool Recorder::is_present(const Place& place, const Assembly& assembly)
 {
     return assembly.zones.is_present[place.zone] != 0;
 }
 
-void Recorder::append_displacements(std::vector<Vector2d>& rows, const Assembly& assembly) const
+void Recorder::append_displacements(std::vector<Vector2d>& rows, const std::vector<Vector2d>& before,
+                                    const Assembly& assembly) const
 {
-    for (const Place& place : point_) {
+    const std::size_t last_row = before.size() - std::min(before.size(), point_.size());
+    for (std::size_t p = 0; p < point_.size(); ++p) {
+        const Place& place = point_[p];
         Vector2d u = Vector2d::Zero();
         if (is_present(place, assembly))
             for (int i = 0; i < 3; ++i)
                 u += place.share[i] * assembly.displacement[place.gridpoint[i]];
-        else if (rows.size() >= point_.size()) // the row before this one
-            u = rows[rows.size() - point_.size()];
+        else if (last_row + p < before.size())
+            u = before[last_row + p];
         rows.push_back(u);
     }
 }
@@ -116,7 +125,7 @@ void Recorder::record_history(Result& result, double time, const std::string& ev
     }
     for (const Place& place : point_)
         history.present.push_back(is_present(place, assembly) ? 1 : 0);
-    append_displacements(history.displacement, assembly);
+    append_displacements(history.displacement, std::vector<Vector2d>(history.displacement), assembly);
     history.time.push_back(time / unit::day);
     history.event.push_back(event);
 }
@@ -163,7 +172,7 @@ void Recorder::record_trace(Result& result, double time, double solver_time, con
     trace.gauge_contact = gauge_contact_;
     trace.time.push_back(time / unit::day);
     trace.solver_time.push_back(solver_time);
-    append_displacements(trace.displacement, assembly);
+    append_displacements(trace.displacement, result.history.displacement, assembly);
     for (const Index c : gauge_contact_)
         trace.traction.push_back(assembly.contacts.traction[c]);
 }

@@ -4,6 +4,7 @@
 
 #include "mechanics/assembly.hpp"
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -38,8 +39,13 @@ private:
         Index zone;
     };
     static bool is_present(const Place& place, const Assembly& assembly);
-    // A row of the points' displacements; a removed point keeps what the last row has.
-    void append_displacements(std::vector<Vector2d>& rows, const Assembly& assembly) const;
+    // The zone that holds a place, or that comes within `reach` of it [m]; of several the one that stays
+    // longest.
+    static std::optional<Place> find(const Vector2d& at, double reach, const Blocks& blocks,
+                                     const Mesh& mesh);
+    // A row of the points' displacements; a removed point keeps what the last row of `before` has.
+    void append_displacements(std::vector<Vector2d>& rows, const std::vector<Vector2d>& before,
+                              const Assembly& assembly) const;
 
     std::vector<Place> point_;
     std::vector<double> first_reading_;

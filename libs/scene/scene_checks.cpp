@@ -203,6 +203,9 @@ private:
             if (all[i].displacement && ((!all[i].fix_x && all[i].displacement->x() != 0) ||
                                         (!all[i].fix_y && all[i].displacement->y() != 0)))
                 given.refuse("displacement_mm", "wanted 0 in the direction that is not fixed");
+            if (all[i].traction &&
+                ((all[i].fix_x && all[i].traction->x() != 0) || (all[i].fix_y && all[i].traction->y() != 0)))
+                given.refuse("traction_MPa", "wanted 0 in a direction that is fixed");
             if (given.find("course") && !all[i].traction && !all[i].displacement)
                 given.refuse("course", "wanted traction_MPa or displacement_mm beside it");
             if (given.find("fix") && given.find("joint"))
@@ -320,6 +323,10 @@ private:
 
         const Given equilibrium = once("equilibrium");
         const Damping damping = scene_.equilibrium.damping;
+        if (damping == Damping::mass && scene_.equilibrium.masses != Masses::real)
+            equilibrium.refuse("damping",
+                               "wanted masses = \"real\" beside it: scaled masses have no frequency of "
+                               "their own");
         if (damping != Damping::mass && equilibrium.find("stiffness_damping_s"))
             equilibrium.refuse("stiffness_damping_s", "wanted damping = \"mass\" beside it");
         if ((damping == Damping::mass) != (equilibrium.find("mass_damping_per_s") != nullptr))

@@ -27,12 +27,48 @@ using FaceBase =
     CGAL::Triangulation_face_base_with_info_2<Index, Kernel, CGAL::Delaunay_mesh_face_base_2<Kernel>>;
 using Cdt = CGAL::Constrained_Delaunay_triangulation_2<
     Kernel, CGAL::Triangulation_data_structure_2<VertexBase, FaceBase>, CGAL::No_constraint_intersection_tag>;
-using Criteria = CGAL::Delaunay_mesh_size_criteria_2<Cdt>;
 
 Eigen::Vector2d place(Cdt::Vertex_handle v)
 {
     return {v->point().x(), v->point().y()};
 }
+
+// CGAL's criteria for size and angle, but a triangle whose sides are all below a floor is good enough
+// whatever its angles: in a corner of blocks sharper than the angle asked for no triangle is ever good, and
+// refinement would go on there until rounding ends it, with a crash.
+class Criteria : public CGAL::Delaunay_mesh_size_criteria_2<Cdt>
+{
+    using Sized = CGAL::Delaunay_mesh_size_criteria_2<Cdt>;
+
+public:
+    Criteria(double shape, double size, double floor) : Sized(shape, size), floor_(floor) {}
+
+    class Is_bad : public Sized::Is_bad
+    {
+    public:
+        Is_bad(double shape, double size, double floor) : Sized::Is_bad(shape, size, Kernel()), floor_(floor)
+        {
+        }
+
+        using Sized::Is_bad::operator();
+        CGAL::Mesh_2::Face_badness operator()(const Cdt::Face_handle& face, Sized::Quality& quality) const
+        {
+            const CGAL::Mesh_2::Face_badness badness = Sized::Is_bad::operator()(face, quality);
+            for (int i = 0; i < 3; ++i)
+                if ((place(face->vertex(i)) - place(face->vertex((i + 1) % 3))).norm() >= floor_)
+                    return badness;
+            quality = Sized::Quality(1, 0);
+            return CGAL::Mesh_2::NOT_BAD;
+        }
+
+    private:
+        double floor_;
+    };
+    Is_bad is_bad_object() const { return {bound(), size_bound(), floor_}; }
+
+private:
+    double floor_; // [m]
+};
 
 // The next vertex from `at` along the straight block edge to `target`, and the face on the left of that way.
 // Refinement has split the edge into constrained pieces; of those at `at` the one that points best is it.
@@ -102,7 +138,8 @@ Triangulation triangulate(const Blocks& blocks, double size)
     for (const auto f : cdt.all_face_handles())
         f->set_in_domain(f->info() >= 0);
 
-    CGAL::Delaunay_mesher_2<Cdt, Criteria> mesher(cdt, Criteria(0.125, size));
+    const double floor = std::min(size, blocks.report.shortest_edge) / 4;
+    CGAL::Delaunay_mesher_2<Cdt, Criteria> mesher(cdt, Criteria(0.125, size, floor));
     mesher.init(true); // the domain is marked already
     mesher.refine_mesh();
 

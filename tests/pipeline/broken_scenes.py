@@ -108,7 +108,7 @@ def fault(jointgen, folder, number, text, line, name):
     own.mkdir()
     scene = own / "broken.toml"
     scene.write_text(text)
-    command = [jointgen, str(scene), "-o", str(own / "network.h5"), "--check"]
+    command = [jointgen, str(scene), "-o", str(own / "network.h5"), "--quiet"]
     run = subprocess.run(command, capture_output=True, text=True, timeout=CHECK_TIME)
     left = [path.name for path in own.iterdir() if path != scene]
     if run.returncode != 2:

@@ -1,0 +1,301 @@
+#!/usr/bin/python3
+"""Statistics of the displacement histories of many realizations.
+
+    ensemble.py FOLDER N -o OUT
+
+FOLDER holds NUMBER.h5 or NUMBER.failed for each of the realizations 0000 to N - 1, as realization.sh leaves them. In
+OUT it writes
+    ensemble.h5   mean, standard deviation, confidence interval of the mean, and quantiles, for each time, point and
+                  component; what each realization was like, and which failed
+    ensemble.csv  the same statistics as a table
+    summary.txt   how many ended in equilibrium, what they were like, and which failed, with their reasons
+Files whose content has not changed stay as they are.
+
+Only realizations in equilibrium count: those that failed, some because they slide, are named and not averaged. A
+realization counts at a time if its point is there then. The confidence interval is Student's: it holds for means of
+many realizations, or if displacements are about normally distributed. Quantiles are interpolated linearly between the
+ordered realizations. Everything is added up in the order of numbers, so the same realizations give the same bytes.
+"""
+
+import argparse
+import contextlib
+import csv
+import io
+import math
+import os
+import pathlib
+import sys
+from dataclasses import dataclass
+
+import h5py
+import numpy as np
+
+PROBABILITIES = [0.05, 0.25, 0.50, 0.75, 0.95]
+CONFIDENCE = 0.95
+SAME = ["/scene", "/provenance/program", "/provenance/version", "/history/time", "/history/event", "/history/point",
+        "/history/point_position", "/history/first_reading_row"]
+KINDS = {
+    "displacement": "since the in-situ equilibrium",
+    "displacement_since_first_reading": "since the first reading of the point",
+}
+
+
+class NotWanted(Exception):
+    """A file is not what the statistics need."""
+
+
+@dataclass
+class Realization:
+    number: int
+    common: dict  # what must be the same in all
+    displacement: np.ndarray  # [time, point, 2] [m]
+    present: np.ndarray  # [time, point]
+    blocks: int
+    zones: int
+    shortest_edge: float  # [m]
+    smallest_zone_altitude: float  # [m]
+    solver_steps: int
+    largest_out_of_balance_ratio: float  # [-]
+
+
+def smallest_altitude(position, zone):
+    """The smallest altitude of all zones [m]: twice the area over the longest side."""
+    corner = position[zone]
+    side = np.roll(corner, -1, axis=1) - corner
+    longest = np.linalg.norm(side, axis=2).max(axis=1)
+    twice_area = side[:, 0, 0] * side[:, 1, 1] - side[:, 0, 1] * side[:, 1, 0]
+    return float((twice_area / longest).min())
+
+
+def text_of(value):
+    return value.decode() if isinstance(value, bytes) else str(value)
+
+
+def read(path, number):
+    with h5py.File(path, "r") as file:
+        if text_of(file.attrs.get("filetype", "")) != "jointcreep result" or "complete" not in file.attrs:
+            raise NotWanted("this is not a complete result file")
+        if file.attrs["realization"] != number:
+            raise NotWanted(f"this is realization {file.attrs['realization']}, not {number}")
+        try:
+            return Realization(
+                number=number,
+                common={
+                    **{name: file[name][()] for name in SAME},
+                    "the options of demsolve": file["/provenance/options"][-1],
+                    "the seed": file.attrs["seed"],
+                },
+                displacement=file["/history/displacement"][()],
+                present=file["/history/present"][()],
+                blocks=len(file["/blocks/area"]),
+                zones=len(file["/mesh/zone_block"]),
+                shortest_edge=float(file["/cutting/shortest_edge"][0]),
+                smallest_zone_altitude=smallest_altitude(
+                    file["/mesh/gridpoint_position"][()], file["/mesh/zone_gridpoint"][()]),
+                solver_steps=int(file["/equilibria/steps"][()].sum()),
+                largest_out_of_balance_ratio=float(file["/equilibria/out_of_balance_ratio"][()].max()),
+            )
+        except KeyError as error:
+            raise NotWanted(f"something is missing: {error}") from error
+
+
+def read_all(folder, count):
+    """The realizations in equilibrium, and the reasons of the others by their number."""
+    found, failed = [], {}
+    for number in range(count):
+        path = folder / f"{number:04d}.h5"
+        reason = path.with_suffix(".failed")
+        if reason.exists():
+            failed[number] = " ".join(reason.read_text(encoding="utf-8", errors="replace").split())
+            continue
+        try:
+            found.append(read(path, number))
+            for name, value in found[0].common.items():
+                if not np.array_equal(value, found[-1].common[name]):
+                    raise NotWanted(f"{name} is not the same as in {found[0].number:04d}.h5")
+        except (OSError, NotWanted) as error:
+            raise NotWanted(f"{path}: {error}") from error
+    return found, failed
+
+
+def student_probability(t, freedom):
+    """P(|T| < t) of Student's distribution; the finite series in the angle atan(t / sqrt(freedom)), Abramowitz and
+    Stegun 26.7.3 and 26.7.4."""
+    angle = math.atan2(t, math.sqrt(freedom))
+    cosine = math.cos(angle)
+    odd = freedom % 2
+    term = cosine if odd else 1.0
+    total = 0.0 if freedom == 1 else term
+    for k in range(2 + odd, freedom, 2):
+        term *= cosine * cosine * (k - 1) / k
+        total += term
+    return 2 / math.pi * (angle + math.sin(angle) * total) if odd else math.sin(angle) * total
+
+
+def student_quantile(freedom):
+    """t for which P(|T| < t) is CONFIDENCE, by bisection."""
+    low, high = 0.0, 1e3
+    while low < (middle := (low + high) / 2) < high:
+        low, high = (middle, high) if student_probability(middle, freedom) < CONFIDENCE else (low, middle)
+    return high
+
+
+def statistics_of(displacement, counts):
+    """Arrays by their name. displacement [realization, time, point, 2]; counts [realization, time, point]: whether
+    the realization counts. What fewer than two realizations have is 0."""
+    times, points = displacement.shape[1:3]
+    found = {"count": counts.sum(axis=0).astype(np.int32)}
+    for name in ("mean", "standard_deviation", "mean_low", "mean_high"):
+        found[name] = np.zeros((times, points, 2))
+    found["quantile"] = np.zeros((len(PROBABILITIES), times, points, 2))
+    t_of = {count: student_quantile(count - 1) for count in np.unique(found["count"]) if count > 1}
+    for row, point in np.argwhere(found["count"] > 1):
+        sample = displacement[counts[:, row, point], row, point]
+        at = row, point
+        found["mean"][at] = mean = sample.mean(axis=0)
+        found["standard_deviation"][at] = deviation = sample.std(axis=0, ddof=1)
+        half = t_of[len(sample)] * deviation / math.sqrt(len(sample))
+        found["mean_low"][at], found["mean_high"][at] = mean - half, mean + half
+        found["quantile"][:, row, point] = np.quantile(sample, PROBABILITIES, axis=0)
+    return found
+
+
+def all_statistics(found):
+    """The statistics of each kind."""
+    displacement = np.stack([one.displacement for one in found])
+    present = np.stack([one.present for one in found]) == 1
+    first_row = found[0].common["/history/first_reading_row"]
+    at_first = np.stack([displacement[:, row, point] for point, row in enumerate(first_row)], axis=1)
+    has_begun = np.arange(displacement.shape[1])[:, None] >= first_row
+    return {
+        "displacement": statistics_of(displacement, present),
+        "displacement_since_first_reading": statistics_of(displacement - at_first[:, None], present & has_begun),
+    }
+
+
+def write_hdf5(path, found, failed, statistics):
+    with h5py.File(path, "w") as file:
+        def put(name, values, units, description):
+            if isinstance(values, list):  # of str
+                coded = [value.encode() for value in values]
+                values = np.array(coded, h5py.string_dtype("utf-8", max([1, *map(len, coded)])))
+            dataset = file.create_dataset(name, data=values, track_times=False)
+            dataset.attrs["units"], dataset.attrs["description"] = np.bytes_(units), np.bytes_(description)
+
+        common = found[0].common
+        file.attrs["filetype"] = np.bytes_("jointcreep ensemble")
+        file.attrs["format_version"] = np.array([1, 0], np.int32)
+        file.attrs["seed"] = common["the seed"]
+        put("/scene", [text_of(common["/scene"][0])], "1", "Text of the scene.")
+        for name, units, what in (
+                ("number", "1", "Number of a realization that ended in equilibrium."),
+                ("blocks", "1", "Blocks it has."),
+                ("zones", "1", "Zones it has."),
+                ("shortest_edge", "m", "Its shortest edge between blocks."),
+                ("smallest_zone_altitude", "m", "Its smallest zone altitude."),
+                ("solver_steps", "1", "Steps of the solver."),
+                ("largest_out_of_balance_ratio", "1", "Largest out-of-balance ratio that an equilibrium ended with.")):
+            put(f"/realization/{name}", np.array([getattr(one, name) for one in found]), units, what)
+        put("/failed/number", np.array(list(failed), np.int64), "1", "Number of a realization that failed.")
+        put("/failed/reason", list(failed.values()), "1", "Why.")
+        put("/history/time", common["/history/time"], "day", "Time since the start.")
+        for name, what in (("event", "Stage that this row is the first after."), ("point", "Names of the points.")):
+            put(f"/history/{name}", [text_of(text) for text in common[f"/history/{name}"]], "1", what)
+        put("/history/point_position", common["/history/point_position"], "m", "Position {x, y}.")
+        put("/history/first_reading_row", common["/history/first_reading_row"], "1", "Row from which readings count.")
+        put("/probability", np.array(PROBABILITIES), "1", "Probabilities of the quantiles.")
+        for kind, arrays in statistics.items():
+            meaning = {
+                "count": "Realizations in which the point is there; below 2 there are no statistics, only zeros.",
+                "mean": "Mean displacement {x, y}",
+                "standard_deviation": "Standard deviation between realizations",
+                "mean_low": f"Lower end of the {CONFIDENCE:.0%} confidence interval of the mean",
+                "mean_high": f"Upper end of the {CONFIDENCE:.0%} confidence interval of the mean",
+                "quantile": "Quantiles [probability, time, point, {x, y}]",
+            }
+            for name, values in arrays.items():
+                what = meaning[name] + ("" if name == "count" else f", displacement {KINDS[kind]}.")
+                put(f"/{kind}/{name}", values, "1" if name == "count" else "m", what)
+        file.attrs["complete"] = np.int32(1)
+
+
+def table(found, statistics):
+    """The statistics as the text of a CSV file; Python writes numbers so that they read back exactly."""
+    common = found[0].common
+    points = [text_of(name) for name in common["/history/point"]]
+    names = ["mean", "standard_deviation", "mean_low", "mean_high"]
+    text = io.StringIO()
+    out = csv.writer(text, lineterminator="\n")
+    out.writerow(["since", "point", "component", "time_day", "event", "count", *(f"{name}_m" for name in names),
+                  *(f"quantile_{round(100 * p):02d}_m" for p in PROBABILITIES)])
+    for kind, since in (("displacement", "in situ"), ("displacement_since_first_reading", "first reading")):
+        arrays = statistics[kind]
+        for point, name in enumerate(points):
+            for component in (0, 1):
+                for row in np.flatnonzero(arrays["count"][:, point] > 1):
+                    at = row, point, component
+                    out.writerow([since, name, "xy"[component], float(common["/history/time"][row]),
+                                  text_of(common["/history/event"][row]), arrays["count"][row, point],
+                                  *(float(arrays[name][at]) for name in names),
+                                  *(float(value) for value in arrays["quantile"][(slice(None), *at)])])
+    return text.getvalue()
+
+
+def summary(found, failed):
+    lines = [f"realizations                  {len(found) + len(failed)}", f"in equilibrium                {len(found)}"]
+    for label, name, unit, select in (
+            ("blocks", "blocks", "", None), ("zones", "zones", "", None), ("solver steps", "solver_steps", "", None),
+            ("largest out-of-balance ratio", "largest_out_of_balance_ratio", "", max),
+            ("shortest edge", "shortest_edge", " m", min),
+            ("smallest zone altitude", "smallest_zone_altitude", " m", min)):
+        values = {one.number: getattr(one, name) for one in found}
+        if not values:
+            continue
+        if select is None:
+            lines.append(f"{label:<29} {min(values.values())} to {max(values.values())}")
+        else:
+            number = select(values, key=values.get)
+            lines.append(f"{label:<29} {values[number]:.6g}{unit} (realization {number})")
+    lines += [f"failed {number:04d}: {reason}" for number, reason in failed.items()]
+    return "\n".join(lines) + "\n"
+
+
+def replace_if_changed(path, write):
+    """Calls `write` with the path of a new file, which takes the place of an old one of other content."""
+    partial = path.with_name(f"{path.name}.partial-{os.getpid()}")
+    try:
+        write(partial)
+        if not (path.exists() and path.read_bytes() == partial.read_bytes()):
+            os.replace(partial, path)
+    finally:
+        with contextlib.suppress(FileNotFoundError):
+            partial.unlink()
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("folder", metavar="FOLDER", type=pathlib.Path)
+    parser.add_argument("count", metavar="N", type=int)
+    parser.add_argument("-o", "--output", metavar="OUT", type=pathlib.Path, required=True)
+    arguments = parser.parse_args()
+    out = arguments.output
+    try:
+        found, failed = read_all(arguments.folder, arguments.count)
+        words = summary(found, failed)
+        if len(found) < 2:
+            print(words, end="", file=sys.stderr)
+            raise NotWanted(f"{len(found)} of {arguments.count} realizations are in equilibrium; statistics need 2")
+        statistics = all_statistics(found)
+        replace_if_changed(out / "ensemble.csv", lambda path: path.write_text(table(found, statistics), "utf-8"))
+        replace_if_changed(out / "summary.txt", lambda path: path.write_text(words, "utf-8"))
+        replace_if_changed(out / "ensemble.h5", lambda path: write_hdf5(path, found, failed, statistics))
+    except NotWanted as error:
+        print(f"ensemble.py: {error}", file=sys.stderr)
+        sys.exit(2)
+    except OSError as error:
+        print(f"ensemble.py: {error}", file=sys.stderr)
+        sys.exit(4)
+
+
+if __name__ == "__main__":
+    main()
