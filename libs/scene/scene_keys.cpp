@@ -313,10 +313,10 @@ Table<MeasuringPoint> measuring_point()
 
 Table<Gauge> gauge()
 {
-    return {
-        {"gauge", in_list, optional, "A place on a joint whose traction is recorded: the nearest contact."},
-        {text("name", &Gauge::name, "Name, once among the gauges."),
-         point("at_m", &Gauge::at, "Where, inside the section.")}};
+    return {{"gauge", in_list, optional,
+             "A place on a joint whose traction demsolve --trace records: the nearest contact."},
+            {text("name", &Gauge::name, "Name, once among the gauges."),
+             point("at_m", &Gauge::at, "Where, inside the section.")}};
 }
 
 Table<Creep> creep()
@@ -373,7 +373,7 @@ Table<Equilibrium> equilibrium()
                 "Fraction of the out-of-balance force; with damping = \"local\" only.")
              .optional("0.8"),
          integer("unloading_increments", &E::unloading_increments, from(1).to(1000),
-                 "In which the rock of a stage is taken away.")
+                 "In which the rock of a stage is taken away, and in which loads change between dates.")
              .or_else(std::int64_t{1}),
          integer("most_steps", &E::most_steps, from(1).to(2147483647),
                  "Without equilibrium after so many steps the program gives up.")
@@ -383,8 +383,7 @@ Table<Equilibrium> equilibrium()
 Table<Scene> random_numbers()
 {
     return {{"random", once, optional, "Needed by joint sets."},
-            {integer("seed", &Scene::seed,
-                     from(0).to(static_cast<double>(std::numeric_limits<std::int64_t>::max())),
+            {integer("seed", &Scene::seed, from(0).to(9007199254740992.0),
                      "Another seed gives another network of the same statistics.")}};
 }
 

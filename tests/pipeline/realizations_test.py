@@ -1,0 +1,372 @@
+"""Realizations of a small scene through pipelines/slope/Makefile: their statistics do not depend on how they were run.
+
+The Makefile gets a folder of programs of its own (BIN), in which each is a script that waits a moment, so that there
+is time to interrupt it, or gives up on purpose, and else hands on to the real program.
+"""
+
+import csv
+import math
+import os
+import signal
+import subprocess
+import time
+
+import h5py
+import numpy
+
+from chain import LONGEST_RUN, ChainTest, datasets, main
+
+N = 4
+STUDENT_97_5_PERCENT = {3: 3.182446305}  # by degrees of freedom, from tables
+FAILS = "demsolve: no equilibrium: on purpose"
+
+SCENE = """
+# A bench is dug into about 30 random blocks, computed roughly. All numbers are made up.
+
+[section]
+outline_m = [[0, 0], [30, 0], [30, 20], [0, 20]]
+rock = "rock"
+gravity_m_per_s2 = 9.81
+
+[[rock]]
+name = "rock"
+density_kg_per_m3 = 2700
+youngs_modulus_GPa = 10
+poissons_ratio = 0.25
+
+[[joint_material]]
+name = "joint"
+normal_stiffness_MPa_per_m = 5000
+shear_stiffness_MPa_per_m = 2000
+cohesion_MPa = 1
+friction_angle_deg = 35
+tensile_strength_MPa = 0.1
+normal_kelvin_stiffness_MPa_per_m = 5000
+normal_kelvin_viscosity_MPa_day_per_m = 50000
+shear_kelvin_stiffness_MPa_per_m = 2000
+shear_kelvin_viscosity_MPa_day_per_m = 20000
+
+[[joint_set]]
+name = "steep"
+material = "joint"
+trace_angle = { law = "normal", mean_deg = 70, deviation_deg = 5 }
+spacing = { law = "lognormal", mean_m = 6, deviation_m = 2 }
+persistence = 1
+
+[[joint_set]]
+name = "flat"
+material = "joint"
+trace_angle = { law = "normal", mean_deg = 5, deviation_deg = 4 }
+spacing = { law = "lognormal", mean_m = 7, deviation_m = 2 }
+persistence = 1
+
+[in_situ_stress]
+elevation_m = 20
+compression_xx_MPa = 0
+compression_yy_MPa = 0
+shear_xy_MPa = 0
+compression_xx_gradient_MPa_per_m = 0.013
+compression_yy_gradient_MPa_per_m = 0.026487
+shear_xy_gradient_MPa_per_m = 0
+
+[[boundary]]
+from_m = [0, 0]
+to_m = [30, 0]
+fix = "xy"
+
+[[boundary]]
+from_m = [0, 0]
+to_m = [0, 20]
+fix = "x"
+
+[[boundary]]
+from_m = [30, 0]
+to_m = [30, 20]
+fix = "x"
+
+[schedule]
+start = 0
+end = 10
+
+[[stage]]
+name = "bench"
+date = 2
+remove_m = [[[16, 20], [30, 20], [30, 12], [19, 12]]]
+
+[[point]]
+name = "crest"
+at_m = [14, 19]
+
+[[point]]
+name = "dug away"
+at_m = [25, 17]
+
+[[point]]
+name = "floor"
+at_m = [24, 11]
+first_reading = 4
+
+[creep]
+step_days = 2
+scheme = "published"
+
+[zones]
+size_m = 5
+
+[equilibrium]
+tolerance = 1e-4
+
+[random]
+seed = 3
+"""
+
+WRAPPER = """#!/bin/sh
+echo "$0 $*" >>{calls}
+sleep {wait}
+case "$*" in {cases} esac
+exec {program} "$@"
+"""
+
+
+class Realizations(ChainTest):
+    def setUp(self):
+        self.folder = self.chain.new_folder()
+        self.scene = self.folder / "scene.toml"
+        self.scene.write_text(SCENE)
+        self.calls = self.folder / "calls"
+
+    def programs(self, wait=0.0, **cases):
+        """A folder of programs that each wait [s] first; `demsolve="*0002*) exit 3 ;;"` is a case of its arguments."""
+        folder = self.chain.new_folder()
+        for name in ("jointgen", "strength-averaging", "demsolve"):
+            script = folder / name
+            script.write_text(WRAPPER.format(calls=self.calls, wait=wait, cases=cases.get(name, ""),
+                                             program=self.chain.programs / name))
+            script.chmod(0o755)
+            os.utime(script, (0, 0))  # so that another folder of programs does not make results old
+        return folder
+
+    def command(self, out, programs, *more):
+        return ["make", "-C", self.chain.source / "pipelines" / "slope", f"OUT={out}", f"SCENE={self.scene}",
+                f"BIN={programs}", f"N={N}", *more]
+
+    def environment(self):
+        return {name: value for name, value in os.environ.items() if name not in ("MAKEFLAGS", "MFLAGS", "MAKELEVEL")}
+
+    def make(self, out, programs, *more):
+        """What make does."""
+        return subprocess.run(self.command(out, programs, *more), capture_output=True, text=True, timeout=LONGEST_RUN,
+                              env=self.environment())
+
+    def made(self, out, programs, *more):
+        done = self.make(out, programs, *more)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        return out
+
+    def started(self, out, programs, *more):
+        """make at work, the first of a process group of its own."""
+        return subprocess.Popen(self.command(out, programs, *more), stdout=subprocess.DEVNULL,
+                                stderr=subprocess.DEVNULL, env=self.environment(), start_new_session=True)
+
+    def number_of_calls(self):
+        """Of all programs; a realization needs three."""
+        return self.calls.read_text().count("\n") if self.calls.exists() else 0
+
+    def assert_same(self, one, other):
+        for name in ("ensemble.h5", "ensemble.csv", "summary.txt"):
+            self.assertEqual((one / name).read_bytes(), (other / name).read_bytes(), name)
+
+    def assert_nothing_half_written(self, out):
+        """Every file under its final name is whole, and nothing else is left."""
+        names = {path.name for path in (out / "realizations").iterdir()}
+        for number in range(N):
+            self.assertEqual({name for name in names if name.startswith(f"{number:04d}")},
+                             {f"{number:04d}.h5", f"{number:04d}.log"})
+            with h5py.File(out / "realizations" / f"{number:04d}.h5") as file:
+                self.assertEqual((file.attrs["complete"], file.attrs["realization"]), (1, number))
+
+    def test_statistics(self):
+        """They are what the result files say, by another way of computing them."""
+        out = self.made(self.folder / "out", self.programs(), "realizations")
+        results = [datasets(out / "realizations" / f"{number:04d}.h5") for number in range(N)]
+        moves = numpy.stack([result["/history/displacement"] for result in results])
+        self.assertGreater(moves[:, -1, 0].std(axis=0).min(), 1e-6)  # [m]; they differ
+        ensemble = datasets(out / "ensemble.h5")
+        times, points = moves.shape[1:3]
+        compared = 0
+        for kind in ("displacement", "displacement_since_first_reading"):
+            for point in range(points):
+                first = results[0]["/history/first_reading_row"][point]
+                zero = moves[:, first, point] if "first" in kind else 0
+                for row in range(times):
+                    there = sum(result["/history/present"][row, point] for result in results)
+                    there = 0 if "first" in kind and row < first else there
+                    self.assertEqual(ensemble[f"/{kind}/count"][row, point], there)
+                    values = moves[:, row, point] - zero
+                    mean = values.sum(axis=0) / N
+                    deviation = numpy.sqrt(((values - mean) ** 2).sum(axis=0) / (N - 1))
+                    half = STUDENT_97_5_PERCENT[N - 1] * deviation / math.sqrt(N)
+                    inner = numpy.sort(values, axis=0)
+                    wanted = {"mean": mean, "standard_deviation": deviation, "mean_low": mean - half,
+                              "mean_high": mean + half}
+                    if there == 0:
+                        wanted = dict.fromkeys(wanted, 0)
+                    else:
+                        self.assertEqual(there, N)
+                        # of four values, the quantiles 0.05, ... lie at 0.15, 0.75, 1.5, 2.25, 2.85 between them
+                        quantiles = [inner[k] + part * (inner[k + 1] - inner[k])
+                                     for k, part in ((0, 0.15), (0, 0.75), (1, 0.5), (2, 0.25), (2, 0.85))]
+                        self.assertTrue(numpy.allclose(ensemble[f"/{kind}/quantile"][:, row, point], quantiles,
+                                                       rtol=1e-9, atol=1e-15))
+                        compared += 1
+                    for name, value in wanted.items():
+                        self.assertTrue(numpy.allclose(ensemble[f"/{kind}/{name}"][row, point], value, rtol=1e-9,
+                                                       atol=1e-15), (kind, name, row, point))
+        self.assertGreater(compared, 20)
+        with open(out / "ensemble.csv", encoding="utf-8") as file:
+            rows = list(csv.DictReader(file))
+        self.assertEqual(len(rows), 2 * compared)
+        last = rows[-1]
+        self.assertEqual((last["since"], last["point"], last["component"]), ("first reading", "floor", "y"))
+        self.assertEqual(float(last["mean_m"]), ensemble["/displacement_since_first_reading/mean"][-1, -1, 1])
+
+    def test_one_at_a_time_or_two(self):
+        one = self.made(self.folder / "one", self.programs(), "-j1", "realizations")
+        two = self.made(self.folder / "two", self.programs(), "-j2", "realizations")
+        self.assert_same(one, two)
+        self.assert_nothing_half_written(two)
+
+    def test_nothing_is_done_twice(self):
+        programs = self.programs()
+        out = self.made(self.folder / "out", programs, "realizations")
+        when = (out / "ensemble.h5").stat().st_mtime_ns
+        self.made(out, programs, "realizations")
+        self.assertEqual(self.number_of_calls(), 3 * N)
+        self.assertEqual((out / "ensemble.h5").stat().st_mtime_ns, when)
+
+    def test_interrupts(self):
+        whole = self.made(self.folder / "whole", self.programs(), "-j2", "realizations")
+        out = self.folder / "out"
+        programs = self.programs(wait=0.5)
+        results = out / "realizations"
+
+        def kill_make(running):  # alone, without those that work for it
+            os.kill(running.pid, signal.SIGKILL)
+
+        def kill_all(running):
+            os.killpg(running.pid, signal.SIGKILL)
+
+        def interrupt(running):  # what Ctrl-C does
+            os.killpg(running.pid, signal.SIGINT)
+
+        def terminate(running):
+            os.kill(running.pid, signal.SIGTERM)
+
+        # Two run at once, and each calls three programs: the fourth call is in the middle of their chains, at the
+        # seventh one has ended.
+        ended = {}
+        for calls, stop in ((2, kill_make), (7, kill_all), (4, kill_make), (3, interrupt), (5, terminate)):
+            with self.subTest(stop.__name__, calls=calls):
+                before = self.number_of_calls()
+                running = self.started(out, programs, "-j2", "realizations")
+                wait_until(lambda: self.number_of_calls() >= before + calls)
+                stop(running)
+                self.assertNotEqual(running.wait(LONGEST_RUN), 0)
+                self.assertFalse((out / "ensemble.h5").exists())
+                self.assertFalse(list(results.glob("*.failed")), "an interrupt is taken for a failure")
+                time.sleep(0.1)
+                then = self.number_of_calls(), sorted(results.rglob("*"))
+                time.sleep(0.7)
+                self.assertEqual((self.number_of_calls(), sorted(results.rglob("*"))), then,
+                                 "something works on after make was stopped")
+                now = {path: path.stat().st_mtime_ns for path in results.glob("*.h5")}
+                self.assertLess(len(now), N)
+                self.assertLessEqual(ended.items(), now.items(), "what had ended is made again")
+                ended = now
+        self.assertGreater(len(ended), 0)
+        self.made(out, programs, "-j2", "realizations")
+        self.assert_same(whole, out)
+        self.assert_nothing_half_written(out)
+
+    def test_a_failed_one(self):
+        """It is named with its reason, does not stop the others, and is tried again only when asked."""
+        bad = f"*0001*) echo '{FAILS}' >&2; exit 3 ;;"
+        good, failing = self.programs(), self.programs(demsolve=bad)
+        whole = self.made(self.folder / "whole", good, "realizations")
+        out = self.folder / "out"
+        done = self.make(out, failing, "realizations")
+        self.assertNotEqual(done.returncode, 0)
+        self.assertIn(f"failed 0001: demsolve, exit code 3 {FAILS}\n", done.stdout)
+        self.assertEqual(list(datasets(out / "ensemble.h5")["/realization/number"]), [0, 2, 3])
+        self.assertEqual(list(datasets(out / "ensemble.h5")["/failed/number"]), [1])
+        self.assertIn(FAILS, (out / "realizations" / "0001.log").read_text())
+        self.assertFalse((out / "realizations" / "0001.h5").exists())
+
+        first = self.folder / "first"
+        first.mkdir()
+        for name in ("ensemble.h5", "ensemble.csv", "summary.txt"):
+            (first / name).write_bytes((out / name).read_bytes())
+        calls = self.number_of_calls()
+        again = self.make(out, good, "realizations")
+        self.assertNotEqual(again.returncode, 0)
+        self.assertIn("failed 0001", again.stdout)
+        self.assertEqual(self.number_of_calls(), calls)
+        self.assert_same(first, out)
+
+        self.made(out, good, "retry")
+        self.assertEqual(self.number_of_calls(), calls + 3)
+        self.assert_same(whole, out)
+        self.assert_nothing_half_written(out)
+
+    def test_all_failed(self):
+        done = self.make(self.folder / "out", self.programs(jointgen="*) echo jointgen: no >&2; exit 2 ;;"),
+                         "realizations")
+        self.assertNotEqual(done.returncode, 0)
+        for number in range(N):
+            self.assertIn(f"failed {number:04d}: jointgen, exit code 2 jointgen: no\n", done.stderr)
+        self.assertFalse((self.folder / "out" / "ensemble.h5").exists())
+
+    def test_what_is_no_reason(self):
+        """A full disk, or a program that is killed: it is tried again, without being asked."""
+        for what, code in (("echo full >&2; exit 4", 4), ("kill -9 $$", 137), ("kill -TERM $$", 143)):
+            with self.subTest(what):
+                out = self.folder / f"out-{code}"
+                done = self.make(out, self.programs(demsolve=f"*0001*) {what} ;;"), "realizations")
+                self.assertNotEqual(done.returncode, 0)
+                self.assertIn(f"realization 0001: demsolve was stopped (exit code {code})", done.stderr)
+                self.made(out, self.programs(), "realizations")
+                self.assert_nothing_half_written(out)
+
+    def test_a_crash_is_a_reason(self):
+        done = self.make(self.folder / "out", self.programs(jointgen="*0001*) kill -SEGV $$ ;;"), "realizations")
+        self.assertNotEqual(done.returncode, 0)
+        self.assertIn("failed 0001: jointgen, exit code 139", done.stdout)
+
+    def test_a_changed_scene(self):
+        """Results of another scene are not mixed in, be they old or put there."""
+        programs = self.programs()
+        out = self.made(self.folder / "out", programs, "realizations")
+        other = self.folder / "other"
+        self.scene.write_text(SCENE.replace("end = 10", "end = 12"))
+        later = time.time() + 1
+        os.utime(self.scene, (later, later))
+        self.made(other, programs, "realizations")
+        strange = (other / "realizations" / "0002.h5").read_bytes()
+        self.scene.write_text(SCENE)
+        os.utime(self.scene, (0, 0))
+        (out / "realizations" / "0002.h5").write_bytes(strange)
+        done = self.make(out, programs, "realizations")
+        self.assertNotEqual(done.returncode, 0)
+        self.assertRegex(done.stderr, r"0002\.h5: /scene is not the same as in 0000\.h5")
+
+
+def wait_until(condition):
+    end = time.monotonic() + LONGEST_RUN
+    while not condition():
+        if time.monotonic() > end:
+            raise AssertionError("nothing happened")
+        time.sleep(0.01)
+
+
+if __name__ == "__main__":
+    main()
