@@ -43,6 +43,7 @@ const Program program{
                 {"tolerance", "T", "out-of-balance ratio of an equilibrium (default: the scene's)"},
                 {"creep-step", "DAYS", "creep step [day] (default: the scene's)"},
                 {"no-creep", "", "excavate only"},
+                {"states", "N", "record the whole section every N creep steps too (default: at dates only)"},
                 {"trace", "N", "record points and gauges every N solver steps"}},
     .example = "demsolve joints.h5 --threads 2 -o result.h5",
 };
@@ -81,8 +82,9 @@ std::string choose(const Arguments& arguments, Scene& scene)
         scene.creep.reset();
         note("no-creep", "");
     }
-    if (const auto every = arguments.whole_number("trace", 1, 1000000000))
-        note("trace", std::to_string(*every));
+    for (const char* option : {"states", "trace"})
+        if (const auto every = arguments.whole_number(option, 1, 1000000000))
+            note(option, std::to_string(*every));
     return chosen;
 }
 
@@ -138,8 +140,14 @@ struct Solution {
     std::optional<double> end_of_creep; // since start [s], where the scene's stop rate ended it early
 };
 
+// What the result file is to hold besides histories and the states at dates; 0 is never.
+struct Recording {
+    std::uint64_t state_every = 0; // creep steps
+    std::uint64_t trace_every = 0; // solver steps
+};
+
 Solution solve(const Scene& scene, const Network& network, const EquivalentJoints& joints, int threads,
-               std::uint64_t trace_every, Progress& progress)
+               const Recording& recording, Progress& progress)
 {
     Solution solution;
     Result& result = solution.result;
@@ -156,16 +164,16 @@ Solution solve(const Scene& scene, const Network& network, const EquivalentJoint
 
     double now = 0;         // since start [s]
     double solver_time = 0; // over all equilibria [s]
-    std::uint64_t steps = 0;
+    std::uint64_t steps = 0, creep_steps_done = 0;
     const auto equilibrate = [&] {
         double last = 0;
         const auto observe = [&](double time) {
             last = time;
-            if (trace_every > 0 && ++steps % trace_every == 0)
+            if (recording.trace_every > 0 && ++steps % recording.trace_every == 0)
                 recorder.record_trace(result, now, solver_time + time, rock);
         };
         const mechanics::Certificate certificate = relaxation::relax(
-            rock, scene.equilibrium, trace_every > 0 ? observe : relaxation::StepObserver{});
+            rock, scene.equilibrium, recording.trace_every > 0 ? observe : relaxation::StepObserver{});
         solver_time += last;
         recorder.record_equilibrium(result, now, certificate);
     };
@@ -211,6 +219,9 @@ Solution solve(const Scene& scene, const Network& network, const EquivalentJoint
             if (creeps || is_loaded)
                 equilibrate();
             recorder.record_history(result, now, "", rock);
+            if (creeps && recording.state_every > 0 && ++creep_steps_done % recording.state_every == 0 &&
+                i < n_steps)
+                recorder.record_state(result, now, "", rock);
             if (may_stop && largest_move(before, rock.displacement) < *scene.creep->stop_rate * duration) {
                 solution.end_of_creep = now;
                 break;
@@ -304,11 +315,12 @@ void solve_and_write(const Arguments& arguments)
     const std::string options = choose(arguments, scene);
     check_creep_step(scene, file.network, file.equivalent);
     const auto threads = static_cast<int>(arguments.whole_number("threads", 1, 1024).value_or(1));
-    const std::uint64_t trace_every = arguments.whole_number("trace", 1, 1000000000).value_or(0);
+    const Recording recording{arguments.whole_number("states", 1, 1000000000).value_or(0),
+                              arguments.whole_number("trace", 1, 1000000000).value_or(0)};
 
     const Solution solution = [&] {
         Progress progress(arguments.quiet()); // wiped out before the closing screen
-        return solve(scene, file.network, file.equivalent, threads, trace_every, progress);
+        return solve(scene, file.network, file.equivalent, threads, recording, progress);
     }();
 
     Provenance provenance = file.provenance;
