@@ -6,6 +6,7 @@
 #include <CGAL/Exact_predicates_exact_constructions_kernel.h>
 
 #include <algorithm>
+#include <iterator>
 #include <numeric>
 #include <unordered_map>
 
@@ -81,6 +82,20 @@ Graph arrange(const Graph& crossing)
     std::sort(planar.edge.begin(), planar.edge.end(), [](const Edge& a, const Edge& b) {
         return std::pair(a.first, a.second) < std::pair(b.first, b.second);
     });
+    // A joint that runs along another line but for rounding makes edges of its own, with the same rounded
+    // ends.
+    std::vector<Edge> single;
+    for (Edge& edge : planar.edge) {
+        if (single.empty() || single.back().first != edge.first || single.back().second != edge.second) {
+            single.push_back(std::move(edge));
+            continue;
+        }
+        std::vector<Index> both;
+        std::set_union(single.back().sources.begin(), single.back().sources.end(), edge.sources.begin(),
+                       edge.sources.end(), std::back_inserter(both));
+        single.back().sources = std::move(both);
+    }
+    planar.edge = std::move(single);
     return planar;
 }
 

@@ -65,6 +65,17 @@ TEST(hard_networks, joints_on_the_outline_and_on_each_other)
     EXPECT_EQ(blocks::cut(scene, joints).block_area.size(), 4u);
 }
 
+TEST(hard_networks, a_joint_along_a_slanting_side_of_the_outline_but_for_rounding)
+{
+    // Beyond its ends the joint is drawn a little longer, and then no longer lies on the side exactly.
+    const Scene scene = section(slope, 0.1);
+    Joints joints;
+    add_joint(joints, {34.9991928, 64.9993439}, {30, 105});
+    add_joint(joints, {40, 5}, {40, 90});
+    add_joint(joints, {0, 83.3}, {52.7, 80.9});
+    expect_sound(scene, joints, "along the top");
+}
+
 TEST(hard_networks, gaps_of_a_nanometre)
 {
     const Scene scene = section(slope, 0.05);
