@@ -101,6 +101,7 @@ bool Recorder::is_present(const Place& place, const Assembly& assembly)
 void Recorder::append_displacements(std::vector<Vector2d>& rows, const std::vector<Vector2d>& before,
                                     const Assembly& assembly) const
 {
+    // Where it starts is settled first: `rows` and `before` may be one.
     const std::size_t last_row = before.size() - std::min(before.size(), point_.size());
     for (std::size_t p = 0; p < point_.size(); ++p) {
         const Place& place = point_[p];
@@ -125,7 +126,7 @@ void Recorder::record_history(Result& result, double time, const std::string& ev
     }
     for (const Place& place : point_)
         history.present.push_back(is_present(place, assembly) ? 1 : 0);
-    append_displacements(history.displacement, std::vector<Vector2d>(history.displacement), assembly);
+    append_displacements(history.displacement, history.displacement, assembly);
     history.time.push_back(time / unit::day);
     history.event.push_back(event);
 }
