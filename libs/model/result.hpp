@@ -64,7 +64,9 @@ struct States {
 // How every equilibrium was reached, one row each.
 struct Equilibria {
     std::vector<double> time;                 // since start [day]
-    std::vector<Index> steps;                 // of the solver
+    std::vector<Index> implicit;              // 1 by factorisation, 0 by motion
+    std::vector<Index> steps;                 // corrections, or steps of motion
+    std::vector<Index> factorisations, solves; // of the implicit engine, also where it gave up
     std::vector<double> out_of_balance_ratio; // [-]
     std::vector<double>
         contact_force_change; // over the last 100 steps, over the mean force on a gridpoint [-]
