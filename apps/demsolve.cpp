@@ -76,6 +76,7 @@ std::string choose(const Arguments& arguments, Scene& scene)
         if (!scene.creep)
             throw input_error("--creep-step: the scene has no [creep]");
         scene.creep->step = *step * unit::day;
+        scene.creep->tolerance.reset();
         note("creep-step", shown(*step));
     }
     if (arguments.has("no-creep")) {
@@ -203,7 +204,7 @@ Solution solve(const Scene& scene, const Network& network, const EquivalentJoint
         const bool creeps = solution.creeps;
         const bool is_loaded = loading.changes(start, date);
         const int n_steps = std::max(is_loaded ? scene.equilibrium.unloading_increments : 1,
-                                     creeps ? creep_steps(start, date, scene.creep->step) : 1);
+                                     creeps ? creep_steps(start, date, *scene.creep->step) : 1);
         for (int i = 1; i <= n_steps; ++i) {
             progress.show(now / scene.end, "day " + std::to_string(std::lround(now / unit::day)));
             const double next = i == n_steps ? date : start + (date - start) * i / n_steps;
@@ -298,10 +299,14 @@ void report(const Network& network, const Scene& scene, const Solution& solution
 // The published creep step is stable up to a limit that the joints set; beyond it its answer would be wrong.
 void check_creep_step(const Scene& scene, const Network& network, const EquivalentJoints& joints)
 {
-    const creep::StepLimit limit = creep::longest_step(joints);
-    if (!scene.creep || scene.creep->step < limit.step)
+    if (!scene.creep)
         return;
-    throw input_error("creep step of " + shown(scene.creep->step / unit::day) +
+    if (scene.creep->scheme != CreepScheme::published || !scene.creep->step)
+        throw input_error("[creep]: demsolve knows the published scheme with step_days alone so far");
+    const creep::StepLimit limit = creep::longest_step(joints);
+    if (*scene.creep->step < limit.step)
+        return;
+    throw input_error("creep step of " + shown(*scene.creep->step / unit::day) +
                       " day: the published scheme is stable only below " + shown(limit.step / unit::day) +
                       " day, the limit of joint \"" + joint_name(scene, network, limit.edge) + "\"");
 }

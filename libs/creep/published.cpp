@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace jointcreep::creep
 {
@@ -11,9 +10,16 @@ Published::Published(const Mesh& mesh, const EquivalentJoints& joints,
                      const std::vector<Eigen::Vector2d>& traction)
     : first_traction_(traction)
 {
-    for (const Index e : mesh.contact_edge)
+    const auto units = static_cast<Index>(joints.kelvin_units());
+    for (const Index edge : mesh.contact_edge) {
+        if (units == 0) {
+            contact_.push_back({});
+            continue;
+        }
+        const Index e = edge * units; // of a chain the first unit alone
         contact_.push_back({Direction{joints.normal_kelvin_stiffness[e], joints.normal_kelvin_viscosity[e]},
                             Direction{joints.shear_kelvin_stiffness[e], joints.shear_kelvin_viscosity[e]}});
+    }
 }
 
 void Published::advance(double duration, const std::vector<Eigen::Vector2d>& traction,
@@ -28,28 +34,6 @@ void Published::advance(double duration, const std::vector<Eigen::Vector2d>& tra
             const double final_offset = (traction[c][i] - first_traction_[c][i]) / d.stiffness;
             offset[c][i] += crept * (final_offset - offset[c][i]);
         }
-}
-
-StepLimit longest_step(const EquivalentJoints& joints)
-{
-    StepLimit limit{std::numeric_limits<double>::infinity(), -1};
-    const auto consider = [&](double spring, double stiffness, double viscosity, std::size_t edge) {
-        if (stiffness <= 0)
-            return;
-        const double most_crept = 2 / (1 + spring / stiffness);
-        if (most_crept >= 1)
-            return;
-        const double step = -std::log1p(-most_crept) * viscosity / stiffness;
-        if (step < limit.step)
-            limit = {step, static_cast<Index>(edge)};
-    };
-    for (std::size_t e = 0; e < joints.normal_stiffness.size(); ++e) {
-        consider(joints.normal_stiffness[e], joints.normal_kelvin_stiffness[e],
-                 joints.normal_kelvin_viscosity[e], e);
-        consider(joints.shear_stiffness[e], joints.shear_kelvin_stiffness[e],
-                 joints.shear_kelvin_viscosity[e], e);
-    }
-    return limit;
 }
 
 bool creeps(const EquivalentJoints& joints)

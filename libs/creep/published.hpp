@@ -10,12 +10,11 @@
 // open contact F is 0 and d goes on relaxing; no force comes of it.
 //
 // The step is exact where equilibrium fixes F. Where it does not, its first-order error grows without bound
-// unless
-//     (1 - exp(-lam dT)) (1 + K / E) < 2                          (not in the paper)
-// holds at every contact; longest_step gives the limit.
+// beyond longest_step.
 
 #pragma once
 
+#include "creep/creep.hpp"
 #include "model/network.hpp"
 #include "model/result.hpp"
 
@@ -46,14 +45,6 @@ private:
     std::vector<std::array<Direction, 2>> contact_; // {normal, shear}
     std::vector<Eigen::Vector2d> first_traction_;
 };
-
-// The longest stable step [s] of the published scheme and the edge that sets it; infinite and -1 if none
-// does.
-struct StepLimit {
-    double step;
-    Index edge;
-};
-StepLimit longest_step(const EquivalentJoints& joints);
 
 // Whether any joint creeps at all.
 bool creeps(const EquivalentJoints& joints);

@@ -270,7 +270,7 @@ std::vector<Field> fields_of(Network& network)
 
 std::vector<Field> fields_of(EquivalentJoints& joints)
 {
-    const std::vector<std::string> edge = {"edge"};
+    const std::vector<std::string> edge = {"edge"}, units = {"edge", "kelvin_unit"};
     // clang-format off
     return {
         {"/equivalent/normal_stiffness", &joints.normal_stiffness, edge, "Pa/m", at_least(0),
@@ -282,14 +282,18 @@ std::vector<Field> fields_of(EquivalentJoints& joints)
          "Friction angle."},
         {"/equivalent/tensile_strength", &joints.tensile_strength, edge, "Pa", at_least(0),
          "Tensile strength."},
-        {"/equivalent/normal_kelvin_stiffness", &joints.normal_kelvin_stiffness, edge, "Pa/m", at_least(0),
-         "Normal stiffness of the Kelvin element; 0 if the joint does not creep."},
-        {"/equivalent/shear_kelvin_stiffness", &joints.shear_kelvin_stiffness, edge, "Pa/m", at_least(0),
-         "Shear stiffness of the Kelvin element; 0 if the joint does not creep."},
-        {"/equivalent/normal_kelvin_viscosity", &joints.normal_kelvin_viscosity, edge, "Pa s/m", at_least(0),
-         "Normal viscosity of the Kelvin element."},
-        {"/equivalent/shear_kelvin_viscosity", &joints.shear_kelvin_viscosity, edge, "Pa s/m", at_least(0),
-         "Shear viscosity of the Kelvin element."},
+        {"/equivalent/normal_kelvin_stiffness", &joints.normal_kelvin_stiffness, units, "Pa/m", at_least(0),
+         "Normal stiffness of the Kelvin unit; 0 if the joint has no such unit."},
+        {"/equivalent/shear_kelvin_stiffness", &joints.shear_kelvin_stiffness, units, "Pa/m", at_least(0),
+         "Shear stiffness of the Kelvin unit; 0 if the joint has no such unit."},
+        {"/equivalent/normal_kelvin_viscosity", &joints.normal_kelvin_viscosity, units, "Pa s/m", at_least(0),
+         "Normal viscosity of the Kelvin unit."},
+        {"/equivalent/shear_kelvin_viscosity", &joints.shear_kelvin_viscosity, units, "Pa s/m", at_least(0),
+         "Shear viscosity of the Kelvin unit."},
+        {"/equivalent/normal_maxwell_viscosity", &joints.normal_maxwell_viscosity, edge, "Pa s/m", at_least(0),
+         "Normal viscosity of the Maxwell dashpot; 0 if there is none."},
+        {"/equivalent/shear_maxwell_viscosity", &joints.shear_maxwell_viscosity, edge, "Pa s/m", at_least(0),
+         "Shear viscosity of the Maxwell dashpot; 0 if there is none."},
     };
     // clang-format on
 }
@@ -373,6 +377,7 @@ const std::vector<Described>& dimensions()
         {"trace", "a joint trace: an open piece of a joint"},
         {"vertex", "a point where edges meet"},
         {"edge", "a straight piece of the cut between blocks"},
+        {"kelvin_unit", "a Kelvin unit of a joint's chain, as many as the longest chain has"},
         {"block", "a face of the cut section"},
         {"ring", "a closed outline of a block, outer or hole"},
         {"corner", "a corner of a ring"},

@@ -30,6 +30,7 @@ EquivalentJoints one_joint(double k, double kelvin)
     joints.shear_kelvin_stiffness = {0};
     joints.normal_kelvin_viscosity = {kelvin / lam};
     joints.shear_kelvin_viscosity = {0};
+    joints.normal_maxwell_viscosity = joints.shear_maxwell_viscosity = {0};
     return joints;
 }
 
