@@ -97,12 +97,12 @@ std::vector<Tangent> Engine::tangents(const Assembly& assembly, double softness)
 }
 
 // The displacement that balances `force` to `enough` [N/m].
-VectorXd Engine::correction(const Assembly& assembly, const VectorXd& force, double enough, Index& solves)
+VectorXd Engine::correction(const Assembly& assembly, const VectorXd& force, double enough)
 {
     const std::vector<Tangent> acting = tangents(assembly, 0);
     const auto product = [&](const VectorXd& x) { return stiffness_.times(assembly, acting, x); };
     const auto precondition = [&](const VectorXd& x) {
-        ++solves;
+        ++solves_;
         return stiffness_.solve(x);
     };
     VectorXd x = VectorXd::Zero(force.size());
@@ -174,7 +174,7 @@ std::optional<Certificate> Engine::equilibrate(Assembly& assembly, const Equilib
     active_.resize(contacts.state.size(), Active::stuck);
     breaks_.assign(contacts.state.size(), 0);
     openings_.assign(contacts.state.size(), 0);
-    factorisations_ = 0;
+    corrections_ = factorisations_ = solves_ = 0;
 
     Certificate certificate;
     certificate.is_implicit = true;
@@ -207,10 +207,10 @@ std::optional<Certificate> Engine::equilibrate(Assembly& assembly, const Equilib
         const Balance balance = balance_of(assembly, stiffest, 0, settings.tolerance);
         certificate.out_of_balance_ratio = balance.ratio();
         if (certificate.out_of_balance_ratio <= settings.tolerance) {
-            if (certificate.steps == 0)
+            if (corrections_ == 0)
                 return certificate;
             // Is it at rest, too? That is for the next correction to say.
-            const VectorXd du = correction(assembly, force_, 0.1 * force_.norm(), certificate.solves);
+            const VectorXd du = correction(assembly, force_, 0.1 * force_.norm());
             certificate.contact_force_change = force_change(assembly, du) / balance.mean;
             if (certificate.contact_force_change <= settings.tolerance) {
                 if (!mend_bonds(assembly))
@@ -220,18 +220,17 @@ std::optional<Certificate> Engine::equilibrate(Assembly& assembly, const Equilib
                 continue;
             }
         }
-        if (certificate.steps == most_corrections || since_least == 15) {
-            reason_ =
-                "forces do not come into balance in " + std::to_string(certificate.steps) + " corrections";
+        if (corrections_ == most_corrections || since_least == 15) {
+            reason_ = "forces do not come into balance in " + std::to_string(corrections_) + " corrections";
             return give_up(assembly, start, best);
         }
 
         const double enough = balance.ratio() <= settings.tolerance
                                   ? 0.1 * force_.norm()
                                   : std::max(0.5 * settings.tolerance * balance.mean,
-                                             (certificate.steps == 0 ? 1e-2 : 1e-3) * force_.norm());
-        const VectorXd du = correction(assembly, force_, enough, certificate.solves);
-        ++certificate.steps;
+                                             (corrections_ == 0 ? 1e-2 : 1e-3) * force_.norm());
+        const VectorXd du = correction(assembly, force_, enough);
+        ++corrections_;
         if (du.size() == 0 || !du.allFinite()) {
             reason_ = "some rock is held by nothing";
             return give_up(assembly, start, best);
@@ -267,8 +266,8 @@ std::optional<Certificate> Engine::equilibrate(Assembly& assembly, const Equilib
         }
     }
 
+    certificate.steps = corrections_;
     // The account of energy is that of the straight way here.
-    certificate.factorisations = factorisations_;
     contacts.traction = start.traction;
     contacts.jump = start.jump;
     std::fill(contacts.dissipated.begin(), contacts.dissipated.end(), 0.0);

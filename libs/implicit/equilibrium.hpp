@@ -34,6 +34,11 @@ public:
                                                       const std::vector<Vector2d>& guess = {});
     const std::string& reason() const { return reason_; }
 
+    // What the last equilibrium, or the search for it, has cost.
+    Index corrections() const { return corrections_; }
+    Index factorisations() const { return factorisations_; }
+    Index solves() const { return solves_; } // back-substitutions
+
 private:
     enum class Active : char { open, stuck, slips_forward, slips_backward };
 
@@ -41,7 +46,7 @@ private:
     double evaluate(Assembly& assembly, const Start& start);
     void take_states(const Assembly& assembly, const Start& start, bool first);
     std::vector<Tangent> tangents(const Assembly& assembly, double softness) const;
-    VectorXd correction(const Assembly& assembly, const VectorXd& force, double enough, Index& solves);
+    VectorXd correction(const Assembly& assembly, const VectorXd& force, double enough);
     bool mend_bonds(const Assembly& assembly);
     double force_change(const Assembly& assembly, const VectorXd& displacement) const;
     static std::nullopt_t give_up(Assembly& assembly, const Start& start, const std::vector<Vector2d>& best);
@@ -51,7 +56,7 @@ private:
     std::vector<char> breaks_, openings_;
     VectorXd scale_; // of forces: the stiffness against which they act [Pa]
     VectorXd force_; // out of balance, at the last evaluation
-    Index factorisations_ = 0;
+    Index corrections_ = 0, factorisations_ = 0, solves_ = 0;
     std::string reason_;
 };
 

@@ -142,14 +142,20 @@ std::vector<double> stiffness_row_sums(const Assembly& assembly);
 // Mass of every gridpoint: a third of each present zone around it [kg/m].
 std::vector<double> lumped_masses(const Assembly& assembly);
 
+// What an equilibrium has cost, with what was found and rejected or sought in vain before it.
+struct Effort {
+    Index searches = 0;                   // for equilibrium, by either engine
+    Index steps = 0;                      // of motion, and corrections
+    Index factorisations = 0, solves = 0; // of the implicit engine; solves are back-substitutions
+};
+
 // How an equilibrium was reached.
 struct Certificate {
     bool is_implicit = false;
-    Index steps = 0;                      // of motion, or corrections
-    Index factorisations = 0, solves = 0; // of the implicit engine, also where it gave up
+    Index steps = 0; // of motion, or corrections
     double out_of_balance_ratio = 0;
-    double contact_force_change =
-        0; // largest over the last 100 steps, over the mean force on a gridpoint [-]
+    // Largest over the last 100 steps, or by one more correction; over the mean force on a gridpoint [-].
+    double contact_force_change = 0;
     // On the way: work of loads = what zones and contacts store + what contacts dissipate + what damping
     // takes [J/m].
     double work_of_loads = 0, stored = 0, dissipated = 0, damped = 0;
