@@ -116,17 +116,15 @@ RC_GTEST_PROP(contact, may_begin_again_with_another_duration, ())
     const mechanics::Assembly before = contact.rock;
     creep.begin(50, contact.rock);
     contact.move(between(-1e-3, 1e-3), between(-1e-3, 1e-3));
-    if (*rc::gen::inRange(0, 2) == 0) {
+    const bool cancelled = *rc::gen::inRange(0, 2) == 0;
+    if (cancelled) {
         creep.cancel(contact.rock);
         RC_ASSERT(contact.rock.contacts.offset[0] == before.contacts.offset[0]);
         RC_ASSERT(contact.rock.contacts.law[0].k_n == K_n && contact.rock.contacts.law[0].k_s == K_s);
     }
-    if (*rc::gen::inRange(0, 2) == 0)
-        contact.rock = before;
-    else {
-        contact.rock.contacts.state = before.contacts.state;
+    contact.rock.contacts.state = before.contacts.state;
+    if (cancelled)
         contact.rock.contacts.traction = before.contacts.traction;
-    }
     creep.begin(5, contact.rock);
     other.begin(5, straight.rock);
     contact.move(7e-4, 6e-4);
