@@ -111,6 +111,28 @@ TEST(AverageStrength, LeavesStiffnessAndCreepTheJointsOwn)
     EXPECT_EQ(joints.shear_kelvin_viscosity[0], 4e15);
 }
 
+TEST(AverageStrength, HasARowOfKelvinUnitsAnEdgeAsLongAsTheLongestChain)
+{
+    Section section(.4);
+    section.scene.joint_materials[0].maxwell = Maxwell{7e17, 8e17};
+    section.scene.joint_materials[1].kelvin.push_back({5e9, 6e15, 7e9, 8e15});
+    const EquivalentJoints joints = average_strength(section.scene, section.network);
+    EXPECT_EQ(joints.kelvin_units(), 2u);
+    EXPECT_EQ(joints.normal_kelvin_stiffness, (std::vector<double>{1e9, 5e9, 0, 0, 0, 0, 0, 0}));
+    EXPECT_EQ(joints.shear_kelvin_viscosity, (std::vector<double>{4e15, 8e15, 0, 0, 0, 0, 0, 0}));
+    EXPECT_EQ(joints.normal_maxwell_viscosity, (std::vector<double>{0, 7e17, 0, 0}));
+    EXPECT_EQ(joints.shear_maxwell_viscosity, (std::vector<double>{0, 8e17, 0, 0}));
+}
+
+TEST(AverageStrength, HasNoKelvinUnitsWhereNothingCreeps)
+{
+    Section section(.4);
+    section.scene.joint_materials[1].kelvin.clear();
+    const EquivalentJoints joints = average_strength(section.scene, section.network);
+    EXPECT_EQ(joints.kelvin_units(), 0u);
+    EXPECT_TRUE(joints.normal_kelvin_stiffness.empty());
+}
+
 TEST(AverageStrength, TakesTheJointOfABoundaryWhole)
 {
     const Section section(.4);
@@ -130,7 +152,8 @@ TEST(AverageStrength, IsZeroWithoutAJoint)
     for (const auto& column :
          {joints.normal_stiffness, joints.shear_stiffness, joints.cohesion, joints.friction_angle,
           joints.tensile_strength, joints.normal_kelvin_stiffness, joints.shear_kelvin_stiffness,
-          joints.normal_kelvin_viscosity, joints.shear_kelvin_viscosity}) {
+          joints.normal_kelvin_viscosity, joints.shear_kelvin_viscosity, joints.normal_maxwell_viscosity,
+          joints.shear_maxwell_viscosity}) {
         ASSERT_EQ(column.size(), 4);
         EXPECT_EQ(column[2], 0);
         EXPECT_EQ(column[3], 0);

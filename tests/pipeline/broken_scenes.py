@@ -20,6 +20,12 @@ WITH_LOCAL_DAMPING = (
     'damping = "mass"\nmass_damping_per_s = 20\nstiffness_damping_s = 1e-5',
     'damping = "local"\nlocal_damping = 0.8',
 )
+WITH_TOLERANCE = (
+    "step_days = 5",
+    "tolerance_m = 1e-5\nfirst_step_days = 0.5\nshortest_step_days = 0.1\nlongest_step_days = 10",
+)
+OTHERWISE = {"local_damping": WITH_LOCAL_DAMPING, "tolerance_m": WITH_TOLERANCE, "first_step_days": WITH_TOLERANCE,
+             "shortest_step_days": WITH_TOLERANCE, "longest_step_days": WITH_TOLERANCE}  # keys not in every_key.toml
 CHECK_TIME = 60  # s, far more than any check takes
 
 
@@ -128,13 +134,14 @@ def main():
     text = (HERE / "every_key.toml").read_text()
     broken = []
     for key in keys_of(jointgen):
-        base = text.replace(*WITH_LOCAL_DAMPING) if key["key"] == "local_damping" else text
+        base = text.replace(*OTHERWISE[key["key"]]) if key["key"] in OTHERWISE else text
         where = f"{key['table']} {key['key']}"
         broken += [(f"{where}, {what}", *rest) for what, *rest in variants(key, base)]
 
     failures = 0
     with tempfile.TemporaryDirectory() as folder:
-        for name, valid in (("every_key.toml", text), ("local.toml", text.replace(*WITH_LOCAL_DAMPING))):
+        for name, valid in (("every_key.toml", text), ("local.toml", text.replace(*WITH_LOCAL_DAMPING)),
+                            ("tolerance.toml", text.replace(*WITH_TOLERANCE))):
             scene = pathlib.Path(folder) / name
             scene.write_text(valid)
             command = [jointgen, str(scene), "-o", str(scene) + ".h5", "--check"]

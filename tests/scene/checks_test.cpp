@@ -246,4 +246,36 @@ TEST(checks, files)
     std::filesystem::remove_all(folder);
 }
 
+TEST(checks, a_joint_has_one_kelvin_unit_or_a_chain)
+{
+    expect_refused("kelvin_chain = [{",
+                   "normal_kelvin_stiffness_MPa_per_m = 1\nnormal_kelvin_viscosity_MPa_day_per_m = 1\n"
+                   "shear_kelvin_stiffness_MPa_per_m = 1\nshear_kelvin_viscosity_MPa_day_per_m = 1\n"
+                   "kelvin_chain = [{",
+                   "wanted either it, or the four keys of one Kelvin unit, not both", "kelvin_chain = [{");
+    expect_refused("normal_maxwell_viscosity_MPa_day_per_m = 1e6\n", "",
+                   "as it comes together with shear_maxwell_viscosity_MPa_day_per_m",
+                   "[[joint_material]]\nname = \"gouge\"");
+    expect_refused("kelvin_chain = [{", "kelvin_chain = [3, {",
+                   "[[joint_material]] kelvin_chain is 3: wanted a table");
+}
+
+TEST(checks, creep_steps_are_fixed_or_chosen_by_a_tolerance)
+{
+    expect_refused("step_days = 5", "step_days = 5\ntolerance_m = 1e-5",
+                   "wanted either it or step_days, not both", "tolerance_m");
+    expect_refused("step_days = 5\n", "", "[creep] has no step_days: wanted it, or tolerance_m", "[creep]");
+    expect_refused("step_days = 5", "step_days = 5\nlongest_step_days = 9", "only tolerance_m uses it",
+                   "longest_step_days");
+    const std::string steps = "tolerance_m = 1e-5\nshortest_step_days = 2\n";
+    expect_refused("step_days = 5", steps + "longest_step_days = 1", "wanted at least shortest_step_days",
+                   "longest_step_days");
+    expect_refused("step_days = 5", steps + "first_step_days = 1", "wanted at least shortest_step_days",
+                   "first_step_days");
+    expect_refused("step_days = 5", steps + "longest_step_days = 3\nfirst_step_days = 4",
+                   "wanted at most longest_step_days", "first_step_days");
+    EXPECT_EQ(refusal(replaced(text, "step_days = 5", steps + "first_step_days = 2\nlongest_step_days = 2")),
+              "accepted");
+}
+
 } // namespace

@@ -96,6 +96,7 @@ TEST(column, settings_and_their_defaults)
 {
     ASSERT_TRUE(scene.creep);
     EXPECT_EQ(scene.creep->step, 1 * day);
+    EXPECT_EQ(scene.creep->scheme, CreepScheme::published);
     EXPECT_FALSE(scene.creep->stop_rate);
     EXPECT_EQ(scene.zone_size, 2.5);
     EXPECT_EQ(scene.equilibrium.masses, Masses::real);

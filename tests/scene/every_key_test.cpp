@@ -45,15 +45,61 @@ TEST(every_key, all_else)
     EXPECT_EQ(scene.rocks[1].strength->cohesion, 0.5 * MPa);
     EXPECT_EQ(scene.rocks[1].strength->friction_angle, 35 * deg);
     EXPECT_EQ(scene.rocks[1].strength->tensile_strength, 0.2 * MPa);
+    ASSERT_TRUE(scene.rocks[0].kelvin && scene.rocks[0].maxwell_viscosity);
+    EXPECT_EQ(scene.rocks[0].kelvin->modulus, 20 * GPa);
+    EXPECT_EQ(scene.rocks[0].kelvin->viscosity, 2000 * (GPa * day));
+    EXPECT_EQ(scene.rocks[0].maxwell_viscosity, 1e6 * (GPa * day));
+    EXPECT_FALSE(scene.rocks[1].kelvin || scene.rocks[1].maxwell_viscosity);
+    const JointMaterial& gouge = scene.joint_materials.at(1);
+    ASSERT_EQ(gouge.kelvin.size(), 1u);
+    EXPECT_EQ(gouge.kelvin[0].normal_stiffness, 900 * MPa / m);
+    EXPECT_EQ(gouge.kelvin[0].shear_viscosity, 1e4 * (MPa * day / m));
+    ASSERT_TRUE(gouge.maxwell);
+    EXPECT_EQ(gouge.maxwell->normal_viscosity, 1e6 * (MPa * day / m));
+    EXPECT_EQ(gouge.maxwell->shear_viscosity, 5e5 * (MPa * day / m));
+    EXPECT_FALSE(scene.joint_materials[0].maxwell);
     EXPECT_EQ(scene.regions.at(0).rock, "soft");
     EXPECT_TRUE(scene.boundaries.at(1).fix_x);
     EXPECT_FALSE(scene.boundaries.at(1).fix_y);
     EXPECT_EQ(scene.creep->stop_rate, 0.001 * (mm / day));
+    EXPECT_EQ(scene.creep->step, 5 * day);
+    EXPECT_EQ(scene.creep->scheme, CreepScheme::published);
+    EXPECT_FALSE(scene.creep->tolerance);
+    EXPECT_EQ(scene.equilibrium.engine, Engine::explicit_engine);
     EXPECT_EQ(scene.cutting.shortest_edge, 0.2);
     EXPECT_EQ(scene.cutting.smallest_angle, 3 * deg);
     EXPECT_EQ(scene.equilibrium.tolerance, 1e-5);
     EXPECT_EQ(scene.equilibrium.unloading_increments, 2);
     EXPECT_EQ(scene.equilibrium.most_steps, 100000);
+}
+
+TEST(every_key, creep_by_tolerance)
+{
+    const auto text = replaced(every_key_text(), "step_days = 5\nscheme = \"published\"",
+                               "tolerance_m = 1e-5\nfirst_step_days = 0.5\nshortest_step_days = 0.1\n"
+                               "longest_step_days = 10");
+    const Scene scene = parse_scene(text, "scene.toml");
+    EXPECT_FALSE(scene.creep->step);
+    EXPECT_EQ(scene.creep->scheme, CreepScheme::fitted);
+    EXPECT_EQ(scene.creep->tolerance, 1e-5);
+    EXPECT_EQ(scene.creep->first_step, 0.5 * day);
+    EXPECT_EQ(scene.creep->shortest_step, 0.1 * day);
+    EXPECT_EQ(scene.creep->longest_step, 10 * day);
+}
+
+TEST(every_key, kelvin_units_of_a_chain_keep_their_order)
+{
+    const auto text = replaced(every_key_text(), "kelvin_chain = [{",
+                               "kelvin_chain = [{ normal_stiffness_MPa_per_m = 1, "
+                               "normal_viscosity_MPa_day_per_m = 2, shear_stiffness_MPa_per_m = 3, "
+                               "shear_viscosity_MPa_day_per_m = 4 }, {");
+    const JointMaterial gouge = parse_scene(text, "scene.toml").joint_materials.at(1);
+    ASSERT_EQ(gouge.kelvin.size(), 2u);
+    EXPECT_EQ(gouge.kelvin[0].normal_stiffness, 1 * MPa / m);
+    EXPECT_EQ(gouge.kelvin[0].normal_viscosity, 2 * (MPa * day / m));
+    EXPECT_EQ(gouge.kelvin[0].shear_stiffness, 3 * MPa / m);
+    EXPECT_EQ(gouge.kelvin[0].shear_viscosity, 4 * (MPa * day / m));
+    EXPECT_EQ(gouge.kelvin[1].normal_stiffness, 900 * MPa / m);
 }
 
 TEST(every_key, optional_tables_may_be_left_out)
@@ -69,6 +115,7 @@ TEST(every_key, optional_tables_may_be_left_out)
     EXPECT_EQ(scene.equilibrium.tolerance, 1e-6);
     EXPECT_EQ(scene.equilibrium.damping, Damping::adaptive);
     EXPECT_EQ(scene.equilibrium.masses, Masses::scaled);
+    EXPECT_EQ(scene.equilibrium.engine, Engine::automatic);
 }
 
 TEST(every_key, a_fully_persistent_set_needs_neither_length_nor_strength)
