@@ -184,8 +184,8 @@ def draw_stress(file, state, section, axes, arguments):
     low, high = arguments.range or np.percentile(value, [0.5, 99.5])
     if not low < high:
         low, high = low - 0.5, high + 0.5
-    colored = axes.tripcolor(section.triangles, facecolors=value, cmap=figure.SHADES, vmin=low, vmax=high, edgecolors="face",
-                             linewidth=0.1, rasterized=True)
+    colored = axes.tripcolor(section.triangles, facecolors=value, cmap=figure.SHADES, vmin=low, vmax=high,
+                             edgecolors="face", linewidth=0.1, rasterized=True)
     add_scale(axes, colored, f"{COMPONENTS[arguments.component]},\ncompressive (MPa)", low, high, value)
     draw_borders(section, axes)
     return draw_crosses(section, stress, axes) if arguments.component in ("major", "minor") else []
