@@ -154,7 +154,8 @@ def legend_below(axes, *groups):
     """A legend under the axes, a column for each group of entries if there is room; the figure grows by its height."""
     width, height = axes.figure.get_size_inches()
     groups = [group for group in groups if group]
-    columns = int(width / 1.6)
+    longest = max(len(entry.get_label()) for group in groups for entry in group)
+    columns = int(width / (0.5 + 0.048 * longest))  # a sign and the text [in]
     if 1 < len(groups) <= columns:
         columns, rows = len(groups), max(len(group) for group in groups)
         nothing = matplotlib.lines.Line2D([], [], linestyle="none", label=" ")

@@ -24,7 +24,7 @@ def draw_joints(file, axes, inside):
     open_length = np.bincount(trace_joint, trace_length, len(lines))
     has_bridges = open_length < joint_length * (1 - 1e-9)
 
-    width = 1.0 if len(lines) < 200 else 0.5  # the more lines, the thinner
+    width = min(1, max(0.4, (80 / max(1, len(lines))) ** 0.5))  # the more lines, the thinner
     entries = []
     if np.any(has_bridges):
         dots = {"color": "0.3", "linewidth": 0.6 * width, "linestyle": (0, (1, 2.2))}

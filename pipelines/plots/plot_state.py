@@ -137,8 +137,8 @@ def round_below(value):
 
 
 def add_key(axes, arrows, value, unit):
-    """How long an arrow, or a cross, of some size is: over the axes, at the right."""
-    axes.quiverkey(arrows, 0.88, 1.025, value, f"{value:g} {unit}", labelpos="E", labelsep=0.05)
+    """How long an arrow, or a cross, of some size is: in the corner above the section."""
+    axes.quiverkey(arrows, 0.9, 0.965, value, f"{value:g} {unit}", labelpos="W", labelsep=0.06)
 
 
 def principal(stress):
