@@ -11,10 +11,15 @@ Creep Modeling in Excavation Analysis of a High Rock Slope, ASCE 2003, Eq. 11).
 """
 
 import math
+import sys
 from collections.abc import Callable
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
+
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "plots"))
+import column_closed_form  # noqa: E402
 
 
 @dataclass
@@ -51,8 +56,8 @@ class Contacts:
 
 @dataclass
 class Answer:
-    displacement: Callable[[str, float], np.ndarray]  # (point, day) -> {x, y} [m]
-    traction: Callable[[Contacts, float], np.ndarray]  # (contacts, day) -> [contact, {normal, shear}] [Pa]
+    displacement: Callable[[str, float], np.ndarray]  # (point, day) -> {x, y} [m]; nan where nothing holds it
+    traction: Callable[[Contacts, float, int], np.ndarray]  # (contacts, day, stages done) -> [contact, 2] [Pa]
     scale: float  # the largest traction in the answer [Pa]
 
 
@@ -81,6 +86,22 @@ def load(scene, key):
     return np.array([b for b in scene["boundary"] if key in b and "course" in b][-1][key], float)
 
 
+def column(scene):
+    """data/column, the paper's column: the rises of pipelines/plots/column_closed_form.py; joints bear what is above."""
+    of_scene = column_closed_form.column_of(scene)
+    weight = scene["rock"][0]["density_kg_per_m3"] * scene["section"]["gravity_m_per_s2"]
+    tops = [float(corners(scene)[:, 1].max()), *(removal.bottom for removal in of_scene.removals)]
+
+    def displacement(point, day):
+        return np.array([math.nan, column_closed_form.rise(of_scene, of_scene.points[point], day)])
+
+    def traction(contacts, day, stages):
+        above = np.maximum(0, tops[stages] - contacts.position[:, 1])
+        return np.outer(-weight * above, [1, 0])
+
+    return Answer(displacement, traction, weight * (tops[0] - of_scene.base))
+
+
 def platens(scene):
     """data/verification/platens: a joint between two blocks is squeezed by u0 at T = 0, and held.
 
@@ -100,7 +121,6 @@ def platens(scene):
         return u0 * (k_inf + (k - k_inf) * decay) if day > 0 else 0.0
 
     where = points(scene)
-    width = float(np.ptp(corners(scene)[:, 0]))
     sideways = scene["rock"][0]["poissons_ratio"] / (1 - scene["rock"][0]["poissons_ratio"])  # of the free side
 
     def displacement(point, day):
@@ -110,8 +130,7 @@ def platens(scene):
         strain = pressure(day) * c
         return np.array([sideways * strain * x, -u0 + strain * (height - y)])
 
-    assert width > 0
-    return Answer(displacement, lambda contacts, day: np.outer(np.full(len(contacts.length), -pressure(day)), [1, 0]),
+    return Answer(displacement, lambda contacts, day, stages: np.outer(np.full(len(contacts.length), -pressure(day)), [1, 0]),
                   k * u0)
 
 
@@ -144,7 +163,7 @@ def two_pillars(scene):
                                    ("stiffness", "kelvin_stiffness", "kelvin_viscosity")), weight, day)
         return dict(zip(length, forces)), closure
 
-    def traction(contacts, day):
+    def traction(contacts, day, stages):
         forces, _ = solved(day)
         normal = [-forces[name] / length[name] if day > 0 else 0.0 for name in contacts.material]
         return np.outer(normal, [1, 0])
@@ -177,7 +196,7 @@ def incline(scene):
             return np.zeros(2)
         return -q * (sin_b * joint["shear"].compliance(day) * along + cos_b * joint["normal"].compliance(day) * normal)
 
-    def traction(contacts, day):
+    def traction(contacts, day, stages):
         place = (contacts.position - middle) @ along
         turning = q * length * height * sin_b / (contacts.length @ place**2) * place
         tau = -q * sin_b * (contacts.tangent @ along)
@@ -217,7 +236,7 @@ def layered_mass(scene):
                                       + sin_b * joint["shear"].compliance(day) * along)
         return moved
 
-    def traction(contacts, day):
+    def traction(contacts, day, stages):
         n = contacts.normal
         return -q * n[:, 1:] * np.stack([n[:, 1], -n[:, 0]], axis=1) if day > 0 else np.zeros_like(n)
 

@@ -24,6 +24,7 @@ class Result:
     points: list[str]
     end: float  # [day]
     displacement: np.ndarray  # [point, {x, y}] at the end [m]
+    peak: np.ndarray  # the largest displacements on the way, the same shape
     time: np.ndarray  # of the states [day]
     period: np.ndarray  # of the states: how many stages there have been
     contacts: closed_forms.Contacts
@@ -50,9 +51,10 @@ def result_of(path):
             array("/mesh/gridpoint_position")[array("/mesh/contact_gridpoint")[:, 1]],
             array("/mesh/contact_normal"), array("/mesh/contact_length"),
             [names[materials[j]] if j >= 0 else scene["boundary"][b]["joint"] for j, b in zip(joint, boundary)])
+        displacement = array("/history/displacement")
         events = figure.texts(file, "/states/event")
         return Result(scene, figure.texts(file, "/history/point"), float(array("/history/time")[-1]),
-                      array("/history/displacement")[-1], array("/states/time"),
+                      displacement[-1], np.abs(displacement).max(axis=0), array("/states/time"),
                       np.cumsum([event != "" for event in events]), contacts, array("/states/traction"),
                       array("/states/contact_status"), len(array("/mesh/zone_block")),
                       len(array("/equilibria/steps")), int(array("/equilibria/steps").sum()),
@@ -66,18 +68,22 @@ class Error:
     traction_at_the_end: float
 
 
-def against_closed_form(result, answer, since=0.0):
-    """`since` leaves out states before that day."""
+def against_closed_form(result, answer):
     exact = np.array([answer.displacement(point, result.end) for point in result.points])
-    off = [np.abs(traction - answer.traction(result.contacts, day)).max()
-           for day, traction in zip(result.time, result.traction) if day >= since]
-    return Error(np.linalg.norm(result.displacement - exact, axis=1).max() / np.linalg.norm(exact, axis=1).max(),
+    apart = np.nan_to_num(result.displacement - exact)
+    moved = np.nan_to_num(exact)
+    off = []
+    for day, period, traction, status in zip(result.time, result.period, result.traction, result.status):
+        off_by = traction - answer.traction(result.contacts, day, period)
+        off.append(np.abs(off_by[status != 0]).max())
+    return Error(np.linalg.norm(apart, axis=1).max() / np.linalg.norm(moved, axis=1).max(),
                  max(off) / answer.scale, off[-1] / answer.scale)
 
 
 def against_tractions(result, displacement, traction):
     """Against the displacements at the end [point, {x, y}] and the tractions at the result's own states."""
-    off = np.abs(result.traction - traction).max(axis=(1, 2)) / np.abs(traction).max()
+    off = np.abs((result.traction - traction) * (result.status != 0)[:, :, None]).max(axis=(1, 2))
+    off /= np.abs(traction).max()
     return Error(np.linalg.norm(result.displacement - displacement, axis=1).max()
                  / np.linalg.norm(displacement, axis=1).max(), off.max(), off[-1])
 
