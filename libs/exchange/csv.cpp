@@ -111,8 +111,17 @@ std::string edges_csv(const Network& network, const EquivalentJoints* equivalent
     std::string table = "edge,x1_m,y1_m,x2_m,y2_m,left_block,right_block,kind,set,number,joint_fraction";
     if (equivalent)
         table += ",normal_stiffness_Pa_per_m,shear_stiffness_Pa_per_m,cohesion_Pa,friction_angle_rad,"
-                 "tensile_strength_Pa,normal_kelvin_stiffness_Pa_per_m,shear_kelvin_stiffness_Pa_per_m,"
-                 "normal_kelvin_viscosity_Pa_s_per_m,shear_kelvin_viscosity_Pa_s_per_m";
+                 "tensile_strength_Pa";
+    const std::size_t units = equivalent ? equivalent->kelvin_units() : 0;
+    for (std::size_t unit = 0; unit < units; ++unit) {
+        const std::string number = units == 1 ? "" : "_" + std::to_string(unit + 1);
+        for (const char* quantity : {"stiffness", "viscosity"})
+            for (const char* direction : {",normal_kelvin_", ",shear_kelvin_"})
+                table.append(direction).append(quantity).append(number).append(
+                    quantity[0] == 's' ? "_Pa_per_m" : "_Pa_s_per_m");
+    }
+    if (equivalent)
+        table += ",normal_maxwell_viscosity_Pa_s_per_m,shear_maxwell_viscosity_Pa_s_per_m";
     table += '\n';
     for (std::size_t edge = 0; edge < blocks.edge_vertex.size(); ++edge) {
         const auto [first, second] = blocks.edge_vertex[edge];
@@ -127,11 +136,17 @@ std::string edges_csv(const Network& network, const EquivalentJoints* equivalent
             table.back() = ',';
             add_row(table, field(equivalent->normal_stiffness[edge]),
                     field(equivalent->shear_stiffness[edge]), field(equivalent->cohesion[edge]),
-                    field(equivalent->friction_angle[edge]), field(equivalent->tensile_strength[edge]),
-                    field(equivalent->normal_kelvin_stiffness[edge]),
-                    field(equivalent->shear_kelvin_stiffness[edge]),
-                    field(equivalent->normal_kelvin_viscosity[edge]),
-                    field(equivalent->shear_kelvin_viscosity[edge]));
+                    field(equivalent->friction_angle[edge]), field(equivalent->tensile_strength[edge]));
+            for (std::size_t unit = edge * units; unit < (edge + 1) * units; ++unit) {
+                table.back() = ',';
+                add_row(table, field(equivalent->normal_kelvin_stiffness[unit]),
+                        field(equivalent->shear_kelvin_stiffness[unit]),
+                        field(equivalent->normal_kelvin_viscosity[unit]),
+                        field(equivalent->shear_kelvin_viscosity[unit]));
+            }
+            table.back() = ',';
+            add_row(table, field(equivalent->normal_maxwell_viscosity[edge]),
+                    field(equivalent->shear_maxwell_viscosity[edge]));
         }
     }
     return table;

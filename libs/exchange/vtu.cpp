@@ -258,10 +258,22 @@ std::string joints_vtu(const Network& network, const EquivalentJoints* equivalen
         grid.add("cohesion", picked(equivalent->cohesion, edges));
         grid.add("friction_angle", picked(equivalent->friction_angle, edges));
         grid.add("tensile_strength", picked(equivalent->tensile_strength, edges));
-        grid.add("normal_kelvin_stiffness", picked(equivalent->normal_kelvin_stiffness, edges));
-        grid.add("shear_kelvin_stiffness", picked(equivalent->shear_kelvin_stiffness, edges));
-        grid.add("normal_kelvin_viscosity", picked(equivalent->normal_kelvin_viscosity, edges));
-        grid.add("shear_kelvin_viscosity", picked(equivalent->shear_kelvin_viscosity, edges));
+        const std::size_t units = equivalent->kelvin_units();
+        for (std::size_t unit = 0; unit < units; ++unit) {
+            const std::string number = units == 1 ? "" : "_" + std::to_string(unit + 1);
+            const auto add = [&](const char* name, const std::vector<double>& values) {
+                std::vector<double> of_unit;
+                for (const Index edge : edges)
+                    of_unit.push_back(values[edge * units + unit]);
+                grid.add(name + number, of_unit);
+            };
+            add("normal_kelvin_stiffness", equivalent->normal_kelvin_stiffness);
+            add("shear_kelvin_stiffness", equivalent->shear_kelvin_stiffness);
+            add("normal_kelvin_viscosity", equivalent->normal_kelvin_viscosity);
+            add("shear_kelvin_viscosity", equivalent->shear_kelvin_viscosity);
+        }
+        grid.add("normal_maxwell_viscosity", picked(equivalent->normal_maxwell_viscosity, edges));
+        grid.add("shear_maxwell_viscosity", picked(equivalent->shear_maxwell_viscosity, edges));
     }
     grid.open("Points");
     grid.add("position", blocks.vertex);

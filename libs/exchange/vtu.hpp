@@ -24,7 +24,8 @@ std::string blocks_vtu(const Network& network);
 
 // One line an edge that has joint properties: the joint edges, and boundary edges that rest on a joint (these
 // only with `equivalent`, which is null where strength-averaging has not yet been). Cells: edge, kind
-// (EdgeKind), joint, set, joint_fraction [-], then every array of EquivalentJoints, by its name.
+// (EdgeKind), joint, set, joint_fraction [-], then every array of EquivalentJoints, by its name
+// (and the number of the Kelvin unit, counted from 1, where joints have several).
 std::string joints_vtu(const Network& network, const EquivalentJoints* equivalent);
 
 // The zones present in a state, one triangle each, at their positions at the start. `state` is a row of

@@ -82,10 +82,18 @@ Strength edge_strength(const Scene& scene, const Network& network, std::size_t e
     return average(strength_of(material), bridge_strength(scene, network, edge), fraction);
 }
 
-EquivalentJoints without_joints(std::size_t edges)
+EquivalentJoints without_joints(std::size_t edges, std::size_t kelvin_units)
 {
-    const std::vector<double> none(edges, 0.0);
-    return {none, none, none, none, none, none, none, none, none};
+    const std::vector<double> none(edges, 0.0), no_units(edges * kelvin_units, 0.0);
+    return {none, none, none, none, none, no_units, no_units, no_units, no_units, none, none};
+}
+
+std::size_t most_kelvin_units(const Scene& scene)
+{
+    std::size_t most = 0;
+    for (const JointMaterial& material : scene.joint_materials)
+        most = std::max(most, material.kelvin.size());
+    return most;
 }
 
 void set_joint(EquivalentJoints& joints, std::size_t edge, const JointMaterial& material,
@@ -96,12 +104,18 @@ void set_joint(EquivalentJoints& joints, std::size_t edge, const JointMaterial& 
     joints.cohesion[edge] = strength.cohesion;
     joints.friction_angle[edge] = strength.friction_angle;
     joints.tensile_strength[edge] = strength.tensile_strength;
-    if (!material.kelvin)
-        return;
-    joints.normal_kelvin_stiffness[edge] = material.kelvin->normal_stiffness;
-    joints.shear_kelvin_stiffness[edge] = material.kelvin->shear_stiffness;
-    joints.normal_kelvin_viscosity[edge] = material.kelvin->normal_viscosity;
-    joints.shear_kelvin_viscosity[edge] = material.kelvin->shear_viscosity;
+    std::size_t row = edge * joints.kelvin_units();
+    for (const Kelvin& unit : material.kelvin) {
+        joints.normal_kelvin_stiffness[row] = unit.normal_stiffness;
+        joints.shear_kelvin_stiffness[row] = unit.shear_stiffness;
+        joints.normal_kelvin_viscosity[row] = unit.normal_viscosity;
+        joints.shear_kelvin_viscosity[row] = unit.shear_viscosity;
+        ++row;
+    }
+    if (material.maxwell) {
+        joints.normal_maxwell_viscosity[edge] = material.maxwell->normal_viscosity;
+        joints.shear_maxwell_viscosity[edge] = material.maxwell->shear_viscosity;
+    }
 }
 
 } // namespace
@@ -117,7 +131,7 @@ Strength average(const Strength& joint, const Strength& rock, double persistence
 EquivalentJoints average_strength(const Scene& scene, const Network& network)
 {
     const Blocks& blocks = network.blocks;
-    EquivalentJoints joints = without_joints(blocks.edge_kind.size());
+    EquivalentJoints joints = without_joints(blocks.edge_kind.size(), most_kelvin_units(scene));
     for (std::size_t edge = 0; edge < blocks.edge_kind.size(); ++edge) {
         if (blocks.edge_kind[edge] == static_cast<Index>(EdgeKind::joint)) {
             const Index row = network.joints.material[blocks.edge_joint[edge]];

@@ -21,8 +21,8 @@ struct Strength {
 Strength average(const Strength& joint, const Strength& rock, double persistence);
 
 // The equivalent joint of every edge, by that edge's own joint fraction. The rock is the weaker of the two on
-// its sides, in cohesion, friction angle and tensile strength each by itself. Stiffnesses and Kelvin
-// constants are the joint's own. A boundary edge that rests on a joint has that joint's material whole.
+// its sides, in cohesion, friction angle and tensile strength each by itself. Stiffnesses and the constants
+// of creep are the joint's own. A boundary edge that rests on a joint has that joint's material whole.
 // Throws input_error where bridges run through rock without strength, or names are not in the scene.
 EquivalentJoints average_strength(const Scene& scene, const Network& network);
 

@@ -281,6 +281,25 @@ Balance balance_of(const Assembly& assembly)
     return balance;
 }
 
+Balance balance_of(const Assembly& assembly, double stiffest, double farthest, double tolerance)
+{
+    for (const Vector2d& u : assembly.displacement)
+        farthest = std::max(farthest, u.norm());
+    Balance balance = balance_of(assembly);
+    balance.mean = std::max(balance.mean, 1e-15 * stiffest * farthest / tolerance);
+    return balance;
+}
+
+double size_of(const Assembly& assembly)
+{
+    Vector2d low = assembly.position[0], high = low;
+    for (const Vector2d& p : assembly.position) {
+        low = low.cwiseMin(p);
+        high = high.cwiseMax(p);
+    }
+    return (high - low).norm();
+}
+
 void start_from_here(Assembly& assembly)
 {
     find_forces(assembly);
@@ -296,6 +315,25 @@ void start_from_here(Assembly& assembly)
     assembly.zones.initial_stress = assembly.zones.stress;
     assembly.displacement.assign(assembly.displacement.size(), Vector2d::Zero());
     find_forces(assembly);
+}
+
+State state_of(const Assembly& assembly)
+{
+    const Contacts& contacts = assembly.contacts;
+    return {assembly.displacement, contacts.offset, contacts.traction,    contacts.jump,
+            contacts.state,        contacts.status, assembly.zones.stress};
+}
+
+void go_back(Assembly& assembly, const State& state)
+{
+    Contacts& contacts = assembly.contacts;
+    assembly.displacement = state.displacement;
+    contacts.offset = state.offset;
+    contacts.traction = state.traction;
+    contacts.jump = state.jump;
+    contacts.state = state.joint;
+    contacts.status = state.status;
+    assembly.zones.stress = state.stress;
 }
 
 std::vector<double> stiffness_row_sums(const Assembly& assembly)

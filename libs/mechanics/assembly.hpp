@@ -113,8 +113,27 @@ struct Balance {
 // How far the forces of the last find_forces are from equilibrium.
 Balance balance_of(const Assembly& assembly);
 
+// The same, allowing for rounding: where rock is almost without stress, forces are rounding errors of
+// stiffness times displacement, and those are in balance, too. So the mean does not count as less than the
+// `stiffest` row sum and the farthest displacement, of now or `farthest` [m] on the way here, demand for
+// `tolerance`.
+Balance balance_of(const Assembly& assembly, double stiffest, double farthest, double tolerance);
+
+// Diagonal of the box around all gridpoints [m].
+double size_of(const Assembly& assembly);
+
 // Makes the present state the one displacements count from.
 void start_from_here(Assembly& assembly);
+
+// What equilibria and creep change, for going back to it.
+struct State {
+    std::vector<Vector2d> displacement, offset, traction, jump;
+    std::vector<joint::CoulombState> joint;
+    std::vector<ContactStatus> status;
+    std::vector<Vector3d> stress;
+};
+State state_of(const Assembly& assembly);
+void go_back(Assembly& assembly, const State& state);
 
 // Row sums of the stiffness matrix's magnitudes, the larger of x and y, of every gridpoint [Pa]: no
 // eigenvalue of stiffness over mass is above the largest row sum over its mass (Gershgorin).
@@ -123,12 +142,20 @@ std::vector<double> stiffness_row_sums(const Assembly& assembly);
 // Mass of every gridpoint: a third of each present zone around it [kg/m].
 std::vector<double> lumped_masses(const Assembly& assembly);
 
+// What an equilibrium has cost, with what was found and rejected or sought in vain before it.
+struct Effort {
+    Index searches = 0;                   // for equilibrium, by either engine
+    Index steps = 0;                      // of motion, and corrections
+    Index factorisations = 0, solves = 0; // of the implicit engine; solves are back-substitutions
+};
+
 // How an equilibrium was reached.
 struct Certificate {
-    Index steps = 0;
+    bool is_implicit = false;
+    Index steps = 0; // of motion, or corrections
     double out_of_balance_ratio = 0;
-    double contact_force_change =
-        0; // largest over the last 100 steps, over the mean force on a gridpoint [-]
+    // Largest over the last 100 steps, or by one more correction; over the mean force on a gridpoint [-].
+    double contact_force_change = 0;
     // On the way: work of loads = what zones and contacts store + what contacts dissipate + what damping
     // takes [J/m].
     double work_of_loads = 0, stored = 0, dissipated = 0, damped = 0;

@@ -154,10 +154,15 @@ void Recorder::record_state(Result& result, double time, const std::string& even
         states.contact_status.push_back(static_cast<Index>(status));
 }
 
-void Recorder::record_equilibrium(Result& result, double time, const Certificate& certificate) const
+void Recorder::record_equilibrium(Result& result, double time, const Certificate& certificate,
+                                  const Effort& effort) const
 {
     result.equilibria.time.push_back(time / unit::day);
-    result.equilibria.steps.push_back(certificate.steps);
+    result.equilibria.is_implicit.push_back(certificate.is_implicit ? 1 : 0);
+    result.equilibria.searches.push_back(effort.searches);
+    result.equilibria.steps.push_back(effort.steps);
+    result.equilibria.factorisations.push_back(effort.factorisations);
+    result.equilibria.solves.push_back(effort.solves);
     result.equilibria.out_of_balance_ratio.push_back(certificate.out_of_balance_ratio);
     result.equilibria.contact_force_change.push_back(certificate.contact_force_change);
     result.equilibria.work_of_loads.push_back(certificate.work_of_loads);

@@ -28,7 +28,8 @@ public:
 
     void record_state(Result& result, double time, const std::string& event, const Assembly& assembly) const;
 
-    void record_equilibrium(Result& result, double time, const Certificate& certificate) const;
+    void record_equilibrium(Result& result, double time, const Certificate& certificate,
+                            const Effort& effort) const;
 
     void record_trace(Result& result, double time, double solver_time, const Assembly& assembly) const;
 

@@ -95,9 +95,17 @@ struct EquivalentJoints {
     std::vector<double> cohesion;                          // [Pa]
     std::vector<double> friction_angle;                    // [rad]
     std::vector<double> tensile_strength;                  // [Pa]
-    // Kelvin element; a stiffness of 0 means that the joint does not creep.
+    // Kelvin units in series, [edge, unit], the unit running fastest; a stiffness of 0 is no unit.
     std::vector<double> normal_kelvin_stiffness, shear_kelvin_stiffness; // [Pa/m]
     std::vector<double> normal_kelvin_viscosity, shear_kelvin_viscosity; // [Pa s/m]
+    // Maxwell dashpot in series; 0 is none.
+    std::vector<double> normal_maxwell_viscosity, shear_maxwell_viscosity; // [Pa s/m]
+
+    // As many as the material with the longest chain has.
+    std::size_t kelvin_units() const
+    {
+        return normal_stiffness.empty() ? 0 : normal_kelvin_stiffness.size() / normal_stiffness.size();
+    }
 };
 
 } // namespace jointcreep

@@ -63,11 +63,15 @@ struct States {
 
 // How every equilibrium was reached, one row each.
 struct Equilibria {
-    std::vector<double> time;                 // since start [day]
-    std::vector<Index> steps;                 // of the solver
-    std::vector<double> out_of_balance_ratio; // [-]
+    std::vector<double> time;       // since start [day]
+    std::vector<Index> is_implicit; // 1 by factorisation, 0 by motion
+    // What it has cost, with what was found and rejected or sought in vain before it.
+    std::vector<Index> searches;               // for equilibrium, by either engine
+    std::vector<Index> steps;                  // of motion, and corrections of the implicit engine
+    std::vector<Index> factorisations, solves; // of the implicit engine; solves are back-substitutions
+    std::vector<double> out_of_balance_ratio;  // [-]
     std::vector<double>
-        contact_force_change; // over the last 100 steps, over the mean force on a gridpoint [-]
+        contact_force_change; // over the last 100 steps or by one more correction, over the mean force [-]
     // On the way there, in balance: work_of_loads = stored + dissipated (by contacts) + damped [J/m].
     std::vector<double> work_of_loads, stored_energy, dissipated_energy, damped_energy;
 };

@@ -24,16 +24,25 @@ struct RockStrength {
     double tensile_strength; // [Pa]
 };
 
-// Intact rock: elastic, plane strain. Its strength is that of the rock bridges.
+// One Kelvin unit of rock in shear, spring beside dashpot.
+struct ShearKelvin {
+    double modulus;   // [Pa]
+    double viscosity; // [Pa s]
+};
+
+// Intact rock: elastic, plane strain. Its strength is that of the rock bridges. It creeps in shear only: its
+// volume stays elastic.
 struct Rock {
     std::string name;
     double density;                       // [kg/m3]
     double youngs_modulus;                // [Pa]
     double poissons_ratio;                // [-]
     std::optional<RockStrength> strength; // needed where a joint set leaves rock bridges
+    std::optional<ShearKelvin> kelvin{};
+    std::optional<double> maxwell_viscosity{}; // of a dashpot in series, in shear [Pa s]
 };
 
-// One Kelvin element, spring beside dashpot, per direction.
+// One Kelvin unit, spring beside dashpot, per direction.
 struct Kelvin {
     double normal_stiffness; // [Pa/m]
     double normal_viscosity; // [Pa s/m]
@@ -41,15 +50,22 @@ struct Kelvin {
     double shear_viscosity;  // [Pa s/m]
 };
 
+// A dashpot in series, per direction: it creeps without end.
+struct Maxwell {
+    double normal_viscosity; // [Pa s/m]
+    double shear_viscosity;  // [Pa s/m]
+};
+
 // The open part of a joint.
 struct JointMaterial {
     std::string name;
-    double normal_stiffness;      // [Pa/m]
-    double shear_stiffness;       // [Pa/m]
-    double cohesion;              // [Pa]
-    double friction_angle;        // [rad]
-    double tensile_strength;      // [Pa]
-    std::optional<Kelvin> kelvin; // without it the joint does not creep
+    double normal_stiffness;          // [Pa/m]
+    double shear_stiffness;           // [Pa/m]
+    double cohesion;                  // [Pa]
+    double friction_angle;            // [rad]
+    double tensile_strength;          // [Pa]
+    std::vector<Kelvin> kelvin{};     // units in series with the springs; one and a Maxwell: Burgers
+    std::optional<Maxwell> maxwell{}; // without either the joint does not creep
 };
 
 // A probability law of one quantity. `mean` and `deviation` are those of the quantity itself, in SI units,
@@ -154,19 +170,27 @@ struct Gauge {
     Eigen::Vector2d at; // [m]
 };
 
-enum class CreepScheme { published };
+// What a creep step takes the force to be during the step (libs/creep/scheme.hpp).
+enum class CreepScheme { published, backward, linear_force, fitted };
 
 struct Creep {
-    double step = 0; // [s]
-    CreepScheme scheme = CreepScheme::published;
+    std::optional<double> step;      // fixed, between dates [s]; or else
+    std::optional<double> tolerance; // of the error of one step, by which its length is chosen [m]
+    // With a tolerance:
+    std::optional<double> first_step;    // the first one tried after every event [s]
+    std::optional<double> shortest_step; // [s]
+    std::optional<double> longest_step;  // [s]
+    CreepScheme scheme = CreepScheme::fitted;
     std::optional<double> stop_rate; // ends creep after the last stage once no point moves faster [m/s]
 };
 
 enum class Damping { adaptive, local, mass };
 enum class Masses { scaled, real };
+enum class Engine { automatic, explicit_engine, implicit_engine };
 
 // How equilibrium is found. Numerical, so it has defaults; they are declared with the keys.
 struct Equilibrium {
+    Engine engine = Engine::automatic;
     double tolerance = 0; // of the out-of-balance ratio [-]
     Masses masses = Masses::scaled;
     Damping damping = Damping::adaptive;

@@ -75,12 +75,7 @@ public:
         }
         for (double& m : mass_)
             m = m > 0 ? 1 / m : 0.0; // from here on inverse; gridpoints without any rock do not move
-        Vector2d low = assembly.position[0], high = low;
-        for (const Vector2d& p : assembly.position) {
-            low = low.cwiseMin(p);
-            high = high.cwiseMax(p);
-        }
-        too_far_ = (high - low).norm() / 10;
+        too_far_ = size_of(assembly) / 10;
         const std::size_t n_chunks = (assembly.position.size() + chunk - 1) / chunk;
         energy_.resize(n_chunks);
         quotient_.resize(n_chunks);
@@ -231,15 +226,11 @@ Certificate relax(Assembly& assembly, const Equilibrium& settings, const StepObs
     Certificate certificate;
     const std::vector<double> row_sums = stiffness_row_sums(assembly);
     const double stiffest = *std::max_element(row_sums.begin(), row_sums.end());
-    // Where rock is almost without stress, forces are rounding errors of stiffness times displacement; those
-    // are in balance, too. So the mean that the ratio is taken over does not count as less than they demand.
     double farthest = 0; // displacement on the way [m]
     const auto balance_now = [&] {
-        Balance balance = balance_of(assembly);
         for (const Vector2d& u : assembly.displacement)
             farthest = std::max(farthest, u.norm());
-        balance.mean = std::max(balance.mean, 1e-15 * stiffest * farthest / settings.tolerance);
-        return balance;
+        return balance_of(assembly, stiffest, farthest, settings.tolerance);
     };
     certificate.out_of_balance_ratio = balance_now().ratio();
     if (certificate.out_of_balance_ratio <= settings.tolerance)

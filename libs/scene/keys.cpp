@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 
 namespace jointcreep
@@ -104,6 +105,8 @@ std::string KeyInfo::wanted() const
         return "a polygon [[x, y], [x, y], [x, y], ...] of numbers" + in_range;
     if (kind == "polygons")
         return "a list of polygons [[[x, y], [x, y], [x, y], ...], ...] of numbers" + in_range;
+    if (kind == "Kelvin units")
+        return "one Kelvin unit or more, [{ normal_stiffness_MPa_per_m = 690, ... }, ...]";
     if (kind == "law")
         return "a law such as { law = \"constant\", mean_m = 2 }";
     return kind;
@@ -245,18 +248,18 @@ void check_keys(const TomlValue& value, const std::vector<const KeyInfo*>& known
 
 void check_present(const TomlValue& value, const std::vector<const KeyInfo*>& known, const Place& place)
 {
-    const KeyInfo* given = nullptr;
+    std::map<std::string, std::string> given; // one key of every group
     for (const KeyInfo* const key : known)
         if (key->need == Need::together && value.find(key->name))
-            given = key;
+            given[key->group] = key->name;
     for (const KeyInfo* const key : known) {
         if (value.find(key->name))
             continue;
         const auto missing = place.table + " has no " + key->name + ": wanted " + key->wanted();
         if (key->need == Need::required)
             place.refuse(value.line, missing);
-        if (key->need == Need::together && given)
-            place.refuse(value.line, missing + ", as it comes together with " + given->name);
+        if (key->need == Need::together && given.contains(key->group))
+            place.refuse(value.line, missing + ", as it comes together with " + given[key->group]);
     }
 }
 

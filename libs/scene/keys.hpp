@@ -55,17 +55,19 @@ std::string lower_bound(const Range& range);
 std::string upper_bound(const Range& range);
 std::string shown(const Range& range, const Unit& unit);
 
-enum class Need { required, optional, together }; // together: all such keys of one table, or none
+enum class Need { required, optional, together }; // together: all keys of one group of a table, or none
 
 // What is known of a key without knowing the record it fills.
 struct KeyInfo {
     std::string name;
-    std::string kind{}; // number, integer, text, date, point, polygon, polygons, law or the allowed words
+    std::string kind{}; // number, integer, text, date, point, polygon, polygons, law, Kelvin units or the
+                        // allowed words
     Unit unit{};
     std::optional<Range> range{};
     std::string doc{};
     Need need = Need::required;
     std::string otherwise{}; // the default as text
+    std::string group{};     // of keys that come together
 
     std::string wanted() const; // "a number in [0, 0.5)"
 };
@@ -115,9 +117,10 @@ struct Key {
         info.otherwise = std::move(otherwise);
         return std::move(*this);
     }
-    Key together() &&
+    Key together(std::string group) &&
     {
         info.need = Need::together;
+        info.group = std::move(group);
         return std::move(*this);
     }
     template <class Default>

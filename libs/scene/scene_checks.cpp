@@ -51,11 +51,13 @@ public:
         check_references();
         check_polygons();
         check_joints();
+        check_joint_materials();
         check_joint_sets();
         check_boundaries();
         check_times();
         check_places();
         check_numbers();
+        check_creep();
     }
 
 private:
@@ -180,6 +182,16 @@ private:
     }
 
     double tolerance() const { return same_place * polygon_size(scene_.outline); }
+
+    void check_joint_materials() const
+    {
+        for (std::size_t i = 0; i < scene_.joint_materials.size(); ++i) {
+            const Given given = in_list("joint_material", i);
+            if (given.find("kelvin_chain") && given.find("normal_kelvin_stiffness_MPa_per_m"))
+                given.refuse("kelvin_chain",
+                             "wanted either it, or the four keys of one Kelvin unit, not both");
+        }
+    }
 
     void check_joints() const
     {
@@ -333,6 +345,28 @@ private:
             equilibrium.refuse("mass_damping_per_s", "damping = \"mass\" needs it, and nothing else does");
         if (damping != Damping::local && equilibrium.find("local_damping"))
             equilibrium.refuse("local_damping", "only damping = \"local\" uses it");
+    }
+
+    void check_creep() const
+    {
+        if (!scene_.creep)
+            return;
+        const Creep& creep = *scene_.creep;
+        const Given given = once("creep");
+        if (creep.step && creep.tolerance)
+            given.refuse("tolerance_m", "wanted either it or step_days, not both");
+        if (!creep.step && !creep.tolerance)
+            given.refuse("step_days", "wanted it, or tolerance_m");
+        for (const char* key : {"first_step_days", "shortest_step_days", "longest_step_days"})
+            if (given.find(key) && !creep.tolerance)
+                given.refuse(key, "only tolerance_m uses it; with step_days all steps are that long");
+        const double shortest = creep.shortest_step.value_or(0);
+        if (creep.longest_step && *creep.longest_step < shortest)
+            given.refuse("longest_step_days", "wanted at least shortest_step_days");
+        if (creep.first_step && *creep.first_step < shortest)
+            given.refuse("first_step_days", "wanted at least shortest_step_days");
+        if (creep.first_step && creep.longest_step && *creep.first_step > *creep.longest_step)
+            given.refuse("first_step_days", "wanted at most longest_step_days");
     }
 };
 

@@ -142,7 +142,7 @@ std::string needed(const KeyInfo& key)
     if (key.need == Need::required)
         return "yes";
     if (key.need == Need::together)
-        return "all such or none";
+        return "all " + key.group + " keys or none";
     return key.otherwise.empty() ? "no" : "default " + key.otherwise;
 }
 

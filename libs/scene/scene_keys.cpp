@@ -21,13 +21,15 @@ constexpr Unit GPa{"GPa", unit::GPa};
 constexpr Unit MPa{"MPa", unit::MPa};
 constexpr Unit MPa_per_m{"MPa/m", unit::MPa / unit::m};
 constexpr Unit MPa_day_per_m{"MPa day/m", unit::MPa* unit::day / unit::m};
+constexpr Unit GPa_day{"GPa day", unit::GPa* unit::day};
 constexpr Unit mm_per_day{"mm/day", unit::mm / unit::day};
 
 // Upper bounds far above any rock: they catch slips of unit, and keep all products finite.
 constexpr Range strength = from(0).to(1e4);           // [MPa]
 constexpr Range friction = from(0).below(90);         // [deg]
 constexpr Range stiffness = above(0).to(1e9);         // [MPa/m]
-constexpr Range viscosity = above(0).to(1e12);        // [MPa day/m]
+constexpr Range viscosity = from(1e-9).to(1e12);      // [MPa day/m]
+constexpr Range rock_viscosity = from(1e-9).to(1e12); // [GPa day]
 constexpr Range length = above(0).to(farthest_metre); // [m]
 constexpr Range coordinate = within(farthest_metre);  // [m]
 constexpr Range stress = within(1e4);                 // [MPa]
@@ -65,20 +67,30 @@ Table<Rock> rock()
     return {
         {"rock", in_list, required,
          "Intact rock: elastic, plane strain. Its strength is that of the rock bridges, and is needed where "
-         "a joint set has a persistence below 1."},
+         "a joint set has a persistence below 1. With a Kelvin unit or a Maxwell dashpot it creeps, in shear "
+         "only: its volume stays elastic."},
         {text("name", &Rock::name, "Name, once among the rocks."),
          number("density_kg_per_m3", &Rock::density, kg_per_m3, above(0).to(3e4), "Density."),
          number("youngs_modulus_GPa", &Rock::youngs_modulus, GPa, above(0).to(1e4), "Young's modulus."),
          number("poissons_ratio", &Rock::poissons_ratio, none, from(0).below(0.5), "Poisson's ratio."),
          number<Rock>("cohesion_MPa", part<&Rock::strength, &RockStrength::cohesion>, MPa, strength,
                       "Cohesion.")
-             .together(),
+             .together("strength"),
          number<Rock>("friction_angle_deg", part<&Rock::strength, &RockStrength::friction_angle>, degrees,
                       friction, "Friction angle.")
-             .together(),
+             .together("strength"),
          number<Rock>("tensile_strength_MPa", part<&Rock::strength, &RockStrength::tensile_strength>, MPa,
                       strength, "Tensile strength, a positive number.")
-             .together()}};
+             .together("strength"),
+         number<Rock>("kelvin_shear_modulus_GPa", part<&Rock::kelvin, &ShearKelvin::modulus>, GPa,
+                      above(0).to(1e6), "Kelvin spring, in shear.")
+             .together("Kelvin"),
+         number<Rock>("kelvin_shear_viscosity_GPa_day", part<&Rock::kelvin, &ShearKelvin::viscosity>, GPa_day,
+                      rock_viscosity, "Kelvin dashpot, in shear.")
+             .together("Kelvin"),
+         number("maxwell_shear_viscosity_GPa_day", &Rock::maxwell_viscosity, GPa_day, rock_viscosity,
+                "Maxwell dashpot, in shear: it creeps without end.")
+             .optional()}};
 }
 
 Table<Region> region()
@@ -90,14 +102,54 @@ Table<Region> region()
          polygon("outline_m", &Region::outline, "Its outline; what reaches out of the section is cut off.")}};
 }
 
-Table<JointMaterial> joint_material()
+// A member of a material's first Kelvin unit; reading it makes the unit.
+template <auto Member>
+constexpr auto unit_part = [](JointMaterial& material) -> double& {
+    if (material.kelvin.empty())
+        material.kelvin.emplace_back();
+    return material.kelvin.front().*Member;
+};
+
+Table<Kelvin> kelvin_chain()
 {
-    constexpr auto kelvin = &JointMaterial::kelvin;
+    return {{"joint_material.kelvin_chain", inside, optional, "One Kelvin unit of a chain."},
+            {number("normal_stiffness_MPa_per_m", &Kelvin::normal_stiffness, MPa_per_m, stiffness,
+                    "Its spring, normal."),
+             number("normal_viscosity_MPa_day_per_m", &Kelvin::normal_viscosity, MPa_day_per_m, viscosity,
+                    "Its dashpot, normal."),
+             number("shear_stiffness_MPa_per_m", &Kelvin::shear_stiffness, MPa_per_m, stiffness,
+                    "Its spring, shear."),
+             number("shear_viscosity_MPa_day_per_m", &Kelvin::shear_viscosity, MPa_day_per_m, viscosity,
+                    "Its dashpot, shear.")}};
+}
+
+std::vector<Kelvin> read_kelvin_chain(const Table<Kelvin>& table, const KeyInfo& key, const TomlValue& value,
+                                      const Place& outer)
+{
+    constexpr std::size_t most_units = 20;
+    const auto* const list = std::get_if<TomlValue::List>(&value.content);
+    if (!list || list->empty() || list->size() > most_units)
+        outer.refuse(key, value, "at most " + std::to_string(most_units));
+    const Place place{outer.reading, table.info.shown()};
+    std::vector<Kelvin> units(list->size());
+    for (std::size_t i = 0; i < list->size(); ++i)
+        read_table(table, (*list)[i], place, units[i]);
+    return units;
+}
+
+Table<JointMaterial> joint_material(const Table<Kelvin>& chain)
+{
+    constexpr auto maxwell = &JointMaterial::maxwell;
+    const auto read_chain = [chain](const KeyInfo& key, const TomlValue& value, const Place& place) {
+        return read_kelvin_chain(chain, key, value, place);
+    };
     return {
         {"joint_material", in_list, optional,
-         "What joints are made of: springs of stress per displacement, Coulomb friction, and a Kelvin "
-         "element "
-         "(spring beside dashpot) in series. Without the Kelvin constants the joint does not creep."},
+         "What joints are made of: springs of stress per displacement, Coulomb friction, and in series what "
+         "creeps: Kelvin units (spring beside dashpot) and a Maxwell dashpot. One Kelvin unit has keys of "
+         "its "
+         "own; several are a kelvin_chain. A Kelvin unit and a Maxwell dashpot make a Burgers joint. Without "
+         "them the joint does not creep."},
         {text("name", &JointMaterial::name, "Name, once among the joint materials."),
          number("normal_stiffness_MPa_per_m", &JointMaterial::normal_stiffness, MPa_per_m, stiffness,
                 "Normal stiffness."),
@@ -107,19 +159,33 @@ Table<JointMaterial> joint_material()
          number("friction_angle_deg", &JointMaterial::friction_angle, degrees, friction, "Friction angle."),
          number("tensile_strength_MPa", &JointMaterial::tensile_strength, MPa, strength,
                 "Tensile strength, a positive number."),
-         number<JointMaterial>("normal_kelvin_stiffness_MPa_per_m", part<kelvin, &Kelvin::normal_stiffness>,
+         number<JointMaterial>("normal_kelvin_stiffness_MPa_per_m", unit_part<&Kelvin::normal_stiffness>,
                                MPa_per_m, stiffness, "Kelvin spring, normal.")
-             .together(),
-         number<JointMaterial>("normal_kelvin_viscosity_MPa_day_per_m",
-                               part<kelvin, &Kelvin::normal_viscosity>, MPa_day_per_m, viscosity,
-                               "Kelvin dashpot, normal.")
-             .together(),
-         number<JointMaterial>("shear_kelvin_stiffness_MPa_per_m", part<kelvin, &Kelvin::shear_stiffness>,
+             .together("Kelvin"),
+         number<JointMaterial>("normal_kelvin_viscosity_MPa_day_per_m", unit_part<&Kelvin::normal_viscosity>,
+                               MPa_day_per_m, viscosity, "Kelvin dashpot, normal.")
+             .together("Kelvin"),
+         number<JointMaterial>("shear_kelvin_stiffness_MPa_per_m", unit_part<&Kelvin::shear_stiffness>,
                                MPa_per_m, stiffness, "Kelvin spring, shear.")
-             .together(),
-         number<JointMaterial>("shear_kelvin_viscosity_MPa_day_per_m", part<kelvin, &Kelvin::shear_viscosity>,
+             .together("Kelvin"),
+         number<JointMaterial>("shear_kelvin_viscosity_MPa_day_per_m", unit_part<&Kelvin::shear_viscosity>,
                                MPa_day_per_m, viscosity, "Kelvin dashpot, shear.")
-             .together()}};
+             .together("Kelvin"),
+         key_of<JointMaterial>({"kelvin_chain",
+                                "Kelvin units",
+                                {},
+                                {},
+                                "Several Kelvin units in series, in place of the four keys of one."},
+                               &JointMaterial::kelvin, read_chain)
+             .optional(),
+         number<JointMaterial>("normal_maxwell_viscosity_MPa_day_per_m",
+                               part<maxwell, &Maxwell::normal_viscosity>, MPa_day_per_m, viscosity,
+                               "Maxwell dashpot, normal: it creeps without end.")
+             .together("Maxwell"),
+         number<JointMaterial>("shear_maxwell_viscosity_MPa_day_per_m",
+                               part<maxwell, &Maxwell::shear_viscosity>, MPa_day_per_m, viscosity,
+                               "Maxwell dashpot, shear.")
+             .together("Maxwell")}};
 }
 
 Table<SingleJoint> joint()
@@ -321,12 +387,34 @@ Table<Gauge> gauge()
 
 Table<Creep> creep()
 {
-    return {{"creep", once, optional, "Creep of the joints. Without this table nothing creeps."},
-            {number("step_days", &Creep::step, days, above(0).to(farthest_day), "Time step."),
-             choice("scheme", &Creep::scheme, {{"published", CreepScheme::published}}, "Time scheme."),
-             number("stop_rate_mm_per_day", &Creep::stop_rate, mm_per_day, above(0).to(1e6),
-                    "Ends creep after the last stage once no point moves faster.")
-                 .optional()}};
+    const Range step = above(0).to(farthest_day);
+    return {
+        {"creep", once, optional,
+         "Creep of joints and rock. Without this table nothing creeps. Either step_days or tolerance_m is "
+         "given."},
+        {choice("scheme", &Creep::scheme,
+                {{"published", CreepScheme::published},
+                 {"backward", CreepScheme::backward},
+                 {"linear force", CreepScheme::linear_force},
+                 {"fitted", CreepScheme::fitted}},
+                "Time scheme: what the force on a joint is taken to be during a step. Fitted is the most "
+                "accurate; the published one is stable only below a limit.")
+             .or_else(std::string("fitted")),
+         number("step_days", &Creep::step, days, step, "Time step.").optional(),
+         number("tolerance_m", &Creep::tolerance, metres, above(0).to(1),
+                "Error that a step may make, by estimate; the time steps are chosen by it.")
+             .optional(),
+         number("first_step_days", &Creep::first_step, days, step,
+                "First step tried after the start, stages and dates; with tolerance_m.")
+             .optional("by the fastest joint"),
+         number("shortest_step_days", &Creep::shortest_step, days, step,
+                "Steps are not made shorter than this for the tolerance; with tolerance_m.")
+             .optional(),
+         number("longest_step_days", &Creep::longest_step, days, step, "Longest step; with tolerance_m.")
+             .optional(),
+         number("stop_rate_mm_per_day", &Creep::stop_rate, mm_per_day, above(0).to(1e6),
+                "Ends creep after the last stage once no point moves faster.")
+             .optional()}};
 }
 
 Table<Scene> zones()
@@ -353,7 +441,14 @@ Table<Equilibrium> equilibrium()
     using E = Equilibrium;
     return {
         {"equilibrium", once, optional, "How equilibrium is found."},
-        {number("tolerance", &E::tolerance, none, from(1e-12).to(1e-2), "Of the out-of-balance ratio.")
+        {choice("engine", &E::engine,
+                {{"auto", Engine::automatic},
+                 {"explicit", Engine::explicit_engine},
+                 {"implicit", Engine::implicit_engine}},
+                "Marching in time, or solving for the state of rest at once; auto takes the implicit one "
+                "unless the masses are real, by which the scene asks for motion.")
+             .or_else(std::string("auto")),
+         number("tolerance", &E::tolerance, none, from(1e-12).to(1e-2), "Of the out-of-balance ratio.")
              .or_else(1e-6),
          choice("masses", &E::masses, {{"scaled", Masses::scaled}, {"real", Masses::real}},
                 "Nodal masses: scaled for a fast way to the same equilibrium, or the real ones.")
@@ -394,7 +489,8 @@ SceneTables all_tables()
     all.section = section();
     all.rock = rock();
     all.region = region();
-    all.joint_material = joint_material();
+    all.kelvin_chain = kelvin_chain();
+    all.joint_material = joint_material(all.kelvin_chain);
     all.joint = joint();
     all.trace_angle =
         angle_law("trace_angle", within(180), "Angle of a trace, counter-clockwise from the x axis.");

@@ -19,6 +19,7 @@ struct SceneTables {
     Table<Rock> rock;
     Table<Region> region;
     Table<JointMaterial> joint_material;
+    Table<Kelvin> kelvin_chain; // inside joint_material
     Table<SingleJoint> joint;
     Table<JointSet> joint_set;
     Table<Law> trace_angle, dip, dip_direction, spacing, length; // inside joint_set
@@ -38,8 +39,9 @@ struct SceneTables {
     template <class Visit>
     void each(Visit visit) const
     {
-        visit(top), visit(section), visit(rock), visit(region), visit(joint_material), visit(joint);
-        visit(joint_set), visit(trace_angle), visit(dip), visit(dip_direction), visit(spacing), visit(length);
+        visit(top), visit(section), visit(rock), visit(region), visit(joint_material);
+        visit(kelvin_chain), visit(joint), visit(joint_set), visit(trace_angle), visit(dip),
+            visit(dip_direction), visit(spacing), visit(length);
         visit(in_situ_stress), visit(boundary), visit(schedule), visit(stage), visit(point), visit(gauge);
         visit(creep), visit(zones), visit(cutting), visit(equilibrium), visit(random);
     }

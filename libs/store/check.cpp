@@ -23,7 +23,8 @@ Axis axis_of(const std::string& name)
     return {name, 0};
 }
 
-// Of an array with several dimensions only the product can be seen in memory; the others fix their sizes.
+// Of an array with several dimensions only the product can be seen in memory; the others fix their sizes, or
+// all but that of the last one.
 Fault size_fault(const Field& field, Dimensions& dimensions)
 {
     const std::size_t count = rows(field.values);
@@ -32,6 +33,12 @@ Fault size_fault(const Field& field, Dimensions& dimensions)
     std::size_t expected = 1;
     std::string shape;
     for (const std::string& name : field.dimensions) {
+        if (!dimensions.has(name)) {
+            if (count > 0 && (expected == 0 || count % expected != 0))
+                return field.path + " has " + std::to_string(count) + " rows; wanted a multiple of " +
+                       std::to_string(expected) + " (" + shape + ")";
+            return dimensions.fault(field, field.dimensions.size() - 1, count == 0 ? 0 : count / expected);
+        }
         expected *= dimensions.size(name);
         shape += (shape.empty() ? "" : " x ") + name;
     }

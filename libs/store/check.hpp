@@ -20,6 +20,7 @@ public:
     // Is `size` right for the field's axis?
     Fault fault(const Field& field, std::size_t axis, std::size_t size);
     std::size_t size(const std::string& dimension) const { return sizes_.at(dimension); }
+    bool has(const std::string& dimension) const { return sizes_.contains(dimension); }
 
 private:
     std::map<std::string, std::size_t> sizes_;

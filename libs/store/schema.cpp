@@ -223,13 +223,23 @@ std::vector<Field> fields_of(Equilibria& equilibria)
     // clang-format off
     return {
         {"/equilibria/time", &equilibria.time, {"equilibrium"}, "day", ascending(), "Time since the start."},
-        {"/equilibria/steps", &equilibria.steps, {"equilibrium"}, "1", at_least(0), "Steps of the solver."},
+        {"/equilibria/is_implicit", &equilibria.is_implicit, {"equilibrium"}, "1", between(0, 1),
+         "1 if the implicit engine found it, 0 if motion did."},
+        {"/equilibria/searches", &equilibria.searches, {"equilibrium"}, "1", at_least(1),
+         "Equilibria sought for this one: by either engine, and with creep steps that were too long."},
+        {"/equilibria/steps", &equilibria.steps, {"equilibrium"}, "1", at_least(0),
+         "Steps of motion, and corrections by the implicit engine, in all of these."},
+        {"/equilibria/factorisations", &equilibria.factorisations, {"equilibrium"}, "1", at_least(0),
+         "Factorisations of the stiffness in all of these."},
+        {"/equilibria/solves", &equilibria.solves, {"equilibrium"}, "1", at_least(0),
+         "Back-substitutions in all of these."},
         {"/equilibria/out_of_balance_ratio", &equilibria.out_of_balance_ratio, {"equilibrium"},
          "1", at_least(0),
          "Out-of-balance ratio at the end."},
         {"/equilibria/contact_force_change", &equilibria.contact_force_change, {"equilibrium"},
          "1", at_least(0),
-         "Change of contact forces over the last 100 steps, over the mean force on a gridpoint."},
+         "Largest change of a contact force over the last 100 steps, or by one more correction, over the mean force "
+         "on a gridpoint."},
         {"/equilibria/work_of_loads", &equilibria.work_of_loads, {"equilibrium"}, "J/m", any(),
          "Work of weight, held rock and tractions on the way; the sum of the next three."},
         {"/equilibria/stored_energy", &equilibria.stored_energy, {"equilibrium"}, "J/m", any(),
@@ -237,7 +247,7 @@ std::vector<Field> fields_of(Equilibria& equilibria)
         {"/equilibria/dissipated_energy", &equilibria.dissipated_energy, {"equilibrium"}, "J/m", any(),
          "Energy lost in contacts by slip and opening."},
         {"/equilibria/damped_energy", &equilibria.damped_energy, {"equilibrium"}, "J/m", any(),
-         "Energy taken by damping."},
+         "Energy taken by damping; by the implicit engine, what a sudden change of loads would set free."},
     };
     // clang-format on
 }
@@ -270,7 +280,7 @@ std::vector<Field> fields_of(Network& network)
 
 std::vector<Field> fields_of(EquivalentJoints& joints)
 {
-    const std::vector<std::string> edge = {"edge"};
+    const std::vector<std::string> edge = {"edge"}, units = {"edge", "kelvin_unit"};
     // clang-format off
     return {
         {"/equivalent/normal_stiffness", &joints.normal_stiffness, edge, "Pa/m", at_least(0),
@@ -282,14 +292,18 @@ std::vector<Field> fields_of(EquivalentJoints& joints)
          "Friction angle."},
         {"/equivalent/tensile_strength", &joints.tensile_strength, edge, "Pa", at_least(0),
          "Tensile strength."},
-        {"/equivalent/normal_kelvin_stiffness", &joints.normal_kelvin_stiffness, edge, "Pa/m", at_least(0),
-         "Normal stiffness of the Kelvin element; 0 if the joint does not creep."},
-        {"/equivalent/shear_kelvin_stiffness", &joints.shear_kelvin_stiffness, edge, "Pa/m", at_least(0),
-         "Shear stiffness of the Kelvin element; 0 if the joint does not creep."},
-        {"/equivalent/normal_kelvin_viscosity", &joints.normal_kelvin_viscosity, edge, "Pa s/m", at_least(0),
-         "Normal viscosity of the Kelvin element."},
-        {"/equivalent/shear_kelvin_viscosity", &joints.shear_kelvin_viscosity, edge, "Pa s/m", at_least(0),
-         "Shear viscosity of the Kelvin element."},
+        {"/equivalent/normal_kelvin_stiffness", &joints.normal_kelvin_stiffness, units, "Pa/m", at_least(0),
+         "Normal stiffness of the Kelvin unit; 0 if the joint has no such unit."},
+        {"/equivalent/shear_kelvin_stiffness", &joints.shear_kelvin_stiffness, units, "Pa/m", at_least(0),
+         "Shear stiffness of the Kelvin unit; 0 if the joint has no such unit."},
+        {"/equivalent/normal_kelvin_viscosity", &joints.normal_kelvin_viscosity, units, "Pa s/m", at_least(0),
+         "Normal viscosity of the Kelvin unit."},
+        {"/equivalent/shear_kelvin_viscosity", &joints.shear_kelvin_viscosity, units, "Pa s/m", at_least(0),
+         "Shear viscosity of the Kelvin unit."},
+        {"/equivalent/normal_maxwell_viscosity", &joints.normal_maxwell_viscosity, edge, "Pa s/m", at_least(0),
+         "Normal viscosity of the Maxwell dashpot; 0 if there is none."},
+        {"/equivalent/shear_maxwell_viscosity", &joints.shear_maxwell_viscosity, edge, "Pa s/m", at_least(0),
+         "Shear viscosity of the Maxwell dashpot; 0 if there is none."},
     };
     // clang-format on
 }
@@ -373,6 +387,7 @@ const std::vector<Described>& dimensions()
         {"trace", "a joint trace: an open piece of a joint"},
         {"vertex", "a point where edges meet"},
         {"edge", "a straight piece of the cut between blocks"},
+        {"kelvin_unit", "a Kelvin unit of a joint's chain, as many as the longest chain has"},
         {"block", "a face of the cut section"},
         {"ring", "a closed outline of a block, outer or hole"},
         {"corner", "a corner of a ring"},

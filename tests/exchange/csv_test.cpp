@@ -87,13 +87,15 @@ TEST(edges_csv, adds_the_equivalent_joints)
 {
     const EquivalentJoints equivalent = small_equivalent();
     const auto rows = rows_of(edges_csv(small_network(), &equivalent));
-    ASSERT_EQ(rows[0].size(), 20u);
+    ASSERT_EQ(rows[0].size(), 22u);
     EXPECT_EQ(rows[0][11], "normal_stiffness_Pa_per_m");
     EXPECT_EQ(number(rows[3][11]), 1e9 / 3);
     EXPECT_EQ(rows[0][14], "friction_angle_rad");
     EXPECT_EQ(number(rows[3][14]), 0.6);
     EXPECT_EQ(rows[0][19], "shear_kelvin_viscosity_Pa_s_per_m");
     EXPECT_EQ(number(rows[3][19]), 8e13);
+    EXPECT_EQ(rows[0][21], "shear_maxwell_viscosity_Pa_s_per_m");
+    EXPECT_EQ(number(rows[3][21]), 3e15);
     EXPECT_EQ(number(rows[2][11]), 0);
 }
 

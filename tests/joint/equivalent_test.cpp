@@ -28,7 +28,7 @@ struct Section {
                        {"upper", 2700, 30 * GPa, .2, RockStrength{4 * MPa, 40 * deg, 1 * MPa}}};
         scene.joint_materials = {
             {"smooth", 1e9, 2e8, 0, 20 * deg, 0, {}},
-            {"rough", 6.9e8, 2.8e8, .1 * MPa, 30 * deg, .05 * MPa, Kelvin{1e9, 2e15, 3e8, 4e15}}};
+            {"rough", 6.9e8, 2.8e8, .1 * MPa, 30 * deg, .05 * MPa, {Kelvin{1e9, 2e15, 3e8, 4e15}}}};
         scene.boundaries = {{{0, 0}, {1, 0}, false, false, "smooth"}, {{0, 0}, {0, 1}, true, false, ""}};
 
         // Not in the scene's order, which may not matter.

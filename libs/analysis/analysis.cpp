@@ -1,0 +1,318 @@
+#include "analysis/analysis.hpp"
+
+#include "mechanics/excavation.hpp"
+#include "model/error.hpp"
+#include "model/units.hpp"
+#include "relaxation/relax.hpp"
+#include "zoning/zone.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+
+namespace jointcreep
+{
+
+using mechanics::Vector2d;
+
+namespace
+{
+
+// A thread with fewer zones than this spends its time waiting for the others.
+constexpr int zones_per_thread = 2000;
+
+// How far the gridpoint that moved farthest has moved [m].
+double largest_move(const std::vector<Vector2d>& from, const std::vector<Vector2d>& to)
+{
+    double largest = 0;
+    for (std::size_t g = 0; g < from.size(); ++g)
+        largest = std::max(largest, (to[g] - from[g]).norm());
+    return largest;
+}
+
+// What an edge's joint is called: its set, or the material of the joint that a boundary rests on.
+std::string joint_name(const Scene& scene, const Network& network, Index edge)
+{
+    const Index joint = network.blocks.edge_joint[edge];
+    return joint < 0 ? scene.boundaries[network.blocks.edge_boundary[edge]].joint
+                     : network.names.joint_set[network.joints.set[joint]];
+}
+
+// Throws if steps of a fixed length would be more than anyone can want.
+void check_number_of_steps(double from, double to, const Creep& creep)
+{
+    constexpr double most = 1e6;
+    if (creep.step && (to - from) / *creep.step > most)
+        throw input_error("creep step of " + shown(*creep.step / unit::day) + " day: that makes " +
+                          shown(std::ceil((to - from) / *creep.step)) + " steps from day " +
+                          shown(from / unit::day) + " to day " + shown(to / unit::day) + "; wanted at most " +
+                          shown(most));
+}
+
+// The times when something other than creep happens: stages, corners of the loading, first readings, the end.
+std::set<double> dates_of(const Scene& scene, const mechanics::Loading& loading)
+{
+    std::set<double> dates{scene.end};
+    for (const double time : loading.corners())
+        if (time > 0 && time < scene.end)
+            dates.insert(time);
+    for (const Stage& stage : scene.stages)
+        dates.insert(stage.time);
+    for (const MeasuringPoint& point : scene.points)
+        if (point.first_reading > 0)
+            dates.insert(point.first_reading);
+    return dates;
+}
+
+// Motion, where that is what the scene or the user asks for; otherwise factorisation, and motion where it
+// fails.
+Engine engine_for(const Scene& scene, const Recording& recording)
+{
+    const bool is_about_motion = scene.equilibrium.masses == Masses::real || recording.trace_every > 0;
+    if (scene.equilibrium.engine == Engine::implicit_engine && recording.trace_every > 0)
+        throw input_error(
+            "--trace records motion, which the implicit engine has none of: leave it out, or --engine "
+            "implicit");
+    if (scene.equilibrium.engine == Engine::automatic && is_about_motion)
+        return Engine::explicit_engine;
+    return scene.equilibrium.engine;
+}
+
+// The published creep step is stable up to a limit that the joints set; beyond it its answer would be wrong.
+void check_creep_step(const Scene& scene, const Network& network, const EquivalentJoints& joints)
+{
+    if (!scene.creep || !scene.creep->step || scene.creep->scheme != CreepScheme::published)
+        return;
+    const creep::StepLimit limit = creep::longest_step(joints, scene.rocks);
+    if (*scene.creep->step < limit.step)
+        return;
+    throw input_error("creep step of " + shown(*scene.creep->step / unit::day) +
+                      " day: the published scheme is stable only below " + shown(limit.step / unit::day) +
+                      " day, the limit of " +
+                      (limit.rock >= 0 ? "rock \"" + scene.rocks[limit.rock].name
+                                       : "joint \"" + joint_name(scene, network, limit.edge)) +
+                      "\"");
+}
+
+} // namespace
+
+// 1. Divide the blocks into zones and load them with the in-situ stress.
+Analysis::Analysis(const Scene& scene, const Network& network, const EquivalentJoints& joints, int threads,
+                   const Recording& recording, const Observer& observe)
+    : scene_(scene), network_(network), recording_(recording), observe_(observe),
+      engine_(engine_for(scene, recording)), result_{.mesh = zoning::zone(scene, network.blocks),
+                                                     .history = {},
+                                                     .states = {},
+                                                     .equilibria = {},
+                                                     .trace = {}},
+      rock_(mechanics::assemble(scene, network, joints, result_.mesh)), loading_(scene, result_.mesh),
+      recorder_(scene, network.blocks, result_.mesh)
+{
+    check_creep_step(scene, network, joints);
+    rock_.threads =
+        std::min(threads, 1 + static_cast<int>(result_.mesh.zone_gridpoint.size()) / zones_per_thread);
+    loading_.apply(rock_, 0);
+    settle_in_situ();
+    if (scene.creep) {
+        creep_.emplace(scene, network, joints, result_.mesh, rock_);
+        if (creep_->anything_creeps()) {
+            const double longest = scene.creep->scheme == CreepScheme::published
+                                       ? creep::longest_step(joints, scene.rocks).step
+                                       : std::numeric_limits<double>::infinity();
+            step_.emplace(*scene.creep, creep_->fastest_rate(), longest);
+            if (scene.creep->scheme == CreepScheme::linear_force ||
+                scene.creep->scheme == CreepScheme::fitted)
+                closing_.emplace(step_->closing_tolerance()); // the others are of first order anyway
+        }
+    }
+}
+
+void Analysis::run()
+{
+    // After this nothing happens but creep.
+    const std::set<double> corners = loading_.corners();
+    const double last_event = std::max(scene_.stages.empty() ? 0.0 : scene_.stages.back().time,
+                                       corners.empty() ? 0.0 : *corners.rbegin());
+    for (const double date : dates_of(scene_, loading_)) {
+        if (end_of_creep_)
+            break;
+        creep_until(date, now_ >= last_event);
+        for (std::size_t s = 0; s < scene_.stages.size(); ++s)
+            if (scene_.stages[s].time == date)
+                excavate(scene_.stages[s], static_cast<Index>(s));
+        recorder_.start_readings(result_, now_);
+    }
+    for (const MeasuringPoint& point : scene_.points)
+        if (point.first_reading > now_) // creep has ended before: nothing moves until then
+            recorder_.start_readings(result_, point.first_reading);
+}
+
+// 2. The in-situ equilibrium. Everything is counted from here.
+void Analysis::settle_in_situ()
+{
+    observe_(0, "in-situ equilibrium");
+    equilibrate();
+    const mechanics::Contacts& contacts = rock_.contacts;
+    for (std::size_t c = 0; c < contacts.status.size(); ++c)
+        if (contacts.status[c] != ContactStatus::stuck)
+            ++beyond_strength_[joint_name(scene_, network_, result_.mesh.contact_edge[c])];
+    start_from_here(rock_);
+    loading_.apply(rock_, 0);
+    take_down_equilibrium();
+    take_down("", true);
+}
+
+// 3. Creep, and what the loading does meanwhile, up to a date. It may stop where the scene's stop rate is
+// reached.
+void Analysis::creep_until(double date, bool may_stop)
+{
+    const bool is_loaded = loading_.changes(now_, date);
+    const double longest = is_loaded ? (date - now_) / scene_.equilibrium.unloading_increments : date - now_;
+    if (is_loaded)
+        start_afresh();
+    if (creeps())
+        check_number_of_steps(now_, date, *scene_.creep);
+    const auto next = [&] {
+        const double remaining = date - now_;
+        const double step = creeps() ? step_->next(remaining, longest) : std::min(remaining, longest);
+        return step < (1 - 1e-12) * remaining ? now_ + step : date;
+    };
+    while (now_ < date && !end_of_creep_) {
+        observe_(now_ / scene_.end, "day " + std::to_string(std::lround(now_ / unit::day)));
+        const double target = next();
+        while (now_ < target && !end_of_creep_) {
+            const double from = now_;
+            const std::vector<Vector2d> before = rock_.displacement;
+            if (!step_to(target, is_loaded))
+                break;
+            if (may_stop && creeps() && scene_.creep->stop_rate &&
+                largest_move(before, rock_.displacement) < *scene_.creep->stop_rate * (now_ - from))
+                end_of_creep_ = now_;
+            const bool is_due = recording_.state_every > 0 && creeps() &&
+                                ++creep_steps_ % recording_.state_every == 0 && now_ < date;
+            take_down("", is_due);
+        }
+    }
+    recorder_.record_state(result_, now_, "", rock_);
+}
+
+// One step of creep and loading, to the target or to where an open contact closes before. False if its error
+// is too large: then nothing has happened but that the next step will be shorter.
+bool Analysis::step_to(double target, bool is_loaded)
+{
+    if (!creeps() && !is_loaded) {
+        now_ = target;
+        return true;
+    }
+    const mechanics::State start = state_of(rock_);
+    const std::optional<creep::Creep> creep_at_start = creep_;
+    if (closing_)
+        closing_->start(rock_);
+    double end = target;
+    for (;;) {
+        if (creeps())
+            creep_->begin(end - now_, rock_);
+        loading_.apply(rock_, end);
+        std::vector<Vector2d> guess = last_move_; // creep slows down
+        for (Vector2d& move : guess)
+            move *= 0.9 * (end - now_) / last_step_;
+        equilibrate(guess);
+        const double longest = closing_ ? closing_->longest_step(rock_, end - now_) : end - now_;
+        if (longest >= end - now_ || longest < 1e-9 * (target - now_))
+            break;
+        go_back(rock_, start);
+        end = now_ + longest;
+    }
+    if (creeps() && !step_->stands(end - now_, creep_->end(rock_))) {
+        go_back(rock_, start);
+        creep_ = creep_at_start;
+        loading_.apply(rock_, now_);
+        return false;
+    }
+    if (closing_)
+        closing_->finish(rock_, end - now_);
+    last_step_ = end - now_;
+    last_move_ = rock_.displacement;
+    for (std::size_t g = 0; g < last_move_.size(); ++g)
+        last_move_[g] -= start.displacement[g];
+    now_ = end;
+    take_down_equilibrium();
+    if (end < target) // a contact has closed
+        step_->start_afresh();
+    return true;
+}
+
+// 4. Take away what a stage removes; unload what is left.
+void Analysis::excavate(const Stage& stage, Index number)
+{
+    observe_(now_ / scene_.end, stage.name);
+    const auto released = mechanics::excavate(rock_, network_.blocks, result_.mesh, loading_, number);
+    const std::vector<Vector2d> load = rock_.load;
+    const int n = scene_.equilibrium.unloading_increments;
+    for (int i = 1; i <= n; ++i) {
+        const double held = 1 - static_cast<double>(i) / n;
+        for (std::size_t g = 0; g < load.size(); ++g)
+            rock_.load[g] = load[g] + held * released[g];
+        equilibrate();
+        take_down_equilibrium();
+    }
+    start_afresh();
+    take_down(stage.name, true);
+}
+
+// After a jump of loads: what was learnt from the steps before no longer holds.
+void Analysis::start_afresh()
+{
+    last_move_.clear();
+    if (step_)
+        step_->start_afresh();
+    if (closing_)
+        closing_->start_afresh();
+}
+
+// Equilibrium by the engine chosen; by motion where factorisation finds none nearby.
+void Analysis::equilibrate(const std::vector<Vector2d>& guess)
+{
+    ++effort_.searches;
+    if (engine_ != Engine::explicit_engine) {
+        const auto found = implicit_.equilibrate(rock_, scene_.equilibrium, guess);
+        effort_.factorisations += implicit_.factorisations();
+        effort_.solves += implicit_.solves();
+        effort_.steps += implicit_.corrections();
+        if (found) {
+            certificate_ = *found;
+            return;
+        }
+        if (engine_ == Engine::implicit_engine)
+            throw equilibrium_error("no equilibrium nearby on day " + shown(now_ / unit::day) + ": " +
+                                    implicit_.reason() + " (--engine auto would go on by motion)");
+        ++given_up_[implicit_.reason()];
+        ++effort_.searches;
+    }
+    double last = 0;
+    const auto observe = [&](double time) {
+        last = time;
+        if (recording_.trace_every > 0 && ++solver_steps_ % recording_.trace_every == 0)
+            recorder_.record_trace(result_, now_, solver_time_ + time, rock_);
+    };
+    certificate_ = relaxation::relax(rock_, scene_.equilibrium,
+                                     recording_.trace_every > 0 ? observe : relaxation::StepObserver{});
+    effort_.steps += certificate_.steps;
+    solver_time_ += last;
+}
+
+void Analysis::take_down_equilibrium()
+{
+    recorder_.record_equilibrium(result_, now_, certificate_, effort_);
+    effort_ = {};
+}
+
+void Analysis::take_down(const std::string& event, bool with_state)
+{
+    recorder_.record_history(result_, now_, event, rock_);
+    if (with_state)
+        recorder_.record_state(result_, now_, event, rock_);
+}
+
+} // namespace jointcreep

@@ -1,0 +1,84 @@
+// A section on its way through excavation and creep: the method, from the in-situ state to the scene's end.
+
+#pragma once
+
+#include "creep/closing.hpp"
+#include "creep/creep.hpp"
+#include "creep/step_length.hpp"
+#include "implicit/equilibrium.hpp"
+#include "mechanics/assembly.hpp"
+#include "mechanics/loading.hpp"
+#include "mechanics/recorder.hpp"
+
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+
+namespace jointcreep
+{
+
+// What the result file is to hold besides histories and the states at dates; 0 is never.
+struct Recording {
+    std::uint64_t state_every = 0; // creep steps
+    std::uint64_t trace_every = 0; // solver steps
+};
+
+// Told how far an analysis is, from 0 to 1, and what is being done.
+using Observer = std::function<void(double fraction, const std::string& what)>;
+
+// A section on its way through excavation and creep.
+class Analysis
+{
+public:
+    Analysis(const Scene& scene, const Network& network, const EquivalentJoints& joints, int threads,
+             const Recording& recording, const Observer& observe);
+
+    // From the in-situ state to the scene's end, by the steps numbered below.
+    void run();
+
+    const Result& result() const { return result_; }
+    const mechanics::Assembly& rock() const { return rock_; }
+    Engine engine() const { return engine_; }
+    bool creeps() const { return step_.has_value(); }
+    std::optional<double> end_of_creep() const { return end_of_creep_; } // where the stop rate ended it [s]
+    const std::map<std::string, Index>& beyond_strength() const { return beyond_strength_; }
+    const std::map<std::string, Index>& given_up() const { return given_up_; }
+
+private:
+    void settle_in_situ();
+    void creep_until(double date, bool may_stop);
+    bool step_to(double target, bool is_loaded);
+    void excavate(const Stage& stage, Index number);
+    void equilibrate(const std::vector<mechanics::Vector2d>& guess = {});
+    void take_down_equilibrium();
+    void take_down(const std::string& event, bool with_state);
+    void start_afresh();
+
+    const Scene& scene_;
+    const Network& network_;
+    const Recording& recording_;
+    Observer observe_;
+    Engine engine_;
+    Result result_;
+    mechanics::Assembly rock_;
+    mechanics::Loading loading_;
+    mechanics::Recorder recorder_;
+    implicit::Engine implicit_;
+    std::optional<creep::Creep> creep_;
+    std::optional<creep::StepLength> step_;
+    std::optional<creep::Closing> closing_;
+
+    double now_ = 0;         // since start [s]
+    double solver_time_ = 0; // of motion, over all equilibria [s]
+    std::uint64_t solver_steps_ = 0, creep_steps_ = 0;
+    mechanics::Certificate certificate_;           // of the last equilibrium
+    mechanics::Effort effort_;                     // since the last one that was taken down
+    std::vector<mechanics::Vector2d> last_move_;   // in the last creep step [m]; none after a jump
+    double last_step_ = 0;                         // [s]
+    std::optional<double> end_of_creep_;           // [s]
+    std::map<std::string, Index> beyond_strength_; // contacts by joint: what the in-situ stress breaks
+    std::map<std::string, Index> given_up_;        // equilibria by the implicit engine's reason
+};
+
+} // namespace jointcreep

@@ -1,0 +1,65 @@
+#include "creep/closing.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace jointcreep::creep
+{
+
+namespace
+{
+
+// How far a contact is open beyond where it touches; below 0: how much it is closed, springs and all [m].
+double opening_of(const mechanics::Contacts& contacts, std::size_t c)
+{
+    return contacts.initial_traction[c].x() / contacts.law[c].k_n + contacts.jump[c].x() -
+           contacts.offset[c].x();
+}
+
+} // namespace
+
+void Closing::start(const mechanics::Assembly& assembly)
+{
+    const mechanics::Contacts& contacts = assembly.contacts;
+    const std::size_t n = contacts.status.size();
+    cuts_ = 0;
+    was_open_.resize(n);
+    opening_.resize(n);
+    shear_.resize(n);
+    for (std::size_t c = 0; c < n; ++c) {
+        was_open_[c] = contacts.status[c] == ContactStatus::open ? 1 : 0;
+        opening_[c] = opening_of(contacts, c);
+        shear_[c] = contacts.jump[c].y();
+    }
+}
+
+double Closing::longest_step(const mechanics::Assembly& assembly, double duration)
+{
+    const mechanics::Contacts& contacts = assembly.contacts;
+    double longest = duration;
+    for (std::size_t c = 0; c < was_open_.size(); ++c) {
+        if (!was_open_[c] || contacts.status[c] == ContactStatus::open ||
+            contacts.status[c] == ContactStatus::removed || opening_[c] <= 0)
+            continue;
+        // Straight on from the start it would touch at this share of the step; later than in truth, since
+        // once it touches it closes more slowly.
+        const double share = opening_[c] / (opening_[c] - std::min(opening_of(contacts, c), 0.0));
+        if (share * std::abs(contacts.jump[c].y() - shear_[c]) <= tolerance_)
+            continue;
+        const bool knows_rate = cuts_ == 0 && !rate_.empty() && rate_[c] < 0;
+        const double touches = knows_rate ? opening_[c] / -rate_[c] : share * duration / 2;
+        longest = std::min({longest, touches, share * duration});
+    }
+    cuts_ += longest < duration ? 1 : 0;
+    return longest;
+}
+
+void Closing::finish(const mechanics::Assembly& assembly, double duration)
+{
+    rate_.assign(was_open_.size(), 0);
+    for (std::size_t c = 0; c < was_open_.size(); ++c)
+        if (was_open_[c] && assembly.contacts.status[c] == ContactStatus::open)
+            rate_[c] = (opening_of(assembly.contacts, c) - opening_[c]) / duration;
+}
+
+} // namespace jointcreep::creep

@@ -1,0 +1,41 @@
+// Open contacts that close during a creep step.
+//
+// Once closed they hold shear, counted from where they touched. A step that runs past that moment counts it
+// from its own start, which makes an error of first order in the step. So the step is cut short there.
+
+#pragma once
+
+#include "mechanics/assembly.hpp"
+
+namespace jointcreep::creep
+{
+
+class Closing
+{
+public:
+    // `tolerance` is how far a contact may shear on unnoticed, in a step in which it closes, before it
+    // touches [m].
+    explicit Closing(double tolerance) : tolerance_(tolerance) {}
+
+    // Before a step, with the assembly's own stiffnesses.
+    void start(const mechanics::Assembly& assembly);
+
+    // After the equilibrium of a step of `duration` [s], with the stiffnesses it was found with: how long the
+    // step may last [s], `duration` itself if no contact closes in it that matters.
+    double longest_step(const mechanics::Assembly& assembly, double duration);
+
+    // The step stands.
+    void finish(const mechanics::Assembly& assembly, double duration);
+
+    // Forgets how fast contacts were closing: after a jump of loads.
+    void start_afresh() { rate_.clear(); }
+
+private:
+    double tolerance_;
+    int cuts_ = 0; // of this step
+    std::vector<char> was_open_;
+    std::vector<double> opening_, shear_; // at the step's start [m]
+    std::vector<double> rate_;            // of opening in the last step [m/s]
+};
+
+} // namespace jointcreep::creep

@@ -1,0 +1,257 @@
+#include "creep/creep.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+namespace jointcreep::creep
+{
+
+namespace
+{
+
+Chain chain_of(const EquivalentJoints& joints, std::size_t edge, int direction)
+{
+    const bool normal = direction == 0;
+    const auto& stiffness = normal ? joints.normal_kelvin_stiffness : joints.shear_kelvin_stiffness;
+    const auto& viscosity = normal ? joints.normal_kelvin_viscosity : joints.shear_kelvin_viscosity;
+    Chain chain{normal ? joints.normal_stiffness[edge] : joints.shear_stiffness[edge], {}};
+    const std::size_t units = joints.kelvin_units();
+    for (std::size_t unit = edge * units; unit < (edge + 1) * units; ++unit)
+        if (stiffness[unit] > 0)
+            chain.units.push_back({stiffness[unit], viscosity[unit]});
+    const double maxwell =
+        normal ? joints.normal_maxwell_viscosity[edge] : joints.shear_maxwell_viscosity[edge];
+    if (maxwell > 0)
+        chain.units.push_back({0, maxwell});
+    return chain;
+}
+
+// Deviatoric stress is 2 G times the strain that has not crept.
+Chain chain_of(const Rock& rock)
+{
+    Chain chain{rock.youngs_modulus / (1 + rock.poissons_ratio), {}};
+    if (rock.kelvin)
+        chain.units.push_back({2 * rock.kelvin->modulus, 2 * rock.kelvin->viscosity});
+    if (rock.maxwell_viscosity)
+        chain.units.push_back({0, 2 * *rock.maxwell_viscosity});
+    return chain;
+}
+
+// A smooth joint bears nothing that could creep.
+bool creeps(const Chain& chain)
+{
+    return chain.spring > 0 && !chain.units.empty();
+}
+
+// The magnitude of a deviatoric tensor {xx, yy, xy}, its zz being -(xx + yy).
+double magnitude(const Eigen::Vector3d& t)
+{
+    const double zz = t[0] + t[1];
+    return std::sqrt(t[0] * t[0] + t[1] * t[1] + zz * zz + 2 * t[2] * t[2]);
+}
+
+} // namespace
+
+Creep::Creep(const Scene& scene, const Network& network, const EquivalentJoints& joints, const Mesh& mesh,
+             const mechanics::Assembly& assembly)
+{
+    if (!scene.creep)
+        return;
+    scheme_ = scene.creep->scheme;
+    std::map<Index, std::array<Index, 2>> of_edge; // chains
+    std::size_t units = 0;
+    for (std::size_t c = 0; c < mesh.contact_edge.size(); ++c) {
+        const auto [found, is_new] = of_edge.try_emplace(mesh.contact_edge[c]);
+        for (int i = 0; i < 2; ++i) {
+            if (is_new)
+                found->second[i] = number_of(chain_of(joints, mesh.contact_edge[c], i));
+            const Index chain = found->second[i];
+            if (chain < 0)
+                continue;
+            springs_.push_back({static_cast<Index>(c), i, chain, units, assembly.contacts.traction[c][i]});
+            units += chains_[chain].units.size();
+        }
+    }
+    crept_.assign(units, 0.0);
+
+    std::vector<Index> of_rock;
+    for (const Rock& rock : scene.rocks)
+        of_rock.push_back(number_of(chain_of(rock)));
+    units = 0;
+    for (std::size_t z = 0; z < mesh.zone_block.size(); ++z) {
+        const Index chain = of_rock[network.blocks.block_rock[mesh.zone_block[z]]];
+        if (chain < 0)
+            continue;
+        const Vector3d& c = assembly.zones.stiffness[z];
+        const double bulk_modulus = (c[0] + 2 * c[1]) / 3;
+        shears_.push_back(
+            {static_cast<Index>(z), chain, units, bulk_modulus, assembly.zones.initial_stress[z]});
+        units += chains_[chain].units.size();
+    }
+    crept_strain_.assign(units, Vector3d::Zero());
+}
+
+Index Creep::number_of(const Chain& chain)
+{
+    if (!creeps(chain))
+        return -1;
+    const auto found = std::find(chains_.begin(), chains_.end(), chain);
+    const auto number = static_cast<Index>(found - chains_.begin());
+    if (found == chains_.end())
+        chains_.push_back(chain);
+    return number;
+}
+
+double Creep::fastest_rate() const
+{
+    double fastest = 0;
+    for (const Chain& chain : chains_)
+        fastest = std::max(fastest, relaxation_rate(chain));
+    return fastest;
+}
+
+// The deviatoric part of what the stress has changed by. Plane strain leaves the stress across the section to
+// be found: with t the volume strain, sxx + syy = 2 (B + G / 3) t - 2 G (offset_xx + offset_yy).
+Eigen::Vector3d Creep::deviatoric(const Shear& shear, double shear_modulus, const Vector3d& offset,
+                                  const Vector3d& stress) const
+{
+    const Vector3d change = stress - shear.reference;
+    const double volume_strain = (change[0] + change[1] + 2 * shear_modulus * (offset[0] + offset[1])) /
+                                 (2 * (shear.bulk_modulus + shear_modulus / 3));
+    const double mean = shear.bulk_modulus * volume_strain;
+    return {change[0] - mean, change[1] - mean, change[2]};
+}
+
+void Creep::set(mechanics::Assembly& assembly, const Spring& spring, double stiffness, double offset)
+{
+    joint::Coulomb& law = assembly.contacts.law[spring.contact];
+    (spring.direction == 0 ? law.k_n : law.k_s) = stiffness;
+    assembly.contacts.offset[spring.contact][spring.direction] = offset;
+}
+
+void Creep::set(mechanics::Assembly& assembly, const Shear& shear, double shear_modulus,
+                const Vector3d& offset)
+{
+    const double bulk = shear.bulk_modulus;
+    assembly.zones.stiffness[shear.zone] = {bulk + shear_modulus * 4 / 3, bulk - shear_modulus * 2 / 3,
+                                            shear_modulus};
+    assembly.zones.initial_stress[shear.zone] = shear.reference - 2 * shear_modulus * offset;
+}
+
+double Creep::crept(const Spring& spring) const
+{
+    double sum = 0;
+    for (std::size_t u = 0; u < chains_[spring.chain].units.size(); ++u)
+        sum += crept_[spring.first_unit + u];
+    return sum;
+}
+
+Eigen::Vector3d Creep::crept(const Shear& shear) const
+{
+    Vector3d sum(0, 0, 0);
+    for (std::size_t u = 0; u < chains_[shear.chain].units.size(); ++u)
+        sum += crept_strain_[shear.first_unit + u];
+    return sum;
+}
+
+void Creep::begin(double duration, mechanics::Assembly& assembly)
+{
+    steps_.clear();
+    for (const Chain& chain : chains_)
+        steps_.push_back(step_of(chain, scheme_, duration));
+
+    const mechanics::Contacts& contacts = assembly.contacts;
+    for (Spring& spring : springs_) {
+        if (contacts.status[spring.contact] == ContactStatus::removed)
+            continue;
+        if (!is_under_way_)
+            spring.before = contacts.traction[spring.contact][spring.direction] - spring.reference;
+        const Step& step = steps_[spring.chain];
+        // Where a contact is open in situ its spring would bear `initial`, not the reference, 0.
+        const double initial = contacts.initial_traction[spring.contact][spring.direction];
+        spring.offset = step.compliance * (initial - spring.reference);
+        for (std::size_t u = 0; u < step.units.size(); ++u)
+            spring.offset +=
+                step.units[u].decay * crept_[spring.first_unit + u] + step.units[u].first * spring.before;
+        set(assembly, spring, step.acting_stiffness, spring.offset);
+    }
+
+    for (Shear& shear : shears_) {
+        if (!assembly.zones.is_present[shear.zone])
+            continue;
+        if (!is_under_way_)
+            shear.before = deviatoric(shear, chains_[shear.chain].spring / 2, crept(shear),
+                                      assembly.zones.stress[shear.zone]);
+        const Step& step = steps_[shear.chain];
+        shear.offset.setZero();
+        for (std::size_t u = 0; u < step.units.size(); ++u)
+            shear.offset += step.units[u].decay * crept_strain_[shear.first_unit + u] +
+                            step.units[u].first * shear.before;
+        set(assembly, shear, step.acting_stiffness / 2, shear.offset);
+    }
+    is_under_way_ = true;
+}
+
+double Creep::end(mechanics::Assembly& assembly)
+{
+    double error = 0;
+    const mechanics::Contacts& contacts = assembly.contacts;
+    for (const Spring& spring : springs_) {
+        if (contacts.status[spring.contact] == ContactStatus::removed)
+            continue;
+        const Step& step = steps_[spring.chain];
+        const double after = contacts.traction[spring.contact][spring.direction] - spring.reference;
+        for (std::size_t u = 0; u < step.units.size(); ++u) {
+            double& displacement = crept_[spring.first_unit + u];
+            displacement = step.units[u].decay * displacement + step.units[u].first * spring.before +
+                           step.units[u].last * after;
+        }
+        error = std::max(error, step.doubt * std::abs(after - spring.before));
+    }
+    for (const Shear& shear : shears_) {
+        if (!assembly.zones.is_present[shear.zone])
+            continue;
+        const Step& step = steps_[shear.chain];
+        const Vector3d after =
+            deviatoric(shear, step.acting_stiffness / 2, shear.offset, assembly.zones.stress[shear.zone]);
+        for (std::size_t u = 0; u < step.units.size(); ++u) {
+            Vector3d& strain = crept_strain_[shear.first_unit + u];
+            strain = step.units[u].decay * strain + step.units[u].first * shear.before +
+                     step.units[u].last * after;
+        }
+        const double size = std::sqrt(2 * assembly.zones.area[shear.zone]);
+        error = std::max(error, step.doubt * magnitude(after - shear.before) * size);
+    }
+    cancel(assembly);
+    return error;
+}
+
+void Creep::cancel(mechanics::Assembly& assembly)
+{
+    for (const Spring& spring : springs_)
+        set(assembly, spring, chains_[spring.chain].spring, crept(spring));
+    for (const Shear& shear : shears_)
+        set(assembly, shear, chains_[shear.chain].spring / 2, crept(shear));
+    is_under_way_ = false;
+}
+
+StepLimit longest_step(const EquivalentJoints& joints, const std::vector<Rock>& rocks)
+{
+    StepLimit limit{std::numeric_limits<double>::infinity()};
+    const auto consider = [&limit](const Chain& chain, Index edge, Index rock) {
+        if (!creeps(chain) || is_stable(chain, limit.step))
+            return;
+        if (const double step = longest_stable_step(chain); step < limit.step)
+            limit = {step, edge, rock};
+    };
+    for (std::size_t e = 0; e < joints.normal_stiffness.size(); ++e)
+        for (const int direction : {0, 1})
+            consider(chain_of(joints, e, direction), static_cast<Index>(e), -1);
+    for (std::size_t r = 0; r < rocks.size(); ++r)
+        consider(chain_of(rocks[r]), -1, static_cast<Index>(r));
+    return limit;
+}
+
+} // namespace jointcreep::creep

@@ -1,0 +1,66 @@
+// One creep step of a spring in series with Kelvin units, by any of the schemes.
+//
+// Under the force F (a traction, or a stress) a unit's displacement d (or strain) follows
+//     d' = (F - E d) / eta,     lam = E / eta;     without a spring, E = 0, it is a Maxwell dashpot.
+// During a step of length dT the force is taken to go from F_0 at its start to F_1 at its end as
+//     F(t) = F_0 + (F_1 - F_0) phi(t / dT),
+//     published      phi = 0                      first order, stable below longest_stable_step only
+//     backward       phi = 1                      first order
+//     linear force   phi = s                      second order; rings where creep is soft beside the spring
+//     fitted         phi = (1 - exp(-rho dT s)) / (1 - exp(-rho dT))      second order, does not ring
+// so that
+//     d_1 = a d_0 + c_0 F_0 + c_1 F_1 .
+// rho is the rate at which the force on the spring between fixed walls falls at first. With one unit it
+// falls so for good, and the fitted scheme is exact there, as every scheme is where the force is constant.
+
+#pragma once
+
+#include "model/scene.hpp"
+
+#include <vector>
+
+namespace jointcreep::creep
+{
+
+// In joints stiffnesses are in Pa/m and viscosities in Pa s/m; in rock Pa and Pa s.
+struct Unit {
+    double stiffness; // E; 0 for a Maxwell dashpot
+    double viscosity; // eta
+
+    bool operator==(const Unit&) const = default;
+};
+
+struct Chain {
+    double spring; // K, above 0
+    std::vector<Unit> units;
+
+    bool operator==(const Chain&) const = default;
+};
+
+// The weights of a step.
+struct Step {
+    struct Weights {
+        double decay;       // a [-]
+        double first, last; // c_0, c_1 [m/Pa]
+    };
+    std::vector<Weights> units;
+    double compliance;       // sum of all c_1 [m/Pa]
+    double acting_stiffness; // 1 / (1 / K + compliance): that of the chain during the step [Pa/m]
+    double
+        doubt; // what the compliance differs by from that of linear force, or with linear force from fitted
+};
+
+Step step_of(const Chain& chain, CreepScheme scheme, double duration);
+
+// rho [1/s].
+double relaxation_rate(const Chain& chain);
+
+// Up to which the published scheme is stable [s]; infinite if it always is. Where chains make up a system
+// with any elastic surroundings, F = F_0 - S d, 0 <= S <= K, it is stable if this holds for each:
+//     K sum of tanh(lam dT / 2) / E < 1 ,   for one unit   (1 - exp(-lam dT)) (1 + K / E) < 2 .
+double longest_stable_step(const Chain& chain);
+
+// Whether it is stable at that length.
+bool is_stable(const Chain& chain, double duration);
+
+} // namespace jointcreep::creep

@@ -1,0 +1,37 @@
+// How long creep steps are: fixed by the scene, or chosen by the estimated error of each.
+
+#pragma once
+
+#include "creep/creep.hpp"
+
+namespace jointcreep::creep
+{
+
+class StepLength
+{
+public:
+    // `fastest_rate` of relaxation [1/s] and the `longest_stable` step [s], infinite if there is none.
+    StepLength(const jointcreep::Creep& settings, double fastest_rate, double longest_stable);
+
+    // The step to try next, where nothing may be stepped over for `remaining` [s], and no step may be longer
+    // than `longest` [s]. The steps of a fixed length up to a date are equal, none longer than the scene's.
+    double next(double remaining, double longest) const;
+
+    // Whether a step with this estimate of its error [m] stands; either way the next one is chosen by it.
+    // Steps of a fixed length always stand, and so does one of the shortest length.
+    bool stands(double step, double error);
+
+    // After a jump of loads or a change of contacts: begins with the first step again.
+    void start_afresh();
+
+    // The error that a re-closing contact may be left with [m] (creep/closing.hpp).
+    double closing_tolerance() const;
+
+private:
+    jointcreep::Creep settings_;
+    double first_, shortest_, longest_; // [s]
+    double order_;                      // of the local error in the step
+    double wanted_;                     // [s]
+};
+
+} // namespace jointcreep::creep

@@ -1,0 +1,63 @@
+// Implicit equilibrium: Newton's method over the contacts' states, instead of motion.
+//
+// Between changes of contact state the assembly is linear, so one factor of its stiffness serves one
+// equilibrium after another. Each correction solves K du = out-of-balance force by GMRES, preconditioned with
+// the last factor; the factor is renewed once that costs less than going on with the old one. Contacts open,
+// close, stick and slip by the same law as in motion, each from its state at the start of the equilibrium
+// straight to the one at its end (backward Euler). A contact goes from slip one way to slip the other way
+// only through sticking.
+//
+// Bonds that break do so for good, and at once; a contact that opened on the way and closes again without
+// having needed to is given its bond back.
+
+#pragma once
+
+#include "implicit/stiffness.hpp"
+
+#include <optional>
+#include <string>
+
+namespace jointcreep::implicit
+{
+
+class Engine
+{
+public:
+    // Moves the assembly to equilibrium: the out-of-balance ratio is at most the tolerance, and one more
+    // correction would change no contact force by more than the tolerance times the mean force on a
+    // gridpoint. A state that is in balance already is left as it is, after 0 steps. `guess` is how far
+    // gridpoints may be expected to move [m]; none, or a bad one, costs time only.
+    //
+    // Nothing if it finds no equilibrium; reason() says why. The gridpoints are then where forces were
+    // nearest to balance, and contacts remember what they did before.
+    std::optional<mechanics::Certificate> equilibrate(Assembly& assembly, const Equilibrium& settings,
+                                                      const std::vector<Vector2d>& guess = {});
+    const std::string& reason() const { return reason_; }
+
+    // What the last equilibrium, or the search for it, has cost.
+    Index corrections() const { return corrections_; }
+    Index factorisations() const { return factorisations_; }
+    Index solves() const { return solves_; } // back-substitutions
+
+private:
+    enum class Active : char { open, stuck, slips_forward, slips_backward };
+
+    struct Start;
+    double evaluate(Assembly& assembly, const Start& start);
+    void take_states(const Assembly& assembly, const Start& start, bool first);
+    std::vector<Tangent> tangents(const Assembly& assembly, double softness) const;
+    VectorXd correction(const Assembly& assembly, const VectorXd& force, double enough);
+    bool mend_bonds(const Assembly& assembly);
+    double force_change(const Assembly& assembly, const VectorXd& displacement) const;
+    static std::nullopt_t give_up(Assembly& assembly, const Start& start, const std::vector<Vector2d>& best);
+
+    Stiffness stiffness_;
+    std::vector<Active> active_;
+    std::vector<char> breaks_, openings_;
+    VectorXd scale_; // of forces: the stiffness against which they act [Pa]
+    VectorXd force_; // out of balance, at the last evaluation
+    Index corrections_ = 0, factorisations_ = 0, solves_ = 0;
+    std::string reason_;
+};
+
+} // namespace jointcreep::implicit

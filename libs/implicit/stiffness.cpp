@@ -1,0 +1,224 @@
+#include "implicit/stiffness.hpp"
+
+#include <omp.h>
+
+#include <algorithm>
+
+namespace jointcreep::implicit
+{
+
+namespace
+{
+
+// Stiffness of a zone between its corners i and j, per thickness [Pa].
+Eigen::Matrix2d zone_block(const mechanics::Zones& zones, std::size_t z, int i, int j)
+{
+    const mechanics::Vector3d& c = zones.stiffness[z];
+    const Vector2d &p = zones.gradient[z][i], &q = zones.gradient[z][j];
+    Eigen::Matrix2d block;
+    block << c[0] * p.x() * q.x() + c[2] * p.y() * q.y(), c[1] * p.x() * q.y() + c[2] * p.y() * q.x(),
+        c[1] * p.y() * q.x() + c[2] * p.x() * q.y(), c[0] * p.y() * q.y() + c[2] * p.x() * q.x();
+    return zones.area[z] * block;
+}
+
+// The unknowns of some gridpoints, x and y in turn.
+template <std::size_t N>
+std::array<int, 2 * N> unknowns_of(const std::vector<std::array<int, 2>>& unknown,
+                                   const std::array<Index, N>& gridpoints)
+{
+    std::array<int, 2 * N> all;
+    for (std::size_t k = 0; k < N; ++k) {
+        all[2 * k] = unknown[gridpoints[k]][0];
+        all[2 * k + 1] = unknown[gridpoints[k]][1];
+    }
+    return all;
+}
+
+Vector2d tangent_along(const Vector2d& normal)
+{
+    return {normal.y(), -normal.x()};
+}
+
+} // namespace
+
+void Stiffness::follow(const Assembly& assembly)
+{
+    const bool is_known = is_present_ == assembly.zones.is_present && is_free_ == assembly.is_free &&
+                          tied_ == assembly.tied && n_ > 0;
+    if (!is_known) {
+        is_present_ = assembly.zones.is_present;
+        is_free_ = assembly.is_free;
+        tied_ = assembly.tied;
+        number_unknowns(assembly);
+        find_pattern(assembly);
+    }
+    if (!is_known || zone_stiffness_ != assembly.zones.stiffness) {
+        zone_stiffness_ = assembly.zones.stiffness;
+        fill_zones(assembly);
+    }
+}
+
+void Stiffness::number_unknowns(const Assembly& assembly)
+{
+    // Gridpoints without rock or contacts stay where they are.
+    std::vector<char> has_part(assembly.position.size(), 0);
+    for (std::size_t z = 0; z < assembly.zones.gridpoint.size(); ++z)
+        if (assembly.zones.is_present[z])
+            for (const Index g : assembly.zones.gridpoint[z])
+                has_part[g] = 1;
+    std::vector<Index> leader(assembly.position.size());
+    for (std::size_t g = 0; g < leader.size(); ++g)
+        leader[g] = static_cast<Index>(g);
+    for (const auto& [follower, first] : assembly.tied) {
+        leader[follower] = first;
+        has_part[first] = static_cast<char>(has_part[first] | has_part[follower]);
+    }
+    unknown_.assign(leader.size(), {-1, -1});
+    n_ = 0;
+    for (std::size_t g = 0; g < leader.size(); ++g)
+        if (leader[g] == static_cast<Index>(g) && has_part[g])
+            for (int i = 0; i < 2; ++i)
+                if (assembly.is_free[g][i] > 0)
+                    unknown_[g][i] = static_cast<int>(n_++);
+    for (std::size_t g = 0; g < leader.size(); ++g)
+        unknown_[g] = unknown_[leader[g]];
+}
+
+void Stiffness::find_pattern(const Assembly& assembly)
+{
+    const mechanics::Zones& zones = assembly.zones;
+    const mechanics::Contacts& contacts = assembly.contacts;
+    std::vector<Eigen::Triplet<double, int>> entries;
+    const auto couple = [&](const auto& unknowns) {
+        for (const int row : unknowns)
+            for (const int column : unknowns)
+                if (row >= 0 && column >= 0)
+                    entries.emplace_back(row, column, 0.0);
+    };
+    for (std::size_t z = 0; z < zones.gridpoint.size(); ++z)
+        if (zones.is_present[z])
+            couple(unknowns_of(unknown_, zones.gridpoint[z]));
+    present_contact_.clear();
+    for (std::size_t c = 0; c < contacts.gridpoint.size(); ++c)
+        if (contacts.status[c] != ContactStatus::removed) {
+            present_contact_.push_back(static_cast<Index>(c));
+            couple(unknowns_of(unknown_, contacts.gridpoint[c]));
+        }
+    zones_.resize(n_, n_);
+    zones_.setFromTriplets(entries.begin(), entries.end());
+
+    const auto entry_of = [&](int row, int column) {
+        if (row < 0 || column < 0)
+            return -1;
+        const int* const begin = zones_.innerIndexPtr() + zones_.outerIndexPtr()[column];
+        const int* const end = zones_.innerIndexPtr() + zones_.outerIndexPtr()[column + 1];
+        return static_cast<int>(std::lower_bound(begin, end, row) - zones_.innerIndexPtr());
+    };
+    const auto list = [&](const auto& unknowns, auto& places) {
+        const std::size_t n = unknowns.size();
+        for (std::size_t i = 0; i < n; ++i)
+            for (std::size_t j = 0; j < n; ++j)
+                places[n * i + j] = entry_of(unknowns[i], unknowns[j]);
+    };
+    zone_entry_.resize(zones.gridpoint.size());
+    for (std::size_t z = 0; z < zones.gridpoint.size(); ++z)
+        if (zones.is_present[z])
+            list(unknowns_of(unknown_, zones.gridpoint[z]), zone_entry_[z]);
+    contact_entry_.resize(contacts.gridpoint.size());
+    for (const Index c : present_contact_)
+        list(unknowns_of(unknown_, contacts.gridpoint[c]), contact_entry_[c]);
+
+    has_factor_ = false;
+    factorised_ = zones_;
+    if (n_ == 0)
+        return;
+    factor_.analyzePattern(factorised_);
+}
+
+void Stiffness::fill_zones(const Assembly& assembly)
+{
+    const mechanics::Zones& zones = assembly.zones;
+    double* const values = zones_.valuePtr();
+    std::fill(values, values + zones_.nonZeros(), 0.0);
+    for (std::size_t z = 0; z < zones.gridpoint.size(); ++z) {
+        if (!zones.is_present[z])
+            continue;
+        for (int i = 0; i < 3; ++i)
+            for (int j = 0; j < 3; ++j) {
+                const Eigen::Matrix2d block = zone_block(zones, z, i, j);
+                for (int row = 0; row < 2; ++row)
+                    for (int column = 0; column < 2; ++column)
+                        if (const int entry = zone_entry_[z][6 * (2 * i + row) + 2 * j + column]; entry >= 0)
+                            values[entry] += block(row, column);
+            }
+    }
+    has_factor_ = false;
+}
+
+VectorXd Stiffness::gathered(const Assembly& assembly, const std::vector<Vector2d>& over_gridpoints) const
+{
+    VectorXd x = VectorXd::Zero(n_);
+    for (std::size_t g = 0; g < over_gridpoints.size(); ++g)
+        for (int i = 0; i < 2; ++i)
+            if (unknown_[g][i] >= 0 && assembly.is_free[g][i] > 0)
+                x[unknown_[g][i]] += over_gridpoints[g][i];
+    return x;
+}
+
+void Stiffness::add_to(std::vector<Vector2d>& over_gridpoints, const VectorXd& unknowns, double factor) const
+{
+    for (std::size_t g = 0; g < over_gridpoints.size(); ++g)
+        for (int i = 0; i < 2; ++i)
+            if (unknown_[g][i] >= 0)
+                over_gridpoints[g][i] += factor * unknowns[unknown_[g][i]];
+}
+
+VectorXd Stiffness::times(const Assembly& assembly, const std::vector<Tangent>& tangents,
+                          const VectorXd& x) const
+{
+    VectorXd y = zones_.selfadjointView<Eigen::Lower>() * x;
+    const mechanics::Contacts& contacts = assembly.contacts;
+    const auto value = [&](int unknown) { return unknown >= 0 ? x[unknown] : 0.0; };
+    for (const Index c : present_contact_) {
+        const auto& [a, b] = contacts.gridpoint[c];
+        const auto &from = unknown_[a], &to = unknown_[b];
+        const Vector2d jump(value(to[0]) - value(from[0]), value(to[1]) - value(from[1]));
+        const Vector2d &normal = contacts.normal[c], along = tangent_along(normal);
+        const Tangent& t = tangents[c];
+        const double opening = normal.dot(jump), shear = along.dot(jump);
+        const Vector2d force = contacts.length[c] * (t.normal * opening * normal +
+                                                     (t.shear * shear + t.coupling * opening) * along);
+        for (int i = 0; i < 2; ++i) {
+            if (to[i] >= 0)
+                y[to[i]] += force[i];
+            if (from[i] >= 0)
+                y[from[i]] -= force[i];
+        }
+    }
+    return y;
+}
+
+bool Stiffness::factorise(const Assembly& assembly, const std::vector<Tangent>& tangents)
+{
+    const mechanics::Contacts& contacts = assembly.contacts;
+    double* const values = factorised_.valuePtr();
+    std::copy(zones_.valuePtr(), zones_.valuePtr() + zones_.nonZeros(), values);
+    for (const Index c : present_contact_) {
+        const Vector2d &normal = contacts.normal[c], along = tangent_along(normal);
+        const Eigen::Matrix2d block = contacts.length[c] * (tangents[c].normal * normal * normal.transpose() +
+                                                            tangents[c].shear * along * along.transpose());
+        for (int i = 0; i < 4; ++i)
+            for (int j = 0; j < 4; ++j)
+                if (const int entry = contact_entry_[c][4 * i + j]; entry >= 0)
+                    values[entry] += (i / 2 == j / 2 ? 1 : -1) * block(i % 2, j % 2);
+    }
+    // Threads inside of the factorisation cost more than they gain at these sizes.
+    const int levels = omp_get_max_active_levels();
+    omp_set_max_active_levels(0);
+    factor_.factorize(factorised_);
+    omp_set_max_active_levels(levels);
+    has_factor_ = factor_.info() == Eigen::Success;
+    return has_factor_;
+}
+
+} // namespace jointcreep::implicit

@@ -1,0 +1,88 @@
+// The tangent stiffness of an assembly, sparse, and a Cholesky factor of something close to it.
+//
+// Unknowns are the displacements of gridpoints that are free; gridpoints tied to another share its unknowns.
+// The tangent is K = sum over zones + sum over contacts, the latter by what each contact does now (Tangent).
+// A contact that slips couples its shear to its normal displacement: then K is not symmetric. The factor is
+// one of the symmetric part in which open and slipping contacts keep a small part of their springs, so that
+// it exists also where K is singular; it preconditions, and only its nearness to K decides how many
+// iterations a solution takes.
+
+#pragma once
+
+#include "mechanics/assembly.hpp"
+
+#include <Eigen/SparseCore>
+
+#ifdef JOINTCREEP_CHOLMOD
+#include <Eigen/CholmodSupport>
+#else
+#include <Eigen/SparseCholesky>
+#endif
+
+#include <vector>
+
+namespace jointcreep::implicit
+{
+
+using Eigen::VectorXd;
+using mechanics::Assembly;
+using mechanics::Vector2d;
+
+// Change of a contact's traction over change of its jump [Pa/m]: {normal over normal, shear over shear, shear
+// over normal}.
+struct Tangent {
+    double normal, shear, coupling;
+};
+
+class Stiffness
+{
+public:
+    // Follows the assembly: call it before each equilibrium. Analyses anew where rock, supports or ties have
+    // changed, and puts the zones' present stiffness in.
+    void follow(const Assembly& assembly);
+
+    Eigen::Index size() const { return n_; }
+
+    // Gathers a vector over gridpoints into the unknowns' order (forces: of the free directions), and back
+    // (displacements: 0 where held).
+    VectorXd gathered(const Assembly& assembly, const std::vector<Vector2d>& over_gridpoints) const;
+    void add_to(std::vector<Vector2d>& over_gridpoints, const VectorXd& unknowns, double factor) const;
+
+    // K x with the tangents given, one for each contact.
+    VectorXd times(const Assembly& assembly, const std::vector<Tangent>& tangents, const VectorXd& x) const;
+
+    // Factorises with these tangents; false if the matrix has no Cholesky factor.
+    bool factorise(const Assembly& assembly, const std::vector<Tangent>& tangents);
+    VectorXd solve(const VectorXd& right) const { return factor_.solve(right); }
+    bool has_factor() const { return has_factor_; }
+
+private:
+    using Matrix = Eigen::SparseMatrix<double, Eigen::ColMajor, int>;
+#ifdef JOINTCREEP_CHOLMOD
+    using Factor = Eigen::CholmodDecomposition<Matrix, Eigen::Lower>;
+#else
+    using Factor = Eigen::SimplicialLLT<Matrix, Eigen::Lower>;
+#endif
+
+    void number_unknowns(const Assembly& assembly);
+    void find_pattern(const Assembly& assembly);
+    void fill_zones(const Assembly& assembly);
+
+    Eigen::Index n_ = 0;
+    std::vector<std::array<int, 2>> unknown_; // of each gridpoint's {x, y}; -1 held
+    Matrix zones_;                            // of the zones alone, with all contacts' entries in the pattern
+    std::vector<std::array<int, 36>> zone_entry_;    // where a zone's 6 x 6 goes in zones_; -1 nowhere
+    std::vector<std::array<int, 16>> contact_entry_; // where a contact's 4 x 4 goes
+    std::vector<Index> present_contact_;
+    Matrix factorised_;
+    Factor factor_;
+    bool has_factor_ = false;
+
+    // What the numbering was made for.
+    std::vector<char> is_present_;
+    std::vector<Vector2d> is_free_;
+    std::vector<std::array<Index, 2>> tied_;
+    std::vector<mechanics::Vector3d> zone_stiffness_;
+};
+
+} // namespace jointcreep::implicit
