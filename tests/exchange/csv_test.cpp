@@ -99,6 +99,24 @@ TEST(edges_csv, adds_the_equivalent_joints)
     EXPECT_EQ(number(rows[2][11]), 0);
 }
 
+TEST(edges_csv, numbers_kelvin_units_where_there_are_several)
+{
+    EquivalentJoints equivalent = small_equivalent();
+    const std::size_t edges = equivalent.normal_stiffness.size();
+    equivalent.normal_kelvin_stiffness.assign(2 * edges, 0);
+    equivalent.normal_kelvin_stiffness[2 * 2 + 1] = 5e8; // of edge 2 the second unit
+    equivalent.shear_kelvin_stiffness.assign(2 * edges, 0);
+    equivalent.normal_kelvin_viscosity.assign(2 * edges, 0);
+    equivalent.shear_kelvin_viscosity.assign(2 * edges, 0);
+    const auto rows = rows_of(edges_csv(small_network(), &equivalent));
+    ASSERT_EQ(rows[0].size(), 26u);
+    EXPECT_EQ(rows[0][16], "normal_kelvin_stiffness_1_Pa_per_m");
+    EXPECT_EQ(rows[0][20], "normal_kelvin_stiffness_2_Pa_per_m");
+    EXPECT_EQ(number(rows[3][16]), 0);
+    EXPECT_EQ(number(rows[3][20]), 5e8);
+    EXPECT_EQ(rows[0][25], "shear_maxwell_viscosity_Pa_s_per_m");
+}
+
 TEST(histories_csv, has_a_row_a_time_and_three_columns_a_point)
 {
     const auto rows = rows_of(histories_csv(small_result().history));
