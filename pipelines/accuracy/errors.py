@@ -31,8 +31,10 @@ class Result:
     traction: np.ndarray  # [state, contact, {normal, shear}] [Pa]
     status: np.ndarray  # [state, contact]: 0 removed, 1 stuck, 2 slipping, 3 open
     zones: int
-    equilibria: int
-    steps: int  # of the solver, in all equilibria
+    equilibria: int  # sought in all, also with creep steps that were too long
+    steps: int  # of motion, and corrections by the implicit engine, in all of them
+    factorisations: int
+    solves: int  # back-substitutions
     version: str
 
 
@@ -57,7 +59,8 @@ def result_of(path):
                       displacement[-1], np.abs(displacement).max(axis=0), array("/states/time"),
                       np.cumsum([event != "" for event in events]), contacts, array("/states/traction"),
                       array("/states/contact_status"), len(array("/mesh/zone_block")),
-                      len(array("/equilibria/steps")), int(array("/equilibria/steps").sum()),
+                      *(int(array(f"/equilibria/{what}").sum()) for what in
+                        ("searches", "steps", "factorisations", "solves")),
                       figure.text_of(file.attrs["program_version"]))
 
 

@@ -15,6 +15,7 @@ explicit engine. The files that demsolve writes are part of it.
 
 import csv
 import datetime
+import functools
 import math
 import os
 import subprocess
@@ -22,6 +23,8 @@ import sys
 import tempfile
 from dataclasses import dataclass
 from pathlib import Path
+
+import numpy as np
 
 import cases as of
 import errors
@@ -39,6 +42,8 @@ class Row:
     zones: int = 0
     equilibria: int = 0
     steps: int = 0
+    factorisations: int = 0
+    solves: int = 0
     displacement: float = math.nan
     traction: float = math.nan
     traction_at_the_end: float = math.nan
@@ -77,25 +82,31 @@ class Programs:
         return seconds, code, message, errors.result_of(result) if code == 0 else None
 
 
-def error_of(case, programs, joints):
-    """The case's measure of error: its closed form, or its converged solution, which is computed here."""
+def errors_of(case, programs, joints):
+    """The case's measure of error, by engine: its closed form, or its converged solution, which is computed here.
+
+    Each engine has its own converged solution: where joints slip, the answer depends on the way (slip_table).
+    """
     if case.error:
-        return case.error
-    run = next(run for run in case.references if programs.offer.has(run))
-    _, code, message, reference = programs.solve(joints, run.options(programs.offer), case.every_state)
-    if code != 0:
-        sys.exit(f"speed_against_error.py: {case.name}, converged solution: {message}")
-    return lambda result: errors.against(result, reference)
+        return {engine: case.error for engine in programs.offer.engines}
+    found = {}
+    for engine in programs.offer.engines:
+        run = next(run for run in case.references if run.engine == engine and programs.offer.has(run))
+        _, code, message, reference = programs.solve(joints, run.options(programs.offer), case.every_state)
+        if code != 0:
+            sys.exit(f"speed_against_error.py: {case.name}, converged solution: {message}")
+        found[engine] = functools.partial(errors.against, reference=reference)
+    return found
 
 
 def finest_zones(rows_and_results):
-    """With other zones the converged solution is that of the finest."""
-    return min(rows_and_results, key=lambda pair: pair[0].run.zone_size)[1]
+    """With other zones the converged solution is that of the finest, by the last engine that computed it."""
+    return min(reversed(rows_and_results), key=lambda pair: pair[0].run.zone_size)[1]
 
 
 def rows_of(case, programs, unit):
     joints = programs.prepare(case.scene)
-    error = error_of(case, programs, joints)
+    error = errors_of(case, programs, joints)
     rows, zoned = [], []
     for run in case.runs:
         if not programs.offer.has(run):
@@ -107,11 +118,11 @@ def rows_of(case, programs, unit):
             rows.append(Row(case.name, run, OUTCOMES[code], seconds / unit))
             continue
         row = Row(case.name, run, "done", seconds / unit, result.zones, result.equilibria, result.steps,
-                  opens=bool((result.status == 3).any()))
+                  result.factorisations, result.solves, opens=bool((result.status == 3).any()))
         if run.study == "zone size" and not case.error:
             zoned.append((row, result))
         else:
-            found = error(result)
+            found = error[run.engine or programs.offer.fastest](result)
             row.displacement, row.traction = found.displacement, found.traction
             row.traction_at_the_end = found.traction_at_the_end
         rows.append(row)
@@ -138,13 +149,13 @@ def write_csv(rows, path):
     with open(path, "w", newline="") as file:
         out = csv.writer(file)
         out.writerow(["case", "study", "engine", "scheme", "step_days", "creep_tolerance_m", "tolerance", "zone_size_m",
-                      "outcome", "zones", "equilibria", "solver_steps", "time", "displacement_error", "force_error",
+                      "outcome", "zones", "equilibria", "steps", "factorisations", "back_substitutions", "time", "displacement_error", "force_error",
                       "force_error_at_the_end"])
         for row in rows:
             run = row.run
             out.writerow([row.case, run.study, run.engine, run.scheme, run.step, run.creep_tolerance, run.tolerance,
-                          run.zone_size, row.outcome, row.zones, row.equilibria, row.steps, row.time, row.displacement,
-                          row.traction, row.traction_at_the_end])
+                          run.zone_size, row.outcome, row.zones, row.equilibria, row.steps, row.factorisations, row.solves,
+                          row.time, row.displacement, row.traction, row.traction_at_the_end])
 
 
 def case_table(case, rows):
@@ -154,11 +165,12 @@ def case_table(case, rows):
         varied = {"creep step": f"dT {run.step or 0:g} day", "creep tolerance": f"{run.creep_tolerance or 0:g} m",
                   "tolerance": f"tolerance {run.tolerance or 0:g}", "zone size": f"zones {run.zone_size or 0:g} m",
                   "default": "nothing: the defaults"}[run.study]
-        cells = [row.equilibria, row.steps, number(row.time, ".2g"), number(row.displacement), number(row.traction)]
+        cells = [row.equilibria, row.steps, row.factorisations, row.solves, number(row.time, ".2g"), number(row.displacement), number(row.traction)]
         lines.append([varied, run.engine, run.scheme, *([row.zones, *cells] if row.outcome == "done"
-                                                        else [row.outcome, *[""] * 5])])
-    return [f"### {case.title}", "", *table(["varied", "engine", "scheme", "zones", "equilibria", "solver steps", "time",
-                                            "displacement error", "force error"], lines)]
+                                                        else [row.outcome, *[""] * 7])])
+    return [f"### {case.title}", "", *table(["varied", "engine", "scheme", "zones", "equilibria", "steps",
+                                            "factorisations", "back-substitutions", "time", "displacement error",
+                                            "force error"], lines)]
 
 
 def at_step(rows, case, scheme, step, engine):
@@ -203,49 +215,46 @@ def cheapest_table(rows, cases, levels=(1e-2, 1e-3, 1e-4, 1e-5)):
             *table(["case", "engine", *(f"{level:g}" for level in levels)], lines)]
 
 
-def stack_table(programs, scene, unit):
-    """How much more a friction stack slips when it overshoots."""
-    ways = [(f"adaptive damping, {n} increments" if n > 1 else "adaptive damping, all at once", "", n)
-            for n in (256, 16, 1)]
-    ways += [("local damping, all at once", 'damping = "local"', 1),
-             ("real masses, damping near critical, all at once", 'masses = "real"\ndamping = "mass"\nmass_damping_per_s = 800', 1),
-             ("real masses, a tenth of that, all at once", 'masses = "real"\ndamping = "mass"\nmass_damping_per_s = 80', 1),
-             ("real masses, a tenth of that, 16 increments", 'masses = "real"\ndamping = "mass"\nmass_damping_per_s = 80', 16)]
-    found = []
-    for engine in programs.offer.engines:
-        for way, settings, increments in ways:
-            if engine != "explicit" and settings:
-                continue
-            text = of.with_default_equilibrium(scene)
-            text += f"\n[equilibrium]\nunloading_increments = {increments}\nmost_steps = 20000000\n{settings}\n"
-            options = of.Run("stack", engine, tolerance=1e-9).options(programs.offer)
-            seconds, code, message, result = programs.solve(programs.prepare(text), options)
-            if code not in (0, *OUTCOMES):
-                sys.exit(f"speed_against_error.py: friction stack, {way}: {message}")
-            if engine != "explicit":
-                way = "all at once" if increments == 1 else f"{increments} increments"
-            found.append((engine, way, seconds / unit, code, result))
-    slow = found[0][-1]
+def slip_table(programs, data, unit):
+    """What overshooting and long increments change where joints slip."""
+    damped = 'masses = "real"\ndamping = "mass"\nmass_damping_per_s = '
+    ways = [("adaptive damping", ""), ("local damping", 'damping = "local"'), ("real masses, 800 /s", damped + "800"),
+            ("real masses, 80 /s", damped + "80")]
     lines = []
-    for engine, way, time, code, result in found:
-        if code != 0:
-            lines.append([engine, way, "", number(time, ".2g"), OUTCOMES[code], ""])
-            continue
-        rest, most = result.displacement[0, 0], slow.peak[0, 0]
-        lines.append([engine, way, result.steps, number(time, ".2g"), f"{(result.peak[0, 0] - most) / most:.1e}",
-                      f"{(rest - slow.displacement[0, 0]) / slow.displacement[0, 0]:.1e}"])
-    return ["### Friction stack: excess of its sideways displacement over that of the slowest push", "",
-            *table(["engine", "way", "solver steps", "time", "pushed", "let go"], lines)]
+    for title, scene, most in (("friction stack", "verification/friction-stack", 256),
+                               ("slope with opening joints", "verification/opening-joints", 256),
+                               ("slope with slip", "slope", 64)):
+        text = of.with_default_equilibrium((data / scene / "scene.toml").read_text())
+        found = []
+        for engine in reversed(programs.offer.engines):
+            for way, settings in ways if engine == "explicit" and title == "friction stack" else [("", "")]:
+                for increments in (most, 16, 1) if way in ("", "adaptive damping") else (16, 1):
+                    joints = programs.prepare(f"{text}\n[equilibrium]\nunloading_increments = {increments}\n"
+                                              f"most_steps = 20000000\n{settings}\n")
+                    options = [*of.Run("slip", engine, tolerance=1e-8).options(programs.offer), "--no-creep"]
+                    seconds, code, message, result = programs.solve(joints, options)
+                    if code not in (0, *OUTCOMES):
+                        sys.exit(f"speed_against_error.py: {title}, {engine}, {way}: {message}")
+                    found.append((engine, way, increments, seconds / unit, OUTCOMES.get(code, ""), result))
+        slow = next(result for *_, result in found if result)
+        for engine, way, increments, time, outcome, result in found:
+            apart = [number(np.abs(now - then).max() / np.abs(then).max())
+                     for now, then in ((result.peak, slow.peak), (result.displacement, slow.displacement))
+                     ] if result else [outcome, ""]
+            lines.append([title, engine, way, increments, result.steps if result else "", number(time, ".2g"), *apart])
+    return ["### Slip on the way: difference to the slowest loading by the last engine", "",
+            *table(["case", "engine", "way", "increments", "steps", "time", "largest displacements",
+                    "displacements at the end"], lines)]
 
 
-def write_tables(rows, cases, programs, stack, version, path):
+def write_tables(rows, cases, programs, slip, version, path):
     offer = programs.offer
     lines = [f"Computed on {datetime.date.today()} with version {version}.", ""]
     lines += cheapest_table(rows, cases)
     lines += steps_table(rows, offer, [1 / of.RATE / 8], "", "Largest force error over lam T = 1 in 8 steps")
     lines += steps_table(rows, offer, of.LONG_STEPS, ", long",
                          "Largest force error over lam T = 10, in steps of lam dT = .01 / .1 / 1 / 10")
-    lines += stack
+    lines += slip
     for case in (case for case in cases if not case.is_long):
         lines += case_table(case, [row for row in rows if row.case == case.name])
     path.write_text("\n".join(lines))
@@ -266,10 +275,9 @@ def main():
             sys.exit(f"speed_against_error.py: the column: {message}")
         cases = (of.quick_cases if quick else of.all_cases)(data, programs.offer)
         rows = [row for case in cases for row in rows_of(case, programs, unit)]
-        stack = [] if quick else stack_table(programs, (data / "verification/friction-stack/scene.toml").read_text(),
-                                             unit)
+        slip = [] if quick else slip_table(programs, data, unit)
         write_csv(rows, out / "runs.csv")
-        write_tables(rows, cases, programs, stack, result.version, out / "speed.md")
+        write_tables(rows, cases, programs, slip, result.version, out / "speed.md")
         speed_plots.draw(rows, [case for case in cases if not case.is_long], programs.offer, out)
 
 
