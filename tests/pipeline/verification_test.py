@@ -66,6 +66,8 @@ class Verification(ChainTest):
 
             def check(scheme, result, ratio=ratio, step=step):
                 bound = of_step(scheme, cases.RATE * (1 + ratio), step) * ratio / (1 + ratio) + BALANCE
+                if scheme == "fitted":
+                    bound = 0.05 * bound + BALANCE  # exact between fixed walls, and the rock gives but 1/20
                 error = errors.against_closed_form(result, closed_forms.platens(result.scene))
                 # Of the closure held, the rock takes less than 1/20, and that as exactly as the tractions are.
                 self.assert_within(error, 0.05 * bound + BALANCE, bound)
@@ -138,16 +140,16 @@ class Verification(ChainTest):
     def test_wedge_in_a_groove(self):
         text = cases.edited(self.scene("v-groove"), {("", "step_days"): 0.5})
 
-        def check(_, result):
+        def check(scheme, result):
             left = result.contacts.normal[:, 0] > 0
             status = result.status[:, left]
             self.assertEqual({int(s) for s in status.flat}, {1, 2, 3}, "it is stuck, slips and opens")
             opened = [bool(row.all()) for row in status == 3]
             self.assertEqual(sum(a and not b for a, b in zip(opened, opened[1:])), 2, "it closes twice")
             error = cases.groove_error(result)
-            # K/E is 1. A joint that closes within a step has its shear from there on as if at the step's end, so
-            # no scheme is sure to be better than of first order.
-            bound = of_step("published", 2 * cases.RATE, 0.5) + BALANCE
+            # K/E is 1. Errors of the three times in which the left contact bears add up at most. The schemes of first
+            # order do not cut a step in which it closes: its shear is from there on as if at the step's end.
+            bound = 3 * of_step(scheme, 2 * cases.RATE, 0.5) + BALANCE
             self.assert_within(error, bound, bound)
 
         self.in_every_way(text, check)
