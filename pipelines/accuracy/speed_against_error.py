@@ -5,7 +5,8 @@
 
 runs the programs in BIN on scenes of the folder DATA and writes into OUT
     runs.csv                     one row a run: options, cost, errors
-    speed.md                     the tables
+    cases.md                     the same as tables, one a case
+    tables/*.md                  what follows from them, for docs/accuracy.md
     creep-steps.png              force error over equilibria, platens and two pillars, every K/E
     force-time.png, displacement-time.png, force-equilibria.png      every case, one panel each
 
@@ -168,7 +169,7 @@ def case_table(case, rows):
         cells = [row.equilibria, row.steps, row.factorisations, row.solves, number(row.time, ".2g"), number(row.displacement), number(row.traction)]
         lines.append([varied, run.engine, run.scheme, *([row.zones, *cells] if row.outcome == "done"
                                                         else [row.outcome, *[""] * 7])])
-    return [f"### {case.title}", "", *table(["varied", "engine", "scheme", "zones", "equilibria", "steps",
+    return [f"## {case.title}", "", *table(["varied", "engine", "scheme", "zones", "equilibria", "steps",
                                             "factorisations", "back-substitutions", "time", "displacement error",
                                             "force error"], lines)]
 
@@ -179,7 +180,7 @@ def at_step(rows, case, scheme, step, engine):
     return found[0] if found else None
 
 
-def steps_table(rows, offer, steps, suffix, what):
+def steps_table(rows, offer, steps, suffix):
     """Force error of every scheme at these steps, K/E by K/E."""
     def cell(row):
         if row is None:
@@ -193,15 +194,13 @@ def steps_table(rows, offer, steps, suffix, what):
                      for scheme in offer.schemes]
             if any(row is not None for of_scheme in found for row in of_scheme):
                 lines.append([kind, f"{ratio:g}", *(" / ".join(cell(row) for row in of_scheme) for of_scheme in found)])
-    return [f"### {what}", "", *table(["case", "K/E", *offer.schemes], lines)] if lines else []
+    return table(["case", "K/E", *offer.schemes], lines)
 
 
 def cheapest_table(rows, cases, levels=(1e-2, 1e-3, 1e-4, 1e-5)):
     """The cheapest run of each engine whose errors, displacement and force, are both below a level."""
     lines = []
     for case in cases:
-        if case.is_long:
-            continue
         engines = sorted({row.run.engine for row in rows if row.case == case.name and row.run.engine})
         for engine in engines:
             cells = []
@@ -211,8 +210,30 @@ def cheapest_table(rows, cases, levels=(1e-2, 1e-3, 1e-4, 1e-5)):
                 best = min(good, key=lambda row: row.time, default=None)
                 cells.append("" if best is None else f"{best.time:.2g} ({best.equilibria})")
             lines.append([case.title, engine, *cells])
-    return ["### Time, and equilibria in brackets, of the cheapest run with both errors below", "",
-            *table(["case", "engine", *(f"{level:g}" for level in levels)], lines)]
+    return table(["case", "engine", *(f"{level:g}" for level in levels)], lines)
+
+
+def defaults_table(rows, cases):
+    """What demsolve gives without options."""
+    lines = []
+    for case in cases:
+        for row in rows:
+            if row.case == case.name and row.run.study == "default" and row.outcome == "done":
+                lines.append([case.title, row.zones, row.equilibria, row.factorisations, row.solves,
+                              number(row.time, ".2g"), number(row.displacement), number(row.traction)])
+    return table(["case", "zones", "equilibria", "factorisations", "back-substitutions", "time", "displacement error",
+                  "force error"], lines)
+
+
+def zones_table(rows, cases):
+    """What zones change where stress is not uniform."""
+    lines = []
+    for case in (case for case in cases if case.references):
+        for row in rows:
+            if row.case == case.name and row.run.study == "zone size":
+                lines.append([case.title, row.run.engine, f"{row.run.zone_size:g}", row.zones, row.equilibria,
+                              number(row.time, ".2g"), number(row.displacement)])
+    return table(["case", "engine", "zone size (m)", "zones", "equilibria", "time", "difference to the finest"], lines)
 
 
 def slip_table(programs, data, unit):
@@ -242,22 +263,26 @@ def slip_table(programs, data, unit):
                      for now, then in ((result.peak, slow.peak), (result.displacement, slow.displacement))
                      ] if result else [outcome, ""]
             lines.append([title, engine, way, increments, result.steps if result else "", number(time, ".2g"), *apart])
-    return ["### Slip on the way: difference to the slowest loading by the last engine", "",
-            *table(["case", "engine", "way", "increments", "steps", "time", "largest displacements",
-                    "displacements at the end"], lines)]
+    return table(["case", "engine", "way", "increments", "steps", "time", "largest displacements",
+                  "displacements at the end"], lines)
 
 
-def write_tables(rows, cases, programs, slip, version, path):
-    offer = programs.offer
-    lines = [f"Computed on {datetime.date.today()} with version {version}.", ""]
-    lines += cheapest_table(rows, cases)
-    lines += steps_table(rows, offer, [1 / of.RATE / 8], "", "Largest force error over lam T = 1 in 8 steps")
-    lines += steps_table(rows, offer, of.LONG_STEPS, ", long",
-                         "Largest force error over lam T = 10, in steps of lam dT = .01 / .1 / 1 / 10")
-    lines += slip
-    for case in (case for case in cases if not case.is_long):
+def write_tables(rows, cases, offer, slip, version, folder):
+    shown = [case for case in cases if not case.is_long]
+    tables = {"computed": [f"Computed on {datetime.date.today()} with version {version}."],
+              "defaults": defaults_table(rows, shown),
+              "cheapest": cheapest_table(rows, shown),
+              "eight-steps": steps_table(rows, offer, [1 / of.RATE / 8], ""),
+              "long-steps": steps_table(rows, offer, of.LONG_STEPS, ", long"),
+              "zones": zones_table(rows, shown),
+              "slip": slip}
+    (folder / "tables").mkdir(exist_ok=True)
+    for name, lines in tables.items():
+        (folder / "tables" / f"{name}.md").write_text("\n".join(lines).rstrip() + "\n")
+    lines = [*tables["computed"], ""]
+    for case in shown:
         lines += case_table(case, [row for row in rows if row.case == case.name])
-    path.write_text("\n".join(lines))
+    (folder / "cases.md").write_text("\n".join(lines))
 
 
 def main():
@@ -277,7 +302,7 @@ def main():
         rows = [row for case in cases for row in rows_of(case, programs, unit)]
         slip = [] if quick else slip_table(programs, data, unit)
         write_csv(rows, out / "runs.csv")
-        write_tables(rows, cases, programs, slip, result.version, out / "speed.md")
+        write_tables(rows, cases, programs.offer, slip, result.version, out)
         speed_plots.draw(rows, [case for case in cases if not case.is_long], programs.offer, out)
 
 
