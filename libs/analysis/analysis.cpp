@@ -152,7 +152,7 @@ void Analysis::run()
 void Analysis::settle_in_situ()
 {
     observe_(0, "in-situ equilibrium");
-    equilibrate();
+    equilibrate(0);
     const mechanics::Contacts& contacts = rock_.contacts;
     for (std::size_t c = 0; c < contacts.status.size(); ++c)
         if (contacts.status[c] != ContactStatus::stuck)
@@ -217,7 +217,7 @@ bool Analysis::step_to(double target, bool is_loaded)
         std::vector<Vector2d> guess = last_move_; // creep slows down
         for (Vector2d& move : guess)
             move *= 0.9 * (end - now_) / last_step_;
-        equilibrate(guess);
+        equilibrate(end, guess);
         const double longest = closing_ ? closing_->longest_step(rock_, end - now_) : end - now_;
         if (longest >= end - now_ || longest < 1e-9 * (target - now_))
             break;
@@ -254,7 +254,7 @@ void Analysis::excavate(const Stage& stage, Index number)
         const double held = 1 - static_cast<double>(i) / n;
         for (std::size_t g = 0; g < load.size(); ++g)
             rock_.load[g] = load[g] + held * released[g];
-        equilibrate();
+        equilibrate(now_);
         take_down_equilibrium();
     }
     start_afresh();
@@ -271,8 +271,8 @@ void Analysis::start_afresh()
         closing_->start_afresh();
 }
 
-// Equilibrium by the engine chosen; by motion where factorisation finds none nearby.
-void Analysis::equilibrate(const std::vector<Vector2d>& guess)
+// Equilibrium at a time, by the engine chosen; by motion where factorisation finds none nearby.
+void Analysis::equilibrate(double time, const std::vector<Vector2d>& guess)
 {
     ++effort_.searches;
     if (engine_ != Engine::explicit_engine) {
@@ -285,16 +285,16 @@ void Analysis::equilibrate(const std::vector<Vector2d>& guess)
             return;
         }
         if (engine_ == Engine::implicit_engine)
-            throw equilibrium_error("no equilibrium nearby on day " + shown(now_ / unit::day) + ": " +
+            throw equilibrium_error("no equilibrium nearby on day " + shown(time / unit::day) + ": " +
                                     implicit_.reason() + " (--engine auto would go on by motion)");
         ++given_up_[implicit_.reason()];
         ++effort_.searches;
     }
     double last = 0;
-    const auto observe = [&](double time) {
-        last = time;
+    const auto observe = [&](double since_start) {
+        last = since_start;
         if (recording_.trace_every > 0 && ++solver_steps_ % recording_.trace_every == 0)
-            recorder_.record_trace(result_, now_, solver_time_ + time, rock_);
+            recorder_.record_trace(result_, time, solver_time_ + since_start, rock_);
     };
     certificate_ = relaxation::relax(rock_, scene_.equilibrium,
                                      recording_.trace_every > 0 ? observe : relaxation::StepObserver{});

@@ -115,6 +115,31 @@ VectorXd Engine::correction(const Assembly& assembly, const VectorXd& force, dou
     return x;
 }
 
+// Moves along a correction, all the way or as far as forces come nearer to balance, and at most `too_far`
+// [m]. Returns the merit there.
+double Engine::go_along(Assembly& assembly, const Start& start, const VectorXd& correction, double merit,
+                        double too_far)
+{
+    const std::vector<Vector2d> from = assembly.displacement;
+    const auto merit_at = [&](double share) {
+        assembly.displacement = from;
+        stiffness_.add_to(assembly.displacement, correction, share);
+        return evaluate(assembly, start);
+    };
+    double share = std::min(1.0, too_far / correction.lpNorm<Eigen::Infinity>());
+    double best_share = share, best_merit = std::numeric_limits<double>::infinity();
+    for (int halving = 0; halving <= most_halvings; ++halving, share /= 2) {
+        const double found = merit_at(share);
+        if (found < best_merit) {
+            best_merit = found;
+            best_share = share;
+        }
+        if (found < (1 - 1e-4 * share) * merit)
+            return found;
+    }
+    return merit_at(best_share);
+}
+
 // Bonds of contacts that opened on the way and have closed again: where they make no difference they are as
 // they were at the start; elsewhere they get another chance. True if that changes forces.
 bool Engine::mend_bonds(const Assembly& assembly)
@@ -235,34 +260,18 @@ std::optional<Certificate> Engine::equilibrate(Assembly& assembly, const Equilib
             reason_ = "some rock is held by nothing";
             return give_up(assembly, start, best);
         }
-        const std::vector<Vector2d> from = assembly.displacement;
-        double t = 1, best_t = 1, best_merit = std::numeric_limits<double>::infinity();
-        const auto try_at = [&](double share) {
-            assembly.displacement = from;
-            stiffness_.add_to(assembly.displacement, du, share);
-            return evaluate(assembly, start);
-        };
-        for (int halving = 0; halving <= most_halvings; ++halving, t /= 2) {
-            const double found = try_at(t);
-            if (found < best_merit) {
-                best_merit = found;
-                best_t = t;
-            }
-            if (found < (1 - 1e-4 * t) * merit)
-                break;
-        }
-        merit = t == best_t ? best_merit : try_at(best_t);
+        merit = go_along(assembly, start, du, merit, too_far);
         take_states(assembly, start, false);
+        if (farthest_move(start.displacement, assembly.displacement) > too_far) {
+            reason_ = "rock would move by more than a tenth of the section";
+            return give_up(assembly, start, best);
+        }
         if (merit < least_merit) {
             least_merit = merit;
             since_least = 0;
             best = assembly.displacement;
         } else {
             ++since_least;
-        }
-        if (farthest_move(start.displacement, assembly.displacement) > too_far) {
-            reason_ = "rock would move by more than a tenth of the section";
-            return give_up(assembly, start, best);
         }
     }
 

@@ -47,6 +47,8 @@ private:
     void take_states(const Assembly& assembly, const Start& start, bool first);
     std::vector<Tangent> tangents(const Assembly& assembly, double softness) const;
     VectorXd correction(const Assembly& assembly, const VectorXd& force, double enough);
+    double go_along(Assembly& assembly, const Start& start, const VectorXd& correction, double merit,
+                    double too_far);
     bool mend_bonds(const Assembly& assembly);
     double force_change(const Assembly& assembly, const VectorXd& displacement) const;
     static std::nullopt_t give_up(Assembly& assembly, const Start& start, const std::vector<Vector2d>& best);

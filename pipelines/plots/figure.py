@@ -1,11 +1,12 @@
 """What the plots share: one look, the way files are opened, and the scene inside them.
 
 The look is for print: widths of one or two columns, 8-point text, and sets, stages and points told apart by line
-style, marker or shade, so that nothing is lost in grey.
+style, width, marker or shade, so that nothing is lost in grey.
 """
 
 import argparse
 import contextlib
+import os
 import sys
 import tomllib
 from pathlib import Path
@@ -14,6 +15,8 @@ import h5py
 import matplotlib
 
 matplotlib.use("Agg")
+import matplotlib.colors
+import matplotlib.lines
 import matplotlib.patheffects
 import matplotlib.pyplot as plt
 import numpy as np
@@ -23,9 +26,13 @@ TWO_COLUMNS = 6.9  # [in]
 
 # Different shades in grey too; where shades are not enough, markers and line styles repeat the distinction.
 COLORS = ["#1b2a5c", "#b5403a", "#2f9e77", "#d9a22b", "#6fb1e0", "#8a8a8a"]
+WIDTHS = [1.2, 0.8, 1.7, 2.3, 0.6, 1.4]  # of lines that have no markers [pt]
 LINES = ["-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (1, 3))]
 MARKERS = ["o", "s", "^", "D", "v", "P"]
 HALO = [matplotlib.patheffects.withStroke(linewidth=2, foreground="white")]
+# Pale where there is little, so that black lines and arrows stay visible over it.
+SHADES = matplotlib.colors.ListedColormap(
+    0.2 + 0.8 * matplotlib.colormaps["YlGnBu"](np.linspace(0, 0.95, 256))[:, :3])
 
 plt.rcParams.update({
     "font.size": 8,
@@ -75,10 +82,20 @@ def run(draw, arguments):
     with opened(arguments.file) as file:
         figure = draw(file, arguments)
     try:
-        figure.savefig(arguments.output)
+        save(figure, Path(arguments.output))
     except (OSError, ValueError) as error:
         print(f"{Path(sys.argv[0]).name}: {arguments.output}: {error}", file=sys.stderr)
         sys.exit(4)
+
+
+def save(figure, path):
+    """The picture appears under its name only once it is whole."""
+    partial = path.with_name(f"{path.stem}.partial-{os.getpid()}{path.suffix}")
+    try:
+        figure.savefig(partial)
+        os.replace(partial, path)
+    finally:
+        partial.unlink(missing_ok=True)
 
 
 def text_of(value):
@@ -133,11 +150,35 @@ def section_axes(outline):
     return figure, axes
 
 
-def legend_below(axes, entries):
-    """A legend under the axes; the figure grows by its height."""
+def legend_below(axes, *groups):
+    """A legend under the axes, a column for each group of entries if there is room; the figure grows by its height."""
     width, height = axes.figure.get_size_inches()
-    columns = max(1, min(len(entries), int(width / 1.6)))
-    rows = -(-len(entries) // columns)
+    groups = [group for group in groups if group]
+    longest = max(len(entry.get_label()) for group in groups for entry in group)
+    columns = int(width / (0.5 + 0.048 * longest))  # a sign and the text [in]
+    if 1 < len(groups) <= columns:
+        columns, rows = len(groups), max(len(group) for group in groups)
+        nothing = matplotlib.lines.Line2D([], [], linestyle="none", label=" ")
+        entries = [entry for group in groups for entry in [*group, *[nothing] * (rows - len(group))]]
+    else:
+        entries = [entry for group in groups for entry in group]
+        columns = max(1, min(len(entries), columns))
+        rows = -(-len(entries) // columns)
     axes.figure.set_size_inches(width, height + 0.1 + 0.16 * rows)
     axes.legend(handles=entries, loc="upper center", bbox_to_anchor=(0.5, -0.45 / (height - 0.5)), ncol=columns,
                 borderaxespad=0)
+
+
+def mark_stages(axes, places, names, with_names=True):
+    """Lines across the axes where stages are, and their names over the axes."""
+    for place, name in zip(places, names):
+        axes.axvline(place, color="0.6", linewidth=0.6, zorder=0)
+        if with_names:
+            axes.annotate(name, (place, 1.01), xycoords=("data", "axes fraction"), rotation=25, ha="left",
+                          va="bottom", rotation_mode="anchor", fontsize=6.5)
+
+
+def time_label(file):
+    """What the axis of days is called: with the date that they count from, if the scene has one."""
+    start = scene_of(file)["schedule"]["start"]
+    return f"time since {'the start' if isinstance(start, (int, float)) else start} (days)"

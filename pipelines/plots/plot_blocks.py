@@ -1,10 +1,15 @@
 #!/usr/bin/python3
-"""The blocks, filled by their size, their rock or the stage that removes them, and the edges between them."""
+"""The blocks, filled by their size, the joint set that makes most of their outline, their rock or the stage that
+removes them, and the edges between them.
+
+The scale of sizes begins where smaller blocks together are 1 percent of the section: slivers would take most of it.
+"""
 
 import matplotlib.colors
 import matplotlib.lines
 import matplotlib.patches
 import matplotlib.path
+import matplotlib.ticker
 import numpy as np
 from matplotlib.collections import LineCollection, PathCollection
 
@@ -23,6 +28,26 @@ def block_paths(file):
     closed = [matplotlib.path.Path(np.vstack([ring, ring[:1]]), closed=True) for ring in rings]
     return [matplotlib.path.Path.make_compound_path(*closed[begin:end])
             for begin, end in zip(first_ring[:-1], first_ring[1:])]
+
+
+def size_range(area):
+    """The range of a colour scale of areas [m2]."""
+    ordered = np.sort(area)
+    low, high = ordered[np.searchsorted(np.cumsum(ordered), 0.01 * ordered.sum())], ordered[-1]
+    return (low, high) if high > 1.0001 * low else (low / 2, high * 2)
+
+
+def set_of_blocks(file):
+    """For each block the joint set with the largest length in its outline, -1 if it has no joint."""
+    joint, block = figure.array(file, "/edges/joint"), figure.array(file, "/edges/block")
+    ends = figure.array(file, "/vertices/position")[figure.array(file, "/edges/vertex")]
+    length = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
+    of_joint = figure.array(file, "/joints/set")
+    total = np.zeros((len(figure.array(file, "/blocks/area")), len(figure.texts(file, "/names/joint_set")) + 1))
+    for side in (0, 1):
+        chosen = (joint >= 0) & (block[:, side] >= 0)
+        np.add.at(total, (block[chosen, side], of_joint[joint[chosen]]), length[chosen])
+    return np.where(total.max(axis=1) > 0, total.argmax(axis=1), -1)
 
 
 def draw_edges(file, axes):
@@ -50,31 +75,33 @@ def draw(file, arguments):
     plot, axes = figure.section_axes(position)
     entries = draw_edges(file, axes)
 
+    fills = []
     if arguments.by == "size":
-        low, high = np.min(area), np.max(area)
-        if high < 1.0001 * low:  # a colour scale needs a range
-            low, high = low / 2, high * 2
-        blocks = PathCollection(paths, cmap="cividis", norm=matplotlib.colors.LogNorm(low, high), zorder=0)
+        low, high = size_range(area)
+        blocks = PathCollection(paths, cmap=figure.SHADES, norm=matplotlib.colors.LogNorm(low, high), zorder=0)
         blocks.set_array(area)
         axes.add_collection(blocks)
-        plot.colorbar(blocks, ax=axes, label="block area (m²)", shrink=0.6)
+        scale = plot.colorbar(blocks, ax=axes, label="block area (m²)", shrink=0.6,
+                              extend="min" if low > np.min(area) else "neither")
+        scale.ax.yaxis.set_major_locator(matplotlib.ticker.LogLocator(subs=(1, 2, 5)))
+        scale.ax.yaxis.set_major_formatter("{x:g}")
+        scale.ax.yaxis.set_minor_locator(matplotlib.ticker.NullLocator())
     else:
-        code = figure.array(file, f"/blocks/{arguments.by}")
-        names = figure.texts(file, f"/names/{arguments.by}")
-        present = np.unique(code)  # in order; -1 stays
-        # Paled, so that the edges stay visible.
-        shades = 0.4 + 0.6 * matplotlib.colormaps["cividis"](np.linspace(0.15, 1, max(len(names), 2)))[:, :3]
-        for i in present:
+        code = set_of_blocks(file) if arguments.by == "set" else figure.array(file, f"/blocks/{arguments.by}")
+        names = figure.texts(file, "/names/joint_set" if arguments.by == "set" else f"/names/{arguments.by}")
+        others = {"stage": "stays", "set": "no joint"}.get(arguments.by)
+        shades = figure.SHADES(np.linspace(0.1, 0.95, max(len(names), 2)))
+        for i in np.unique(code):  # -1 comes first
             shade = "white" if i < 0 else shades[i]
             of_code = [path for path, c in zip(paths, code) if c == i]
             axes.add_collection(PathCollection(of_code, facecolor=[shade], zorder=0))
-            entries.append(matplotlib.patches.Patch(facecolor=shade, edgecolor="k", linewidth=0.5,
-                                                    label="stays" if i < 0 else names[i]))
+            label = others if i < 0 else f"outline mostly {names[i]}" if arguments.by == "set" else names[i]
+            fills.append(matplotlib.patches.Patch(facecolor=shade, edgecolor="k", linewidth=0.5, label=label))
     entries.append(matplotlib.lines.Line2D([], [], linestyle="none", label=f"{len(paths)} blocks"))
-    figure.legend_below(axes, entries)
+    figure.legend_below(axes, entries + fills)
     return plot
 
 
 if __name__ == "__main__":
-    figure.run(draw, figure.arguments_of(__doc__, (["--by"], {"choices": ["size", "rock", "stage"],
+    figure.run(draw, figure.arguments_of(__doc__, (["--by"], {"choices": ["size", "set", "rock", "stage"],
                                                               "default": "size", "help": "default: size"})))

@@ -49,23 +49,20 @@ def draw(file, arguments):
     plot, panels = figure.plt.subplots(rows, columns, sharex=True, squeeze=False,
                                        figsize=(figure.TWO_COLUMNS, 1.0 + 1.6 * rows))
     panels = panels.ravel()
+    stages = [row for row, name in enumerate(event) if name]
     for axes, point in zip(panels, chosen):
         of_point = {name: values[..., point] for name, values in statistics.items()}
         draw_point(axes, time, of_point, probabilities, count[:, point] > 1, max(1, len(time) // 12))
-        for day in time[[bool(name) for name in event]]:
-            axes.axvline(day, color="0.6", linewidth=0.6, zorder=0)
+        figure.mark_stages(axes, time[stages], [event[row] for row in stages], axes in panels[:columns])
         axes.axhline(0, color="0.8", linewidth=0.5, zorder=0)
-        axes.set_title(names[point], loc="left", fontsize=8, pad=3)
+        axes.annotate(names[point], (0, 1), xycoords="axes fraction", xytext=(4, -4), textcoords="offset points",
+                      ha="left", va="top", path_effects=figure.HALO)
         axes.margins(x=0.02, y=0.06)
     for axes in panels[len(chosen):]:
         axes.set_visible(False)
     for axes in panels[max(0, len(chosen) - columns):len(chosen)]:
-        axes.set_xlabel("time since the start (days)")
+        axes.set_xlabel(figure.time_label(file))
         axes.tick_params(labelbottom=True)
-    for axes in panels[:columns]:
-        for day, name in [(day, name) for day, name in zip(time, event) if name]:
-            axes.annotate(name, (day, 0), xycoords=("data", "axes fraction"), xytext=(2, 3), rotation=90,
-                          textcoords="offset points", ha="left", va="bottom", fontsize=6.5, color="0.3")
     since = ", since the first reading" if arguments.since_first_reading else ""
     plot.supylabel(LABELS[arguments.component].replace(" (mm)", since + " (mm)"), fontsize=8)
 

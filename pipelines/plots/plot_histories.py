@@ -78,14 +78,6 @@ def without(arguments, file):
         return Histories(other, arguments)
 
 
-def draw_stages(axes, histories):
-    for row, name in enumerate(histories.event):
-        if name:
-            axes.axvline(histories.time[row], color="0.6", linewidth=0.6, zorder=0)
-            axes.annotate(name, (histories.time[row], 1.01), xycoords=("data", "axes fraction"), rotation=25,
-                          ha="left", va="bottom", rotation_mode="anchor", fontsize=6.5)
-
-
 def draw(file, arguments):
     histories = Histories(file, arguments)
     names = histories.names
@@ -93,7 +85,7 @@ def draw(file, arguments):
     looks = [{"color": figure.COLORS[i % 6], "marker": figure.MARKERS[i % 6], "markerfacecolor": "white",
               "markeredgewidth": 0.8, "linewidth": 1.0,
               "linestyle": "-" if arguments.without else figure.LINES[i % 6]} for i in range(len(names))]
-    exact, title = arguments.closed_form == "column", None
+    exact, title = arguments.closed_form == "column", "measuring point"
     if exact:
         if arguments.component != "y" or arguments.readings or arguments.without:
             raise figure.NotWanted("the column's closed form is vertical, with creep and since the in-situ "
@@ -109,7 +101,7 @@ def draw(file, arguments):
         shown = histories.shown[:, i]
         drawn = {**look, "linestyle": "none"} if exact else {**look, "markevery": max(1, len(shown) // 25)}
         axes.plot(histories.time[shown], histories.values[shown, i], zorder=3, **drawn)
-        entries.append(matplotlib.lines.Line2D([], [], label=f"point {name}", **look))
+        entries.append(matplotlib.lines.Line2D([], [], label=f"point {name}" if exact else name, **look))
     if arguments.without:
         other = without(arguments, file)
         thin = {"linestyle": (0, (4, 2)), "linewidth": 0.7}
@@ -119,9 +111,10 @@ def draw(file, arguments):
         entries.append(matplotlib.lines.Line2D([], [], color="0.3", label="without creep", **thin))
 
     axes.margins(x=0.02, y=0.05)
-    draw_stages(axes, histories)
+    stages = [row for row, name in enumerate(histories.event) if name]
+    figure.mark_stages(axes, histories.time[stages], [histories.event[row] for row in stages])
     since = "since each point's first reading" if arguments.readings else "since the in-situ equilibrium"
-    axes.set_xlabel("time since the start (days)")
+    axes.set_xlabel(figure.time_label(file))
     axes.set_ylabel(f"{LABELS[arguments.component]},\n{since} (mm)")
     place = {"loc": "best"}
     if len(entries) > 4:  # too many to find room among the curves

@@ -11,7 +11,8 @@ import figure
 
 
 def draw_joints(file, axes, inside):
-    """Joint lines thin and dashed, and over them, solid, what of them is joint. Returns legend entries."""
+    """Joint lines dotted, and over them, solid, what of them is joint: the dots left are rock bridges. Returns legend
+    entries."""
     sets = figure.texts(file, "/names/joint_set")
     joint_set = figure.array(file, "/joints/set")
     lines = np.stack([figure.array(file, "/joints/from"), figure.array(file, "/joints/to")], axis=1)
@@ -23,24 +24,26 @@ def draw_joints(file, axes, inside):
     open_length = np.bincount(trace_joint, trace_length, len(lines))
     has_bridges = open_length < joint_length * (1 - 1e-9)
 
-    width = 1.1 if len(lines) < 200 else 0.6
+    width = min(1, max(0.4, (80 / max(1, len(lines))) ** 0.5))  # the more lines, the thinner
     entries = []
     if np.any(has_bridges):
-        bridges = LineCollection(lines[has_bridges], colors="0.55", linewidths=0.4, linestyles=(0, (4, 3)))
+        dots = {"color": "0.3", "linewidth": 0.6 * width, "linestyle": (0, (1, 2.2))}
+        bridges = LineCollection(lines[has_bridges], **dots)
         bridges.set_clip_path(inside)
         axes.add_collection(bridges)
-        entries.append(matplotlib.lines.Line2D([], [], color="0.55", lw=0.5, ls=(0, (4, 3)), label="rock bridge"))
+        entries.append(matplotlib.lines.Line2D([], [], label="rock bridge", **dots))
     for i, name in enumerate(sets):
         of_set = joint_set[trace_joint] == i
         if not np.any(of_set):
             continue
-        style = {"color": figure.COLORS[i % 6], "linewidth": width * (1 + 0.5 * (i // 6))}
+        style = {"color": figure.COLORS[i % 6], "linewidth": width * figure.WIDTHS[i % 6]}
         collection = LineCollection(traces[of_set], capstyle="butt", zorder=2, **style)
         collection.set_clip_path(inside)
         axes.add_collection(collection)
         entries.append(matplotlib.lines.Line2D([], [], **style, label=name))
     if len(entries) > 8:  # many single joints: one entry for all
-        entries = entries[:1] + [matplotlib.lines.Line2D([], [], color=figure.COLORS[0], label="joints")]
+        bridge = entries[:1] if np.any(has_bridges) else []
+        entries = [*bridge, matplotlib.lines.Line2D([], [], color=figure.COLORS[0], label="joints")]
     return entries
 
 
@@ -117,12 +120,12 @@ def draw(file, _):
     inside = matplotlib.patches.Polygon(outline, facecolor="none", edgecolor="k", linewidth=1.0, zorder=3)
     axes.add_patch(inside)
 
-    entries = draw_joints(file, axes, inside)
-    entries += draw_stages(scene, outline, axes, inside)
-    entries += draw_boundaries(scene, outline, axes)
-    entries += draw_places(scene, "point", "measuring point", "o", axes)
-    entries += draw_places(scene, "gauge", "gauge on a joint", "D", axes)
-    figure.legend_below(axes, entries)
+    joints = draw_joints(file, axes, inside)
+    stages = draw_stages(scene, outline, axes, inside)
+    others = draw_boundaries(scene, outline, axes)
+    others += draw_places(scene, "point", "measuring point", "o", axes)
+    others += draw_places(scene, "gauge", "gauge on a joint", "D", axes)
+    figure.legend_below(axes, joints, stages, others)
     return plot
 
 

@@ -2,7 +2,8 @@
 """The section at one state of a result file: displacement, stress or the state of the contacts. Removed rock is not
 drawn, and positions are those at the start, unless displacements are magnified.
 
-The state is its number, counted from 0, the name of the stage that it follows, or "last".
+The state is its number, counted from 0, the name of the stage that it follows (with hyphens for blanks, if that is
+easier), or "last".
 """
 
 import matplotlib.colors
@@ -22,9 +23,6 @@ COMPONENTS = {
     "xx": "horizontal stress $\\sigma_{xx}$",
     "yy": "vertical stress $\\sigma_{yy}$",
 }
-# Pale where there is little, so that black lines and arrows stay visible over it.
-SHADES = matplotlib.colors.ListedColormap(
-    0.2 + 0.8 * matplotlib.colormaps["YlGnBu"](np.linspace(0, 0.95, 256))[:, :3])
 figure.plt.rcParams["savefig.bbox"] = "tight"  # scales and legends leave margins of different widths
 figure.plt.rcParams["savefig.pad_inches"] = 0.03
 
@@ -50,6 +48,9 @@ def state_index(file, wanted):
         return int(wanted)
     if wanted and wanted in event:
         return event.index(wanted)
+    hyphenated = [name.replace(" ", "-") for name in event]
+    if wanted and wanted in hyphenated:
+        return hyphenated.index(wanted)
     names = "\n".join(f"{state}: {name_of(file, state)}" for state in range(len(event)))
     raise figure.NotWanted(f"there is no state '{wanted}'; there are:\n{names}")
 
@@ -112,7 +113,7 @@ def add_scale(axes, colored, label, low, high, values):
 def draw_displacement(file, state, section, axes, arguments):
     size = 1e3 * np.linalg.norm(section.displacement, axis=1)
     low, high = arguments.range or (0, size[np.unique(section.zones)].max() or 1)
-    colored = axes.tripcolor(section.triangles, size, shading="gouraud", cmap=SHADES, vmin=low, vmax=high,
+    colored = axes.tripcolor(section.triangles, size, shading="gouraud", cmap=figure.SHADES, vmin=low, vmax=high,
                              rasterized=True)
     add_scale(axes, colored, "displacement since the in-situ equilibrium (mm)", low, high,
               size[np.unique(section.zones)])
@@ -122,9 +123,22 @@ def draw_displacement(file, state, section, axes, arguments):
     place = section.position[section.zones[chosen]].mean(axis=1)
     arrow = 1e3 * section.displacement[section.zones[chosen]].mean(axis=1)
     longest = high if arguments.range else max(np.linalg.norm(arrow, axis=1).max(), 1e-12)
-    axes.quiver(*place.T, *arrow.T, angles="xy", scale_units="xy", scale=longest / (1.25 * spacing), units="inches",
-                width=0.012, headwidth=4, headlength=5, headaxislength=4.5, minlength=0.6, zorder=5)
+    arrows = axes.quiver(*place.T, *arrow.T, angles="xy", scale_units="xy", scale=longest / (1.25 * spacing),
+                         units="inches", width=0.012, headwidth=4, headlength=5, headaxislength=4.5, minlength=0.6,
+                         zorder=5)
+    add_key(axes, arrows, round_below(longest), "mm")
     return []
+
+
+def round_below(value):
+    """The largest of 1, 2, 5 times a power of ten that is not above a positive value."""
+    power = 10.0 ** np.floor(np.log10(value))
+    return max(power * digit for digit in (1, 2, 5) if power * digit <= value * (1 + 1e-9))
+
+
+def add_key(axes, arrows, value, unit):
+    """How long an arrow, or a cross, of some size is: in the corner above the section."""
+    axes.quiverkey(arrows, 0.9, 0.965, value, f"{value:g} {unit}", labelpos="W", labelsep=0.06)
 
 
 def principal(stress):
@@ -135,26 +149,29 @@ def principal(stress):
 
 
 def draw_crosses(section, stress, axes):
-    """Principal stresses on a coarse grid, as crosses along their directions."""
+    """Principal stresses on a coarse grid, as crosses along their directions. Legend entries name the largest of all
+    zones."""
     chosen, spacing = section.on_grid(26)
-    major, minor, angle = principal(stress[chosen])
+    major, minor, angle = principal(1e-6 * stress[chosen])  # [MPa]
     place = section.position[section.zones[chosen]].mean(axis=1)
     usual = np.percentile(np.abs([major, minor]), 95)  # a few in corners are much longer
-    arms = []
-    for value, direction in ((major, angle), (minor, angle + np.pi / 2)):
-        half = 0.5 * spacing * np.abs(value / (usual or 1))
-        along = half[:, None] * np.stack([np.cos(direction), np.sin(direction)], axis=1)
-        arms.append((value, np.stack([place - along, place + along], axis=1)))
-    values, lines = np.concatenate([arm[0] for arm in arms]), np.concatenate([arm[1] for arm in arms])
+    nothing = 1e-6 * np.max(np.abs([major, minor]))  # rounding
+    look = {"angles": "xy", "scale_units": "xy", "scale": (usual or 1) / spacing, "units": "inches", "pivot": "mid",
+            "headwidth": 0, "headlength": 0, "headaxislength": 0, "minlength": 0, "zorder": 5}
+    values = np.concatenate([major, minor])
+    along = np.concatenate([angle, angle + np.pi / 2])
+    arms = np.abs(values)[:, None] * np.stack([np.cos(along), np.sin(along)], axis=1)
+    places = np.concatenate([place, place])
     entries = []
-    nothing = 1e-6 * np.max(np.abs(values))  # rounding
-    for chosen_arms, label, look in ((values > nothing, "compressive", {"color": "k", "linewidth": 0.6}),
-                                     (values < -nothing, "tensile", {"color": figure.COLORS[1], "linewidth": 1.6})):
-        if np.any(chosen_arms):
-            axes.add_collection(LineCollection(lines[chosen_arms], zorder=5, **look))
-            largest = 1e-6 * np.abs(values[chosen_arms]).max()
-            label += f" principal stress, up to {largest:.2g} MPa"
-            entries.append(matplotlib.lines.Line2D([], [], label=label, **look))
+    for sign, label, color, width in ((1, "compressive", "k", 0.008), (-1, "tensile", figure.COLORS[1], 0.022)):
+        of_sign = sign * values > nothing
+        drawn = axes.quiver(*places[of_sign].T, *arms[of_sign].T, color=color, width=width, **look)
+        if sign > 0 and usual > 0:
+            add_key(axes, drawn, round_below(usual), "MPa")
+        largest = (sign * np.concatenate(principal(1e-6 * stress)[:2])).max()
+        if np.any(of_sign):
+            entries.append(matplotlib.lines.Line2D([], [], color=color, linewidth=72 * width,
+                                                   label=f"{label} principal stress, up to {largest:.2g} MPa"))
     return entries
 
 
@@ -167,8 +184,8 @@ def draw_stress(file, state, section, axes, arguments):
     low, high = arguments.range or np.percentile(value, [0.5, 99.5])
     if not low < high:
         low, high = low - 0.5, high + 0.5
-    colored = axes.tripcolor(section.triangles, facecolors=value, cmap=SHADES, vmin=low, vmax=high, edgecolors="face",
-                             linewidth=0.1, rasterized=True)
+    colored = axes.tripcolor(section.triangles, facecolors=value, cmap=figure.SHADES, vmin=low, vmax=high,
+                             edgecolors="face", linewidth=0.1, rasterized=True)
     add_scale(axes, colored, f"{COMPONENTS[arguments.component]},\ncompressive (MPa)", low, high, value)
     draw_borders(section, axes)
     return draw_crosses(section, stress, axes) if arguments.component in ("major", "minor") else []
@@ -208,7 +225,7 @@ def draw_contacts(file, state, section, axes, _):
     lines, of_contact = contact_lines(file, section)
     draw_borders(section, axes, joints=False)
 
-    stuck = {"color": "0.6", "linewidth": 0.5}
+    stuck = {"color": "0.65", "linewidth": 0.5}
     axes.add_collection(LineCollection(lines[status[of_contact] == STUCK], zorder=2, **stuck))
     entries = [matplotlib.lines.Line2D([], [], label=f"{np.sum(status == STUCK)} contacts closed", **stuck)]
     for code, label, jump, color in ((SLIPPING, "slipping", shear, figure.COLORS[0]),
@@ -216,7 +233,7 @@ def draw_contacts(file, state, section, axes, _):
         count = np.sum(status == code)
         largest = jump[status == code].max() if count else 0
         chosen = status[of_contact] == code
-        width = 1.6 + 2.9 * jump[of_contact[chosen]] / (largest or 1)
+        width = 2.2 + 2.6 * jump[of_contact[chosen]] / (largest or 1)
         axes.add_collection(LineCollection(lines[chosen], color=color, linewidth=width, capstyle="round",
                                            zorder=code + 1))
         entry = matplotlib.lines.Line2D([], [], color=color, linewidth=2.5, label=f"{count} {label}")

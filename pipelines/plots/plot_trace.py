@@ -2,7 +2,8 @@
 """The solver's own course: displacement of a point and normal stress at a gauge against accumulated solver time.
 
 Needs a result file whose solver was asked for a trace. Every equilibrium (in situ, stage, creep step) is one piece
-of solver time; the upper axis says which day it belongs to. A curve ends when its point or joint is removed.
+of solver time; the axis between the curves says which day it belongs to, and dark lines are where stages begin. A curve
+ends when its point or joint is removed.
 """
 
 import numpy as np
@@ -25,6 +26,35 @@ def draw_until_removed(axes, solver_time, values, removed):
     return solver_time[rows - 1]
 
 
+def stage_rows(file):
+    """Row of the trace in which each stage begins, by the stage's name. A day's equilibria share its rows in proportion
+    to their solver steps; the stages are the last of them."""
+    day, at = figure.array(file, "/trace/time"), figure.array(file, "/equilibria/time")
+    steps = figure.array(file, "/equilibria/steps")
+    increments = figure.scene_of(file).get("equilibrium", {}).get("unloading_increments", 1)
+    begins, events = {}, zip(figure.array(file, "/history/time"), figure.texts(file, "/history/event"))
+    of_day = {}
+    for date, name in events:
+        if name:
+            of_day.setdefault(date, []).append(name)
+    for date, names in of_day.items():
+        rows, own = np.flatnonzero(day == date), steps[at == date]
+        for place, name in enumerate(names):
+            before = own[:len(own) - (len(names) - place) * increments].sum()
+            if len(rows):
+                begins[name] = rows[min(len(rows) - 1, round(len(rows) * before / max(1, own.sum())))]
+    return begins
+
+
+def spread(places, apart):
+    """Which of the ascending places to label, so that labels are so far apart."""
+    chosen = []
+    for i, place in enumerate(places):
+        if not chosen or place - places[chosen[-1]] >= apart:
+            chosen.append(i)
+    return chosen
+
+
 def draw(file, arguments):
     if "/trace" not in file:
         raise figure.NotWanted("there is no trace in this file; demsolve writes one on request")
@@ -38,9 +68,10 @@ def draw(file, arguments):
         raise figure.NotWanted(f"the trace has no row from day {arguments.days[0]} to {arguments.days[1]}")
     rise = 1e3 * figure.array(file, "/trace/displacement")[shown, point, 1]
     stress = -1e-6 * figure.array(file, "/trace/traction")[shown, gauge, 0]
+    stages = {name: solver_time[row] for name, row in stage_rows(file).items() if shown[row]}
     day, solver_time = day[shown], solver_time[shown]
 
-    plot, (above, below) = figure.plt.subplots(2, 1, sharex=True, figsize=(figure.TWO_COLUMNS * 0.8, 4.2))
+    plot, (above, below) = figure.plt.subplots(2, 1, sharex=True, figsize=(figure.TWO_COLUMNS * 0.8, 4.6))
     end = max(draw_until_removed(axes, solver_time, values, removed) for axes, values, removed
               in zip((above, below), (rise, stress), is_removed(file, point, gauge)))
     day, solver_time = day[solver_time <= end], solver_time[solver_time <= end]
@@ -51,13 +82,16 @@ def draw(file, arguments):
         axes.margins(x=0.01)
 
     days, first = np.unique(day, return_index=True)
-    every = max(1, -(-len(days) // 12))
     for row in first:
         for axes in (above, below):
-            axes.axvline(solver_time[row], color="0.85", linewidth=0.5, zorder=0)
-    top = above.secondary_xaxis("top")
-    top.set_xticks(solver_time[first[::every]], [f"{d:g}" for d in days[::every]])
-    top.set_xlabel("day")
+            axes.axvline(solver_time[row], color="0.88", linewidth=0.5, zorder=-1)
+    for axes in (above, below):
+        figure.mark_stages(axes, [t for t in stages.values() if t <= end],
+                           [name for name, t in stages.items() if t <= end], axes is above)
+    labelled = spread(solver_time[first], 0.065 * np.ptp(solver_time))
+    between = below.secondary_xaxis("top")
+    between.set_xticks(solver_time[first[labelled]], [f"{days[i]:.4g}" for i in labelled])
+    between.set_xlabel(figure.time_label(file))
     return plot
 
 

@@ -8,7 +8,8 @@ OUT it writes
     ensemble.h5   mean, standard deviation, confidence interval of the mean, and quantiles, for each time, point and
                   component; what each realization was like, and which failed
     ensemble.csv  the same statistics as a table
-    summary.txt   how many ended in equilibrium, what they were like, and which failed, with their reasons
+    summary.txt   how many ended in equilibrium, how far the points moved, what each realization was like and what
+                  cutting did to it, and which failed, with their reasons
 Files whose content has not changed stay as they are.
 
 Only realizations in equilibrium count: those that failed, some because they slide, are named and not averaged. A
@@ -25,6 +26,7 @@ import math
 import os
 import pathlib
 import sys
+import tomllib
 from dataclasses import dataclass
 
 import h5py
@@ -32,12 +34,32 @@ import numpy as np
 
 PROBABILITIES = [0.05, 0.25, 0.50, 0.75, 0.95]
 CONFIDENCE = 0.95
+CUTTING = ["shortest_edge", "merged_vertices", "merged_edge_length", "merged_block_area", "largest_move",
+           "pruned_length"]
 SAME = ["/scene", "/provenance/program", "/provenance/version", "/history/time", "/history/event", "/history/point",
         "/history/point_position", "/history/first_reading_row"]
 KINDS = {
     "displacement": "since the in-situ equilibrium",
     "displacement_since_first_reading": "since the first reading of the point",
 }
+# What is told of each realization: name, unit, heading and format in the summary, description.
+OF_EACH = [
+    ("blocks", "1", "blocks", "d", "Blocks it has."),
+    ("zones", "1", "zones", "d", "Zones it has."),
+    ("shortest_edge", "m", "shortest\nedge (m)", ".4g", "Its shortest edge between blocks."),
+    ("smallest_zone_altitude", "m", "smallest zone\naltitude (m)", ".4g", "Its smallest zone altitude."),
+    ("solver_steps", "1", "solver\nsteps", "d", "Steps of the solver."),
+    ("largest_out_of_balance_ratio", "1", "out-of-balance\nratio", ".1e",
+     "Largest out-of-balance ratio that an equilibrium ended with."),
+    ("energy_error", "1", "energy\nbalance", ".1e",
+     "Largest error of work = stored + dissipated + damped of all equilibria, over the largest of the four."),
+    ("area_error", "1", "area\nbalance", ".1e", "Area of all blocks over the section's, less 1; without its sign."),
+    ("merged_vertices", "1", "merged\nvertices", "d", "Vertices that cutting merged with another."),
+    ("merged_edge_length", "m", "merged\nedges (m)", ".3g", "Length of edges that vanished so."),
+    ("merged_block_area", "m2", "merged\nblocks (m2)", ".3g", "Area of blocks that vanished so."),
+    ("largest_move", "m", "largest\nmove (m)", ".3g", "How far cutting moved a vertex at most."),
+    ("pruned_length", "m", "cut\nback (m)", ".3g", "Length of joints that ended inside a block and were cut back."),
+]
 
 
 class NotWanted(Exception):
@@ -50,12 +72,7 @@ class Realization:
     common: dict  # what must be the same in all
     displacement: np.ndarray  # [time, point, 2] [m]
     present: np.ndarray  # [time, point]
-    blocks: int
-    zones: int
-    shortest_edge: float  # [m]
-    smallest_zone_altitude: float  # [m]
-    solver_steps: int
-    largest_out_of_balance_ratio: float  # [-]
+    values: dict  # of OF_EACH, by name
 
 
 def smallest_altitude(position, zone):
@@ -65,6 +82,23 @@ def smallest_altitude(position, zone):
     longest = np.linalg.norm(side, axis=2).max(axis=1)
     twice_area = side[:, 0, 0] * side[:, 1, 1] - side[:, 0, 1] * side[:, 1, 0]
     return float((twice_area / longest).min())
+
+
+def energy_error(file):
+    """Largest error of work = stored + dissipated + damped of all equilibria, over the largest of the four [-]."""
+    terms = np.stack([file[f"/equilibria/{name}"][()] for name in
+                      ("work_of_loads", "stored_energy", "dissipated_energy", "damped_energy")])
+    largest = np.abs(terms).max(axis=0)
+    error = np.abs(terms[0] - terms[1:].sum(axis=0))
+    return float(np.divide(error, largest, out=np.zeros_like(error), where=largest > 0).max())
+
+
+def area_error(file):
+    """How far the area of all blocks is from that of the section, relative to it [-]."""
+    corner = np.array(tomllib.loads(text_of(file["/scene"][0]))["section"]["outline_m"], float)
+    x, y = (corner - corner[0]).T
+    section = abs(math.fsum(x * np.roll(y, -1) - y * np.roll(x, -1))) / 2
+    return abs(math.fsum(file["/blocks/area"][()]) / section - 1)
 
 
 def text_of(value):
@@ -87,13 +121,17 @@ def read(path, number):
                 },
                 displacement=file["/history/displacement"][()],
                 present=file["/history/present"][()],
-                blocks=len(file["/blocks/area"]),
-                zones=len(file["/mesh/zone_block"]),
-                shortest_edge=float(file["/cutting/shortest_edge"][0]),
-                smallest_zone_altitude=smallest_altitude(
-                    file["/mesh/gridpoint_position"][()], file["/mesh/zone_gridpoint"][()]),
-                solver_steps=int(file["/equilibria/steps"][()].sum()),
-                largest_out_of_balance_ratio=float(file["/equilibria/out_of_balance_ratio"][()].max()),
+                values={
+                    "blocks": len(file["/blocks/area"]),
+                    "zones": len(file["/mesh/zone_block"]),
+                    "smallest_zone_altitude": smallest_altitude(
+                        file["/mesh/gridpoint_position"][()], file["/mesh/zone_gridpoint"][()]),
+                    "solver_steps": int(file["/equilibria/steps"][()].sum()),
+                    "largest_out_of_balance_ratio": float(file["/equilibria/out_of_balance_ratio"][()].max()),
+                    "energy_error": energy_error(file),
+                    "area_error": area_error(file),
+                    **{name: file[f"/cutting/{name}"][0].item() for name in CUTTING},
+                },
             )
         except KeyError as error:
             raise NotWanted(f"something is missing: {error}") from error
@@ -187,15 +225,10 @@ def write_hdf5(path, found, failed, statistics):
         file.attrs["format_version"] = np.array([1, 0], np.int32)
         file.attrs["seed"] = common["the seed"]
         put("/scene", [text_of(common["/scene"][0])], "1", "Text of the scene.")
-        for name, units, what in (
-                ("number", "1", "Number of a realization that ended in equilibrium."),
-                ("blocks", "1", "Blocks it has."),
-                ("zones", "1", "Zones it has."),
-                ("shortest_edge", "m", "Its shortest edge between blocks."),
-                ("smallest_zone_altitude", "m", "Its smallest zone altitude."),
-                ("solver_steps", "1", "Steps of the solver."),
-                ("largest_out_of_balance_ratio", "1", "Largest out-of-balance ratio that an equilibrium ended with.")):
-            put(f"/realization/{name}", np.array([getattr(one, name) for one in found]), units, what)
+        put("/realization/number", np.array([one.number for one in found]), "1",
+            "Number of a realization that ended in equilibrium.")
+        for name, units, _, _, what in OF_EACH:
+            put(f"/realization/{name}", np.array([one.values[name] for one in found]), units, what)
         put("/failed/number", np.array(list(failed), np.int64), "1", "Number of a realization that failed.")
         put("/failed/reason", list(failed.values()), "1", "Why.")
         put("/history/time", common["/history/time"], "day", "Time since the start.")
@@ -241,22 +274,57 @@ def table(found, statistics):
     return text.getvalue()
 
 
-def summary(found, failed):
-    lines = [f"realizations                  {len(found) + len(failed)}", f"in equilibrium                {len(found)}"]
-    for label, name, unit, select in (
-            ("blocks", "blocks", "", None), ("zones", "zones", "", None), ("solver steps", "solver_steps", "", None),
-            ("largest out-of-balance ratio", "largest_out_of_balance_ratio", "", max),
-            ("shortest edge", "shortest_edge", " m", min),
-            ("smallest zone altitude", "smallest_zone_altitude", " m", min)):
-        values = {one.number: getattr(one, name) for one in found}
-        if not values:
-            continue
-        if select is None:
-            lines.append(f"{label:<29} {min(values.values())} to {max(values.values())}")
-        else:
-            number = select(values, key=values.get)
-            lines.append(f"{label:<29} {values[number]:.6g}{unit} (realization {number})")
-    lines += [f"failed {number:04d}: {reason}" for number, reason in failed.items()]
+def in_columns(headings, rows):
+    """Lines of text, the columns aligned on their right; headings may have several lines."""
+    headings = [heading.split("\n") for heading in headings]
+    height = max(map(len, headings))
+    rows = [*zip(*([""] * (height - len(heading)) + heading for heading in headings)), *rows]
+    widths = [max(map(len, column)) for column in zip(*rows)]
+    return ["  ".join(cell.rjust(width) for cell, width in zip(row, widths)) for row in rows]
+
+
+def moves_in_the_end(found, statistics):
+    """Mean, half of its confidence interval, deviation and middle half of each point's displacement in the end."""
+    arrays = statistics["displacement"]
+    lower, upper = PROBABILITIES.index(0.25), PROBABILITIES.index(0.75)
+    headings = ["point", "", "realizations", "mean\n(mm)", "+-\n(mm)", "standard\ndeviation (mm)", "middle\nhalf (mm)"]
+    rows = []
+    for point, name in enumerate(found[0].common["/history/point"]):
+        for component in (0, 1):
+            at = -1, point, component
+            count = arrays["count"][-1, point]
+            if count < 2:  # it has been removed
+                continue
+            mean, deviation, high, low_quarter, high_quarter = (
+                1e3 * value for value in (arrays["mean"][at], arrays["standard_deviation"][at], arrays["mean_high"][at],
+                                          arrays["quantile"][(lower, *at)], arrays["quantile"][(upper, *at)]))
+            rows.append([text_of(name), "xy"[component], str(count), f"{mean:.3f}", f"{high - mean:.3f}",
+                         f"{deviation:.3f}", f"{low_quarter:.3f} to {high_quarter:.3f}"])
+    end = float(found[0].common["/history/time"][-1])
+    return [f"displacement on day {end:g} since the in-situ equilibrium; +-: {CONFIDENCE:.0%} confidence of the mean",
+            *in_columns(headings, rows)]
+
+
+def summary(found, failed, statistics=None):
+    """What was computed, in words; without statistics, as far as there is anything."""
+    lines = [f"realizations    {len(found) + len(failed)}", f"in equilibrium  {len(found)}"]
+    if found:
+        rows = [[f"{one.number:04d}", *(format(one.values[name], shown) for name, _, _, shown, _ in OF_EACH)]
+                 for one in found]
+        for label, of in (("least", min), ("most", max)):
+            rows.append([label, *(format(of(one.values[name] for one in found), shown)
+                                  for name, _, _, shown, _ in OF_EACH)])
+        headings = ["number", *(heading for _, _, heading, _, _ in OF_EACH)]
+        lines += ["", *in_columns(headings, rows), "",
+                  "out-of-balance ratio: the largest that an equilibrium ended with",
+                  "energy balance: largest error of work = stored + dissipated + damped of all equilibria, over the "
+                  "largest of the four",
+                  "area balance: area of all blocks over that of the section, less 1",
+                  "merged, moved, cut back: what cutting did to edges too short, angles too small and loose joint ends"]
+    if statistics:
+        lines += ["", *moves_in_the_end(found, statistics)]
+    if failed:
+        lines += ["", *(f"failed {number:04d}: {reason}" for number, reason in failed.items())]
     return "\n".join(lines) + "\n"
 
 
@@ -281,11 +349,11 @@ def main():
     out = arguments.output
     try:
         found, failed = read_all(arguments.folder, arguments.count)
-        words = summary(found, failed)
         if len(found) < 2:
-            print(words, end="", file=sys.stderr)
+            print(summary(found, failed), end="", file=sys.stderr)
             raise NotWanted(f"{len(found)} of {arguments.count} realizations are in equilibrium; statistics need 2")
         statistics = all_statistics(found)
+        words = summary(found, failed, statistics)
         replace_if_changed(out / "ensemble.csv", lambda path: path.write_text(table(found, statistics), "utf-8"))
         replace_if_changed(out / "summary.txt", lambda path: path.write_text(words, "utf-8"))
         replace_if_changed(out / "ensemble.h5", lambda path: write_hdf5(path, found, failed, statistics))

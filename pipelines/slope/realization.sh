@@ -1,7 +1,10 @@
 #!/bin/sh
 # One realization of a scene through the chain.
 #
-#     realization.sh PROGRAMS SCENE.toml FOLDER NUMBER
+#     realization.sh PROGRAMS SCENE.toml FOLDER NUMBER PARENT
+#
+# PARENT is the process that it works for. Whoever starts this asks the kernel to kill it when that one dies (setpriv
+# --pdeathsig), and that only holds from then on: if it has died before, nothing is done.
 #
 # It ends with one of two files in FOLDER, each of which appears whole or not at all:
 #   NUMBER.h5      the result: every equilibrium was found
@@ -11,8 +14,9 @@
 # Exit code 0 if it has ended, either way. A program that was stopped from outside, or that could not write (exit
 # code 4), is not the end of a realization: its exit code is handed on, and the next time it is tried again.
 set -u
-programs=$1 scene=$2 folder=$3 number=$4
+programs=$1 scene=$2 folder=$3 number=$4 parent=$5
 ended=$folder/$number work=$folder/$number.work
+[ "$PPID" = "$parent" ] || exit 143
 
 # The log is also the lock: whoever else still works at this realization has to end first.
 exec 9>>"$ended.log" || exit 4
@@ -30,7 +34,9 @@ end() {
 run() {
     program=$1
     shift
-    setpriv --pdeathsig KILL "$programs/$program" "$@" >>"$ended.log" 2>"$work/message"
+    # Here too the parent may have died first; $0 is its number then, and PPID another.
+    setpriv --pdeathsig KILL sh -c '[ "$PPID" = "$0" ] || exit 143; exec "$@"' $$ "$programs/$program" "$@" \
+        >>"$ended.log" 2>"$work/message"
     code=$?
     cat "$work/message" >>"$ended.log"
     case $code in

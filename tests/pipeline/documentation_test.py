@@ -9,7 +9,7 @@ import h5py
 from chain import ChainTest, main
 
 PROGRAMS = ["jointgen", "strength-averaging", "demsolve", "jointexport"]
-BUILD_AND_RUN = "sh pipelines/setup.sh && make -C pipelines/column"
+BUILD_AND_RUN = "sh pipelines/setup.sh && make -C pipelines/slope"
 BUILD_AND_TEST = "sh pipelines/setup.sh && ctest --preset release"
 
 
@@ -33,8 +33,31 @@ class Documentation(ChainTest):
         run = self.chain.text(".ci/run").splitlines()
         self.assertEqual([line for line in run if "pipelines" in line], [BUILD_AND_TEST])
         self.assertEqual(run[-1], BUILD_AND_TEST)
-        for path in "pipelines/setup.sh", "pipelines/column/Makefile", ".ci/run":
+        for path in "pipelines/setup.sh", "pipelines/slope/Makefile", ".ci/run":
             self.assertTrue((self.chain.source / path).is_file(), path)
+
+    def planned(self, command):
+        """What a make command would run."""
+        done = subprocess.run([*command.split(), "-n", f"BIN={self.chain.programs}", f"OUT={self.chain.new_folder()}"],
+                              cwd=self.chain.source, capture_output=True, text=True, timeout=300)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return done.stdout
+
+    def test_make_commands(self):
+        """Those in README and docs/programs.md are possible, and the pictures that README speaks of are made."""
+        readme = self.chain.text("README.md")
+        commands = re.findall(r"make -C pipelines/[^\n`]*", readme + self.chain.text("docs/programs.md"))
+        plans = {command: self.planned(command) for command in sorted(set(commands))}
+        self.assertGreaterEqual(len(plans), 7)
+        made = set(re.findall(r" -o \S+/([\w-]+\.png)$", "\n".join(plans.values()), flags=re.MULTILINE))
+        named = set(re.findall(r"`(?:out/column/)?([\w-]+\.png)`", readme))
+        self.assertGreaterEqual(len(named), 5)
+        self.assertLessEqual(named, made)
+
+    def test_pictures(self):
+        shown = re.findall(r"^!\[.+\]\((.+)\)$", self.chain.text("README.md"), flags=re.MULTILINE)
+        self.assertEqual(sorted(shown), sorted(f"docs/pictures/{path.name}" for path in
+                                               (self.chain.source / "docs" / "pictures").iterdir()))
 
     def test_readmes_scene_and_chain(self):
         """The scene in README runs through the commands in README, where they find this build's programs."""

@@ -1,12 +1,17 @@
-"""Realizations of a small scene through pipelines/slope/Makefile: their statistics do not depend on how they were run.
+"""Realizations through pipelines/slope/Makefile: their statistics do not depend on how they were run.
 
-The Makefile gets a folder of programs of its own (BIN), in which each is a script that waits a moment, so that there
-is time to interrupt it, or gives up on purpose, and else hands on to the real program.
+    realizations_test.py PROGRAMS SOURCE Small      of a small scene, in every way
+    realizations_test.py PROGRAMS SOURCE Slope      of the bench slope: one at a time, two, and interrupted
+
+The Makefile gets a folder of programs of its own (BIN), in which each is a script that notes its call, and then hands
+on to the real program, gives up on purpose, or hangs until it is killed. A run in which one realization hangs cannot
+end by itself. So it does not depend on the load of the machine what an interrupt meets.
 """
 
 import csv
 import math
 import os
+import pathlib
 import signal
 import subprocess
 import time
@@ -122,25 +127,65 @@ seed = 3
 
 WRAPPER = """#!/bin/sh
 echo "$0 $*" >>{calls}
-sleep {wait}
 case "$*" in {cases} esac
 exec {program} "$@"
 """
 
 
-class Realizations(ChainTest):
+def hangs(*numbers):
+    """A case of a program's arguments: for these realizations it hangs."""
+    return "".join(f"*{number:04d}*) exec sleep {10 * LONGEST_RUN} ;; " for number in numbers)
+
+
+# Ways to stop make; it leads a process group.
+def kill_make(running):  # alone, without those that work for it
+    os.kill(running.pid, signal.SIGKILL)
+
+
+def kill_all(running):
+    os.killpg(running.pid, signal.SIGKILL)
+
+
+def interrupt(running):  # what Ctrl-C does
+    os.killpg(running.pid, signal.SIGINT)
+
+
+def terminate(running):
+    os.kill(running.pid, signal.SIGTERM)
+
+
+def alive(session):
+    """Processes of a session, without those that are dead and only not yet waited for."""
+    found = []
+    for path in pathlib.Path("/proc").glob("[0-9]*/stat"):
+        try:
+            state, _, _, its_session = path.read_text().rpartition(")")[2].split()[:4]
+        except (OSError, ValueError):  # it has ended meanwhile
+            continue
+        if int(its_session) == session and state not in "ZX":
+            found.append(int(path.parent.name))
+    return found
+
+
+class Runs(ChainTest):
+    """Tools to run realizations of the scene `text`, and to stop them."""
+
+    text: str
+    count: int
+
     def setUp(self):
         self.folder = self.chain.new_folder()
         self.scene = self.folder / "scene.toml"
-        self.scene.write_text(SCENE)
+        self.scene.write_text(self.text)
         self.calls = self.folder / "calls"
 
-    def programs(self, wait=0.0, **cases):
-        """A folder of programs that each wait [s] first; `demsolve="*0002*) exit 3 ;;"` is a case of its arguments."""
+    def programs(self, **cases):
+        """A folder of programs; `demsolve="*0002*) exit 3 ;;"` is a case of its arguments, strength stands for
+        strength-averaging."""
         folder = self.chain.new_folder()
         for name in ("jointgen", "strength-averaging", "demsolve"):
             script = folder / name
-            script.write_text(WRAPPER.format(calls=self.calls, wait=wait, cases=cases.get(name, ""),
+            script.write_text(WRAPPER.format(calls=self.calls, cases=cases.get(name.split("-")[0], ""),
                                              program=self.chain.programs / name))
             script.chmod(0o755)
             os.utime(script, (0, 0))  # so that another folder of programs does not make results old
@@ -148,7 +193,7 @@ class Realizations(ChainTest):
 
     def command(self, out, programs, *more):
         return ["make", "-C", self.chain.source / "pipelines" / "slope", f"OUT={out}", f"SCENE={self.scene}",
-                f"BIN={programs}", f"N={N}", *more]
+                f"BIN={programs}", f"N={self.count}", *more]
 
     def environment(self):
         return {name: value for name, value in os.environ.items() if name not in ("MAKEFLAGS", "MFLAGS", "MAKELEVEL")}
@@ -163,14 +208,35 @@ class Realizations(ChainTest):
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
         return out
 
-    def started(self, out, programs, *more):
-        """make at work, the first of a process group of its own."""
-        return subprocess.Popen(self.command(out, programs, *more), stdout=subprocess.DEVNULL,
-                                stderr=subprocess.DEVNULL, env=self.environment(), start_new_session=True)
-
     def number_of_calls(self):
         """Of all programs; a realization needs three."""
         return self.calls.read_text().count("\n") if self.calls.exists() else 0
+
+    def is_called(self, program, number, since):
+        """Whether a realization's program has been called since so many calls."""
+        calls = self.calls.read_text().splitlines()[since:] if self.calls.exists() else []
+        return any(f"/{program} " in call and f"{number:04d}" in call for call in calls)
+
+    def stopped(self, out, programs, stop, meets, ended=(), wait=0):
+        """Runs two at once until these (program, number) are called, these results are there, and so many seconds more;
+        then stops make, and waits until nothing works any more. Returns names and times of the results."""
+        before = self.number_of_calls()
+        running = subprocess.Popen(self.command(out, programs, "-j2", "realizations"), stdout=subprocess.DEVNULL,
+                                   stderr=subprocess.DEVNULL, env=self.environment(), start_new_session=True)
+        try:
+            wait_until(lambda: all(self.is_called(*call, before) for call in meets) and
+                       all((out / "realizations" / name).exists() for name in ended))
+            time.sleep(wait)
+            stop(running)
+            self.assertNotEqual(running.wait(LONGEST_RUN), 0)
+            wait_until(lambda: not alive(running.pid), "something works on after make was stopped")
+        finally:
+            for process in alive(running.pid):  # only if the test has failed
+                os.kill(process, signal.SIGKILL)
+            running.wait()
+        self.assertFalse((out / "ensemble.h5").exists())
+        self.assertFalse(list((out / "realizations").glob("*.failed")), "an interrupt is taken for a failure")
+        return {path.name: path.stat().st_mtime_ns for path in (out / "realizations").glob("*.h5")}
 
     def assert_same(self, one, other):
         for name in ("ensemble.h5", "ensemble.csv", "summary.txt"):
@@ -179,11 +245,16 @@ class Realizations(ChainTest):
     def assert_nothing_half_written(self, out):
         """Every file under its final name is whole, and nothing else is left."""
         names = {path.name for path in (out / "realizations").iterdir()}
-        for number in range(N):
+        for number in range(self.count):
             self.assertEqual({name for name in names if name.startswith(f"{number:04d}")},
                              {f"{number:04d}.h5", f"{number:04d}.log"})
             with h5py.File(out / "realizations" / f"{number:04d}.h5") as file:
                 self.assertEqual((file.attrs["complete"], file.attrs["realization"]), (1, number))
+
+
+class Small(Runs):
+    text = SCENE
+    count = N
 
     def test_statistics(self):
         """They are what the result files say, by another way of computing them."""
@@ -245,48 +316,71 @@ class Realizations(ChainTest):
         self.assertEqual((out / "ensemble.h5").stat().st_mtime_ns, when)
 
     def test_interrupts(self):
+        """At the beginning, in the middle and at the end of chains. What has ended is not made again."""
         whole = self.made(self.folder / "whole", self.programs(), "-j2", "realizations")
         out = self.folder / "out"
-        programs = self.programs(wait=0.5)
-        results = out / "realizations"
-
-        def kill_make(running):  # alone, without those that work for it
-            os.kill(running.pid, signal.SIGKILL)
-
-        def kill_all(running):
-            os.killpg(running.pid, signal.SIGKILL)
-
-        def interrupt(running):  # what Ctrl-C does
-            os.killpg(running.pid, signal.SIGINT)
-
-        def terminate(running):
-            os.kill(running.pid, signal.SIGTERM)
-
-        # Two run at once, and each calls three programs: the fourth call is in the middle of their chains, at the
-        # seventh one has ended.
-        ended = {}
-        for calls, stop in ((2, kill_make), (7, kill_all), (4, kill_make), (3, interrupt), (5, terminate)):
-            with self.subTest(stop.__name__, calls=calls):
-                before = self.number_of_calls()
-                running = self.started(out, programs, "-j2", "realizations")
-                wait_until(lambda: self.number_of_calls() >= before + calls)
-                stop(running)
-                self.assertNotEqual(running.wait(LONGEST_RUN), 0)
-                self.assertFalse((out / "ensemble.h5").exists())
-                self.assertFalse(list(results.glob("*.failed")), "an interrupt is taken for a failure")
-                time.sleep(0.1)
-                then = self.number_of_calls(), sorted(results.rglob("*"))
-                time.sleep(0.7)
-                self.assertEqual((self.number_of_calls(), sorted(results.rglob("*"))), then,
-                                 "something works on after make was stopped")
-                now = {path: path.stat().st_mtime_ns for path in results.glob("*.h5")}
-                self.assertLess(len(now), N)
-                self.assertLessEqual(ended.items(), now.items(), "what had ended is made again")
-                ended = now
-        self.assertGreater(len(ended), 0)
-        self.made(out, programs, "-j2", "realizations")
+        rounds = [  # how make is stopped; which programs hang, and are met there; what has ended by then
+            (kill_make, {"strength": [0, 1]}, []),
+            (interrupt, {"demsolve": [1, 2]}, ["0000.h5"]),
+            (kill_all, {"jointgen": [3], "demsolve": [2]}, ["0000.h5", "0001.h5"]),
+            (terminate, {"strength": [2], "demsolve": [3]}, ["0000.h5", "0001.h5"]),
+            (kill_make, {"demsolve": [3]}, ["0000.h5", "0001.h5", "0002.h5"]),
+        ]
+        before = {}
+        for stop, hanging, ended in rounds:
+            with self.subTest(stop.__name__, hanging=hanging):
+                cases = {program: hangs(*numbers) for program, numbers in hanging.items()}
+                meets = [(program.replace("strength", "strength-averaging"), number)
+                         for program, numbers in hanging.items() for number in numbers]
+                now = self.stopped(out, self.programs(**cases), stop, meets, ended)
+                self.assertEqual(sorted(now), ended)
+                self.assertLessEqual(before.items(), now.items(), "what had ended is made again")
+                before = now
+        self.made(out, self.programs(), "-j2", "realizations")
         self.assert_same(whole, out)
         self.assert_nothing_half_written(out)
+
+    def test_a_parent_that_is_gone(self):
+        """A realization whose make has died before the kernel was asked to watch it does nothing."""
+        folder = self.chain.new_folder()
+        script = self.chain.source / "pipelines" / "slope" / "realization.sh"
+        for parent, code in ((0, 143), (os.getpid(), 0)):
+            done = subprocess.run(["sh", script, self.programs(), self.scene, folder, "0000", str(parent)],
+                                  capture_output=True, text=True, timeout=LONGEST_RUN)
+            self.assertEqual(done.returncode, code, done.stderr)
+            self.assertEqual(sorted(path.name for path in folder.iterdir()),
+                             [] if code else ["0000.h5", "0000.log"])
+
+    def test_balances(self):
+        """The summary and ensemble.h5 name the errors of energy and area of each realization, here after results have
+        been falsified; and what cutting did."""
+        out = self.made(self.folder / "out", self.programs(), "realizations")
+        values = datasets(out / "ensemble.h5")
+        self.assertLess(values["/realization/energy_error"].max(), 1e-6)
+        self.assertLess(values["/realization/area_error"].max(), 1e-12)
+        results = [datasets(out / "realizations" / f"{number:04d}.h5") for number in range(N)]
+        for name in ("merged_vertices", "merged_edge_length", "merged_block_area", "largest_move", "pruned_length"):
+            self.assertEqual(list(values[f"/realization/{name}"]), [result[f"/cutting/{name}"][0] for result in results])
+
+        work = results[1]["/equilibria/work_of_loads"]
+        terms = [work, *(results[1][f"/equilibria/{name}_energy"] for name in ("stored", "dissipated", "damped"))]
+        row = int(numpy.argmax(numpy.abs(work)))
+        with h5py.File(out / "realizations" / "0001.h5", "r+") as file:
+            file["/equilibria/work_of_loads"][row] = 1.5 * work[row]
+        area = results[2]["/blocks/area"]
+        with h5py.File(out / "realizations" / "0002.h5", "r+") as file:
+            file["/blocks/area"][0] = area[0] + 6.0  # of 600 m2
+        self.made(out, self.programs(), "realizations")
+        values = datasets(out / "ensemble.h5")
+        largest = max(1.5 * abs(work[row]), *(abs(term[row]) for term in terms[1:]))
+        self.assertAlmostEqual(values["/realization/energy_error"][1], 0.5 * abs(work[row]) / largest, delta=1e-6)
+        self.assertAlmostEqual(values["/realization/area_error"][2], 0.01, delta=1e-9)
+        lines = (out / "summary.txt").read_text().splitlines()
+        line = {number: next(text.split() for text in lines if text.split()[:1] == [f"{number:04d}"])
+                for number in range(N)}
+        self.assertIn(f"{values['/realization/energy_error'][1]:.1e}", line[1])
+        self.assertIn("1.0e-02", line[2])
+        self.assertIn(f"{values['/realization/smallest_zone_altitude'][3]:.4g}", line[3])
 
     def test_a_failed_one(self):
         """It is named with its reason, does not stop the others, and is tried again only when asked."""
@@ -360,11 +454,36 @@ class Realizations(ChainTest):
         self.assertRegex(done.stderr, r"0002\.h5: /scene is not the same as in 0000\.h5")
 
 
-def wait_until(condition):
+class Slope(Runs):
+    """The real slope, for a few realizations: programs are killed at work."""
+
+    count = 3
+
+    def setUp(self):
+        self.text = self.chain.text("data/slope/scene.toml")
+        super().setUp()
+
+    def test_same_statistics(self):
+        one = self.made(self.folder / "one", self.programs(), "-j1", "realizations")
+        two = self.made(self.folder / "two", self.programs(), "-j2", "realizations")
+        self.assert_same(one, two)
+
+        out = self.folder / "out"
+        self.stopped(out, self.programs(jointgen=hangs(2)), kill_make, [("demsolve", 0), ("demsolve", 1)], wait=1)
+        left = [number for number in (0, 1) if not (out / "realizations" / f"{number:04d}.h5").exists()]
+        meets = [("demsolve", number) for number in left] or [("jointgen", 2)]
+        self.stopped(out, self.programs(jointgen=hangs(2)), interrupt, meets, wait=0.5)
+        self.stopped(out, self.programs(demsolve=hangs(2)), kill_all, [("demsolve", 2)], wait=0.2)
+        self.made(out, self.programs(), "-j2", "realizations")
+        self.assert_same(one, out)
+        self.assert_nothing_half_written(out)
+
+
+def wait_until(condition, what="nothing happened"):
     end = time.monotonic() + LONGEST_RUN
     while not condition():
         if time.monotonic() > end:
-            raise AssertionError("nothing happened")
+            raise AssertionError(what)
         time.sleep(0.01)
 
 

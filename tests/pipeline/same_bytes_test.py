@@ -44,18 +44,23 @@ class SameBytes(ChainTest):
         joints = self.chain.run("strength-averaging", network, network.with_name("joints.h5"))
         self.assertEqual(self.run_to("other name.h5", "strength-averaging", network, "-q"), joints.read_bytes())
 
-        result = self.chain.run("demsolve", joints, joints.with_name("result.h5"), *QUICK)
+        for engine, fewest_steps in ("explicit", 500), ("implicit", 5):
+            with self.subTest(engine=engine):
+                self.same_for_names_and_threads(joints, fewest_steps, *QUICK, "--engine", engine)
+
+    def same_for_names_and_threads(self, joints, fewest_steps, *arguments):
+        result = self.chain.run("demsolve", joints, joints.with_name("result.h5"), *arguments)
         with h5py.File(result) as file:
             self.assertGreater(len(file["/mesh/zone_block"]), 4000)
-            self.assertGreater(sum(file["/equilibria/steps"]), 500)
+            self.assertGreater(sum(file["/equilibria/steps"]), fewest_steps)
         result = result.read_bytes()
         copy = self.chain.new_folder() / "copy of joints.h5"
         copy.write_bytes(joints.read_bytes())
-        self.assertEqual(self.run_to("other name.h5", "demsolve", copy, *QUICK), result)
+        self.assertEqual(self.run_to("other name.h5", "demsolve", copy, *arguments), result)
         for threads in 1, 2:
             with self.subTest(threads=threads):
-                self.assertEqual(self.run_to("result.h5", "demsolve", joints, *QUICK, "--threads", threads), result)
-        self.assertNotEqual(self.run_to("result.h5", "demsolve", joints, *QUICK, "--no-creep"), result)
+                self.assertEqual(self.run_to("result.h5", "demsolve", joints, *arguments, "--threads", threads), result)
+        self.assertNotEqual(self.run_to("result.h5", "demsolve", joints, *arguments, "--no-creep"), result)
 
     def test_export(self):
         network = self.chain.network(self.text)

@@ -1,13 +1,13 @@
 #!/usr/bin/python3
 """The paper's column against its closed form, over everything that could make a difference.
 
-    accuracy.py BIN SCENE.toml OUT
+    column.py BIN SCENE.toml OUT
 
 runs the programs in BIN on SCENE.toml and on variants of it, and writes into OUT
-    accuracy.csv    one row a run: what was changed, largest relative difference, zones, solver steps, cost
+    column.csv      one row a run: what was changed, largest relative difference, zones, solver steps, cost
     readings.csv    one row a run and reading: computed and exact rise
-    accuracy.md     the same as tables
-    accuracy.png    the difference over zone size, tolerance and creep step
+    column.md       the same as tables
+    column.png      the difference over zone size, tolerance and creep step
 """
 
 import csv
@@ -29,7 +29,7 @@ ZONE_SIZES = [5, 2.5, 1.25, 0.625]  # [m]
 TOLERANCES = [1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9]
 CREEP_STEPS = [0.25, 0.5, 1, 2, 5]  # [day]
 NAMED = [("A", 5, ""), ("A", 10, "before"), ("B", 1, "after"), ("B", 10, "before"), ("B", 10, "after"),
-         ("B", 20, "before"), ("C", 10, "after"), ("C", 20, "after"), ("C", 40, "")]  # readings in accuracy.md
+         ("B", 20, "before"), ("C", 10, "after"), ("C", 20, "after"), ("C", 40, "")]  # readings in column.md
 
 
 @dataclass
@@ -57,7 +57,7 @@ class Answer:
 def edited(text, old, new, times=1):
     """The scene's text with a change that must apply exactly so often."""
     if text.count(old) != times:
-        sys.exit(f"accuracy.py: the scene has '{old}' {text.count(old)} times, not {times}: mend this script")
+        sys.exit(f"column.py: the scene has '{old}' {text.count(old)} times, not {times}: mend this script")
     return text.replace(old, new)
 
 
@@ -65,7 +65,7 @@ def with_equilibrium(text, settings):
     """The scene with other keys in its last table, [equilibrium]."""
     head, _, tail = text.rpartition("[equilibrium]")
     if not head or "\n[" in tail:
-        sys.exit("accuracy.py: [equilibrium] is not the scene's last table: mend this script")
+        sys.exit("column.py: [equilibrium] is not the scene's last table: mend this script")
     return f"{head}[equilibrium]\n{settings}\n"
 
 
@@ -119,7 +119,7 @@ def answer_of(run, programs, folder):
 
 
 def write_tables(answers, own, folder):
-    with open(folder / "accuracy.csv", "w", newline="") as file:
+    with open(folder / "column.csv", "w", newline="") as file:
         table = csv.writer(file)
         table.writerow(["study", "value", "largest_relative_difference", "point", "day", "side", "readings", "zones",
                         "solver_steps", "cost_ratio"])
@@ -147,7 +147,7 @@ def write_markdown(answers, own, folder):
         if (r.point, r.day, r.side) in NAMED:
             day = f"{f'just {r.side} ' if r.side else ''}{r.day:g}"
             lines.append(f"| {r.point} | {day} | {1e3 * r.computed:.6f} | {1e3 * r.exact:.6f} | {r.difference:.1e} |")
-    (folder / "accuracy.md").write_text("\n".join(lines) + "\n")
+    (folder / "column.md").write_text("\n".join(lines) + "\n")
 
 
 def draw(answers, folder):
@@ -170,12 +170,12 @@ def draw(answers, folder):
                          textcoords="offset points", va="top")
     all_axes[0].annotate("wanted", (0.03, 1.15e-3), xycoords=("axes fraction", "data"), fontsize=6.5)
     all_axes[0].set_ylabel("largest relative difference\nto the closed form (-)")
-    plot.savefig(folder / "accuracy.png")
+    plot.savefig(folder / "column.png")
 
 
 def main():
     if len(sys.argv) != 4:
-        sys.exit("usage: accuracy.py BIN SCENE.toml OUT")
+        sys.exit("usage: column.py BIN SCENE.toml OUT")
     programs, folder = Path(sys.argv[1]).resolve(), Path(sys.argv[3])
     answers, known = [], {}
     with tempfile.TemporaryDirectory() as scratch:
@@ -185,7 +185,7 @@ def main():
                 try:
                     known[key] = answer_of(run, programs, Path(scratch))
                 except subprocess.CalledProcessError as error:
-                    sys.exit(f"accuracy.py: {run.study}, {run.value}: "
+                    sys.exit(f"column.py: {run.study}, {run.value}: "
                              f"{os.path.basename(error.cmd[0])} ended with exit code {error.returncode}")
             answers.append((run, known[key]))
             print(f"{run.study}, {run.value}: {known[key].worst.difference:.1e}", flush=True)

@@ -1,0 +1,277 @@
+#!/usr/bin/python3
+"""Speed against error: what every engine, creep scheme, step, tolerance and zone size costs, and what it gives.
+
+    speed_against_error.py BIN DATA OUT [--quick]
+
+runs the programs in BIN on scenes of the folder DATA and writes into OUT
+    runs.csv                     one row a run: options, cost, errors
+    speed.md                     the tables
+    creep-steps.png              force error over equilibria, platens and two pillars, every K/E
+    force-time.png, displacement-time.png, force-equilibria.png      every case, one panel each
+
+Time is processor time of demsolve, user and system, over that of the unit: the column as its scene says, run by the
+explicit engine. The files that demsolve writes are part of it.
+"""
+
+import csv
+import datetime
+import math
+import os
+import subprocess
+import sys
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+
+import cases as of
+import errors
+import speed_plots
+
+OUTCOMES = {2: "refused", 3: "no equilibrium"}  # exit codes of demsolve
+
+
+@dataclass
+class Row:
+    case: str
+    run: of.Run
+    outcome: str  # "done", or one of OUTCOMES
+    time: float = math.nan  # of the unit's
+    zones: int = 0
+    equilibria: int = 0
+    steps: int = 0
+    displacement: float = math.nan
+    traction: float = math.nan
+    traction_at_the_end: float = math.nan
+    opens: bool = False  # a contact, at some state
+
+
+def processor_seconds(command):
+    """Seconds of user and system, exit code and message of a program."""
+    with tempfile.TemporaryFile() as message:
+        child = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=message)
+        _, status, usage = os.wait4(child.pid, 0)
+        child.returncode = os.waitstatus_to_exitcode(status)  # or Popen waits for it again
+        message.seek(0)
+        return usage.ru_utime + usage.ru_stime, child.returncode, message.read().decode().strip()
+
+
+class Programs:
+    def __init__(self, folder, scratch):
+        self.folder, self.scratch = folder, scratch
+        self.offer = of.offer_of(folder / "demsolve")
+
+    def prepare(self, scene):
+        """The joints file of a scene's text."""
+        path, network, joints = (self.scratch / name for name in ("scene.toml", "network.h5", "joints.h5"))
+        path.write_text(scene)
+        subprocess.run([self.folder / "jointgen", path, "-q", "-o", network], check=True)
+        subprocess.run([self.folder / "strength-averaging", network, "-q", "-o", joints], check=True)
+        return joints
+
+    def solve(self, joints, options, every_state=False):
+        """Seconds, exit code, message and result of demsolve."""
+        result = self.scratch / "result.h5"
+        states = ["--states", "1"] if every_state else []
+        seconds, code, message = processor_seconds(
+            [self.folder / "demsolve", joints, "-q", "-o", result, *options, *states])
+        return seconds, code, message, errors.result_of(result) if code == 0 else None
+
+
+def error_of(case, programs, joints):
+    """The case's measure of error: its closed form, or its converged solution, which is computed here."""
+    if case.error:
+        return case.error
+    run = next(run for run in case.references if programs.offer.has(run))
+    _, code, message, reference = programs.solve(joints, run.options(programs.offer), case.every_state)
+    if code != 0:
+        sys.exit(f"speed_against_error.py: {case.name}, converged solution: {message}")
+    return lambda result: errors.against(result, reference)
+
+
+def finest_zones(rows_and_results):
+    """With other zones the converged solution is that of the finest."""
+    return min(rows_and_results, key=lambda pair: pair[0].run.zone_size)[1]
+
+
+def rows_of(case, programs, unit):
+    joints = programs.prepare(case.scene)
+    error = error_of(case, programs, joints)
+    rows, zoned = [], []
+    for run in case.runs:
+        if not programs.offer.has(run):
+            continue
+        seconds, code, message, result = programs.solve(joints, run.options(programs.offer), case.every_state)
+        if code != 0:
+            if code not in OUTCOMES:
+                sys.exit(f"speed_against_error.py: {case.name}, {run}: exit code {code}: {message}")
+            rows.append(Row(case.name, run, OUTCOMES[code], seconds / unit))
+            continue
+        row = Row(case.name, run, "done", seconds / unit, result.zones, result.equilibria, result.steps,
+                  opens=bool((result.status == 3).any()))
+        if run.study == "zone size" and not case.error:
+            zoned.append((row, result))
+        else:
+            found = error(result)
+            row.displacement, row.traction = found.displacement, found.traction
+            row.traction_at_the_end = found.traction_at_the_end
+        rows.append(row)
+    for row, result in zoned:
+        if result is not finest_zones(zoned):
+            row.displacement = errors.against(result, finest_zones(zoned)).displacement
+    print(f"{case.name}: {len(rows)} runs, {unit * sum(row.time for row in rows):.1f} s", flush=True)
+    return rows
+
+
+# Tables
+
+
+def number(value, form=".1e"):
+    return "" if value is None or not math.isfinite(value) else f"{value:{form}}"
+
+
+def table(head, lines):
+    return ["| " + " | ".join(head) + " |", "|" + "---|" * len(head),
+            *("| " + " | ".join(str(cell) for cell in line) + " |" for line in lines), ""]
+
+
+def write_csv(rows, path):
+    with open(path, "w", newline="") as file:
+        out = csv.writer(file)
+        out.writerow(["case", "study", "engine", "scheme", "step_days", "creep_tolerance_m", "tolerance", "zone_size_m",
+                      "outcome", "zones", "equilibria", "solver_steps", "time", "displacement_error", "force_error",
+                      "force_error_at_the_end"])
+        for row in rows:
+            run = row.run
+            out.writerow([row.case, run.study, run.engine, run.scheme, run.step, run.creep_tolerance, run.tolerance,
+                          run.zone_size, row.outcome, row.zones, row.equilibria, row.steps, row.time, row.displacement,
+                          row.traction, row.traction_at_the_end])
+
+
+def case_table(case, rows):
+    lines = []
+    for row in rows:
+        run = row.run
+        varied = {"creep step": f"dT {run.step or 0:g} day", "creep tolerance": f"{run.creep_tolerance or 0:g} m",
+                  "tolerance": f"tolerance {run.tolerance or 0:g}", "zone size": f"zones {run.zone_size or 0:g} m",
+                  "default": "nothing: the defaults"}[run.study]
+        cells = [row.equilibria, row.steps, number(row.time, ".2g"), number(row.displacement), number(row.traction)]
+        lines.append([varied, run.engine, run.scheme, *([row.zones, *cells] if row.outcome == "done"
+                                                        else [row.outcome, *[""] * 5])])
+    return [f"### {case.title}", "", *table(["varied", "engine", "scheme", "zones", "equilibria", "solver steps", "time",
+                                            "displacement error", "force error"], lines)]
+
+
+def at_step(rows, case, scheme, step, engine):
+    found = [row for row in rows if row.case == case and row.run.scheme == scheme and row.run.engine == engine
+             and row.run.step is not None and math.isclose(row.run.step, step)]
+    return found[0] if found else None
+
+
+def steps_table(rows, offer, steps, suffix, what):
+    """Force error of every scheme at these steps, K/E by K/E."""
+    def cell(row):
+        if row is None:
+            return ""
+        return row.outcome if row.outcome != "done" else number(row.traction) + (" opens" if row.opens else "")
+
+    lines = []
+    for kind in ("platens", "two pillars"):
+        for ratio in of.RATIOS:
+            found = [[at_step(rows, f"{kind} {ratio:g}{suffix}", scheme, step, offer.fastest) for step in steps]
+                     for scheme in offer.schemes]
+            if any(row is not None for of_scheme in found for row in of_scheme):
+                lines.append([kind, f"{ratio:g}", *(" / ".join(cell(row) for row in of_scheme) for of_scheme in found)])
+    return [f"### {what}", "", *table(["case", "K/E", *offer.schemes], lines)] if lines else []
+
+
+def cheapest_table(rows, cases, levels=(1e-2, 1e-3, 1e-4, 1e-5)):
+    """The cheapest run of each engine whose errors, displacement and force, are both below a level."""
+    lines = []
+    for case in cases:
+        if case.is_long:
+            continue
+        engines = sorted({row.run.engine for row in rows if row.case == case.name and row.run.engine})
+        for engine in engines:
+            cells = []
+            for level in levels:
+                good = [row for row in rows if row.case == case.name and row.run.engine == engine
+                        and row.run.study != "zone size" and max(row.displacement, row.traction) <= level]
+                best = min(good, key=lambda row: row.time, default=None)
+                cells.append("" if best is None else f"{best.time:.2g} ({best.equilibria})")
+            lines.append([case.title, engine, *cells])
+    return ["### Time, and equilibria in brackets, of the cheapest run with both errors below", "",
+            *table(["case", "engine", *(f"{level:g}" for level in levels)], lines)]
+
+
+def stack_table(programs, scene, unit):
+    """How much more a friction stack slips when it overshoots."""
+    ways = [(f"adaptive damping, {n} increments" if n > 1 else "adaptive damping, all at once", "", n)
+            for n in (256, 16, 1)]
+    ways += [("local damping, all at once", 'damping = "local"', 1),
+             ("real masses, damping near critical, all at once", 'masses = "real"\ndamping = "mass"\nmass_damping_per_s = 800', 1),
+             ("real masses, a tenth of that, all at once", 'masses = "real"\ndamping = "mass"\nmass_damping_per_s = 80', 1),
+             ("real masses, a tenth of that, 16 increments", 'masses = "real"\ndamping = "mass"\nmass_damping_per_s = 80', 16)]
+    found = []
+    for engine in programs.offer.engines:
+        for way, settings, increments in ways:
+            if engine != "explicit" and settings:
+                continue
+            text = of.with_default_equilibrium(scene)
+            text += f"\n[equilibrium]\nunloading_increments = {increments}\nmost_steps = 20000000\n{settings}\n"
+            options = of.Run("stack", engine, tolerance=1e-9).options(programs.offer)
+            seconds, code, message, result = programs.solve(programs.prepare(text), options)
+            if code not in (0, *OUTCOMES):
+                sys.exit(f"speed_against_error.py: friction stack, {way}: {message}")
+            if engine != "explicit":
+                way = "all at once" if increments == 1 else f"{increments} increments"
+            found.append((engine, way, seconds / unit, code, result))
+    slow = found[0][-1]
+    lines = []
+    for engine, way, time, code, result in found:
+        if code != 0:
+            lines.append([engine, way, "", number(time, ".2g"), OUTCOMES[code], ""])
+            continue
+        rest, most = result.displacement[0, 0], slow.peak[0, 0]
+        lines.append([engine, way, result.steps, number(time, ".2g"), f"{(result.peak[0, 0] - most) / most:.1e}",
+                      f"{(rest - slow.displacement[0, 0]) / slow.displacement[0, 0]:.1e}"])
+    return ["### Friction stack: excess of its sideways displacement over that of the slowest push", "",
+            *table(["engine", "way", "solver steps", "time", "pushed", "let go"], lines)]
+
+
+def write_tables(rows, cases, programs, stack, version, path):
+    offer = programs.offer
+    lines = [f"Computed on {datetime.date.today()} with version {version}.", ""]
+    lines += cheapest_table(rows, cases)
+    lines += steps_table(rows, offer, [1 / of.RATE / 8], "", "Largest force error over lam T = 1 in 8 steps")
+    lines += steps_table(rows, offer, of.LONG_STEPS, ", long",
+                         "Largest force error over lam T = 10, in steps of lam dT = .01 / .1 / 1 / 10")
+    lines += stack
+    for case in (case for case in cases if not case.is_long):
+        lines += case_table(case, [row for row in rows if row.case == case.name])
+    path.write_text("\n".join(lines))
+
+
+def main():
+    quick = "--quick" in sys.argv
+    arguments = [a for a in sys.argv[1:] if a != "--quick"]
+    if len(arguments) != 3:
+        sys.exit("usage: speed_against_error.py BIN DATA OUT [--quick]")
+    binaries, data, out = (Path(a).resolve() for a in arguments)
+    out.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory() as scratch:
+        programs = Programs(binaries, Path(scratch))
+        joints = programs.prepare((data / "column/scene.toml").read_text())
+        unit, code, message, result = programs.solve(joints, of.Run("unit", "explicit").options(programs.offer))
+        if code != 0:
+            sys.exit(f"speed_against_error.py: the column: {message}")
+        cases = (of.quick_cases if quick else of.all_cases)(data, programs.offer)
+        rows = [row for case in cases for row in rows_of(case, programs, unit)]
+        stack = [] if quick else stack_table(programs, (data / "verification/friction-stack/scene.toml").read_text(),
+                                             unit)
+        write_csv(rows, out / "runs.csv")
+        write_tables(rows, cases, programs, stack, result.version, out / "speed.md")
+        speed_plots.draw(rows, [case for case in cases if not case.is_long], programs.offer, out)
+
+
+if __name__ == "__main__":
+    main()

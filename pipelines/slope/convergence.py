@@ -1,0 +1,250 @@
+#!/usr/bin/python3
+"""What halving the zone size, the creep step and the tolerance changes.
+
+    convergence.py PROGRAMS JOINTS.h5 [--engine ENGINE] -o OUT
+
+runs demsolve with the scene's own choices and with each of the three halved, and compares the displacements of every
+measuring point on every recorded day, from the first row on which the point is there to the last. In OUT it writes
+    convergence.md    the largest change of each point, and what the runs cost, as tables
+    convergence.csv   the same changes, and where each is largest
+Result files are removed. A run that finds no equilibrium, or is refused, is named with its reason in place of its
+changes, and does not stop the others; the exit code is then 1.
+
+Only the length of creep steps decides on which days between two dates there is a row. Rows at dates (stages, first
+readings, the end), before and after what happens then, are in all runs and are compared as they are. On the other days
+of the scene's own run, what the halved run has there is interpolated by a cubic through its four nearest rows between
+the same two dates: for creep that takes 60 days, and rows 7 days apart, to within 4e-6 of what creeps.
+"""
+
+import argparse
+import csv
+import io
+import os
+import pathlib
+import resource
+import subprocess
+import sys
+import tempfile
+import time
+import tomllib
+from dataclasses import dataclass
+
+import h5py
+import numpy as np
+
+HALVED = [  # option of demsolve, table and key of the scene, what it is called, unit
+    ("zone-size", "zones", "size_m", "zone size", "m"),
+    ("creep-step", "creep", "step_days", "creep step", "day"),
+    ("tolerance", "equilibrium", "tolerance", "tolerance", ""),
+]
+
+
+class NotWanted(Exception):
+    """A run, or a file, is not what the comparison needs."""
+
+
+@dataclass
+class Run:
+    label: str
+    reason: str = ""  # why there is no result
+    time: np.ndarray | None = None  # [row] [day]
+    displacement: np.ndarray | None = None  # [row, point, 2] [m]
+    present: np.ndarray | None = None  # [row, point]
+    points: tuple = ()
+    stages: np.ndarray | None = None  # [row] how many there have been
+    dates: np.ndarray | None = None  # on which something happens [day]
+    zones: int = 0
+    contacts: int = 0
+    equilibria: int = 0
+    steps: int = 0  # of the solver
+    seconds: float = 0  # of processor time
+
+
+def text_of(value):
+    return value.decode() if isinstance(value, bytes) else str(value)
+
+
+def default_of(programs, table, key):
+    """The default of a scene's key, as jointgen lists it; None if it has none."""
+    listed = subprocess.run([programs / "jointgen", "--scene-keys"], check=True, capture_output=True, text=True).stdout
+    for row in csv.DictReader(io.StringIO(listed), delimiter="\t", quoting=csv.QUOTE_NONE):
+        if (row["table"], row["key"]) == (table, key):
+            try:
+                return float(row["default"])
+            except ValueError:
+                return None
+    return None
+
+
+def read(path, run):
+    with h5py.File(path) as file:
+        run.time = file["/history/time"][()]
+        run.displacement = file["/history/displacement"][()]
+        run.present = file["/history/present"][()] == 1
+        run.points = tuple(text_of(name) for name in file["/history/point"][()])
+        run.stages = np.cumsum([bool(text_of(name)) for name in file["/history/event"][()]])
+        run.dates = np.unique(file["/states/time"][()])
+        run.zones = len(file["/mesh/zone_block"])
+        run.contacts = len(file["/mesh/contact_edge"])
+        run.equilibria = len(file["/equilibria/steps"])
+        run.steps = int(file["/equilibria/steps"][()].sum())
+
+
+def solved(programs, joints, label, options):
+    """A run of demsolve."""
+    run = Run(label)
+    with tempfile.TemporaryDirectory(prefix="jointcreep-") as folder:
+        result = pathlib.Path(folder) / "result.h5"
+        before = resource.getrusage(resource.RUSAGE_CHILDREN)
+        done = subprocess.run([programs / "demsolve", joints, "-o", result, "--quiet", *options], capture_output=True,
+                              text=True)
+        after = resource.getrusage(resource.RUSAGE_CHILDREN)
+        run.seconds = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+        if done.returncode == 0:
+            read(result, run)
+        else:
+            run.reason = f"exit code {done.returncode}: {' '.join(done.stderr.split())}"
+    return run
+
+
+def interpolated(time, values, wanted):
+    """Values [row, ...] at a wanted time between ascending times: the polynomial through the four nearest rows."""
+    first = max(min(int(np.searchsorted(time, wanted)) - 2, len(time) - 4), 0)
+    near = time[first : first + 4]
+    weight = [np.prod([(wanted - t) / (near_one - t) for t in near if t != near_one]) for near_one in near]
+    return np.tensordot(weight, values[first : first + 4], axes=1)
+
+
+def row_at(run, stages, day, dates):
+    """Displacement [point, 2] of a run on a day, after so many stages, and which points are there; None if the run has
+    ended before. Between dates it is interpolated."""
+    rows = np.flatnonzero(run.stages == stages)
+    exact = rows[np.abs(run.time[rows] - day) <= 1e-9 * max(1.0, day)]  # runs may differ in the last digit
+    if len(exact):
+        return run.displacement[exact[0]], run.present[exact[0]]
+    low, high = dates[dates < day].max(initial=0), dates[dates > day].min(initial=np.inf)
+    rows = rows[(run.time[rows] >= low) & (run.time[rows] <= high)]
+    time, first = np.unique(run.time[rows], return_index=True)
+    if len(time) == 0 or not time[0] < day < time[-1]:
+        return None
+    rows = rows[first]
+    return interpolated(time, run.displacement[rows], day), run.present[rows[np.searchsorted(time, day)]]
+
+
+def changes(own, other):
+    """Displacement of `other` less that of `own` [row of own, point, 2], and where both have one [row, point]."""
+    if own.points != other.points or own.stages[-1] != other.stages[-1]:
+        raise NotWanted(f"{other.label}: points or stages are not the scene's")
+    found = np.zeros_like(own.displacement)
+    both = np.zeros_like(own.present)
+    for row, (day, stages) in enumerate(zip(own.time, own.stages)):
+        at = row_at(other, stages, day, own.dates)
+        if at is not None:
+            found[row] = at[0] - own.displacement[row]
+            both[row] = at[1] & own.present[row]
+    return found, both
+
+
+def size(vectors):
+    return np.linalg.norm(vectors, axis=-1)
+
+
+def largest_move(run, point):
+    """How far the point is displaced at most [m]."""
+    return float(np.max(size(run.displacement[:, point])[run.present[:, point]], initial=0))
+
+
+def largest_change(own, other, point):
+    """Largest change of the point [m], and its row."""
+    found, both = changes(own, other)
+    change = np.where(both[:, point], size(found[:, point]), -1)
+    row = int(np.argmax(change))
+    return float(max(change[row], 0)), row
+
+
+def percent(change, move):
+    return f"{100 * change / move:.2g} %" if move > 0 else "-"
+
+
+def markdown(own, others):
+    heads = " | ".join(run.label for run in others)
+    lines = [f"| point | displacement, largest (mm) | {heads} |", "|---" * (2 + len(others)) + "|"]
+    for point, name in enumerate(own.points):
+        move = largest_move(own, point)
+        cells = []
+        for run in others:
+            if run.reason:
+                cells.append("-")
+                continue
+            change, _ = largest_change(own, run, point)
+            cells.append(f"{1e3 * change:.2g} mm, {percent(change, move)}")
+        lines.append(f"| {name} | {1e3 * move:.3f} | {' | '.join(cells)} |")
+    lines += ["", "| run | zones | contacts | equilibria | solver steps | processor time (s) |", "|---" * 6 + "|"]
+    for run in [own, *others]:
+        lines.append(f"| {run.label} | {run.reason} | | | | |" if run.reason else
+                     f"| {run.label} | {run.zones} | {run.contacts} | {run.equilibria} | {run.steps} "
+                     f"| {run.seconds:.0f} |")
+    return "\n".join(lines) + "\n"
+
+
+def table(own, others):
+    text = io.StringIO()
+    out = csv.writer(text, lineterminator="\n")
+    out.writerow(["changed", "point", "largest_displacement_m", "largest_change_m", "on_day", "after_stages"])
+    for run in others:
+        for point, name in enumerate(own.points):
+            if not run.reason:
+                change, row = largest_change(own, run, point)
+                out.writerow([run.label, name, largest_move(own, point), change, float(own.time[row]),
+                              int(own.stages[row])])
+    return text.getvalue()
+
+
+def written(path, text):
+    partial = path.with_name(f"{path.name}.partial-{os.getpid()}")
+    partial.write_text(text, encoding="utf-8")
+    os.replace(partial, path)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("programs", metavar="PROGRAMS", type=pathlib.Path)
+    parser.add_argument("joints", metavar="JOINTS.h5", type=pathlib.Path)
+    parser.add_argument("--engine", help="handed on to demsolve")
+    parser.add_argument("-o", "--output", metavar="OUT", type=pathlib.Path, required=True)
+    arguments = parser.parse_args()
+    engine = ["--engine", arguments.engine] if arguments.engine else []
+    try:
+        with h5py.File(arguments.joints) as file:
+            scene = tomllib.loads(text_of(file["/scene"][0]))
+        runs = [("the scene's own", [])]
+        for option, section, key, name, unit in HALVED:
+            if section == "creep" and section not in scene:
+                continue
+            own = scene.get(section, {}).get(key) or default_of(arguments.programs, section, key)
+            if own is None:
+                raise NotWanted(f"neither the scene nor jointgen --scene-keys has a value of {section} {key}")
+            runs.append((f"{name} {own:g} to {own / 2:g} {unit}".strip(), [f"--{option}", repr(own / 2)]))
+        found = []
+        for label, options in runs:
+            start = time.monotonic()
+            found.append(solved(arguments.programs, arguments.joints, label, [*engine, *options]))
+            if found[0].reason:
+                raise NotWanted(f"{label}: {found[0].reason}")
+            print(f"{label}: {found[-1].reason or f'{time.monotonic() - start:.0f} s'}", flush=True)
+        own, *others = found
+        words = markdown(own, others)
+        written(arguments.output / "convergence.md", words)
+        written(arguments.output / "convergence.csv", table(own, others))
+    except (NotWanted, subprocess.CalledProcessError) as error:
+        sys.exit(f"convergence.py: {error}")
+    except (OSError, KeyError) as error:
+        print(f"convergence.py: {error}", file=sys.stderr)
+        sys.exit(4)
+    print(words, end="")
+    print(f"in {arguments.output}: convergence.md convergence.csv")
+    sys.exit(1 if any(run.reason for run in others) else 0)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,91 @@
+"""Plots draw what files of the chain hold, and a picture is there whole or not at all."""
+
+import subprocess
+import sys
+
+import numpy
+
+from chain import ChainTest, changed, datasets, main
+
+PNG = b"\x89PNG\r\n\x1a\n"
+
+
+class Plots(ChainTest):
+    def setUp(self):
+        self.plots = self.chain.source / "pipelines" / "plots"
+        sys.path.insert(0, str(self.plots))
+        self.addCleanup(sys.path.remove, str(self.plots))
+
+    def plot(self, name, source, picture, *options):
+        command = [sys.executable, self.plots / f"plot_{name}.py", source, "-o", picture, *options]
+        return subprocess.run(command, capture_output=True, text=True, timeout=300)
+
+    def column(self):
+        """Path of a result file of the column, which is short and has every solver step traced."""
+        text = changed(self.chain.text("data/column/scene.toml"), r"^size_m = \S+", "size_m = 10")
+        return self.chain.result(text, "--tolerance", "1e-3", "--trace", "1")
+
+    def test_pictures(self):
+        result = self.column()
+        wanted = {
+            "section": ([],), "histories": ([], ["--closed-form", "column"], ["--readings"]),
+            "blocks": (["--by", "size"], ["--by", "set"], ["--by", "rock"], ["--by", "stage"]),
+            "trace": ([], ["--point", "B"]),
+            "state": (["--field", "displacement"], ["--field", "stress"], ["--field", "contacts"],
+                      ["--state", "block-1-removed"], ["--state", "block 1 removed"], ["--state", "0"]),
+        }
+        for name, choices in wanted.items():
+            for options in choices:
+                with self.subTest(name, options=options):
+                    picture = self.chain.new_folder() / "picture.png"
+                    done = self.plot(name, result, picture, *options)
+                    self.assertEqual((done.returncode, done.stderr), (0, ""))
+                    self.assertEqual([path.name for path in picture.parent.iterdir()], ["picture.png"])
+                    self.assertEqual(picture.read_bytes()[:8], PNG)
+
+    def test_whole_or_not_at_all(self):
+        import figure
+
+        class Fails:
+            def savefig(self, path):
+                path.write_bytes(PNG)
+                raise OSError("disk full")
+
+        picture = self.chain.new_folder() / "picture.png"
+        picture.write_text("the old one")
+        with self.assertRaises(OSError):
+            figure.save(Fails(), picture)
+        self.assertEqual([path.name for path in picture.parent.iterdir()], ["picture.png"])
+        self.assertEqual(picture.read_text(), "the old one")
+        done = self.plot("section", self.column(), picture.with_name("picture.unknown"))
+        self.assertEqual(done.returncode, 4)
+        self.assertEqual(len(list(picture.parent.iterdir())), 1)
+
+    def test_stages_in_the_trace(self):
+        """Each begins after the solver steps of all equilibria before it."""
+        import figure
+        import plot_trace
+
+        result = self.column()
+        found = datasets(result)
+        before = numpy.concatenate([[0], numpy.cumsum(found["/equilibria/steps"])])
+        with figure.opened(result) as file:
+            rows = plot_trace.stage_rows(file)
+        self.assertEqual(len(rows), 3)
+        for day, row in zip((1, 10, 20), rows.values()):
+            last = numpy.flatnonzero(found["/equilibria/time"] == day)[-1]
+            self.assertEqual(row, before[last])
+
+    def test_slivers_do_not_rule_the_scale(self):
+        import plot_blocks
+
+        area = numpy.array([1e-9] * 50 + [10.0] * 10 + [400.0])
+        low, high = plot_blocks.size_range(area)
+        self.assertEqual((low, high), (10, 400))
+        low, high = plot_blocks.size_range(numpy.array([7.0, 7.0]))
+        self.assertLess(low, 7)
+        self.assertGreater(high, 7)
+
+
+if __name__ == "__main__":
+    main()

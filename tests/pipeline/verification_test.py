@@ -1,0 +1,186 @@
+"""The scenes of data/verification against their exact answers, with the defaults, by every engine, in every scheme.
+
+Answers and errors are those of pipelines/accuracy (closed_forms.py, errors.py): relative to the scale of the case,
+displacements at the end, tractions over the whole run.
+"""
+
+import math
+import sys
+
+from chain import ChainTest, changed, main
+
+sys.path.append(sys.argv[2] + "/pipelines/accuracy")
+import cases  # noqa: E402
+import closed_forms  # noqa: E402
+import errors  # noqa: E402
+
+# What equilibria within the default tolerance, 1e-6, leave: a few times that, as in the column.
+BALANCE = 2e-5
+LAST_STATE = -1
+
+
+def of_step(scheme, rate, step):
+    """The largest error on exp(-rate T), in steps, of the textbook's method of the scheme's order.
+
+    On a joint between fixed walls, where rate = lam (1 + K/E), every scheme does at least as well.
+    """
+    x = rate * step
+    factor = {"published": 1 - x, "backward": 1 / (1 + x)}.get(scheme, (1 - x / 2) / (1 + x / 2))
+    return max(abs(factor**n - math.exp(-n * x)) for n in range(1, 2 + math.ceil(5 / x)))
+
+
+class Verification(ChainTest):
+    def setUp(self):
+        self.offer = cases.offer_of(self.chain.programs / "demsolve")
+
+    def scene(self, name):
+        return self.chain.text(f"data/verification/{name}/scene.toml")
+
+    def ways(self):
+        """(scheme that is used, options): the defaults, every engine, every scheme by the fastest engine."""
+        default = "published"  # the scenes name it
+        yield default, []
+        for engine in self.offer.engines if self.offer.names_engines else []:
+            yield default, ["--engine", engine]
+        for scheme in self.offer.schemes if self.offer.names_schemes else []:
+            if scheme != default:
+                yield scheme, ["--creep-scheme", scheme]
+
+    def in_every_way(self, text, check):
+        """Calls check(scheme, result) for every way to compute the scene."""
+        joints = self.chain.joints(text)
+        for scheme, options in self.ways():
+            with self.subTest(options=options):
+                path = joints.with_name("-".join(["result", *options]) + ".h5")
+                check(scheme, errors.result_of(self.chain.run("demsolve", joints, path, "--states", 1, *options)))
+
+    def assert_within(self, error, displacement, traction):
+        self.assertLess(error.displacement, displacement, "displacement at the end")
+        self.assertLess(error.traction, traction, "largest traction error over the run")
+
+    def test_platens(self):
+        for ratio in cases.RATIOS:
+            # Published steps longer than this, with the joint between rigid walls, would be refused.
+            step = min(0.25, 0.5 / cases.RATE / (1 + ratio))
+            text = cases.edited(cases.platens_scene(self.scene("platens"), ratio), {("", "step_days"): step})
+
+            def check(scheme, result, ratio=ratio, step=step):
+                bound = of_step(scheme, cases.RATE * (1 + ratio), step) * ratio / (1 + ratio) + BALANCE
+                error = errors.against_closed_form(result, closed_forms.platens(result.scene))
+                # Of the closure held, the rock takes less than 1/20, and that as exactly as the tractions are.
+                self.assert_within(error, 0.05 * bound + BALANCE, bound)
+                self.assertLess(result.traction[1:, :, 0].max(), 0, "the joint stays closed")
+
+            with self.subTest(ratio=ratio):
+                self.in_every_way(text, check)
+
+    def test_two_pillars(self):
+        for ratio in 1, 20:
+            step = min(0.25, 0.5 / cases.RATE / (1 + ratio))
+            text = cases.edited(cases.pillars_scene(self.scene("two-pillars"), ratio), {("", "step_days"): step})
+
+            def check(scheme, result, ratio=ratio, step=step):
+                error = errors.against_closed_form(result, closed_forms.two_pillars(result.scene))
+                # Between fixed walls the stiff pillar would relax by ratio / (1 + ratio), faster than it does.
+                # The cap is 1e5 times stiffer than the joints.
+                bound = of_step(scheme, cases.RATE * (1 + ratio), step) * ratio / (1 + ratio) + 1e-5 + BALANCE
+                self.assert_within(error, bound, bound)
+                stiff = [name == "stiff" for name in result.contacts.material]
+                first, last = (-result.traction[i][stiff, 0].mean() for i in (1, LAST_STATE))
+                self.assertTrue(first > 1e6 > last, "its share of the load crosses the other's")
+
+            with self.subTest(ratio=ratio):
+                self.in_every_way(text, check)
+
+    def test_layered_mass(self):
+        # Loads fix the tractions, which no scheme may change; zones hold a uniform stress exactly.
+        def check(_, result):
+            error = errors.against_closed_form(result, closed_forms.layered_mass(result.scene))
+            self.assert_within(error, BALANCE, BALANCE)
+
+        self.in_every_way(self.scene("layered-mass"), check)
+
+    def test_layered_mass_as_a_continuum(self):
+        """The strain over whole spacings is the one in the books."""
+        text = changed(self.scene("layered-mass"), r"^at_m = \[2, 18.5\]", f"at_m = [8, {1 + 7 * 2 / math.cos(math.pi / 6)}]")
+        scene = errors.tomllib.loads(text)
+        b, q, spacing = math.pi / 6, 2e6, 2
+        normal, shear = (closed_forms.joint_of(scene, "joint", direction).compliance(40) for direction in
+                         ("normal", "shear"))
+        wanted = q * closed_forms.rock_compliance(scene) + q / spacing * (
+            math.cos(b) ** 4 * normal + math.sin(b) ** 2 * math.cos(b) ** 2 * shear)
+        result = errors.result_of(self.chain.result(text))
+        low, high = result.displacement[0], result.displacement[2]
+        self.assertAlmostEqual((low - high)[1] / (7 * spacing / math.cos(b)), wanted, delta=BALANCE * wanted)
+
+    def test_incline(self):
+        text = cases.edited(self.scene("incline"), {("", "step_days"): 2.5})
+
+        def check(_, result):
+            error = errors.against_closed_form(result, closed_forms.incline(result.scene))
+            # The block's bending shifts normal tractions by the order of  K_n L / E_r = 1e-4.
+            self.assert_within(error, BALANCE, 1e-4 + BALANCE)
+
+        self.in_every_way(text, check)
+
+    def test_incline_slides_where_it_is_steeper_than_its_friction_angle(self):
+        for above in 0.01, -0.01:
+            text = cases.edited(self.scene("incline"), {("", "friction_angle_deg"): 25 + above})
+            joints = self.chain.joints(text)
+            for engine in self.offer.engines:
+                options = ["--engine", engine] if self.offer.names_engines else []
+                with self.subTest(above=above, engine=engine):
+                    done = self.chain.answer("demsolve", joints, "--no-creep", "-o", joints.with_name("slid.h5"), *options)
+                    self.assertEqual(done.returncode, 0 if above > 0 else 3, done.stderr)
+                    if above < 0:
+                        self.assertIn("no equilibrium", done.stderr)
+                        self.assertIn("slides or falls", done.stderr)
+
+    def test_wedge_in_a_groove(self):
+        text = cases.edited(self.scene("v-groove"), {("", "step_days"): 0.5})
+
+        def check(_, result):
+            left = result.contacts.normal[:, 0] > 0
+            status = result.status[:, left]
+            self.assertEqual({int(s) for s in status.flat}, {1, 2, 3}, "it is stuck, slips and opens")
+            opened = [bool(row.all()) for row in status == 3]
+            self.assertEqual(sum(a and not b for a, b in zip(opened, opened[1:])), 2, "it closes twice")
+            error = cases.groove_error(result)
+            # K/E is 1. A joint that closes within a step has its shear from there on as if at the step's end, so
+            # no scheme is sure to be better than of first order.
+            bound = of_step("published", 2 * cases.RATE, 0.5) + BALANCE
+            self.assert_within(error, bound, bound)
+
+        self.in_every_way(text, check)
+
+    def test_long_steps(self):
+        """K/E = 100, a step of lam dT = 10: the default scheme is refused by name, or keeps the joint closed."""
+        joints = self.chain.joints(cases.platens_scene(self.scene("platens"), 100, end=200))
+        result = joints.with_name("result.h5")
+        done = self.chain.answer("demsolve", joints, "--states", 1, "--creep-step", 100, "-o", result)
+        if done.returncode != 0:
+            self.assertEqual(done.returncode, 2)
+            self.assertIn('"joint"', done.stderr)
+            return
+        found = errors.result_of(result)
+        self.assertLess(found.traction[1:, :, 0].max(), 0)
+        self.assertAlmostEqual(found.traction[LAST_STATE, 0, 0],
+                               closed_forms.platens(found.scene).traction(found.contacts, 200, 0)[0, 0],
+                               delta=1e-3 * 1e6)
+
+    def test_friction_stack_slips_no_more_when_pushed_at_once(self):
+        slow = errors.result_of(self.chain.result(self.scene("friction-stack"), "--tolerance", "1e-8"))
+        fast = changed(self.scene("friction-stack"), "^unloading_increments = 16", "unloading_increments = 1")
+        joints = self.chain.joints(fast)
+        for engine in self.offer.engines:
+            options = ["--engine", engine] if self.offer.names_engines else []
+            with self.subTest(engine=engine):
+                at_once = errors.result_of(self.chain.run("demsolve", joints, joints.with_name(f"{engine}.h5"),
+                                                          "--tolerance", "1e-8", *options))
+                for of_one, of_other in (slow.peak, at_once.peak), (slow.displacement, at_once.displacement):
+                    self.assertLess(abs(of_one - of_other).max(), 1e-3 * abs(slow.peak).max())
+                self.assertGreater((at_once.status[1] == 2).sum(), 40, "most contacts slip")
+
+
+if __name__ == "__main__":
+    main()
