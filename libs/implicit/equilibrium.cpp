@@ -208,6 +208,7 @@ std::optional<Certificate> Engine::equilibrate(Assembly& assembly, const Equilib
     certificate.is_implicit = true;
     double merit = evaluate(assembly, start);
     const double stored_at_start = stored_energy(assembly);
+    const std::vector<Vector2d> traction_at_start = contacts.traction, jump_at_start = contacts.jump;
     if (!guess.empty()) {
         for (std::size_t g = 0; g < guess.size(); ++g)
             assembly.displacement[g] += guess[g].cwiseProduct(assembly.is_free[g]);
@@ -290,8 +291,8 @@ std::optional<Certificate> Engine::equilibrate(Assembly& assembly, const Equilib
 
     certificate.steps = corrections_;
     // The account of energy is that of the straight way here.
-    contacts.traction = start.traction;
-    contacts.jump = start.jump;
+    contacts.traction = traction_at_start;
+    contacts.jump = jump_at_start;
     std::fill(contacts.dissipated.begin(), contacts.dissipated.end(), 0.0);
     evaluate(assembly, start);
     certificate.stored = stored_energy(assembly) - stored_at_start;
