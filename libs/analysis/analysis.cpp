@@ -71,9 +71,7 @@ Engine engine_for(const Scene& scene, const Recording& recording)
 {
     const bool is_about_motion = scene.equilibrium.masses == Masses::real || recording.trace_every > 0;
     if (scene.equilibrium.engine == Engine::implicit_engine && recording.trace_every > 0)
-        throw input_error(
-            "--trace records motion, which the implicit engine has none of: leave it out, or --engine "
-            "implicit");
+        throw input_error("--trace records motion, which the implicit engine has none of");
     if (scene.equilibrium.engine == Engine::automatic && is_about_motion)
         return Engine::explicit_engine;
     return scene.equilibrium.engine;

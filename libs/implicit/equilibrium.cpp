@@ -20,6 +20,7 @@ constexpr int most_corrections = 80;
 constexpr char mended = 100; // more openings than corrections can count
 constexpr int patience = 15; // iterations with an old factor: a new one costs 10 to 20 of them
 constexpr int most_halvings = 6;
+constexpr double least_hold = 1e-2;
 constexpr double soft = 1e-6; // share of their springs that open and slipping contacts keep in the factor
 
 double farthest_move(const std::vector<Vector2d>& from, const std::vector<Vector2d>& to)
@@ -90,16 +91,18 @@ std::vector<Tangent> Engine::tangents(const Assembly& assembly, double softness)
             break;
         default:
             all[c] = {law.k_n, soft_shear,
-                      (active_[c] == Active::slips_forward ? -1 : 1) * law.tan_phi * law.k_n};
+                      (1 - softness) * (active_[c] == Active::slips_forward ? -1 : 1) * law.tan_phi *
+                          law.k_n};
         }
     }
     return all;
 }
 
-// The displacement that balances `force` to `enough` [N/m].
-VectorXd Engine::correction(const Assembly& assembly, const VectorXd& force, double enough)
+// The displacement that balances `force` to `enough` [N/m], if contacts that slip or are open keep the share
+// `hold` of their springs.
+VectorXd Engine::correction(const Assembly& assembly, const VectorXd& force, double enough, double hold)
 {
-    const std::vector<Tangent> acting = tangents(assembly, 0);
+    const std::vector<Tangent> acting = tangents(assembly, hold);
     const auto product = [&](const VectorXd& x) { return stiffness_.times(assembly, acting, x); };
     const auto precondition = [&](const VectorXd& x) {
         ++solves_;
@@ -108,7 +111,7 @@ VectorXd Engine::correction(const Assembly& assembly, const VectorXd& force, dou
     VectorXd x = VectorXd::Zero(force.size());
     if (stiffness_.has_factor() && gmres(product, precondition, force, enough, patience, x) <= enough)
         return x;
-    if (!stiffness_.factorise(assembly, tangents(assembly, soft)))
+    if (!stiffness_.factorise(assembly, tangents(assembly, std::max(soft, hold))))
         return {};
     ++factorisations_;
     gmres(product, precondition, force, enough, 2 * patience, x);
@@ -173,10 +176,10 @@ double Engine::force_change(const Assembly& assembly, const VectorXd& displaceme
     return largest;
 }
 
-// Leaves the gridpoints where forces were nearest to balance.
-std::nullopt_t Engine::give_up(Assembly& assembly, const Start& start, const std::vector<Vector2d>& best)
+// Leaves the assembly as it was.
+std::nullopt_t Engine::give_up(Assembly& assembly, const Start& start)
 {
-    assembly.displacement = best;
+    assembly.displacement = start.displacement;
     assembly.contacts.state = start.state;
     assembly.contacts.traction = start.traction;
     assembly.contacts.jump = start.jump;
@@ -205,6 +208,7 @@ std::optional<Certificate> Engine::equilibrate(Assembly& assembly, const Equilib
     certificate.is_implicit = true;
     double merit = evaluate(assembly, start);
     const double stored_at_start = stored_energy(assembly);
+    const std::vector<Vector2d> traction_at_start = contacts.traction, jump_at_start = contacts.jump;
     if (!guess.empty()) {
         for (std::size_t g = 0; g < guess.size(); ++g)
             assembly.displacement[g] += guess[g].cwiseProduct(assembly.is_free[g]);
@@ -220,13 +224,13 @@ std::optional<Certificate> Engine::equilibrate(Assembly& assembly, const Equilib
     if (!stiffness_.has_factor()) {
         if (!stiffness_.factorise(assembly, tangents(assembly, soft))) {
             reason_ = "some rock is held by nothing";
-            return give_up(assembly, start, start.displacement);
+            return give_up(assembly, start);
         }
         ++factorisations_;
     }
     double least_merit = merit;
+    double hold = 0;
     int since_least = 0;
-    std::vector<Vector2d> best = assembly.displacement;
 
     for (;;) {
         const Balance balance = balance_of(assembly, stiffest, 0, settings.tolerance);
@@ -235,7 +239,7 @@ std::optional<Certificate> Engine::equilibrate(Assembly& assembly, const Equilib
             if (corrections_ == 0)
                 return certificate;
             // Is it at rest, too? That is for the next correction to say.
-            const VectorXd du = correction(assembly, force_, 0.1 * force_.norm());
+            const VectorXd du = correction(assembly, force_, 0.1 * force_.norm(), 0);
             certificate.contact_force_change = force_change(assembly, du) / balance.mean;
             if (certificate.contact_force_change <= settings.tolerance) {
                 if (!mend_bonds(assembly))
@@ -247,29 +251,39 @@ std::optional<Certificate> Engine::equilibrate(Assembly& assembly, const Equilib
         }
         if (corrections_ == most_corrections || since_least == 15) {
             reason_ = "forces do not come into balance in " + std::to_string(corrections_) + " corrections";
-            return give_up(assembly, start, best);
+            return give_up(assembly, start);
         }
 
         const double enough = balance.ratio() <= settings.tolerance
                                   ? 0.1 * force_.norm()
                                   : std::max(0.5 * settings.tolerance * balance.mean,
                                              (corrections_ == 0 ? 1e-2 : 1e-3) * force_.norm());
-        const VectorXd du = correction(assembly, force_, enough);
+        const VectorXd du = correction(assembly, force_, enough, hold);
         ++corrections_;
         if (du.size() == 0 || !du.allFinite()) {
             reason_ = "some rock is held by nothing";
-            return give_up(assembly, start, best);
+            return give_up(assembly, start);
         }
-        merit = go_along(assembly, start, du, merit, too_far);
+        const std::vector<Vector2d> from = assembly.displacement;
+        const double found = go_along(assembly, start, du, merit, too_far);
+        if (found >= merit && hold < 1) {
+            // Forces would not come nearer to balance that way: hold contacts that slip or are open more
+            // firmly.
+            hold = std::clamp(10 * hold, least_hold, 1.0);
+            assembly.displacement = from;
+            evaluate(assembly, start);
+            continue;
+        }
+        hold = hold <= least_hold ? 0 : hold / 3;
+        merit = found;
         take_states(assembly, start, false);
         if (farthest_move(start.displacement, assembly.displacement) > too_far) {
             reason_ = "rock would move by more than a tenth of the section";
-            return give_up(assembly, start, best);
+            return give_up(assembly, start);
         }
         if (merit < least_merit) {
             least_merit = merit;
             since_least = 0;
-            best = assembly.displacement;
         } else {
             ++since_least;
         }
@@ -277,8 +291,8 @@ std::optional<Certificate> Engine::equilibrate(Assembly& assembly, const Equilib
 
     certificate.steps = corrections_;
     // The account of energy is that of the straight way here.
-    contacts.traction = start.traction;
-    contacts.jump = start.jump;
+    contacts.traction = traction_at_start;
+    contacts.jump = jump_at_start;
     std::fill(contacts.dissipated.begin(), contacts.dissipated.end(), 0.0);
     evaluate(assembly, start);
     certificate.stored = stored_energy(assembly) - stored_at_start;

@@ -28,8 +28,8 @@ public:
     // gridpoint. A state that is in balance already is left as it is, after 0 steps. `guess` is how far
     // gridpoints may be expected to move [m]; none, or a bad one, costs time only.
     //
-    // Nothing if it finds no equilibrium; reason() says why. The gridpoints are then where forces were
-    // nearest to balance, and contacts remember what they did before.
+    // Nothing if it finds no equilibrium; reason() says why. The assembly is then as it was: bonds that broke
+    // on a way that led nowhere are not broken for what comes after.
     std::optional<mechanics::Certificate> equilibrate(Assembly& assembly, const Equilibrium& settings,
                                                       const std::vector<Vector2d>& guess = {});
     const std::string& reason() const { return reason_; }
@@ -46,12 +46,12 @@ private:
     double evaluate(Assembly& assembly, const Start& start);
     void take_states(const Assembly& assembly, const Start& start, bool first);
     std::vector<Tangent> tangents(const Assembly& assembly, double softness) const;
-    VectorXd correction(const Assembly& assembly, const VectorXd& force, double enough);
+    VectorXd correction(const Assembly& assembly, const VectorXd& force, double enough, double hold);
     double go_along(Assembly& assembly, const Start& start, const VectorXd& correction, double merit,
                     double too_far);
     bool mend_bonds(const Assembly& assembly);
     double force_change(const Assembly& assembly, const VectorXd& displacement) const;
-    static std::nullopt_t give_up(Assembly& assembly, const Start& start, const std::vector<Vector2d>& best);
+    static std::nullopt_t give_up(Assembly& assembly, const Start& start);
 
     Stiffness stiffness_;
     std::vector<Active> active_;

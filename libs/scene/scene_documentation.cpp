@@ -56,7 +56,7 @@ cohesion_MPa = 1.5
 friction_angle_deg = 45
 tensile_strength_MPa = 1
 
-[[joint_material]]           # without its Kelvin constants this joint would not creep
+[[joint_material]]           # without its Kelvin unit this joint would not creep
 name = "joint"
 normal_stiffness_MPa_per_m = 5000
 shear_stiffness_MPa_per_m = 2000
@@ -116,8 +116,7 @@ at_m = [39, 59]
 first_reading = 1994-06-25
 
 [creep]
-step_days = 5
-scheme = "published"
+tolerance_m = 1e-5           # of a time step's error, which chooses the steps
 
 [zones]
 size_m = 3

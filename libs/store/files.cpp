@@ -47,7 +47,11 @@ struct Contents {
     {
         append(fields, fields_of(reading(network)));
     }
-    void add(const EquivalentJoints& equivalent) { append(fields, fields_of(reading(equivalent))); }
+    void add(const EquivalentJoints& equivalent)
+    {
+        append(fields, fields_of(reading(equivalent)));
+        append(invariants, invariants_of(equivalent));
+    }
     void add(const Result& result, bool with_trace)
     {
         append(fields, fields_of(reading(result)));

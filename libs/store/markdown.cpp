@@ -116,7 +116,7 @@ with h5py.File("result.h5") as file:
     list(page, "dimension", schema::dimensions());
     list(page, "Provenance", schema::fields_of(provenance));
     list(page, "Network", schema::fields_of(network), schema::invariants_of(network));
-    list(page, "Equivalent joints", schema::fields_of(equivalent));
+    list(page, "Equivalent joints", schema::fields_of(equivalent), schema::invariants_of(equivalent));
     page << "\nRows of edges that are neither a joint nor rest on one are 0.\n";
     list(page, "Result", schema::fields_of(result), schema::invariants_of(result.mesh));
     list(page, "Trace", schema::fields_of(result.trace));

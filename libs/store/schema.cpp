@@ -356,6 +356,24 @@ std::vector<Invariant> invariants_of(const Network& network)
     };
 }
 
+std::vector<Invariant> invariants_of(const EquivalentJoints& joints)
+{
+    const auto flows = [&joints](const std::vector<double>& stiffness, const std::vector<double>& viscosity) {
+        return [&joints, &stiffness, &viscosity](std::size_t edge) {
+            const std::size_t units = joints.kelvin_units();
+            for (std::size_t unit = edge * units; unit < (edge + 1) * units; ++unit)
+                if (stiffness[unit] > 0 && viscosity[unit] <= 0)
+                    return false;
+            return true;
+        };
+    };
+    const std::string sentence = "a Kelvin unit with a stiffness has a viscosity";
+    return {{"/equivalent/normal_kelvin_viscosity", sentence, "edge",
+             flows(joints.normal_kelvin_stiffness, joints.normal_kelvin_viscosity)},
+            {"/equivalent/shear_kelvin_viscosity", sentence, "edge",
+             flows(joints.shear_kelvin_stiffness, joints.shear_kelvin_viscosity)}};
+}
+
 std::vector<Invariant> invariants_of(const Mesh& mesh)
 {
     return {

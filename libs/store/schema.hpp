@@ -67,6 +67,7 @@ std::vector<Field> fields_of(Trace& trace);
 
 // To be asked only once the fields are within their limits. They refer to the record.
 std::vector<Invariant> invariants_of(const Network& network);
+std::vector<Invariant> invariants_of(const EquivalentJoints& joints);
 std::vector<Invariant> invariants_of(const Mesh& mesh);
 
 // For those who do not write through a field.

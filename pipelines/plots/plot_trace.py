@@ -27,22 +27,22 @@ def draw_until_removed(axes, solver_time, values, removed):
 
 
 def stage_rows(file):
-    """Row of the trace in which each stage begins, by the stage's name. A day's equilibria share its rows in proportion
-    to their solver steps; the stages are the last of them."""
-    day, at = figure.array(file, "/trace/time"), figure.array(file, "/equilibria/time")
-    steps = figure.array(file, "/equilibria/steps")
+    """Row of the trace in which each stage begins, by the stage's name. Equilibria share the rows in proportion to
+    their solver steps; a stage's are the last ones of its day."""
+    steps, at = figure.array(file, "/equilibria/steps"), figure.array(file, "/equilibria/time")
+    before = np.concatenate([[0], np.cumsum(steps)])
+    rows = len(figure.array(file, "/trace/time"))
     increments = figure.scene_of(file).get("equilibrium", {}).get("unloading_increments", 1)
-    begins, events = {}, zip(figure.array(file, "/history/time"), figure.texts(file, "/history/event"))
     of_day = {}
-    for date, name in events:
+    for day, name in zip(figure.array(file, "/history/time"), figure.texts(file, "/history/event")):
         if name:
-            of_day.setdefault(date, []).append(name)
-    for date, names in of_day.items():
-        rows, own = np.flatnonzero(day == date), steps[at == date]
+            of_day.setdefault(day, []).append(name)
+    begins = {}
+    for day, names in of_day.items():
+        after = np.flatnonzero(at == day)[-1] + 1
         for place, name in enumerate(names):
-            before = own[:len(own) - (len(names) - place) * increments].sum()
-            if len(rows):
-                begins[name] = rows[min(len(rows) - 1, round(len(rows) * before / max(1, own.sum())))]
+            first = before[after - (len(names) - place) * increments]
+            begins[name] = min(rows - 1, round(rows * first / max(1, before[-1])))
     return begins
 
 

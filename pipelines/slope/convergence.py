@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""What halving the zone size, the creep step and the tolerance changes.
+"""What halving the zone size, the creep step (or its tolerance) and the tolerance changes.
 
     convergence.py PROGRAMS JOINTS.h5 [--engine ENGINE] -o OUT
 
@@ -10,10 +10,11 @@ measuring point on every recorded day, from the first row on which the point is 
 Result files are removed. A run that finds no equilibrium, or is refused, is named with its reason in place of its
 changes, and does not stop the others; the exit code is then 1.
 
-Only the length of creep steps decides on which days between two dates there is a row. Rows at dates (stages, first
-readings, the end), before and after what happens then, are in all runs and are compared as they are. On the other days
-of the scene's own run, what the halved run has there is interpolated by a cubic through its four nearest rows between
-the same two dates: for creep that takes 60 days, and rows 7 days apart, to within 4e-6 of what creeps.
+Rows at dates (stages, first readings, the end), before and after what happens then, are in all runs and are compared as
+they are. Between dates, creep steps of another length have rows on other days: what the halved run has on a day of the
+scene's own is then interpolated by a cubic through its four nearest rows between the same two dates. How much that is
+worth is in the second table: the largest difference to the parabola through three of them. (For creep that takes 60
+days, and rows 7 days apart, the cubic is right to 4e-6 of what creeps, the parabola to 8e-5.)
 """
 
 import argparse
@@ -34,7 +35,8 @@ import numpy as np
 
 HALVED = [  # option of demsolve, table and key of the scene, what it is called, unit
     ("zone-size", "zones", "size_m", "zone size", "m"),
-    ("creep-step", "creep", "step_days", "creep step", "day"),
+    ("creep-step", "creep", "step_days", "creep step", "day"),  # a scene has this one
+    ("creep-tolerance", "creep", "tolerance_m", "creep tolerance", "m"),  # or this one
     ("tolerance", "equilibrium", "tolerance", "tolerance", ""),
 ]
 
@@ -107,42 +109,52 @@ def solved(programs, joints, label, options):
     return run
 
 
+def polynomial(time, values, wanted):
+    """At a wanted time, the polynomial through values [row, ...] at these times."""
+    weight = [np.prod([(wanted - other) / (one - other) for other in time if other != one]) for one in time]
+    return np.tensordot(weight, values, axes=1)
+
+
 def interpolated(time, values, wanted):
-    """Values [row, ...] at a wanted time between ascending times: the polynomial through the four nearest rows."""
+    """Values [row, ...] at a wanted time between ascending times, by the four nearest rows; and by three of them."""
     first = max(min(int(np.searchsorted(time, wanted)) - 2, len(time) - 4), 0)
-    near = time[first : first + 4]
-    weight = [np.prod([(wanted - t) / (near_one - t) for t in near if t != near_one]) for near_one in near]
-    return np.tensordot(weight, values[first : first + 4], axes=1)
+    near, of_near = time[first : first + 4], values[first : first + 4]
+    fewer = np.argsort(np.abs(near - wanted))[:3]
+    return polynomial(near, of_near, wanted), polynomial(near[fewer], of_near[fewer], wanted)
 
 
 def row_at(run, stages, day, dates):
     """Displacement [point, 2] of a run on a day, after so many stages, and which points are there; None if the run has
-    ended before. Between dates it is interpolated."""
+    ended before. Between dates it is interpolated; the last value is the uncertainty of that [m]."""
     rows = np.flatnonzero(run.stages == stages)
     exact = rows[np.abs(run.time[rows] - day) <= 1e-9 * max(1.0, day)]  # runs may differ in the last digit
     if len(exact):
-        return run.displacement[exact[0]], run.present[exact[0]]
+        return run.displacement[exact[0]], run.present[exact[0]], 0.0
     low, high = dates[dates < day].max(initial=0), dates[dates > day].min(initial=np.inf)
     rows = rows[(run.time[rows] >= low) & (run.time[rows] <= high)]
     time, first = np.unique(run.time[rows], return_index=True)
     if len(time) == 0 or not time[0] < day < time[-1]:
         return None
     rows = rows[first]
-    return interpolated(time, run.displacement[rows], day), run.present[rows[np.searchsorted(time, day)]]
+    cubic, parabola = interpolated(time, run.displacement[rows], day)
+    return cubic, run.present[rows[np.searchsorted(time, day)]], float(size(cubic - parabola).max(initial=0))
 
 
 def changes(own, other):
-    """Displacement of `other` less that of `own` [row of own, point, 2], and where both have one [row, point]."""
+    """Displacement of `other` less that of `own` [row of own, point, 2], where both have one [row, point], and the
+    largest uncertainty of interpolation [m]."""
     if own.points != other.points or own.stages[-1] != other.stages[-1]:
         raise NotWanted(f"{other.label}: points or stages are not the scene's")
     found = np.zeros_like(own.displacement)
     both = np.zeros_like(own.present)
+    uncertainty = 0.0
     for row, (day, stages) in enumerate(zip(own.time, own.stages)):
         at = row_at(other, stages, day, own.dates)
         if at is not None:
             found[row] = at[0] - own.displacement[row]
             both[row] = at[1] & own.present[row]
-    return found, both
+            uncertainty = max(uncertainty, at[2])
+    return found, both, uncertainty
 
 
 def size(vectors):
@@ -156,7 +168,7 @@ def largest_move(run, point):
 
 def largest_change(own, other, point):
     """Largest change of the point [m], and its row."""
-    found, both = changes(own, other)
+    found, both, _ = changes(own, other)
     change = np.where(both[:, point], size(found[:, point]), -1)
     row = int(np.argmax(change))
     return float(max(change[row], 0)), row
@@ -179,11 +191,15 @@ def markdown(own, others):
             change, _ = largest_change(own, run, point)
             cells.append(f"{1e3 * change:.2g} mm, {percent(change, move)}")
         lines.append(f"| {name} | {1e3 * move:.3f} | {' | '.join(cells)} |")
-    lines += ["", "| run | zones | contacts | equilibria | solver steps | processor time (s) |", "|---" * 6 + "|"]
+    lines += ["", "| run | zones | contacts | equilibria | solver steps | processor time (s) | interpolation (mm) |",
+              "|---" * 7 + "|"]
     for run in [own, *others]:
-        lines.append(f"| {run.label} | {run.reason} | | | | |" if run.reason else
-                     f"| {run.label} | {run.zones} | {run.contacts} | {run.equilibria} | {run.steps} "
-                     f"| {run.seconds:.0f} |")
+        if run.reason:
+            lines.append(f"| {run.label} | {run.reason} | | | | | |")
+            continue
+        uncertainty = 1e3 * changes(own, run)[2]
+        lines.append(f"| {run.label} | {run.zones} | {run.contacts} | {run.equilibria} | {run.steps} "
+                     f"| {run.seconds:.0f} | {f'{uncertainty:.1g}' if uncertainty > 0 else 'none'} |")
     return "\n".join(lines) + "\n"
 
 
@@ -219,7 +235,7 @@ def main():
             scene = tomllib.loads(text_of(file["/scene"][0]))
         runs = [("the scene's own", [])]
         for option, section, key, name, unit in HALVED:
-            if section == "creep" and section not in scene:
+            if section == "creep" and key not in scene.get("creep", {}):
                 continue
             own = scene.get(section, {}).get(key) or default_of(arguments.programs, section, key)
             if own is None:

@@ -42,6 +42,34 @@ RC_GTEST_PROP(Files, ReadBackWhatWasWritten, ())
     RC_ASSERT(same(read_result(folder / "result.h5"), file));
 }
 
+TEST(Files, HoldJointsThatDoNotCreep)
+{
+    const TemporaryFolder folder;
+    ResultFile file = RandomRecords(1, 20).result();
+    EquivalentJoints& joints = file.equivalent;
+    for (auto* of_units : {&joints.normal_kelvin_stiffness, &joints.shear_kelvin_stiffness,
+                           &joints.normal_kelvin_viscosity, &joints.shear_kelvin_viscosity})
+        of_units->clear();
+    write(folder / "result.h5", file);
+    const ResultFile read = read_result(folder / "result.h5");
+    EXPECT_TRUE(same(read, file));
+    EXPECT_EQ(read.equivalent.kelvin_units(), 0u);
+}
+
+TEST(Files, AreNotWrittenWithRowsOfUnequalLength)
+{
+    const TemporaryFolder folder;
+    ResultFile file = RandomRecords(1, 20).result();
+    file.equivalent.normal_kelvin_stiffness.push_back(0);
+    try {
+        write(folder / "result.h5", file);
+        FAIL() << "written";
+    } catch (const file_error& error) {
+        EXPECT_NE(std::string(error.what()).find("/equivalent/normal_kelvin_stiffness"), std::string::npos)
+            << error.what();
+    }
+}
+
 RC_GTEST_PROP(Files, GiveEarlierProgramsWhatTheyNeed, ())
 {
     const TemporaryFolder folder;

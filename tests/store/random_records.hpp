@@ -155,6 +155,11 @@ private:
                 blocks.edge_block[edge][random_() % 2] = -1;
             blocks.edge_joint[edge] = kind == EdgeKind::joint ? 0 : -1;
         }
+        EquivalentJoints& joints = file.equivalent;
+        for (std::size_t unit = 0; unit < joints.normal_kelvin_stiffness.size(); ++unit) {
+            joints.normal_kelvin_viscosity[unit] += joints.normal_kelvin_stiffness[unit] > 0 ? 1e-30 : 0;
+            joints.shear_kelvin_viscosity[unit] += joints.shear_kelvin_stiffness[unit] > 0 ? 1e-30 : 0;
+        }
         Mesh& mesh = file.result.mesh;
         mesh.gridpoint[0] = {0, 0};
         mesh.gridpoint[1] = {1 + fraction(), 0};

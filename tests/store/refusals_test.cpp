@@ -234,6 +234,11 @@ TEST_F(Refusal, OfValuesThatContradictEachOther)
                 "/edges/joint, row 0");
     write(path, file);
     EXPECT_SAYS(with_first("/mesh/contact_normal", H5T_NATIVE_DOUBLE, 2.0), "/mesh/contact_normal, row 0");
+    write(path, file);
+    ASSERT_GT(file.equivalent.shear_kelvin_stiffness[0], 0);
+    EXPECT_SAYS(with_first("/equivalent/shear_kelvin_viscosity", H5T_NATIVE_DOUBLE, 0.0),
+                "/equivalent/shear_kelvin_viscosity, row 0: it must hold that a Kelvin unit with a stiffness "
+                "has a viscosity");
 }
 
 TEST_F(Refusal, OfFilesThatAreNotHdf5)
