@@ -32,7 +32,8 @@ class Run:
                  ("--creep-scheme", self.scheme if offer.names_schemes else ""), ("--creep-step", self.step),
                  ("--creep-tolerance", self.creep_tolerance), ("--tolerance", self.tolerance),
                  ("--zone-size", self.zone_size)]
-        return [text for name, value in given if value for text in (name, f"{value:.12g}" if value != str(value) else value)]
+        return [text for name, value in given if value
+                for text in (name, value if isinstance(value, str) else f"{value:.12g}")]
 
 
 @dataclass
@@ -172,8 +173,9 @@ def all_cases(data, offer):
                                        ("two pillars", pillars_scene, "two-pillars", closed_forms.two_pillars)):
         for ratio in RATIOS if kind == "platens" or offer.fastest != "explicit" else []:
             scene = scene_of(text(f"verification/{name}"), ratio, end=10 / RATE)
-            cases.append(Case(f"{kind} {ratio:g}, long", f"{kind}, K/E = {ratio:g}, over lam T = 10", scene,
-                              creep_runs(offer, [offer.fastest], LONG_STEPS, tolerance=TIGHT), closed(form), is_long=True))
+            runs = creep_runs(offer, [offer.fastest], LONG_STEPS, tolerance=TIGHT)
+            cases.append(Case(f"{kind} {ratio:g}, long", f"{kind}, K/E = {ratio:g}, over lam T = 10", scene, runs,
+                              closed(form), is_long=True))
 
     cases.append(Case("layered mass", "layered mass", text("verification/layered-mass"), [
         *creep_runs(offer, offer.engines, [10, 2, 0.5], powers(4, 6)),

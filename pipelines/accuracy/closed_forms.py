@@ -87,7 +87,7 @@ def load(scene, key):
 
 
 def column(scene):
-    """data/column, the paper's column: the rises of pipelines/plots/column_closed_form.py; joints bear what is above."""
+    """data/column: the rises of pipelines/plots/column_closed_form.py; a joint bears the weight of what is above it."""
     of_scene = column_closed_form.column_of(scene)
     weight = scene["rock"][0]["density_kg_per_m3"] * scene["section"]["gravity_m_per_s2"]
     tops = [float(corners(scene)[:, 1].max()), *(removal.bottom for removal in of_scene.removals)]
@@ -130,8 +130,10 @@ def platens(scene):
         strain = pressure(day) * c
         return np.array([sideways * strain * x, -u0 + strain * (height - y)])
 
-    return Answer(displacement, lambda contacts, day, stages: np.outer(np.full(len(contacts.length), -pressure(day)), [1, 0]),
-                  k * u0)
+    def traction(contacts, day, stages):
+        return np.outer(np.full(len(contacts.length), -pressure(day)), [1, 0])
+
+    return Answer(displacement, traction, k * u0)
 
 
 def shares(stiffness, kelvin_stiffness, viscosity, weight, days):
@@ -345,7 +347,7 @@ def rigid_body(contacts, law, first_traction, force_at, days, step):
 
 
 def v_groove(scene, contacts, first_traction, days, step=0.01):
-    """data/verification/v-groove by rigid_body(): displacements [day, {x, y}] of its point, tractions [day, contact]."""
+    """data/verification/v-groove by rigid_body(): its point's displacements [day, 2], tractions [day, contact, 2]."""
     push = next(b for b in scene["boundary"] if "traction_MPa" in b)
     ends = np.array([push["from_m"], push["to_m"]], float)
     whole = np.array(push["traction_MPa"]) * 1e6 * np.linalg.norm(ends[1] - ends[0])

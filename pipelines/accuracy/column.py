@@ -136,7 +136,8 @@ def write_tables(answers, own, folder):
 
 
 def write_markdown(answers, own, folder):
-    lines = ["| changed | to | largest relative difference | zones | solver steps | cost |", "|---|---|---|---|---|---|"]
+    lines = ["| changed | to | largest relative difference | zones | solver steps | cost |",
+             "|---|---|---|---|---|---|"]
     for run, answer in answers:
         lines.append(f"| {run.study} | {run.value} | {answer.worst.difference:.1e} | {answer.zones} | {answer.steps} "
                      f"| {answer.seconds / own.seconds:.2g} |")

@@ -150,13 +150,13 @@ def write_csv(rows, path):
     with open(path, "w", newline="") as file:
         out = csv.writer(file)
         out.writerow(["case", "study", "engine", "scheme", "step_days", "creep_tolerance_m", "tolerance", "zone_size_m",
-                      "outcome", "zones", "equilibria", "steps", "factorisations", "back_substitutions", "time", "displacement_error", "force_error",
-                      "force_error_at_the_end"])
+                      "outcome", "zones", "equilibria", "steps", "factorisations", "back_substitutions", "time",
+                      "displacement_error", "force_error", "force_error_at_the_end"])
         for row in rows:
             run = row.run
             out.writerow([row.case, run.study, run.engine, run.scheme, run.step, run.creep_tolerance, run.tolerance,
-                          run.zone_size, row.outcome, row.zones, row.equilibria, row.steps, row.factorisations, row.solves,
-                          row.time, row.displacement, row.traction, row.traction_at_the_end])
+                          run.zone_size, row.outcome, row.zones, row.equilibria, row.steps, row.factorisations,
+                          row.solves, row.time, row.displacement, row.traction, row.traction_at_the_end])
 
 
 def case_table(case, rows):
@@ -166,7 +166,8 @@ def case_table(case, rows):
         varied = {"creep step": f"dT {run.step or 0:g} day", "creep tolerance": f"{run.creep_tolerance or 0:g} m",
                   "tolerance": f"tolerance {run.tolerance or 0:g}", "zone size": f"zones {run.zone_size or 0:g} m",
                   "default": "nothing: the defaults"}[run.study]
-        cells = [row.equilibria, row.steps, row.factorisations, row.solves, number(row.time, ".2g"), number(row.displacement), number(row.traction)]
+        cells = [row.equilibria, row.steps, row.factorisations, row.solves, number(row.time, ".2g"),
+                 number(row.displacement), number(row.traction)]
         lines.append([varied, run.engine, run.scheme, *([row.zones, *cells] if row.outcome == "done"
                                                         else [row.outcome, *[""] * 7])])
     return [f"## {case.title}", "", *table(["varied", "engine", "scheme", "zones", "equilibria", "steps",

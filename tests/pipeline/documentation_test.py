@@ -55,7 +55,11 @@ class Documentation(ChainTest):
         self.assertLessEqual(named, made)
 
     def test_pictures(self):
-        shown = re.findall(r"^!\[.+\]\((.+)\)$", self.chain.text("README.md"), flags=re.MULTILINE)
+        """All of them are shown, in README or on a page of docs."""
+        picture = re.compile(r"^!\[.+\]\((.+)\)$", flags=re.MULTILINE)
+        shown = picture.findall(self.chain.text("README.md"))
+        for page in (self.chain.source / "docs").glob("*.md"):
+            shown += [f"docs/{path}" for path in picture.findall(page.read_text())]
         self.assertEqual(sorted(shown), sorted(f"docs/pictures/{path.name}" for path in
                                                (self.chain.source / "docs" / "pictures").iterdir()))
 

@@ -104,16 +104,17 @@ class Verification(ChainTest):
 
     def test_layered_mass_as_a_continuum(self):
         """The strain over whole spacings is the one in the books."""
-        text = changed(self.scene("layered-mass"), r"^at_m = \[2, 18.5\]", f"at_m = [8, {1 + 7 * 2 / math.cos(math.pi / 6)}]")
-        scene = errors.tomllib.loads(text)
         b, q, spacing = math.pi / 6, 2e6, 2
+        height = 7 * spacing / math.cos(b)
+        text = changed(self.scene("layered-mass"), r"^at_m = \[2, 18.5\]", f"at_m = [8, {1 + height}]")
+        scene = errors.tomllib.loads(text)
         normal, shear = (closed_forms.joint_of(scene, "joint", direction).compliance(40) for direction in
                          ("normal", "shear"))
         wanted = q * closed_forms.rock_compliance(scene) + q / spacing * (
             math.cos(b) ** 4 * normal + math.sin(b) ** 2 * math.cos(b) ** 2 * shear)
         result = errors.result_of(self.chain.result(text))
         low, high = result.displacement[0], result.displacement[2]
-        self.assertAlmostEqual((low - high)[1] / (7 * spacing / math.cos(b)), wanted, delta=BALANCE * wanted)
+        self.assertAlmostEqual((low - high)[1] / height, wanted, delta=BALANCE * wanted)
 
     def test_incline(self):
         text = cases.edited(self.scene("incline"), {("", "step_days"): 2.5})
@@ -132,7 +133,8 @@ class Verification(ChainTest):
             for engine in self.offer.engines:
                 options = ["--engine", engine] if self.offer.names_engines else []
                 with self.subTest(above=above, engine=engine):
-                    done = self.chain.answer("demsolve", joints, "--no-creep", "-o", joints.with_name("slid.h5"), *options)
+                    slid = joints.with_name("slid.h5")
+                    done = self.chain.answer("demsolve", joints, "--no-creep", "-o", slid, *options)
                     self.assertEqual(done.returncode, 0 if above > 0 else 3, done.stderr)
                     if above < 0:
                         self.assertIn("no equilibrium", done.stderr)
