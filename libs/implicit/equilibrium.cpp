@@ -16,10 +16,11 @@ using mechanics::Certificate;
 namespace
 {
 
-constexpr int most_corrections = 80;
+constexpr int most_corrections = 80, most_corrections_to_mend = 20;
 constexpr char mended = 100; // more openings than corrections can count
 constexpr int patience = 15; // iterations with an old factor: a new one costs 10 to 20 of them
-constexpr int most_halvings = 6;
+constexpr int most_leaps = 5;
+constexpr int most_trials = 50, most_halvings = 6; // along a correction
 constexpr double least_hold = 1e-2;
 constexpr double soft = 1e-6; // share of their springs that open and slipping contacts keep in the factor
 
@@ -102,7 +103,7 @@ std::vector<Tangent> Engine::tangents(const Assembly& assembly, double softness)
 // `hold` of their springs.
 VectorXd Engine::correction(const Assembly& assembly, const VectorXd& force, double enough, double hold)
 {
-    const std::vector<Tangent> acting = tangents(assembly, hold);
+    const std::vector<Tangent> acting = tangents(assembly, std::max(soft, hold));
     const auto product = [&](const VectorXd& x) { return stiffness_.times(assembly, acting, x); };
     const auto precondition = [&](const VectorXd& x) {
         ++solves_;
@@ -118,29 +119,73 @@ VectorXd Engine::correction(const Assembly& assembly, const VectorXd& force, dou
     return x;
 }
 
-// Moves along a correction, all the way or as far as forces come nearer to balance, and at most `too_far`
-// [m]. Returns the merit there.
-double Engine::go_along(Assembly& assembly, const Start& start, const VectorXd& correction, double merit,
-                        double too_far)
+// Moves along a correction, at most too far, and as far as forces come nearer to balance: all the way,
+// or to where they do no more work along it (a block on its way to where it touches loses no force before,
+// and its balance there is narrow), or else part of the way.
+Engine::Way Engine::go_along(Assembly& assembly, const Start& start, const VectorXd& correction, double merit)
 {
     const std::vector<Vector2d> from = assembly.displacement;
-    const auto merit_at = [&](double share) {
+    const double work = force_.dot(correction);
+    double best_share = 0, best_merit = std::numeric_limits<double>::infinity(), failed_share = 0;
+    const auto is_good = [&](double share) {
         assembly.displacement = from;
         stiffness_.add_to(assembly.displacement, correction, share);
-        return evaluate(assembly, start);
-    };
-    double share = std::min(1.0, too_far / correction.lpNorm<Eigen::Infinity>());
-    double best_share = share, best_merit = std::numeric_limits<double>::infinity();
-    for (int halving = 0; halving <= most_halvings; ++halving, share /= 2) {
-        const double found = merit_at(share);
+        const double found = evaluate(assembly, start);
         if (found < best_merit) {
             best_merit = found;
             best_share = share;
         }
-        if (found < (1 - 1e-4 * share) * merit)
-            return found;
+        const bool good = found < (1 - 1e-4 * share) * merit;
+        if (!good && (failed_share == 0 || share < failed_share))
+            failed_share = share;
+        return good;
+    };
+    const auto at_best = [&](double share) {
+        if (share != best_share)
+            is_good(best_share);
+        return Way{best_merit, failed_share};
+    };
+
+    double share = std::min(1.0, too_far_ / correction.lpNorm<Eigen::Infinity>());
+    const bool good_at_once = is_good(share);
+    double low = 0, work_low = work, high = share, work_high = force_.dot(correction);
+    if (good_at_once || (best_merit < 1.01 * merit && work_high > work / 2))
+        return {best_merit, 0}; // also a block on its way through the air
+    for (int i = 0; i < most_trials && work_low > 0 && work_high < 0; ++i) {
+        // Bisection for the kink where it touches, regula falsi for the balance there, in turn.
+        share = i % 2 == 0 ? (low + high) / 2 : low + (high - low) * work_low / (work_low - work_high);
+        const bool good = is_good(share);
+        const double here = force_.dot(correction);
+        if (std::abs(here) < 0.1 * work) {
+            if (good)
+                return at_best(share);
+            break;
+        }
+        (here > 0 ? low : high) = share;
+        (here > 0 ? work_low : work_high) = here;
     }
-    return merit_at(best_share);
+    for (int halving = 0; halving < most_halvings; ++halving) {
+        share /= 2;
+        if (is_good(share))
+            break;
+    }
+    return at_best(share);
+}
+
+// Breaks the bonds of contacts that have opened, or closed, since states were taken: with cohesion coming and going there
+// may be no equilibrium between. True if there are any.
+bool Engine::break_bonds(const Assembly& assembly, const Start& start)
+{
+    bool breaks = false;
+    for (std::size_t c = 0; c < breaks_.size(); ++c) {
+        const bool is_open = assembly.contacts.status[c] == ContactStatus::open;
+        if (assembly.contacts.status[c] != ContactStatus::removed && is_open != (active_[c] == Active::open) &&
+            !breaks_[c] && !start.state[c].is_broken && assembly.contacts.law[c].cohesion > 0) {
+            breaks_[c] = 1;
+            breaks = true;
+        }
+    }
+    return breaks;
 }
 
 // Bonds of contacts that opened on the way and have closed again: where they make no difference they are as
@@ -186,106 +231,132 @@ std::nullopt_t Engine::give_up(Assembly& assembly, const Start& start)
     return std::nullopt;
 }
 
-std::optional<Certificate> Engine::equilibrate(Assembly& assembly, const Equilibrium& settings,
-                                               const std::vector<Vector2d>& guess)
+// Looks for equilibrium from the present displacements in at most so many corrections. False if it finds
+// none: reason_.
+bool Engine::converge(Assembly& assembly, const Start& start, const Equilibrium& settings,
+                      int most_corrections, Certificate& certificate)
 {
-    stiffness_.follow(assembly);
-    mechanics::Contacts& contacts = assembly.contacts;
-    const Start start{contacts.state, assembly.displacement, contacts.traction, contacts.jump};
-    const std::vector<double> row_sums = stiffness_row_sums(assembly);
-    const double stiffest = *std::max_element(row_sums.begin(), row_sums.end());
-    const double too_far = size_of(assembly) / 10;
-    std::vector<Vector2d> scales;
-    for (const double sum : row_sums)
-        scales.emplace_back(sum, sum);
-    scale_ = stiffness_.gathered(assembly, scales);
-    active_.resize(contacts.state.size(), Active::stuck);
-    breaks_.assign(contacts.state.size(), 0);
-    openings_.assign(contacts.state.size(), 0);
-    corrections_ = factorisations_ = solves_ = 0;
-
-    Certificate certificate;
-    certificate.is_implicit = true;
-    double merit = evaluate(assembly, start);
-    const double stored_at_start = stored_energy(assembly);
-    const std::vector<Vector2d> traction_at_start = contacts.traction, jump_at_start = contacts.jump;
-    if (!guess.empty()) {
-        for (std::size_t g = 0; g < guess.size(); ++g)
-            assembly.displacement[g] += guess[g].cwiseProduct(assembly.is_free[g]);
-        const double guessed = evaluate(assembly, start);
-        if (guessed < merit) {
-            merit = guessed;
-        } else {
-            assembly.displacement = start.displacement;
-            evaluate(assembly, start);
-        }
-    }
-    take_states(assembly, start, true);
-    if (!stiffness_.has_factor()) {
-        if (!stiffness_.factorise(assembly, tangents(assembly, soft))) {
-            reason_ = "some rock is held by nothing";
-            return give_up(assembly, start);
-        }
-        ++factorisations_;
-    }
-    double least_merit = merit;
-    double hold = 0;
-    int since_least = 0;
-
+    const Index first = corrections_;
+    double merit = evaluate(assembly, start), least_merit = merit;
+    double hold = 0; // share of their springs that contacts which slip or are open keep in a correction
+    int since_least = 0, leaps_done = 0;
     for (;;) {
-        const Balance balance = balance_of(assembly, stiffest, 0, settings.tolerance);
+        const Balance balance = balance_of(assembly, stiffest_, 0, settings.tolerance);
         certificate.out_of_balance_ratio = balance.ratio();
-        if (certificate.out_of_balance_ratio <= settings.tolerance) {
-            if (corrections_ == 0)
-                return certificate;
-            // Is it at rest, too? That is for the next correction to say.
-            const VectorXd du = correction(assembly, force_, 0.1 * force_.norm(), 0);
-            certificate.contact_force_change = force_change(assembly, du) / balance.mean;
-            if (certificate.contact_force_change <= settings.tolerance) {
-                if (!mend_bonds(assembly))
-                    break;
-                merit = least_merit = evaluate(assembly, start);
-                take_states(assembly, start, false);
-                continue;
-            }
-        }
-        if (corrections_ == most_corrections || since_least == 15) {
+        const bool is_balanced = balance.ratio() <= settings.tolerance;
+        if (is_balanced && is_at_rest(assembly, balance.mean, settings.tolerance, certificate))
+            return true;
+        if (corrections_ - first == most_corrections || since_least == 15) {
             reason_ = "forces do not come into balance in " + std::to_string(corrections_) + " corrections";
-            return give_up(assembly, start);
+            return false;
         }
 
-        const double enough = balance.ratio() <= settings.tolerance
-                                  ? 0.1 * force_.norm()
-                                  : std::max(0.5 * settings.tolerance * balance.mean,
-                                             (corrections_ == 0 ? 1e-2 : 1e-3) * force_.norm());
+        const double enough = is_balanced ? 0.1 * force_.norm()
+                                          : std::max(0.5 * settings.tolerance * balance.mean,
+                                                     (corrections_ == first ? 1e-2 : 1e-3) * force_.norm());
         const VectorXd du = correction(assembly, force_, enough, hold);
         ++corrections_;
         if (du.size() == 0 || !du.allFinite()) {
             reason_ = "some rock is held by nothing";
-            return give_up(assembly, start);
+            return false;
         }
         const std::vector<Vector2d> from = assembly.displacement;
-        const double found = go_along(assembly, start, du, merit, too_far);
-        if (found >= merit && hold < 1) {
-            // Forces would not come nearer to balance that way: hold contacts that slip or are open more
-            // firmly.
-            hold = std::clamp(10 * hold, least_hold, 1.0);
+        const Way way = go_along(assembly, start, du, merit);
+        if (way.failed_share > 0 && way.merit > 0.99 * merit) {
+            // Next to nothing is won that way. A bond that stands in it breaks; if none does, contacts that
+            // slip or are open are held more firmly.
+            const std::vector<Vector2d> reached = assembly.displacement;
             assembly.displacement = from;
+            stiffness_.add_to(assembly.displacement, du, way.failed_share);
             evaluate(assembly, start);
-            continue;
+            const bool breaks = break_bonds(assembly, start);
+            const bool leaps = !breaks && hold == 1;
+            const bool goes_back = breaks || way.merit >= merit || leaps;
+            assembly.displacement = goes_back ? from : reached;
+            merit = evaluate(assembly, start);
+            if (leaps) { // out of where it is stuck, whatever that does to the forces
+                if (++leaps_done > most_leaps) {
+                    reason_ = "forces do not come into balance in " + std::to_string(corrections_) + " corrections";
+                    return false;
+                }
+                const VectorXd leap = correction(assembly, force_, enough, 0);
+                const double farthest = farthest_move(start.displacement, assembly.displacement);
+                stiffness_.add_to(assembly.displacement, leap,
+                                  std::min(1.0, farthest / leap.lpNorm<Eigen::Infinity>()));
+                merit = evaluate(assembly, start);
+            }
+            hold = breaks ? hold : leaps ? 0 : std::clamp(10 * hold, least_hold, 1.0);
+            if (breaks || leaps)
+                least_merit = merit;
+        } else {
+            merit = way.merit;
+            hold = hold <= least_hold ? 0 : hold / 3;
         }
-        hold = hold <= least_hold ? 0 : hold / 3;
-        merit = found;
         take_states(assembly, start, false);
-        if (farthest_move(start.displacement, assembly.displacement) > too_far) {
+        if (farthest_move(start.displacement, assembly.displacement) > too_far_) {
             reason_ = "rock would move by more than a tenth of the section";
+            return false;
+        }
+        since_least = merit < least_merit ? 0 : since_least + 1;
+        least_merit = std::min(merit, least_merit);
+    }
+}
+
+// Whether one more correction would leave contact forces as they are. A rough one says that first: it says
+// too much rather than too little.
+bool Engine::is_at_rest(const Assembly& assembly, double mean_force, double tolerance,
+                        Certificate& certificate)
+{
+    ++solves_;
+    certificate.contact_force_change = force_change(assembly, stiffness_.solve(force_)) / mean_force;
+    if (certificate.contact_force_change > tolerance)
+        certificate.contact_force_change =
+            force_change(assembly, correction(assembly, force_, 0.1 * force_.norm(), 0)) / mean_force;
+    return certificate.contact_force_change <= tolerance;
+}
+
+std::optional<Certificate> Engine::equilibrate(Assembly& assembly, const Equilibrium& settings,
+                                               const std::vector<Vector2d>& guess)
+{
+    mechanics::Contacts& contacts = assembly.contacts;
+    const Start start{contacts.state, assembly.displacement, contacts.traction, contacts.jump};
+    prepare(assembly);
+    Certificate certificate;
+    certificate.is_implicit = true;
+    const double merit = evaluate(assembly, start);
+    certificate.out_of_balance_ratio = balance_of(assembly, stiffest_, 0, settings.tolerance).ratio();
+    if (certificate.out_of_balance_ratio <= settings.tolerance)
+        return certificate;
+
+    const double stored_at_start = stored_energy(assembly);
+    const std::vector<Vector2d> traction_at_start = contacts.traction, jump_at_start = contacts.jump;
+    for (std::size_t g = 0; g < guess.size(); ++g)
+        assembly.displacement[g] += guess[g].cwiseProduct(assembly.is_free[g]);
+    if (!guess.empty() && evaluate(assembly, start) > merit) {
+        assembly.displacement = start.displacement;
+        evaluate(assembly, start);
+    }
+    take_states(assembly, start, true);
+    if (!stiffness_.has_factor()) {
+        ++factorisations_;
+        if (!stiffness_.factorise(assembly, tangents(assembly, soft))) {
+            reason_ = "some rock is held by nothing";
             return give_up(assembly, start);
         }
-        if (merit < least_merit) {
-            least_merit = merit;
-            since_least = 0;
-        } else {
-            ++since_least;
+    }
+    if (!converge(assembly, start, settings, most_corrections, certificate))
+        return give_up(assembly, start);
+    for (;;) { // without the bonds that broke in vain, if there is equilibrium without
+        const std::vector<Vector2d> displacement = assembly.displacement;
+        const std::vector<char> breaks = breaks_;
+        const Certificate with_them = certificate;
+        if (!mend_bonds(assembly))
+            break;
+        if (!converge(assembly, start, settings, most_corrections_to_mend, certificate)) {
+            assembly.displacement = displacement;
+            breaks_ = breaks;
+            certificate = with_them;
+            break;
         }
     }
 
@@ -303,6 +374,24 @@ std::optional<Certificate> Engine::equilibrate(Assembly& assembly, const Equilib
             (assembly.load[g] + assembly.applied[g]).dot(assembly.displacement[g] - start.displacement[g]);
     certificate.damped = certificate.work_of_loads - certificate.stored - certificate.dissipated;
     return certificate;
+}
+
+// What a search needs to know of the assembly.
+void Engine::prepare(const Assembly& assembly)
+{
+    stiffness_.follow(assembly);
+    const std::vector<double> row_sums = stiffness_row_sums(assembly);
+    stiffest_ = *std::max_element(row_sums.begin(), row_sums.end());
+    too_far_ = size_of(assembly) / 10;
+    std::vector<Vector2d> scales;
+    for (const double sum : row_sums)
+        scales.emplace_back(sum, sum);
+    scale_ = stiffness_.gathered(assembly, scales);
+    const std::size_t n = assembly.contacts.state.size();
+    active_.resize(n, Active::stuck);
+    breaks_.assign(n, 0);
+    openings_.assign(n, 0);
+    corrections_ = factorisations_ = solves_ = 0;
 }
 
 } // namespace jointcreep::implicit

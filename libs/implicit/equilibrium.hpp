@@ -47,8 +47,18 @@ private:
     void take_states(const Assembly& assembly, const Start& start, bool first);
     std::vector<Tangent> tangents(const Assembly& assembly, double softness) const;
     VectorXd correction(const Assembly& assembly, const VectorXd& force, double enough, double hold);
-    double go_along(Assembly& assembly, const Start& start, const VectorXd& correction, double merit,
-                    double too_far);
+    struct Way {
+        double merit;        // where it ends
+        double failed_share; // the smallest share of the correction that brought forces no nearer to balance;
+                             // 0 if none
+    };
+    Way go_along(Assembly& assembly, const Start& start, const VectorXd& correction, double merit);
+    void prepare(const Assembly& assembly);
+    bool converge(Assembly& assembly, const Start& start, const Equilibrium& settings, int most_corrections,
+                  mechanics::Certificate& certificate);
+    bool is_at_rest(const Assembly& assembly, double mean_force, double tolerance,
+                    mechanics::Certificate& certificate);
+    bool break_bonds(const Assembly& assembly, const Start& start);
     bool mend_bonds(const Assembly& assembly);
     double force_change(const Assembly& assembly, const VectorXd& displacement) const;
     static std::nullopt_t give_up(Assembly& assembly, const Start& start);
@@ -56,8 +66,10 @@ private:
     Stiffness stiffness_;
     std::vector<Active> active_;
     std::vector<char> breaks_, openings_;
-    VectorXd scale_; // of forces: the stiffness against which they act [Pa]
-    VectorXd force_; // out of balance, at the last evaluation
+    VectorXd scale_;      // of forces: the stiffness against which they act [Pa]
+    double stiffest_ = 0; // row sum [Pa]
+    double too_far_ = 0;  // to look for equilibrium [m]
+    VectorXd force_;      // out of balance, at the last evaluation
     Index corrections_ = 0, factorisations_ = 0, solves_ = 0;
     std::string reason_;
 };

@@ -176,7 +176,8 @@ void Stiffness::add_to(std::vector<Vector2d>& over_gridpoints, const VectorXd& u
 VectorXd Stiffness::times(const Assembly& assembly, const std::vector<Tangent>& tangents,
                           const VectorXd& x) const
 {
-    VectorXd y = zones_.selfadjointView<Eigen::Lower>() * x;
+    VectorXd y =
+        zones_.transpose() * x; // it is symmetric, and rows are summed faster than columns are spread
     const mechanics::Contacts& contacts = assembly.contacts;
     const auto value = [&](int unknown) { return unknown >= 0 ? x[unknown] : 0.0; };
     for (const Index c : present_contact_) {
