@@ -41,25 +41,32 @@ double Closing::longest_step(const mechanics::Assembly& assembly, double duratio
         if (!was_open_[c] || contacts.status[c] == ContactStatus::open ||
             contacts.status[c] == ContactStatus::removed || opening_[c] <= 0)
             continue;
-        // Straight on from the start it would touch at this share of the step; later than in truth, since
-        // once it touches it closes more slowly.
-        const double share = opening_[c] / (opening_[c] - std::min(opening_of(contacts, c), 0.0));
-        if (share * std::abs(contacts.jump[c].y() - shear_[c]) <= tolerance_)
-            continue;
-        const bool knows_rate = cuts_ == 0 && !rate_.empty() && rate_[c] < 0;
-        const double touches = knows_rate ? opening_[c] / -rate_[c] : share * duration / 2;
-        longest = std::min({longest, touches, share * duration});
+        // As fast as in the last step, or else straight on to where it is now; that is later than in truth,
+        // since once it touches it closes more slowly.
+        const bool knows_rate = !rate_.empty() && rate_[c].x() < 0;
+        const double until_now =
+            duration * opening_[c] / (opening_[c] - std::min(opening_of(contacts, c), 0.0));
+        const double touches = knows_rate ? std::min(opening_[c] / -rate_[c].x(), until_now) : until_now / 2;
+        // Stuck at the wrong place it may seem not to shear at all.
+        const double shear_rate = std::max(std::abs(contacts.jump[c].y() - shear_[c]) / duration,
+                                           knows_rate ? std::abs(rate_[c].y()) : 0.0);
+        if (touches * shear_rate > tolerance_)
+            longest = std::min(longest, touches);
     }
-    cuts_ += longest < duration ? 1 : 0;
+    if (longest < duration)
+        longest *=
+            ++cuts_ == 1 ? 0.99 : 0.9; // a little before it touches, so that it is open at the step's end
     return longest;
 }
 
 void Closing::finish(const mechanics::Assembly& assembly, double duration)
 {
-    rate_.assign(was_open_.size(), 0);
+    rate_.assign(was_open_.size(), {0, 0});
     for (std::size_t c = 0; c < was_open_.size(); ++c)
         if (was_open_[c] && assembly.contacts.status[c] == ContactStatus::open)
-            rate_[c] = (opening_of(assembly.contacts, c) - opening_[c]) / duration;
+            rate_[c] = Eigen::Vector2d(opening_of(assembly.contacts, c) - opening_[c],
+                                       assembly.contacts.jump[c].y() - shear_[c]) /
+                       duration;
 }
 
 } // namespace jointcreep::creep

@@ -35,7 +35,7 @@ private:
     int cuts_ = 0; // of this step
     std::vector<char> was_open_;
     std::vector<double> opening_, shear_; // at the step's start [m]
-    std::vector<double> rate_;            // of opening in the last step [m/s]
+    std::vector<Eigen::Vector2d> rate_;   // of {opening, shear} in the last step [m/s]
 };
 
 } // namespace jointcreep::creep

@@ -51,7 +51,7 @@ void StepLength::start_afresh()
 
 double StepLength::closing_tolerance() const
 {
-    return settings_.tolerance ? *settings_.tolerance / 10 : 1e-7;
+    return settings_.tolerance ? *settings_.tolerance / 10 : 1e-6;
 }
 
 } // namespace jointcreep::creep
