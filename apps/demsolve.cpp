@@ -161,8 +161,11 @@ void report(const Network& network, const Scene& scene, const Analysis& analysis
     summary.add("smallest zone altitude", quality.smallest_altitude, "m");
     summary.add("smallest zone angle", quality.smallest_angle / unit::deg, "deg");
     summary.add("stages", scene.stages.size());
-    summary.add("engine", named(analysis.engine()) +
-                              (scene.equilibrium.engine == Engine::automatic ? " (chosen by auto)" : ""));
+    const bool chose = scene.equilibrium.engine == Engine::automatic;
+    summary.add("engine",
+                analysis.engine() == Engine::automatic
+                    ? std::string("implicit, and explicit where that gives up (auto)")
+                    : named(analysis.engine()) + (chose ? " (auto: the scene is about motion)" : ""));
     summary.add("equilibria by factorisation", by_factor);
     summary.add("equilibria by motion", static_cast<std::int64_t>(equilibria.is_implicit.size()) - by_factor);
     for (const auto& [reason, n] : analysis.given_up())

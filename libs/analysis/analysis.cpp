@@ -187,6 +187,8 @@ void Analysis::creep_until(double date, bool may_stop)
             if (may_stop && creeps() && scene_.creep->stop_rate &&
                 largest_move(before, rock_.displacement) < *scene_.creep->stop_rate * (now_ - from))
                 end_of_creep_ = now_;
+            if (now_ < target && !end_of_creep_)
+                continue; // cut short where a contact closes: times stay the same whatever contacts do
             const bool is_due = recording_.state_every > 0 && creeps() &&
                                 ++creep_steps_ % recording_.state_every == 0 && now_ < date;
             take_down("", is_due);
