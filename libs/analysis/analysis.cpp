@@ -22,6 +22,9 @@ namespace
 // A thread with fewer zones than this spends its time waiting for the others.
 constexpr int zones_per_thread = 2000;
 
+// Of a stage's increment or a creep step, where factorisation finds no equilibrium at its end.
+constexpr int most_halvings = 5;
+
 // How far the gridpoint that moved farthest has moved [m].
 double largest_move(const std::vector<Vector2d>& from, const std::vector<Vector2d>& to)
 {
@@ -150,7 +153,8 @@ void Analysis::run()
 void Analysis::settle_in_situ()
 {
     observe_(0, "in-situ equilibrium");
-    equilibrate(0);
+    if (!settles_nearby({}))
+        settle_by_motion(0);
     const mechanics::Contacts& contacts = rock_.contacts;
     for (std::size_t c = 0; c < contacts.status.size(); ++c)
         if (contacts.status[c] != ContactStatus::stuck)
@@ -210,6 +214,7 @@ bool Analysis::step_to(double target, bool is_loaded)
     if (closing_)
         closing_->start(rock_);
     double end = target;
+    int halvings = engine_ == Engine::explicit_engine ? most_halvings : 0;
     for (;;) {
         if (creeps())
             creep_->begin(end - now_, rock_);
@@ -217,7 +222,14 @@ bool Analysis::step_to(double target, bool is_loaded)
         std::vector<Vector2d> guess = last_move_; // creep slows down
         for (Vector2d& move : guess)
             move *= 0.9 * (end - now_) / last_step_;
-        equilibrate(end, guess);
+        if (!settles_nearby(guess)) {
+            if (halvings < most_halvings) {
+                ++halvings;
+                end = now_ + (end - now_) / 2;
+                continue;
+            }
+            settle_by_motion(end);
+        }
         const double longest = closing_ ? closing_->longest_step(rock_, end - now_) : end - now_;
         if (longest >= end - now_ || longest < 1e-9 * (target - now_))
             break;
@@ -249,12 +261,21 @@ void Analysis::excavate(const Stage& stage, Index number)
     observe_(now_ / scene_.end, stage.name);
     const auto released = mechanics::excavate(rock_, network_.blocks, result_.mesh, loading_, number);
     const std::vector<Vector2d> load = rock_.load;
-    const int n = scene_.equilibrium.unloading_increments;
-    for (int i = 1; i <= n; ++i) {
-        const double held = 1 - static_cast<double>(i) / n;
+    // In the scene's increments; in smaller ones where factorisation finds nothing nearby.
+    const int finest = engine_ == Engine::explicit_engine ? 1 : 1 << most_halvings;
+    const int n = finest * scene_.equilibrium.unloading_increments;
+    for (int done = 0, increment = finest; done < n;) {
+        const double held = 1 - static_cast<double>(done + increment) / n;
         for (std::size_t g = 0; g < load.size(); ++g)
             rock_.load[g] = load[g] + held * released[g];
-        equilibrate(now_);
+        if (!settles_nearby({})) {
+            if (increment > 1) {
+                increment /= 2;
+                continue;
+            }
+            settle_by_motion(now_);
+        }
+        done += increment;
         take_down_equilibrium();
     }
     start_afresh();
@@ -271,25 +292,30 @@ void Analysis::start_afresh()
         closing_->start_afresh();
 }
 
-// Equilibrium at a time, by the engine chosen; by motion where factorisation finds none nearby.
-void Analysis::equilibrate(double time, const std::vector<Vector2d>& guess)
+// Equilibrium by factorisation, if the engine is not the explicit one; false if there is none nearby.
+bool Analysis::settles_nearby(const std::vector<Vector2d>& guess)
 {
+    if (engine_ == Engine::explicit_engine)
+        return false;
+    const auto found = implicit_.equilibrate(rock_, scene_.equilibrium, guess);
     ++effort_.searches;
-    if (engine_ != Engine::explicit_engine) {
-        const auto found = implicit_.equilibrate(rock_, scene_.equilibrium, guess);
-        effort_.factorisations += implicit_.factorisations();
-        effort_.solves += implicit_.solves();
-        effort_.steps += implicit_.corrections();
-        if (found) {
-            certificate_ = *found;
-            return;
-        }
-        if (engine_ == Engine::implicit_engine)
-            throw equilibrium_error("no equilibrium nearby on day " + shown(time / unit::day) + ": " +
-                                    implicit_.reason() + " (--engine auto would go on by motion)");
+    effort_.factorisations += implicit_.factorisations();
+    effort_.solves += implicit_.solves();
+    effort_.steps += implicit_.corrections();
+    if (found)
+        certificate_ = *found;
+    return found.has_value();
+}
+
+// Equilibrium by motion, if the engine is not the implicit one.
+void Analysis::settle_by_motion(double time)
+{
+    if (engine_ == Engine::implicit_engine)
+        throw equilibrium_error("no equilibrium nearby on day " + shown(time / unit::day) + ": " +
+                                implicit_.reason() + " (--engine auto would go on by motion)");
+    if (engine_ == Engine::automatic)
         ++given_up_[implicit_.reason()];
-        ++effort_.searches;
-    }
+    ++effort_.searches;
     double last = 0;
     const auto observe = [&](double since_start) {
         last = since_start;

@@ -50,7 +50,8 @@ private:
     void creep_until(double date, bool may_stop);
     bool step_to(double target, bool is_loaded);
     void excavate(const Stage& stage, Index number);
-    void equilibrate(double time, const std::vector<mechanics::Vector2d>& guess = {});
+    bool settles_nearby(const std::vector<mechanics::Vector2d>& guess);
+    void settle_by_motion(double time);
     void take_down_equilibrium();
     void take_down(const std::string& event, bool with_state);
     void start_afresh();
