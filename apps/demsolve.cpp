@@ -179,6 +179,8 @@ void report(const Network& network, const Scene& scene, const Analysis& analysis
                                                                   equilibria.out_of_balance_ratio.end()));
     if (scene.creep && !analysis.creeps())
         summary.add("warning: no creep", std::string("no joint of the section has Kelvin constants"));
+    if (const auto& limit = analysis.stable_limit())
+        summary.add("creep steps below", shown(limit->step / unit::day) + " day: " + limit->of);
     if (analysis.end_of_creep())
         summary.add("creep ended early", *analysis.end_of_creep() / unit::day, "day");
     summary.add("contacts stuck", contacts[static_cast<std::size_t>(ContactStatus::stuck)]);

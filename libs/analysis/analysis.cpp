@@ -80,20 +80,23 @@ Engine engine_for(const Scene& scene, const Recording& recording)
     return scene.equilibrium.engine;
 }
 
-// The published creep step is stable up to a limit that the joints set; beyond it its answer would be wrong.
-void check_creep_step(const Scene& scene, const Network& network, const EquivalentJoints& joints)
+// The published creep step is stable up to a limit that joints and rocks set; beyond it its answer would be
+// wrong. A fixed step beyond it is refused; chosen steps stay below.
+std::optional<StableLimit> limit_of_published(const Scene& scene, const Network& network,
+                                              const EquivalentJoints& joints)
 {
-    if (!scene.creep || !scene.creep->step || scene.creep->scheme != CreepScheme::published)
-        return;
+    if (!scene.creep || scene.creep->scheme != CreepScheme::published)
+        return {};
     const creep::StepLimit limit = creep::longest_step(joints, scene.rocks);
-    if (*scene.creep->step < limit.step)
-        return;
-    throw input_error("creep step of " + shown(*scene.creep->step / unit::day) +
-                      " day: the published scheme is stable only below " + shown(limit.step / unit::day) +
-                      " day, the limit of " +
-                      (limit.rock >= 0 ? "rock \"" + scene.rocks[limit.rock].name
-                                       : "joint \"" + joint_name(scene, network, limit.edge)) +
-                      "\"");
+    if (limit.rock < 0 && limit.edge < 0)
+        return {};
+    const std::string of = limit.rock >= 0 ? "rock \"" + scene.rocks[limit.rock].name + "\""
+                                           : "joint \"" + joint_name(scene, network, limit.edge) + "\"";
+    if (scene.creep->step && *scene.creep->step >= limit.step)
+        throw input_error("creep step of " + shown(*scene.creep->step / unit::day) +
+                          " day: the published scheme is stable only below " + shown(limit.step / unit::day) +
+                          " day, the limit of " + of);
+    return StableLimit{limit.step, of};
 }
 
 } // namespace
@@ -110,7 +113,7 @@ Analysis::Analysis(const Scene& scene, const Network& network, const EquivalentJ
       rock_(mechanics::assemble(scene, network, joints, result_.mesh)), loading_(scene, result_.mesh),
       recorder_(scene, network.blocks, result_.mesh)
 {
-    check_creep_step(scene, network, joints);
+    stable_limit_ = limit_of_published(scene, network, joints);
     rock_.threads =
         std::min(threads, 1 + static_cast<int>(result_.mesh.zone_gridpoint.size()) / zones_per_thread);
     loading_.apply(rock_, 0);
@@ -118,10 +121,8 @@ Analysis::Analysis(const Scene& scene, const Network& network, const EquivalentJ
     if (scene.creep) {
         creep_.emplace(scene, network, joints, result_.mesh, rock_);
         if (creep_->anything_creeps()) {
-            const double longest = scene.creep->scheme == CreepScheme::published
-                                       ? creep::longest_step(joints, scene.rocks).step
-                                       : std::numeric_limits<double>::infinity();
-            step_.emplace(*scene.creep, creep_->fastest_rate(), longest);
+            step_.emplace(*scene.creep, creep_->fastest_rate(),
+                          stable_limit_ ? stable_limit_->step : std::numeric_limits<double>::infinity());
             if (scene.creep->scheme == CreepScheme::linear_force ||
                 scene.creep->scheme == CreepScheme::fitted)
                 closing_.emplace(step_->closing_tolerance()); // the others are of first order anyway
