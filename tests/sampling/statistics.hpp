@@ -76,10 +76,28 @@ inline double density(const Law& law, double x)
     }
     case Law::Kind::negative_exponential:
         return x >= 0 ? std::exp(-x / law.mean) : 0;
+    case Law::Kind::uniform:
+        return x >= law.least && x <= law.most ? 1 : 0;
     case Law::Kind::constant:
         break;
     }
     return 0;
+}
+
+// Angles between poles and the mean pole by Fisher's law: of density kappa sin(t) exp(kappa cos(t)) / (2
+// sinh(kappa)).
+inline Distribution fisher_distribution(double concentration)
+{
+    return [concentration](double t) {
+        const double half = std::sin(t / 2); // 1 - cos(t) = 2 half^2
+        return std::expm1(-2 * concentration * half * half) / std::expm1(-2 * concentration);
+    };
+}
+
+// Mean of cos(t) by Fisher's law, the length of the mean resultant: coth(kappa) - 1 / kappa.
+inline double fisher_resultant(double concentration)
+{
+    return 1 / std::tanh(concentration) - 1 / concentration;
 }
 
 // Distribution of a density on x > 0, by the trapezoidal rule up to `end`.
@@ -100,6 +118,8 @@ inline Distribution integrated(const std::function<double(double)>& density, dou
 
 inline double reach(const Law& law)
 {
+    if (law.most > 0)
+        return law.most;
     return law.mean + 40 * law.deviation;
 }
 
