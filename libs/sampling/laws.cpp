@@ -43,6 +43,15 @@ LogParameters log_parameters(const Law& law)
                       " has next to no values above 0, which a length or spacing has to be");
 }
 
+// By the inverse of its distribution function, (1 - t^q) / (1 - r^q) with q = 1 - exponent, t = x / least and
+// r = most / least.
+double draw_power(double exponent, double least, double most, Stream& stream)
+{
+    const double q = 1 - exponent, range = std::log(most / least), u = uniform(stream);
+    const double logarithm = q == 0 ? u * range : std::log1p(u * std::expm1(q * range)) / q;
+    return std::clamp(least * std::exp(logarithm), least, most);
+}
+
 // The density x exp(-(x - mean)^2 / (2 deviation^2)) has its mode at the positive root m of
 // m^2 - mean m - deviation^2 = 0. Because x <= m exp(x/m - 1) it lies under a multiple of the normal density
 // of mean m, from which values are taken with probability x/m exp(1 - x/m).
@@ -85,6 +94,8 @@ double draw(const Law& law, Stream& stream)
         return draw_exponential(law.mean, stream);
     case Law::Kind::uniform:
         return law.least + uniform(stream) * (law.most - law.least);
+    case Law::Kind::power:
+        return draw_power(law.exponent, law.least, law.most, stream);
     }
     return law.mean;
 }
@@ -141,6 +152,8 @@ double draw_size_biased(const Law& law, Stream& stream)
         const double least2 = law.least * law.least, most2 = law.most * law.most;
         return std::sqrt(least2 + uniform(stream) * (most2 - least2));
     }
+    case Law::Kind::power:
+        return draw_power(law.exponent - 1, law.least, law.most, stream);
     }
     return law.mean;
 }

@@ -202,6 +202,7 @@ Table<SingleJoint> joint()
 // -------------------------------------------------------------------------------------------------------
 
 constexpr double fewest_deviations = 3; // in the mean of a normal law of a length
+constexpr double widest_range = 1e6;    // of the lengths of a power law: longest over shortest
 
 using Kind = Law::Kind;
 
@@ -226,6 +227,7 @@ const std::vector<LawWords>& laws_of_lengths()
                                             {Kind::lognormal, "lognormal", {"mean_m", "deviation_m"}},
                                             {Kind::negative_exponential, "negative exponential", {"mean_m"}},
                                             {Kind::uniform, "uniform", {"shortest_m", "longest_m"}},
+                                            {Kind::power, "power", {"exponent", "shortest_m", "longest_m"}},
                                             {Kind::constant, "constant", {"mean_m"}}};
     return laws;
 }
@@ -268,10 +270,18 @@ Table<WrittenLaw> length_law(const std::string& name, Need need, const std::stri
              "are drawn again, and that must hardly move the mean.")
              .optional(),
          number("shortest_m", &WrittenLaw::shortest, metres, from(0).to(farthest_metre),
-                "Least value: needed by the uniform law, refused by the others.")
+                "Least value, a cut-off: needed by the uniform and power laws, refused by the others. With a "
+                "power "
+                "law at least 1e-6 of longest_m.")
              .optional(),
          number("longest_m", &WrittenLaw::longest, metres, length,
-                "Largest value, above shortest_m: needed by the uniform law, refused by the others.")
+                "Largest value, a cut-off above shortest_m: needed by the uniform and power laws, refused by "
+                "the "
+                "others.")
+             .optional(),
+         number("exponent", &WrittenLaw::exponent, none, from(0).to(20),
+                "Of the power law, whose density falls as the value to the minus this exponent (and the "
+                "number of longer ones with one less): needed by it, refused by the others.")
              .optional()}};
 }
 
@@ -317,6 +327,10 @@ void check_range(const WrittenLaw& law, const TomlValue& value, const Place& pla
     if (law.longest <= law.shortest)
         place.refuse(value.line, place.table + " longest_m = " + shown(law.longest) +
                                      " m: wanted above shortest_m, " + shown(law.shortest) + " m");
+    if (law.kind == Kind::power && law.shortest * widest_range < law.longest)
+        place.refuse(value.line, place.table + " shortest_m = " + shown(law.shortest) +
+                                     " m: the law \"power\" needs at least 1e-6 of longest_m, here " +
+                                     shown(law.longest / widest_range) + " m");
 }
 
 Law law_of(const WrittenLaw& law)
@@ -325,6 +339,8 @@ Law law_of(const WrittenLaw& law)
     case Kind::uniform:
         return law.half_width > 0 ? uniform_law(law.mean - law.half_width, law.mean + law.half_width)
                                   : uniform_law(law.shortest, law.longest);
+    case Kind::power:
+        return power_law(law.exponent, law.shortest, law.longest);
     case Kind::negative_exponential:
         return {law.kind, law.mean, law.mean};
     case Kind::constant:
@@ -351,7 +367,7 @@ Law read_law(const Table<WrittenLaw>& table, const std::vector<LawWords>& laws, 
                          "the law \"normal\" needs a mean of at least 3 deviations, here " +
                              shown(fewest_deviations * law.deviation) +
                              " m; a lognormal law has no such limit");
-        if (law.kind == Kind::uniform)
+        if (law.kind == Kind::uniform || law.kind == Kind::power)
             check_range(law, value, place);
     }
     return law_of(law);

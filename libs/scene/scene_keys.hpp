@@ -17,7 +17,8 @@ struct WrittenLaw {
     Law::Kind kind = Law::Kind::constant;
     double mean = 0, deviation = 0;
     double half_width = 0;            // of a uniform law of angles
-    double shortest = 0, longest = 0; // of a uniform law of lengths
+    double shortest = 0, longest = 0; // of a uniform law of lengths, and of a power law
+    double exponent = 0;
 };
 
 // The tables in the order they are read and documented.

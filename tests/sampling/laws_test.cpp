@@ -44,6 +44,11 @@ Distribution closed_form(const Law& law)
             return x <= 0 ? 0 : -std::expm1(-x / law.mean);
         case Kind::uniform:
             return std::clamp((x - law.least) / (law.most - law.least), 0.0, 1.0);
+        case Kind::power: {
+            const double q = 1 - law.exponent, t = std::clamp(x, law.least, law.most) / law.least,
+                         r = law.most / law.least;
+            return q == 0 ? std::log(t) / std::log(r) : (1 - std::pow(t, q)) / (1 - std::pow(r, q));
+        }
         case Kind::constant:
             break;
         }
@@ -65,7 +70,20 @@ bool obeys_size_biased(const Law& law, const Draw& draw)
 
 const Law normal{Kind::normal, 5, 1.5}, wide_normal{Kind::normal, 2, 2}, lognormal{Kind::lognormal, 5, 3},
     exponential{Kind::negative_exponential, 4, 4}, constant{Kind::constant, 3, 0},
-    uniform_lengths = uniform_law(2, 7), uniform_angles = uniform_law(-.3, .1);
+    uniform_lengths = uniform_law(2, 7), uniform_angles = uniform_law(-.3, .1),
+    uniform_from_0 = uniform_law(0, 3);
+
+const std::vector<Law> power_laws{power_law(0, 1, 4),     power_law(1, 1, 20),   power_law(2, 1, 20),
+                                  power_law(2.5, .5, 40), power_law(3, 2, 1000), power_law(20, 1, 1e6)};
+
+std::vector<Law> with_power_laws(std::vector<Law> laws)
+{
+    laws.insert(laws.end(), power_laws.begin(), power_laws.end());
+    return laws;
+}
+
+const std::vector<Law> positive_laws =
+    with_power_laws({normal, wide_normal, lognormal, exponential, uniform_lengths, uniform_from_0});
 
 using DrawPole = std::function<Eigen::Vector3d(const Eigen::Vector3d& mean, double concentration, Stream&)>;
 
@@ -107,7 +125,8 @@ Eigen::Vector3d pole_at(double angle, const Eigen::Vector3d& mean_pole, Stream& 
 
 TEST(Draw, FollowsTheLaw)
 {
-    for (const Law& law : {normal, wide_normal, lognormal, exponential, uniform_lengths, uniform_angles})
+    for (const Law& law :
+         with_power_laws({normal, wide_normal, lognormal, exponential, uniform_lengths, uniform_angles}))
         EXPECT_TRUE(obeys(law, [&](Stream& stream) { return draw(law, stream); }));
     EXPECT_EQ(sample([](Stream& stream) { return draw(constant, stream); }), Samples(draws, 3.0));
 }
@@ -130,6 +149,52 @@ TEST(Draw, WouldBeCaughtTakingAUniformLawsDeviationForItsHalfWidth)
 TEST(Draw, WouldBeCaughtOnePercentOff)
 {
     EXPECT_FALSE(obeys(normal, [](Stream& stream) { return 1.01 * draw(normal, stream); }));
+}
+
+TEST(Draw, WouldBeCaughtTakingAPowerLawsExponentForThatOfTheNumberOfLongerOnes)
+{
+    for (const Law& law : power_laws) {
+        const Law steeper = power_law(law.exponent + 1, law.least, law.most);
+        EXPECT_FALSE(obeys(law, [&](Stream& stream) { return draw(steeper, stream); }));
+    }
+}
+
+TEST(Draw, WouldBeCaughtWithoutAPowerLawsUpperCutOff)
+{
+    const Law law = power_law(2.5, .5, 40);
+    EXPECT_FALSE(obeys(law, [&](Stream& stream) { return .5 * std::pow(1 - uniform(stream), -1 / 1.5); }));
+    EXPECT_FALSE(obeys(law, [&](Stream& stream) {
+        return std::min(40., .5 * std::pow(1 - uniform(stream), -1 / 1.5)); // put on the cut-off
+    }));
+}
+
+TEST(PowerLaw, HasItsMomentsInClosedForm)
+{
+    for (const Law& law : power_laws) {
+        // Simpson's rule in y = log(x), with dx = x dy.
+        const int steps = 20000;
+        const double step = std::log(law.most / law.least) / steps;
+        double moments[3] = {};
+        for (int i = 0; i <= steps; ++i) {
+            const double y = i * step, weight = i == 0 || i == steps ? 1 : i % 2 == 1 ? 4 : 2;
+            for (int order = 0; order < 3; ++order)
+                moments[order] += weight * std::exp((order + 1 - law.exponent) * y);
+        }
+        const double mean = law.least * moments[1] / moments[0];
+        EXPECT_NEAR(law.mean, mean, 1e-9 * mean) << law.exponent;
+        const double square = law.least * law.least * moments[2] / moments[0];
+        EXPECT_NEAR(law.deviation, std::sqrt(square - mean * mean), 1e-6 * law.deviation) << law.exponent;
+    }
+    // As in the limits of a uniform law and of no cut-off.
+    EXPECT_NEAR(power_law(0, 1, 4).mean, 2.5, 1e-14);
+    EXPECT_NEAR(power_law(0, 1, 4).deviation, std::sqrt(.75), 1e-14);
+    EXPECT_NEAR(power_law(5, 1, 1e6).mean, 4 / 3., 1e-12);
+    // Through the exponents at which an integral is a logarithm.
+    for (const double exponent : {1., 2., 3.}) {
+        const Law at = power_law(exponent, 1, 50), beside = power_law(exponent + 1e-9, 1, 50);
+        EXPECT_NEAR(at.mean, beside.mean, 1e-7);
+        EXPECT_NEAR(at.deviation, beside.deviation, 1e-7);
+    }
 }
 
 TEST(DrawFisher, FollowsFishersLaw)
@@ -175,7 +240,7 @@ TEST(DrawFisher, WouldBeCaughtTwoPercentOffOrTurnedOneSidedly)
 
 TEST(DrawPositive, CutsOffTheLowerTail)
 {
-    for (const Law& law : {normal, wide_normal, lognormal, exponential, uniform_lengths}) {
+    for (const Law& law : positive_laws) {
         const Samples samples = sample([&](Stream& stream) { return draw_positive(law, stream); });
         EXPECT_TRUE(follow(samples, positive_distribution(law)));
         EXPECT_TRUE(have_mean(samples, mean_of_positive(law)));
@@ -201,13 +266,13 @@ TEST(DrawPositive, RefusesALawWithoutPositiveValues)
 
 TEST(DrawSizeBiased, FollowsXTimesTheDensity)
 {
-    for (const Law& law : {normal, wide_normal, lognormal, exponential, uniform_lengths})
+    for (const Law& law : positive_laws)
         EXPECT_TRUE(obeys_size_biased(law, [&](Stream& stream) { return draw_size_biased(law, stream); }));
     EXPECT_EQ(sample([](Stream& stream) { return draw_size_biased(constant, stream); }), Samples(draws, 3.0));
 }
 
 TEST(DrawSizeBiased, WouldBeCaughtWithoutTheBias)
 {
-    for (const Law& law : {normal, wide_normal, lognormal, exponential, uniform_lengths})
+    for (const Law& law : positive_laws)
         EXPECT_FALSE(obeys_size_biased(law, [&](Stream& stream) { return draw_positive(law, stream); }));
 }

@@ -189,6 +189,16 @@ TEST(checks, laws)
                    "longest_m = 2 m: wanted above shortest_m, 2 m");
     expect_refused(spacing, "spacing = { law = \"constant\", mean_m = 2, longest_m = 2 }",
                    "longest_m = 2: the law \"constant\" does not take it");
+    const auto power = [](const std::string& keys) { return "spacing = { law = \"power\", " + keys + " }"; };
+    expect_refused(spacing, power("shortest_m = 1, longest_m = 2"),
+                   "has no exponent: the law \"power\" needs it");
+    expect_refused(spacing, power("exponent = 2, shortest_m = 1, longest_m = 1"), "wanted above shortest_m");
+    expect_refused(spacing, power("exponent = 2, shortest_m = 0.9e-6, longest_m = 1"),
+                   "shortest_m = 9e-07 m: the law \"power\" needs at least 1e-6 of longest_m, here 1e-06 m");
+    expect_refused(spacing, power("exponent = 21, shortest_m = 1, longest_m = 2"),
+                   "wanted a number in [0, 20]");
+    expect_refused(spacing, power("exponent = 2, mean_m = 1, shortest_m = 1, longest_m = 2"),
+                   "mean_m = 1: the law \"power\" does not take it");
     EXPECT_EQ(
         refusal(replaced(text, spacing, "spacing = { law = \"uniform\", shortest_m = 0, longest_m = 9 }")),
         "accepted");

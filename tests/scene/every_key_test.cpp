@@ -60,6 +60,12 @@ TEST(every_key, uniform_and_fisher_laws)
     EXPECT_EQ(about.orientation->dip, 50 * deg);
     EXPECT_EQ(about.orientation->dip_direction, 30 * deg);
     EXPECT_EQ(about.orientation->concentration, 60);
+    EXPECT_EQ(about.spacing.kind, Law::Kind::power);
+    EXPECT_EQ(about.spacing.exponent, 2);
+    EXPECT_EQ(about.spacing.least, 10);
+    EXPECT_EQ(about.spacing.most, 30);
+    EXPECT_DOUBLE_EQ(about.spacing.mean, 15 * std::log(3)); // log(r) / (1 - 1/r) x shortest
+    EXPECT_EQ(about.length->exponent, 2.5);
     EXPECT_FALSE(about.trace_angle || about.dip || about.dip_direction);
 }
 
@@ -152,6 +158,7 @@ TEST(every_key, a_fully_persistent_set_needs_neither_length_nor_strength)
     text = replaced(text, "persistence = 0.6", "persistence = 1");
     text = replaced(text, "persistence = 0.8", "persistence = 1");
     text = replaced(text, "persistence = 0.5", "persistence = 1");
+    text = replaced(text, "persistence = 0.9", "persistence = 1");
     const Scene scene = parse_scene(text, "scene.toml");
     EXPECT_FALSE(scene.rocks[0].strength);
     EXPECT_FALSE(scene.joint_sets[0].length);
