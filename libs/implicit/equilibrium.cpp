@@ -67,8 +67,8 @@ void Engine::take_states(const Assembly& assembly, const Start& start, bool firs
             now = contacts.traction[c].y() > 0 ? Active::slips_forward : Active::slips_backward;
         const bool turns_round = (now == Active::slips_forward && active_[c] == Active::slips_backward) ||
                                  (now == Active::slips_backward && active_[c] == Active::slips_forward);
-        if (!first && now == Active::open && active_[c] != Active::open && !start.state[c].is_broken &&
-            ++openings_[c] >= 2)
+        if (!first && now == Active::open && active_[c] != Active::open && !breaks_[c] &&
+            !start.state[c].is_broken && ++openings_[c] >= 2)
             breaks_[c] = 1;
         active_[c] = turns_round && !first ? Active::stuck : now;
     }
@@ -172,15 +172,16 @@ Engine::Way Engine::go_along(Assembly& assembly, const Start& start, const Vecto
     return at_best(share);
 }
 
-// Breaks the bonds of contacts that have opened, or closed, since states were taken: with cohesion coming and going there
-// may be no equilibrium between. True if there are any.
+// Breaks the bonds of contacts that have opened, or closed, since states were taken: with cohesion coming and
+// going there may be no equilibrium between. True if there are any.
 bool Engine::break_bonds(const Assembly& assembly, const Start& start)
 {
     bool breaks = false;
     for (std::size_t c = 0; c < breaks_.size(); ++c) {
         const bool is_open = assembly.contacts.status[c] == ContactStatus::open;
-        if (assembly.contacts.status[c] != ContactStatus::removed && is_open != (active_[c] == Active::open) &&
-            !breaks_[c] && !start.state[c].is_broken && assembly.contacts.law[c].cohesion > 0) {
+        if (assembly.contacts.status[c] != ContactStatus::removed &&
+            is_open != (active_[c] == Active::open) && !breaks_[c] && !start.state[c].is_broken &&
+            assembly.contacts.law[c].cohesion > 0) {
             breaks_[c] = 1;
             breaks = true;
         }
@@ -276,7 +277,8 @@ bool Engine::converge(Assembly& assembly, const Start& start, const Equilibrium&
             merit = evaluate(assembly, start);
             if (leaps) { // out of where it is stuck, whatever that does to the forces
                 if (++leaps_done > most_leaps) {
-                    reason_ = "forces do not come into balance in " + std::to_string(corrections_) + " corrections";
+                    reason_ =
+                        "forces do not come into balance in " + std::to_string(corrections_) + " corrections";
                     return false;
                 }
                 const VectorXd leap = correction(assembly, force_, enough, 0);
