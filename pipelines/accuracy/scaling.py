@@ -35,8 +35,8 @@ from speed_against_error import number, table
 
 SIZES = {"slope": [6, 3, 1.6, 1, 0.7, 0.45], "column": [1.25, 0.6, 0.3, 0.17, 0.1]}  # of zones [m]
 FINE, WEEK = 1.6, 7  # zones [m] and creep step [day] of the comparison of engines
-TIGHT = {"implicit": 1e-9, "explicit": 1e-7}
-TOLERANCES = {"implicit": [1e-3, 1e-4, 1e-5, 1e-6, 1e-7], "explicit": [1e-3, 1e-4, 1e-5, 1e-6]}
+TIGHT = {"implicit": 1e-9, "explicit": 1e-8}
+TOLERANCES = {"implicit": [1e-3, 1e-4, 1e-5, 1e-6, 1e-7], "explicit": [1e-3, 1e-4, 1e-5, 1e-6, 1e-7]}
 # In a process of its own, small: a child starts with its parent's size as the most memory that it ever had.
 MEASURE = """import json, os, subprocess, sys
 child = subprocess.Popen(sys.argv[1:], stdout=subprocess.DEVNULL, env=dict(os.environ, OMP_NUM_THREADS="1"))
@@ -45,7 +45,14 @@ print(json.dumps([os.waitstatus_to_exitcode(status), usage.ru_utime + usage.ru_s
 
 
 def measured(command):
-    """Processor time [s] and peak memory [MB] of a program."""
+    """Processor time [s], of short runs the least of three, and peak memory [MB] of a program."""
+    runs = [measured_once(command)]
+    while len(runs) < 3 and runs[0][0] < 3:
+        runs.append(measured_once(command))
+    return min(runs)
+
+
+def measured_once(command):
     done = subprocess.run([sys.executable, "-S", "-c", MEASURE, *map(str, command)], check=True, capture_output=True,
                           text=True)
     code, seconds, memory = json.loads(done.stdout)
@@ -156,7 +163,7 @@ def powers_table(rows):
 
 
 def draw(rows, path):
-    plot, axes = figure.plt.subplots(1, 2, figsize=(figure.TWO_COLUMNS, 2.6))
+    plot, axes = figure.plt.subplots(1, 2, figsize=(figure.TWO_COLUMNS, 3.2))
     looks = {"slope": "-", "column": "--"}
     for name, line in looks.items():
         those = [row for row in rows if row["section"] == name]
@@ -174,7 +181,7 @@ def draw(rows, path):
     for one in axes:
         one.set_xlabel("zones")
         one.grid(color="0.9", linewidth=0.4)
-        one.legend(fontsize=5.5)
+        one.legend(fontsize=6, ncol=2, loc="upper center", bbox_to_anchor=(0.5, -0.22))
     plot.savefig(path)
 
 
