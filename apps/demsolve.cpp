@@ -161,8 +161,11 @@ void report(const Network& network, const Scene& scene, const Analysis& analysis
     summary.add("smallest zone altitude", quality.smallest_altitude, "m");
     summary.add("smallest zone angle", quality.smallest_angle / unit::deg, "deg");
     summary.add("stages", scene.stages.size());
-    summary.add("engine", named(analysis.engine()) +
-                              (scene.equilibrium.engine == Engine::automatic ? " (chosen by auto)" : ""));
+    const bool chose = scene.equilibrium.engine == Engine::automatic;
+    summary.add("engine",
+                analysis.engine() == Engine::automatic
+                    ? std::string("implicit, and explicit where that gives up (auto)")
+                    : named(analysis.engine()) + (chose ? " (auto: the scene is about motion)" : ""));
     summary.add("equilibria by factorisation", by_factor);
     summary.add("equilibria by motion", static_cast<std::int64_t>(equilibria.is_implicit.size()) - by_factor);
     for (const auto& [reason, n] : analysis.given_up())
@@ -176,6 +179,8 @@ void report(const Network& network, const Scene& scene, const Analysis& analysis
                                                                   equilibria.out_of_balance_ratio.end()));
     if (scene.creep && !analysis.creeps())
         summary.add("warning: no creep", std::string("no joint of the section has Kelvin constants"));
+    if (const auto& limit = analysis.stable_limit())
+        summary.add("creep steps below", shown(limit->step / unit::day) + " day: " + limit->of);
     if (analysis.end_of_creep())
         summary.add("creep ended early", *analysis.end_of_creep() / unit::day, "day");
     summary.add("contacts stuck", contacts[static_cast<std::size_t>(ContactStatus::stuck)]);

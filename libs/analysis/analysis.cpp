@@ -22,6 +22,12 @@ namespace
 // A thread with fewer zones than this spends its time waiting for the others.
 constexpr int zones_per_thread = 2000;
 
+// Of a stage's increment or a creep step, where factorisation finds no equilibrium at its end.
+constexpr int most_halvings = 5;
+
+// Of one creep step where contacts close: in rock full of open joints some close all the time.
+constexpr int most_cuts = 6;
+
 // How far the gridpoint that moved farthest has moved [m].
 double largest_move(const std::vector<Vector2d>& from, const std::vector<Vector2d>& to)
 {
@@ -77,20 +83,23 @@ Engine engine_for(const Scene& scene, const Recording& recording)
     return scene.equilibrium.engine;
 }
 
-// The published creep step is stable up to a limit that the joints set; beyond it its answer would be wrong.
-void check_creep_step(const Scene& scene, const Network& network, const EquivalentJoints& joints)
+// The published creep step is stable up to a limit that joints and rocks set; beyond it its answer would be
+// wrong. A fixed step beyond it is refused; chosen steps stay below.
+std::optional<StableLimit> limit_of_published(const Scene& scene, const Network& network,
+                                              const EquivalentJoints& joints)
 {
-    if (!scene.creep || !scene.creep->step || scene.creep->scheme != CreepScheme::published)
-        return;
+    if (!scene.creep || scene.creep->scheme != CreepScheme::published)
+        return {};
     const creep::StepLimit limit = creep::longest_step(joints, scene.rocks);
-    if (*scene.creep->step < limit.step)
-        return;
-    throw input_error("creep step of " + shown(*scene.creep->step / unit::day) +
-                      " day: the published scheme is stable only below " + shown(limit.step / unit::day) +
-                      " day, the limit of " +
-                      (limit.rock >= 0 ? "rock \"" + scene.rocks[limit.rock].name
-                                       : "joint \"" + joint_name(scene, network, limit.edge)) +
-                      "\"");
+    if (limit.rock < 0 && limit.edge < 0)
+        return {};
+    const std::string of = limit.rock >= 0 ? "rock \"" + scene.rocks[limit.rock].name + "\""
+                                           : "joint \"" + joint_name(scene, network, limit.edge) + "\"";
+    if (scene.creep->step && *scene.creep->step >= limit.step)
+        throw input_error("creep step of " + shown(*scene.creep->step / unit::day) +
+                          " day: the published scheme is stable only below " + shown(limit.step / unit::day) +
+                          " day, the limit of " + of);
+    return StableLimit{limit.step, of};
 }
 
 } // namespace
@@ -107,7 +116,7 @@ Analysis::Analysis(const Scene& scene, const Network& network, const EquivalentJ
       rock_(mechanics::assemble(scene, network, joints, result_.mesh)), loading_(scene, result_.mesh),
       recorder_(scene, network.blocks, result_.mesh)
 {
-    check_creep_step(scene, network, joints);
+    stable_limit_ = limit_of_published(scene, network, joints);
     rock_.threads =
         std::min(threads, 1 + static_cast<int>(result_.mesh.zone_gridpoint.size()) / zones_per_thread);
     loading_.apply(rock_, 0);
@@ -115,10 +124,8 @@ Analysis::Analysis(const Scene& scene, const Network& network, const EquivalentJ
     if (scene.creep) {
         creep_.emplace(scene, network, joints, result_.mesh, rock_);
         if (creep_->anything_creeps()) {
-            const double longest = scene.creep->scheme == CreepScheme::published
-                                       ? creep::longest_step(joints, scene.rocks).step
-                                       : std::numeric_limits<double>::infinity();
-            step_.emplace(*scene.creep, creep_->fastest_rate(), longest);
+            step_.emplace(*scene.creep, creep_->fastest_rate(),
+                          stable_limit_ ? stable_limit_->step : std::numeric_limits<double>::infinity());
             if (scene.creep->scheme == CreepScheme::linear_force ||
                 scene.creep->scheme == CreepScheme::fitted)
                 closing_.emplace(step_->closing_tolerance()); // the others are of first order anyway
@@ -150,7 +157,8 @@ void Analysis::run()
 void Analysis::settle_in_situ()
 {
     observe_(0, "in-situ equilibrium");
-    equilibrate(0);
+    if (!settles_nearby({}))
+        settle_by_motion(0);
     const mechanics::Contacts& contacts = rock_.contacts;
     for (std::size_t c = 0; c < contacts.status.size(); ++c)
         if (contacts.status[c] != ContactStatus::stuck)
@@ -179,6 +187,7 @@ void Analysis::creep_until(double date, bool may_stop)
     while (now_ < date && !end_of_creep_) {
         observe_(now_ / scene_.end, "day " + std::to_string(std::lround(now_ / unit::day)));
         const double target = next();
+        cuts_left_ = most_cuts;
         while (now_ < target && !end_of_creep_) {
             const double from = now_;
             const std::vector<Vector2d> before = rock_.displacement;
@@ -187,6 +196,8 @@ void Analysis::creep_until(double date, bool may_stop)
             if (may_stop && creeps() && scene_.creep->stop_rate &&
                 largest_move(before, rock_.displacement) < *scene_.creep->stop_rate * (now_ - from))
                 end_of_creep_ = now_;
+            if (now_ < target && !end_of_creep_)
+                continue; // cut short where a contact closes: times stay the same whatever contacts do
             const bool is_due = recording_.state_every > 0 && creeps() &&
                                 ++creep_steps_ % recording_.state_every == 0 && now_ < date;
             take_down("", is_due);
@@ -208,6 +219,7 @@ bool Analysis::step_to(double target, bool is_loaded)
     if (closing_)
         closing_->start(rock_);
     double end = target;
+    int halvings = engine_ == Engine::explicit_engine ? most_halvings : 0;
     for (;;) {
         if (creeps())
             creep_->begin(end - now_, rock_);
@@ -215,10 +227,19 @@ bool Analysis::step_to(double target, bool is_loaded)
         std::vector<Vector2d> guess = last_move_; // creep slows down
         for (Vector2d& move : guess)
             move *= 0.9 * (end - now_) / last_step_;
-        equilibrate(end, guess);
-        const double longest = closing_ ? closing_->longest_step(rock_, end - now_) : end - now_;
+        if (!settles_nearby(guess)) {
+            if (halvings < most_halvings) {
+                ++halvings;
+                end = now_ + (end - now_) / 2;
+                continue;
+            }
+            settle_by_motion(end);
+        }
+        const double longest =
+            closing_ && cuts_left_ > 0 ? closing_->longest_step(rock_, end - now_) : end - now_;
         if (longest >= end - now_ || longest < 1e-9 * (target - now_))
             break;
+        --cuts_left_;
         go_back(rock_, start);
         end = now_ + longest;
     }
@@ -247,12 +268,21 @@ void Analysis::excavate(const Stage& stage, Index number)
     observe_(now_ / scene_.end, stage.name);
     const auto released = mechanics::excavate(rock_, network_.blocks, result_.mesh, loading_, number);
     const std::vector<Vector2d> load = rock_.load;
-    const int n = scene_.equilibrium.unloading_increments;
-    for (int i = 1; i <= n; ++i) {
-        const double held = 1 - static_cast<double>(i) / n;
+    // In the scene's increments; in smaller ones where factorisation finds nothing nearby.
+    const int finest = engine_ == Engine::explicit_engine ? 1 : 1 << most_halvings;
+    const int n = finest * scene_.equilibrium.unloading_increments;
+    for (int done = 0, increment = finest; done < n;) {
+        const double held = 1 - static_cast<double>(done + increment) / n;
         for (std::size_t g = 0; g < load.size(); ++g)
             rock_.load[g] = load[g] + held * released[g];
-        equilibrate(now_);
+        if (!settles_nearby({})) {
+            if (increment > 1) {
+                increment /= 2;
+                continue;
+            }
+            settle_by_motion(now_);
+        }
+        done += increment;
         take_down_equilibrium();
     }
     start_afresh();
@@ -269,25 +299,30 @@ void Analysis::start_afresh()
         closing_->start_afresh();
 }
 
-// Equilibrium at a time, by the engine chosen; by motion where factorisation finds none nearby.
-void Analysis::equilibrate(double time, const std::vector<Vector2d>& guess)
+// Equilibrium by factorisation, if the engine is not the explicit one; false if there is none nearby.
+bool Analysis::settles_nearby(const std::vector<Vector2d>& guess)
 {
+    if (engine_ == Engine::explicit_engine)
+        return false;
+    const auto found = implicit_.equilibrate(rock_, scene_.equilibrium, guess);
     ++effort_.searches;
-    if (engine_ != Engine::explicit_engine) {
-        const auto found = implicit_.equilibrate(rock_, scene_.equilibrium, guess);
-        effort_.factorisations += implicit_.factorisations();
-        effort_.solves += implicit_.solves();
-        effort_.steps += implicit_.corrections();
-        if (found) {
-            certificate_ = *found;
-            return;
-        }
-        if (engine_ == Engine::implicit_engine)
-            throw equilibrium_error("no equilibrium nearby on day " + shown(time / unit::day) + ": " +
-                                    implicit_.reason() + " (--engine auto would go on by motion)");
+    effort_.factorisations += implicit_.factorisations();
+    effort_.solves += implicit_.solves();
+    effort_.steps += implicit_.corrections();
+    if (found)
+        certificate_ = *found;
+    return found.has_value();
+}
+
+// Equilibrium by motion, if the engine is not the implicit one.
+void Analysis::settle_by_motion(double time)
+{
+    if (engine_ == Engine::implicit_engine)
+        throw equilibrium_error("no equilibrium nearby on day " + shown(time / unit::day) + ": " +
+                                implicit_.reason() + " (--engine auto would go on by motion)");
+    if (engine_ == Engine::automatic)
         ++given_up_[implicit_.reason()];
-        ++effort_.searches;
-    }
+    ++effort_.searches;
     double last = 0;
     const auto observe = [&](double since_start) {
         last = since_start;

@@ -24,6 +24,12 @@ struct Recording {
     std::uint64_t trace_every = 0; // solver steps
 };
 
+// The longest stable creep step, and what sets it: a joint or rock, by name.
+struct StableLimit {
+    double step; // [s]
+    std::string of;
+};
+
 // Told how far an analysis is, from 0 to 1, and what is being done.
 using Observer = std::function<void(double fraction, const std::string& what)>;
 
@@ -41,6 +47,10 @@ public:
     const mechanics::Assembly& rock() const { return rock_; }
     Engine engine() const { return engine_; }
     bool creeps() const { return step_.has_value(); }
+    const std::optional<StableLimit>& stable_limit() const
+    {
+        return stable_limit_;
+    }                                                                    // of the published scheme
     std::optional<double> end_of_creep() const { return end_of_creep_; } // where the stop rate ended it [s]
     const std::map<std::string, Index>& beyond_strength() const { return beyond_strength_; }
     const std::map<std::string, Index>& given_up() const { return given_up_; }
@@ -50,7 +60,8 @@ private:
     void creep_until(double date, bool may_stop);
     bool step_to(double target, bool is_loaded);
     void excavate(const Stage& stage, Index number);
-    void equilibrate(double time, const std::vector<mechanics::Vector2d>& guess = {});
+    bool settles_nearby(const std::vector<mechanics::Vector2d>& guess);
+    void settle_by_motion(double time);
     void take_down_equilibrium();
     void take_down(const std::string& event, bool with_state);
     void start_afresh();
@@ -72,10 +83,12 @@ private:
     double now_ = 0;         // since start [s]
     double solver_time_ = 0; // of motion, over all equilibria [s]
     std::uint64_t solver_steps_ = 0, creep_steps_ = 0;
-    mechanics::Certificate certificate_;           // of the last equilibrium
-    mechanics::Effort effort_;                     // since the last one that was taken down
-    std::vector<mechanics::Vector2d> last_move_;   // in the last creep step [m]; none after a jump
-    double last_step_ = 0;                         // [s]
+    mechanics::Certificate certificate_;         // of the last equilibrium
+    mechanics::Effort effort_;                   // since the last one that was taken down
+    std::vector<mechanics::Vector2d> last_move_; // in the last creep step [m]; none after a jump
+    int cuts_left_ = 0;                          // of this creep step
+    double last_step_ = 0;                       // [s]
+    std::optional<StableLimit> stable_limit_;
     std::optional<double> end_of_creep_;           // [s]
     std::map<std::string, Index> beyond_strength_; // contacts by joint: what the in-situ stress breaks
     std::map<std::string, Index> given_up_;        // equilibria by the implicit engine's reason

@@ -29,13 +29,27 @@ class Result:
     period: np.ndarray  # of the states: how many stages there have been
     contacts: closed_forms.Contacts
     traction: np.ndarray  # [state, contact, {normal, shear}] [Pa]
+    jump: np.ndarray  # the same [m]
     status: np.ndarray  # [state, contact]: 0 removed, 1 stuck, 2 slipping, 3 open
+    stiffness: np.ndarray  # [contact, {normal, shear}] [Pa/m]
     zones: int
     equilibria: int  # sought in all, also with creep steps that were too long
     steps: int  # of motion, and corrections by the implicit engine, in all of them
     factorisations: int
     solves: int  # back-substitutions
     version: str
+
+
+def stiffness_of(scene, materials):
+    of = {m["name"]: [m[f"{direction}_stiffness_MPa_per_m"] * 1e6 for direction in ("normal", "shear")]
+          for m in scene["joint_material"]}
+    return np.array([of[name] for name in materials])
+
+
+def slip_of(result):
+    """Slip of the contacts of a run without creep, less that at the start [state, contact]; nan where removed or open."""
+    slip = result.jump[:, :, 1] - (result.traction[:, :, 1] - result.traction[0, :, 1]) / result.stiffness[:, 1]
+    return np.where((result.status == 0) | (result.status == 3), np.nan, slip)
 
 
 def result_of(path):
@@ -58,7 +72,8 @@ def result_of(path):
         return Result(scene, figure.texts(file, "/history/point"), float(array("/history/time")[-1]),
                       displacement[-1], np.abs(displacement).max(axis=0), array("/states/time"),
                       np.cumsum([event != "" for event in events]), contacts, array("/states/traction"),
-                      array("/states/contact_status"), len(array("/mesh/zone_block")),
+                      array("/states/jump"), array("/states/contact_status"), stiffness_of(scene, contacts.material),
+                      len(array("/mesh/zone_block")),
                       *(int(array(f"/equilibria/{what}").sum()) for what in
                         ("searches", "steps", "factorisations", "solves")),
                       figure.text_of(file.attrs["program_version"]))
@@ -69,26 +84,29 @@ class Error:
     displacement: float  # at the end [-]
     traction: float  # the largest over the run [-]; not a number where contacts do not match
     traction_at_the_end: float
+    metres: float = np.nan  # the larger one of displacements and of tractions over stiffness [m]
 
 
 def against_closed_form(result, answer):
     exact = np.array([answer.displacement(point, result.end) for point in result.points])
     apart = np.nan_to_num(result.displacement - exact)
     moved = np.nan_to_num(exact)
-    off = []
+    off, joints = [], 0.0
     for day, period, traction, status in zip(result.time, result.period, result.traction, result.status):
         off_by = traction - answer.traction(result.contacts, day, period)
         off.append(np.abs(off_by[status != 0]).max())
+        joints = max(joints, np.abs(off_by / result.stiffness)[status != 0].max())
     return Error(np.linalg.norm(apart, axis=1).max() / np.linalg.norm(moved, axis=1).max(),
-                 max(off) / answer.scale, off[-1] / answer.scale)
+                 max(off) / answer.scale, off[-1] / answer.scale, max(joints, np.linalg.norm(apart, axis=1).max()))
 
 
 def against_tractions(result, displacement, traction):
     """Against the displacements at the end [point, {x, y}] and the tractions at the result's own states."""
-    off = np.abs((result.traction - traction) * (result.status != 0)[:, :, None]).max(axis=(1, 2))
-    off /= np.abs(traction).max()
-    return Error(np.linalg.norm(result.displacement - displacement, axis=1).max()
-                 / np.linalg.norm(displacement, axis=1).max(), off.max(), off[-1])
+    off_by = np.abs((result.traction - traction) * (result.status != 0)[:, :, None])
+    off = off_by.max(axis=(1, 2)) / np.abs(traction).max()
+    apart = np.linalg.norm(result.displacement - displacement, axis=1).max()
+    return Error(apart / np.linalg.norm(displacement, axis=1).max(), off.max(), off[-1],
+                 max(apart, (off_by / result.stiffness).max()))
 
 
 def against(result, reference):

@@ -29,6 +29,7 @@ import numpy as np
 
 import cases as of
 import errors
+import pillars
 import speed_plots
 
 OUTCOMES = {2: "refused", 3: "no equilibrium"}  # exit codes of demsolve
@@ -48,13 +49,15 @@ class Row:
     displacement: float = math.nan
     traction: float = math.nan
     traction_at_the_end: float = math.nan
+    metres: float = math.nan  # the largest error of a point's displacement or a joint's elastic one [m]
     opens: bool = False  # a contact, at some state
 
 
 def processor_seconds(command):
     """Seconds of user and system, exit code and message of a program."""
     with tempfile.TemporaryFile() as message:
-        child = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=message)
+        one_thread = dict(os.environ, OMP_NUM_THREADS="1")  # threads that wait for others count as processor time
+        child = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=message, env=one_thread)
         _, status, usage = os.wait4(child.pid, 0)
         child.returncode = os.waitstatus_to_exitcode(status)  # or Popen waits for it again
         message.seek(0)
@@ -62,8 +65,8 @@ def processor_seconds(command):
 
 
 class Programs:
-    def __init__(self, folder, scratch):
-        self.folder, self.scratch = folder, scratch
+    def __init__(self, folder, data, scratch):
+        self.folder, self.data, self.scratch = folder, data, scratch
         self.offer = of.offer_of(folder / "demsolve")
 
     def prepare(self, scene):
@@ -125,7 +128,7 @@ def rows_of(case, programs, unit):
         else:
             found = error[run.engine or programs.offer.fastest](result)
             row.displacement, row.traction = found.displacement, found.traction
-            row.traction_at_the_end = found.traction_at_the_end
+            row.traction_at_the_end, row.metres = found.traction_at_the_end, found.metres
         rows.append(row)
     for row, result in zoned:
         if result is not finest_zones(zoned):
@@ -151,12 +154,12 @@ def write_csv(rows, path):
         out = csv.writer(file)
         out.writerow(["case", "study", "engine", "scheme", "step_days", "creep_tolerance_m", "tolerance", "zone_size_m",
                       "outcome", "zones", "equilibria", "steps", "factorisations", "back_substitutions", "time",
-                      "displacement_error", "force_error", "force_error_at_the_end"])
+                      "displacement_error", "force_error", "force_error_at_the_end", "error_m"])
         for row in rows:
             run = row.run
             out.writerow([row.case, run.study, run.engine, run.scheme, run.step, run.creep_tolerance, run.tolerance,
                           run.zone_size, row.outcome, row.zones, row.equilibria, row.steps, row.factorisations,
-                          row.solves, row.time, row.displacement, row.traction, row.traction_at_the_end])
+                          row.solves, row.time, row.displacement, row.traction, row.traction_at_the_end, row.metres])
 
 
 def case_table(case, rows):
@@ -238,7 +241,10 @@ def zones_table(rows, cases):
 
 
 def slip_table(programs, data, unit):
-    """What overshooting and long increments change where joints slip."""
+    """What overshooting and long increments change where joints slip.
+
+    Spurious slip is the largest difference of a contact's slip, at the states of the file, to the slowest way.
+    """
     damped = 'masses = "real"\ndamping = "mass"\nmass_damping_per_s = '
     ways = [("adaptive damping", ""), ("local damping", 'damping = "local"'), ("real masses, 800 /s", damped + "800"),
             ("real masses, 80 /s", damped + "80")]
@@ -262,13 +268,81 @@ def slip_table(programs, data, unit):
         for engine, way, increments, time, outcome, result in found:
             apart = [number(np.abs(now - then).max() / np.abs(then).max())
                      for now, then in ((result.peak, slow.peak), (result.displacement, slow.displacement))
-                     ] if result else [outcome, ""]
+                     ] if result else [outcome, "", ""]
+            if result:
+                slip, slow_slip = errors.slip_of(result), errors.slip_of(slow)
+                apart.append(number(np.nanmax(np.abs(slip - slow_slip)) / np.nanmax(np.abs(slow_slip))))
             lines.append([title, engine, way, increments, result.steps if result else "", number(time, ".2g"), *apart])
     return table(["case", "engine", "way", "increments", "steps", "time", "largest displacements",
-                  "displacements at the end"], lines)
+                  "displacements at the end", "spurious slip"], lines)
 
 
-def write_tables(rows, cases, offer, slip, version, folder):
+def pillars_table(programs):
+    """The published and the fitted step at equally many equilibria: what a pair of pillars makes of it."""
+    def force_error(ratio, scheme, steps):
+        text = of.stated_pillars_scene((programs.data / "verification/two-pillars/scene.toml").read_text(), ratio)
+        run = of.Run("pillars", programs.offer.fastest, scheme, step=1 / of.RATE / steps, tolerance=1e-11)
+        _, code, message, result = programs.solve(programs.prepare(text), run.options(programs.offer), True)
+        if code == 2:
+            return math.nan
+        if code != 0:
+            sys.exit(f"speed_against_error.py: pillars, {ratio:g}, {scheme}: {message}")
+        return errors.against_closed_form(result, of.closed_forms.two_pillars(result.scene)).traction
+
+    lines = []
+    for ratio, stated, of_scene, worst, median, growth in pillars.rows():
+        cells = []
+        for steps in 8, 10:
+            published, fitted = (force_error(ratio, scheme, steps) for scheme in ("published", "fitted"))
+            cells.append(number(published / fitted, ".0f") or "refused")
+        lines.append([f"{ratio:g}", f"{stated:.0f}", *cells, f"{growth:.2f}",
+                      f"{pillars.gain(pillars.stated_pair(ratio), 10):.0f}", f"{of_scene:.0f}",
+                      f"{median:.0f}", f"{worst:.0f}"])
+    return table(["K/E", "stated pair", "by demsolve", "by demsolve, 10 steps", "published grows by",
+                  "stated pair, 10 steps", "the scene's pair", "random pairs, median", "worst of 400"], lines)
+
+
+def halving_table(rows, offer):
+    """Force error of the wedge at every step, and the order between the last ones."""
+    lines = []
+    for engine in offer.engines:
+        found = {scheme: [at_step(rows, "V-groove", scheme, step, engine) for step in of.HALVED]
+                 for scheme in offer.schemes}
+        for n, step in enumerate(of.HALVED):
+            cells = []
+            for scheme in offer.schemes:
+                row, before = found[scheme][n], found[scheme][n - 1] if n else None
+                order = "" if not before else number(math.log2(before.traction / row.traction), ".1f")
+                cells.append(row.outcome if row.outcome != "done" else
+                             number(row.traction) + (f" ({order})" if order else ""))
+            lines.append([engine, f"{step:g}", *cells])
+    return table(["engine", "dT (days)", *offer.schemes], lines)
+
+
+def steps_by_error_table(rows, cases, levels=(1e-2, 1e-3, 1e-4)):
+    """Equilibria that fixed steps and steps by their error take to both errors below a level, and what a tolerance is worth.
+
+    Of the fastest engine, in the fitted scheme.
+    """
+    lines = []
+    for case in cases:
+        those = [row for row in rows if row.case == case.name and row.run.engine == "implicit"
+                 and row.run.scheme == "fitted" and row.outcome == "done"]
+        fixed, chosen = ([row for row in those if row.run.study == study] for study in ("creep step", "creep tolerance"))
+        if not chosen:
+            continue
+        cells = []
+        for level in levels:
+            best = [min((row.equilibria for row in some if max(row.displacement, row.traction) <= level), default=None)
+                    for some in (fixed, chosen)]
+            cells.append(" / ".join("-" if n is None else str(n) for n in best))
+        worth = [row.metres / row.run.creep_tolerance for row in chosen if math.isfinite(row.metres)]
+        lines.append([case.title, *cells, *(f"{pick(worth):.2g}" for pick in (min, max))])
+    return table(["case", *(f"{level:g}: fixed / chosen" for level in levels), "error / tolerance, least", "most"],
+                 lines)
+
+
+def write_tables(rows, cases, offer, slip, of_pillars, column_seconds, version, folder):
     shown = [case for case in cases if not case.is_long]
     tables = {"computed": [f"Computed on {datetime.date.today()} with version {version}."],
               "defaults": defaults_table(rows, shown),
@@ -276,7 +350,11 @@ def write_tables(rows, cases, offer, slip, version, folder):
               "eight-steps": steps_table(rows, offer, [1 / of.RATE / 8], ""),
               "long-steps": steps_table(rows, offer, of.LONG_STEPS, ", long"),
               "zones": zones_table(rows, shown),
-              "slip": slip}
+              "slip": slip,
+              "pillars": of_pillars,
+              "steps-by-error": steps_by_error_table(rows, shown),
+              "halving": halving_table(rows, offer) if any(row.case == "V-groove" for row in rows) else [],
+              "column-implicit": [column_line(rows, column_seconds)]}
     (folder / "tables").mkdir(exist_ok=True)
     for name, lines in tables.items():
         (folder / "tables" / f"{name}.md").write_text("\n".join(lines).rstrip() + "\n")
@@ -284,6 +362,16 @@ def write_tables(rows, cases, offer, slip, version, folder):
     for case in shown:
         lines += case_table(case, [row for row in rows if row.case == case.name])
     (folder / "cases.md").write_text("\n".join(lines))
+
+
+def column_line(rows, unit):
+    """The column by the implicit engine, at its default tolerance."""
+    row = next((row for row in rows if row.case == "column" and row.run.study == "default"), None)
+    if row is None:
+        return ""
+    return (f"By the implicit engine the column's displacements are within {number(row.displacement)} of the closed form, "
+            f"its tractions within {number(row.traction)}, after {unit * row.time:.2g} s with reading and writing; by "
+            f"motion, as the scene says, it takes {unit:.2g} s.")
 
 
 def main():
@@ -294,7 +382,7 @@ def main():
     binaries, data, out = (Path(a).resolve() for a in arguments)
     out.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory() as scratch:
-        programs = Programs(binaries, Path(scratch))
+        programs = Programs(binaries, data, Path(scratch))
         joints = programs.prepare((data / "column/scene.toml").read_text())
         unit, code, message, result = programs.solve(joints, of.Run("unit", "explicit").options(programs.offer))
         if code != 0:
@@ -302,8 +390,9 @@ def main():
         cases = (of.quick_cases if quick else of.all_cases)(data, programs.offer)
         rows = [row for case in cases for row in rows_of(case, programs, unit)]
         slip = [] if quick else slip_table(programs, data, unit)
+        of_pillars = [] if quick else pillars_table(programs)
         write_csv(rows, out / "runs.csv")
-        write_tables(rows, cases, programs.offer, slip, result.version, out)
+        write_tables(rows, cases, programs.offer, slip, of_pillars, unit, result.version, out)
         speed_plots.draw(rows, [case for case in cases if not case.is_long], programs.offer, out)
 
 
