@@ -227,13 +227,12 @@ bool Analysis::step_to(double target, bool is_loaded)
         std::vector<Vector2d> guess = last_move_; // creep slows down
         for (Vector2d& move : guess)
             move *= 0.9 * (end - now_) / last_step_;
-        if (!settles_nearby(guess)) {
-            if (halvings < most_halvings) {
-                ++halvings;
-                end = now_ + (end - now_) / 2;
-                continue;
-            }
+        if (halvings == most_halvings) { // all the way then, by motion
             settle_by_motion(end);
+        } else if (!settles_nearby(guess)) {
+            ++halvings;
+            end = halvings < most_halvings ? now_ + (end - now_) / 2 : target;
+            continue;
         }
         const double longest =
             closing_ && cuts_left_ > 0 ? closing_->longest_step(rock_, end - now_) : end - now_;
@@ -257,7 +256,7 @@ bool Analysis::step_to(double target, bool is_loaded)
         last_move_[g] -= start.displacement[g];
     now_ = end;
     take_down_equilibrium();
-    if (end < target) // a contact has closed
+    if (end < target && step_) // cut short
         step_->start_afresh();
     return true;
 }
