@@ -30,7 +30,7 @@ namespace
 
 const Program program{
     .name = "demsolve",
-    .summary = "Excavates a jointed section in stages and lets its joints creep.",
+    .summary = "Excavates a jointed section in stages and lets joints and rock creep.",
     .input = "joints.h5",
     .output = "result.h5",
     .options = {{"threads", "N", "threads of the solver; they do not change the result (default 1)"},
@@ -178,7 +178,7 @@ void report(const Network& network, const Scene& scene, const Analysis& analysis
     summary.add("largest out-of-balance ratio", *std::max_element(equilibria.out_of_balance_ratio.begin(),
                                                                   equilibria.out_of_balance_ratio.end()));
     if (scene.creep && !analysis.creeps())
-        summary.add("warning: no creep", std::string("no joint of the section has Kelvin constants"));
+        summary.add("warning: no creep", std::string("neither joints nor rocks of the section creep"));
     if (const auto& limit = analysis.stable_limit())
         summary.add("creep steps below", shown(limit->step / unit::day) + " day: " + limit->of);
     if (analysis.end_of_creep())

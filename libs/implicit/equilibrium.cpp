@@ -324,16 +324,16 @@ std::optional<Certificate> Engine::equilibrate(Assembly& assembly, const Equilib
         reason_ = "forces are no finite numbers";
         return give_up();
     }
-    certificate.out_of_balance_ratio = balance_of(assembly, stiffest_, 0, settings.tolerance).ratio();
-    if (certificate.out_of_balance_ratio <= settings.tolerance)
-        return certificate;
-
+    const bool is_balanced =
+        balance_of(assembly, stiffest_, 0, settings.tolerance).ratio() <= settings.tolerance;
     const double stored_at_start = stored_energy(assembly);
-    for (std::size_t g = 0; g < guess.size(); ++g)
-        assembly.displacement[g] += guess[g].cwiseProduct(assembly.is_free[g]);
-    if (!guess.empty() && evaluate(assembly, start) > merit) {
-        assembly.displacement = start.displacement;
-        evaluate(assembly, start);
+    if (!guess.empty() && !is_balanced) {
+        for (std::size_t g = 0; g < guess.size(); ++g)
+            assembly.displacement[g] += guess[g].cwiseProduct(assembly.is_free[g]);
+        if (evaluate(assembly, start) > merit) {
+            assembly.displacement = start.displacement;
+            evaluate(assembly, start);
+        }
     }
     take_states(assembly, start, true);
     if (!stiffness_.has_factor()) {
@@ -345,6 +345,8 @@ std::optional<Certificate> Engine::equilibrate(Assembly& assembly, const Equilib
     }
     if (!converge(assembly, start, settings, most_corrections, certificate))
         return give_up();
+    if (is_balanced && corrections_ == 0)
+        return certificate;
     for (;;) { // without the bonds that broke in vain, if there is equilibrium without
         const std::vector<Vector2d> displacement = assembly.displacement;
         const std::vector<char> breaks = breaks_;
