@@ -86,6 +86,7 @@ private:
     mechanics::Certificate certificate_;         // of the last equilibrium
     mechanics::Effort effort_;                   // since the last one that was taken down
     std::vector<mechanics::Vector2d> last_move_; // in the last creep step [m]; none after a jump
+    int cuts_left_ = 0;                          // of this creep step
     double last_step_ = 0;                       // [s]
     std::optional<StableLimit> stable_limit_;
     std::optional<double> end_of_creep_;           // [s]

@@ -22,6 +22,7 @@ StepLength::StepLength(const jointcreep::Creep& settings, double fastest_rate, d
       order_(settings.scheme == CreepScheme::fitted || settings.scheme == CreepScheme::linear_force ? 3 : 2),
       wanted_(first_)
 {
+    shortest_ = std::min(shortest_, longest_);
 }
 
 double StepLength::next(double remaining, double longest) const

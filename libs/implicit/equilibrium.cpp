@@ -12,6 +12,7 @@ namespace jointcreep::implicit
 
 using mechanics::Balance;
 using mechanics::Certificate;
+using mechanics::State;
 
 namespace
 {
@@ -34,17 +35,11 @@ double farthest_move(const std::vector<Vector2d>& from, const std::vector<Vector
 
 } // namespace
 
-// Where an equilibrium starts from.
-struct Engine::Start {
-    std::vector<joint::CoulombState> state;
-    std::vector<Vector2d> displacement, traction, jump;
-};
-
 // Finds forces at the present displacements, as reached straight from the start. Returns the merit: the
 // squared out-of-balance forces, each over the stiffness against which it acts.
-double Engine::evaluate(Assembly& assembly, const Start& start)
+double Engine::evaluate(Assembly& assembly, const State& start)
 {
-    assembly.contacts.state = start.state;
+    assembly.contacts.state = start.joint;
     for (std::size_t c = 0; c < breaks_.size(); ++c)
         if (breaks_[c])
             assembly.contacts.state[c].is_broken = true;
@@ -56,7 +51,7 @@ double Engine::evaluate(Assembly& assembly, const Start& start)
 // Takes over what contacts do now: sliding back only by way of sticking, unless this is the `first` time. A
 // bond that breaks for the second time stays broken: with cohesion back at every closing it might flicker for
 // ever.
-void Engine::take_states(const Assembly& assembly, const Start& start, bool first)
+void Engine::take_states(const Assembly& assembly, const State& start, bool first)
 {
     const mechanics::Contacts& contacts = assembly.contacts;
     for (std::size_t c = 0; c < active_.size(); ++c) {
@@ -67,8 +62,8 @@ void Engine::take_states(const Assembly& assembly, const Start& start, bool firs
             now = contacts.traction[c].y() > 0 ? Active::slips_forward : Active::slips_backward;
         const bool turns_round = (now == Active::slips_forward && active_[c] == Active::slips_backward) ||
                                  (now == Active::slips_backward && active_[c] == Active::slips_forward);
-        if (!first && now == Active::open && active_[c] != Active::open && !breaks_[c] &&
-            !start.state[c].is_broken && ++openings_[c] >= 2)
+        if (!first && now == Active::open && active_[c] != Active::open && !start.joint[c].is_broken &&
+            !breaks_[c] && ++openings_[c] >= 2)
             breaks_[c] = 1;
         active_[c] = turns_round && !first ? Active::stuck : now;
     }
@@ -122,7 +117,7 @@ VectorXd Engine::correction(const Assembly& assembly, const VectorXd& force, dou
 // Moves along a correction, at most too far, and as far as forces come nearer to balance: all the way,
 // or to where they do no more work along it (a block on its way to where it touches loses no force before,
 // and its balance there is narrow), or else part of the way.
-Engine::Way Engine::go_along(Assembly& assembly, const Start& start, const VectorXd& correction, double merit)
+Engine::Way Engine::go_along(Assembly& assembly, const State& start, const VectorXd& correction, double merit)
 {
     const std::vector<Vector2d> from = assembly.displacement;
     const double work = force_.dot(correction);
@@ -174,13 +169,13 @@ Engine::Way Engine::go_along(Assembly& assembly, const Start& start, const Vecto
 
 // Breaks the bonds of contacts that have opened, or closed, since states were taken: with cohesion coming and
 // going there may be no equilibrium between. True if there are any.
-bool Engine::break_bonds(const Assembly& assembly, const Start& start)
+bool Engine::break_bonds(const Assembly& assembly, const State& start)
 {
     bool breaks = false;
     for (std::size_t c = 0; c < breaks_.size(); ++c) {
         const bool is_open = assembly.contacts.status[c] == ContactStatus::open;
         if (assembly.contacts.status[c] != ContactStatus::removed &&
-            is_open != (active_[c] == Active::open) && !breaks_[c] && !start.state[c].is_broken &&
+            is_open != (active_[c] == Active::open) && !breaks_[c] && !start.joint[c].is_broken &&
             assembly.contacts.law[c].cohesion > 0) {
             breaks_[c] = 1;
             breaks = true;
@@ -222,19 +217,9 @@ double Engine::force_change(const Assembly& assembly, const VectorXd& displaceme
     return largest;
 }
 
-// Leaves the assembly as it was.
-std::nullopt_t Engine::give_up(Assembly& assembly, const Start& start)
-{
-    assembly.displacement = start.displacement;
-    assembly.contacts.state = start.state;
-    assembly.contacts.traction = start.traction;
-    assembly.contacts.jump = start.jump;
-    return std::nullopt;
-}
-
 // Looks for equilibrium from the present displacements in at most so many corrections. False if it finds
 // none: reason_.
-bool Engine::converge(Assembly& assembly, const Start& start, const Equilibrium& settings,
+bool Engine::converge(Assembly& assembly, const State& start, const Equilibrium& settings,
                       int most_corrections, Certificate& certificate)
 {
     const Index first = corrections_;
@@ -248,7 +233,7 @@ bool Engine::converge(Assembly& assembly, const Start& start, const Equilibrium&
         if (is_balanced && is_at_rest(assembly, balance.mean, settings.tolerance, certificate))
             return true;
         if (corrections_ - first == most_corrections || since_least == 15) {
-            reason_ = "forces do not come into balance in " + std::to_string(corrections_) + " corrections";
+            reason_ = "forces do not come into balance";
             return false;
         }
 
@@ -277,11 +262,14 @@ bool Engine::converge(Assembly& assembly, const Start& start, const Equilibrium&
             merit = evaluate(assembly, start);
             if (leaps) { // out of where it is stuck, whatever that does to the forces
                 if (++leaps_done > most_leaps) {
-                    reason_ =
-                        "forces do not come into balance in " + std::to_string(corrections_) + " corrections";
+                    reason_ = "forces do not come into balance";
                     return false;
                 }
                 const VectorXd leap = correction(assembly, force_, enough, 0);
+                if (leap.size() == 0 || !leap.allFinite()) {
+                    reason_ = "some rock is held by nothing";
+                    return false;
+                }
                 const double farthest = farthest_move(start.displacement, assembly.displacement);
                 stiffness_.add_to(assembly.displacement, leap,
                                   std::min(1.0, farthest / leap.lpNorm<Eigen::Infinity>()));
@@ -311,9 +299,11 @@ bool Engine::is_at_rest(const Assembly& assembly, double mean_force, double tole
 {
     ++solves_;
     certificate.contact_force_change = force_change(assembly, stiffness_.solve(force_)) / mean_force;
-    if (certificate.contact_force_change > tolerance)
-        certificate.contact_force_change =
-            force_change(assembly, correction(assembly, force_, 0.1 * force_.norm(), 0)) / mean_force;
+    if (certificate.contact_force_change > tolerance) {
+        const VectorXd du = correction(assembly, force_, 0.1 * force_.norm(), 0);
+        if (du.size() > 0)
+            certificate.contact_force_change = force_change(assembly, du) / mean_force;
+    }
     return certificate.contact_force_change <= tolerance;
 }
 
@@ -321,17 +311,24 @@ std::optional<Certificate> Engine::equilibrate(Assembly& assembly, const Equilib
                                                const std::vector<Vector2d>& guess)
 {
     mechanics::Contacts& contacts = assembly.contacts;
-    const Start start{contacts.state, assembly.displacement, contacts.traction, contacts.jump};
+    const State start = state_of(assembly);
+    const auto give_up = [&] {
+        go_back(assembly, start);
+        return std::nullopt;
+    };
     prepare(assembly);
     Certificate certificate;
     certificate.is_implicit = true;
     const double merit = evaluate(assembly, start);
+    if (!std::isfinite(merit)) {
+        reason_ = "forces are no finite numbers";
+        return give_up();
+    }
     certificate.out_of_balance_ratio = balance_of(assembly, stiffest_, 0, settings.tolerance).ratio();
     if (certificate.out_of_balance_ratio <= settings.tolerance)
         return certificate;
 
     const double stored_at_start = stored_energy(assembly);
-    const std::vector<Vector2d> traction_at_start = contacts.traction, jump_at_start = contacts.jump;
     for (std::size_t g = 0; g < guess.size(); ++g)
         assembly.displacement[g] += guess[g].cwiseProduct(assembly.is_free[g]);
     if (!guess.empty() && evaluate(assembly, start) > merit) {
@@ -343,11 +340,11 @@ std::optional<Certificate> Engine::equilibrate(Assembly& assembly, const Equilib
         ++factorisations_;
         if (!stiffness_.factorise(assembly, tangents(assembly, soft))) {
             reason_ = "some rock is held by nothing";
-            return give_up(assembly, start);
+            return give_up();
         }
     }
     if (!converge(assembly, start, settings, most_corrections, certificate))
-        return give_up(assembly, start);
+        return give_up();
     for (;;) { // without the bonds that broke in vain, if there is equilibrium without
         const std::vector<Vector2d> displacement = assembly.displacement;
         const std::vector<char> breaks = breaks_;
@@ -363,14 +360,12 @@ std::optional<Certificate> Engine::equilibrate(Assembly& assembly, const Equilib
     }
 
     certificate.steps = corrections_;
-    // The account of energy is that of the straight way here.
-    contacts.traction = traction_at_start;
-    contacts.jump = jump_at_start;
-    std::fill(contacts.dissipated.begin(), contacts.dissipated.end(), 0.0);
     evaluate(assembly, start);
     certificate.stored = stored_energy(assembly) - stored_at_start;
-    for (const double lost : contacts.dissipated)
-        certificate.dissipated += lost;
+    for (std::size_t c = 0; c < contacts.status.size(); ++c)
+        if (contacts.status[c] == ContactStatus::slipping)
+            certificate.dissipated += contacts.length[c] * contacts.traction[c].y() *
+                                      (contacts.state[c].slip - start.joint[c].slip);
     for (std::size_t g = 0; g < assembly.position.size(); ++g)
         certificate.work_of_loads +=
             (assembly.load[g] + assembly.applied[g]).dot(assembly.displacement[g] - start.displacement[g]);

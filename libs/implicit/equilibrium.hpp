@@ -7,6 +7,9 @@
 // straight to the one at its end (backward Euler). A contact goes from slip one way to slip the other way
 // only through sticking.
 //
+// The account of energy is that of backward Euler, too: a contact slips under the traction it ends with. What
+// neither is stored nor goes there counts as damped.
+//
 // Bonds that break do so for good, and at once; a contact that opened on the way and closes again without
 // having needed to is given its bond back.
 
@@ -42,9 +45,9 @@ public:
 private:
     enum class Active : char { open, stuck, slips_forward, slips_backward };
 
-    struct Start;
-    double evaluate(Assembly& assembly, const Start& start);
-    void take_states(const Assembly& assembly, const Start& start, bool first);
+    using State = mechanics::State; // where an equilibrium starts from
+    double evaluate(Assembly& assembly, const State& start);
+    void take_states(const Assembly& assembly, const State& start, bool first);
     std::vector<Tangent> tangents(const Assembly& assembly, double softness) const;
     VectorXd correction(const Assembly& assembly, const VectorXd& force, double enough, double hold);
     struct Way {
@@ -52,16 +55,15 @@ private:
         double failed_share; // the smallest share of the correction that brought forces no nearer to balance;
                              // 0 if none
     };
-    Way go_along(Assembly& assembly, const Start& start, const VectorXd& correction, double merit);
+    Way go_along(Assembly& assembly, const State& start, const VectorXd& correction, double merit);
     void prepare(const Assembly& assembly);
-    bool converge(Assembly& assembly, const Start& start, const Equilibrium& settings, int most_corrections,
+    bool converge(Assembly& assembly, const State& start, const Equilibrium& settings, int most_corrections,
                   mechanics::Certificate& certificate);
     bool is_at_rest(const Assembly& assembly, double mean_force, double tolerance,
                     mechanics::Certificate& certificate);
-    bool break_bonds(const Assembly& assembly, const Start& start);
+    bool break_bonds(const Assembly& assembly, const State& start);
     bool mend_bonds(const Assembly& assembly);
     double force_change(const Assembly& assembly, const VectorXd& displacement) const;
-    static std::nullopt_t give_up(Assembly& assembly, const Start& start);
 
     Stiffness stiffness_;
     std::vector<Active> active_;

@@ -19,6 +19,7 @@ double gmres(const Product& product, const Precondition& precondition, const Eig
              double enough, int most, Eigen::VectorXd& x)
 {
     using Eigen::VectorXd;
+    constexpr double rounding = 1e-14; // what is left of a product beside the basis, if nothing new is in it
     VectorXd residual = x.isZero(0) ? right : VectorXd(right - product(x));
     double norm = residual.norm();
     if (!(norm > enough))
@@ -31,6 +32,7 @@ double gmres(const Product& product, const Precondition& precondition, const Eig
     while (n < most && norm > enough) {
         directions.push_back(precondition(basis.back()));
         VectorXd next = product(directions.back());
+        const double nothing = rounding * next.norm();
         auto column = hessenberg.col(n);
         for (int i = 0; i <= n; ++i) {
             column[i] = basis[i].dot(next);
@@ -44,8 +46,8 @@ double gmres(const Product& product, const Precondition& precondition, const Eig
             column[i] = upper;
         }
         const double length = std::hypot(column[n], column[n + 1]);
-        if (!(length > 0) || !std::isfinite(length))
-            break;
+        if (!(length > nothing) || !std::isfinite(length))
+            break; // the product is singular: this direction changes nothing
         cosine[n] = column[n] / length;
         sine[n] = column[n + 1] / length;
         column[n] = length;
@@ -54,7 +56,7 @@ double gmres(const Product& product, const Precondition& precondition, const Eig
         reduced[n] *= cosine[n];
         norm = std::abs(reduced[n + 1]);
         ++n;
-        if (!(beyond > 0))
+        if (!(beyond > nothing))
             break;
         basis.push_back(next / beyond);
     }

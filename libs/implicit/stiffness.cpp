@@ -43,6 +43,7 @@ Vector2d tangent_along(const Vector2d& normal)
 
 void Stiffness::follow(const Assembly& assembly)
 {
+    Eigen::setNbThreads(assembly.threads); // of products; Eigen would take all there are
     const bool is_known = is_present_ == assembly.zones.is_present && is_free_ == assembly.is_free &&
                           tied_ == assembly.tied && n_ > 0;
     if (!is_known) {
@@ -60,7 +61,7 @@ void Stiffness::follow(const Assembly& assembly)
 
 void Stiffness::number_unknowns(const Assembly& assembly)
 {
-    // Gridpoints without rock or contacts stay where they are.
+    // Gridpoints without rock stay where they are.
     std::vector<char> has_part(assembly.position.size(), 0);
     for (std::size_t z = 0; z < assembly.zones.gridpoint.size(); ++z)
         if (assembly.zones.is_present[z])

@@ -261,6 +261,8 @@ Balance balance_of(const Assembly& assembly)
     Index n = 0;
     for (std::size_t g = 0; g < assembly.position.size(); ++g) {
         const double force = assembly.force[g].cwiseProduct(assembly.is_free[g]).norm();
+        if (!std::isfinite(force))
+            return {force, static_cast<Index>(g), 1};
         if (force > balance.largest) {
             balance.largest = force;
             balance.worst = static_cast<Index>(g);

@@ -4,6 +4,8 @@
 
 #pragma once
 
+#include "model/law.hpp"
+
 #include <Eigen/Core>
 
 #include <algorithm>
@@ -68,27 +70,21 @@ struct JointMaterial {
     std::optional<Maxwell> maxwell{}; // without either the joint does not creep
 };
 
-// A probability law of one quantity. `mean` and `deviation` are those of the quantity itself, in SI units,
-// never of its logarithm.
-struct Law {
-    enum class Kind { constant, normal, lognormal, negative_exponential };
-    Kind kind = Kind::constant;
-    double mean = 0;
-    double deviation = 0; // standard deviation; 0 for a constant, the mean for the negative exponential
-};
-
 // Joints sharing their statistics: lines of one orientation law, along each of which joint traces and rock
 // bridges alternate.
 struct JointSet {
     std::string name;
-    std::string material;             // name of a JointMaterial
-    std::optional<Law> trace_angle;   // of the trace in the section, counter-clockwise from +x [rad]; or else
+    std::string material; // name of a JointMaterial
+    // One of three:
+    std::optional<Law> trace_angle;   // of the trace in the section, counter-clockwise from +x [rad]
     std::optional<Law> dip;           // below the horizontal [rad], with
     std::optional<Law> dip_direction; // clockwise from north [rad]
-    Law spacing;                      // along the set's mean normal in space [m]
-    std::optional<Law> length;        // of the joint traces [m]; needed unless persistence is 0 or 1
-    double persistence = 0;           // fraction of a line that is joint [-]
-    std::optional<Polygon> region;    // where the set exists; without it, the whole section
+    std::optional<FisherLaw> orientation;
+
+    Law spacing;                   // along the set's mean normal in space [m]
+    std::optional<Law> length;     // of the joint traces [m]; needed unless persistence is 0 or 1
+    double persistence = 0;        // fraction of a line that is joint [-]
+    std::optional<Polygon> region; // where the set exists; without it, the whole section
 };
 
 // One joint or fault given by its ends: all of it joint, no bridges.

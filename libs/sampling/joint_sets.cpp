@@ -51,26 +51,55 @@ Vector2d trace_of(double angle)
     return {std::cos(angle), std::sin(angle)};
 }
 
+// A plane by its dip and dip direction [rad].
+struct Plane {
+    double dip, dip_direction;
+};
+
+Plane mean_plane(const JointSet& set)
+{
+    if (set.orientation)
+        return {set.orientation->dip, set.orientation->dip_direction};
+    if (!set.dip || !set.dip_direction)
+        throw input_error(quoted(set) + " has no orientation; it needs a trace angle, a dip and a dip "
+                                        "direction, or a law of its poles");
+    return {set.dip->mean, set.dip_direction->mean};
+}
+
 double azimuth_for(const JointSet& set, const Scene& scene)
 {
-    if (!set.dip || !set.dip_direction)
-        throw input_error(quoted(set) +
-                          " has no orientation; it needs a trace angle, or a dip and a dip direction");
     if (!scene.azimuth)
         throw input_error(quoted(set) +
                           " has a dip and a dip direction, for which the section needs an azimuth");
     return *scene.azimuth;
 }
 
+// Upward unit normal along the section's x and y, and across it.
+Eigen::Vector3d pole_of(const Plane& plane, double azimuth)
+{
+    const Vector2d in_section = section_normal(plane.dip, plane.dip_direction, azimuth);
+    return {in_section.x(), in_section.y(), std::sin(plane.dip) * std::sin(plane.dip_direction - azimuth)};
+}
+
 Vector2d mean_trace(const JointSet& set, const Scene& scene)
 {
     if (set.trace_angle)
         return trace_of(set.trace_angle->mean);
-    const double azimuth = azimuth_for(set, scene);
-    const Vector2d trace = trace_of(section_normal(set.dip->mean, set.dip_direction->mean, azimuth));
+    const Plane plane = mean_plane(set);
+    const Vector2d trace = trace_of(section_normal(plane.dip, plane.dip_direction, azimuth_for(set, scene)));
     if (trace.norm() < least_section_normal)
         throw input_error(quoted(set) + " is parallel to the section, and leaves no traces in it");
     return trace;
+}
+
+// Of a plane by the set's laws in space.
+Vector2d draw_section_normal(const JointSet& set, double azimuth, Stream& stream)
+{
+    if (set.orientation)
+        return draw_fisher(pole_of(mean_plane(set), azimuth), set.orientation->concentration, stream)
+            .head<2>();
+    const double dip = draw(*set.dip, stream);
+    return section_normal(dip, draw(*set.dip_direction, stream), azimuth);
 }
 
 Vector2d draw_direction(const JointSet& set, const Scene& scene, Stream& stream)
@@ -80,19 +109,21 @@ Vector2d draw_direction(const JointSet& set, const Scene& scene, Stream& stream)
     const double azimuth = azimuth_for(set, scene);
     const int most_tries = 10000;
     for (int i = 0; i < most_tries; ++i) {
-        const double dip = draw(*set.dip, stream);
-        const Vector2d trace = trace_of(section_normal(dip, draw(*set.dip_direction, stream), azimuth));
+        const Vector2d trace = trace_of(draw_section_normal(set, azimuth, stream));
         if (trace.norm() >= least_section_normal)
             return trace.normalized();
     }
     throw input_error(quoted(set) + " has next to no joints that are not parallel to the section");
 }
 
-// Standard deviation of the trace angle, to first order [rad]; `mean` from mean_trace.
+// Standard deviation of the trace angle, to first order [rad]; `mean` from mean_trace. A pole by Fisher's law
+// turns by 1/sqrt(concentration) about any axis across the mean pole, the mean trace among them.
 double trace_scatter(const JointSet& set, const Vector2d& mean)
 {
     if (set.trace_angle)
         return set.trace_angle->deviation;
+    if (set.orientation)
+        return 1 / (std::sqrt(set.orientation->concentration) * mean.norm());
     return std::hypot(set.dip->deviation, std::sin(set.dip->mean) * set.dip_direction->deviation) /
            mean.norm();
 }

@@ -6,6 +6,9 @@
 #include <boost/random/normal_distribution.hpp>
 #include <boost/random/uniform_01.hpp>
 
+#include <Eigen/Geometry>
+
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -38,6 +41,15 @@ LogParameters log_parameters(const Law& law)
 {
     throw input_error("a law of mean " + shown(law.mean) + " and deviation " + shown(law.deviation) +
                       " has next to no values above 0, which a length or spacing has to be");
+}
+
+// By the inverse of its distribution function, (1 - t^q) / (1 - r^q) with q = 1 - exponent, t = x / least and
+// r = most / least.
+double draw_power(double exponent, double least, double most, Stream& stream)
+{
+    const double q = 1 - exponent, range = std::log(most / least), u = uniform(stream);
+    const double logarithm = q == 0 ? u * range : std::log1p(u * std::expm1(q * range)) / q;
+    return std::clamp(least * std::exp(logarithm), least, most);
 }
 
 // The density x exp(-(x - mean)^2 / (2 deviation^2)) has its mode at the positive root m of
@@ -80,8 +92,27 @@ double draw(const Law& law, Stream& stream)
     }
     case Law::Kind::negative_exponential:
         return draw_exponential(law.mean, stream);
+    case Law::Kind::uniform:
+        return law.least + uniform(stream) * (law.most - law.least);
+    case Law::Kind::power:
+        return draw_power(law.exponent, law.least, law.most, stream);
     }
     return law.mean;
+}
+
+// The angle t from the mean pole has, with u uniform, cos(t) = 1 + ln(1 - u (1 - exp(-2 kappa))) / kappa
+// (Fisher, Lewis, Embleton: Statistical analysis of spherical data, 1987). 1 - cos(t) keeps its figures where
+// kappa is large.
+Eigen::Vector3d draw_fisher(const Eigen::Vector3d& mean, double concentration, Stream& stream)
+{
+    const double w =
+        std::min(2.0, -std::log1p(uniform(stream) * std::expm1(-2 * concentration)) / concentration);
+    const double sine = std::sqrt(w * (2 - w)), turn = 2 * std::numbers::pi * uniform(stream);
+    Eigen::Index least = 0;
+    mean.cwiseAbs().minCoeff(&least);
+    const Eigen::Vector3d first = mean.cross(Eigen::Vector3d::Unit(least)).normalized(),
+                          second = mean.cross(first);
+    return (1 - w) * mean + sine * (std::cos(turn) * first + std::sin(turn) * second);
 }
 
 double draw_positive(const Law& law, Stream& stream)
@@ -117,6 +148,12 @@ double draw_size_biased(const Law& law, Stream& stream)
         const double first = draw_exponential(law.mean, stream);
         return first + draw_exponential(law.mean, stream);
     }
+    case Law::Kind::uniform: {
+        const double least2 = law.least * law.least, most2 = law.most * law.most;
+        return std::sqrt(least2 + uniform(stream) * (most2 - least2));
+    }
+    case Law::Kind::power:
+        return draw_power(law.exponent - 1, law.least, law.most, stream);
     }
     return law.mean;
 }

@@ -1,9 +1,11 @@
-// Draws from the probability laws of a scene. A Law's mean and deviation are those of the quantity itself.
+// Draws from the probability laws of a scene (model/law.hpp).
 
 #pragma once
 
-#include "model/scene.hpp"
+#include "model/law.hpp"
 #include "sampling/streams.hpp"
+
+#include <Eigen/Core>
 
 namespace jointcreep
 {
@@ -24,6 +26,10 @@ double draw_positive(const Law& law, Stream& stream);
 // Mean of draw_positive. It is the law's own but for a normal law, which loses its lower tail: it is 1e-4
 // higher where the deviation is 0.27 times the mean, 3 percent at 0.5.
 double mean_of_positive(const Law& law);
+
+// A unit vector by Fisher's law about the unit vector `mean`; every turn about it is as likely as another.
+// concentration > 0.
+Eigen::Vector3d draw_fisher(const Eigen::Vector3d& mean, double concentration, Stream& stream);
 
 // From the values above 0, of density f, as a point sees them that falls anywhere on a line laid out with
 // such intervals: of density x f(x) / mean.

@@ -254,24 +254,28 @@ private:
 
     void check_orientation(const JointSet& set, const Given& given) const
     {
-        const std::string wanted = "wanted either trace_angle, or dip and dip_direction";
-        if (set.trace_angle) {
-            if (set.dip || set.dip_direction)
-                given.refuse(set.dip ? "dip" : "dip_direction", wanted + ", not both");
+        const std::string wanted = "wanted one of trace_angle, orientation, or dip and dip_direction";
+        if ((set.trace_angle || set.orientation) && (set.dip || set.dip_direction))
+            given.refuse(set.dip ? "dip" : "dip_direction", wanted + ", not both");
+        if (set.trace_angle && set.orientation)
+            given.refuse("orientation", wanted + ", not both");
+        if (set.trace_angle)
             return;
+        if (!set.orientation) {
+            if (!set.dip && !set.dip_direction)
+                given.refuse("trace_angle", wanted);
+            if (!set.dip || !set.dip_direction)
+                given.refuse(set.dip ? "dip_direction" : "dip", wanted);
         }
-        if (!set.dip && !set.dip_direction)
-            given.refuse("trace_angle", wanted);
-        if (!set.dip || !set.dip_direction)
-            given.refuse(set.dip ? "dip_direction" : "dip", wanted);
         if (!scene_.azimuth)
             once("section").refuse("azimuth_deg",
                                    "the dip of " + given.title + " needs the bearing of the section");
         // The mean plane's unit normal is {sin(dip) cos(a), cos(dip), sin(dip) sin(a)} along x, y and across.
-        const double a = set.dip_direction->mean - *scene_.azimuth;
-        const double across = std::sin(set.dip->mean) * std::sin(a);
+        const double dip = set.orientation ? set.orientation->dip : set.dip->mean;
+        const double direction = set.orientation ? set.orientation->dip_direction : set.dip_direction->mean;
+        const double across = std::sin(dip) * std::sin(direction - *scene_.azimuth);
         if (std::sqrt(std::max(0.0, 1 - across * across)) <= least_trace)
-            given.refuse("dip_direction",
+            given.refuse(set.orientation ? "orientation" : "dip_direction",
                          "the set's mean plane is parallel to the section, or nearly so, and leaves no "
                          "trace; wanted another dip or direction, or no such set");
     }

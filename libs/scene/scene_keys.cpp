@@ -202,69 +202,197 @@ Table<SingleJoint> joint()
 // -------------------------------------------------------------------------------------------------------
 
 constexpr double fewest_deviations = 3; // in the mean of a normal law of a length
+constexpr double widest_range = 1e6;    // of the lengths of a power law: longest over shortest
 
-constexpr std::pair<std::string_view, Law::Kind> constant{"constant", Law::Kind::constant};
-constexpr std::pair<std::string_view, Law::Kind> normal{"normal", Law::Kind::normal};
-constexpr std::pair<std::string_view, Law::Kind> lognormal{"lognormal", Law::Kind::lognormal};
-constexpr std::pair<std::string_view, Law::Kind> exponential{"negative exponential",
-                                                             Law::Kind::negative_exponential};
+using Kind = Law::Kind;
 
-Table<Law> angle_law(const std::string& name, Range range, const std::string& doc)
+// The words of a scene for a law, and the keys it needs; it takes no others.
+struct LawWords {
+    Kind kind;
+    std::string_view word;
+    std::vector<std::string> keys;
+};
+
+const std::vector<LawWords>& laws_of_angles()
+{
+    static const std::vector<LawWords> laws{{Kind::normal, "normal", {"mean_deg", "deviation_deg"}},
+                                            {Kind::uniform, "uniform", {"mean_deg", "half_width_deg"}},
+                                            {Kind::constant, "constant", {"mean_deg"}}};
+    return laws;
+}
+
+const std::vector<LawWords>& laws_of_lengths()
+{
+    static const std::vector<LawWords> laws{{Kind::normal, "normal", {"mean_m", "deviation_m"}},
+                                            {Kind::lognormal, "lognormal", {"mean_m", "deviation_m"}},
+                                            {Kind::negative_exponential, "negative exponential", {"mean_m"}},
+                                            {Kind::uniform, "uniform", {"shortest_m", "longest_m"}},
+                                            {Kind::power, "power", {"exponent", "shortest_m", "longest_m"}},
+                                            {Kind::constant, "constant", {"mean_m"}}};
+    return laws;
+}
+
+Key<WrittenLaw> law_choice(const std::vector<LawWords>& laws)
+{
+    std::vector<std::pair<std::string_view, Kind>> words;
+    for (const LawWords& law : laws)
+        words.emplace_back(law.word, law.kind);
+    return choice("law", &WrittenLaw::kind, words, "Probability law.");
+}
+
+Table<WrittenLaw> angle_law(const std::string& name, Range range, const std::string& doc)
 {
     return {{"joint_set." + name, inside, optional, doc},
-            {choice("law", &Law::kind, {normal, constant}, "Probability law."),
-             number("mean_deg", &Law::mean, degrees, range, "Mean."),
-             number("deviation_deg", &Law::deviation, degrees, above(0).to(90),
-                    "Standard deviation: needed by the normal law, refused by the constant.")
+            {law_choice(laws_of_angles()),
+             number("mean_deg", &WrittenLaw::mean, degrees, range, "Mean: needed by all laws."),
+             number("deviation_deg", &WrittenLaw::deviation, degrees, above(0).to(90),
+                    "Standard deviation: needed by the normal law, refused by the others.")
+                 .optional(),
+             number("half_width_deg", &WrittenLaw::half_width, degrees, above(0).to(90),
+                    "Every angle up to this far from the mean is as likely as another: needed by the uniform "
+                    "law, refused by the others.")
                  .optional()}};
 }
 
-Table<Law> length_law(const std::string& name, Need need, const std::string& doc)
+Table<WrittenLaw> length_law(const std::string& name, Need need, const std::string& doc)
 {
     return {
         {"joint_set." + name, inside, need, doc},
-        {choice("law", &Law::kind, {normal, lognormal, exponential, constant}, "Probability law."),
-         number("mean_m", &Law::mean, metres, length, "Mean of the quantity itself, never of its logarithm."),
+        {law_choice(laws_of_lengths()),
+         number("mean_m", &WrittenLaw::mean, metres, length,
+                "Mean of the quantity itself, never of its logarithm: needed by the normal, lognormal, "
+                "negative exponential and constant laws, refused by the others.")
+             .optional(),
          number(
-             "deviation_m", &Law::deviation, metres, length,
+             "deviation_m", &WrittenLaw::deviation, metres, length,
              "Standard deviation of the quantity itself: needed by the normal and lognormal laws, refused by "
              "the others. With the normal law the mean must be at least 3 deviations: values of 0 or less "
              "are drawn again, and that must hardly move the mean.")
+             .optional(),
+         number("shortest_m", &WrittenLaw::shortest, metres, from(0).to(farthest_metre),
+                "Least value, a cut-off: needed by the uniform and power laws, refused by the others. With a "
+                "power "
+                "law at least 1e-6 of longest_m.")
+             .optional(),
+         number("longest_m", &WrittenLaw::longest, metres, length,
+                "Largest value, a cut-off above shortest_m: needed by the uniform and power laws, refused by "
+                "the "
+                "others.")
+             .optional(),
+         number("exponent", &WrittenLaw::exponent, none, from(0).to(20),
+                "Of the power law, whose density falls as the value to the minus this exponent (and the "
+                "number of longer ones with one less): needed by it, refused by the others.")
              .optional()}};
 }
 
-Law read_law(const Table<Law>& table, const TomlValue& value, const Place& outer)
+// At the least concentration, 5, 7 poles in a thousand are past 90 degrees from the mean pole; below, the set
+// has hardly a direction left.
+Table<FisherLaw> orientation_law()
+{
+    return {
+        {"joint_set.orientation", inside, optional,
+         "Law of the poles (normals) of the joint planes in space, with section.azimuth_deg."},
+        {choice<FisherLaw, bool>(
+             "law", [](FisherLaw&, bool) {}, {{"Fisher", true}},
+             "Probability law. Fisher's: symmetric about the mean pole."),
+         number("mean_dip_deg", &FisherLaw::dip, degrees, from(0).to(90),
+                "Dip below the horizontal of the plane of the mean pole."),
+         number("mean_dip_direction_deg", &FisherLaw::dip_direction, degrees, from(0).to(360),
+                "Bearing of the dip of that plane, clockwise from north."),
+         number("concentration", &FisherLaw::concentration, none, from(5).to(1e6),
+                "Fisher's constant kappa: the larger, the nearer the poles to their mean. 63 percent of them "
+                "lie within 81 / sqrt(kappa) degrees.")}};
+}
+
+// Refuses keys that the law lacks or does not take.
+void check_law_keys(const Table<WrittenLaw>& table, const LawWords& law, const TomlValue& value,
+                    const Place& place)
+{
+    const std::string the_law = "the law \"" + std::string(law.word) + "\" ";
+    for (const Key<WrittenLaw>& key : table.keys) {
+        if (key.info.name == "law")
+            continue;
+        const TomlValue* const given = value.find(key.info.name);
+        const bool wanted = std::find(law.keys.begin(), law.keys.end(), key.info.name) != law.keys.end();
+        if (wanted && !given)
+            place.refuse(value.line, place.table + " has no " + key.info.name + ": " + the_law + "needs it");
+        if (!wanted && given)
+            place.refuse(given->line, place.table + " " + key.info.name + " = " + shown(*given) + ": " +
+                                          the_law + "does not take it");
+    }
+}
+
+void check_range(const WrittenLaw& law, const TomlValue& value, const Place& place)
+{
+    if (law.longest <= law.shortest)
+        place.refuse(value.line, place.table + " longest_m = " + shown(law.longest) +
+                                     " m: wanted above shortest_m, " + shown(law.shortest) + " m");
+    if (law.kind == Kind::power && law.shortest * widest_range < law.longest)
+        place.refuse(value.line, place.table + " shortest_m = " + shown(law.shortest) +
+                                     " m: the law \"power\" needs at least 1e-6 of longest_m, here " +
+                                     shown(law.longest / widest_range) + " m");
+}
+
+Law law_of(const WrittenLaw& law)
+{
+    switch (law.kind) {
+    case Kind::uniform:
+        return law.half_width > 0 ? uniform_law(law.mean - law.half_width, law.mean + law.half_width)
+                                  : uniform_law(law.shortest, law.longest);
+    case Kind::power:
+        return power_law(law.exponent, law.shortest, law.longest);
+    case Kind::negative_exponential:
+        return {law.kind, law.mean, law.mean};
+    case Kind::constant:
+    case Kind::normal:
+    case Kind::lognormal:
+        break;
+    }
+    return {law.kind, law.mean, law.deviation};
+}
+
+Law read_law(const Table<WrittenLaw>& table, const std::vector<LawWords>& laws, const TomlValue& value,
+             const Place& outer)
 {
     const Place place{outer.reading, table.info.shown()};
-    Law law;
+    WrittenLaw law;
     read_table(table, value, place, law);
-    const KeyInfo& mean = table.keys[1].info;
-    const KeyInfo& deviation = table.keys[2].info;
-    const TomlValue* const given = value.find(deviation.name);
-    const bool wanted = law.kind == Law::Kind::normal || law.kind == Law::Kind::lognormal;
-    const auto kind = shown(*value.find("law"));
-    if (wanted && !given)
-        place.refuse(value.line,
-                     place.table + " has no " + deviation.name + ": the law " + kind + " needs it");
-    if (!wanted && given)
-        place.refuse(deviation, *given, "the law " + kind + " has no deviation of its own");
-    const bool is_length = deviation.unit.symbol == metres.symbol;
-    if (is_length && law.kind == Law::Kind::normal && law.mean < fewest_deviations * law.deviation)
-        place.refuse(mean, *value.find(mean.name),
-                     "the law \"normal\" needs a mean of at least 3 deviations, here " +
-                         shown(fewest_deviations * law.deviation) + " m; a lognormal law has no such limit");
-    if (law.kind == Law::Kind::negative_exponential)
-        law.deviation = law.mean;
-    return law;
+    check_law_keys(table,
+                   *std::find_if(laws.begin(), laws.end(),
+                                 [&](const LawWords& words) { return words.kind == law.kind; }),
+                   value, place);
+    if (&laws == &laws_of_lengths()) {
+        if (law.kind == Kind::normal && law.mean < fewest_deviations * law.deviation)
+            place.refuse(table.keys[1].info, *value.find("mean_m"),
+                         "the law \"normal\" needs a mean of at least 3 deviations, here " +
+                             shown(fewest_deviations * law.deviation) +
+                             " m; a lognormal law has no such limit");
+        if (law.kind == Kind::uniform || law.kind == Kind::power)
+            check_range(law, value, place);
+    }
+    return law_of(law);
 }
 
 template <class Member>
-Key<JointSet> law(std::string name, Member member, const Table<Law>& table, std::string doc)
+Key<JointSet> law(std::string name, Member member, const Table<WrittenLaw>& table,
+                  const std::vector<LawWords>& laws, std::string doc)
 {
     return key_of<JointSet>({std::move(name), "law", {}, {}, std::move(doc)}, member,
-                            [table](const KeyInfo&, const TomlValue& value, const Place& place) {
-                                return read_law(table, value, place);
+                            [table, &laws](const KeyInfo&, const TomlValue& value, const Place& place) {
+                                return read_law(table, laws, value, place);
                             });
+}
+
+Key<JointSet> orientation(const Table<FisherLaw>& table)
+{
+    const auto read = [table](const KeyInfo&, const TomlValue& value, const Place& outer) {
+        FisherLaw law{};
+        read_table(table, value, Place{outer.reading, table.info.shown()}, law);
+        return law;
+    };
+    return key_of<JointSet>({"orientation", "law", {}, {}, "Law of the joint planes' poles in space."},
+                            &JointSet::orientation, read)
+        .optional();
 }
 
 Table<JointSet> joint_set(const SceneTables& laws)
@@ -272,17 +400,20 @@ Table<JointSet> joint_set(const SceneTables& laws)
     return {
         {"joint_set", in_list, optional,
          "Joints sharing their statistics: parallel lines, along each of which joint traces and rock bridges "
-         "alternate. Its orientation is either trace_angle, or dip and dip_direction."},
+         "alternate. How they lie is given by one of trace_angle, orientation, or dip and dip_direction."},
         {text("name", &JointSet::name, "Name, once among the joints and joint sets."),
          text("material", &JointSet::material, "Name of the joint material of its traces."),
-         law("trace_angle", &JointSet::trace_angle, laws.trace_angle, "Angle of the traces in the section.")
+         law("trace_angle", &JointSet::trace_angle, laws.trace_angle, laws_of_angles(),
+             "Angle of the traces in the section.")
              .optional(),
-         law("dip", &JointSet::dip, laws.dip, "Dip of the joint planes.").optional(),
-         law("dip_direction", &JointSet::dip_direction, laws.dip_direction,
+         law("dip", &JointSet::dip, laws.dip, laws_of_angles(), "Dip of the joint planes.").optional(),
+         law("dip_direction", &JointSet::dip_direction, laws.dip_direction, laws_of_angles(),
              "Dip direction of the joint planes.")
              .optional(),
-         law("spacing", &JointSet::spacing, laws.spacing, "Distance between neighbouring joint planes."),
-         law("length", &JointSet::length, laws.length,
+         orientation(laws.orientation),
+         law("spacing", &JointSet::spacing, laws.spacing, laws_of_lengths(),
+             "Distance between neighbouring joint planes."),
+         law("length", &JointSet::length, laws.length, laws_of_lengths(),
              "Length of the joint traces. Needed unless the persistence is 0 or 1.")
              .optional(),
          number("persistence", &JointSet::persistence, none, from(0).to(1),
@@ -498,6 +629,7 @@ SceneTables all_tables()
                         "Dip below the horizontal, with dip_direction and section.azimuth_deg.");
     all.dip_direction =
         angle_law("dip_direction", from(0).to(360), "Bearing of the dip, clockwise from north.");
+    all.orientation = orientation_law();
     all.spacing = length_law("spacing", required, "Spacing along the set's mean normal in space.");
     all.length = length_law("length", optional, "Length of the joint traces.");
     all.joint_set = joint_set(all);

@@ -12,6 +12,15 @@ struct Schedule {
     double end = 0;     // since start [s]
 };
 
+// A law as a scene writes it. Every law has its own keys; the others stay 0.
+struct WrittenLaw {
+    Law::Kind kind = Law::Kind::constant;
+    double mean = 0, deviation = 0;
+    double half_width = 0;            // of a uniform law of angles
+    double shortest = 0, longest = 0; // of a uniform law of lengths, and of a power law
+    double exponent = 0;
+};
+
 // The tables in the order they are read and documented.
 struct SceneTables {
     Table<Scene> top; // keys outside any table
@@ -22,7 +31,8 @@ struct SceneTables {
     Table<Kelvin> kelvin_chain; // inside joint_material
     Table<SingleJoint> joint;
     Table<JointSet> joint_set;
-    Table<Law> trace_angle, dip, dip_direction, spacing, length; // inside joint_set
+    Table<WrittenLaw> trace_angle, dip, dip_direction, spacing, length; // inside joint_set
+    Table<FisherLaw> orientation;                                       // inside joint_set
     Table<InSituStress> in_situ_stress;
     Table<Boundary> boundary;
     Table<Schedule> schedule;
@@ -41,7 +51,7 @@ struct SceneTables {
     {
         visit(top), visit(section), visit(rock), visit(region), visit(joint_material);
         visit(kelvin_chain), visit(joint), visit(joint_set), visit(trace_angle), visit(dip),
-            visit(dip_direction), visit(spacing), visit(length);
+            visit(dip_direction), visit(orientation), visit(spacing), visit(length);
         visit(in_situ_stress), visit(boundary), visit(schedule), visit(stage), visit(point), visit(gauge);
         visit(creep), visit(zones), visit(cutting), visit(equilibrium), visit(random);
     }

@@ -241,7 +241,8 @@ std::vector<Field> fields_of(Equilibria& equilibria)
          "Largest change of a contact force over the last 100 steps, or by one more correction, over the mean force "
          "on a gridpoint."},
         {"/equilibria/work_of_loads", &equilibria.work_of_loads, {"equilibrium"}, "J/m", any(),
-         "Work of weight, held rock and tractions on the way; the sum of the next three."},
+         "Work of weight, held rock and tractions on the way, not that of displaced boundaries; the sum of the next "
+         "three."},
         {"/equilibria/stored_energy", &equilibria.stored_energy, {"equilibrium"}, "J/m", any(),
          "Energy that zones and contacts took up on the way."},
         {"/equilibria/dissipated_energy", &equilibria.dissipated_energy, {"equilibrium"}, "J/m", any(),

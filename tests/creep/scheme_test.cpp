@@ -23,7 +23,8 @@ double integral(double x, double r)
 {
     MatrixXd M = MatrixXd::Zero(3, 3);
     M << -x, 1, 0, 0, -r, r == 0 ? 1 : -r / std::expm1(-r), 0, 0, 0;
-    return M.exp()(0, 2);
+    const MatrixXd flow = M.exp(); // a coefficient of M.exp() itself would dangle
+    return flow(0, 2);
 }
 
 } // namespace

@@ -66,4 +66,21 @@ inline Section jointed_plate()
     return assembled(std::move(scene), joints, 5e9, 2e9);
 }
 
+//        ___________
+//       /          /   a thin block (10 m x 1 m) on a joint that dips at `dip`, on a block that is held
+//      /__________/
+//     /__________/
+inline Section incline(double dip, double friction)
+{
+    const Eigen::Vector2d along(std::cos(dip), -std::sin(dip)), up(std::sin(dip), std::cos(dip));
+    const auto at = [&](double x, double y) { return Eigen::Vector2d(x * along + y * up); };
+    Scene scene = section({at(0, -1), at(10, -1), at(10, 1), at(0, 1)}, 0.01);
+    scene.zone_size = 0.5;
+    scene.gravity = 9.81;
+    scene.boundaries = {{at(0, -1), at(10, -1), true, true, ""}};
+    Joints joints;
+    add_joint(joints, at(0, 0), at(10, 0));
+    return assembled(std::move(scene), joints, 1e8, 4e7, friction);
+}
+
 } // namespace jointcreep::test

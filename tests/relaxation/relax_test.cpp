@@ -29,23 +29,6 @@ Equilibrium settings(Damping damping, Masses masses = Masses::scaled)
             .most_steps = 200000};
 }
 
-//        ___________
-//       /          /   a thin block (10 m x 1 m) on a joint that dips at `dip`, on a block that is held
-//      /__________/
-//     /__________/
-Section incline(double dip, double friction)
-{
-    const Vector2d along(std::cos(dip), -std::sin(dip)), up(std::sin(dip), std::cos(dip));
-    const auto at = [&](double x, double y) { return Vector2d(x * along + y * up); };
-    Scene scene = section({at(0, -1), at(10, -1), at(10, 1), at(0, 1)}, 0.01);
-    scene.zone_size = 0.5;
-    scene.gravity = 9.81;
-    scene.boundaries = {{at(0, -1), at(10, -1), true, true, ""}};
-    Joints joints;
-    add_joint(joints, at(0, 0), at(10, 0));
-    return assembled(std::move(scene), joints, 1e8, 4e7, friction);
-}
-
 const double deg = std::numbers::pi / 180;
 
 } // namespace

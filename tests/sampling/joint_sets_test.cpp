@@ -217,6 +217,28 @@ TEST(SampleJoints, LeavesASetAloneWhenOthersComeGoOrMove)
     EXPECT_NE(rows(first, 0), rows(sample_joints(scene_of({joint_set("A", .3, .1, 4, .5)}), 1, 0), 0));
 }
 
+TEST(SampleJoints, LeavesASetOfFisherUniformAndPowerLawsAloneToo)
+{
+    JointSet a = spatial_set(70 * deg, 100 * deg);
+    a.dip.reset();
+    a.dip_direction.reset();
+    a.orientation = FisherLaw{70 * deg, 100 * deg, 50};
+    a.spacing = uniform_law(1, 4);
+    a.length = power_law(2.5, 1, 30);
+    a.persistence = .6;
+    Scene first = scene_of({a, joint_set("b", 1.8, .1, 3, .7)}),
+          second = scene_of({joint_set("c", 1, 0, 5, 1), a});
+    first.azimuth = second.azimuth = 60 * deg;
+    const Rows once = rows(sample_joints(first, 1, 0), 0);
+    EXPECT_GT(once.size(), 10);
+    EXPECT_EQ(once, rows(sample_joints(second, 1, 0), 1));
+    EXPECT_NE(once, rows(sample_joints(first, 1, 1), 0));
+    // Other traces, same lines.
+    second.joint_sets[1].length = uniform_law(1, 9);
+    EXPECT_EQ(rows(sample_joints(first, 1, 0), 0, false), rows(sample_joints(second, 1, 0), 1, false));
+    EXPECT_NE(once, rows(sample_joints(second, 1, 0), 1));
+}
+
 TEST(SampleJoints, KeepsPurposesApart)
 {
     JointSet set = joint_set("a", .3, .1, 4, .5);

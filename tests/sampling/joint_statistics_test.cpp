@@ -6,6 +6,7 @@
 #include "sampling/laws.hpp"
 #include "statistics.hpp"
 
+#include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
 using namespace jointcreep;
@@ -19,7 +20,8 @@ namespace
 using Kind = Law::Kind;
 
 const Law exponential_spacing{Kind::negative_exponential, 4, 4}, lognormal_spacing{Kind::lognormal, 4, 3},
-    constant_spacing{Kind::constant, 4, 0}, normal_spacing{Kind::normal, 4, 3};
+    constant_spacing{Kind::constant, 4, 0}, normal_spacing{Kind::normal, 4, 3},
+    uniform_spacing = uniform_law(1, 7), power_spacing = power_law(2.5, 1.5, 40);
 
 Scene scene_of(const Law& trace_angle, const Law& spacing, double persistence, const Law& length, double left,
                double bottom, double right, double top)
@@ -162,13 +164,152 @@ double joint_fraction(const Traces& line)
 }
 
 const Law lognormal_length{Kind::lognormal, 6, 4}, exponential_length{Kind::negative_exponential, 6, 6},
-    normal_length{Kind::normal, 6, 5}, constant_length{Kind::constant, 6, 0};
+    normal_length{Kind::normal, 6, 5}, constant_length{Kind::constant, 6, 0},
+    uniform_length = uniform_law(1, 11), power_length = power_law(2.5, 2, 60);
+
+// One set of planes with poles by Fisher's law, in the wide scene.
+Scene fisher_scene(const FisherLaw& law, double azimuth, const Law& spacing)
+{
+    Scene scene = wide_scene({}, spacing);
+    scene.azimuth = azimuth;
+    scene.joint_sets[0].trace_angle.reset();
+    scene.joint_sets[0].orientation = law;
+    return scene;
+}
+
+// Angles that traces make with the trace of the mean plane, with their weights, by Fisher's law on a grid of
+// poles. Worked in space, with x east, y north and z up, apart from how the sampler does it.
+struct WeightedAngles {
+    std::vector<std::pair<double, double>> angle_weight; // by angle; the weights sum to 1
+    double mean_secant = 0;                              // of 1 / cos(angle)
+};
+
+WeightedAngles traces_by_fisher(const FisherLaw& law, double azimuth)
+{
+    using Eigen::Vector3d;
+    const Vector3d pole(std::sin(law.dip) * std::sin(law.dip_direction),
+                        std::sin(law.dip) * std::cos(law.dip_direction), std::cos(law.dip));
+    const Vector3d right(std::sin(azimuth), std::cos(azimuth), 0), up(0, 0, 1);
+    const auto trace_angle_of = [&](const Vector3d& n) { return std::atan2(-n.dot(right), n.dot(up)); };
+    const double mean = trace_angle_of(pole);
+    const Vector3d first = pole.unitOrthogonal(), second = pole.cross(first);
+    const int steps = 500;
+    WeightedAngles all;
+    double total = 0;
+    const double farthest = std::min(std::numbers::pi, 9 / std::sqrt(law.concentration));
+    for (int i = 0; i < steps; ++i)
+        for (int j = 0; j < steps; ++j) {
+            const double t = (i + .5) / steps * farthest, turn = (j + .5) / steps * 2 * std::numbers::pi;
+            const double weight =
+                std::sin(t) * std::exp(-2 * law.concentration * std::pow(std::sin(t / 2), 2));
+            const Vector3d n =
+                std::cos(t) * pole + std::sin(t) * (std::cos(turn) * first + std::sin(turn) * second);
+            const double off = std::remainder(trace_angle_of(n) - mean, std::numbers::pi);
+            all.angle_weight.emplace_back(off, weight);
+            all.mean_secant += weight / std::cos(off);
+            total += weight;
+        }
+    std::sort(all.angle_weight.begin(), all.angle_weight.end());
+    for (auto& [angle, weight] : all.angle_weight)
+        weight /= total;
+    all.mean_secant /= total;
+    return all;
+}
+
+Distribution distribution_of(const WeightedAngles& all)
+{
+    std::vector<double> angles, sums;
+    double sum = 0;
+    for (const auto& [angle, weight] : all.angle_weight) {
+        angles.push_back(angle);
+        sums.push_back(sum += weight);
+    }
+    return [angles, sums](double angle) {
+        const auto after = std::upper_bound(angles.begin(), angles.end(), angle) - angles.begin();
+        return after == 0 ? 0.0 : sums[after - 1];
+    };
+}
+
+// Angles of the lines nearest to the origin with the mean trace, at the angle `mean`. Lines turn about points
+// of a window along it, here [0, 128] m, which the outline covers: so none is missed for its angle.
+Samples trace_angles(Scene scene, double mean)
+{
+    const Vector2d along(std::cos(mean), std::sin(mean)), across = 30 * normal_at(mean);
+    scene.outline = {.5 * along - across, 127.5 * along - across, 127.5 * along + across,
+                     .5 * along + across};
+    Samples angles;
+    for (int r = 0; r < 5000; ++r) {
+        const Joints joints = sample_joints(scene, 20030601, r);
+        for (std::size_t j = 0; j < joints.set.size(); ++j)
+            if (std::abs(joints.number[j]) < 4) {
+                const Vector2d run = joints.to[j] - joints.from[j];
+                angles.push_back(std::remainder(std::atan2(run.y(), run.x()) - mean, std::numbers::pi));
+            }
+    }
+    return angles;
+}
+
+// Length of lines per area of the wide scene.
+Samples intensities(const Scene& scene)
+{
+    return over_realizations(scene, 2000, [&](const Joints& joints) {
+        double sum = 0;
+        for (std::size_t j = 0; j < joints.set.size(); ++j)
+            sum += length_inside(scene.outline, joints.from[j], joints.to[j]);
+        return sum / (100 * 60);
+    });
+}
+
+struct FisherCase {
+    FisherLaw law;
+    double azimuth;
+};
+
+// Across the section, slanting to it, and flat; widely and hardly scattered.
+const std::vector<FisherCase> fisher_cases{{{70 * deg, 90 * deg, 60}, 90 * deg},
+                                           {{55 * deg, 130 * deg, 200}, 60 * deg},
+                                           {{10 * deg, 300 * deg, 100}, 45 * deg},
+                                           {{90 * deg, 20 * deg, 400}, 60 * deg}};
+
+// The persistence on stretches of lines, and its variance on long ones.
+bool has_persistence(const std::vector<Traces>& lines, double persistence)
+{
+    Samples fractions;
+    for (const Traces& line : lines)
+        fractions.push_back(joint_fraction(line));
+    return have_mean(fractions, persistence);
+}
+
+// Lines by a wrong sampler: one that begins in a trace takes a uniform part of a plain length, not of a
+// size-biased one.
+std::vector<Traces> lines_begun_without_size_bias(const Law& length, double persistence, double width,
+                                                  int lines)
+{
+    const double bridge = mean_of_positive(length) * (1 - persistence) / persistence;
+    std::vector<Traces> begun;
+    for (int i = 0; i < lines; ++i) {
+        Stream stream({1, 0, 0}, i, Purpose::traces_ahead);
+        Traces line{width, {}};
+        bool in_trace = uniform(stream) < persistence;
+        for (double place = 0; place < width; in_trace = !in_trace) {
+            double step = in_trace ? draw_positive(length, stream) : draw_exponential(bridge, stream);
+            if (place == 0 && in_trace)
+                step *= uniform(stream);
+            if (in_trace)
+                line.traces.emplace_back(place, std::min(width, place + step));
+            place += step;
+        }
+        begun.push_back(line);
+    }
+    return begun;
+}
 
 } // namespace
 
 TEST(Frequency, OnAScanlineAlongTheMeanNormalIsOneOverTheSpacing)
 {
-    for (const Law& spacing : {exponential_spacing, lognormal_spacing, constant_spacing, normal_spacing})
+    for (const Law& spacing : {exponential_spacing, lognormal_spacing, constant_spacing, normal_spacing,
+                               uniform_spacing, power_spacing})
         for (const double scatter : {0.0, 8.0}) {
             const Scene scene = wide_scene({Kind::normal, 20 * deg, scatter * deg}, spacing);
             EXPECT_TRUE(
@@ -196,6 +337,19 @@ TEST(Frequency, OfPlanesIsOneOverTheSpacingInTheSection)
     EXPECT_FALSE(have_mean(counts, 50 / 4.)); // the true spacing taken for the one in the section
 }
 
+TEST(Frequency, OfPlanesByFishersLawIsOneOverTheSpacingInTheSection)
+{
+    for (const auto& [law, azimuth] : fisher_cases)
+        for (const Law& spacing : {exponential_spacing, power_spacing}) {
+            const Scene scene = fisher_scene(law, azimuth, spacing);
+            const double n_p = section_normal(law.dip, law.dip_direction, azimuth).norm();
+            const Samples counts =
+                scanline_counts(scene, normal_at(trace_angle(law.dip, law.dip_direction, azimuth)));
+            EXPECT_TRUE(have_mean(counts, 50 / spacing.mean * n_p)) << n_p;
+            EXPECT_FALSE(have_mean(counts, 1.05 * 50 / spacing.mean * n_p));
+        }
+}
+
 TEST(Frequency, OfAPoissonSetHasPoissonVariance)
 {
     const Samples counts =
@@ -210,12 +364,7 @@ TEST(Intensity, IsTheFrequencyOverTheMeanCosineOfTheScatter)
 {
     for (const double scatter : {0.0, 8.0, 15.0}) {
         const Scene scene = wide_scene({Kind::normal, 110 * deg, scatter * deg}, exponential_spacing);
-        const Samples p21 = over_realizations(scene, 2000, [&](const Joints& joints) {
-            double sum = 0;
-            for (std::size_t j = 0; j < joints.set.size(); ++j)
-                sum += length_inside(scene.outline, joints.from[j], joints.to[j]);
-            return sum / (100 * 60);
-        });
+        const Samples p21 = intensities(scene);
         double stretch = 0, weight = 0; // mean of 1/cos
         for (double z = -5; z <= 5; z += .01) {
             stretch += std::exp(-z * z / 2) / std::cos(z * scatter * deg);
@@ -226,9 +375,50 @@ TEST(Intensity, IsTheFrequencyOverTheMeanCosineOfTheScatter)
     }
 }
 
+TEST(Intensity, OfAUniformLawOfAnglesIsTheFrequencyOverTheMeanCosine)
+{
+    // The mean of 1 / cos(z) over |z| < h is log((1 + sin(h)) / (1 - sin(h))) / (2 h).
+    for (const double half_width : {10 * deg, 30 * deg}) {
+        const double sine = std::sin(half_width);
+        const double secant = std::log((1 + sine) / (1 - sine)) / (2 * half_width);
+        const Samples p21 = intensities(
+            wide_scene(uniform_law(110 * deg - half_width, 110 * deg + half_width), uniform_spacing));
+        EXPECT_TRUE(have_mean(p21, secant / uniform_spacing.mean));
+        EXPECT_FALSE(have_mean(p21, 1.05 * secant / uniform_spacing.mean));
+    }
+}
+
+TEST(Intensity, OfPlanesByFishersLawIsTheFrequencyOverTheMeanCosine)
+{
+    for (const auto& [law, azimuth] : fisher_cases) {
+        const double expected = traces_by_fisher(law, azimuth).mean_secant *
+                                section_normal(law.dip, law.dip_direction, azimuth).norm() / 4;
+        const Samples p21 = intensities(fisher_scene(law, azimuth, exponential_spacing));
+        EXPECT_TRUE(have_mean(p21, expected)) << mean(p21) << " for " << expected;
+        EXPECT_FALSE(have_mean(p21, 1.05 * expected));
+    }
+}
+
+TEST(TraceAngle, IsThatOfPolesByFishersLaw)
+{
+    auto cases = fisher_cases;
+    cases.push_back({{55 * deg, 130 * deg, 20}, 60 * deg}); // where the part across the section counts
+    cases.push_back({{90 * deg, 20 * deg, 30}, 60 * deg});
+    for (const auto& [law, azimuth] : cases) {
+        const Samples angles = trace_angles(fisher_scene(law, azimuth, constant_spacing),
+                                            trace_angle(law.dip, law.dip_direction, azimuth));
+        EXPECT_EQ(angles.size(), 35000);
+        EXPECT_TRUE(follow(angles, distribution_of(traces_by_fisher(law, azimuth)))) << law.concentration;
+        FisherLaw other = law; // of 5 percent more scatter
+        other.concentration = law.concentration / 1.1;
+        EXPECT_FALSE(follow(angles, distribution_of(traces_by_fisher(other, azimuth)))) << law.concentration;
+    }
+}
+
 TEST(Anchor, SeesSpacingsBySizeAndTakesAUniformPlaceInThem)
 {
-    for (const Law& spacing : {exponential_spacing, lognormal_spacing, normal_spacing}) {
+    for (const Law& spacing :
+         {exponential_spacing, lognormal_spacing, normal_spacing, uniform_spacing, power_spacing}) {
         const Anchor anchor = anchors(spacing);
         EXPECT_TRUE(is_stationary_anchor(anchor.spacing, spacing));
         EXPECT_TRUE(follow(anchor.place, [](double x) { return x; }));
@@ -237,33 +427,41 @@ TEST(Anchor, SeesSpacingsBySizeAndTakesAUniformPlaceInThem)
 
 TEST(Anchor, WouldBeCaughtWithoutSizeBias)
 {
-    Stream stream({1, 0, 0}, 0, Purpose::spacing);
-    Samples plain;
-    for (int i = 0; i < 5000; ++i)
-        plain.push_back(draw_positive(lognormal_spacing, stream));
-    EXPECT_FALSE(is_stationary_anchor(plain, lognormal_spacing));
+    for (const Law& spacing : {lognormal_spacing, uniform_spacing, power_spacing}) {
+        Stream stream({1, 0, 0}, 0, Purpose::spacing);
+        Samples plain;
+        for (int i = 0; i < 5000; ++i)
+            plain.push_back(draw_positive(spacing, stream));
+        EXPECT_FALSE(is_stationary_anchor(plain, spacing));
+    }
 }
 
 TEST(Persistence, IsTheWantedOneOnAnyStretchOfLine)
 {
-    for (const Law& length : {lognormal_length, exponential_length, normal_length, constant_length})
+    for (const Law& length :
+         {lognormal_length, exponential_length, normal_length, constant_length, uniform_length, power_length})
         for (const double persistence : {.1, .5, .9})
             for (const double width : {2.0, 50.0}) { // short of a trace, and many
-                Samples fractions;
-                for (const Traces& line : long_lines(length, persistence, width, 4000))
-                    fractions.push_back(joint_fraction(line));
-                EXPECT_TRUE(have_mean(fractions, persistence))
+                const std::vector<Traces> lines = long_lines(length, persistence, width, 4000);
+                EXPECT_TRUE(has_persistence(lines, persistence))
                     << static_cast<int>(length.kind) << ' ' << width;
                 if (persistence == .5) {
-                    EXPECT_FALSE(have_mean(fractions, persistence * .9));
+                    EXPECT_FALSE(has_persistence(lines, persistence * .9));
                 }
             }
+}
+
+TEST(Persistence, WouldBeCaughtWithoutSizeBiasAtTheStartOfALine)
+{
+    for (const Law& length : {lognormal_length, power_length})
+        EXPECT_FALSE(has_persistence(lines_begun_without_size_bias(length, .5, 5, 4000), .5));
 }
 
 TEST(Persistence, VariesOnLongLinesAsAnAlternatingRenewalProcess)
 {
     // Var(k_T) = (Var L E[G]^2 + Var G E[L]^2) / ((E[L] + E[G])^3 T), asymptotically
-    for (const Law& length : {lognormal_length, exponential_length, constant_length}) {
+    for (const Law& length :
+         {lognormal_length, exponential_length, constant_length, uniform_length, power_length}) {
         const double k = .6, width = 3000, bridge = length.mean * (1 - k) / k;
         Samples squares;
         for (const Traces& line : long_lines(length, k, width, 3000))
@@ -277,7 +475,8 @@ TEST(Persistence, VariesOnLongLinesAsAnAlternatingRenewalProcess)
 
 TEST(TraceLength, FollowsTheLawWhereNoWindowEndsIt)
 {
-    for (const Law& length : {lognormal_length, exponential_length, normal_length}) {
+    for (const Law& length :
+         {lognormal_length, exponential_length, normal_length, uniform_length, power_length}) {
         // The first ten traces that begin on a line long enough to hold them whole.
         Samples lengths, bridges;
         for (const Traces& line : long_lines(length, .6, 1000, 1000)) {
@@ -295,7 +494,8 @@ TEST(TraceLength, FollowsTheLawWhereNoWindowEndsIt)
 
 TEST(TraceLength, IsSizeBiasedWhereAScanlineMeetsIt)
 {
-    for (const Law& length : {lognormal_length, exponential_length, normal_length}) {
+    for (const Law& length :
+         {lognormal_length, exponential_length, normal_length, uniform_length, power_length}) {
         Samples hit, beyond;
         for (const Traces& line : long_lines(length, .6, 400, 5000))
             for (const auto& [from, to] : line.traces)

@@ -76,50 +76,85 @@ inline double density(const Law& law, double x)
     }
     case Law::Kind::negative_exponential:
         return x >= 0 ? std::exp(-x / law.mean) : 0;
+    case Law::Kind::uniform:
+        return x >= law.least && x <= law.most ? 1 : 0;
+    case Law::Kind::power:
+        return x >= law.least && x <= law.most ? std::pow(x, -law.exponent) : 0;
     case Law::Kind::constant:
         break;
     }
     return 0;
 }
 
-// Distribution of a density on x > 0, by the trapezoidal rule up to `end`.
-inline Distribution integrated(const std::function<double(double)>& density, double end)
+// Angles between poles and the mean pole by Fisher's law: of density kappa sin(t) exp(kappa cos(t)) / (2
+// sinh(kappa)).
+inline Distribution fisher_distribution(double concentration)
 {
-    const int steps = 40000;
-    std::vector<double> sum(steps + 1, 0.0);
-    for (int i = 1; i <= steps; ++i)
-        sum[i] = sum[i - 1] + (density(end * (i - 1) / steps) + density(end * i / steps)) / 2;
-    for (double& value : sum)
-        value /= sum.back();
-    return [sum, end](double x) {
-        const double place = std::clamp(x / end, 0.0, 1.0) * steps;
-        const int i = std::min(static_cast<int>(place), steps - 1);
-        return sum[i] + (place - i) * (sum[i + 1] - sum[i]);
+    return [concentration](double t) {
+        const double half = std::sin(t / 2); // 1 - cos(t) = 2 half^2
+        return std::expm1(-2 * concentration * half * half) / std::expm1(-2 * concentration);
     };
 }
 
-inline double reach(const Law& law)
+// Mean of cos(t) by Fisher's law, the length of the mean resultant: coth(kappa) - 1 / kappa.
+inline double fisher_resultant(double concentration)
 {
-    return law.mean + 40 * law.deviation;
+    return 1 / std::tanh(concentration) - 1 / concentration;
+}
+
+// Where densities of a law's positive values are integrated: evenly from 0, but for the power law evenly by
+// the logarithm from its sharp lower cut-off.
+inline std::vector<double> grid(const Law& law)
+{
+    const int steps = 40000;
+    std::vector<double> places;
+    if (law.kind == Law::Kind::power) {
+        places = {0, law.least * (1 - 1e-12)};
+        for (int i = 0; i <= steps; ++i)
+            places.push_back(law.least * std::pow(law.most / law.least, double(i) / steps));
+        return places;
+    }
+    const double end = law.kind == Law::Kind::uniform ? law.most : law.mean + 40 * law.deviation;
+    for (int i = 0; i <= steps; ++i)
+        places.push_back(end * i / steps);
+    return places;
+}
+
+// Distribution of a density, by the trapezoidal rule.
+inline Distribution integrated(const std::function<double(double)>& density, const std::vector<double>& grid)
+{
+    std::vector<double> sum(grid.size(), 0.0);
+    for (std::size_t i = 1; i < grid.size(); ++i)
+        sum[i] = sum[i - 1] + (grid[i] - grid[i - 1]) * (density(grid[i - 1]) + density(grid[i])) / 2;
+    const double total = sum.back();
+    for (double& value : sum)
+        value /= total;
+    return [sum, grid](double x) {
+        const auto after = std::upper_bound(grid.begin(), grid.end(), x);
+        if (after == grid.begin() || after == grid.end())
+            return after == grid.begin() ? 0.0 : 1.0;
+        const auto i = static_cast<std::size_t>(after - grid.begin());
+        return sum[i - 1] + (x - grid[i - 1]) / (grid[i] - grid[i - 1]) * (sum[i] - sum[i - 1]);
+    };
 }
 
 // Of a law's values above 0.
 inline Distribution positive_distribution(const Law& law)
 {
-    return integrated([law](double x) { return density(law, x); }, reach(law));
+    return integrated([law](double x) { return density(law, x); }, grid(law));
 }
 
 // Of density x f(x) / m: intervals as a point sees them.
 inline Distribution size_biased_distribution(const Law& law)
 {
-    return integrated([law](double x) { return x * density(law, x); }, reach(law));
+    return integrated([law](double x) { return x * density(law, x); }, grid(law));
 }
 
 // Of density (1 - F(x)) / m: what is left of an interval beyond a point.
 inline Distribution residual_distribution(const Law& law)
 {
     const Distribution cdf = positive_distribution(law);
-    return integrated([cdf](double x) { return 1 - cdf(x); }, reach(law));
+    return integrated([cdf](double x) { return 1 - cdf(x); }, grid(law));
 }
 
 } // namespace jointcreep::statistics

@@ -132,14 +132,27 @@ TEST(checks, orientations)
 {
     const std::string dip = "dip = { law = \"normal\", mean_deg = 70, deviation_deg = 3 }";
     expect_refused(dip, dip + " # first\ntrace_angle = { law = \"constant\", mean_deg = 1 }", "not both");
-    expect_refused(dip + "\n", "", "has no dip: wanted either trace_angle",
+    expect_refused(dip + "\n", "", "has no dip: wanted one of trace_angle",
                    "[[joint_set]]\nname = \"steep\"");
     expect_refused("trace_angle = { law = \"normal\", mean_deg = 10, deviation_deg = 2 }\n", "",
                    "has no trace_angle", "[[joint_set]]\nname = \"flat\"");
     expect_refused("azimuth_deg = 20\n", "", "the dip of [[joint_set]] \"steep\" needs the bearing",
                    "[section]");
     expect_refused("\"normal\", mean_deg = 70", "\"lognormal\", mean_deg = 70",
-                   "wanted \"normal\" | \"constant\"");
+                   "wanted \"normal\" | \"uniform\" | \"constant\"");
+    const std::string pole =
+        "orientation = { law = \"Fisher\", mean_dip_deg = 50, mean_dip_direction_deg = 30, "
+        "concentration = 60 }";
+    expect_refused(pole, pole + "\ndip = { law = \"constant\", mean_deg = 1 }", "not both",
+                   "dip = { law = \"constant\", mean_deg = 1 }");
+    expect_refused(pole, "trace_angle = { law = \"constant\", mean_deg = 1 }\n" + pole, "not both", pole);
+    expect_refused("concentration = 60", "concentration = 4",
+                   "[[joint_set]] orientation concentration = 4: wanted a number in [5, 1e+06]",
+                   "orientation = {");
+    expect_refused(pole,
+                   "orientation = { law = \"Fisher\", mean_dip_deg = 90, "
+                   "mean_dip_direction_deg = 110, concentration = 60 }",
+                   "parallel to the section", "orientation = {");
 }
 
 TEST(checks, steep_planes_nearly_parallel_to_the_section_are_refused_and_others_are_not)
@@ -164,7 +177,36 @@ TEST(checks, laws)
     expect_refused(spacing, "spacing = { law = \"lognormal\", mean_m = 6 }", "has no deviation_m");
     for (const std::string law : {"\"constant\"", "\"negative exponential\""})
         expect_refused(spacing, "spacing = { law = " + law + ", mean_m = 6, deviation_m = 1 }",
-                       "has no deviation of its own");
+                       "deviation_m = 1: the law " + law + " does not take it");
+    for (const std::string law : {"\"constant\"", "\"negative exponential\"", "\"lognormal\""})
+        expect_refused(spacing, "spacing = { law = " + law + ", deviation_m = 1 }",
+                       "has no mean_m: the law " + law + " needs it");
+    expect_refused(spacing, "spacing = { law = \"uniform\", shortest_m = 2 }", "has no longest_m");
+    expect_refused(spacing, "spacing = { law = \"uniform\", longest_m = 2 }", "has no shortest_m");
+    expect_refused(spacing, "spacing = { law = \"uniform\", mean_m = 1, shortest_m = 1, longest_m = 2 }",
+                   "mean_m = 1: the law \"uniform\" does not take it");
+    expect_refused(spacing, "spacing = { law = \"uniform\", shortest_m = 2, longest_m = 2 }",
+                   "longest_m = 2 m: wanted above shortest_m, 2 m");
+    expect_refused(spacing, "spacing = { law = \"constant\", mean_m = 2, longest_m = 2 }",
+                   "longest_m = 2: the law \"constant\" does not take it");
+    const auto power = [](const std::string& keys) { return "spacing = { law = \"power\", " + keys + " }"; };
+    expect_refused(spacing, power("shortest_m = 1, longest_m = 2"),
+                   "has no exponent: the law \"power\" needs it");
+    expect_refused(spacing, power("exponent = 2, shortest_m = 1, longest_m = 1"), "wanted above shortest_m");
+    expect_refused(spacing, power("exponent = 2, shortest_m = 0.9e-6, longest_m = 1"),
+                   "shortest_m = 9e-07 m: the law \"power\" needs at least 1e-6 of longest_m, here 1e-06 m");
+    expect_refused(spacing, power("exponent = 21, shortest_m = 1, longest_m = 2"),
+                   "wanted a number in [0, 20]");
+    expect_refused(spacing, power("exponent = 2, mean_m = 1, shortest_m = 1, longest_m = 2"),
+                   "mean_m = 1: the law \"power\" does not take it");
+    EXPECT_EQ(
+        refusal(replaced(text, spacing, "spacing = { law = \"uniform\", shortest_m = 0, longest_m = 9 }")),
+        "accepted");
+    expect_refused("half_width_deg = 5", "deviation_deg = 5",
+                   "deviation_deg = 5: the law \"uniform\" does not take it",
+                   "trace_angle = { law = \"uniform\"");
+    expect_refused("deviation_deg = 3", "half_width_deg = 3", "has no deviation_deg",
+                   "dip = { law = \"normal\"");
     expect_refused(spacing, "spacing = 6", "[[joint_set]] spacing is 6: wanted a table");
     EXPECT_EQ(refusal(replaced(text, spacing, "spacing = { law = \"normal\", mean_m = 3, deviation_m = 1 }")),
               "accepted");

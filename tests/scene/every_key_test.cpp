@@ -13,7 +13,7 @@ TEST(every_key, sets_and_laws)
 {
     const Scene scene = parse_scene(every_key_text(), "scene.toml");
     EXPECT_EQ(scene.azimuth, 20 * deg);
-    ASSERT_EQ(scene.joint_sets.size(), 2u);
+    ASSERT_EQ(scene.joint_sets.size(), 5u);
     const JointSet &steep = scene.joint_sets[0], &flat = scene.joint_sets[1];
 
     EXPECT_FALSE(steep.trace_angle);
@@ -36,6 +36,37 @@ TEST(every_key, sets_and_laws)
     EXPECT_EQ(flat.length->deviation, 8) << "the mean, by its law";
     EXPECT_EQ(flat.region->size(), 4u);
     EXPECT_EQ(scene.seed, 1u);
+}
+
+TEST(every_key, uniform_and_fisher_laws)
+{
+    const Scene scene = parse_scene(every_key_text(), "scene.toml");
+    const JointSet &even = scene.joint_sets.at(2), &in_space = scene.joint_sets.at(3),
+                   &about = scene.joint_sets.at(4);
+    const auto expect_uniform = [](const std::optional<Law>& law, double least, double most) {
+        ASSERT_TRUE(law);
+        EXPECT_EQ(law->kind, Law::Kind::uniform);
+        EXPECT_DOUBLE_EQ(law->least, least);
+        EXPECT_DOUBLE_EQ(law->most, most);
+        EXPECT_DOUBLE_EQ(law->mean, (least + most) / 2);
+        EXPECT_NEAR(law->deviation, (most - least) / std::sqrt(12), 1e-15);
+    };
+    expect_uniform(even.trace_angle, -65 * deg, -55 * deg);
+    expect_uniform(even.spacing, 12, 18);
+    expect_uniform(even.length, 1, 9);
+    expect_uniform(in_space.dip, 34 * deg, 46 * deg);
+    expect_uniform(in_space.dip_direction, 185 * deg, 215 * deg);
+    ASSERT_TRUE(about.orientation);
+    EXPECT_EQ(about.orientation->dip, 50 * deg);
+    EXPECT_EQ(about.orientation->dip_direction, 30 * deg);
+    EXPECT_EQ(about.orientation->concentration, 60);
+    EXPECT_EQ(about.spacing.kind, Law::Kind::power);
+    EXPECT_EQ(about.spacing.exponent, 2);
+    EXPECT_EQ(about.spacing.least, 10);
+    EXPECT_EQ(about.spacing.most, 30);
+    EXPECT_DOUBLE_EQ(about.spacing.mean, 15 * std::log(3)); // log(r) / (1 - 1/r) x shortest
+    EXPECT_EQ(about.length->exponent, 2.5);
+    EXPECT_FALSE(about.trace_angle || about.dip || about.dip_direction);
 }
 
 TEST(every_key, all_else)
@@ -126,6 +157,8 @@ TEST(every_key, a_fully_persistent_set_needs_neither_length_nor_strength)
         text = replaced(text, key, "");
     text = replaced(text, "persistence = 0.6", "persistence = 1");
     text = replaced(text, "persistence = 0.8", "persistence = 1");
+    text = replaced(text, "persistence = 0.5", "persistence = 1");
+    text = replaced(text, "persistence = 0.9", "persistence = 1");
     const Scene scene = parse_scene(text, "scene.toml");
     EXPECT_FALSE(scene.rocks[0].strength);
     EXPECT_FALSE(scene.joint_sets[0].length);

@@ -1,0 +1,295 @@
+// Whole analyses of a small section: which steps are made, and that those rejected leave nothing behind.
+
+#include "../mechanics/sections.hpp"
+
+#include "analysis/analysis.hpp"
+#include "model/error.hpp"
+#include "model/units.hpp"
+
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+using namespace jointcreep;
+using namespace jointcreep::test;
+using Eigen::Vector2d;
+
+namespace
+{
+
+constexpr double day = unit::day;
+
+// 20 m x 10 m on three joints that creep, along the normal with K / E = 4 at a rate of 1 / 2 days, in shear
+// with K / E = 1 at 1 / 8 days. Its right side leaves on day 1, and the joints left open and slip.
+struct Study {
+    Scene scene;
+    Network network;
+    EquivalentJoints joints;
+
+    explicit Study(bool excavated = true)
+    {
+        scene = section({{0, 0}, {20, 0}, {20, 10}, {0, 10}}, 0.05);
+        scene.zone_size = 2.5;
+        scene.gravity = 9.81;
+        scene.in_situ_stress.elevation = 10;
+        scene.in_situ_stress.gradient_yy = 2700 * 9.81;
+        scene.in_situ_stress.gradient_xx = 0.3 * 2700 * 9.81;
+        scene.boundaries = {{.from = {0, 0}, .to = {20, 0}, .fix_x = true, .fix_y = true},
+                            {.from = {0, 0}, .to = {0, 10}, .fix_x = true},
+                            {.from = {20, 0}, .to = {20, 10}, .fix_x = true}};
+        scene.points = {{"top", {5, 10}, 0}, {"toe", {12.5, 5}, 0}};
+        scene.end = 30 * day;
+        scene.creep.emplace().step = day;
+        scene.equilibrium = {.tolerance = 1e-8, .unloading_increments = 1, .most_steps = 400000};
+        if (excavated)
+            scene.stages = {{"corner", day, {{{13, 3}, {21, 3}, {21, 11}, {13, 11}}}}};
+        add_joint(network.joints, {-1, 3}, {21, 4});
+        add_joint(network.joints, {6, -1}, {9, 11});
+        add_joint(network.joints, {11.5, -1}, {12, 11});
+        cut();
+    }
+    // After changing what makes up the section.
+    void cut()
+    {
+        network.names = names_of(scene);
+        network.names.joint_set = {"joint"};
+        network.blocks = blocks::cut(scene, network.joints);
+        joints = joints_everywhere(scene, network.blocks, 1e9, 4e8, 0.35);
+        for (std::size_t e = 0; e < joints.normal_stiffness.size(); ++e) {
+            joints.normal_kelvin_stiffness[e] = joints.normal_stiffness[e] / 4;
+            joints.shear_kelvin_stiffness[e] = joints.shear_stiffness[e];
+            joints.normal_kelvin_viscosity[e] = joints.normal_kelvin_stiffness[e] * 2 * day;
+            joints.shear_kelvin_viscosity[e] = joints.shear_kelvin_stiffness[e] * 8 * day;
+        }
+    }
+    // By its error, beginning with `first` [s].
+    void choose_steps(double tolerance, double first)
+    {
+        scene.creep->step.reset();
+        scene.creep->tolerance = tolerance;
+        scene.creep->first_step = first;
+    }
+    Analysis analysis(int threads = 1) const
+    {
+        return {scene, network, joints, threads, recording, [](double, const std::string&) {}};
+    }
+    Result run(int threads = 1) const
+    {
+        Analysis analysed = analysis(threads);
+        analysed.run();
+        return analysed.result();
+    }
+
+    Recording recording;
+};
+
+Index sum(const std::vector<Index>& numbers)
+{
+    return std::accumulate(numbers.begin(), numbers.end(), Index{0});
+}
+
+Index rejected(const Result& result)
+{
+    return sum(result.equilibria.searches) - static_cast<Index>(result.equilibria.searches.size());
+}
+
+double largest_difference(const Result& a, const Result& b)
+{
+    const std::size_t n = a.mesh.gridpoint.size();
+    double largest = 0;
+    for (std::size_t g = 0; g < n; ++g)
+        largest = std::max(largest, (a.states.displacement[a.states.displacement.size() - n + g] -
+                                     b.states.displacement[b.states.displacement.size() - n + g])
+                                        .norm());
+    return largest;
+}
+
+double largest_last(const Result& a)
+{
+    Result none = a;
+    std::fill(none.states.displacement.begin(), none.states.displacement.end(), Vector2d::Zero());
+    return largest_difference(a, none);
+}
+
+std::string refusal_of(const Study& study)
+{
+    try {
+        study.analysis();
+    } catch (const input_error& error) {
+        return error.what();
+    }
+    return "";
+}
+
+} // namespace
+
+TEST(analysis, steps_of_a_fixed_length_are_equal_up_to_each_date)
+{
+    Study study;
+    study.scene.creep->step = 0.7 * day;
+    study.scene.creep->scheme = CreepScheme::backward; // not cut where contacts close
+    study.scene.end = 3 * day;
+    const Result result = study.run();
+    const std::vector<double> expected{0, 0.5, 1, 1, 1 + 2. / 3, 1 + 4. / 3, 3};
+    ASSERT_EQ(result.history.time.size(), expected.size());
+    for (std::size_t i = 0; i < expected.size(); ++i)
+        EXPECT_NEAR(result.history.time[i], expected[i], 1e-12) << i;
+    EXPECT_EQ(result.history.time.back(), 3); // dates are met exactly
+    EXPECT_EQ(result.history.event[3], "corner");
+    EXPECT_EQ(rejected(result), 0);
+}
+
+TEST(analysis, something_happens_in_this_section)
+{
+    const Result result = Study().run();
+    const auto n = static_cast<std::ptrdiff_t>(result.mesh.contact_edge.size());
+    std::map<Index, int> numbers;
+    std::for_each(result.states.contact_status.end() - n, result.states.contact_status.end(),
+                  [&](Index status) { ++numbers[status]; });
+    EXPECT_GT(numbers[static_cast<Index>(ContactStatus::removed)], 0);
+    EXPECT_GT(numbers[static_cast<Index>(ContactStatus::slipping)] +
+                  numbers[static_cast<Index>(ContactStatus::open)],
+              0);
+    EXPECT_GT(largest_last(result), 1e-4);
+    for (const double ratio : result.equilibria.out_of_balance_ratio)
+        EXPECT_LE(ratio, 1e-8);
+    EXPECT_EQ(sum(result.equilibria.is_implicit), static_cast<Index>(result.equilibria.is_implicit.size()));
+}
+
+// By motion, which keeps no memory, to the last bit: a first step of 9 days that is rejected for one of 1.8
+// days is the same as beginning with that. Rock creeps, too, and a boundary moves.
+TEST(analysis, rejected_steps_leave_no_trace)
+{
+    Study study(false);
+    study.scene.rocks[0].kelvin = ShearKelvin{1e10, 1e10 * day};
+    study.scene.boundaries[2].displacement = Vector2d(-2e-3, 0);
+    study.scene.boundaries[2].course = {{{0, 0}, {30 * day, 1}}};
+    study.scene.equilibrium.engine = Engine::explicit_engine;
+    study.scene.equilibrium.tolerance = 1e-6;
+    study.choose_steps(3e-7, 9 * day);
+    study.scene.creep->shortest_step = 1e-3 * day;
+    const Result one = study.run();
+    study.choose_steps(3e-7, 9 * day * 0.2);
+    const Result other = study.run();
+    EXPECT_GT(rejected(one), rejected(other));
+    EXPECT_EQ(one.history.time, other.history.time);
+    EXPECT_EQ(one.history.displacement, other.history.displacement);
+    EXPECT_EQ(one.states.displacement, other.states.displacement);
+    EXPECT_EQ(one.states.stress, other.states.stress);
+    EXPECT_EQ(one.states.traction, other.states.traction);
+    EXPECT_GT(largest_last(one), 1e-3);
+}
+
+TEST(analysis, with_a_tolerance_the_first_step_does_not_matter)
+{
+    Study study;
+    const double tolerance = 1e-6;
+    study.scene.end = 3 * day; // while creep is under way
+    study.choose_steps(tolerance, 0.01 * day);
+    const Result fine = study.run();
+    for (const double first : {0.1, 0.5, 2.0}) {
+        study.choose_steps(tolerance, first * day);
+        const Result result = study.run();
+        EXPECT_LT(largest_difference(result, fine), tolerance) << first;
+        EXPECT_EQ(rejected(result) > 0, first > 1) << first;
+        EXPECT_EQ(result.history.time.back(), 3);
+    }
+    EXPECT_GT(largest_last(fine), 100 * tolerance);
+}
+
+TEST(analysis, a_published_step_at_its_limit_or_beyond_is_refused)
+{
+    Study study;
+    study.scene.creep->scheme = CreepScheme::published;
+    // (1 - exp(-x)) (1 + K / E) = 2 at the limit
+    const double limit = -std::log1p(-2. / 5) * 2;
+    study.scene.creep->step = 1.0001 * limit * day;
+    const std::string refusal = refusal_of(study);
+    EXPECT_NE(refusal.find("joint \"joint\""), std::string::npos) << refusal;
+    EXPECT_NE(refusal.find("stable only below 1.0216"), std::string::npos) << refusal;
+    study.scene.creep->step = 0.9999 * limit * day;
+    EXPECT_EQ(refusal_of(study), "");
+    study.scene.creep->scheme = CreepScheme::fitted;
+    study.scene.creep->step = 10 * day;
+    EXPECT_EQ(refusal_of(study), "");
+}
+
+TEST(analysis, more_steps_than_anyone_wants_are_refused)
+{
+    Study study;
+    study.scene.creep->step = 1e-6 * day;
+    EXPECT_THROW(study.analysis().run(), input_error);
+}
+
+TEST(analysis, the_stop_rate_ends_creep_after_the_last_stage)
+{
+    Study study;
+    study.scene.end = 300 * day;
+    study.scene.points.push_back({"late", {5, 10}, 200 * day});
+    const double rate = 1e-6 / day;
+    study.scene.creep->stop_rate = rate;
+    Analysis analysis = study.analysis();
+    analysis.run();
+    ASSERT_TRUE(analysis.end_of_creep());
+    const History& history = analysis.result().history;
+    EXPECT_EQ(history.time.back(), *analysis.end_of_creep() / day);
+    EXPECT_GT(history.time.back(), 2);
+    EXPECT_LT(history.time.back(), 200);
+    EXPECT_EQ(history.first_reading_row.back(), static_cast<Index>(history.time.size()) - 1);
+    // No point moves faster in the last step; some do in the step before, or other rock did.
+    const std::size_t points = history.point.size(), rows = history.time.size();
+    for (std::size_t p = 0; p < points; ++p)
+        EXPECT_LT(
+            (history.displacement[(rows - 1) * points + p] - history.displacement[(rows - 2) * points + p])
+                .norm(),
+            rate * day * (history.time[rows - 1] - history.time[rows - 2]));
+
+    study.scene.stages[0].time = 100 * day; // nothing creeps before, and that ends nothing
+    Analysis late = study.analysis();
+    late.run();
+    ASSERT_TRUE(late.end_of_creep());
+    EXPECT_GT(*late.end_of_creep(), 101 * day);
+    study.scene.end = 102 * day;
+    study.scene.points.back().first_reading = 0;
+    Analysis never = study.analysis();
+    never.run();
+    EXPECT_FALSE(never.end_of_creep());
+    EXPECT_EQ(never.result().history.time.back(), 102);
+}
+
+// Where joints slip the engines go different ways; here they do not.
+TEST(analysis, both_engines_agree)
+{
+    Study study;
+    for (double* strength : {&study.joints.cohesion[0], &study.joints.tensile_strength[0]})
+        std::fill(strength, strength + study.joints.cohesion.size(), 1e12);
+    study.scene.end = 4 * day;
+    const Result implicit = study.run();
+    study.scene.equilibrium.engine = Engine::explicit_engine;
+    const Result motion = study.run();
+    EXPECT_EQ(implicit.history.time, motion.history.time);
+    EXPECT_EQ(sum(motion.equilibria.is_implicit), 0);
+    EXPECT_LT(largest_difference(implicit, motion), 1e-5 * largest_last(motion));
+}
+
+TEST(analysis, threads_do_not_change_the_result)
+{
+    Study study;
+    study.scene.end = 3 * day;
+    study.scene.zone_size = 0.35; // enough zones for two
+    study.scene.creep->step = 2 * day;
+    const Result one = study.run(), two = study.run(2);
+    ASSERT_GT(one.mesh.zone_gridpoint.size(), 2000u);
+    EXPECT_EQ(one.states.displacement, two.states.displacement);
+    EXPECT_EQ(one.states.traction, two.states.traction);
+}
+
+TEST(analysis, factorisation_has_no_motion_to_trace)
+{
+    Study study;
+    study.scene.equilibrium.engine = Engine::implicit_engine;
+    study.recording.trace_every = 10;
+    EXPECT_NE(refusal_of(study), "");
+    study.scene.equilibrium.engine = Engine::automatic;
+    EXPECT_EQ(study.analysis().engine(), Engine::explicit_engine);
+}
