@@ -297,6 +297,10 @@ bool Engine::converge(Assembly& assembly, const State& start, const Equilibrium&
 bool Engine::is_at_rest(const Assembly& assembly, double mean_force, double tolerance,
                         Certificate& certificate)
 {
+    if (mean_force == 0) { // no force anywhere
+        certificate.contact_force_change = 0;
+        return true;
+    }
     ++solves_;
     certificate.contact_force_change = force_change(assembly, stiffness_.solve(force_)) / mean_force;
     if (certificate.contact_force_change > tolerance) {
