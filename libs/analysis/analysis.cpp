@@ -28,15 +28,6 @@ constexpr int most_halvings = 5;
 // Of one creep step where contacts close: in rock full of open joints some close all the time.
 constexpr int most_cuts = 6;
 
-// How far the gridpoint that moved farthest has moved [m].
-double largest_move(const std::vector<Vector2d>& from, const std::vector<Vector2d>& to)
-{
-    double largest = 0;
-    for (std::size_t g = 0; g < from.size(); ++g)
-        largest = std::max(largest, (to[g] - from[g]).norm());
-    return largest;
-}
-
 // What an edge's joint is called: its set, or the material of the joint that a boundary rests on.
 std::string joint_name(const Scene& scene, const Network& network, Index edge)
 {
@@ -126,8 +117,7 @@ Analysis::Analysis(const Scene& scene, const Network& network, const EquivalentJ
         if (creep_->anything_creeps()) {
             step_.emplace(*scene.creep, creep_->fastest_rate(),
                           stable_limit_ ? stable_limit_->step : std::numeric_limits<double>::infinity());
-            if (scene.creep->scheme == CreepScheme::linear_force ||
-                scene.creep->scheme == CreepScheme::fitted)
+            if (creep::is_second_order(scene.creep->scheme))
                 closing_.emplace(step_->closing_tolerance()); // the others are of first order anyway
         }
     }
@@ -189,12 +179,9 @@ void Analysis::creep_until(double date, bool may_stop)
         const double target = next();
         cuts_left_ = most_cuts;
         while (now_ < target && !end_of_creep_) {
-            const double from = now_;
-            const std::vector<Vector2d> before = rock_.displacement;
             if (!step_to(target, is_loaded))
                 break;
-            if (may_stop && creeps() && scene_.creep->stop_rate &&
-                largest_move(before, rock_.displacement) < *scene_.creep->stop_rate * (now_ - from))
+            if (may_stop && creeps() && scene_.creep->stop_rate && is_slower_than(*scene_.creep->stop_rate))
                 end_of_creep_ = now_;
             if (now_ < target && !end_of_creep_)
                 continue; // cut short where a contact closes: times stay the same whatever contacts do
@@ -259,6 +246,13 @@ bool Analysis::step_to(double target, bool is_loaded)
     if (end < target && step_) // cut short
         step_->start_afresh();
     return true;
+}
+
+// Whether every gridpoint moved more slowly in the last step [m/s].
+bool Analysis::is_slower_than(double rate) const
+{
+    return std::all_of(last_move_.begin(), last_move_.end(),
+                       [&](const Vector2d& move) { return move.norm() < rate * last_step_; });
 }
 
 // 4. Take away what a stage removes; unload what is left.

@@ -59,6 +59,7 @@ private:
     void settle_in_situ();
     void creep_until(double date, bool may_stop);
     bool step_to(double target, bool is_loaded);
+    bool is_slower_than(double rate) const;
     void excavate(const Stage& stage, Index number);
     bool settles_nearby(const std::vector<mechanics::Vector2d>& guess);
     void settle_by_motion(double time);

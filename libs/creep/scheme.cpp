@@ -70,6 +70,11 @@ double relaxation_rate(const Chain& chain)
     return fluidity == 0 ? 0 : chain.spring * fluidity + slowing / fluidity;
 }
 
+bool is_second_order(CreepScheme scheme)
+{
+    return scheme == CreepScheme::linear_force || scheme == CreepScheme::fitted;
+}
+
 Step step_of(const Chain& chain, CreepScheme scheme, double duration)
 {
     const CreepScheme other =

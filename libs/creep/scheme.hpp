@@ -50,6 +50,9 @@ struct Step {
         doubt; // what the compliance differs by from that of linear force, or with linear force from fitted
 };
 
+// Whether a scheme is of second order in the step's length; the others are of first.
+bool is_second_order(CreepScheme scheme);
+
 Step step_of(const Chain& chain, CreepScheme scheme, double duration);
 
 // rho [1/s].

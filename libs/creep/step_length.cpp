@@ -19,8 +19,7 @@ StepLength::StepLength(const jointcreep::Creep& settings, double fastest_rate, d
       shortest_(settings.shortest_step.value_or(1e-3 * first_)),
       longest_(std::min(settings.longest_step.value_or(std::numeric_limits<double>::infinity()),
                         0.99 * longest_stable)),
-      order_(settings.scheme == CreepScheme::fitted || settings.scheme == CreepScheme::linear_force ? 3 : 2),
-      wanted_(first_)
+      order_(is_second_order(settings.scheme) ? 3 : 2), wanted_(first_)
 {
     shortest_ = std::min(shortest_, longest_);
 }

@@ -1,7 +1,7 @@
 #include "implicit/equilibrium.hpp"
 
 #include "implicit/gmres.hpp"
-#include "model/error.hpp"
+#include "model/signs.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -24,14 +24,6 @@ constexpr int most_leaps = 5;
 constexpr int most_trials = 50, most_halvings = 6; // along a correction
 constexpr double least_hold = 1e-2;
 constexpr double soft = 1e-6; // share of their springs that open and slipping contacts keep in the factor
-
-double farthest_move(const std::vector<Vector2d>& from, const std::vector<Vector2d>& to)
-{
-    double farthest = 0;
-    for (std::size_t g = 0; g < from.size(); ++g)
-        farthest = std::max(farthest, (to[g] - from[g]).norm());
-    return farthest;
-}
 
 } // namespace
 
@@ -107,7 +99,7 @@ VectorXd Engine::correction(const Assembly& assembly, const VectorXd& force, dou
     VectorXd x = VectorXd::Zero(force.size());
     if (stiffness_.has_factor() && gmres(product, precondition, force, enough, patience, x) <= enough)
         return x;
-    if (!stiffness_.factorise(assembly, tangents(assembly, std::max(soft, hold))))
+    if (!stiffness_.factorise(assembly, acting))
         return {};
     ++factorisations_;
     gmres(product, precondition, force, enough, 2 * patience, x);
@@ -209,10 +201,8 @@ double Engine::force_change(const Assembly& assembly, const VectorXd& displaceme
     for (std::size_t c = 0; c < acting.size(); ++c) {
         const auto& [a, b] = contacts.gridpoint[c];
         const Vector2d jump = u[b] - u[a], &normal = contacts.normal[c];
-        const double opening = normal.dot(jump), shear = normal.y() * jump.x() - normal.x() * jump.y();
-        largest = std::max(largest, contacts.length[c] *
-                                        std::hypot(acting[c].normal * opening,
-                                                   acting[c].shear * shear + acting[c].coupling * opening));
+        const Vector2d change = acting[c].times({normal.dot(jump), along(normal).dot(jump)});
+        largest = std::max(largest, contacts.length[c] * std::hypot(change.x(), change.y()));
     }
     return largest;
 }
@@ -270,7 +260,8 @@ bool Engine::converge(Assembly& assembly, const State& start, const Equilibrium&
                     reason_ = "some rock is held by nothing";
                     return false;
                 }
-                const double farthest = farthest_move(start.displacement, assembly.displacement);
+                const double farthest =
+                    mechanics::farthest_move(start.displacement, assembly.displacement).first;
                 stiffness_.add_to(assembly.displacement, leap,
                                   std::min(1.0, farthest / leap.lpNorm<Eigen::Infinity>()));
                 merit = evaluate(assembly, start);
@@ -283,7 +274,7 @@ bool Engine::converge(Assembly& assembly, const State& start, const Equilibrium&
             hold = hold <= least_hold ? 0 : hold / 3;
         }
         take_states(assembly, start, false);
-        if (farthest_move(start.displacement, assembly.displacement) > too_far_) {
+        if (mechanics::farthest_move(start.displacement, assembly.displacement).first > too_far_) {
             reason_ = "rock would move by more than a tenth of the section";
             return false;
         }
@@ -372,9 +363,7 @@ std::optional<Certificate> Engine::equilibrate(Assembly& assembly, const Equilib
         if (contacts.status[c] == ContactStatus::slipping)
             certificate.dissipated += contacts.length[c] * contacts.traction[c].y() *
                                       (contacts.state[c].slip - start.joint[c].slip);
-    for (std::size_t g = 0; g < assembly.position.size(); ++g)
-        certificate.work_of_loads +=
-            (assembly.load[g] + assembly.applied[g]).dot(assembly.displacement[g] - start.displacement[g]);
+    certificate.work_of_loads = work_of_loads(assembly, start.displacement);
     certificate.damped = certificate.work_of_loads - certificate.stored - certificate.dissipated;
     return certificate;
 }

@@ -1,5 +1,7 @@
 #include "implicit/stiffness.hpp"
 
+#include "model/signs.hpp"
+
 #include <omp.h>
 
 #include <algorithm>
@@ -9,17 +11,6 @@ namespace jointcreep::implicit
 
 namespace
 {
-
-// Stiffness of a zone between its corners i and j, per thickness [Pa].
-Eigen::Matrix2d zone_block(const mechanics::Zones& zones, std::size_t z, int i, int j)
-{
-    const mechanics::Vector3d& c = zones.stiffness[z];
-    const Vector2d &p = zones.gradient[z][i], &q = zones.gradient[z][j];
-    Eigen::Matrix2d block;
-    block << c[0] * p.x() * q.x() + c[2] * p.y() * q.y(), c[1] * p.x() * q.y() + c[2] * p.y() * q.x(),
-        c[1] * p.y() * q.x() + c[2] * p.x() * q.y(), c[0] * p.y() * q.y() + c[2] * p.x() * q.x();
-    return zones.area[z] * block;
-}
 
 // The unknowns of some gridpoints, x and y in turn.
 template <std::size_t N>
@@ -32,11 +23,6 @@ std::array<int, 2 * N> unknowns_of(const std::vector<std::array<int, 2>>& unknow
         all[2 * k + 1] = unknown[gridpoints[k]][1];
     }
     return all;
-}
-
-Vector2d tangent_along(const Vector2d& normal)
-{
-    return {normal.y(), -normal.x()};
 }
 
 } // namespace
@@ -146,7 +132,7 @@ void Stiffness::fill_zones(const Assembly& assembly)
             continue;
         for (int i = 0; i < 3; ++i)
             for (int j = 0; j < 3; ++j) {
-                const Eigen::Matrix2d block = zone_block(zones, z, i, j);
+                const Eigen::Matrix2d block = zones.area[z] * stiffness_between(zones, z, i, j);
                 for (int row = 0; row < 2; ++row)
                     for (int column = 0; column < 2; ++column)
                         if (const int entry = zone_entry_[z][6 * (2 * i + row) + 2 * j + column]; entry >= 0)
@@ -185,11 +171,9 @@ VectorXd Stiffness::times(const Assembly& assembly, const std::vector<Tangent>& 
         const auto& [a, b] = contacts.gridpoint[c];
         const auto &from = unknown_[a], &to = unknown_[b];
         const Vector2d jump(value(to[0]) - value(from[0]), value(to[1]) - value(from[1]));
-        const Vector2d &normal = contacts.normal[c], along = tangent_along(normal);
-        const Tangent& t = tangents[c];
-        const double opening = normal.dot(jump), shear = along.dot(jump);
-        const Vector2d force = contacts.length[c] * (t.normal * opening * normal +
-                                                     (t.shear * shear + t.coupling * opening) * along);
+        const Vector2d &normal = contacts.normal[c], tangent = along(normal);
+        const Vector2d change = tangents[c].times({normal.dot(jump), tangent.dot(jump)});
+        const Vector2d force = contacts.length[c] * (change.x() * normal + change.y() * tangent);
         for (int i = 0; i < 2; ++i) {
             if (to[i] >= 0)
                 y[to[i]] += force[i];
@@ -206,9 +190,10 @@ bool Stiffness::factorise(const Assembly& assembly, const std::vector<Tangent>& 
     double* const values = factorised_.valuePtr();
     std::copy(zones_.valuePtr(), zones_.valuePtr() + zones_.nonZeros(), values);
     for (const Index c : present_contact_) {
-        const Vector2d &normal = contacts.normal[c], along = tangent_along(normal);
-        const Eigen::Matrix2d block = contacts.length[c] * (tangents[c].normal * normal * normal.transpose() +
-                                                            tangents[c].shear * along * along.transpose());
+        const Vector2d &normal = contacts.normal[c], tangent = along(normal);
+        const Eigen::Matrix2d block =
+            contacts.length[c] * (tangents[c].normal * normal * normal.transpose() +
+                                  tangents[c].shear * tangent * tangent.transpose());
         for (int i = 0; i < 4; ++i)
             for (int j = 0; j < 4; ++j)
                 if (const int entry = contact_entry_[c][4 * i + j]; entry >= 0)

@@ -32,6 +32,12 @@ using mechanics::Vector2d;
 // over normal}.
 struct Tangent {
     double normal, shear, coupling;
+
+    // Change of {normal, shear} traction [Pa] for one of the {normal, shear} jump [m].
+    Vector2d times(const Vector2d& jump) const
+    {
+        return {normal * jump.x(), shear * jump.y() + coupling * jump.x()};
+    }
 };
 
 class Stiffness

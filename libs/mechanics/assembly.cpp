@@ -54,7 +54,7 @@ void add_contacts(Assembly& assembly, const Scene& scene, const EquivalentJoints
         contacts.law.push_back({joints.normal_stiffness[e], joints.shear_stiffness[e], joints.cohesion[e],
                                 std::tan(joints.friction_angle[e]), joints.tensile_strength[e]});
         const Vector3d stress = scene.in_situ_stress.at(mesh.contact_centre[c]);
-        const Vector2d normal = mesh.contact_normal[c], tangent(normal.y(), -normal.x());
+        const Vector2d normal = mesh.contact_normal[c], tangent = along(normal);
         const Vector2d pull(stress[0] * normal.x() + stress[2] * normal.y(),
                             stress[2] * normal.x() + stress[1] * normal.y());
         contacts.initial_traction.emplace_back(pull.dot(normal), pull.dot(tangent));
@@ -189,7 +189,7 @@ void find_forces(Assembly& assembly)
             if (contacts.status[c] == ContactStatus::removed)
                 continue;
             const auto [a, b] = contacts.gridpoint[c];
-            const Vector2d normal = contacts.normal[c], tangent(normal.y(), -normal.x());
+            const Vector2d normal = contacts.normal[c], tangent = along(normal);
             const Vector2d jump = u[b] - u[a];
             const joint::Coulomb& law = contacts.law[c];
             const Vector2d last_jump = contacts.jump[c], last = contacts.traction[c];
@@ -302,6 +302,37 @@ double size_of(const Assembly& assembly)
     return (high - low).norm();
 }
 
+std::pair<double, std::size_t> farthest_move(const std::vector<Vector2d>& from,
+                                             const std::vector<Vector2d>& to)
+{
+    std::pair<double, std::size_t> farthest(0, 0);
+    for (std::size_t g = 0; g < from.size(); ++g) {
+        const double moved = (to[g] - from[g]).norm();
+        if (!std::isfinite(moved))
+            return {moved, g};
+        farthest = std::max(farthest, {moved, g});
+    }
+    return farthest;
+}
+
+double work_of_loads(const Assembly& assembly, const std::vector<Vector2d>& start)
+{
+    double work = 0;
+    for (std::size_t g = 0; g < start.size(); ++g)
+        work += (assembly.load[g] + assembly.applied[g]).dot(assembly.displacement[g] - start[g]);
+    return work;
+}
+
+Eigen::Matrix2d stiffness_between(const Zones& zones, std::size_t z, int i, int j)
+{
+    const Vector3d& c = zones.stiffness[z];
+    const Vector2d &p = zones.gradient[z][i], &q = zones.gradient[z][j];
+    Eigen::Matrix2d block;
+    block << c[0] * p.x() * q.x() + c[2] * p.y() * q.y(), c[1] * p.x() * q.y() + c[2] * p.y() * q.x(),
+        c[1] * p.y() * q.x() + c[2] * p.x() * q.y(), c[0] * p.y() * q.y() + c[2] * p.x() * q.x();
+    return block;
+}
+
 void start_from_here(Assembly& assembly)
 {
     find_forces(assembly);
@@ -346,19 +377,10 @@ std::vector<double> stiffness_row_sums(const Assembly& assembly)
     for (std::size_t z = 0; z < zones.gridpoint.size(); ++z) {
         if (!zones.is_present[z])
             continue;
-        const Vector3d& c = zones.stiffness[z];
-        for (int i = 0; i < 3; ++i) {
-            const Vector2d& p = zones.gradient[z][i];
-            for (int j = 0; j < 3; ++j) {
-                const Vector2d& q = zones.gradient[z][j];
-                const double xx = c[0] * p.x() * q.x() + c[2] * p.y() * q.y();
-                const double yy = c[0] * p.y() * q.y() + c[2] * p.x() * q.x();
-                const double xy = c[1] * p.x() * q.y() + c[2] * p.y() * q.x();
-                const double yx = c[1] * p.y() * q.x() + c[2] * p.x() * q.y();
+        for (int i = 0; i < 3; ++i)
+            for (int j = 0; j < 3; ++j)
                 sums[zones.gridpoint[z][i]] +=
-                    zones.area[z] * Vector2d(std::abs(xx) + std::abs(xy), std::abs(yy) + std::abs(yx));
-            }
-        }
+                    zones.area[z] * stiffness_between(zones, z, i, j).cwiseAbs().rowwise().sum();
     }
     for (std::size_t c = 0; c < contacts.gridpoint.size(); ++c) {
         if (contacts.status[c] == ContactStatus::removed)

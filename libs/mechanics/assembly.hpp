@@ -11,6 +11,7 @@
 #include <Eigen/Core>
 
 #include <array>
+#include <utility>
 #include <vector>
 
 namespace jointcreep::mechanics
@@ -118,6 +119,17 @@ Balance balance_of(const Assembly& assembly);
 // `stiffest` row sum and the farthest displacement, of now or `farthest` [m] on the way here, demand for
 // `tolerance`.
 Balance balance_of(const Assembly& assembly, double stiffest, double farthest, double tolerance);
+
+// The largest of the moves between two lists of displacements [m], and its gridpoint; a move that is no
+// number first of all.
+std::pair<double, std::size_t> farthest_move(const std::vector<Vector2d>& from,
+                                             const std::vector<Vector2d>& to);
+
+// Work of load and applied forces on the way from the displacements `start` to the present ones [J/m].
+double work_of_loads(const Assembly& assembly, const std::vector<Vector2d>& start);
+
+// Stiffness of a zone between its corners i and j, per area [Pa/m2].
+Eigen::Matrix2d stiffness_between(const Zones& zones, std::size_t z, int i, int j);
 
 // Diagonal of the box around all gridpoints [m].
 double size_of(const Assembly& assembly);

@@ -33,4 +33,10 @@ inline Eigen::Vector2d normal_of(const Eigen::Vector2d& tangent)
     return {-tangent.y(), tangent.x()};
 }
 
+// The other way round: the tangent of an edge with this normal.
+inline Eigen::Vector2d along(const Eigen::Vector2d& normal)
+{
+    return {normal.y(), -normal.x()};
+}
+
 } // namespace jointcreep

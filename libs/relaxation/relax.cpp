@@ -146,7 +146,7 @@ public:
     // Throws if a piece of rock is on its way: far already, or steadily.
     void check_motion(Index steps)
     {
-        const auto [moved, g] = largest_move(start_);
+        const auto [moved, g] = mechanics::farthest_move(start_, a_.displacement);
         if (!(moved <= too_far_))
             throw equilibrium_error(
                 "no equilibrium: the rock at " + shown(a_.position[g]) + " has moved " +
@@ -155,7 +155,7 @@ public:
         if (steps % patience != 0)
             return;
         // What comes to rest slows down. What slides or falls does not: damping only lends it a steady speed.
-        const auto [lately, h] = largest_move(patience_ago_);
+        const auto [lately, h] = mechanics::farthest_move(patience_ago_, a_.displacement);
         windows_without_slowing_ = lately > 0.95 * moved_before_ ? windows_without_slowing_ + 1 : 0;
         if (windows_without_slowing_ == 4)
             throw equilibrium_error("no equilibrium: the rock at " + shown(a_.position[h]) +
@@ -174,8 +174,7 @@ public:
         certificate.stored = stored_energy(a_) - stored_at_start_;
         for (const double lost : a_.contacts.dissipated)
             certificate.dissipated += lost;
-        for (std::size_t g = 0; g < start_.size(); ++g)
-            certificate.work_of_loads += (a_.load[g] + a_.applied[g]).dot(a_.displacement[g] - start_[g]);
+        certificate.work_of_loads = work_of_loads(a_, start_);
         // Stiffness damping works inside zones and contacts, unseen by the gridpoints' motion: it takes what
         // is missing.
         certificate.damped = settings_.stiffness_damping > 0
@@ -184,20 +183,6 @@ public:
     }
 
 private:
-    // The largest move of a gridpoint since it was at `before` [m], and that gridpoint; not a number first of
-    // all.
-    std::pair<double, std::size_t> largest_move(const std::vector<Vector2d>& before) const
-    {
-        std::pair<double, std::size_t> largest(0, 0);
-        for (std::size_t g = 0; g < before.size(); ++g) {
-            const double moved = (a_.displacement[g] - before[g]).norm();
-            if (!std::isfinite(moved))
-                return {moved, g};
-            largest = std::max(largest, {moved, g});
-        }
-        return largest;
-    }
-
     static std::string shown_length(double length)
     {
         std::array<char, 32> text{};

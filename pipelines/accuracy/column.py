@@ -12,7 +12,6 @@ runs the programs in BIN on SCENE.toml and on variants of it, and writes into OU
 
 import csv
 import os
-import resource
 import subprocess
 import sys
 import tempfile
@@ -23,6 +22,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "plots"))
 import column_difference
 import figure
+from speed_against_error import processor_seconds
 
 ZONE_SIZES = [5, 2.5, 1.25, 0.625]  # [m]
 TOLERANCES = [1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9]
@@ -99,19 +99,14 @@ def runs_of(text):
     return runs
 
 
-def processor_seconds(command):
-    before = resource.getrusage(resource.RUSAGE_CHILDREN)
-    subprocess.run(command, check=True)
-    after = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
-
-
 def answer_of(run, programs, folder):
     scene, network, joints, result = (folder / name for name in ("scene.toml", "network.h5", "joints.h5", "result.h5"))
     scene.write_text(run.scene)
     subprocess.run([programs / "jointgen", scene, "-q", "-o", network], check=True)
     subprocess.run([programs / "strength-averaging", network, "-q", "-o", joints], check=True)
-    seconds = processor_seconds([programs / "demsolve", joints, "-q", "-o", result, *run.options])
+    seconds, code, message = processor_seconds([programs / "demsolve", joints, "-q", "-o", result, *run.options])
+    if code != 0:
+        raise SystemExit(message)
     with figure.opened(result) as file:
         return Answer(column_difference.readings(file), len(figure.array(file, "/mesh/zone_block")),
                       int(figure.array(file, "/equilibria/steps").sum()), seconds,
