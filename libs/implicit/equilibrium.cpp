@@ -96,7 +96,11 @@ VectorXd Engine::correction(const Assembly& assembly, const VectorXd& force, dou
         return stiffness_.solve(x);
     };
     if (acting != acting_) {
-        space_.follow([&](const VectorXd& x) { return stiffness_.change(assembly, acting_, acting, x); });
+        const Stiffness::Change change = stiffness_.change(assembly, acting_, acting);
+        space_.follow(change.unknowns, [&](const auto& x, auto y) {
+            for (const auto& [contact, tangent] : change.contacts)
+                stiffness_.add_contact(assembly, contact, tangent, x, y);
+        });
         acting_ = acting;
     }
     VectorXd x;
@@ -232,7 +236,7 @@ bool Engine::converge(Assembly& assembly, const State& start, const Equilibrium&
 
         const double enough = is_balanced
                                   ? 0.1 * force_.norm()
-                                  : std::max(0.5 * settings.tolerance * balance.mean, 1e-2 * force_.norm());
+                                  : std::max(0.5 * settings.tolerance * balance.mean, (corrections_ == first ? 1e-2 : 1e-3) * force_.norm());
         const VectorXd du = correction(assembly, force_, enough, hold);
         ++corrections_;
         if (du.size() == 0 || !du.allFinite()) {
@@ -336,8 +340,9 @@ std::optional<Certificate> Engine::equilibrate(Assembly& assembly, const Equilib
     take_states(assembly, start, true);
     if (!stiffness_.has_factor()) {
         space_.forget();
+        acting_ = tangents(assembly, soft);
         ++factorisations_;
-        if (!stiffness_.factorise(assembly, tangents(assembly, soft))) {
+        if (!stiffness_.factorise(assembly, acting_)) {
             reason_ = "some rock is held by nothing";
             return give_up();
         }

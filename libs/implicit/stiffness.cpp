@@ -170,20 +170,27 @@ VectorXd Stiffness::times(const Assembly& assembly, const std::vector<Tangent>& 
     return y;
 }
 
-VectorXd Stiffness::change(const Assembly& assembly, const std::vector<Tangent>& before,
-                           const std::vector<Tangent>& after, const VectorXd& x) const
+Stiffness::Change Stiffness::change(const Assembly& assembly, const std::vector<Tangent>& before,
+                                    const std::vector<Tangent>& after) const
 {
-    VectorXd y = VectorXd::Zero(n_);
-    for (const Index c : present_contact_)
-        if (const Tangent& from = before[c], &to = after[c]; from != to)
-            add_contact(assembly, c,
-                        {to.normal - from.normal, to.shear - from.shear, to.coupling - from.coupling}, x, y);
-    return y;
+    Change change;
+    for (const Index c : present_contact_) {
+        const Tangent &from = before[c], &to = after[c];
+        if (from == to)
+            continue;
+        change.contacts.push_back(
+            {c, {to.normal - from.normal, to.shear - from.shear, to.coupling - from.coupling}});
+        for (const int unknown : unknowns_of(unknown_, assembly.contacts.gridpoint[c]))
+            if (unknown >= 0)
+                change.unknowns.push_back(unknown);
+    }
+    std::sort(change.unknowns.begin(), change.unknowns.end());
+    change.unknowns.erase(std::unique(change.unknowns.begin(), change.unknowns.end()), change.unknowns.end());
+    return change;
 }
 
-// Adds the contact's part of K x to y.
 void Stiffness::add_contact(const Assembly& assembly, Index contact, const Tangent& tangent,
-                            const VectorXd& x, VectorXd& y) const
+                            const Eigen::Ref<const VectorXd>& x, Eigen::Ref<VectorXd> y) const
 {
     const mechanics::Contacts& contacts = assembly.contacts;
     const auto value = [&](int unknown) { return unknown >= 0 ? x[unknown] : 0.0; };

@@ -59,9 +59,18 @@ public:
     // K x with the tangents given, one for each contact.
     VectorXd times(const Assembly& assembly, const std::vector<Tangent>& tangents, const VectorXd& x) const;
 
-    // What that changes by when the tangents go from `before` to `after`.
-    VectorXd change(const Assembly& assembly, const std::vector<Tangent>& before,
-                    const std::vector<Tangent>& after, const VectorXd& x) const;
+    // What changes when the tangents go from `before` to `after`: the contacts, with the difference; and the
+    // unknowns that these contacts couple.
+    struct Change {
+        std::vector<std::pair<Index, Tangent>> contacts;
+        std::vector<int> unknowns;
+    };
+    Change change(const Assembly& assembly, const std::vector<Tangent>& before,
+                  const std::vector<Tangent>& after) const;
+
+    // Adds the contact's part of K x to y.
+    void add_contact(const Assembly& assembly, Index contact, const Tangent& tangent,
+                     const Eigen::Ref<const VectorXd>& x, Eigen::Ref<VectorXd> y) const;
 
     // Factorises with these tangents; false if the matrix has no Cholesky factor.
     bool factorise(const Assembly& assembly, const std::vector<Tangent>& tangents);
@@ -79,8 +88,6 @@ private:
     void number_unknowns(const Assembly& assembly);
     void find_pattern(const Assembly& assembly);
     void fill_zones(const Assembly& assembly);
-    void add_contact(const Assembly& assembly, Index contact, const Tangent& tangent, const VectorXd& x,
-                     VectorXd& y) const;
 
     Eigen::Index n_ = 0;
     std::vector<std::array<int, 2>> unknown_; // of each gridpoint's {x, y}; -1 held

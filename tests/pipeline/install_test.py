@@ -1,0 +1,70 @@
+"""What `cmake --install` puts elsewhere: programs that run there, manual pages, completion for bash."""
+
+import os
+import re
+import subprocess
+import unittest
+
+from chain import ChainTest, main
+
+APPS = ["jointgen", "strength-averaging", "demsolve", "jointexport"]
+
+
+class Install(ChainTest):
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.prefix = cls.chain.new_folder()
+        subprocess.run(["cmake", "--install", cls.chain.programs.parent, "--prefix", cls.prefix], check=True,
+                       capture_output=True)
+
+    def installed(self, *command, **more):
+        path = f"{self.prefix / 'bin'}:{os.environ['PATH']}"
+        return subprocess.run(command, capture_output=True, text=True, env=dict(os.environ, PATH=path), **more)
+
+    def test_nothing_else_is_installed(self):
+        files = sorted(str(path.relative_to(self.prefix)) for path in self.prefix.rglob("*") if path.is_file())
+        self.assertEqual(files, sorted([f"bin/{app}" for app in APPS] + [f"share/man/man1/{app}.1" for app in APPS] +
+                                       [f"share/bash-completion/completions/{app}" for app in APPS]))
+
+    def test_the_chain_runs_there(self):
+        scene = self.chain.new_folder() / "scene.toml"
+        scene.write_text(self.chain.text("data/column/scene.toml"))
+        for command in (["jointgen", scene, "-o", "n.h5"], ["strength-averaging", "n.h5", "-o", "j.h5"],
+                        ["demsolve", "j.h5", "-q", "-o", "r.h5"], ["jointexport", "r.h5", "-q", "-o", "r.csv"]):
+            done = self.installed(*command, cwd=scene.parent)
+            self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertTrue((scene.parent / "r.csv").read_text().startswith("time_day"))
+
+    def test_manual_pages(self):
+        for app in APPS:
+            page = self.prefix / "share/man/man1" / f"{app}.1"
+            done = self.installed("groff", "-man", "-ww", "-Tascii", "-P-cbou", "-rLL=120n", str(page))
+            self.assertEqual((done.returncode, done.stderr), (0, ""), app)
+            text = done.stdout
+            for section in ("NAME", "SYNOPSIS", "OPTIONS", "EXIT CODES", "EXAMPLE"):
+                self.assertRegex(text, f"(?m)^{section}$")
+            self.assertRegex(text, rf"(?m)^ +{app} - [a-z]")
+            for line in self.installed(app, "--help").stdout.splitlines()[1:]:
+                if line and not re.match(r"usage: |[A-Z][A-Za-z ]*:$", line):
+                    self.assertIn(line.rstrip(), text, f"a line of {app} --help is not in its page")
+
+    def completed(self, app, word):
+        script = self.prefix / "share/bash-completion/completions" / app
+        done = self.installed("bash", "-c", 'source "$1"; COMP_WORDS=("$2" "$3"); COMP_CWORD=1; _jointcreep "$2"; '
+                              'printf "%s\\n" "${COMPREPLY[@]}"; complete -p "$2"', "bash", str(script), app, word)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        *words, registered = done.stdout.splitlines()
+        self.assertEqual(registered, f"complete -o default -F _jointcreep {app}")
+        return [word for word in words if word]
+
+    def test_completion(self):
+        self.assertEqual(self.completed("demsolve", "--creep-t"), ["--creep-tolerance"])
+        self.assertEqual(self.completed("jointgen", "--real"), ["--realization"])
+        self.assertEqual(self.completed("jointexport", "scene"), [])  # a file: bash's own
+        for app in APPS:
+            self.assertLessEqual({"--output", "--quiet", "--help", "--version"}, set(self.completed(app, "--")))
+
+
+if __name__ == "__main__":
+    main()
