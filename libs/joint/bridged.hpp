@@ -37,19 +37,17 @@ struct Bridging {
     double share = 1;   // of the joint's own stiffness [-]
 };
 
-// By one of the rules other than `joint`; `stiffness` is K_j [Pa/m], on which the share of the staggered rule
-// hangs a little.
+// By one of the rules; `stiffness` is K_j [Pa/m], on which the share of the staggered rule hangs a little. By
+// that rule lines with a persistence below 0.01 are taken as alone.
 Bridging bridging(StiffnessRule rule, const BridgedLine& line, double stiffness, Direction direction);
 
 // K_eq L / (k E') of staggered lines: of parallel lines the spacing S apart, each shifted by b against its
-// neighbours. Their traces open as
-//     D(x) = sum over j of a_j sqrt(1 - xi^2) U_2j(xi),   xi = 2 x / L,   with Chebyshev's U of the second
-//     kind,
-// and the a_j are those of least energy (Galerkin's method). An opening of amplitude D and wave number q on a
-// line puts -(E' / 4) q D (1 +- q y) exp(-q y) on the plane y away, + for the normal, - for the shear
-// traction; the sum over all lines is closed. Below a persistence of 0.01 a
-// line is taken as alone. Eight terms are exact to 1e-4 where S is at least an eighth of
-// 2 b. `stiffness` is K_j L / (k E'), `spacing` S k / L.
+// neighbours; `stiffness` is K_j L / (k E'), `spacing` S k / L. Their traces open as
+//     D(x) = sum over j of a_j sqrt(1 - xi^2) U_2j(xi) ,     xi = 2 x / L ,
+// with Chebyshev's polynomials U of the second kind and the a_j of least energy (Galerkin's method). A wave of
+// the opening, of amplitude D and wave number q, puts -(E' / 4) q D (1 +- q y) exp(-q y) on the plane y away,
+// + for the normal and - for the shear traction; the sum over all lines is closed. Eight terms are exact to
+// 1e-3 where `spacing` is at least 1/8.
 double staggered_stiffness(double persistence, double spacing, double stiffness, Direction direction);
 
 // What acts along one direction of a joint: a spring, and in series Kelvin units and a Maxwell dashpot. All

@@ -131,8 +131,8 @@ class Bridges(ChainTest):
                     lower, upper = (line_alone(persistence) + share * joint / persistence for share in (1, 1.081))
                     coarse, fine = (self.stiffness(persistence, joint, shear, size) for size in (0.05, 0.025))
                     extrapolated = 2 * fine - coarse
-                    print(f"k {persistence}, K_j {joint:.0e}, shear {shear}: over the lower bound {coarse / lower:.4f}, "
-                          f"{fine / lower:.4f}, {extrapolated / lower:.4f}; upper {upper / lower:.4f}")
+                    print(f"k {persistence}, K_j {joint:.0e}, shear {shear}: {coarse / lower:.4f}, {fine / lower:.4f}, "
+                          f"{extrapolated / lower:.4f} of the lower bound; the upper is {upper / lower:.4f} of it")
                     self.assertGreater(coarse, fine)
                     self.assertGreater(extrapolated, 0.99 * lower)  # 0.996 seen
                     self.assertLess(extrapolated, 1.005 * upper)  # 1.0001 seen
