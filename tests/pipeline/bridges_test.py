@@ -35,7 +35,7 @@ shear_stiffness_MPa_per_m = {stiffness}
 cohesion_MPa = 1e4
 friction_angle_deg = 30
 tensile_strength_MPa = 1e4
-
+{kelvin}
 {regions}
 
 [[boundary]]
@@ -47,7 +47,7 @@ fix = "{base}"
 from_m = [0, {high}]
 to_m = [1, {high}]
 traction_MPa = {load}
-course = [[0, 0], [1, 1]]
+course = [[0, 0], [1e-6, 1]]
 
 [[boundary]]
 from_m = [0, {low}]
@@ -70,8 +70,8 @@ shear_xy_gradient_MPa_per_m = 0
 
 [schedule]
 start = 0
-end = 1
-
+end = 40
+{creep}
 [zones]
 size_m = {size}
 
@@ -83,12 +83,20 @@ tolerance = 1e-9
 """
 
 
-def mean_displacement(result, height, component):
-    """Mean along a level of gridpoints, at the end."""
+KELVIN = """
+normal_kelvin_stiffness_MPa_per_m = 10000
+normal_kelvin_viscosity_MPa_day_per_m = 100000
+shear_kelvin_stiffness_MPa_per_m = 10000
+shear_kelvin_viscosity_MPa_day_per_m = 100000
+"""
+
+
+def mean_displacement(result, height, component, state=-1):
+    """Mean along a level of gridpoints, at the end or in another state."""
     place = result["/mesh/gridpoint_position"]
     row = numpy.flatnonzero(abs(place[:, 1] - height) < 1e-9)
     row = row[numpy.argsort(place[row, 0])]
-    moved = result["/states/displacement"][-1][row, component]
+    moved = result["/states/displacement"][state][row, component]
     return ((moved[1:] + moved[:-1]) / 2 * numpy.diff(place[row, 0])).sum() / HALF
 
 
@@ -97,9 +105,21 @@ def line_alone(persistence):
     return math.pi * PLANE / (8 * HALF * math.log(1 / math.cos(math.pi * persistence / 2)))
 
 
+def creeping(bridges, share, joint, time):
+    """Displacement over traction of a spring beside `share` times a joint with the unit of KELVIN [m/Pa]."""
+    kelvin, viscosity = 1e10, 1e11
+    first, last = bridges + share * joint, bridges + share * joint * kelvin / (joint + kelvin)
+    rate = (bridges * (joint + kelvin) + share * joint * kelvin) / (viscosity * first)
+    return 1 / first + (1 / last - 1 / first) * (1 - math.exp(-rate * time))
+
+
 class Bridges(ChainTest):
     def stiffness(self, persistence, joint, shear, size, spacing=None):
         """K_eq [Pa/m] of one line, or of the middle two of six staggered ones with that spacing [m]."""
+        return 1 / self.compliances(persistence, joint, shear, size, spacing)[1][-1]
+
+    def compliances(self, persistence, joint, shear, size, spacing=None, creeps=False):
+        """Times [day] and 1 / K_eq in the states of a run [m/Pa]."""
         ends = 2.0 if spacing is None else 3 * spacing + 1
         heights = [0.0] if spacing is None else [(i - 2.5) * spacing for i in range(6)]
         levels = [-spacing, spacing] if spacing else [-ends, ends]
@@ -113,15 +133,17 @@ class Bridges(ChainTest):
                         f'to_m = [{end!r}, {y!r}]\n\n')
         text = SCENE.format(low=-ends, high=ends, stiffness=joint / 1e6, regions=regions, size=size,
                             base="xy" if shear else "y", sides="y" if shear else "x",
-                            load=[1, 0] if shear else [0, 1])
-        result = datasets(self.chain.result(text))
+                            load=[1, 0] if shear else [0, 1], kelvin=KELVIN if creeps else "",
+                            creep="\n[creep]\nstep_days = 1\n" if creeps else "")
+        result = datasets(self.chain.result(text, "--states", 10))
         vertex = result["/vertices/position"][result["/edges/vertex"]]
         on_joints = numpy.linalg.norm(vertex[:, 1] - vertex[:, 0], axis=1)[result["/edges/kind"] == 1].sum()
         self.assertAlmostEqual(on_joints, len(heights) * persistence, delta=1e-4)
         component = 0 if shear else 1
-        moved = mean_displacement(result, levels[1], component) - mean_displacement(result, levels[0], component)
-        rock = (levels[1] - levels[0]) * 1e6 / (SHEAR if shear else CONFINED)
-        return (1 if spacing is None else 2) * 1e6 / (moved - rock)
+        rock = (levels[1] - levels[0]) / (SHEAR if shear else CONFINED)
+        moved = [mean_displacement(result, levels[1], component, state) - mean_displacement(
+            result, levels[0], component, state) for state in range(len(result["/states/time"]))]
+        return result["/states/time"], (numpy.array(moved) / 1e6 - rock) / (1 if spacing is None else 2)
 
     def test_a_line_is_between_the_bounds(self):
         """Within them but for the zones, which are too stiff by the order of their size: halving halves that."""
@@ -136,6 +158,25 @@ class Bridges(ChainTest):
                     self.assertGreater(coarse, fine)
                     self.assertGreater(extrapolated, 0.99 * lower)  # 0.996 seen
                     self.assertLess(extrapolated, 1.005 * upper)  # 1.0001 seen
+
+    def test_a_line_creeps_between_the_bounds(self):
+        """A joint with K/E = 2 in its traces; while it creeps, the bridges take over."""
+        persistence, joint = 0.5, 2e10
+        for shear in (False, True):
+            with self.subTest(shear=shear):
+                times, coarse = self.compliances(persistence, joint, shear, 0.05, creeps=True)
+                _, fine = self.compliances(persistence, joint, shear, 0.025, creeps=True)
+                extrapolated = 2 * fine - coarse
+                rows = numpy.flatnonzero(times > 1e-3)
+                for row in rows:
+                    upper, lower = (creeping(line_alone(persistence), share / persistence, joint, times[row])
+                                    for share in (1, 1.081))
+                    print(f"day {times[row]:.0f}, shear {shear}: {extrapolated[row] / upper:.4f} of the upper bound; "
+                          f"the lower is {lower / upper:.4f} of it")
+                    self.assertLess(extrapolated[row], 1.01 * upper)
+                    self.assertGreater(extrapolated[row], 0.99 * lower)
+                self.assertGreater(len(rows), 3)
+                self.assertGreater(extrapolated[-1], 1.5 * extrapolated[rows[0] - 1], "it crept")
 
     def test_staggered_lines(self):
         """Against the values that tests/joint/bridged_test.cpp has by dislocations, in K_eq 2 b / E'."""
