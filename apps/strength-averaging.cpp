@@ -3,7 +3,8 @@
 //   strength-averaging network.h5 -o joints.h5
 //
 // Reads   network.h5   joints and blocks                           (from jointgen)
-// Writes  joints.h5    the same, and every edge's equivalent joint (docs/file-format.md)
+// Writes  joints.h5    the same, every edge's equivalent joint, joint by joint its
+//                      traces and rock bridges, and what they average to (docs/file-format.md)
 
 #include "program.hpp"
 
@@ -13,7 +14,9 @@
 #include "scene/scene.hpp"
 #include "store/files.hpp"
 
-#include <cmath>
+#include <array>
+#include <cstdio>
+#include <optional>
 
 using namespace jointcreep;
 
@@ -29,31 +32,61 @@ const Program program{
     .example = "strength-averaging network.h5 -o joints.h5",
 };
 
-// Means over the length of each set's edges.
+// To four digits.
+std::string digits(double value)
+{
+    std::array<char, 32> text{};
+    std::snprintf(text.data(), text.size(), "%.4g", value);
+    return text.data();
+}
+
+// "0.1 joint, 2 bridges, 1.2 equivalent"; without bridges "0.1".
+std::string beside(double joint, std::optional<double> bridges, double equivalent, double unit)
+{
+    if (joint == equivalent)
+        return digits(joint / unit);
+    return digits(joint / unit) + " joint, " + (bridges ? digits(*bridges / unit) + " bridges, " : "") +
+           digits(equivalent / unit) + " equivalent";
+}
+
+// Of each set what was wanted, what is there, and its joints beside what they are made of.
 void report(const Network& network, const EquivalentJoints& joints)
 {
-    const Blocks& blocks = network.blocks;
+    const SetAverages& sets = joints.sets;
     Summary summary;
+    summary.add("joint traces in the section", joints.pieces.joint.size() - joints.pieces.bridge.size());
+    summary.add("rock bridges", joints.pieces.bridge.size());
     for (std::size_t set = 0; set < network.names.joint_set.size(); ++set) {
-        double length = 0, joint = 0, cohesion = 0, tan_phi = 0;
-        for (std::size_t e = 0; e < blocks.edge_vertex.size(); ++e) {
-            if (blocks.edge_joint[e] < 0 ||
-                network.joints.set[blocks.edge_joint[e]] != static_cast<Index>(set))
-                continue;
-            const auto [a, b] = blocks.edge_vertex[e];
-            const double l = (blocks.vertex[a] - blocks.vertex[b]).norm();
-            length += l;
-            joint += l * blocks.edge_joint_fraction[e];
-            cohesion += l * joints.cohesion[e];
-            tan_phi += l * std::tan(joints.friction_angle[e]);
-        }
         const std::string& name = network.names.joint_set[set];
-        summary.add(name + ": length", length, "m");
-        if (length == 0)
+        summary.add(name + ": length on edges", sets.edge_length[set], "m");
+        if (sets.edge_persistence[set] == 1 && sets.cohesion[set] == sets.joint_cohesion[set])
+            summary.add(name + ": persistence", "1, all joint");
+        if (sets.edge_length[set] == 0 || sets.edge_persistence[set] == 1)
             continue;
-        summary.add(name + ": persistence", joint / length);
-        summary.add(name + ": mean cohesion", cohesion / length / unit::MPa, "MPa");
-        summary.add(name + ": mean friction angle", std::atan(tan_phi / length) / unit::deg, "deg");
+        summary.add(name + ": persistence", digits(sets.target_persistence[set]) + " wanted, " +
+                                                digits(sets.line_persistence[set]) + " on lines (error " +
+                                                digits(sets.persistence_error[set]) + "), " +
+                                                digits(sets.edge_persistence[set]) + " on edges");
+        summary.add(
+            name + ": cohesion",
+            beside(sets.joint_cohesion[set], sets.bridge_cohesion[set], sets.cohesion[set], unit::MPa),
+            "MPa");
+        summary.add(name + ": friction angle",
+                    beside(sets.joint_friction_angle[set], sets.bridge_friction_angle[set],
+                           sets.friction_angle[set], unit::deg),
+                    "deg");
+        summary.add(name + ": tensile strength",
+                    beside(sets.joint_tensile_strength[set], sets.bridge_tensile_strength[set],
+                           sets.tensile_strength[set], unit::MPa),
+                    "MPa");
+        summary.add(name + ": normal stiffness",
+                    beside(sets.joint_normal_stiffness[set], {}, sets.normal_stiffness[set], unit::MPa),
+                    "MPa/m");
+        summary.add(name + ": shear stiffness",
+                    beside(sets.joint_shear_stiffness[set], {}, sets.shear_stiffness[set], unit::MPa),
+                    "MPa/m");
+        if (sets.limited_length[set] > 0)
+            summary.add(name + ": stiffness limited on", sets.limited_length[set], "m");
     }
     summary.print();
 }

@@ -1,9 +1,14 @@
 #include "joint/equivalent.hpp"
 
+#include "joint/bridged.hpp"
+#include "joint/pieces.hpp"
 #include "model/error.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <map>
+#include <tuple>
 
 namespace jointcreep
 {
@@ -11,8 +16,9 @@ namespace jointcreep
 namespace
 {
 
-// An edge's joint fraction is a sum of lengths over a length: closer to 1 it is 1.
+// A persistence is a sum of lengths over a length: closer to 0 or 1 it is that.
 constexpr double rounding = 1e-9;
+constexpr double stiffest = 10; // of a zone's stiffness
 
 template <class Named>
 const Named& by_name(const std::vector<Named>& all, const std::string& name, const std::string& kind)
@@ -48,74 +54,299 @@ std::string set_name(const Network& network, std::size_t edge)
     return network.names.joint_set[network.joints.set[network.blocks.edge_joint[edge]]];
 }
 
-Strength bridge_strength(const Scene& scene, const Network& network, std::size_t edge)
+// The rocks on an edge's sides.
+std::vector<const Rock*> rocks_beside(const Scene& scene, const Network& network, std::size_t edge)
+{
+    std::vector<const Rock*> rocks;
+    for (const Index block : network.blocks.edge_block[edge])
+        if (block >= 0)
+            rocks.push_back(
+                &by_name(scene.rocks, network.names.rock[network.blocks.block_rock[block]], "rock"));
+    if (rocks.empty())
+        throw input_error(place_of(network.blocks, edge) + " is a joint but has no block on either side");
+    return rocks;
+}
+
+Strength bridge_strength(const Scene& scene, const Network& network, std::size_t edge, double persistence)
 {
     std::optional<Strength> weakest;
-    for (const Index block : network.blocks.edge_block[edge]) {
-        if (block < 0)
-            continue;
-        const Rock& rock = by_name(scene.rocks, network.names.rock[network.blocks.block_rock[block]], "rock");
+    for (const Rock* const beside : rocks_beside(scene, network, edge)) {
+        const Rock& rock = *beside;
         if (!rock.strength)
-            throw input_error(
-                "rock \"" + rock.name + "\" has no strength, but joint set \"" + set_name(network, edge) +
-                "\" leaves bridges of it: " + shown(1 - network.blocks.edge_joint_fraction[edge]) + " of " +
-                place_of(network.blocks, edge) +
-                "; it needs a cohesion, a friction angle and a tensile strength");
+            throw input_error("rock \"" + rock.name + "\" has no strength, but joint set \"" +
+                              set_name(network, edge) + "\" leaves bridges of it: " + shown(1 - persistence) +
+                              " of " + place_of(network.blocks, edge) +
+                              "; it needs a cohesion, a friction angle and a tensile strength");
         const Strength strength{rock.strength->cohesion, rock.strength->friction_angle,
                                 rock.strength->tensile_strength};
         weakest = weakest ? weaker(*weakest, strength) : strength;
     }
-    if (!weakest)
-        throw input_error(place_of(network.blocks, edge) + " is a joint but has no block on either side");
     return *weakest;
 }
 
-Strength edge_strength(const Scene& scene, const Network& network, std::size_t edge,
-                       const JointMaterial& material)
+// What averages of an edge are taken with.
+struct Share {
+    double persistence;  // [-]
+    double trace_length; // mean by length; 0 without traces [m]
+    double spacing;      // of the set's lines [m]
+};
+
+double edge_length(const Blocks& blocks, std::size_t edge)
 {
-    const double fraction = network.blocks.edge_joint_fraction[edge];
-    if (!(fraction >= 0 && fraction <= 1 + rounding))
-        throw input_error("edge_joint_fraction is " + shown(fraction) + " on " +
-                          place_of(network.blocks, edge) + "; it must be from 0 to 1");
-    if (fraction >= 1 - rounding)
-        return strength_of(material);
-    return average(strength_of(material), bridge_strength(scene, network, edge), fraction);
+    return (blocks.vertex[blocks.edge_vertex[edge][0]] - blocks.vertex[blocks.edge_vertex[edge][1]]).norm();
 }
+
+double area_of(const Polygon& polygon)
+{
+    double twice = 0;
+    for (std::size_t i = 0, j = polygon.empty() ? 0 : polygon.size() - 1; i < polygon.size(); j = i++) {
+        const Eigen::Vector2d a = polygon[j] - polygon[0], b = polygon[i] - polygon[0];
+        twice += a.x() * b.y() - a.y() * b.x();
+    }
+    return std::abs(twice) / 2;
+}
+
+// Sums over the lines of a set, and what averages over lines and sets are taken with.
+class Lines
+{
+public:
+    Lines(const Scene& scene, const Network& network, const Pieces& pieces)
+        : over_(scene.averaging.over), network_(network), of_line_(network.joints.set.size()),
+          of_set_(network.names.joint_set.size()), area_(of_set_.size())
+    {
+        for (std::size_t piece = 0; piece < pieces.joint.size(); ++piece) {
+            const Index joint = pieces.joint[piece];
+            for (Sums* const sums : {&of_line_[joint], &of_set_[network.joints.set[joint]]}) {
+                sums->line += pieces.length[piece];
+                if (pieces.is_bridge[piece] == 0) {
+                    sums->traces += pieces.length[piece];
+                    sums->squares += pieces.length[piece] * pieces.length[piece];
+                }
+            }
+        }
+        for (std::size_t set = 0; set < of_set_.size(); ++set) {
+            const auto found =
+                std::find_if(scene.joint_sets.begin(), scene.joint_sets.end(),
+                             [&](const JointSet& one) { return one.name == network.names.joint_set[set]; });
+            const bool has_region = found != scene.joint_sets.end() && found->region;
+            area_[set] = area_of(has_region ? *found->region : scene.outline);
+        }
+    }
+
+    double length(std::size_t set) const { return of_set_[set].line; }
+    double persistence(std::size_t set) const { return of_set_[set].persistence(); }
+
+    Share share(std::size_t edge) const
+    {
+        const Index joint = network_.blocks.edge_joint[edge], set = network_.joints.set[joint];
+        const Sums &line = of_line_[joint], &all = of_set_[set];
+        const double spacing = all.line > 0 ? area_[set] / all.line : 0.0;
+        switch (over_) {
+        case AverageOver::edge:
+            break;
+        case AverageOver::line:
+            return {line.persistence(), line.trace_length(), spacing};
+        case AverageOver::set:
+            return {all.persistence(), all.trace_length(), spacing};
+        }
+        const double fraction = network_.blocks.edge_joint_fraction[edge];
+        if (!(fraction >= 0 && fraction <= 1 + rounding))
+            throw input_error("edge_joint_fraction is " + shown(fraction) + " on " +
+                              place_of(network_.blocks, edge) + "; it must be from 0 to 1");
+        return {std::min(1.0, fraction), all.trace_length(), spacing};
+    }
+
+private:
+    struct Sums {
+        double line = 0, traces = 0, squares = 0; // lengths [m], [m], and their squares [m2]
+
+        double persistence() const { return line > 0 ? std::min(1.0, traces / line) : 0.0; }
+        double trace_length() const { return traces > 0 ? squares / traces : 0.0; }
+    };
+
+    AverageOver over_;
+    const Network& network_;
+    std::vector<Sums> of_line_, of_set_;
+    std::vector<double> area_; // where a set may be [m2]
+};
+
+// The springs of edges: a rule's answers, each found once.
+class Stiffnesses
+{
+public:
+    Stiffnesses(const Scene& scene, const Network& network) : scene_(scene), network_(network) {}
+
+    struct Found {
+        std::array<JointChain, 2> chain; // normal, shear
+        bool is_limited = false;
+    };
+
+    Found of(std::size_t edge, const JointMaterial& material, const Share& share)
+    {
+        Found found{{chain_of(material, Direction::normal), chain_of(material, Direction::shear)}};
+        const StiffnessRule rule = scene_.averaging.stiffness;
+        if (rule == StiffnessRule::joint || share.persistence >= 1 - rounding)
+            return found;
+        double compliance = 0, zone = 0;
+        const std::vector<const Rock*> rocks = rocks_beside(scene_, network_, edge);
+        for (const Rock* const rock : rocks) {
+            const double E = rock->youngs_modulus, nu = rock->poissons_ratio;
+            compliance += (1 - nu * nu) / E / static_cast<double>(rocks.size());
+            zone = std::max(zone, E * (1 - nu) / ((1 + nu) * (1 - 2 * nu)) / scene_.zone_size);
+        }
+        for (const Direction direction : {Direction::normal, Direction::shear}) {
+            JointChain& chain = found.chain[direction == Direction::normal ? 0 : 1];
+            const double limit = std::max(stiffest * zone, chain.spring);
+            if (share.persistence > rounding && share.trace_length > 0) {
+                chain = bridged(
+                    chain, bridging_of({share.persistence, share.trace_length, share.spacing, 1 / compliance},
+                                       chain.spring, direction));
+            } else {
+                chain = {std::numeric_limits<double>::infinity(), {}, 0};
+            }
+            if (chain.spring > limit) {
+                chain.spring = limit;
+                found.is_limited = true;
+            }
+        }
+        return found;
+    }
+
+private:
+    static JointChain chain_of(const JointMaterial& material, Direction direction)
+    {
+        const bool normal = direction == Direction::normal;
+        JointChain chain{normal ? material.normal_stiffness : material.shear_stiffness, {}, 0};
+        for (const Kelvin& unit : material.kelvin)
+            chain.units.push_back({normal ? unit.normal_stiffness : unit.shear_stiffness,
+                                   normal ? unit.normal_viscosity : unit.shear_viscosity});
+        if (material.maxwell)
+            chain.maxwell_viscosity =
+                normal ? material.maxwell->normal_viscosity : material.maxwell->shear_viscosity;
+        return chain;
+    }
+
+    Bridging bridging_of(const BridgedLine& line, double stiffness, Direction direction)
+    {
+        const auto [known, is_new] = known_.try_emplace(
+            {line.persistence, line.trace_length, line.spacing, line.plane_modulus, stiffness, direction});
+        if (is_new)
+            known->second = bridging(scene_.averaging.stiffness, line, stiffness, direction);
+        return known->second;
+    }
+
+    const Scene& scene_;
+    const Network& network_;
+    std::map<std::tuple<double, double, double, double, double, Direction>, Bridging> known_;
+};
 
 EquivalentJoints without_joints(std::size_t edges, std::size_t kelvin_units)
 {
     const std::vector<double> none(edges, 0.0), no_units(edges * kelvin_units, 0.0);
-    return {none, none, none, none, none, no_units, no_units, no_units, no_units, none, none};
+    return {none, none, none, none, none, no_units, no_units, no_units, no_units, none, none, none, {}, {}};
 }
 
+// Rock bridges make a Kelvin unit of a Maxwell dashpot.
 std::size_t most_kelvin_units(const Scene& scene)
 {
     std::size_t most = 0;
     for (const JointMaterial& material : scene.joint_materials)
-        most = std::max(most, material.kelvin.size());
+        most = std::max(most,
+                        material.kelvin.size() +
+                            (material.maxwell && scene.averaging.stiffness != StiffnessRule::joint ? 1 : 0));
     return most;
 }
 
-void set_joint(EquivalentJoints& joints, std::size_t edge, const JointMaterial& material,
-               const Strength& strength)
+void set_joint(EquivalentJoints& joints, std::size_t edge, const Stiffnesses::Found& found,
+               const Strength& strength, double persistence)
 {
-    joints.normal_stiffness[edge] = material.normal_stiffness;
-    joints.shear_stiffness[edge] = material.shear_stiffness;
+    const JointChain &normal = found.chain[0], &shear = found.chain[1];
+    joints.normal_stiffness[edge] = normal.spring;
+    joints.shear_stiffness[edge] = shear.spring;
     joints.cohesion[edge] = strength.cohesion;
     joints.friction_angle[edge] = strength.friction_angle;
     joints.tensile_strength[edge] = strength.tensile_strength;
-    std::size_t row = edge * joints.kelvin_units();
-    for (const Kelvin& unit : material.kelvin) {
-        joints.normal_kelvin_stiffness[row] = unit.normal_stiffness;
-        joints.shear_kelvin_stiffness[row] = unit.shear_stiffness;
-        joints.normal_kelvin_viscosity[row] = unit.normal_viscosity;
-        joints.shear_kelvin_viscosity[row] = unit.shear_viscosity;
-        ++row;
+    joints.persistence[edge] = persistence;
+    const std::size_t row = edge * joints.kelvin_units();
+    for (std::size_t unit = 0; unit < normal.units.size(); ++unit) {
+        joints.normal_kelvin_stiffness[row + unit] = normal.units[unit].stiffness;
+        joints.normal_kelvin_viscosity[row + unit] = normal.units[unit].viscosity;
     }
-    if (material.maxwell) {
-        joints.normal_maxwell_viscosity[edge] = material.maxwell->normal_viscosity;
-        joints.shear_maxwell_viscosity[edge] = material.maxwell->shear_viscosity;
+    for (std::size_t unit = 0; unit < shear.units.size(); ++unit) {
+        joints.shear_kelvin_stiffness[row + unit] = shear.units[unit].stiffness;
+        joints.shear_kelvin_viscosity[row + unit] = shear.units[unit].viscosity;
     }
+    joints.normal_maxwell_viscosity[edge] = normal.maxwell_viscosity;
+    joints.shear_maxwell_viscosity[edge] = shear.maxwell_viscosity;
+}
+
+// Sums of strengths times lengths.
+struct StrengthSum {
+    double length = 0, cohesion = 0, tan_phi = 0, tensile_strength = 0;
+
+    void add(double l, const Strength& strength)
+    {
+        length += l;
+        cohesion += l * strength.cohesion;
+        tan_phi += l * std::tan(strength.friction_angle);
+        tensile_strength += l * strength.tensile_strength;
+    }
+    Strength mean() const
+    {
+        if (length == 0)
+            return {0, 0, 0};
+        return {cohesion / length, std::atan(tan_phi / length), tensile_strength / length};
+    }
+};
+
+// What the edges of a set add up to.
+struct SetSum {
+    StrengthSum joint, bridge, equivalent;
+    double joint_length = 0, limited = 0;                   // [m]
+    Eigen::Vector2d stiffness{0, 0}, joint_stiffness{0, 0}; // {normal, shear}, times length [Pa]
+};
+
+SetAverages averages_of(const Scene& scene, const Network& network, const Pieces& pieces, const Lines& lines,
+                        const std::vector<SetSum>& sums)
+{
+    SetAverages sets;
+    for (std::size_t set = 0; set < sums.size(); ++set) {
+        const auto found =
+            std::find_if(scene.joint_sets.begin(), scene.joint_sets.end(),
+                         [&](const JointSet& one) { return one.name == network.names.joint_set[set]; });
+        const bool is_set = found != scene.joint_sets.end();
+        const double target = is_set ? found->persistence : 1.0;
+        std::vector<double> line_length;
+        for (std::size_t joint = 0; joint < network.joints.set.size(); ++joint)
+            if (network.joints.set[joint] == static_cast<Index>(set))
+                line_length.push_back(pieces.line_length[joint]);
+        sets.target_persistence.push_back(target);
+        sets.line_persistence.push_back(lines.persistence(set));
+        sets.persistence_error.push_back(is_set && found->length && target > 0 && target < 1
+                                             ? persistence_error(*found->length, target, line_length)
+                                             : 0.0);
+        const SetSum& sum = sums[set];
+        const double length = sum.joint.length, per_length = length > 0 ? 1 / length : 0.0;
+        sets.edge_persistence.push_back(std::min(1.0, sum.joint_length * per_length));
+        sets.line_length.push_back(lines.length(set));
+        sets.edge_length.push_back(length);
+
+        const auto add = [](const Strength& strength, auto& cohesion, auto& friction_angle, auto& tension) {
+            cohesion.push_back(strength.cohesion);
+            friction_angle.push_back(strength.friction_angle);
+            tension.push_back(strength.tensile_strength);
+        };
+        add(sum.joint.mean(), sets.joint_cohesion, sets.joint_friction_angle, sets.joint_tensile_strength);
+        add(sum.bridge.mean(), sets.bridge_cohesion, sets.bridge_friction_angle,
+            sets.bridge_tensile_strength);
+        add(sum.equivalent.mean(), sets.cohesion, sets.friction_angle, sets.tensile_strength);
+        sets.joint_normal_stiffness.push_back(sum.joint_stiffness.x() * per_length);
+        sets.joint_shear_stiffness.push_back(sum.joint_stiffness.y() * per_length);
+        sets.normal_stiffness.push_back(sum.stiffness.x() * per_length);
+        sets.shear_stiffness.push_back(sum.stiffness.y() * per_length);
+        sets.limited_length.push_back(sum.limited);
+    }
+    return sets;
 }
 
 } // namespace
@@ -132,21 +363,44 @@ EquivalentJoints average_strength(const Scene& scene, const Network& network)
 {
     const Blocks& blocks = network.blocks;
     EquivalentJoints joints = without_joints(blocks.edge_kind.size(), most_kelvin_units(scene));
+    joints.pieces = pieces_of(network.joints, scene.outline);
+    const Lines lines(scene, network, joints.pieces);
+    Stiffnesses stiffnesses(scene, network);
+    std::vector<SetSum> sums(network.names.joint_set.size());
     for (std::size_t edge = 0; edge < blocks.edge_kind.size(); ++edge) {
         if (blocks.edge_kind[edge] == static_cast<Index>(EdgeKind::joint)) {
-            const Index row = network.joints.material[blocks.edge_joint[edge]];
+            const Index joint = blocks.edge_joint[edge];
             const JointMaterial& material =
-                by_name(scene.joint_materials, network.names.joint_material[row], "joint material");
-            set_joint(joints, edge, material, edge_strength(scene, network, edge, material));
+                by_name(scene.joint_materials, network.names.joint_material[network.joints.material[joint]],
+                        "joint material");
+            const Share share = lines.share(edge);
+            const double length = edge_length(blocks, edge);
+            SetSum& sum = sums[network.joints.set[joint]];
+            Strength strength = strength_of(material);
+            sum.joint.add(length, strength);
+            if (share.persistence < 1 - rounding) {
+                const Strength rock = bridge_strength(scene, network, edge, share.persistence);
+                sum.bridge.add(length, rock);
+                strength = average(strength, rock, share.persistence);
+            }
+            sum.equivalent.add(length, strength);
+            const Stiffnesses::Found found = stiffnesses.of(edge, material, share);
+            sum.joint_length += length * blocks.edge_joint_fraction[edge];
+            sum.joint_stiffness +=
+                length * Eigen::Vector2d(material.normal_stiffness, material.shear_stiffness);
+            sum.stiffness += length * Eigen::Vector2d(found.chain[0].spring, found.chain[1].spring);
+            sum.limited += found.is_limited ? length : 0.0;
+            set_joint(joints, edge, found, strength, share.persistence);
         } else if (blocks.edge_kind[edge] == static_cast<Index>(EdgeKind::boundary) &&
                    blocks.edge_boundary[edge] >= 0) {
             const std::string& name = scene.boundaries[blocks.edge_boundary[edge]].joint;
             if (name.empty())
                 continue;
             const JointMaterial& material = by_name(scene.joint_materials, name, "joint material");
-            set_joint(joints, edge, material, strength_of(material));
+            set_joint(joints, edge, stiffnesses.of(edge, material, {1, 0, 0}), strength_of(material), 1);
         }
     }
+    joints.sets = averages_of(scene, network, joints.pieces, lines, sums);
     return joints;
 }
 

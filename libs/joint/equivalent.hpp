@@ -20,10 +20,18 @@ struct Strength {
 //     c = k c_j + (1 - k) c_r,   tan(phi) = k tan(phi_j) + (1 - k) tan(phi_r),   T = k T_j + (1 - k) T_r
 Strength average(const Strength& joint, const Strength& rock, double persistence);
 
-// The equivalent joint of every edge, by that edge's own joint fraction. The rock is the weaker of the two on
-// its sides, in cohesion, friction angle and tensile strength each by itself. Stiffnesses and the constants
-// of creep are the joint's own. A boundary edge that rests on a joint has that joint's material whole.
-// Throws input_error where bridges run through rock without strength, or names are not in the scene.
+// The equivalent joint of every edge, with the joint fraction of that edge, or the persistence of its line or
+// of its set inside the section, as the scene's averaging says. The rock is the weaker of the two on the
+// edge's sides, in cohesion, friction angle and tensile strength each by itself. Stiffnesses and the
+// constants of creep are the joint's own, or by another rule those of libs/joint/bridged.hpp, for
+//     the trace length    sum of L^2 / sum of L over the traces of the line (with averages over lines), or of
+//     the set the spacing         the area where the set may be / length of its lines the rock 1/E' the mean
+//     of the rocks' on the edge's sides
+// A stiffness is at most ten times that of a zone beside the edge, E (1 - nu) / ((1 + nu) (1 - 2 nu)) over
+// the zone size, or the joint's own: rock bridges alone would be infinitely stiff. An edge that is all joint
+// has the joint's stiffness whatever the rule, and so has a boundary edge that rests on a joint, with its
+// strength too. Throws input_error where bridges run through rock without strength, or names are not in the
+// scene.
 EquivalentJoints average_strength(const Scene& scene, const Network& network);
 
 } // namespace jointcreep

@@ -88,6 +88,37 @@ struct Network {
     Blocks blocks;
 };
 
+// What lies along the joints inside the section: traces and rock bridges. Made by strength-averaging.
+struct Pieces {
+    std::vector<Index> joint;              // into Joints, in their order, and from `from` to `to` along each
+    std::vector<Index> is_bridge;          // 1 rock bridge, 0 joint trace
+    std::vector<Eigen::Vector2d> from, to; // [m]
+    std::vector<double> length;            // [m]
+
+    std::vector<Index> bridge; // the rock bridges among the pieces
+
+    // Of each joint's line, inside the section; 0 where it does not meet it.
+    std::vector<double> line_length;      // [m]
+    std::vector<double> line_persistence; // [-]
+};
+
+// The averages of each joint set; rows are Names::joint_set. Strengths and stiffnesses are means over the
+// length of the set's edges, 0 where it has none. Made by strength-averaging.
+struct SetAverages {
+    std::vector<double> target_persistence;       // as the scene has it; 1 for single joints [-]
+    std::vector<double> line_persistence;         // on all lines inside the section [-]
+    std::vector<double> persistence_error;        // standard error that it is expected to have [-]
+    std::vector<double> edge_persistence;         // on the edges of blocks [-]
+    std::vector<double> line_length, edge_length; // [m]
+
+    std::vector<double> joint_cohesion, joint_friction_angle, joint_tensile_strength;    // [Pa], [rad], [Pa]
+    std::vector<double> bridge_cohesion, bridge_friction_angle, bridge_tensile_strength; // 0 without bridges
+    std::vector<double> cohesion, friction_angle, tensile_strength;                      // of the averages
+    std::vector<double> joint_normal_stiffness, joint_shear_stiffness;                   // [Pa/m]
+    std::vector<double> normal_stiffness, shear_stiffness; // of the averages [Pa/m]
+    std::vector<double> limited_length; // of edges that are stiffer than zones can tell [m]
+};
+
 // The equivalent continuous joint of every joint edge, and of every boundary edge that rests on a joint;
 // rows are edges, and on all other edges every value is 0. Made by strength-averaging.
 struct EquivalentJoints {
@@ -101,7 +132,12 @@ struct EquivalentJoints {
     // Maxwell dashpot in series; 0 is none.
     std::vector<double> normal_maxwell_viscosity, shear_maxwell_viscosity; // [Pa s/m]
 
-    // As many as the material with the longest chain has.
+    // What was averaged, and with which persistence; 0 without joint [-].
+    std::vector<double> persistence{};
+    Pieces pieces{};
+    SetAverages sets{};
+
+    // As many as the longest chain has.
     std::size_t kelvin_units() const
     {
         return normal_stiffness.empty() ? 0 : normal_kelvin_stiffness.size() / normal_stiffness.size();

@@ -198,6 +198,18 @@ struct Equilibrium {
     std::int32_t most_steps = 0; // without equilibrium after so many, the program gives up
 };
 
+// Over what the joint fraction is taken that strengths and stiffnesses are averaged with.
+enum class AverageOver { edge, line, set };
+
+// Springs and Kelvin constants of a joint with rock bridges (libs/joint/bridged.hpp).
+enum class StiffnessRule { joint, lower_bound, upper_bound, staggered };
+
+// How joints and rock bridges become equivalent joints.
+struct Averaging {
+    AverageOver over = AverageOver::edge;
+    StiffnessRule stiffness = StiffnessRule::joint;
+};
+
 struct Cutting {
     double shortest_edge = 0;  // vertices closer than this, or than half of it to an edge, are merged [m]
     double smallest_angle = 0; // narrower wedges between edges are closed where that moves nothing far [rad]
@@ -228,6 +240,7 @@ struct Scene {
     std::optional<Creep> creep;
     double zone_size = 0; // longest zone side aimed at [m]
     Cutting cutting;
+    Averaging averaging;
     Equilibrium equilibrium;
 };
 

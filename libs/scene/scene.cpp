@@ -115,6 +115,7 @@ Scene parse_scene(std::string_view text, const std::string& name)
     read_once(tables.zones, root, reading, scene);
     scene.cutting.shortest_edge = usual_shortest_edge * scene.zone_size;
     read_once(tables.cutting, root, reading, scene.cutting);
+    read_once(tables.averaging, root, reading, scene.averaging);
     scene.equilibrium.local_damping = usual_local_damping;
     read_once(tables.equilibrium, root, reading, scene.equilibrium);
     read_once(tables.random, root, reading, scene);

@@ -567,6 +567,28 @@ Table<Cutting> cutting()
              .or_else(std::int64_t{1})}};
 }
 
+Table<Averaging> averaging()
+{
+    return {
+        {"averaging", once, optional, "How joints and their rock bridges become equivalent joints."},
+        {choice("over", &Averaging::over,
+                {{"edge", AverageOver::edge}, {"line", AverageOver::line}, {"set", AverageOver::set}},
+                "Over what joint and bridges are averaged: each edge between two blocks, each joint's whole "
+                "line, "
+                "or all lines of a set.")
+             .or_else(std::string("edge")),
+         choice(
+             "stiffness", &Averaging::stiffness,
+             {{"joint", StiffnessRule::joint},
+              {"lower bound", StiffnessRule::lower_bound},
+              {"upper bound", StiffnessRule::upper_bound},
+              {"staggered", StiffnessRule::staggered}},
+             "Springs and Kelvin constants: the joint's own, as if its bridges gave way like it; bounds for "
+             "joint traces that rock bridges hold together; or those of such lines beside each other, with "
+             "their traces staggered.")
+             .or_else(std::string("joint"))}};
+}
+
 Table<Equilibrium> equilibrium()
 {
     using E = Equilibrium;
@@ -642,6 +664,7 @@ SceneTables all_tables()
     all.creep = creep();
     all.zones = zones();
     all.cutting = cutting();
+    all.averaging = averaging();
     all.equilibrium = equilibrium();
     all.random = random_numbers();
     return all;

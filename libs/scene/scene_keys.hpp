@@ -42,6 +42,7 @@ struct SceneTables {
     Table<Creep> creep;
     Table<Scene> zones;
     Table<Cutting> cutting;
+    Table<Averaging> averaging;
     Table<Equilibrium> equilibrium;
     Table<Scene> random;
 
@@ -53,7 +54,7 @@ struct SceneTables {
         visit(kelvin_chain), visit(joint), visit(joint_set), visit(trace_angle), visit(dip),
             visit(dip_direction), visit(orientation), visit(spacing), visit(length);
         visit(in_situ_stress), visit(boundary), visit(schedule), visit(stage), visit(point), visit(gauge);
-        visit(creep), visit(zones), visit(cutting), visit(equilibrium), visit(random);
+        visit(creep), visit(zones), visit(cutting), visit(averaging), visit(equilibrium), visit(random);
     }
 };
 

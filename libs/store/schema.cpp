@@ -279,11 +279,82 @@ std::vector<Field> fields_of(Network& network)
     return fields;
 }
 
+namespace
+{
+
+std::vector<Field> fields_of(Pieces& pieces)
+{
+    // clang-format off
+    return {
+        {"/pieces/joint", &pieces.joint, {"piece"}, "1", index_of("joint"),
+         "Joint that the piece lies on; pieces are in the order of joints, and along each from its one end."},
+        {"/pieces/is_bridge", &pieces.is_bridge, {"piece"}, "1", between(0, 1),
+         "1 rock bridge, 0 joint trace."},
+        {"/pieces/from", &pieces.from, {"piece"}, "m", any(),
+         "One end of the piece, inside the section {x, y}."},
+        {"/pieces/to", &pieces.to, {"piece"}, "m", any(), "The other end {x, y}."},
+        {"/pieces/length", &pieces.length, {"piece"}, "m", positive(), "Its length."},
+        {"/bridges/piece", &pieces.bridge, {"bridge"}, "1", index_of("piece"),
+         "The rock bridges among the pieces."},
+        {"/lines/length", &pieces.line_length, {"joint"}, "m", at_least(0),
+         "Length of the joint's line inside the section."},
+        {"/lines/persistence", &pieces.line_persistence, {"joint"}, "1", between(0, 1),
+         "Fraction of it that is joint."},
+    };
+    // clang-format on
+}
+
+std::vector<Field> fields_of(SetAverages& sets)
+{
+    const std::vector<std::string> set = {"joint_set"};
+    const Limits fraction = between(0, 1), angle = between(0, std::numbers::pi / 2), natural = at_least(0);
+    // clang-format off
+    return {
+        {"/sets/target_persistence", &sets.target_persistence, set, "1", fraction,
+         "Persistence that the scene asks for; 1 for a single joint."},
+        {"/sets/line_persistence", &sets.line_persistence, set, "1", fraction,
+         "Fraction of the set's lines inside the section that is joint."},
+        {"/sets/persistence_error", &sets.persistence_error, set, "1", natural,
+         "Standard error that it is expected to have, by the laws of traces and bridges."},
+        {"/sets/edge_persistence", &sets.edge_persistence, set, "1", fraction,
+         "Fraction of the set's edges that is joint."},
+        {"/sets/line_length", &sets.line_length, set, "m", natural,
+         "Length of the set's lines inside the section."},
+        {"/sets/edge_length", &sets.edge_length, set, "m", natural,
+         "Length of the set's edges. Strengths and stiffnesses are means over it."},
+        {"/sets/joint_cohesion", &sets.joint_cohesion, set, "Pa", natural, "Cohesion of the joint."},
+        {"/sets/joint_friction_angle", &sets.joint_friction_angle, set, "rad", angle, "Its friction angle."},
+        {"/sets/joint_tensile_strength", &sets.joint_tensile_strength, set, "Pa", natural,
+         "Its tensile strength."},
+        {"/sets/bridge_cohesion", &sets.bridge_cohesion, set, "Pa", natural,
+         "Cohesion of the rock bridges; 0, as the next two, where there are none."},
+        {"/sets/bridge_friction_angle", &sets.bridge_friction_angle, set, "rad", angle,
+         "Their friction angle."},
+        {"/sets/bridge_tensile_strength", &sets.bridge_tensile_strength, set, "Pa", natural,
+         "Their tensile strength."},
+        {"/sets/cohesion", &sets.cohesion, set, "Pa", natural, "Cohesion of the equivalent joints."},
+        {"/sets/friction_angle", &sets.friction_angle, set, "rad", angle, "Their friction angle."},
+        {"/sets/tensile_strength", &sets.tensile_strength, set, "Pa", natural, "Their tensile strength."},
+        {"/sets/joint_normal_stiffness", &sets.joint_normal_stiffness, set, "Pa/m", natural,
+         "Normal stiffness of the joint."},
+        {"/sets/joint_shear_stiffness", &sets.joint_shear_stiffness, set, "Pa/m", natural,
+         "Its shear stiffness."},
+        {"/sets/normal_stiffness", &sets.normal_stiffness, set, "Pa/m", natural,
+         "Normal stiffness of the equivalent joints."},
+        {"/sets/shear_stiffness", &sets.shear_stiffness, set, "Pa/m", natural, "Their shear stiffness."},
+        {"/sets/limited_length", &sets.limited_length, set, "m", natural,
+         "Length of edges whose stiffness was limited to ten times that of a zone."},
+    };
+    // clang-format on
+}
+
+} // namespace
+
 std::vector<Field> fields_of(EquivalentJoints& joints)
 {
     const std::vector<std::string> edge = {"edge"}, units = {"edge", "kelvin_unit"};
     // clang-format off
-    return {
+    std::vector<Field> fields = {
         {"/equivalent/normal_stiffness", &joints.normal_stiffness, edge, "Pa/m", at_least(0),
          "Normal stiffness of the equivalent joint."},
         {"/equivalent/shear_stiffness", &joints.shear_stiffness, edge, "Pa/m", at_least(0),
@@ -293,6 +364,8 @@ std::vector<Field> fields_of(EquivalentJoints& joints)
          "Friction angle."},
         {"/equivalent/tensile_strength", &joints.tensile_strength, edge, "Pa", at_least(0),
          "Tensile strength."},
+        {"/equivalent/persistence", &joints.persistence, edge, "1", between(0, 1),
+         "Persistence that joint and rock bridges were averaged with: of the edge, of its line or of its set."},
         {"/equivalent/normal_kelvin_stiffness", &joints.normal_kelvin_stiffness, units, "Pa/m", at_least(0),
          "Normal stiffness of the Kelvin unit; 0 if the joint has no such unit."},
         {"/equivalent/shear_kelvin_stiffness", &joints.shear_kelvin_stiffness, units, "Pa/m", at_least(0),
@@ -307,6 +380,9 @@ std::vector<Field> fields_of(EquivalentJoints& joints)
          "Shear viscosity of the Maxwell dashpot; 0 if there is none."},
     };
     // clang-format on
+    append(fields, fields_of(joints.pieces));
+    append(fields, fields_of(joints.sets));
+    return fields;
 }
 
 std::vector<Field> fields_of(Result& result)
@@ -406,6 +482,8 @@ const std::vector<Described>& dimensions()
         {"trace", "a joint trace: an open piece of a joint"},
         {"vertex", "a point where edges meet"},
         {"edge", "a straight piece of the cut between blocks"},
+        {"piece", "a joint trace or a rock bridge inside the section"},
+        {"bridge", "a rock bridge: rock between the traces of a joint"},
         {"kelvin_unit", "a Kelvin unit of a joint's chain, as many as the longest chain has"},
         {"block", "a face of the cut section"},
         {"ring", "a closed outline of a block, outer or hole"},

@@ -4,8 +4,11 @@
 #include "model/units.hpp"
 
 #include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <numbers>
 
 using namespace jointcreep;
 using namespace jointcreep::unit;
@@ -45,6 +48,77 @@ struct Section {
         blocks.block_rock = {0, 1};
     }
 };
+
+// Two level lines of a set through a square of 10 m, each cut into edges at the given places; the third edge
+// list is the persistence by edge. One rock above, one below each line.
+struct Lines {
+    Scene scene;
+    Network network;
+
+    struct Line {
+        std::vector<std::array<double, 2>> traces;
+        std::vector<double> cuts; // ascending, 0 and 10 among them
+    };
+
+    explicit Lines(const std::vector<Line>& lines)
+    {
+        scene.outline = {{0, 0}, {10, 0}, {10, 10}, {0, 10}};
+        scene.zone_size = 1;
+        scene.rocks = {{"rock", 2700, 30 * GPa, .2, RockStrength{2 * MPa, 50 * deg, 3 * MPa}},
+                       {"soft", 2700, 10 * GPa, .2, RockStrength{2 * MPa, 50 * deg, 3 * MPa}}};
+        scene.joint_materials = {
+            {"rough", 6.9e8, 2.8e8, .1 * MPa, 30 * deg, .05 * MPa, {Kelvin{1e9, 2e15, 3e8, 4e15}}}};
+        JointSet set;
+        set.name = "bedding";
+        set.persistence = .5;
+        set.length = Law{Law::Kind::constant, 2, 0};
+        scene.joint_sets = {set};
+        network.names = {{"rock", "soft"}, {"rough"}, {"bedding"}, {}};
+        Blocks& blocks = network.blocks;
+        blocks.block_rock = {0, 0};
+        for (std::size_t i = 0; i < lines.size(); ++i) {
+            const auto row = static_cast<Index>(i);
+            const double y = 3 + 2.0 * row;
+            network.joints.set.push_back(0);
+            network.joints.number.push_back(row);
+            network.joints.material.push_back(0);
+            network.joints.from.emplace_back(-1, y);
+            network.joints.to.emplace_back(11, y);
+            for (const auto& [from, to] : lines[i].traces) {
+                network.joints.trace_joint.push_back(row);
+                network.joints.trace_from.emplace_back(from, y);
+                network.joints.trace_to.emplace_back(to, y);
+            }
+            for (std::size_t c = 0; c + 1 < lines[i].cuts.size(); ++c) {
+                const double from = lines[i].cuts[c], to = lines[i].cuts[c + 1];
+                const auto vertex = static_cast<Index>(blocks.vertex.size());
+                blocks.vertex.emplace_back(from, y);
+                blocks.vertex.emplace_back(to, y);
+                blocks.edge_vertex.push_back({vertex, vertex + 1});
+                blocks.edge_block.push_back({0, 1});
+                blocks.edge_kind.push_back(1);
+                blocks.edge_joint.push_back(row);
+                blocks.edge_boundary.push_back(-1);
+                double open = 0;
+                for (const auto& [low, high] : lines[i].traces)
+                    open += std::max(0.0, std::min(high, to) - std::max(low, from));
+                blocks.edge_joint_fraction.push_back(std::min(1.0, open / (to - from)));
+            }
+        }
+    }
+
+    EquivalentJoints averaged(AverageOver over, StiffnessRule stiffness = StiffnessRule::joint)
+    {
+        scene.averaging = {over, stiffness};
+        return average_strength(scene, network);
+    }
+};
+
+// A first line of edges all joint, half, and all bridge; a second one with 3 m of joint in one edge.
+Lines two_lines()
+{
+    return Lines({{{{0, 4}, {6, 7}}, {0, 4, 8, 10}}, {{{5, 8}}, {0, 10}}});
+}
 
 std::string refusal(const Section& section)
 {
@@ -185,4 +259,147 @@ TEST(AverageStrength, RefusesWhatIsNotInTheScene)
     EXPECT_NE(refusal(section).find("joint material \"unknown\""), std::string::npos);
     for (const double fraction : {-.1, 1.1, std::nan("")})
         EXPECT_NE(refusal(Section(fraction)).find("edge_joint_fraction"), std::string::npos);
+}
+
+TEST(AverageStrength, TakesThePersistenceOfEdgeLineOrSet)
+{
+    Lines lines = two_lines();
+    EXPECT_EQ(lines.averaged(AverageOver::edge).persistence, (std::vector<double>{1, .25, 0, .3}));
+    const auto expect_near = [](const std::vector<double>& found, const std::vector<double>& wanted) {
+        ASSERT_EQ(found.size(), wanted.size());
+        for (std::size_t i = 0; i < wanted.size(); ++i)
+            EXPECT_NEAR(found[i], wanted[i], 1e-12) << i;
+    };
+    const EquivalentJoints by_line = lines.averaged(AverageOver::line);
+    expect_near(by_line.persistence, {.5, .5, .5, .3});
+    EXPECT_NEAR(by_line.cohesion[2], (.5 * .1 + .5 * 2) * MPa, 1e-6);
+    EXPECT_NEAR(by_line.tensile_strength[3], (.3 * .05 + .7 * 3) * MPa, 1e-6);
+    expect_near(lines.averaged(AverageOver::set).persistence, {.4, .4, .4, .4});
+}
+
+TEST(AverageStrength, ReportsASetBesideJointAndBridges)
+{
+    Lines lines = two_lines();
+    const SetAverages sets = lines.averaged(AverageOver::set, StiffnessRule::lower_bound).sets;
+    EXPECT_EQ(sets.target_persistence[0], .5);
+    EXPECT_NEAR(sets.line_persistence[0], .4, 1e-12);
+    EXPECT_NEAR(sets.edge_persistence[0], .4, 1e-12);
+    // Constant traces of 2 m, bridges of 2 m and such a deviation: 4 * 4 / (64 * 20).
+    EXPECT_NEAR(sets.persistence_error[0], std::sqrt(16. / (64 * 20)), 1e-12);
+    EXPECT_NEAR(sets.line_length[0], 20, 1e-9);
+    EXPECT_NEAR(sets.edge_length[0], 20, 1e-12);
+    EXPECT_NEAR(sets.joint_cohesion[0], .1 * MPa, 1e-6);
+    EXPECT_NEAR(sets.bridge_cohesion[0], 2 * MPa, 1e-6);
+    EXPECT_NEAR(sets.cohesion[0], (.4 * .1 + .6 * 2) * MPa, 1e-6);
+    EXPECT_NEAR(sets.bridge_friction_angle[0], 50 * deg, 1e-12);
+    EXPECT_NEAR(sets.tensile_strength[0], (.4 * .05 + .6 * 3) * MPa, 1e-6);
+    EXPECT_EQ(sets.limited_length[0], 0);
+    // L = (16 + 1 + 9) / 8, 2 b = L / .4: K_0 = pi E' / (4 2b ln sec(.2 pi)).
+    const double k_0 =
+        std::numbers::pi * 30 * GPa / .96 / (4 * 3.25 / .4 * -std::log(std::cos(.2 * std::numbers::pi)));
+    EXPECT_NEAR(sets.normal_stiffness[0], k_0 + 6.9e8 / .4, 1e-3 * MPa);
+    EXPECT_NEAR(sets.shear_stiffness[0], k_0 + 2.8e8 / .4, 1e-3 * MPa);
+    EXPECT_NEAR(sets.joint_normal_stiffness[0], 6.9e8, 1);
+}
+
+TEST(AverageStrength, TakesTheMeanComplianceOfTwoRocks)
+{
+    Lines lines = two_lines();
+    const double alike =
+        lines.averaged(AverageOver::set, StiffnessRule::lower_bound).normal_stiffness[0] - 6.9e8 / .4;
+    lines.network.blocks.block_rock = {0, 1}; // 30 and 10 GPa: 15 GPa
+    const double both =
+        lines.averaged(AverageOver::set, StiffnessRule::lower_bound).normal_stiffness[0] - 6.9e8 / .4;
+    EXPECT_NEAR(both / alike, .5, 1e-9);
+}
+
+TEST(AverageStrength, LimitsTheStiffnessOfBridgesToThatOfZones)
+{
+    Lines lines = two_lines();
+    for (const StiffnessRule rule :
+         {StiffnessRule::lower_bound, StiffnessRule::upper_bound, StiffnessRule::staggered}) {
+        const EquivalentJoints joints = lines.averaged(AverageOver::edge, rule);
+        const double limit = 10 * 30 * GPa * .8 / (1.2 * .6); // zones of 1 m
+        EXPECT_EQ(joints.normal_stiffness[0], 6.9e8);         // all joint
+        EXPECT_GT(joints.normal_stiffness[1], 6.9e8 / .25);
+        EXPECT_LT(joints.normal_stiffness[1], limit);
+        EXPECT_NEAR(joints.normal_stiffness[2], limit, 1); // all bridge
+        EXPECT_NEAR(joints.shear_stiffness[2], limit, 1);
+        EXPECT_EQ(joints.normal_kelvin_stiffness[2], 0);
+        EXPECT_NEAR(joints.sets.limited_length[0], 2, 1e-12);
+        EXPECT_EQ(joints.normal_kelvin_stiffness[0], 1e9);
+        EXPECT_GT(joints.normal_kelvin_stiffness[1], 1e10); // bridges hold the joint back
+        EXPECT_GT(joints.normal_kelvin_viscosity[1], 0);
+    }
+}
+
+TEST(AverageStrength, MakesAKelvinUnitOfABridgedMaxwellDashpot)
+{
+    Lines lines = two_lines();
+    lines.scene.joint_materials[0].maxwell = Maxwell{7e17, 8e17};
+    const EquivalentJoints joints = lines.averaged(AverageOver::edge, StiffnessRule::lower_bound);
+    ASSERT_EQ(joints.kelvin_units(), 2u);
+    EXPECT_EQ(joints.normal_maxwell_viscosity, (std::vector<double>{7e17, 0, 0, 0}));
+    EXPECT_EQ(joints.normal_kelvin_stiffness[1], 0); // of the edge that is all joint
+    EXPECT_GT(joints.normal_kelvin_stiffness[3], 0);
+}
+
+TEST(AverageStrength, NeedsTheRocksStrengthWhereTheLineHasBridges)
+{
+    Lines lines = two_lines();
+    for (Rock& rock : lines.scene.rocks)
+        rock.strength.reset();
+    try {
+        lines.averaged(AverageOver::line);
+        FAIL();
+    } catch (const input_error& error) {
+        for (const char* part : {"\"rock\"", "\"bedding\"", "0.5", "[0, 3] to [4, 3] m"})
+            EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
+    }
+}
+
+// However lines are cut into edges: edges average to their lines, and lines to their set.
+RC_GTEST_PROP(AverageStrength, OverEdgesLinesAndSetsAgreeInTheMean, ())
+{
+    const auto places = [] {
+        std::vector<double> all;
+        for (int i = *rc::gen::inRange(0, 8); i > 0; --i)
+            all.push_back(*rc::gen::inRange(1, 1000) / 100.0);
+        std::sort(all.begin(), all.end());
+        all.erase(std::unique(all.begin(), all.end()), all.end());
+        return all;
+    };
+    std::vector<Lines::Line> drawn;
+    for (int line = 0; line < 3; ++line) {
+        Lines::Line one{{}, places()};
+        one.cuts.insert(one.cuts.begin(), 0);
+        one.cuts.push_back(10);
+        const std::vector<double> ends = places();
+        for (std::size_t i = 0; i + 1 < ends.size(); i += 2)
+            one.traces.push_back({ends[i], ends[i + 1]});
+        drawn.push_back(one);
+    }
+    Lines lines(drawn);
+    const EquivalentJoints by_edge = lines.averaged(AverageOver::edge),
+                           by_line = lines.averaged(AverageOver::line),
+                           by_set = lines.averaged(AverageOver::set);
+    const Blocks& blocks = lines.network.blocks;
+    for (Index row = 0; row < 3; ++row) {
+        Eigen::Vector3d edges = Eigen::Vector3d::Zero(), line = edges;
+        for (std::size_t e = 0; e < blocks.edge_joint.size(); ++e)
+            if (blocks.edge_joint[e] == row) {
+                const double length = (blocks.vertex[2 * e + 1] - blocks.vertex[2 * e]).norm() / 10;
+                edges += length * Eigen::Vector3d(by_edge.cohesion[e], std::tan(by_edge.friction_angle[e]),
+                                                  by_edge.tensile_strength[e]);
+                line = {by_line.cohesion[e], std::tan(by_line.friction_angle[e]),
+                        by_line.tensile_strength[e]};
+            }
+        RC_ASSERT((edges - line).norm() < 1e-9 * line.norm());
+    }
+    for (const SetAverages* const sets : {&by_edge.sets, &by_line.sets}) {
+        RC_ASSERT(std::abs(sets->cohesion[0] - by_set.sets.cohesion[0]) < 1e-9 * by_set.sets.cohesion[0]);
+        RC_ASSERT(std::abs(sets->friction_angle[0] - by_set.sets.friction_angle[0]) < 1e-9);
+        RC_ASSERT(std::abs(sets->edge_persistence[0] - by_set.sets.line_persistence[0]) < 1e-9);
+    }
+    RC_ASSERT(std::abs(by_set.persistence[0] - by_set.sets.line_persistence[0]) < 1e-12);
 }

@@ -28,7 +28,7 @@ class Plots(ChainTest):
     def test_pictures(self):
         result = self.column()
         wanted = {
-            "section": ([],), "histories": ([], ["--closed-form", "column"], ["--readings"]),
+            "section": ([],), "strength": ([], ["--compression", "3"]), "histories": ([], ["--closed-form", "column"], ["--readings"]),
             "blocks": (["--by", "size"], ["--by", "set"], ["--by", "rock"], ["--by", "stage"]),
             "trace": ([], ["--point", "B"]),
             "state": (["--field", "displacement"], ["--field", "stress"], ["--field", "contacts"],

@@ -99,6 +99,8 @@ TEST(every_key, all_else)
     EXPECT_EQ(scene.equilibrium.engine, Engine::explicit_engine);
     EXPECT_EQ(scene.cutting.shortest_edge, 0.2);
     EXPECT_EQ(scene.cutting.smallest_angle, 3 * deg);
+    EXPECT_EQ(scene.averaging.over, AverageOver::line);
+    EXPECT_EQ(scene.averaging.stiffness, StiffnessRule::lower_bound);
     EXPECT_EQ(scene.equilibrium.tolerance, 1e-5);
     EXPECT_EQ(scene.equilibrium.unloading_increments, 2);
     EXPECT_EQ(scene.equilibrium.most_steps, 100000);
@@ -143,6 +145,8 @@ TEST(every_key, optional_tables_may_be_left_out)
     EXPECT_FALSE(scene.creep);
     EXPECT_TRUE(scene.stages.empty() && scene.points.empty() && scene.gauges.empty());
     EXPECT_EQ(scene.cutting.shortest_edge, 0.02 * 4);
+    EXPECT_EQ(scene.averaging.over, AverageOver::edge);
+    EXPECT_EQ(scene.averaging.stiffness, StiffnessRule::joint);
     EXPECT_EQ(scene.equilibrium.tolerance, 1e-6);
     EXPECT_EQ(scene.equilibrium.damping, Damping::adaptive);
     EXPECT_EQ(scene.equilibrium.masses, Masses::scaled);
