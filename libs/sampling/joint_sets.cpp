@@ -434,7 +434,7 @@ std::vector<std::size_t> sampling_order(const std::vector<JointSet>& sets)
         if (state[i] == State::done)
             return;
         if (state[i] == State::open)
-            throw input_error(quoted(sets[i]) + " ends, by terminates_at, at sets that end at it in turn");
+            throw input_error(quoted(sets[i]) + " ends, by terminates_at, at sets that end at it in turn: they go in a circle");
         state[i] = State::open;
         for (const std::string& name : sets[i].terminates_at)
             for (std::size_t j = 0; j < sets.size(); ++j)

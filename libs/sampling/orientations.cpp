@@ -71,7 +71,7 @@ struct Node {
 
 std::vector<Node> laid_out(const Law& law)
 {
-    const int steps = 400;
+    const int steps = 120;
     std::vector<Node> nodes;
     if (law.deviation == 0)
         return {{law.mean, 1}};
@@ -202,7 +202,6 @@ double Orientations::steepest() const
     return std::min(5 * scatter, steepest_trace);
 }
 
-// Its part across the section is right up to its sign, and not that of the lines' dip and dip direction.
 Vector3d Orientations::draw_pole(Stream& stream) const
 {
     if (set_.orientation)
@@ -244,7 +243,7 @@ Rose Orientations::rose() const
         for (std::size_t i = 0; i < pole_.size(); ++i)
             add(pole_[i], set_.poles[i].weight);
     } else if (set_.orientation) {
-        const int steps = 400, turns = 180;
+        const int steps = 150, turns = 72;
         const double kappa = set_.orientation->concentration;
         const double farthest = std::min(std::numbers::pi, 9 / std::sqrt(kappa));
         const Vector3d first = mean_pole_.unitOrthogonal(), second = mean_pole_.cross(first);

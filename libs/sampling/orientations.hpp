@@ -40,7 +40,7 @@ Eigen::Vector3d pole_of(double dip, double dip_direction, double azimuth);
 Eigen::Vector3d direction_of(const Scanline& scanline, const Scene& scene);
 
 // All the joints of a set by their unit normals, each with its share of the joint area. Laws other than the
-// bootstrap are laid out on a grid, close enough for means to 1e-4.
+// bootstrap are laid out on a grid, close enough for means to 1e-3.
 struct Rose {
     std::vector<Eigen::Vector3d> pole;
     std::vector<double> share; // sums to 1
