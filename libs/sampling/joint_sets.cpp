@@ -434,7 +434,8 @@ std::vector<std::size_t> sampling_order(const std::vector<JointSet>& sets)
         if (state[i] == State::done)
             return;
         if (state[i] == State::open)
-            throw input_error(quoted(sets[i]) + " ends, by terminates_at, at sets that end at it in turn: they go in a circle");
+            throw input_error(quoted(sets[i]) +
+                              " ends, by terminates_at, at sets that end at it in turn: they go in a circle");
         state[i] = State::open;
         for (const std::string& name : sets[i].terminates_at)
             for (std::size_t j = 0; j < sets.size(); ++j)
@@ -466,14 +467,14 @@ Joints sample_joints(const Scene& scene, std::uint64_t seed, std::int32_t realiz
         sample(first_mapped + i, scene.mapped[i]);
     for (const std::size_t i : sampling_order(scene.joint_sets)) {
         const JointSet& set = scene.joint_sets[i];
-        TraceIndex stops;
+        std::vector<const Joints*> stops;
         for (const std::string& name : set.terminates_at) {
             const auto found = std::find(names.joint_set.begin(), names.joint_set.end(), name);
             if (found == names.joint_set.end())
                 throw input_error(quoted(set) + " ends at \"" + name + "\", of which there is none");
-            stops.add(of_set[static_cast<std::size_t>(found - names.joint_set.begin())]);
+            stops.push_back(&of_set[static_cast<std::size_t>(found - names.joint_set.begin())]);
         }
-        sample(i, set, stops);
+        sample(i, set, TraceIndex(stops));
     }
     Joints joints;
     for (const Joints& more : of_set)
