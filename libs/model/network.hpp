@@ -3,6 +3,8 @@
 
 #pragma once
 
+#include "model/statistics.hpp"
+
 #include <Eigen/Core>
 
 #include <array>
@@ -12,8 +14,6 @@
 
 namespace jointcreep
 {
-
-using Index = std::int32_t;
 
 enum class EdgeKind : Index {
     boundary = 0, // on the section's outline: rock on one side only
@@ -39,6 +39,11 @@ struct Joints {
     std::vector<Index> number;   // within the set; with the set's name it identifies the joint for good
     std::vector<Index> material; // into Names::joint_material
     std::vector<Eigen::Vector2d> from, to; // ends of the line [m]
+
+    // Upward unit normal of the joint's plane: {x, y} in the section, z across it, at the azimuth plus 90
+    // degrees. Zero where only the trace angle was drawn [-].
+    std::vector<Eigen::Vector3d> pole;
+    std::vector<Eigen::Vector2d> point; // where the joint was placed, about which it turns [m]
 
     // The joint traces. What a line has between its traces is rock bridge.
     std::vector<Index> trace_joint;                    // the joint it lies on
@@ -86,6 +91,7 @@ struct Network {
     Names names;
     Joints joints;
     Blocks blocks;
+    Statistics statistics; // on request
 };
 
 // The equivalent continuous joint of every joint edge, and of every boundary edge that rests on a joint;

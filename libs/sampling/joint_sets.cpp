@@ -92,26 +92,31 @@ Vector2d mean_trace(const JointSet& set, const Scene& scene)
     return trace;
 }
 
-// Of a plane by the set's laws in space.
-Vector2d draw_section_normal(const JointSet& set, double azimuth, Stream& stream)
+// By the set's laws in space.
+Eigen::Vector3d draw_pole(const JointSet& set, double azimuth, Stream& stream)
 {
     if (set.orientation)
-        return draw_fisher(pole_of(mean_plane(set), azimuth), set.orientation->concentration, stream)
-            .head<2>();
+        return draw_fisher(pole_of(mean_plane(set), azimuth), set.orientation->concentration, stream);
     const double dip = draw(*set.dip, stream);
-    return section_normal(dip, draw(*set.dip_direction, stream), azimuth);
+    return pole_of({dip, draw(*set.dip_direction, stream)}, azimuth);
 }
 
-Vector2d draw_direction(const JointSet& set, const Scene& scene, Stream& stream)
+struct Drawn {
+    Vector2d direction;   // of the trace
+    Eigen::Vector3d pole; // upward; zero if the set has none
+};
+
+Drawn draw_direction(const JointSet& set, const Scene& scene, Stream& stream)
 {
     if (set.trace_angle)
-        return trace_of(draw(*set.trace_angle, stream));
+        return {trace_of(draw(*set.trace_angle, stream)), Eigen::Vector3d::Zero()};
     const double azimuth = azimuth_for(set, scene);
     const int most_tries = 10000;
     for (int i = 0; i < most_tries; ++i) {
-        const Vector2d trace = trace_of(draw_section_normal(set, azimuth, stream));
+        const Eigen::Vector3d pole = draw_pole(set, azimuth, stream);
+        const Vector2d trace = trace_of(pole.head<2>());
         if (trace.norm() >= least_section_normal)
-            return trace.normalized();
+            return {trace.normalized(), pole.y() < 0 ? -pole : pole};
     }
     throw input_error(quoted(set) + " has next to no joints that are not parallel to the section");
 }
@@ -264,7 +269,8 @@ void Sampler::add(const JointSet& set, Index index)
         Stream orientation(streams, number, Purpose::orientation),
             position(streams, number, Purpose::position);
         const double turning = window.low + uniform(position) * (window.high - window.low);
-        const Line line{place * across + turning * along, draw_direction(set, scene_, orientation)};
+        const Drawn drawn = draw_direction(set, scene_, orientation);
+        const Line line{place * across + turning * along, drawn.direction};
         const std::vector<Interval> joint_pieces = pieces(set, scene_.outline, line);
         if (joint_pieces.empty())
             return count_skipped(set);
@@ -277,6 +283,8 @@ void Sampler::add(const JointSet& set, Index index)
             const Interval& piece = joint_pieces[p];
             add_row(quoted(set), set.material, index, number + static_cast<Index>(p) * piece_step,
                     line.at(piece.low), line.at(piece.high));
+            joints.pole.push_back(drawn.pole);
+            joints.point.push_back(line.point);
             for (const Interval& trace : open) {
                 const double low = std::max(trace.low, piece.low), high = std::min(trace.high, piece.high);
                 if (low < high)
@@ -289,6 +297,8 @@ void Sampler::add(const JointSet& set, Index index)
 void Sampler::add(const SingleJoint& joint, Index index)
 {
     add_row("joint \"" + joint.name + "\"", joint.material, index, 0, joint.from, joint.to);
+    joints.pole.emplace_back(0, 0, 0);
+    joints.point.emplace_back((joint.from + joint.to) / 2);
     add_trace(joint.from, joint.to);
 }
 
