@@ -468,7 +468,8 @@ void add_spacing(Statistics& statistics, const JointSet& set, const MeanTrace& m
 
 // A sum over lines, as a density, or the ratio of two such sums: estimate and standard error. Judged by its
 // logarithm, whose error is more nearly normal.
-void add_ratio(Statistics& statistics, const std::string& subject, Row row, double error, std::size_t lines)
+void add_ratio(Statistics& statistics, const std::string& subject, Row row, double error, std::size_t lines,
+               std::optional<double> error_by_law = {})
 {
     row.is_judged = true;
     if (lines >= least_sample && row.achieved > 0 && error > 0 && row.target) {
@@ -476,7 +477,8 @@ void add_ratio(Statistics& statistics, const std::string& subject, Row row, doub
         const double relative = error / row.achieved;
         const double reach = relative * student_quantile((1 - confidence) / 2, degrees);
         row.interval = Range{row.achieved * std::exp(-reach), row.achieved * std::exp(reach)};
-        row.p_value = student_p(std::log(row.achieved / *row.target) / relative, degrees);
+        row.p_value = error_by_law ? normal_p((row.achieved - *row.target) / *error_by_law)
+                                   : student_p(std::log(row.achieved / *row.target) / relative, degrees);
     }
     add(statistics, subject, row);
 }
@@ -531,10 +533,16 @@ void add_lengths(Statistics& statistics, const JointSet& set, const Seen& seen)
         of_mean.achieved = 2 * open / ends;
     for (const Tally& line : seen.lines)
         squares += std::pow(line.open - of_mean.achieved * line.ends / 2, 2);
+    // Where lengths scatter much, they are judged by the law's own scatter, a variance for every trace: a
+    // sample that lacks the longest traces shows too little. (Where they do not, edges scatter as much.)
     const auto n = static_cast<double>(seen.lines.size());
+    const double scatter = positive_moments(*set.length).squared_variation;
+    std::optional<double> by_law;
+    if (scatter > 0.25 && ends > 0)
+        by_law = target * std::sqrt(2 * scatter / ends);
     add_ratio(statistics, set.name, of_mean,
               n > 1 && ends > 0 ? 2 * std::sqrt(squares * n / (n - 1)) / ends : 0,
-              std::min(seen.lines.size(), of_mean.sample_size));
+              std::min(seen.lines.size(), of_mean.sample_size), by_law);
 
     Row of_law{
         .quantity = "trace length, law", .unit = "1", .sample_size = seen.lengths.size(), .is_judged = true};

@@ -184,7 +184,8 @@ Statistics statistics_of(const Scene& scene, const Network& network)
     for (std::size_t set = 0; set < scene.joint_sets.size(); ++set)
         add_set(statistics, scene, network.joints, traces, static_cast<Index>(set));
     const std::optional<Expected> expected = expected_of(scene);
-    add_sizes(statistics, scene, network.blocks, expected);
+    if (!network.blocks.block_area.empty())
+        add_sizes(statistics, scene, network.blocks, expected);
     add_nodes(statistics, scene, network.joints, expected);
     judge(statistics);
     return statistics;

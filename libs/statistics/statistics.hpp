@@ -15,7 +15,7 @@
 namespace jointcreep::statistics
 {
 
-// `network.joints` and `network.blocks` must be there.
+// Without blocks there are no rows of them.
 Statistics statistics_of(const Scene& scene, const Network& network);
 
 // As a table to read, angles in degrees, and a last line with the verdict.

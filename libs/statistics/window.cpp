@@ -124,8 +124,8 @@ Circle Window::circle() const
     Vector2d centre((x.low + x.high) / 2, (y.low + y.high) / 2),
         reach = Vector2d(x.high - x.low, y.high - y.low) / 2;
     Circle best{centre, 0};
-    const int cells = 20;
-    for (int pass = 0; pass < 8; ++pass, reach /= 5, centre = best.centre)
+    const int cells = 8;
+    for (int pass = 0; pass < 8; ++pass, reach /= 3, centre = best.centre)
         for (int i = -cells; i <= cells; ++i)
             for (int j = -cells; j <= cells; ++j) {
                 const Vector2d place = centre + Vector2d(i * reach.x(), j * reach.y()) / cells;
