@@ -40,14 +40,14 @@ struct Joints {
     std::vector<Index> material; // into Names::joint_material
     std::vector<Eigen::Vector2d> from, to; // ends of the line [m]
 
-    // Upward unit normal of the joint's plane: {x, y} in the section, z across it, at the azimuth plus 90
-    // degrees. Zero where only the trace angle was drawn [-].
-    std::vector<Eigen::Vector3d> pole;
-    std::vector<Eigen::Vector2d> point; // where the joint was placed, about which it turns [m]
-
     // The joint traces. What a line has between its traces is rock bridge.
     std::vector<Index> trace_joint;                    // the joint it lies on
     std::vector<Eigen::Vector2d> trace_from, trace_to; // [m]
+
+    // Upward unit normal of the joint's plane: {x, y} in the section, z across it, at the azimuth plus 90
+    // degrees. Zero where only the trace angle was drawn [-].
+    std::vector<Eigen::Vector3d> pole{};
+    std::vector<Eigen::Vector2d> point{}; // where the joint was placed, about which it turns [m]
 };
 
 // What cutting had to change to keep edges and angles above the scene's limits.

@@ -575,6 +575,8 @@ void add_densities(Statistics& statistics, const Scene& scene, const JointSet& s
     const double p21 = k * mean.normal_part / positive_moments(set.spacing).mean * stretched;
     const double mean_length = set.length ? positive_moments(*set.length).mean : 0;
     const double area = window.area();
+    if (area <= 0)
+        return;
 
     double open = 0, ends = 0, open_variance = 0, ends_variance = 0;
     for (const Tally& line : seen.lines) {

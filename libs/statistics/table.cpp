@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <numbers>
 
@@ -14,6 +15,11 @@ namespace
 std::string number(double value, const std::string& unit)
 {
     std::array<char, 32> text{};
+    const bool is_count = unit == "1" && std::abs(value) < 1e15 && value == std::round(value);
+    if (is_count) {
+        std::snprintf(text.data(), text.size(), "%.0f", value);
+        return text.data();
+    }
     std::snprintf(text.data(), text.size(), "%.4g", unit == "rad" ? value * 180 / std::numbers::pi : value);
     return text.data();
 }
