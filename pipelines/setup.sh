@@ -6,7 +6,7 @@ cd "$(dirname "$0")/.."
 packages="
   g++ cmake ninja-build make git ca-certificates pkg-config
   libeigen3-dev libcgal-dev libboost-dev libboost-program-options-dev libhdf5-dev libssl-dev
-  libtomlplusplus-dev librandom123-dev libsuitesparse-dev libopenblas0-serial
+  libtomlplusplus-dev nlohmann-json3-dev librandom123-dev libsuitesparse-dev libopenblas0-serial
   googletest libgtest-dev librapidcheck-dev
   python3 python3-h5py python3-matplotlib python3-numpy"
 

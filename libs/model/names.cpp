@@ -15,6 +15,8 @@ Names names_of(const Scene& scene)
         names.joint_set.push_back(set.name);
     for (const SingleJoint& joint : scene.joints)
         names.joint_set.push_back(joint.name);
+    for (const MappedSet& mapped : scene.mapped)
+        names.joint_set.push_back(mapped.name);
     for (const Stage& stage : scene.stages)
         names.stage.push_back(stage.name);
     return names;

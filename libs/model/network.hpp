@@ -25,7 +25,8 @@ enum class EdgeKind : Index {
 struct Names {
     std::vector<std::string> rock;           // as in the scene's [[rock]]
     std::vector<std::string> joint_material; // [[joint_material]]
-    std::vector<std::string> joint_set;      // [[joint_set]], then each single [[joint]] as a set of its own
+    std::vector<std::string> joint_set;      // [[joint_set]], then each single [[joint]] as a set of its own,
+                                             // then [[mapped]]
     std::vector<std::string> stage;          // [[stage]]
 };
 

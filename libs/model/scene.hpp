@@ -70,21 +70,65 @@ struct JointMaterial {
     std::optional<Maxwell> maxwell{}; // without either the joint does not creep
 };
 
-// Joints sharing their statistics: lines of one orientation law, along each of which joint traces and rock
-// bridges alternate.
+// What the joints of a set are (libs/sampling/joint_sets.hpp).
+enum class SetKind {
+    lines,    // lines through the whole section, along each of which joint traces and rock bridges alternate
+    segments, // traces about Poisson points of the section
+    discs     // the traces of Poisson discs in space
+};
+
+// A plane measured in the field.
+struct MeasuredPole {
+    double dip;           // below the horizontal [rad]
+    double dip_direction; // clockwise from north [rad]
+    double weight;        // among the set's poles, bias of the scanline taken out; > 0 [-]
+};
+
+// The direction of a scanline or borehole: by its angle in the section, or by trend and plunge in space.
+struct Scanline {
+    std::optional<double> angle{}; // counter-clockwise from +x [rad]
+    double trend = 0;              // of its lower end, clockwise from north [rad]
+    double plunge = 0;             // below the horizontal [rad]
+};
+
+// How much of a set there is to be, its joint traces alone.
+struct Density {
+    enum class Measure {
+        p10, // joint traces met by a scanline, per length [1/m]
+        p20, // trace midpoints per area of section [1/m2]
+        p21, // trace length per area of section [1/m]
+        p30, // disc centres per volume [1/m3]
+        p32  // joint area per volume [1/m]
+    };
+    Measure measure = Measure::p21;
+    double value = 0;
+    Scanline scanline{}; // of p10
+};
+
+// Joints sharing their statistics.
 struct JointSet {
     std::string name;
     std::string material; // name of a JointMaterial
-    // One of three:
-    std::optional<Law> trace_angle;   // of the trace in the section, counter-clockwise from +x [rad]
-    std::optional<Law> dip;           // below the horizontal [rad], with
-    std::optional<Law> dip_direction; // clockwise from north [rad]
-    std::optional<FisherLaw> orientation;
+    SetKind kind = SetKind::lines;
+    // One of four:
+    std::optional<Law> trace_angle{};   // of the trace in the section, counter-clockwise from +x [rad]
+    std::optional<Law> dip{};           // below the horizontal [rad], with
+    std::optional<Law> dip_direction{}; // clockwise from north [rad]
+    std::optional<FisherLaw> orientation{};
+    std::vector<MeasuredPole> poles{}; // drawn from by weight
 
-    Law spacing;                   // along the set's mean normal in space [m]
-    std::optional<Law> length;     // of the joint traces [m]; needed unless persistence is 0 or 1
-    double persistence = 0;        // fraction of a line that is joint [-]
-    std::optional<Polygon> region; // where the set exists; without it, the whole section
+    std::optional<Density> density{}; // with lines it sets the mean of `spacing`, which gives the shape alone
+    Law spacing{Law::Kind::negative_exponential, 1, 1}; // of lines, along the set's mean normal in space [m]
+    std::optional<Law> length{};   // of traces [m]; of lines it is needed unless persistence is 0 or 1
+    std::optional<Law> diameter{}; // of discs [m]
+    double persistence = 0;        // of lines: fraction of a line that is joint [-]
+
+    std::vector<std::string> terminates_at{}; // sets, single joints or mapped sets, sampled before this one
+    double termination_probability = 1;       // at each crossing of a trace with one of these [-]
+
+    // Where the set exists; without either, the whole section:
+    std::optional<Polygon> region{};
+    std::vector<std::string> rocks{}; // names of Rocks
 };
 
 // One joint or fault given by its ends: all of it joint, no bridges.
@@ -92,6 +136,19 @@ struct SingleJoint {
     std::string name;
     std::string material;
     Eigen::Vector2d from, to; // [m]
+};
+
+// A joint trace from a map of the section.
+struct MappedTrace {
+    std::int32_t id;                // as the map says, or its place in the file
+    std::vector<Polygon> polylines; // each of two places at least
+};
+
+// The traces of one set on a map: all of them joint, each straight piece a joint.
+struct MappedSet {
+    std::string name;
+    std::string material;
+    std::vector<MappedTrace> traces{};
 };
 
 // A part of the section made of another rock. Later ones cover earlier ones.
@@ -216,6 +273,7 @@ struct Scene {
     std::vector<JointMaterial> joint_materials;
     std::vector<SingleJoint> joints;
     std::vector<JointSet> joint_sets;
+    std::vector<MappedSet> mapped;
     InSituStress in_situ_stress;
     std::vector<Boundary> boundaries;
 

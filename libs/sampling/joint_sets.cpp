@@ -1,13 +1,16 @@
 #include "sampling/joint_sets.hpp"
 
 #include "model/error.hpp"
-#include "model/units.hpp"
+#include "sampling/density.hpp"
 #include "sampling/laws.hpp"
-
-#include <Eigen/Geometry>
+#include "sampling/orientations.hpp"
+#include "sampling/stretches.hpp"
+#include "sampling/terminations.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 namespace jointcreep
@@ -22,125 +25,11 @@ constexpr std::int64_t most_joints = 5'000'000;
 constexpr std::int64_t most_skipped_lines = 10'000'000;
 constexpr std::int64_t most_intervals = 10'000'000; // traces and bridges drawn for one scene
 constexpr Index most_pieces = std::numeric_limits<Index>::max() / piece_step; // of a line
-
-constexpr double least_section_normal = 1e-6; // a plane nearer to parallel leaves no trace worth the name
-
-// A stretch of a line, by distance from the line's point, or of an axis through the origin [m].
-struct Interval {
-    double low, high;
-};
-
-struct Line {
-    Vector2d point, direction; // unit
-    Vector2d at(double distance) const { return point + distance * direction; }
-};
+constexpr Index most_mapped_ids = std::numeric_limits<Index>::max() / mapped_step;
 
 std::string quoted(const JointSet& set)
 {
     return "joint set \"" + set.name + "\"";
-}
-
-// Along the trace, in length |n_p|.
-Vector2d trace_of(const Vector2d& section_normal)
-{
-    return {section_normal.y(), -section_normal.x()};
-}
-
-Vector2d trace_of(double angle)
-{
-    return {std::cos(angle), std::sin(angle)};
-}
-
-// A plane by its dip and dip direction [rad].
-struct Plane {
-    double dip, dip_direction;
-};
-
-Plane mean_plane(const JointSet& set)
-{
-    if (set.orientation)
-        return {set.orientation->dip, set.orientation->dip_direction};
-    if (!set.dip || !set.dip_direction)
-        throw input_error(quoted(set) + " has no orientation; it needs a trace angle, a dip and a dip "
-                                        "direction, or a law of its poles");
-    return {set.dip->mean, set.dip_direction->mean};
-}
-
-double azimuth_for(const JointSet& set, const Scene& scene)
-{
-    if (!scene.azimuth)
-        throw input_error(quoted(set) +
-                          " has a dip and a dip direction, for which the section needs an azimuth");
-    return *scene.azimuth;
-}
-
-// Upward unit normal along the section's x and y, and across it.
-Eigen::Vector3d pole_of(const Plane& plane, double azimuth)
-{
-    const Vector2d in_section = section_normal(plane.dip, plane.dip_direction, azimuth);
-    return {in_section.x(), in_section.y(), std::sin(plane.dip) * std::sin(plane.dip_direction - azimuth)};
-}
-
-Vector2d mean_trace(const JointSet& set, const Scene& scene)
-{
-    if (set.trace_angle)
-        return trace_of(set.trace_angle->mean);
-    const Plane plane = mean_plane(set);
-    const Vector2d trace = trace_of(section_normal(plane.dip, plane.dip_direction, azimuth_for(set, scene)));
-    if (trace.norm() < least_section_normal)
-        throw input_error(quoted(set) + " is parallel to the section, and leaves no traces in it");
-    return trace;
-}
-
-// By the set's laws in space.
-Eigen::Vector3d draw_pole(const JointSet& set, double azimuth, Stream& stream)
-{
-    if (set.orientation)
-        return draw_fisher(pole_of(mean_plane(set), azimuth), set.orientation->concentration, stream);
-    const double dip = draw(*set.dip, stream);
-    return pole_of({dip, draw(*set.dip_direction, stream)}, azimuth);
-}
-
-struct Drawn {
-    Vector2d direction;   // of the trace
-    Eigen::Vector3d pole; // upward; zero if the set has none
-};
-
-Drawn draw_direction(const JointSet& set, const Scene& scene, Stream& stream)
-{
-    if (set.trace_angle)
-        return {trace_of(draw(*set.trace_angle, stream)), Eigen::Vector3d::Zero()};
-    const double azimuth = azimuth_for(set, scene);
-    const int most_tries = 10000;
-    for (int i = 0; i < most_tries; ++i) {
-        const Eigen::Vector3d pole = draw_pole(set, azimuth, stream);
-        const Vector2d trace = trace_of(pole.head<2>());
-        if (trace.norm() >= least_section_normal)
-            return {trace.normalized(), pole.y() < 0 ? -pole : pole};
-    }
-    throw input_error(quoted(set) + " has next to no joints that are not parallel to the section");
-}
-
-// Standard deviation of the trace angle, to first order [rad]; `mean` from mean_trace. A pole by Fisher's law
-// turns by 1/sqrt(concentration) about any axis across the mean pole, the mean trace among them.
-double trace_scatter(const JointSet& set, const Vector2d& mean)
-{
-    if (set.trace_angle)
-        return set.trace_angle->deviation;
-    if (set.orientation)
-        return 1 / (std::sqrt(set.orientation->concentration) * mean.norm());
-    return std::hypot(set.dip->deviation, std::sin(set.dip->mean) * set.dip_direction->deviation) /
-           mean.norm();
-}
-
-Interval extent(const Polygon& polygon, const Vector2d& direction)
-{
-    Interval extent{polygon[0].dot(direction), polygon[0].dot(direction)};
-    for (const Vector2d& corner : polygon) {
-        extent.low = std::min(extent.low, corner.dot(direction));
-        extent.high = std::max(extent.high, corner.dot(direction));
-    }
-    return extent;
 }
 
 Interval widened(Interval interval, double margin)
@@ -148,68 +37,35 @@ Interval widened(Interval interval, double margin)
     return {interval.low - margin, interval.high + margin};
 }
 
-// To multiples of the least power of two above its length.
-Interval widened_to_window(Interval interval)
+Interval widened_to_multiples(Interval interval, double step)
 {
-    int exponent = 0;
-    std::frexp(interval.high - interval.low, &exponent);
-    const double step = std::ldexp(1.0, exponent);
     return {std::floor(interval.low / step) * step, std::ceil(interval.high / step) * step};
 }
 
-double overshoot_of(const Polygon& polygon)
+// The least power of two above its length.
+double power_of_two_above(Interval interval)
 {
-    const Interval x = extent(polygon, Vector2d::UnitX()), y = extent(polygon, Vector2d::UnitY());
-    return 1e-6 * std::hypot(x.high - x.low, y.high - y.low);
+    int exponent = 0;
+    std::frexp(interval.high - interval.low, &exponent);
+    return std::ldexp(1.0, exponent);
 }
 
-// The stretches of a line inside a polygon. A corner on the line counts as left of it, so that crossings pair
-// up.
-std::vector<Interval> inside(const Polygon& polygon, const Line& line)
+Interval widened_to_window(Interval interval)
 {
-    const auto distance = [&](const Vector2d& corner) {
-        const Vector2d offset = corner - line.point;
-        return line.direction.x() * offset.y() - line.direction.y() * offset.x();
-    };
-    std::vector<double> crossings;
-    for (std::size_t i = 0; i < polygon.size(); ++i) {
-        const Vector2d &from = polygon[i], &to = polygon[(i + 1) % polygon.size()];
-        const double a = distance(from), b = distance(to);
-        if ((a < 0) != (b < 0))
-            crossings.push_back((from + a / (a - b) * (to - from) - line.point).dot(line.direction));
-    }
-    std::sort(crossings.begin(), crossings.end());
-    std::vector<Interval> stretches;
-    for (std::size_t i = 0; i + 1 < crossings.size(); i += 2)
-        stretches.push_back({crossings[i], crossings[i + 1]});
-    return stretches;
+    return widened_to_multiples(interval, power_of_two_above(interval));
 }
 
-// The stretches of a line that become joints of a set.
-std::vector<Interval> pieces(const JointSet& set, const Polygon& outline, const Line& line)
+// The stretches of a line that become joints of a set of lines.
+std::vector<Interval> pieces(const JointSet& set, const Scene& scene, const Line& line)
 {
-    std::vector<Interval> pieces;
-    if (!set.region) {
-        // By its corners' extent rather than by crossings: these are ill-defined where a line runs along a
-        // side.
-        if (!inside(outline, line).empty()) {
-            const double origin = line.point.dot(line.direction);
-            const Interval reach = widened(extent(outline, line.direction), overshoot_of(outline));
-            pieces.push_back({reach.low - origin, reach.high - origin});
-        }
-        return pieces;
-    }
-    const double overshoot = overshoot_of(*set.region);
-    for (const Interval& stretch : inside(*set.region, line)) {
-        if (stretch.high - stretch.low <= overshoot)
-            continue; // it only touches a corner
-        const Interval piece = widened(stretch, overshoot);
-        if (!pieces.empty() && piece.low <= pieces.back().high)
-            pieces.back().high = piece.high;
-        else
-            pieces.push_back(piece);
-    }
-    return pieces;
+    std::vector<Interval> stretches = where_set_exists(set, scene, line);
+    if (set.region || !set.rocks.empty() || stretches.empty())
+        return stretches;
+    // By its corners' extent rather than by crossings: these are ill-defined where a line runs along a side.
+    const Polygon& outline = scene.outline;
+    const double origin = line.point.dot(line.direction);
+    const Interval reach = widened(extent(outline, line.direction), overshoot_of(outline));
+    return {{reach.low - origin, reach.high - origin}};
 }
 
 class Sampler
@@ -220,12 +76,17 @@ public:
     {
     }
 
-    void add(const JointSet& set, Index index);
+    // `stops` are the joint traces at which the set's may end.
+    void add(const JointSet& set, Index index, const TraceIndex& stops);
     void add(const SingleJoint& joint, Index index);
+    void add(const MappedSet& mapped, Index index);
 
     Joints joints;
 
 private:
+    void add_lines(const JointSet& set, Index index);
+    void add_traces(const JointSet& set, Index index, const TraceIndex& stops);
+
     // Calls visit(number, place along the mean normal) for all lines with a place in `reach`.
     template <class Visit>
     void for_lines(const JointSet& set, const SetStreams& streams, double factor, Interval reach,
@@ -239,8 +100,10 @@ private:
                                         double end);
 
     void add_row(const std::string& name, const std::string& material, Index set, Index number,
-                 const Vector2d& from, const Vector2d& to);
+                 const Vector2d& from, const Vector2d& to, const Eigen::Vector3d& pole,
+                 const Vector2d& point);
     void add_trace(const Vector2d& from, const Vector2d& to);
+    void check_pieces(const JointSet& set, std::size_t pieces) const;
     void count_skipped(const JointSet& set);
     double draw_length(const JointSet& set, Stream& stream);
 
@@ -250,41 +113,51 @@ private:
     std::int64_t skipped_ = 0, intervals_ = 0;
 };
 
-void Sampler::add(const JointSet& set, Index index)
+void Sampler::add(const JointSet& set, Index index, const TraceIndex& stops)
+{
+    if (set.kind == SetKind::lines)
+        add_lines(set, index);
+    else
+        add_traces(set, index, stops);
+}
+
+void Sampler::add_lines(const JointSet& set, Index index)
 {
     if (set.persistence > 0 && set.persistence < 1 && !set.length)
         throw input_error(quoted(set) + " has a persistence of " + shown(set.persistence) +
                           " but no length; it needs one unless persistence is 0 or 1");
+    if (!set.terminates_at.empty())
+        throw input_error(quoted(set) + " is of lines, which do not end at others");
     const SetStreams streams{seed_, realization_, set_key(set.name)};
-    const Vector2d mean = mean_trace(set, scene_);
+    const Orientations orientations(set, scene_);
+    const Vector2d mean = orientations.mean_trace();
     const Vector2d along = mean.normalized(), across(-along.y(), along.x());
-    const Polygon& region = set.region ? *set.region : scene_.outline;
+    const Polygon& bounds = bounds_of(set, scene_);
+    const double factor = set.density || !set.poles.empty()
+                              ? density_of(set, scene_).spacing / mean_of_positive(set.spacing)
+                              : 1 / mean.norm();
 
-    const Interval window = widened_to_window(extent(region, along));
-    const double steepest = std::min(5 * trace_scatter(set, mean), 85 * unit::deg);
-    const Interval reach = widened(extent(region, across), (window.high - window.low) * std::tan(steepest));
+    const Interval window = widened_to_window(extent(bounds, along));
+    const Interval reach =
+        widened(extent(bounds, across), (window.high - window.low) * std::tan(orientations.steepest()));
 
     skipped_ = 0;
-    for_lines(set, streams, 1 / mean.norm(), reach, [&](Index number, double place) {
+    for_lines(set, streams, factor, reach, [&](Index number, double place) {
         Stream orientation(streams, number, Purpose::orientation),
             position(streams, number, Purpose::position);
         const double turning = window.low + uniform(position) * (window.high - window.low);
-        const Drawn drawn = draw_direction(set, scene_, orientation);
-        const Line line{place * across + turning * along, drawn.direction};
-        const std::vector<Interval> joint_pieces = pieces(set, scene_.outline, line);
+        const Orientations::Drawn drawn = orientations.draw_joint(orientation);
+        const Line line{place * across + turning * along, drawn.trace};
+        const std::vector<Interval> joint_pieces = pieces(set, scene_, line);
         if (joint_pieces.empty())
             return count_skipped(set);
-        if (joint_pieces.size() > static_cast<std::size_t>(most_pieces))
-            throw input_error(quoted(set) + ": its region cuts a joint into more than " +
-                              std::to_string(most_pieces) + " pieces");
+        check_pieces(set, joint_pieces.size());
         const std::vector<Interval> open =
             traces(set, streams, number, {joint_pieces.front().low, joint_pieces.back().high});
         for (std::size_t p = 0; p < joint_pieces.size(); ++p) {
             const Interval& piece = joint_pieces[p];
             add_row(quoted(set), set.material, index, number + static_cast<Index>(p) * piece_step,
-                    line.at(piece.low), line.at(piece.high));
-            joints.pole.push_back(drawn.pole);
-            joints.point.push_back(line.point);
+                    line.at(piece.low), line.at(piece.high), drawn.pole, line.point);
             for (const Interval& trace : open) {
                 const double low = std::max(trace.low, piece.low), high = std::min(trace.high, piece.high);
                 if (low < high)
@@ -294,12 +167,108 @@ void Sampler::add(const JointSet& set, Index index)
     });
 }
 
+// Midpoints of traces whose size (of a segment its length, of a disc its diameter) is x have the density
+// P20 x^o f(x) / E[x^o] over sizes, o = 0 for segments and 1 for discs, which a section meets by their size.
+// Those of the box of w by h widened by x/2 on every side are in number Poisson, of the mean
+//     P20 E[x^o (w + x) (h + x)] / E[x^o]
+// and hold every trace that comes into the box, however large sizes can be. A size of theirs has the density
+// x^o (w + x) (h + x) f(x), a mixture of powers of x.
+void Sampler::add_traces(const JointSet& set, Index index, const TraceIndex& stops)
+{
+    const bool discs = set.kind == SetKind::discs;
+    const std::optional<Law>& law = discs ? set.diameter : set.length;
+    if (!law)
+        throw input_error(quoted(set) + (discs ? " is of discs, and needs a diameter"
+                                               : " is of segments, and needs a length"));
+    const SetStreams streams{seed_, realization_, set_key(set.name)};
+    const Orientations orientations(set, scene_);
+    const double p20 = density_of(set, scene_).p20;
+
+    const Polygon& bounds = bounds_of(set, scene_);
+    const auto sides_of = [&](const Vector2d& axis) {
+        const Interval side = extent(bounds, axis);
+        return widened_to_multiples(side, power_of_two_above(side) / 8);
+    };
+    const Interval x = sides_of(Vector2d::UnitX()), y = sides_of(Vector2d::UnitY());
+    const double w = x.high - x.low, h = y.high - y.low;
+    const int order = discs ? 1 : 0;
+    const auto moment = [&](int of) { return moment_of_positive(*law, of); };
+    const std::array<double, 3> share{w * h * moment(order), (w + h) * moment(order + 1), moment(order + 2)};
+    const double all = share[0] + share[1] + share[2], expected = p20 * all / moment(order);
+    if (!(expected <= static_cast<double>(most_joints)))
+        throw input_error(quoted(set) + ": its density is too large for the section, or its sizes: about " +
+                          shown(expected) + " joints would have to be drawn, and at most " +
+                          std::to_string(most_joints) + " can be");
+    Stream count(streams, 0, Purpose::count);
+    const Index joints_drawn = static_cast<Index>(draw_poisson(expected, count));
+
+    for (Index number = 0; number < joints_drawn; ++number) {
+        Stream sizes(streams, number, Purpose::size), position(streams, number, Purpose::position),
+            orientation(streams, number, Purpose::orientation);
+        const double part = uniform(sizes) * all;
+        const int more = part < share[0] ? 0 : part < share[0] + share[1] ? 1 : 2;
+        const double size = draw_biased(*law, order + more, sizes);
+        const double off = 2 * uniform(sizes) - 1; // of the section from a disc's centre, over its radius
+        const double half = size / 2 * (discs ? std::sqrt(1 - off * off) : 1);
+        const double across = x.low - size / 2 + uniform(position) * (w + size);
+        const Vector2d middle(across, y.low - size / 2 + uniform(position) * (h + size));
+        const Orientations::Drawn drawn = orientations.draw_joint(orientation);
+        const Line line{middle, drawn.trace};
+
+        Interval trace{-half, half};
+        std::vector<Interval> kept;
+        const auto ends_at_outline = overlap(inside(scene_.outline, line), trace);
+        if (ends_at_outline.empty())
+            continue;
+        if (!stops.empty()) {
+            Stream ahead(streams, number, Purpose::ends_ahead), behind(streams, number, Purpose::ends_behind);
+            trace.high = stops.end_of(line, half, set.termination_probability, ends_at_outline, ahead);
+            trace.low = -stops.end_of({middle, -line.direction}, half, set.termination_probability,
+                                      turned_round(ends_at_outline), behind);
+        }
+        if (!set.region && set.rocks.empty()) {
+            if (!overlap(ends_at_outline, trace).empty())
+                kept = {trace};
+        } else {
+            kept = overlap(where_set_exists(set, scene_, line), trace);
+        }
+        check_pieces(set, kept.size());
+        for (std::size_t p = 0; p < kept.size(); ++p) {
+            const Vector2d from = line.at(kept[p].low), to = line.at(kept[p].high);
+            add_row(quoted(set), set.material, index, number + static_cast<Index>(p) * piece_step, from, to,
+                    drawn.pole, middle);
+            add_trace(from, to);
+        }
+    }
+}
+
 void Sampler::add(const SingleJoint& joint, Index index)
 {
-    add_row("joint \"" + joint.name + "\"", joint.material, index, 0, joint.from, joint.to);
-    joints.pole.emplace_back(0, 0, 0);
-    joints.point.emplace_back((joint.from + joint.to) / 2);
+    add_row("joint \"" + joint.name + "\"", joint.material, index, 0, joint.from, joint.to,
+            Eigen::Vector3d::Zero(), (joint.from + joint.to) / 2);
     add_trace(joint.from, joint.to);
+}
+
+void Sampler::add(const MappedSet& mapped, Index index)
+{
+    const std::string name = "mapped set \"" + mapped.name + "\"";
+    for (const MappedTrace& trace : mapped.traces) {
+        if (trace.id < 0 || trace.id > most_mapped_ids)
+            throw input_error(name + ": a trace has the id " + std::to_string(trace.id) + "; wanted 0 to " +
+                              std::to_string(most_mapped_ids));
+        Index piece = 0;
+        for (const Polygon& polyline : trace.polylines)
+            for (std::size_t i = 0; i + 1 < polyline.size(); ++i) {
+                if (polyline[i] == polyline[i + 1])
+                    continue; // a place that was clicked twice
+                if (piece == mapped_step)
+                    throw input_error(name + ": trace " + std::to_string(trace.id) + " has more than " +
+                                      std::to_string(mapped_step) + " straight pieces");
+                add_row(name, mapped.material, index, trace.id * mapped_step + piece++, polyline[i],
+                        polyline[i + 1], Eigen::Vector3d::Zero(), (polyline[i] + polyline[i + 1]) / 2);
+                add_trace(polyline[i], polyline[i + 1]);
+            }
+    }
 }
 
 template <class Visit>
@@ -384,7 +353,8 @@ double Sampler::draw_length(const JointSet& set, Stream& stream)
 }
 
 void Sampler::add_row(const std::string& name, const std::string& material, Index set, Index number,
-                      const Vector2d& from, const Vector2d& to)
+                      const Vector2d& from, const Vector2d& to, const Eigen::Vector3d& pole,
+                      const Vector2d& point)
 {
     const auto& materials = scene_.joint_materials;
     const auto found = std::find_if(materials.begin(), materials.end(), [&](const JointMaterial& candidate) {
@@ -400,6 +370,8 @@ void Sampler::add_row(const std::string& name, const std::string& material, Inde
     joints.material.push_back(static_cast<Index>(found - materials.begin()));
     joints.from.push_back(from);
     joints.to.push_back(to);
+    joints.pole.push_back(pole);
+    joints.point.push_back(point);
 }
 
 void Sampler::add_trace(const Vector2d& from, const Vector2d& to)
@@ -407,6 +379,13 @@ void Sampler::add_trace(const Vector2d& from, const Vector2d& to)
     joints.trace_joint.push_back(static_cast<Index>(joints.set.size()) - 1);
     joints.trace_from.push_back(from);
     joints.trace_to.push_back(to);
+}
+
+void Sampler::check_pieces(const JointSet& set, std::size_t pieces) const
+{
+    if (pieces > static_cast<std::size_t>(most_pieces))
+        throw input_error(quoted(set) + ": where it exists cuts a joint into more than " +
+                          std::to_string(most_pieces) + " pieces");
 }
 
 void Sampler::count_skipped(const JointSet& set)
@@ -432,29 +411,85 @@ void check_keys(const std::vector<JointSet>& sets)
         }
 }
 
-} // namespace
-
-Vector2d section_normal(double dip, double dip_direction, double azimuth)
+// Puts the joints of one set behind those of others.
+void append(Joints& joints, const Joints& more)
 {
-    return {std::sin(dip) * std::cos(dip_direction - azimuth), std::cos(dip)};
+    const auto put = [](auto& to, const auto& from) { to.insert(to.end(), from.begin(), from.end()); };
+    const auto first = static_cast<Index>(joints.set.size());
+    for (const Index joint : more.trace_joint)
+        joints.trace_joint.push_back(first + joint);
+    put(joints.set, more.set);
+    put(joints.number, more.number);
+    put(joints.material, more.material);
+    put(joints.from, more.from);
+    put(joints.to, more.to);
+    put(joints.pole, more.pole);
+    put(joints.point, more.point);
+    put(joints.trace_from, more.trace_from);
+    put(joints.trace_to, more.trace_to);
+    if (static_cast<std::int64_t>(joints.set.size()) > most_joints)
+        throw input_error("the joint sets' spacings are too small, or their densities too large, for the "
+                          "section: more than " +
+                          std::to_string(most_joints) + " joints would result");
 }
 
-double trace_angle(double dip, double dip_direction, double azimuth)
+} // namespace
+
+std::vector<std::size_t> sampling_order(const std::vector<JointSet>& sets)
 {
-    const Vector2d trace = trace_of(section_normal(dip, dip_direction, azimuth));
-    return std::atan2(trace.y(), trace.x());
+    enum class State { waiting, open, done };
+    std::vector<State> state(sets.size(), State::waiting);
+    std::vector<std::size_t> order;
+    const std::function<void(std::size_t)> visit = [&](std::size_t i) {
+        if (state[i] == State::done)
+            return;
+        if (state[i] == State::open)
+            throw input_error(quoted(sets[i]) +
+                              " ends, by terminates_at, at sets that end at it in turn: they go in a circle");
+        state[i] = State::open;
+        for (const std::string& name : sets[i].terminates_at)
+            for (std::size_t j = 0; j < sets.size(); ++j)
+                if (sets[j].name == name)
+                    visit(j);
+        state[i] = State::done;
+        order.push_back(i);
+    };
+    for (std::size_t i = 0; i < sets.size(); ++i)
+        visit(i);
+    return order;
 }
 
 Joints sample_joints(const Scene& scene, std::uint64_t seed, std::int32_t realization)
 {
     check_keys(scene.joint_sets);
-    Sampler sampler(scene, seed, realization);
-    Index index = 0;
-    for (const JointSet& set : scene.joint_sets)
-        sampler.add(set, index++);
-    for (const SingleJoint& joint : scene.joints)
-        sampler.add(joint, index++);
-    return std::move(sampler.joints);
+    const Names names = names_of(scene);
+    std::vector<Joints> of_set(names.joint_set.size());
+    const std::size_t first_single = scene.joint_sets.size(),
+                      first_mapped = first_single + scene.joints.size();
+    const auto sample = [&](std::size_t index, const auto& set, const auto&... stops) {
+        Sampler sampler(scene, seed, realization);
+        sampler.add(set, static_cast<Index>(index), stops...);
+        of_set[index] = std::move(sampler.joints);
+    };
+    for (std::size_t i = 0; i < scene.joints.size(); ++i)
+        sample(first_single + i, scene.joints[i]);
+    for (std::size_t i = 0; i < scene.mapped.size(); ++i)
+        sample(first_mapped + i, scene.mapped[i]);
+    for (const std::size_t i : sampling_order(scene.joint_sets)) {
+        const JointSet& set = scene.joint_sets[i];
+        TraceIndex stops;
+        for (const std::string& name : set.terminates_at) {
+            const auto found = std::find(names.joint_set.begin(), names.joint_set.end(), name);
+            if (found == names.joint_set.end())
+                throw input_error(quoted(set) + " ends at \"" + name + "\", of which there is none");
+            stops.add(of_set[static_cast<std::size_t>(found - names.joint_set.begin())]);
+        }
+        sample(i, set, stops);
+    }
+    Joints joints;
+    for (const Joints& more : of_set)
+        append(joints, more);
+    return joints;
 }
 
 } // namespace jointcreep

@@ -4,6 +4,7 @@
 
 #include <boost/random/exponential_distribution.hpp>
 #include <boost/random/normal_distribution.hpp>
+#include <boost/random/poisson_distribution.hpp>
 #include <boost/random/uniform_01.hpp>
 
 #include <Eigen/Geometry>
@@ -11,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace jointcreep
 {
@@ -43,6 +45,14 @@ LogParameters log_parameters(const Law& law)
                       " has next to no values above 0, which a length or spacing has to be");
 }
 
+double power(double x, int order)
+{
+    double product = 1;
+    for (int i = 0; i < order; ++i)
+        product *= x;
+    return product;
+}
+
 // By the inverse of its distribution function, (1 - t^q) / (1 - r^q) with q = 1 - exponent, t = x / least and
 // r = most / least.
 double draw_power(double exponent, double least, double most, Stream& stream)
@@ -52,16 +62,17 @@ double draw_power(double exponent, double least, double most, Stream& stream)
     return std::clamp(least * std::exp(logarithm), least, most);
 }
 
-// The density x exp(-(x - mean)^2 / (2 deviation^2)) has its mode at the positive root m of
-// m^2 - mean m - deviation^2 = 0. Because x <= m exp(x/m - 1) it lies under a multiple of the normal density
-// of mean m, from which values are taken with probability x/m exp(1 - x/m).
-double draw_size_biased_normal(const Law& law, Stream& stream)
+// The density x^n exp(-(x - mean)^2 / (2 deviation^2)) has its mode at the positive root m of
+// m^2 - mean m - n deviation^2 = 0. Because x <= m exp(x/m - 1) it lies under a multiple of the normal
+// density of mean m, from which values are taken with probability (x/m exp(1 - x/m))^n.
+double draw_biased_normal(const Law& law, int order, Stream& stream)
 {
-    const double mode = (law.mean + std::hypot(law.mean, 2 * law.deviation)) / 2;
+    const double mode = (law.mean + std::hypot(law.mean, 2 * std::sqrt(order) * law.deviation)) / 2;
     if (mode > 0)
         for (int i = 0; i < most_tries; ++i) {
             const double x = draw_normal(mode, law.deviation, stream);
-            if (uniform(stream) < x / mode * std::exp(1 - x / mode))
+            const double take = x > 0 ? x / mode * std::exp(1 - x / mode) : 0;
+            if (uniform(stream) < power(take, order))
                 return x;
         }
     refuse(law);
@@ -77,6 +88,11 @@ double uniform(Stream& stream)
 double draw_exponential(double mean, Stream& stream)
 {
     return mean * boost::random::exponential_distribution<double>()(stream);
+}
+
+std::int64_t draw_poisson(double mean, Stream& stream)
+{
+    return mean > 0 ? boost::random::poisson_distribution<std::int64_t, double>(mean)(stream) : 0;
 }
 
 double draw(const Law& law, Stream& stream)
@@ -133,27 +149,70 @@ double mean_of_positive(const Law& law)
     return law.mean + law.deviation * density / above;
 }
 
-double draw_size_biased(const Law& law, Stream& stream)
+double moment_of_positive(const Law& law, int order)
 {
     switch (law.kind) {
     case Law::Kind::constant:
         break;
-    case Law::Kind::normal:
-        return draw_size_biased_normal(law, stream);
+    case Law::Kind::normal: { // by parts: E[x^n] = mean E[x^(n-1)] + (n - 1) deviation^2 E[x^(n-2)], n > 1
+        double before = 1, moment = mean_of_positive(law);
+        if (order == 0)
+            return 1;
+        for (int n = 2; n <= order; ++n)
+            before =
+                std::exchange(moment, law.mean * moment + (n - 1) * law.deviation * law.deviation * before);
+        return moment;
+    }
     case Law::Kind::lognormal: {
         const LogParameters log = log_parameters(law);
-        return std::exp(draw_normal(log.mean + log.deviation * log.deviation, log.deviation, stream));
+        return std::exp(order * (log.mean + order * log.deviation * log.deviation / 2));
     }
-    case Law::Kind::negative_exponential: { // gamma of shape 2
-        const double first = draw_exponential(law.mean, stream);
-        return first + draw_exponential(law.mean, stream);
-    }
-    case Law::Kind::uniform: {
-        const double least2 = law.least * law.least, most2 = law.most * law.most;
-        return std::sqrt(least2 + uniform(stream) * (most2 - least2));
+    case Law::Kind::negative_exponential:
+        return power(law.mean, order) * std::tgamma(order + 1);
+    case Law::Kind::uniform: { // (b^(n+1) - a^(n+1)) / (b - a) = sum of a^i b^(n-i)
+        double sum = 0;
+        for (int i = 0; i <= order; ++i)
+            sum += power(law.least, i) * power(law.most, order - i);
+        return sum / (order + 1);
     }
     case Law::Kind::power:
-        return draw_power(law.exponent - 1, law.least, law.most, stream);
+        return power(law.least, order) * power_moment(law.exponent, law.least, law.most, order);
+    }
+    return power(law.mean, order);
+}
+
+double draw_size_biased(const Law& law, Stream& stream)
+{
+    return draw_biased(law, 1, stream);
+}
+
+double draw_biased(const Law& law, int order, Stream& stream)
+{
+    if (order == 0)
+        return draw_positive(law, stream);
+    switch (law.kind) {
+    case Law::Kind::constant:
+        break;
+    case Law::Kind::normal:
+        return draw_biased_normal(law, order, stream);
+    case Law::Kind::lognormal: {
+        const LogParameters log = log_parameters(law);
+        return std::exp(
+            draw_normal(log.mean + order * (log.deviation * log.deviation), log.deviation, stream));
+    }
+    case Law::Kind::negative_exponential: { // gamma of shape order + 1
+        double sum = 0;
+        for (int i = 0; i <= order; ++i)
+            sum += draw_exponential(law.mean, stream);
+        return sum;
+    }
+    case Law::Kind::uniform: {
+        const double least = power(law.least, order + 1), most = power(law.most, order + 1);
+        const double x = least + uniform(stream) * (most - least);
+        return order == 1 ? std::sqrt(x) : std::pow(x, 1. / (order + 1));
+    }
+    case Law::Kind::power:
+        return draw_power(law.exponent - order, law.least, law.most, stream);
     }
     return law.mean;
 }

@@ -23,7 +23,11 @@ enum class Purpose : std::uint32_t {
     orientation = 1,
     position = 2,
     traces_ahead = 3,
-    traces_behind = 4
+    traces_behind = 4,
+    count = 5,
+    size = 6,
+    ends_ahead = 7,
+    ends_behind = 8
 };
 
 // 32-bit hash (FNV-1a) of a joint set's name: the set's streams depend on its name, not on its place in the

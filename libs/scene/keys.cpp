@@ -109,6 +109,14 @@ std::string KeyInfo::wanted() const
         return "one Kelvin unit or more, [{ normal_stiffness_MPa_per_m = 690, ... }, ...]";
     if (kind == "law")
         return "a law such as { law = \"constant\", mean_m = 2 }";
+    if (kind == "density")
+        return "a density such as { P21_per_m = 0.5 }";
+    if (kind == "names")
+        return "a list of names, [\"first\", ...]";
+    if (kind == "poles")
+        return "poles [[dip, dip direction], ...] of numbers in [0, 90] and [0, 360] deg";
+    if (kind == "file text")
+        return "the text of a file, 16 MiB at most";
     return kind;
 }
 
@@ -149,6 +157,29 @@ std::string read_text(const KeyInfo& key, const TomlValue& value, const Place& p
         std::any_of(text->begin(), text->end(), is_control))
         place.refuse(key, value);
     return *text;
+}
+
+std::string read_file_text(const KeyInfo& key, const TomlValue& value, const Place& place)
+{
+    const auto* const text = std::get_if<std::string>(&value.content);
+    if (!text || text->empty())
+        place.refuse(key, value);
+    return *text;
+}
+
+std::vector<std::string> read_names(const KeyInfo& key, const TomlValue& value, const Place& place)
+{
+    constexpr std::size_t most_names = 1000;
+    const auto* const list = as_list(value);
+    if (!list || list->empty() || list->size() > most_names)
+        place.refuse(key, value);
+    std::vector<std::string> names;
+    for (const TomlValue& one : *list) {
+        names.push_back(read_text(key, one, place));
+        if (std::count(names.begin(), names.end(), names.back()) > 1)
+            place.refuse(key, value, "each name once");
+    }
+    return names;
 }
 
 double read_date(const KeyInfo& key, const TomlValue& value, const Place& place)

@@ -15,6 +15,7 @@
 #include <concepts>
 #include <functional>
 #include <limits>
+#include <map>
 #include <optional>
 #include <type_traits>
 #include <utility>
@@ -60,8 +61,8 @@ enum class Need { required, optional, together }; // together: all keys of one g
 // What is known of a key without knowing the record it fills.
 struct KeyInfo {
     std::string name;
-    std::string kind{}; // number, integer, text, date, point, polygon, polygons, law, Kelvin units or the
-                        // allowed words
+    std::string kind{}; // number, integer, text, date, point, polygon, polygons, law, Kelvin units, names,
+                        // poles, file text, density or the allowed words
     Unit unit{};
     std::optional<Range> range{};
     std::string doc{};
@@ -81,7 +82,8 @@ struct Calendar {
 // What reading carries along.
 struct Reading {
     std::string name; // of the text
-    Calendar calendar;
+    Calendar calendar{};
+    std::map<std::string, std::string> files{}; // texts that the scene holds, by name
 };
 
 // Where a value stands: for messages.
@@ -98,6 +100,8 @@ struct Place {
 double read_number(const KeyInfo& key, const TomlValue& value, const Place& place);
 std::int64_t read_integer(const KeyInfo& key, const TomlValue& value, const Place& place);
 std::string read_text(const KeyInfo& key, const TomlValue& value, const Place& place);
+std::string read_file_text(const KeyInfo& key, const TomlValue& value, const Place& place);
+std::vector<std::string> read_names(const KeyInfo& key, const TomlValue& value, const Place& place);
 double read_date(const KeyInfo& key, const TomlValue& value, const Place& place); // since start [s]
 Calendar read_start(const KeyInfo& key, const TomlValue& value, const Place& place);
 Eigen::Vector2d read_point(const KeyInfo& key, const TomlValue& value, const Place& place);
@@ -189,6 +193,12 @@ template <class Record>
 Key<Record> text(std::string name, std::string Record::*member, std::string doc)
 {
     return key_of<Record>({std::move(name), "text", {}, {}, std::move(doc)}, member, read_text);
+}
+
+template <class Record>
+Key<Record> names(std::string name, std::vector<std::string> Record::*member, std::string doc)
+{
+    return key_of<Record>({std::move(name), "names", {}, {}, std::move(doc)}, member, read_names);
 }
 
 inline constexpr Unit days{"days", unit::day};

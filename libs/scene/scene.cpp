@@ -4,6 +4,7 @@
 #include "scene/scene_checks.hpp"
 #include "scene/scene_keys.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstdio>
@@ -82,14 +83,127 @@ bool read_once(const Table<Record>& table, const TomlValue& root, const Reading&
     return value != nullptr;
 }
 
+void read_held_files(const TomlValue& root, Reading& reading)
+{
+    const Table<HeldFile>& table = scene_tables().file;
+    const auto& list = list_of(table.info, root, reading);
+    const auto files = read_list(table, root, reading);
+    for (std::size_t i = 0; i < files.size(); ++i)
+        if (!reading.files.try_emplace(files[i].name, files[i].text).second)
+            Place{reading, table.info.shown()}.refuse(list[i].find("name")->line,
+                                                      "[[file]] name = " + shown(*list[i].find("name")) +
+                                                          ": the name is taken by another file");
+}
+
+std::vector<MappedSet> read_mapped(const TomlValue& root, const Reading& reading)
+{
+    const Table<WrittenMapped>& table = scene_tables().mapped;
+    const auto& list = list_of(table.info, root, reading);
+    const auto written = read_list(table, root, reading);
+    std::vector<MappedSet> sets;
+    for (std::size_t i = 0; i < written.size(); ++i)
+        sets.push_back(mapped_set(written[i], list[i],
+                                  {reading, table.info.shown() + " " + shown(*list[i].find("name"))}));
+    return sets;
+}
+
+// The names of files that a scene asks for.
+std::vector<std::string> named_files(const TomlValue& root)
+{
+    std::vector<std::string> names;
+    const auto take = [&](const TomlValue* value) {
+        if (const auto* const name = value ? std::get_if<std::string>(&value->content) : nullptr)
+            if (!name->empty() && std::find(names.begin(), names.end(), *name) == names.end())
+                names.push_back(*name);
+    };
+    const auto in_list = [&root](std::string_view table) {
+        const TomlValue* const value = root.find(table);
+        const auto* const list = value ? std::get_if<TomlValue::List>(&value->content) : nullptr;
+        return list ? *list : TomlValue::List{};
+    };
+    for (const TomlValue& set : in_list("joint_set"))
+        if (const TomlValue* const orientation = set.find("orientation"))
+            take(orientation->find("poles"));
+    for (const TomlValue& mapped : in_list("mapped"))
+        take(mapped.find("file"));
+    for (const TomlValue& held : in_list("file"))
+        if (const TomlValue* const name = held.find("name"))
+            std::erase_if(names, [&](const std::string& known) {
+                return std::get_if<std::string>(&name->content) &&
+                       known == std::get<std::string>(name->content);
+            });
+    return names;
+}
+
+// As a TOML string, on one line a line of the text.
+std::string as_toml(const std::string& text)
+{
+    std::string out = "\"\"\"\n";
+    for (const char c : text) {
+        constexpr const char* digits = "0123456789abcdef";
+        const auto code = static_cast<unsigned char>(c);
+        if (c == '"' || c == '\\')
+            out += std::string("\\") + c;
+        else if (c == '\n')
+            out += c;
+        else if (code < 0x20 || code == 0x7f)
+            out += std::string("\\u00") + digits[code / 16] + digits[code % 16];
+        else
+            out += c;
+    }
+    return out + "\"\"\"\n";
+}
+
+// The text of a file of the given kind, at most so large.
+std::string read_text_file(const std::string& path, const std::string& wanted)
+{
+    if (std::error_code ignored; std::filesystem::is_directory(path, ignored))
+        throw file_error(path + ": is a directory; wanted " + wanted);
+    const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), std::fclose);
+    if (!file)
+        throw file_error(path + ": cannot be opened: " + std::strerror(errno));
+    std::string text;
+    std::array<char, 65536> part;
+    while (const std::size_t count = std::fread(part.data(), 1, part.size(), file.get())) {
+        text.append(part.data(), count);
+        if (text.size() > largest_text)
+            throw input_error(path + ": is larger than 16 MiB; wanted " + wanted);
+    }
+    if (std::ferror(file.get()))
+        throw file_error(path + ": cannot be read: " + std::strerror(errno));
+    return text;
+}
+
+// Tables [[file]] with what the scene at `path` asks for. Files that are not there are left out: parse_scene
+// names the key that asks for them.
+std::string files_beside(const std::string& path, const std::string& scene)
+{
+    std::vector<std::string> names;
+    try {
+        names = named_files(parse_toml(scene, path));
+    } catch (const input_error&) { // parse_scene says the same again, in its place
+        return "";
+    }
+    std::string tables;
+    for (const std::string& name : names) {
+        const std::filesystem::path beside = std::filesystem::path(path).parent_path() / name;
+        if (std::error_code ignored; !std::filesystem::is_regular_file(beside, ignored))
+            continue;
+        tables += "\n[[file]] # as it was beside the scene\nname = " + as_toml(name) +
+                  "text = " + as_toml(read_text_file(beside.string(), "poles or traces of a scene"));
+    }
+    return tables;
+}
+
 } // namespace
 
 Scene parse_scene(std::string_view text, const std::string& name)
 {
     const TomlValue root = parse_toml(text, name);
     const SceneTables& tables = scene_tables();
-    Reading reading{name, {}};
+    Reading reading{name};
     check_tables(root, reading);
+    read_held_files(root, reading);
 
     Scene scene;
     fill(tables.top, root, {reading, ""}, scene);
@@ -99,6 +213,7 @@ Scene parse_scene(std::string_view text, const std::string& name)
     scene.joint_materials = read_list(tables.joint_material, root, reading);
     scene.joints = read_list(tables.joint, root, reading);
     scene.joint_sets = read_list(tables.joint_set, root, reading);
+    scene.mapped = read_mapped(root, reading);
     read_once(tables.in_situ_stress, root, reading, scene.in_situ_stress);
 
     Schedule schedule{reading.calendar};
@@ -125,22 +240,12 @@ Scene parse_scene(std::string_view text, const std::string& name)
 
 std::string read_scene_text(const std::string& path)
 {
-    if (std::error_code ignored; std::filesystem::is_directory(path, ignored))
-        throw file_error(path + ": is a directory; wanted a scene file");
-    const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), std::fclose);
-    if (!file)
-        throw file_error(path + ": cannot be opened: " + std::strerror(errno));
-    std::string text;
-    std::array<char, 65536> part;
-    while (const std::size_t count = std::fread(part.data(), 1, part.size(), file.get())) {
-        text.append(part.data(), count);
-        if (text.size() > largest_text)
-            throw input_error(path + ": is larger than 16 MiB; wanted a scene");
-    }
-    if (std::ferror(file.get()))
-        throw file_error(path + ": cannot be read: " + std::strerror(errno));
+    std::string text = read_text_file(path, "a scene file");
     if (text.empty())
         throw input_error(path + ": is empty; wanted a scene");
+    text += files_beside(path, text);
+    if (text.size() > largest_text)
+        throw input_error(path + ": is larger than 16 MiB with the files that it names; wanted a scene");
     return text;
 }
 

@@ -16,8 +16,9 @@ namespace jointcreep
 // itself, ends the process with exit code 2.
 Scene parse_scene(std::string_view text, const std::string& name);
 
-// The text of a scene file. Throws file_error if it cannot be read, input_error if it is empty or larger than
-// 16 MiB.
+// The text of a scene file, with the files beside it that it names behind it, each as a table [[file]]: so
+// the text says everything, wherever it goes. Throws file_error if it cannot be read, input_error if it is
+// empty or, with those files, larger than 16 MiB.
 std::string read_scene_text(const std::string& path);
 
 // docs/scene.md, whole.

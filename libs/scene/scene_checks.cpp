@@ -110,6 +110,7 @@ private:
         std::map<std::string, std::int64_t> line_of; // a joint is a set of its own in all files
         check_unique("joint_set", scene_.joint_sets, line_of);
         check_unique("joint", scene_.joints, line_of);
+        check_unique("mapped", scene_.mapped, line_of);
     }
 
     template <class Record>
@@ -153,6 +154,12 @@ private:
         for (std::size_t i = 0; i < scene_.joint_sets.size(); ++i)
             check_reference(in_list("joint_set", i), "material", scene_.joint_sets[i].material, materials,
                             "[[joint_material]]");
+        for (std::size_t i = 0; i < scene_.mapped.size(); ++i)
+            check_reference(in_list("mapped", i), "material", scene_.mapped[i].material, materials,
+                            "[[joint_material]]");
+        for (std::size_t i = 0; i < scene_.joint_sets.size(); ++i)
+            for (const std::string& rock : scene_.joint_sets[i].rocks)
+                check_reference(in_list("joint_set", i), "rocks", rock, rocks, "[[rock]]");
         for (std::size_t i = 0; i < scene_.boundaries.size(); ++i)
             if (!scene_.boundaries[i].joint.empty())
                 check_reference(in_list("boundary", i), "joint", scene_.boundaries[i].joint, materials,
@@ -255,13 +262,16 @@ private:
     void check_orientation(const JointSet& set, const Given& given) const
     {
         const std::string wanted = "wanted one of trace_angle, orientation, or dip and dip_direction";
-        if ((set.trace_angle || set.orientation) && (set.dip || set.dip_direction))
+        const bool by_poles = set.orientation || !set.poles.empty();
+        if (set.kind == SetKind::discs && set.trace_angle)
+            given.refuse("trace_angle", "discs lie in space: wanted orientation, or dip and dip_direction");
+        if ((set.trace_angle || by_poles) && (set.dip || set.dip_direction))
             given.refuse(set.dip ? "dip" : "dip_direction", wanted + ", not both");
-        if (set.trace_angle && set.orientation)
+        if (set.trace_angle && by_poles)
             given.refuse("orientation", wanted + ", not both");
         if (set.trace_angle)
             return;
-        if (!set.orientation) {
+        if (!by_poles) {
             if (!set.dip && !set.dip_direction)
                 given.refuse("trace_angle", wanted);
             if (!set.dip || !set.dip_direction)
@@ -270,6 +280,8 @@ private:
         if (!scene_.azimuth)
             once("section").refuse("azimuth_deg",
                                    "the dip of " + given.title + " needs the bearing of the section");
+        if (!set.poles.empty())
+            return;
         // The mean plane's unit normal is {sin(dip) cos(a), cos(dip), sin(dip) sin(a)} along x, y and across.
         const double dip = set.orientation ? set.orientation->dip : set.dip->mean;
         const double direction = set.orientation ? set.orientation->dip_direction : set.dip_direction->mean;
@@ -280,12 +292,87 @@ private:
                          "trace; wanted another dip or direction, or no such set");
     }
 
+    // Keys that a kind of set needs, and those it does not take.
+    static void check_kind(const JointSet& set, const Given& given)
+    {
+        struct Kind {
+            std::string title;
+            std::vector<std::string> needs, refuses;
+        };
+        const Kind lines{"lines", {"persistence"}, {"diameter", "terminates_at"}},
+            segments{"segments", {"length", "density"}, {"spacing", "persistence", "diameter"}},
+            discs{"discs", {"diameter", "density"}, {"spacing", "persistence", "length"}};
+        const Kind& kind = set.kind == SetKind::lines      ? lines
+                           : set.kind == SetKind::segments ? segments
+                                                           : discs;
+        for (const std::string& key : kind.needs)
+            if (!given.find(key))
+                given.refuse(key, "a set of " + kind.title + " needs it");
+        for (const std::string& key : kind.refuses)
+            if (given.find(key))
+                given.refuse(key, "a set of " + kind.title + " does not take it");
+        if (set.kind == SetKind::lines && !given.find("spacing") && !given.find("density"))
+            given.refuse("spacing", "a set of lines needs it, or a density");
+    }
+
+    void check_density(const JointSet& set, const Given& given) const
+    {
+        if (!set.density)
+            return;
+        using Measure = Density::Measure;
+        const Measure measure = set.density->measure;
+        if (measure == Measure::p20 && set.kind == SetKind::lines)
+            given.refuse("density",
+                         "lines have no number per area; wanted P10_per_m, P21_per_m or P32_per_m");
+        if (measure == Measure::p30 && set.kind != SetKind::discs)
+            given.refuse("density", "only discs have a number per volume");
+        const bool in_space =
+            measure == Measure::p32 || (measure == Measure::p10 && !set.density->scanline.angle);
+        if (set.trace_angle && in_space)
+            given.refuse("density",
+                         "a set with a trace_angle has no orientation in space, which P32_per_m and "
+                         "a scanline in space need");
+        if (set.kind == SetKind::lines && set.persistence == 0)
+            given.refuse("density", "it is one of joint traces, and a persistence of 0 leaves none");
+    }
+
+    void check_terminations(const JointSet& set, const Given& given) const
+    {
+        if (given.find("termination_probability") && set.terminates_at.empty())
+            given.refuse("termination_probability", "wanted terminates_at beside it");
+        std::set<std::string> others;
+        for (const auto& names :
+             {names_of(scene_.joint_sets), names_of(scene_.joints), names_of(scene_.mapped)})
+            others.insert(names.begin(), names.end());
+        others.erase(set.name);
+        for (const std::string& name : set.terminates_at)
+            check_reference(given, "terminates_at", name, others, "[[joint_set]], [[joint]] or [[mapped]]");
+        // Whatever it ends at, whatever that ends at, and so on.
+        std::set<std::string> reached(set.terminates_at.begin(), set.terminates_at.end());
+        for (std::size_t before = 0; before != reached.size();) {
+            before = reached.size();
+            for (const JointSet& other : scene_.joint_sets)
+                if (reached.contains(other.name))
+                    reached.insert(other.terminates_at.begin(), other.terminates_at.end());
+        }
+        if (reached.contains(set.name))
+            given.refuse("terminates_at", "sets end at each other in a circle; wanted an order in which each "
+                                          "ends at earlier ones only");
+    }
+
     void check_joint_sets() const
     {
         for (std::size_t i = 0; i < scene_.joint_sets.size(); ++i) {
             const JointSet& set = scene_.joint_sets[i];
             const Given given = in_list("joint_set", i);
             check_orientation(set, given);
+            check_kind(set, given);
+            check_density(set, given);
+            check_terminations(set, given);
+            if (set.region && !set.rocks.empty())
+                given.refuse("rocks", "wanted either it or region_m, not both");
+            if (set.kind != SetKind::lines)
+                continue;
             if (!set.length && set.persistence > 0 && set.persistence < 1)
                 given.refuse("length", "a persistence of " + shown(set.persistence) + " needs it");
             for (const Rock& rock : scene_.rocks)

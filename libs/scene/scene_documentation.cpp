@@ -11,7 +11,8 @@ namespace
 constexpr const char* head = R"(# The scene
 
 A scene is one TOML file that says everything about a section of jointed rock: its outline, rocks, joints, stress,
-what holds it, when which part of it is dug away, and where its movement is read. The programs read nothing else.
+what holds it, when which part of it is dug away, and where its movement is read. The programs read nothing else,
+but files beside it that it names: measured poles, and mapped traces.
 
 This page is made from the declarations in `libs/scene/scene_keys.cpp`:
 `jointgen --scene-keys-markdown > docs/scene.md`. The same keys as a table for scripts: `jointgen --scene-keys`.

@@ -1,6 +1,7 @@
 #include "scene/scene_keys.hpp"
 
 #include "model/error.hpp"
+#include "scene/field_data.hpp"
 
 namespace jointcreep
 {
@@ -285,23 +286,91 @@ Table<WrittenLaw> length_law(const std::string& name, Need need, const std::stri
              .optional()}};
 }
 
+std::vector<MeasuredPole> read_poles(const KeyInfo& key, const TomlValue& value, const Place& place)
+{
+    constexpr std::size_t most_poles = 100000;
+    const auto* const list = std::get_if<TomlValue::List>(&value.content);
+    if (!list || list->empty() || list->size() > most_poles)
+        place.refuse(key, value);
+    KeyInfo dip = key, direction = key;
+    dip.unit = direction.unit = degrees;
+    dip.range = from(0).to(90);
+    direction.range = from(0).to(360);
+    std::vector<MeasuredPole> poles;
+    for (const TomlValue& one : *list) {
+        const auto* const pair = std::get_if<TomlValue::List>(&one.content);
+        if (!pair || pair->size() != 2)
+            place.refuse(key, value);
+        poles.push_back(
+            {read_number(dip, pair->front(), place), read_number(direction, pair->back(), place), 1});
+    }
+    return poles;
+}
+
 // At the least concentration, 5, 7 poles in a thousand are past 90 degrees from the mean pole; below, the set
 // has hardly a direction left.
-Table<FisherLaw> orientation_law()
+Table<WrittenOrientation> orientation_law()
 {
+    using W = WrittenOrientation;
+    const auto dip = [](W& law) -> double& { return law.fisher.dip; };
+    const auto dip_direction = [](W& law) -> double& { return law.fisher.dip_direction; };
+    const auto concentration = [](W& law) -> double& { return law.fisher.concentration; };
+    const auto trend = [](W& law) -> double& { return law.scanline.trend; };
+    const auto plunge = [](W& law) -> double& { return law.scanline.plunge; };
+    const std::string fisher_only = ": needed by Fisher's law, refused by the other.",
+                      bootstrap_only = " With the law bootstrap only.";
     return {
         {"joint_set.orientation", inside, optional,
-         "Law of the poles (normals) of the joint planes in space, with section.azimuth_deg."},
-        {choice<FisherLaw, bool>(
-             "law", [](FisherLaw&, bool) {}, {{"Fisher", true}},
-             "Probability law. Fisher's: symmetric about the mean pole."),
-         number("mean_dip_deg", &FisherLaw::dip, degrees, from(0).to(90),
-                "Dip below the horizontal of the plane of the mean pole."),
-         number("mean_dip_direction_deg", &FisherLaw::dip_direction, degrees, from(0).to(360),
-                "Bearing of the dip of that plane, clockwise from north."),
-         number("concentration", &FisherLaw::concentration, none, from(5).to(1e6),
-                "Fisher's constant kappa: the larger, the nearer the poles to their mean. 63 percent of them "
-                "lie within 81 / sqrt(kappa) degrees.")}};
+         "Law of the poles (normals) of the joint planes in space, with section.azimuth_deg. Of lines, "
+         "Fisher's "
+         "law is that of the planes that a scanline along the mean trace's normal meets in the section, and "
+         "the "
+         "bootstrap that of all planes of the set; of segments and discs both are laws of all joints in "
+         "space, "
+         "which the section meets the sooner the larger their angle to it."},
+        {choice("law", &W::bootstrap, {{"Fisher", false}, {"bootstrap", true}},
+                "Probability law. Fisher's: symmetric about the mean pole. Bootstrap: measured poles, drawn "
+                "with "
+                "replacement."),
+         number<W>("mean_dip_deg", dip, degrees, from(0).to(90),
+                   "Dip below the horizontal of the plane of the mean pole" + fisher_only)
+             .optional(),
+         number<W>("mean_dip_direction_deg", dip_direction, degrees, from(0).to(360),
+                   "Bearing of the dip of that plane, clockwise from north" + fisher_only)
+             .optional(),
+         number<W>(
+             "concentration", concentration, none, from(5).to(1e6),
+             "Fisher's constant kappa: the larger, the nearer the poles to their mean. 63 percent of them "
+             "lie within 81 / sqrt(kappa) degrees. Needed by Fisher's law, refused by the other.")
+             .optional(),
+         key_of<W>({"poles_deg",
+                    "poles",
+                    {},
+                    {},
+                    "The measured planes, [[dip, dip direction], ...]. The law bootstrap needs either it or "
+                    "poles."},
+                   &W::poles, read_poles)
+             .optional(),
+         text("poles", &W::file,
+              "File beside the scene with the measured planes: CSV with the columns dip_deg, "
+              "dip_direction_deg "
+              "and, if wanted, weight." +
+                  bootstrap_only)
+             .optional(),
+         number<W>(
+             "scanline_trend_deg", trend, degrees, from(0).to(360),
+             "Bearing of the lower end of the scanline or borehole on which they were measured: weights "
+             "them by Terzaghi, by one over the cosine of the angle between pole and scanline." +
+                 bootstrap_only)
+             .together("scanline"),
+         number<W>("scanline_plunge_deg", plunge, degrees, from(-90).to(90),
+                   "Its inclination below the horizontal." + bootstrap_only)
+             .together("scanline"),
+         number(
+             "blind_zone_deg", &W::blind_zone, degrees, above(0).to(45),
+             "Planes at a smaller angle to the scanline weigh as if they were at this one. With a scanline "
+             "only.")
+             .optional("10")}};
 }
 
 // Refuses keys that the law lacks or does not take.
@@ -383,28 +452,165 @@ Key<JointSet> law(std::string name, Member member, const Table<WrittenLaw>& tabl
                             });
 }
 
-Key<JointSet> orientation(const Table<FisherLaw>& table)
+// The text of a file that a key names.
+const std::string& text_of_file(const std::string& file, const TomlValue& key_value, const std::string& key,
+                                const Place& place)
 {
-    const auto read = [table](const KeyInfo&, const TomlValue& value, const Place& outer) {
-        FisherLaw law{};
-        read_table(table, value, Place{outer.reading, table.info.shown()}, law);
-        return law;
+    const auto found = place.reading.files.find(file);
+    if (found == place.reading.files.end())
+        place.refuse(key_value.line,
+                     place.table + " " + key + " = " + shown(key_value) +
+                         ": wanted the name of a file beside the scene that can be read, or of "
+                         "a [[file]] in it");
+    return found->second;
+}
+
+void read_bootstrap(const TomlValue& value, const Place& place, WrittenOrientation& law)
+{
+    const TomlValue* const file = value.find("poles");
+    if ((file != nullptr) == !law.poles.empty())
+        place.refuse(value.line, place.table +
+                                     (file ? " has both poles_deg and poles" : " has no poles_deg") +
+                                     ": the law \"bootstrap\" needs either poles_deg or poles");
+    if (file) {
+        const std::string& text = text_of_file(law.file, *file, "poles", place);
+        try {
+            law.poles = poles_in_csv(text);
+        } catch (const input_error& error) {
+            place.refuse(file->line, place.table + " poles = " + shown(*file) + ": " + error.what());
+        }
+    }
+    const bool measured_on_line = value.find("scanline_trend_deg") != nullptr;
+    if (!measured_on_line && value.find("blind_zone_deg"))
+        place.refuse(value.find("blind_zone_deg")->line,
+                     place.table + " blind_zone_deg: wanted scanline_trend_deg beside it");
+    constexpr double usual_blind_zone = 10 * unit::deg;
+    if (measured_on_line)
+        correct_for_scanline(law.poles, law.scanline, law.blind_zone > 0 ? law.blind_zone : usual_blind_zone);
+}
+
+Key<JointSet> orientation(const Table<WrittenOrientation>& table)
+{
+    const auto read = [table](JointSet& set, const KeyInfo&, const TomlValue& value, const Place& outer) {
+        const Place place{outer.reading, table.info.shown()};
+        WrittenOrientation law;
+        read_table(table, value, place, law);
+        for (const Key<WrittenOrientation>& key : table.keys) {
+            if (key.info.name == "law")
+                continue;
+            const bool of_fisher = key.info.name.starts_with("mean_") || key.info.name == "concentration";
+            const TomlValue* const given = value.find(key.info.name);
+            if (given && of_fisher == law.bootstrap)
+                place.refuse(given->line, place.table + " " + key.info.name + " = " + shown(*given) +
+                                              ": the law does not take it");
+            if (!given && of_fisher && !law.bootstrap)
+                place.refuse(value.line,
+                             place.table + " has no " + key.info.name + ": the law \"Fisher\" needs it");
+        }
+        if (!law.bootstrap) {
+            set.orientation = law.fisher;
+            return;
+        }
+        read_bootstrap(value, place, law);
+        set.poles = law.poles;
     };
-    return key_of<JointSet>({"orientation", "law", {}, {}, "Law of the joint planes' poles in space."},
-                            &JointSet::orientation, read)
-        .optional();
+    Key<JointSet> key{{"orientation", "law", {}, {}, "Law of the joint planes' poles in space."}, read, {}};
+    return std::move(key).optional();
+}
+
+Table<WrittenDensity> density_table()
+{
+    using W = WrittenDensity;
+    constexpr Unit per_m{"1/m", 1 / unit::m}, per_m2{"1/m2", 1 / (unit::m * unit::m)},
+        per_m3{"1/m3", 1 / (unit::m * unit::m * unit::m)};
+    const auto angle = [](W& all) -> std::optional<double>& { return all.scanline.angle; };
+    const auto trend = [](W& all) -> double& { return all.scanline.trend; };
+    const auto plunge = [](W& all) -> double& { return all.scanline.plunge; };
+    const Range dense = above(0).to(1e6);
+    return {
+        {"joint_set.density", inside, optional,
+         "How much of a set there is, measured otherwise than by the spacing: one of five densities of joint "
+         "traces, before they end at others. Of lines it sets the mean spacing. Scatter of the orientation "
+         "is "
+         "taken into account."},
+        {number("P10_per_m", &W::p10, per_m, dense,
+                "Joint traces that a scanline meets per metre, with its direction: scanline_angle_deg, or "
+                "scanline_trend_deg and scanline_plunge_deg. Corrected by Terzaghi.")
+             .optional(),
+         number("P20_per_m2", &W::p20, per_m2, dense, "Trace midpoints per area of section; not of lines.")
+             .optional(),
+         number("P21_per_m", &W::p21, per_m, dense, "Trace length per area of section.").optional(),
+         number("P30_per_m3", &W::p30, per_m3, dense, "Disc centres per volume; of discs only.").optional(),
+         number("P32_per_m", &W::p32, per_m, dense,
+                "Joint area per volume; of sets with an orientation in space.")
+             .optional(),
+         number<W>("scanline_angle_deg", angle, degrees, within(180),
+                   "Direction of the scanline in the section, counter-clockwise from the x axis; with "
+                   "P10_per_m only.")
+             .optional(),
+         number<W>("scanline_trend_deg", trend, degrees, from(0).to(360),
+                   "Bearing of the lower end of a scanline in space; with P10_per_m only.")
+             .together("scanline"),
+         number<W>("scanline_plunge_deg", plunge, degrees, from(-90).to(90),
+                   "Its inclination below the horizontal.")
+             .together("scanline")}};
+}
+
+Density read_density(const Table<WrittenDensity>& table, const TomlValue& value, const Place& outer)
+{
+    using Measure = Density::Measure;
+    const Place place{outer.reading, table.info.shown()};
+    WrittenDensity written;
+    read_table(table, value, place, written);
+    const std::vector<std::pair<Measure, std::optional<double>>> measures{{Measure::p10, written.p10},
+                                                                          {Measure::p20, written.p20},
+                                                                          {Measure::p21, written.p21},
+                                                                          {Measure::p30, written.p30},
+                                                                          {Measure::p32, written.p32}};
+    std::optional<Density> density;
+    for (const auto& [measure, amount] : measures)
+        if (amount) {
+            if (density)
+                place.refuse(value.line, place.table + " = " + shown(value) + ": wanted one measure alone");
+            density = Density{measure, *amount, written.scanline};
+        }
+    if (!density)
+        place.refuse(value.line, place.table + " = " + shown(value) +
+                                     ": wanted one of P10_per_m, P20_per_m2, P21_per_m, P30_per_m3 and "
+                                     "P32_per_m");
+    const bool angle = value.find("scanline_angle_deg"), trend = value.find("scanline_trend_deg");
+    if (density->measure == Measure::p10 && angle == trend)
+        place.refuse(value.line, place.table + " = " + shown(value) +
+                                     ": P10_per_m needs either scanline_angle_deg, or scanline_trend_deg and "
+                                     "scanline_plunge_deg");
+    if (density->measure != Measure::p10 && (angle || trend))
+        place.refuse(value.line,
+                     place.table + " = " + shown(value) + ": only P10_per_m is measured on a scanline");
+    return *density;
 }
 
 Table<JointSet> joint_set(const SceneTables& laws)
 {
+    const auto read_amount = [table = laws.density](const KeyInfo&, const TomlValue& value,
+                                                    const Place& place) {
+        return read_density(table, value, place);
+    };
     return {
         {"joint_set", in_list, optional,
-         "Joints sharing their statistics: parallel lines, along each of which joint traces and rock bridges "
-         "alternate. How they lie is given by one of trace_angle, orientation, or dip and dip_direction."},
-        {text("name", &JointSet::name, "Name, once among the joints and joint sets."),
+         "Joints sharing their statistics. How they lie is given by one of trace_angle, orientation, or dip "
+         "and "
+         "dip_direction."},
+        {text("name", &JointSet::name, "Name, once among the joints, joint sets and mapped sets."),
          text("material", &JointSet::material, "Name of the joint material of its traces."),
+         choice(
+             "kind", &JointSet::kind,
+             {{"lines", SetKind::lines}, {"segments", SetKind::segments}, {"discs", SetKind::discs}},
+             "Lines through the whole section, along each of which joint traces and rock bridges alternate; "
+             "segments of the section at random (Baecher), each a joint trace; or the traces that discs at "
+             "random in space leave in the section.")
+             .or_else(std::string("lines")),
          law("trace_angle", &JointSet::trace_angle, laws.trace_angle, laws_of_angles(),
-             "Angle of the traces in the section.")
+             "Angle of the traces in the section; not of discs.")
              .optional(),
          law("dip", &JointSet::dip, laws.dip, laws_of_angles(), "Dip of the joint planes.").optional(),
          law("dip_direction", &JointSet::dip_direction, laws.dip_direction, laws_of_angles(),
@@ -412,13 +618,63 @@ Table<JointSet> joint_set(const SceneTables& laws)
              .optional(),
          orientation(laws.orientation),
          law("spacing", &JointSet::spacing, laws.spacing, laws_of_lengths(),
-             "Distance between neighbouring joint planes."),
+             "Of lines: distance between neighbouring joint planes. Lines need it or a density. With both "
+             "the "
+             "density sets the mean, and all of the law is stretched to it; with a density alone the law is "
+             "negative exponential.")
+             .optional(),
+         key_of<JointSet>({"density", "density", {}, {}, "How much there is. Segments and discs need it."},
+                          &JointSet::density, read_amount)
+             .optional(),
          law("length", &JointSet::length, laws.length, laws_of_lengths(),
-             "Length of the joint traces. Needed unless the persistence is 0 or 1.")
+             "Length of the joint traces. Segments need it, and lines unless their persistence is 0 or 1.")
+             .optional(),
+         law("diameter", &JointSet::diameter, laws.diameter, laws_of_lengths(),
+             "Diameter of the discs, which need it; of others refused.")
              .optional(),
          number("persistence", &JointSet::persistence, none, from(0).to(1),
-                "Fraction of a line that is joint."),
-         polygon("region_m", &JointSet::region, "Where the set exists.").optional("the whole section")}};
+                "Fraction of a line that is joint. Lines need it; of others refused.")
+             .optional(),
+         names("terminates_at", &JointSet::terminates_at,
+               "Names of joint sets, joints and mapped sets at whose traces those of this set may end; of "
+               "segments and discs.")
+             .optional(),
+         number("termination_probability", &JointSet::termination_probability, none, above(0).to(1),
+                "With which a trace, grown from its midpoint, ends at each crossing with one of them.")
+             .or_else(1.0),
+         polygon("region_m", &JointSet::region, "Where the set exists.").optional("the whole section"),
+         names("rocks", &JointSet::rocks, "Names of the rocks in which the set exists, instead of a region.")
+             .optional("all")}};
+}
+
+Table<WrittenMapped> mapped()
+{
+    using W = WrittenMapped;
+    return {
+        {"mapped", in_list, optional,
+         "Joint traces from a map of the section: every straight piece is a joint, all of it joint, no rock "
+         "bridges."},
+        {text("name", &W::name, "Name, once among the joints, joint sets and mapped sets."),
+         text("material", &W::material, "Name of the joint material."),
+         text("file", &W::file,
+              "File beside the scene, with coordinates in metres of the section. GeoJSON of LineString and "
+              "MultiLineString; or CSV with the columns x1_m, y1_m, x2_m, y2_m and, if wanted, id; or CSV "
+              "with "
+              "the columns id, x_m, y_m, a row a place, those of a trace together."),
+         text("property", &W::property,
+              "Takes only the traces whose property of this name, in CSV a column, has the value below.")
+             .together("property"),
+         text("value", &W::value, "The property's value.").together("property")}};
+}
+
+Table<HeldFile> held_file()
+{
+    return {
+        {"file", in_list, optional,
+         "A file that the scene names, held in the scene itself. The programs write it into the copy of the "
+         "scene that their own files carry, so that this copy says everything."},
+        {text("name", &HeldFile::name, "As the scene names it; it is then not looked for beside the scene."),
+         key_of<HeldFile>({"text", "file text", {}, {}, "What is in it."}, &HeldFile::text, read_file_text)}};
 }
 
 // ----------------------------------------------------------------------------------------------------------------
@@ -630,9 +886,12 @@ SceneTables all_tables()
     all.dip_direction =
         angle_law("dip_direction", from(0).to(360), "Bearing of the dip, clockwise from north.");
     all.orientation = orientation_law();
-    all.spacing = length_law("spacing", required, "Spacing along the set's mean normal in space.");
+    all.spacing = length_law("spacing", optional, "Spacing along the set's mean normal in space.");
     all.length = length_law("length", optional, "Length of the joint traces.");
+    all.diameter = length_law("diameter", optional, "Diameter of the discs.");
+    all.density = density_table();
     all.joint_set = joint_set(all);
+    all.mapped = mapped();
     all.in_situ_stress = in_situ_stress();
     all.boundary = boundary();
     all.schedule = schedule();
@@ -644,6 +903,7 @@ SceneTables all_tables()
     all.cutting = cutting();
     all.equilibrium = equilibrium();
     all.random = random_numbers();
+    all.file = held_file();
     return all;
 }
 
@@ -653,6 +913,17 @@ const SceneTables& scene_tables()
 {
     static const SceneTables tables = all_tables();
     return tables;
+}
+
+MappedSet mapped_set(const WrittenMapped& written, const TomlValue& table, const Place& place)
+{
+    const TomlValue& file = *table.find("file");
+    const std::string& text = text_of_file(written.file, file, "file", place);
+    try {
+        return {written.name, written.material, mapped_traces(text, {written.property, written.value})};
+    } catch (const input_error& error) {
+        place.refuse(file.line, place.table + " file = " + shown(file) + ": " + error.what());
+    }
 }
 
 } // namespace jointcreep

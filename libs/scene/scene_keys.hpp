@@ -21,6 +21,32 @@ struct WrittenLaw {
     double exponent = 0;
 };
 
+// A law of poles as a scene writes it.
+struct WrittenOrientation {
+    bool bootstrap = false;
+    FisherLaw fisher{};
+    std::vector<MeasuredPole> poles{};
+    std::string file{}; // of poles
+    Scanline scanline{};
+    double blind_zone = 0; // [rad]
+};
+
+// A density as a scene writes it: one of five measures.
+struct WrittenDensity {
+    std::optional<double> p10{}, p20{}, p21{}, p30{}, p32{};
+    Scanline scanline{};
+};
+
+// A mapped set before its file is read.
+struct WrittenMapped {
+    std::string name, material, file, property, value;
+};
+
+// A file that the scene holds.
+struct HeldFile {
+    std::string name, text;
+};
+
 // The tables in the order they are read and documented.
 struct SceneTables {
     Table<Scene> top; // keys outside any table
@@ -31,8 +57,10 @@ struct SceneTables {
     Table<Kelvin> kelvin_chain; // inside joint_material
     Table<SingleJoint> joint;
     Table<JointSet> joint_set;
-    Table<WrittenLaw> trace_angle, dip, dip_direction, spacing, length; // inside joint_set
-    Table<FisherLaw> orientation;                                       // inside joint_set
+    Table<WrittenLaw> trace_angle, dip, dip_direction, spacing, length, diameter; // inside joint_set
+    Table<WrittenOrientation> orientation;                                        // inside joint_set
+    Table<WrittenDensity> density;                                                // inside joint_set
+    Table<WrittenMapped> mapped;
     Table<InSituStress> in_situ_stress;
     Table<Boundary> boundary;
     Table<Schedule> schedule;
@@ -44,6 +72,7 @@ struct SceneTables {
     Table<Cutting> cutting;
     Table<Equilibrium> equilibrium;
     Table<Scene> random;
+    Table<HeldFile> file;
 
     // Calls visit(table) for each, in order.
     template <class Visit>
@@ -51,12 +80,16 @@ struct SceneTables {
     {
         visit(top), visit(section), visit(rock), visit(region), visit(joint_material);
         visit(kelvin_chain), visit(joint), visit(joint_set), visit(trace_angle), visit(dip),
-            visit(dip_direction), visit(orientation), visit(spacing), visit(length);
+            visit(dip_direction), visit(orientation), visit(spacing), visit(length), visit(diameter),
+            visit(density), visit(mapped);
         visit(in_situ_stress), visit(boundary), visit(schedule), visit(stage), visit(point), visit(gauge);
-        visit(creep), visit(zones), visit(cutting), visit(equilibrium), visit(random);
+        visit(creep), visit(zones), visit(cutting), visit(equilibrium), visit(random), visit(file);
     }
 };
 
 const SceneTables& scene_tables();
+
+// The mapped set that a table of the scene, at `place`, stands for, from the file that it names.
+MappedSet mapped_set(const WrittenMapped& written, const TomlValue& table, const Place& place);
 
 } // namespace jointcreep

@@ -1,6 +1,8 @@
 #include "statistics/set_statistics.hpp"
 
+#include "sampling/density.hpp"
 #include "sampling/joint_sets.hpp"
+#include "sampling/orientations.hpp"
 #include "statistics/rows.hpp"
 #include "statistics/window.hpp"
 
@@ -375,7 +377,7 @@ void add_orientation(Statistics& statistics, const Scene& scene, const JointSet&
         add_angles(statistics, set.name, "trace angle", *set.trace_angle, angles);
     } else if (set.orientation) {
         add_poles(statistics, set.name, *set.orientation, *scene.azimuth, seen.crossings);
-    } else {
+    } else if (set.dip) {
         add_planes(statistics, set.name, *set.dip, *set.dip_direction, *scene.azimuth, seen.crossings);
     }
 }
@@ -567,12 +569,17 @@ void add_densities(Statistics& statistics, const Scene& scene, const JointSet& s
     if (k == 0)
         return;
     const double spread = dispersion_of(set, mean, window.extent(mean.across()), seen);
-    double stretched = 0; // length of lines inside, for their number along the mean normal
-    const std::vector<double> turns = turns_by_law(scene, set);
-    for (const double turn : turns)
-        stretched +=
-            1 / std::cos(std::min(std::abs(turn), 85 * pi / 180)) / static_cast<double>(turns.size());
-    const double p21 = k * mean.normal_part / positive_moments(set.spacing).mean * stretched;
+    double p21 = 0;
+    if (set.poles.empty()) {
+        double stretched = 0; // length of lines inside, for their number along the mean normal
+        const std::vector<double> turns = turns_by_law(scene, set);
+        for (const double turn : turns)
+            stretched +=
+                1 / std::cos(std::min(std::abs(turn), 85 * pi / 180)) / static_cast<double>(turns.size());
+        p21 = k * mean.normal_part / positive_moments(set.spacing).mean * stretched;
+    } else {
+        p21 = density_of(set, scene).p21;
+    }
     const double mean_length = set.length ? positive_moments(*set.length).mean : 0;
     const double area = window.area();
     if (area <= 0)
@@ -631,6 +638,233 @@ void add_densities(Statistics& statistics, const Scene& scene, const JointSet& s
              .target = mean_length});
 }
 
+// A number of joints that is Poisson distributed, on so much of scanline or area.
+void add_poisson(Statistics& statistics, const std::string& subject, Row row, double size)
+{
+    row.achieved = static_cast<double>(row.sample_size) / size;
+    row.is_judged = row.target.has_value();
+    if (row.target && *row.target * size >= least_sample) {
+        const Renewal poisson{1 / *row.target, 1, 2};
+        const Range range = mean_range(row.sample_size, size, poisson, confidence);
+        row.interval = Range{1 / range.high, 1 / range.low};
+        row.p_value = count_p(row.sample_size, size, poisson);
+    }
+    add(statistics, subject, row);
+}
+
+// Of the chords that a section makes of discs whose diameters D it meets by their size: P(chord > l) is the
+// integral of (1 - F(sqrt(l^2 + v^2))) / E[D] over v from 0 (from Warburton's 1980 by parts, v^2 = D^2 -
+// l^2).
+std::vector<double> chords_as_uniform(const Law& diameter, const std::vector<double>& chords)
+{
+    const double longest = chords.empty() ? 0 : *std::max_element(chords.begin(), chords.end());
+    const double mean = positive_moments(diameter).mean;
+    double end = std::max(mean, longest);
+    while (1 - positive_distribution(diameter, end) > 1e-9)
+        end *= 1.3;
+    const int steps = 600, places = 300;
+    std::vector<double> below(places + 1);
+    for (int i = 0; i <= places; ++i) {
+        const double l = longest * i / places;
+        double sum = 0;
+        for (int s = 0; s < steps; ++s) {
+            // Finer near 0, where most of the diameters are.
+            const double u = (s + 0.5) / steps, v = end * u * u;
+            sum += (1 - positive_distribution(diameter, std::hypot(l, v))) * 2 * end * u / steps;
+        }
+        below[static_cast<std::size_t>(i)] = 1 - std::min(1.0, sum / mean);
+    }
+    std::vector<double> uniforms;
+    for (const double chord : chords) {
+        const double at = std::min(chord / longest * places, places - 1e-9);
+        const auto i = static_cast<std::size_t>(at);
+        uniforms.push_back(below[i] + (at - static_cast<double>(i)) * (below[i + 1] - below[i]));
+    }
+    return uniforms;
+}
+
+// Angles from the mean trace by a set's law in space, which a section meets by |n_p|.
+std::vector<double> turns_as_uniform(const Orientations& orientations, const MeanTrace& mean,
+                                     const std::vector<double>& turns)
+{
+    const Rose rose = orientations.rose();
+    std::vector<std::pair<double, double>> law; // angle, share
+    double total = 0;
+    for (std::size_t i = 0; i < rose.pole.size(); ++i) {
+        const Vector2d normal = rose.pole[i].head<2>();
+        const double share = rose.share[i] * normal.norm();
+        if (share > 0)
+            law.emplace_back(turn_from(mean.along, {normal.y(), -normal.x()}), share);
+        total += share;
+    }
+    std::sort(law.begin(), law.end());
+    std::vector<double> sum(1, 0.0);
+    for (const auto& [turn, share] : law)
+        sum.push_back(sum.back() + share / total);
+    std::vector<double> uniforms;
+    for (const double turn : turns) {
+        const auto after = std::upper_bound(law.begin(), law.end(), std::pair{turn, 2.0}) - law.begin();
+        uniforms.push_back(sum[static_cast<std::size_t>(after)]);
+    }
+    return uniforms;
+}
+
+// A set of segments or discs: traces about Poisson points, /joints/point. Those whose point is inside are a
+// fair sample of orientations and lengths, however far they reach.
+void add_traces(Statistics& statistics, const Scene& scene, const JointSet& set, const MeanTrace& mean,
+                const Window& window, const Circle& circle, const Joints& joints, Index index)
+{
+    const bool are_discs = set.kind == SetKind::discs, are_whole = !set.region && set.terminates_at.empty();
+    const Scanline scanline = scanline_of(window, mean);
+    const SetDensity wanted = density_of(set, scene);
+    std::map<Index, double> inside; // length of each trace [m]
+    std::map<Index, bool> has_point;
+    std::vector<double> turns, lengths;
+    std::size_t crossings = 0;
+    double n = 0, m = 0;
+    for (std::size_t j = 0; j < joints.set.size(); ++j) {
+        if (joints.set[j] != index)
+            continue;
+        const Vector2d from = joints.from[j], to = joints.to[j], direction = (to - from).normalized();
+        const double length = (to - from).norm();
+        const Index number = line_of(joints.number[j]);
+        for (const Range& stretch : window.stretches({from, direction}))
+            inside[number] += std::max(0.0, std::min(stretch.high, length) - std::max(stretch.low, 0.0));
+        if (window.contains(joints.point[j]) && !has_point[number]) {
+            has_point[number] = true;
+            turns.push_back(turn_from(mean.along, direction));
+            lengths.push_back(length);
+        }
+        const InCircle here = in_circle(circle, from, to);
+        n += here.crossings;
+        m += here.ends;
+        const double advance = direction.dot(mean.along);
+        const double at = (scanline.offset - from.dot(mean.along)) / advance;
+        if (advance != 0 && at >= 0 && at <= length) {
+            const double where = (from + at * direction).dot(mean.across());
+            crossings += where >= scanline.reach.low && where <= scanline.reach.high;
+        }
+    }
+    const bool is_enough = turns.size() >= least_sample;
+    if (set.trace_angle) {
+        std::vector<double> angles;
+        for (const double turn : turns)
+            angles.push_back(set.trace_angle->mean + turn);
+        add_angles(statistics, set.name, "trace angle", *set.trace_angle, angles);
+    } else if (set.poles.empty()) {
+        Row row{.quantity = "trace angle, law", .unit = "1", .sample_size = turns.size(), .is_judged = true};
+        const bool is_constant = set.dip && set.dip->deviation == 0 && set.dip_direction->deviation == 0;
+        if (is_constant) {
+            row.is_exact = std::all_of(turns.begin(), turns.end(),
+                                       [](double turn) { return std::abs(turn) < rounding; });
+        } else if (is_enough) {
+            const Fit fit = kolmogorov_smirnov(turns_as_uniform(Orientations(set, scene), mean, turns));
+            row.achieved = fit.distance;
+            row.p_value = fit.p_value;
+        }
+        add(statistics, set.name, row);
+    }
+
+    const bool are_ended = !set.terminates_at.empty(); // then targets are those before
+    const double area = window.area();
+    if (area <= 0)
+        return;
+    // Where a region cuts traces off, those whose point it leaves no piece of are missing: nothing is judged.
+    add_poisson(statistics, set.name,
+                {.quantity = "P20",
+                 .unit = "1/m2",
+                 .sample_size = turns.size(),
+                 .target = set.region ? std::optional<double>() : wanted.p20},
+                area);
+    double total = 0, squares = 0;
+    for (const auto& [number, length] : inside) {
+        total += length;
+        squares += length * length;
+    }
+    Row p21{.quantity = "P21", .unit = "1/m", .achieved = total / area, .sample_size = inside.size()};
+    if (are_ended) {
+        add(statistics, set.name, p21);
+    } else {
+        p21.target = wanted.p21;
+        add_ratio(statistics, set.name, p21, std::sqrt(squares) / area, inside.size());
+    }
+    const Vector2d across = mean.across();
+    add_poisson(statistics, set.name,
+                {.quantity = "P10 along the mean normal",
+                 .unit = "1/m",
+                 .sample_size = crossings,
+                 .target = are_ended ? std::optional<double>()
+                                     : expected_p10(set, scene, {across.x(), across.y(), 0})},
+                scanline.reach.high - scanline.reach.low);
+
+    const Law& size = are_discs ? *set.diameter : *set.length;
+    const Moments moments = positive_moments(size);
+    const double c = moments.squared_variation, second = 1 + c, third = moments.third + 3 * c + 1;
+    const double target = moments.mean * (are_discs ? pi / 4 * second : 1);
+    const double variance =
+        moments.mean * moments.mean * (are_discs ? 2.0 / 3 * third - std::pow(pi / 4 * second, 2) : c);
+    if (are_whole) {
+        const auto count = static_cast<double>(lengths.size());
+        Row of_mean{.quantity = "trace length, mean",
+                    .unit = "m",
+                    .achieved = lengths.empty() ? 0 : mean_of(lengths),
+                    .sample_size = lengths.size(),
+                    .target = target};
+        double off = 0;
+        for (const double length : lengths)
+            off += std::pow(length - of_mean.achieved, 2);
+        Row of_law{
+            .quantity = "trace length, law", .unit = "1", .sample_size = lengths.size(), .is_judged = true};
+        if (!are_discs && (size.kind == Law::Kind::constant || size.deviation == 0)) {
+            of_mean.is_exact = of_law.is_exact =
+                std::all_of(lengths.begin(), lengths.end(),
+                            [&](double length) { return std::abs(length / target - 1) < rounding; });
+            add(statistics, set.name, of_mean);
+        } else {
+            add_ratio(statistics, set.name, of_mean,
+                      lengths.size() > 1 ? std::sqrt(off / (count - 1) / count) : 0, lengths.size(),
+                      std::sqrt(variance / std::max(1.0, count)));
+            if (is_enough) {
+                std::vector<double> uniforms;
+                if (are_discs)
+                    uniforms = chords_as_uniform(size, lengths);
+                else
+                    for (const double length : lengths)
+                        uniforms.push_back(positive_distribution(size, length));
+                const Fit fit = kolmogorov_smirnov(uniforms);
+                of_law.achieved = fit.distance;
+                of_law.p_value = fit.p_value;
+            }
+        }
+        add(statistics, set.name, of_law);
+    }
+    if (circle.radius <= 0 || are_ended)
+        return;
+    const double r = circle.radius;
+    if (!set.region)
+        add(statistics, set.name,
+            {.quantity = "P20 in a circle",
+             .unit = "1/m2",
+             .achieved = m / (2 * pi * r * r),
+             .sample_size = static_cast<std::size_t>(m),
+             .target = wanted.p20});
+    add(statistics, set.name,
+        {.quantity = "P21 in a circle",
+         .unit = "1/m",
+         .achieved = n / (4 * r),
+         .sample_size = static_cast<std::size_t>(n),
+         .target = wanted.p21});
+}
+
+Law times(Law law, double factor)
+{
+    law.mean *= factor;
+    law.deviation *= factor;
+    law.least *= factor;
+    law.most *= factor;
+    return law;
+}
+
 } // namespace
 
 TraceRows trace_rows(const Joints& joints)
@@ -648,12 +882,8 @@ TraceRows trace_rows(const Joints& joints)
 
 MeanTrace mean_trace(const Scene& scene, const JointSet& set)
 {
-    if (set.trace_angle)
-        return {{std::cos(set.trace_angle->mean), std::sin(set.trace_angle->mean)}, 1};
-    const double dip = set.orientation ? set.orientation->dip : set.dip->mean;
-    const double direction = set.orientation ? set.orientation->dip_direction : set.dip_direction->mean;
-    const Vector2d normal = section_normal(dip, direction, *scene.azimuth);
-    return {Vector2d(normal.y(), -normal.x()).normalized(), normal.norm()};
+    const Vector2d trace = Orientations(set, scene).mean_trace();
+    return {trace.normalized(), trace.norm()};
 }
 
 std::vector<double> turns_by_law(const Scene& scene, const JointSet& set)
@@ -697,13 +927,29 @@ std::vector<double> turns_by_law(const Scene& scene, const JointSet& set)
 void add_set(Statistics& statistics, const Scene& scene, const Joints& joints, const TraceRows& traces,
              Index index)
 {
-    const JointSet& set = scene.joint_sets[static_cast<std::size_t>(index)];
+    JointSet set = scene.joint_sets[static_cast<std::size_t>(index)];
+    if (!set.rocks.empty())
+        return; // windows are polygons
     const Window window = window_of(scene, set);
-    const MeanTrace mean = mean_trace(scene, set);
-    const Circle circle = window.circle();
-    const Seen seen = look_at(set, window, mean, circle, joints, traces, index);
-    if (seen.scanline == 0)
+    MeanTrace mean = mean_trace(scene, set);
+    const Scanline scanline = scanline_of(window, mean);
+    if (scanline.reach.high <= scanline.reach.low)
         return; // the region is outside the section
+    const Circle circle = window.circle();
+    if (set.kind != SetKind::lines)
+        return add_traces(statistics, scene, set, mean, window, circle, joints, index);
+    if (!set.poles.empty()) {
+        JointSet plain = set;
+        plain.density.reset();
+        mean.normal_part = positive_moments(set.spacing).mean / density_of(plain, scene).spacing;
+    }
+    if (set.density) {
+        // The spacing's law is one of shape; its mean follows from the density.
+        const double in_section = density_of(set, scene).spacing;
+        set.spacing = times(set.spacing, in_section * mean.normal_part / positive_moments(set.spacing).mean);
+        set.density.reset();
+    }
+    const Seen seen = look_at(set, window, mean, circle, joints, traces, index);
     add_orientation(statistics, scene, set, seen);
     add_spacing(statistics, set, mean, seen);
     add_persistence(statistics, set, seen);

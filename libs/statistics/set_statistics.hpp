@@ -17,6 +17,7 @@
 //   Kolmogorov and Smirnov's test may ask them.
 // - A circle inside, by the joint traces that cross it (n) and their ends in it (m): P21 = n / (4 r), P20 =
 //   m / (2 pi r^2), mean length pi r n / (2 m) (Mauldon et al.; Zhang and Einstein 1998).
+// - Segments and discs: those whose own point, /joints/point, is inside.
 
 #pragma once
 

@@ -17,6 +17,7 @@ namespace
 {
 
 // What lines of all sets do together, where it has a closed form: no regions, no single joints, and each set
+// of lines with a spacing,
 // either without scatter or with negative exponential spacing, so that its lines are independent.
 struct Expected {
     double crossings = 0;       // of joint traces, per area [1/m2]
@@ -33,7 +34,11 @@ double secant(double turn)
 
 std::optional<Expected> expected_of(const Scene& scene)
 {
-    if (!scene.joints.empty() || scene.joint_sets.empty())
+    const auto is_other = [](const JointSet& set) {
+        return set.kind != SetKind::lines || set.density || !set.poles.empty() || !set.rocks.empty();
+    };
+    if (!scene.joints.empty() || !scene.mapped.empty() || scene.joint_sets.empty() ||
+        std::any_of(scene.joint_sets.begin(), scene.joint_sets.end(), is_other))
         return {};
     const Window window(scene.outline);
     const double area = window.area();

@@ -109,6 +109,12 @@ double Window::area() const
     return area;
 }
 
+bool Window::contains(const Vector2d& place) const
+{
+    return std::all_of(polygons_.begin(), polygons_.end(),
+                       [&place](const Polygon& polygon) { return depth(polygon, place) > 0; });
+}
+
 double Window::stretches_per_density(const Vector2d& direction) const
 {
     double seen = 0;

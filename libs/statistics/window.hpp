@@ -36,6 +36,7 @@ public:
     Range extent(const Eigen::Vector2d& direction) const;
 
     double area() const; // [m2]
+    bool contains(const Eigen::Vector2d& place) const;
 
     // Mean number of stretches that lines of this direction leave inside, per line and metre across them:
     // half the length of the boundary as seen along them (Crofton); the width of a convex window [m].

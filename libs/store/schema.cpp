@@ -67,7 +67,7 @@ std::vector<Field> fields_of(Names& names)
         {"/names/joint_material", &names.joint_material, {"joint_material"}, "1", any(),
          "Joint materials, as named in the scene."},
         {"/names/joint_set", &names.joint_set, {"joint_set"}, "1", any(),
-         "Joint sets, then the single joints, each as a set of its own."},
+         "Joint sets, then the single joints, each as a set of its own, then the mapped sets."},
         {"/names/stage", &names.stage, {"stage"}, "1", any(), "Excavation stages, as named in the scene."},
     };
     // clang-format on

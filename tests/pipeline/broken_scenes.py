@@ -63,7 +63,7 @@ def outside(bound, step):
 
 def broken_values(key):
     kind = key["kind"]
-    wrong_type = {"text": "1", "number": '"1"', "integer": "1.5", "date": '"1994-06-05"', "point": "[1, 2, 3]",
+    wrong_type = {"text": "1", "file text": "1", "names": '"flat"', "number": '"1"', "integer": "1.5", "date": '"1994-06-05"', "point": "[1, 2, 3]",
                   "course": "[[1, 2, 3]]", "polygon": "[[0, 0], [1, 1]]",
                   "polygons": "[[0, 0], [1, 0], [1, 1]]"}
     yield "wrong type", wrong_type.get(kind, "1")
@@ -88,7 +88,7 @@ def variants(key, text):
     table, name = key["table"], key["key"]
     header, at = find(lines, table, name)
     in_law = "." in table
-    entry = rf"(?<=[{{,] ){name} = (\"[^\"]*\"|[^,}}]*[^,}} ])" if in_law else rf"^{name} = .*$"
+    entry = rf"(?<=[{{,] ){name} = (\"[^\"]*\"|\[\[.*?\]\]|[^,}}]*[^,}} ])" if in_law else rf"^{name} = .*$"
 
     def edited(new):
         return "\n".join(lines[:at] + [re.sub(entry, lambda _: new, lines[at])] + lines[at + 1 :])

@@ -380,6 +380,190 @@ TEST(SampleJoints, CutsLinesByTheRegionIntoPieces)
         EXPECT_TRUE(is_inside(*set.region, (joints.trace_from[t] + joints.trace_to[t]) / 2));
 }
 
+namespace
+{
+
+JointSet segment_set(const std::string& name, double angle, double scatter, double p21)
+{
+    JointSet set = joint_set(name, angle, scatter, 1, 0);
+    set.kind = SetKind::segments;
+    set.density = Density{Density::Measure::p21, p21};
+    return set;
+}
+
+JointSet disc_set(const std::string& name, double p32)
+{
+    JointSet set = segment_set(name, 0, 0, 1);
+    set.kind = SetKind::discs;
+    set.trace_angle.reset();
+    set.orientation = FisherLaw{60 * deg, 100 * deg, 20};
+    set.density = Density{Density::Measure::p32, p32};
+    set.diameter = Law{Kind::lognormal, 6, 3};
+    return set;
+}
+
+Scene scene_in_space(const std::vector<JointSet>& sets)
+{
+    Scene scene = scene_of(sets);
+    scene.azimuth = 60 * deg;
+    return scene;
+}
+
+} // namespace
+
+TEST(SampleJoints, LeavesSetsOfSegmentsAndDiscsAloneToo)
+{
+    const JointSet lines = joint_set("lines", .3, .1, 4, .5), segments = segment_set("segments", 1.5, .2, .3),
+                   discs = disc_set("discs", .3);
+    const Joints first = sample_joints(scene_in_space({lines, segments, discs}), 1, 0);
+    JointSet denser = segments;
+    denser.density->value = .4;
+    const Joints second = sample_joints(scene_in_space({discs, denser, lines}), 1, 0);
+    EXPECT_GT(rows(first, 1).size(), 20);
+    EXPECT_GT(rows(first, 2).size(), 20);
+    EXPECT_EQ(rows(first, 0), rows(second, 2));
+    EXPECT_EQ(rows(first, 2), rows(second, 0));
+    EXPECT_NE(rows(first, 1), rows(second, 1));
+    EXPECT_EQ(rows(first, 1), rows(sample_joints(scene_in_space({segments}), 1, 0), 0));
+    EXPECT_NE(rows(first, 1), rows(sample_joints(scene_in_space({segments}), 2, 0), 0));
+    EXPECT_NE(rows(first, 1), rows(sample_joints(scene_in_space({segments}), 1, 1), 0));
+    // A denser set has the joints of the other one, and more.
+    const Rows few = rows(first, 1);
+    for (const auto& [number, row] : rows(second, 1))
+        if (few.contains(number)) {
+            EXPECT_EQ(few.at(number), row);
+        }
+
+    // Terminations change the ends of their own set's joints alone.
+    JointSet ended = segments;
+    ended.terminates_at = {"lines", "discs"};
+    const Joints third = sample_joints(scene_in_space({ended, lines, discs}), 1, 0);
+    EXPECT_EQ(rows(first, 0), rows(third, 1));
+    EXPECT_EQ(rows(first, 2), rows(third, 2));
+    EXPECT_NE(rows(first, 1), rows(third, 0));
+    int shorter = 0;
+    for (const auto& [number, row] : rows(third, 0)) {
+        const Row& whole = few.at(number);
+        const double length = std::hypot(row[2] - row[0], row[3] - row[1]),
+                     before = std::hypot(whole[2] - whole[0], whole[3] - whole[1]);
+        EXPECT_LE(length, before + 1e-12);
+        shorter += length < before - 1e-9;
+    }
+    EXPECT_GT(shorter, 20);
+}
+
+TEST(SampleJoints, KeepsSegmentsWhenTheSectionGrowsInItsWindow)
+{
+    const JointSet set = segment_set("a", .3, .2, .3);
+    const Rows small = rows(sample_joints(scene_of({set}, box(1, 1, 63, 31)), 1, 0), 0);
+    const Rows large = rows(sample_joints(scene_of({set}, box(.5, .5, 63.5, 31.5)), 1, 0), 0);
+    EXPECT_GT(small.size(), 50);
+    for (const auto& [number, row] : small)
+        EXPECT_EQ(row, large.at(number));
+}
+
+TEST(SampleJoints, MakesASegmentOneTraceInTheSection)
+{
+    const Polygon outline{{0, 0}, {40, 0}, {40, 25}, {30, 25}, {20, 10}, {0, 10}};
+    const Joints joints = sample_joints(scene_of({segment_set("a", .7, .3, 1)}, outline), 1, 0);
+    EXPECT_EQ(joints.trace_from, joints.from);
+    EXPECT_EQ(joints.trace_to, joints.to);
+    ASSERT_GT(joints.set.size(), 50);
+    int past = 0;
+    for (std::size_t j = 0; j < joints.set.size(); ++j) {
+        int hits = 0;
+        for (int i = 0; i <= 2000; ++i)
+            hits += is_inside(outline, joints.from[j] + i / 2000. * (joints.to[j] - joints.from[j]));
+        EXPECT_GT(hits, 0) << j;
+        past += hits < 2001;
+    }
+    EXPECT_GT(past, 10);
+}
+
+TEST(SampleJoints, KeepsToTheRocksOfASet)
+{
+    Scene scene =
+        scene_of({joint_set("lines", .4, .1, 1, 1), segment_set("segments", 1.4, .3, .8)}, box(0, 0, 40, 30));
+    scene.rock = "hard";
+    scene.regions = {
+        {"soft", box(-5, 20, 45, 40)}, {"hard", box(10, 22, 20, 40)}, {"clay", box(30, 5, 35, 10)}};
+    for (JointSet& set : scene.joint_sets)
+        set.rocks = {"soft", "clay"};
+    const auto is_there = [&](const Vector2d& p) {
+        return is_inside(scene.outline, p) &&
+               ((is_inside(scene.regions[0].outline, p) && !is_inside(scene.regions[1].outline, p)) ||
+                is_inside(scene.regions[2].outline, p));
+    };
+    const Joints joints = sample_joints(scene, 1, 0);
+    std::map<Index, double> length;
+    for (std::size_t j = 0; j < joints.set.size(); ++j) {
+        const Vector2d run = joints.to[j] - joints.from[j];
+        for (int i = 1; i < 100; ++i)
+            EXPECT_TRUE(is_there(joints.from[j] + i / 100. * run)) << j;
+        length[joints.set[j]] += run.norm();
+    }
+    // All of it, not some: lines as if there were no rocks, by hand.
+    Scene everywhere = scene;
+    for (JointSet& set : everywhere.joint_sets)
+        set.rocks.clear();
+    std::map<Index, double> wanted;
+    const Joints all = sample_joints(everywhere, 1, 0);
+    for (std::size_t j = 0; j < all.set.size(); ++j)
+        for (int i = 0; i < 20000; ++i) {
+            const Vector2d run = all.to[j] - all.from[j];
+            wanted[all.set[j]] += is_there(all.from[j] + (i + .5) / 20000 * run) ? run.norm() / 20000 : 0;
+        }
+    for (const Index set : {0, 1}) {
+        EXPECT_GT(wanted[set], 50);
+        EXPECT_NEAR(length[set], wanted[set], 2e-3 * wanted[set]);
+    }
+}
+
+TEST(SampleJoints, MakesEveryPieceOfAMappedTraceAJoint)
+{
+    Scene scene = scene_of({joint_set("a", .3, .1, 4, .5)});
+    scene.joints = {{"fault", "rough", {0, 1}, {50, 3}}};
+    scene.mapped = {{"map",
+                     "rough",
+                     {{7, {{{0, 0}, {1, 2}, {1, 2}, {3, 3}}, {{5, 5}, {6, 6}}}}, {2, {{{8, 8}, {9, 9}}}}}}};
+    const Rows found = rows(sample_joints(scene, 1, 0), 2);
+    const Rows wanted{{7 * mapped_step, {0, 0, 1, 2, 0, 0, 1, 2}},
+                      {7 * mapped_step + 1, {1, 2, 3, 3, 1, 2, 3, 3}},
+                      {7 * mapped_step + 2, {5, 5, 6, 6, 5, 5, 6, 6}},
+                      {2 * mapped_step, {8, 8, 9, 9, 8, 8, 9, 9}}};
+    EXPECT_EQ(found, wanted);
+    scene.mapped[0].traces[0].id = 1 << 21;
+    expect_refusal(scene, {"\"map\"", "id 2097152"});
+    scene.mapped[0].traces[0] = {1, {Polygon()}};
+    for (int i = 0; i <= mapped_step + 1; ++i)
+        scene.mapped[0].traces[0].polylines[0].emplace_back(i, 0);
+    expect_refusal(scene, {"\"map\"", "more than 1024 straight pieces"});
+}
+
+TEST(SampleJoints, RefusesKindsWithoutWhatTheyNeed)
+{
+    JointSet set = segment_set("a", 0, 0, .3);
+    set.density.reset();
+    expect_refusal(scene_of({set}), {"\"a\"", "need a density"});
+    set = segment_set("a", 0, 0, 1e9);
+    expect_refusal(scene_of({set}), {"\"a\"", "density is too large"});
+    set = segment_set("a", 0, 0, .3);
+    set.length.reset();
+    expect_refusal(scene_of({set}), {"\"a\"", "needs a length"});
+    set = segment_set("a", 0, 0, .3);
+    set.density = Density{Density::Measure::p10, .3, {0}};
+    expect_refusal(scene_of({set}), {"\"a\"", "runs along the set"});
+    set = joint_set("a", 0, 0, 3, 1);
+    set.terminates_at = {"b"};
+    expect_refusal(scene_of({set, segment_set("b", 1, 0, .3)}), {"\"a\"", "lines"});
+    set = segment_set("a", 0, 0, .3);
+    set.terminates_at = {"b"};
+    expect_refusal(scene_of({set}), {"\"a\"", "\"b\"", "none"});
+    JointSet other = segment_set("b", 1, 0, .3);
+    other.terminates_at = {"a"};
+    expect_refusal(scene_of({set, other}), {"circle"});
+}
+
 TEST(SampleJoints, TurnsAPlaneIntoItsTrace)
 {
     Scene scene = scene_of({spatial_set(60 * deg, 120 * deg)});

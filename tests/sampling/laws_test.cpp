@@ -276,3 +276,49 @@ TEST(DrawSizeBiased, WouldBeCaughtWithoutTheBias)
     for (const Law& law : positive_laws)
         EXPECT_FALSE(obeys_size_biased(law, [&](Stream& stream) { return draw_positive(law, stream); }));
 }
+
+TEST(DrawBiased, FollowsAPowerOfXTimesTheDensity)
+{
+    for (const Law& law : positive_laws)
+        for (const int order : {0, 1, 2, 3}) {
+            const Distribution right =
+                integrated([&](double x) { return std::pow(x, order) * density(law, x); }, grid(law));
+            EXPECT_TRUE(
+                follow(sample([&](Stream& stream) { return draw_biased(law, order, stream); }), right))
+                << static_cast<int>(law.kind) << ", order " << order;
+            EXPECT_FALSE(
+                follow(sample([&](Stream& stream) { return draw_biased(law, order + 1, stream); }), right));
+        }
+    EXPECT_EQ(sample([](Stream& stream) { return draw_biased(constant, 2, stream); }), Samples(draws, 3.0));
+}
+
+TEST(MomentOfPositive, IsTheIntegral)
+{
+    for (const Law& law : positive_laws)
+        for (const int order : {0, 1, 2, 3, 4}) {
+            const std::vector<double> places = grid(law);
+            double sum = 0, total = 0; // by the trapezoidal rule
+            for (std::size_t i = 1; i < places.size(); ++i) {
+                const double a = density(law, places[i - 1]), b = density(law, places[i]);
+                total += (places[i] - places[i - 1]) * (a + b);
+                sum += (places[i] - places[i - 1]) *
+                       (std::pow(places[i - 1], order) * a + std::pow(places[i], order) * b);
+            }
+            EXPECT_NEAR(moment_of_positive(law, order) / (sum / total), 1, 3e-4)
+                << static_cast<int>(law.kind) << ", order " << order;
+        }
+    EXPECT_EQ(moment_of_positive(constant, 3), 27);
+    EXPECT_NEAR(moment_of_positive(wide_normal, 1), mean_of_positive(wide_normal), 1e-14);
+}
+
+TEST(DrawPoisson, HasItsMeanAndVariance)
+{
+    for (const double expected : {.3, 7., 4000.}) {
+        const Samples counts =
+            sample([&](Stream& stream) { return static_cast<double>(draw_poisson(expected, stream)); });
+        EXPECT_TRUE(have_mean(counts, expected));
+        EXPECT_TRUE(have_deviation(counts, std::sqrt(expected)));
+    }
+    Stream stream({1, 0, 0}, 0, Purpose::count);
+    EXPECT_EQ(draw_poisson(0, stream), 0);
+}

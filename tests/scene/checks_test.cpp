@@ -321,4 +321,108 @@ TEST(checks, creep_steps_are_fixed_or_chosen_by_a_tolerance)
               "accepted");
 }
 
+TEST(checks, kinds_of_sets)
+{
+    const std::string steep = "name = \"steep\"\nmaterial = \"joint\"\n", persistence = "persistence = 0.6\n";
+    expect_refused(persistence, "", "has no persistence: a set of lines needs it",
+                   "[[joint_set]]\nname = \"steep\"");
+    expect_refused("spacing = { law = \"lognormal\", mean_m = 5, deviation_m = 1 }\n", "",
+                   "has no spacing: a set of lines needs it, or a density",
+                   "[[joint_set]]\nname = \"steep\"");
+    expect_refused(steep, steep + "kind = \"segments\"\n", "has no density: a set of segments needs it",
+                   "[[joint_set]]\nname = \"steep\"");
+    expect_refused("density = { P20_per_m2 = 0.004 }",
+                   "density = { P20_per_m2 = 0.004 }\npersistence = 0.123",
+                   "a set of segments does not take it", "persistence = 0.123");
+    expect_refused("density = { P30_per_m3 = 0.0002 }\ndiameter", "density = { P30_per_m3 = 0.0002 }\nlength",
+                   "has no diameter: a set of discs needs it", "[[joint_set]]\nname = \"coins\"");
+    expect_refused("orientation = { law = \"bootstrap\", poles = \"poles.csv\" }",
+                   "trace_angle = { law = \"constant\", mean_deg = 4 }", "discs lie in space");
+    expect_refused("rocks = [\"hard\"]", "rocks = [\"hardd\"]", "did you mean \"hard\"?");
+    expect_refused("rocks = [\"hard\"]", "region_m = [[0, 0], [9, 0], [9, 9]]\nrocks = [\"hard\"]",
+                   "wanted either it or region_m", "rocks = [\"hard\"]");
+}
+
+TEST(checks, densities)
+{
+    const std::string density = "density = { P10_per_m = 0.05, scanline_angle_deg = 0 }";
+    expect_refused(density, "density = { P21_per_m = 0.05, scanline_angle_deg = 0 }", "only P10_per_m");
+    expect_refused(density, "density = { P10_per_m = 0.05 }", "P10_per_m needs either");
+    expect_refused(density, "density = { P10_per_m = 0.05, P21_per_m = 1, scanline_angle_deg = 0 }",
+                   "one measure alone");
+    expect_refused(density, "density = { scanline_angle_deg = 0 }", "wanted one of P10_per_m");
+    expect_refused(density, "density = { P20_per_m2 = 1 }", "lines have no number per area");
+    expect_refused(density, "density = { P30_per_m3 = 1 }", "only discs");
+    expect_refused(density, "density = { P32_per_m = 1 }", "no orientation in space");
+    expect_refused(density, "density = { P10_per_m = 1, scanline_trend_deg = 3, scanline_plunge_deg = 3 }",
+                   "no orientation in space");
+    expect_refused(density, "density = { P10_per_m = 1, scanline_trend_deg = 3 }", "comes together with");
+    expect_refused(density + "\npersistence = 1", density + "\npersistence = 0", "leaves none", density);
+}
+
+TEST(checks, terminations)
+{
+    const std::string ends = "terminates_at = [\"fault\", \"flat\"]";
+    expect_refused(ends, "terminates_at = [\"fault\", \"flatt\"]", "did you mean \"flat\"?");
+    expect_refused(ends, "terminates_at = [\"measured\"]", "wanted the name of a [[joint_set]]");
+    expect_refused(ends, "terminates_at = [\"flat\", \"flat\"]", "each name once");
+    expect_refused(ends + "\n", "", "wanted terminates_at beside it", "termination_probability = 0.7");
+    expect_refused("persistence = 0.6\n", "persistence = 0.6\nterminates_at = [\"fault\"]\n",
+                   "a set of lines does not take it", "terminates_at = [\"fault\"]\n");
+    EXPECT_EQ(refusal(replaced(text, ends, "terminates_at = [\"on the map\", \"coins\"]")), "accepted");
+    const auto circle =
+        replaced(replaced(text, ends, "terminates_at = [\"coins\"]"), "density = { P30_per_m3 = 0.0002 }",
+                 "density = { P30_per_m3 = 0.0002 }\nterminates_at = [\"measured\"]");
+    expect_part(refusal(circle), "in a circle");
+}
+
+TEST(checks, orientation_laws)
+{
+    const std::string bootstrap = "orientation = { law = \"bootstrap\", poles = \"poles.csv\" }";
+    expect_refused(bootstrap, "orientation = { law = \"bootstrap\" }", "needs either poles_deg or poles");
+    expect_refused(bootstrap,
+                   "orientation = { law = \"bootstrap\", poles = \"poles.csv\", poles_deg = [[1, 2]] }",
+                   "has both poles_deg and poles");
+    expect_refused(bootstrap, "orientation = { law = \"bootstrap\", poles = \"pole.csv\" }",
+                   "wanted the name of a file beside the scene");
+    expect_refused(bootstrap,
+                   "orientation = { law = \"bootstrap\", poles = \"poles.csv\", concentration = 9 }",
+                   "does not take it");
+    expect_refused(bootstrap,
+                   "orientation = { law = \"bootstrap\", poles = \"poles.csv\", blind_zone_deg = 9 }",
+                   "wanted scanline_trend_deg");
+    expect_refused(bootstrap, "orientation = { law = \"Fisher\", concentration = 9 }",
+                   "has no mean_dip_deg: the law \"Fisher\" needs it");
+    expect_refused("[[60, 40], [64, 52]", "[[60, 40], [94, 52]", "94");
+}
+
+TEST(checks, files_that_a_scene_names)
+{
+    expect_part(refusal(replaced(text, "75,200,1", "95,200,1")),
+                "line 2: dip_deg is \"95\"; wanted a number in [0, 90]");
+    expect_part(refusal(replaced(text, "dip_direction_deg,weight", "dip_direction,weight")),
+                "wanted a column dip_direction_deg");
+    expect_part(refusal(replaced(text, "value = \"F\"", "value = \"H\"")), "has no trace whose set is \"H\"");
+    expect_part(refusal(replaced(text, "name = \"poles.csv\"", "name = \"traces.csv\"")), "is taken");
+
+    // Beside the scene, not in it.
+    const auto folder = std::filesystem::temp_directory_path() / "jointcreep-scene-files";
+    std::filesystem::create_directories(folder);
+    const auto write = [&](const std::string& name, const std::string& content) {
+        std::ofstream(folder / name) << content;
+    };
+    const auto file_tables = text.find("[[file]]\nname = \"poles.csv\"");
+    const auto rest = text.find("[in_situ_stress]");
+    write("scene.toml", text.substr(0, file_tables) + text.substr(rest));
+    write("poles.csv", "dip_deg,dip_direction_deg,weight\r\n75,200,1\r\n80,210,2\r\n# \"quoted\" \\ \t");
+    write("traces.csv", "x1_m,y1_m,x2_m,y2_m,set\n2,20,12,0,F\n");
+    const std::string whole = read_scene_text((folder / "scene.toml").string());
+    const Scene scene = parse_scene(whole, "scene.toml"), held = parse_scene(text, "scene.toml");
+    EXPECT_EQ(scene.joint_sets.at(6).poles.at(1).weight, held.joint_sets.at(6).poles.at(1).weight);
+    EXPECT_EQ(scene.mapped.at(0).traces.at(0).polylines, held.mapped.at(0).traces.at(0).polylines);
+    write("again.toml", whole); // says everything itself
+    EXPECT_EQ(read_scene_text((folder / "again.toml").string()), whole);
+    std::filesystem::remove_all(folder);
+}
+
 } // namespace

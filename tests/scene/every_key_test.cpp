@@ -13,7 +13,7 @@ TEST(every_key, sets_and_laws)
 {
     const Scene scene = parse_scene(every_key_text(), "scene.toml");
     EXPECT_EQ(scene.azimuth, 20 * deg);
-    ASSERT_EQ(scene.joint_sets.size(), 5u);
+    ASSERT_EQ(scene.joint_sets.size(), 11u);
     const JointSet &steep = scene.joint_sets[0], &flat = scene.joint_sets[1];
 
     EXPECT_FALSE(steep.trace_angle);
@@ -67,6 +67,49 @@ TEST(every_key, uniform_and_fisher_laws)
     EXPECT_DOUBLE_EQ(about.spacing.mean, 15 * std::log(3)); // log(r) / (1 - 1/r) x shortest
     EXPECT_EQ(about.length->exponent, 2.5);
     EXPECT_FALSE(about.trace_angle || about.dip || about.dip_direction);
+}
+
+TEST(every_key, kinds_densities_and_terminations)
+{
+    const Scene scene = parse_scene(every_key_text(), "scene.toml");
+    using Measure = Density::Measure;
+    EXPECT_EQ(scene.joint_sets.at(0).kind, SetKind::lines);
+    EXPECT_FALSE(scene.joint_sets.at(0).density);
+    const JointSet& measured = scene.joint_sets.at(5);
+    EXPECT_EQ(measured.kind, SetKind::segments);
+    EXPECT_EQ(measured.terminates_at, (std::vector<std::string>{"fault", "flat"}));
+    EXPECT_EQ(measured.termination_probability, .7);
+    EXPECT_EQ(measured.rocks, std::vector<std::string>{"hard"});
+    ASSERT_EQ(measured.poles.size(), 3u);
+    EXPECT_EQ(measured.poles[1].dip, 64 * deg);
+    EXPECT_EQ(measured.poles[1].dip_direction, 52 * deg);
+    // Pole and scanline by east, north and up.
+    const auto direction = [](double bearing, double inclination) {
+        return Eigen::Vector3d(std::cos(inclination) * std::sin(bearing),
+                               std::cos(inclination) * std::cos(bearing), -std::sin(inclination));
+    };
+    const Eigen::Vector3d pole = -direction((52 + 180) * deg, (90 - 64) * deg);
+    EXPECT_NEAR(measured.poles[1].weight, 1 / std::abs(pole.dot(direction(30 * deg, 10 * deg))), 1e-12);
+    const JointSet& coins = scene.joint_sets.at(6);
+    EXPECT_EQ(coins.kind, SetKind::discs);
+    ASSERT_EQ(coins.poles.size(), 2u);
+    EXPECT_EQ(coins.poles[1].weight, 2);
+    EXPECT_EQ(coins.density->measure, Measure::p30);
+    EXPECT_EQ(coins.density->value, .0002);
+    EXPECT_EQ(coins.diameter->deviation, 3);
+    EXPECT_EQ(scene.joint_sets.at(7).density->measure, Measure::p10);
+    EXPECT_EQ(scene.joint_sets.at(7).density->scanline.angle, 0);
+    EXPECT_EQ(scene.joint_sets.at(7).spacing.kind, Law::Kind::negative_exponential);
+    EXPECT_FALSE(scene.joint_sets.at(8).density->scanline.angle);
+    EXPECT_EQ(scene.joint_sets.at(8).density->scanline.trend, 25 * deg);
+    EXPECT_EQ(scene.joint_sets.at(8).density->scanline.plunge, 5 * deg);
+    EXPECT_EQ(scene.joint_sets.at(9).density->measure, Measure::p21);
+    EXPECT_EQ(scene.joint_sets.at(10).density->measure, Measure::p32);
+
+    ASSERT_EQ(scene.mapped.size(), 1u);
+    EXPECT_EQ(scene.mapped[0].name, "on the map");
+    ASSERT_EQ(scene.mapped[0].traces.size(), 1u);
+    EXPECT_EQ(scene.mapped[0].traces[0].polylines[0][1], Eigen::Vector2d(12, 0));
 }
 
 TEST(every_key, all_else)

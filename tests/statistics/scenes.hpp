@@ -79,4 +79,46 @@ inline std::vector<Example> examples()
     return all;
 }
 
+// Segments, discs, densities and measured poles.
+inline std::vector<Example> other_kinds()
+{
+    using unit::deg;
+    using Measure = Density::Measure;
+    std::vector<Example> all;
+    JointSet set;
+    set.name = "joints";
+    set.material = "clay";
+
+    set.kind = SetKind::segments;
+    set.trace_angle = Law{Kind::normal, 20 * deg, 15 * deg};
+    set.length = Law{Kind::lognormal, 6, 4};
+    set.density = Density{Measure::p21, .25};
+    all.push_back({"segments", scene_of(set, slope())});
+
+    set.trace_angle.reset();
+    set.orientation = FisherLaw{50 * deg, 60 * deg, 15};
+    set.length = power_law(2.5, 2, 40);
+    set.density = Density{Measure::p20, .04};
+    all.push_back({"segments of Fisher's poles", scene_of(set, box())});
+
+    set.kind = SetKind::discs;
+    set.length.reset();
+    set.diameter = Law{Kind::negative_exponential, 8, 8};
+    set.density = Density{Measure::p32, .3};
+    all.push_back({"discs", scene_of(set, slope())});
+
+    set.kind = SetKind::lines;
+    set.diameter.reset();
+    set.spacing = {Kind::lognormal, 1, .5};
+    set.length = Law{Kind::lognormal, 6, 4};
+    set.persistence = .7;
+    set.density = Density{Measure::p21, .25};
+    all.push_back({"lines by P21", scene_of(set, box())});
+
+    set.orientation.reset();
+    set.poles = {{50 * deg, 60 * deg, 1}, {60 * deg, 70 * deg, 2}, {40 * deg, 30 * deg, 1}};
+    all.push_back({"measured poles", scene_of(set, box())});
+    return all;
+}
+
 } // namespace jointcreep::statistics

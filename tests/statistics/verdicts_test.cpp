@@ -78,7 +78,10 @@ TEST(Verdicts, OfRightNetworksAreRight)
 {
     const int realizations = 250;
     int failing = 0, runs = 0;
-    for (const Example& example : examples()) {
+    std::vector<Example> all = examples();
+    for (const Example& example : other_kinds())
+        all.push_back(example);
+    for (const Example& example : all) {
         std::map<std::string, Tally> tallies;
         int failing_here = 0;
         for (int r = 0; r < realizations; ++r) {
@@ -182,6 +185,32 @@ TEST(Verdicts, OfWrongNetworksAreFail)
             EXPECT_GE(flagged(wrong, right, realizations), mistake.flagged[i])
                 << all[i].name << ": " << mistake.name;
         }
+    }
+}
+
+TEST(Verdicts, OfWrongSegmentsAndDiscsAreFail)
+{
+    const std::vector<Example> all = other_kinds();
+    for (const std::size_t i : {0, 1, 2}) {
+        const Scene right = large(all[i]);
+        const auto expect_flagged = [&](const std::string& what, const std::function<void(JointSet&)>& make) {
+            Scene wrong = right;
+            make(wrong.joint_sets[0]);
+            EXPECT_GE(flagged(wrong, right, 30), .9) << all[i].name << ": " << what;
+        };
+        expect_flagged("a density 1.3 times as high", [](JointSet& set) { set.density->value *= 1.3; });
+        expect_flagged("a size 1.3 times as large",
+                       [](JointSet& set) { stretch(set.length ? *set.length : *set.diameter, 1.3); });
+        expect_flagged("a constant size", [](JointSet& set) {
+            Law& size = set.length ? *set.length : *set.diameter;
+            size = {Kind::constant, size.mean, 0};
+        });
+        expect_flagged("more scatter", [](JointSet& set) {
+            if (set.orientation)
+                set.orientation->concentration /= 2;
+            else
+                set.trace_angle->deviation *= 1.41;
+        });
     }
 }
 
