@@ -45,7 +45,8 @@ Cells cells_of(const Statistics& rows, std::size_t row)
     Cells cells{rows.quantity[row], shown_unit(unit)};
     if (rows.has_target[row] == 1)
         cells[2] = number(rows.target[row], unit);
-    cells[3] = (is_law ? "D " : "") + number(rows.achieved[row], unit);
+    if (!is_law || rows.is_tested[row] == 1)
+        cells[3] = (is_law ? "D " : "") + number(rows.achieved[row], unit);
     if (rows.has_interval[row] == 1) {
         cells[4] = number(rows.low[row], unit);
         cells[5] = number(rows.high[row], unit);
