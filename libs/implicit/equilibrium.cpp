@@ -1,6 +1,5 @@
 #include "implicit/equilibrium.hpp"
 
-#include "implicit/gmres.hpp"
 #include "model/signs.hpp"
 
 #include <algorithm>
@@ -96,13 +95,17 @@ VectorXd Engine::correction(const Assembly& assembly, const VectorXd& force, dou
         ++solves_;
         return stiffness_.solve(x);
     };
-    VectorXd x = VectorXd::Zero(force.size());
-    if (stiffness_.has_factor() && gmres(product, precondition, force, enough, patience, x) <= enough)
+    if (acting != acting_) {
+        space_.follow([&](const VectorXd& x) { return stiffness_.change(assembly, acting_, acting, x); });
+        acting_ = acting;
+    }
+    VectorXd x;
+    if (stiffness_.has_factor() && space_.solve(product, precondition, force, enough, patience, x) <= enough)
         return x;
     if (!stiffness_.factorise(assembly, acting))
         return {};
     ++factorisations_;
-    gmres(product, precondition, force, enough, 2 * patience, x);
+    space_.solve(product, precondition, force, enough, 2 * patience, x);
     return x;
 }
 
@@ -227,9 +230,9 @@ bool Engine::converge(Assembly& assembly, const State& start, const Equilibrium&
             return false;
         }
 
-        const double enough = is_balanced ? 0.1 * force_.norm()
-                                          : std::max(0.5 * settings.tolerance * balance.mean,
-                                                     (corrections_ == first ? 1e-2 : 1e-3) * force_.norm());
+        const double enough = is_balanced
+                                  ? 0.1 * force_.norm()
+                                  : std::max(0.5 * settings.tolerance * balance.mean, 1e-2 * force_.norm());
         const VectorXd du = correction(assembly, force_, enough, hold);
         ++corrections_;
         if (du.size() == 0 || !du.allFinite()) {
@@ -332,6 +335,7 @@ std::optional<Certificate> Engine::equilibrate(Assembly& assembly, const Equilib
     }
     take_states(assembly, start, true);
     if (!stiffness_.has_factor()) {
+        space_.forget();
         ++factorisations_;
         if (!stiffness_.factorise(assembly, tangents(assembly, soft))) {
             reason_ = "some rock is held by nothing";

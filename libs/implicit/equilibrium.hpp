@@ -1,7 +1,7 @@
 // Implicit equilibrium: Newton's method over the contacts' states, instead of motion.
 //
 // Between changes of contact state the assembly is linear, so one factor of its stiffness serves one
-// equilibrium after another. Each correction solves K du = out-of-balance force by GMRES, preconditioned with
+// equilibrium after another. Each correction solves K du = out-of-balance force by GCR, preconditioned with
 // the last factor; the factor is renewed once that costs less than going on with the old one. Contacts open,
 // close, stick and slip by the same law as in motion, each from its state at the start of the equilibrium
 // straight to the one at its end (backward Euler). A contact goes from slip one way to slip the other way
@@ -15,6 +15,7 @@
 
 #pragma once
 
+#include "implicit/krylov.hpp"
 #include "implicit/stiffness.hpp"
 
 #include <optional>
@@ -66,6 +67,8 @@ private:
     double force_change(const Assembly& assembly, const VectorXd& displacement) const;
 
     Stiffness stiffness_;
+    KrylovSpace space_{24};       // of the stiffness
+    std::vector<Tangent> acting_; // with these tangents
     std::vector<Active> active_;
     std::vector<char> breaks_, openings_;
     VectorXd scale_;      // of forces: the stiffness against which they act [Pa]

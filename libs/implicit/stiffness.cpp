@@ -165,23 +165,40 @@ VectorXd Stiffness::times(const Assembly& assembly, const std::vector<Tangent>& 
 {
     VectorXd y =
         zones_.transpose() * x; // it is symmetric, and rows are summed faster than columns are spread
+    for (const Index c : present_contact_)
+        add_contact(assembly, c, tangents[c], x, y);
+    return y;
+}
+
+VectorXd Stiffness::change(const Assembly& assembly, const std::vector<Tangent>& before,
+                           const std::vector<Tangent>& after, const VectorXd& x) const
+{
+    VectorXd y = VectorXd::Zero(n_);
+    for (const Index c : present_contact_)
+        if (const Tangent& from = before[c], &to = after[c]; from != to)
+            add_contact(assembly, c,
+                        {to.normal - from.normal, to.shear - from.shear, to.coupling - from.coupling}, x, y);
+    return y;
+}
+
+// Adds the contact's part of K x to y.
+void Stiffness::add_contact(const Assembly& assembly, Index contact, const Tangent& tangent,
+                            const VectorXd& x, VectorXd& y) const
+{
     const mechanics::Contacts& contacts = assembly.contacts;
     const auto value = [&](int unknown) { return unknown >= 0 ? x[unknown] : 0.0; };
-    for (const Index c : present_contact_) {
-        const auto& [a, b] = contacts.gridpoint[c];
-        const auto &from = unknown_[a], &to = unknown_[b];
-        const Vector2d jump(value(to[0]) - value(from[0]), value(to[1]) - value(from[1]));
-        const Vector2d &normal = contacts.normal[c], tangent = along(normal);
-        const Vector2d change = tangents[c].times({normal.dot(jump), tangent.dot(jump)});
-        const Vector2d force = contacts.length[c] * (change.x() * normal + change.y() * tangent);
-        for (int i = 0; i < 2; ++i) {
-            if (to[i] >= 0)
-                y[to[i]] += force[i];
-            if (from[i] >= 0)
-                y[from[i]] -= force[i];
-        }
+    const auto& [a, b] = contacts.gridpoint[contact];
+    const auto &from = unknown_[a], &to = unknown_[b];
+    const Vector2d jump(value(to[0]) - value(from[0]), value(to[1]) - value(from[1]));
+    const Vector2d &normal = contacts.normal[contact], shear = along(normal);
+    const Vector2d change = tangent.times({normal.dot(jump), shear.dot(jump)});
+    const Vector2d force = contacts.length[contact] * (change.x() * normal + change.y() * shear);
+    for (int i = 0; i < 2; ++i) {
+        if (to[i] >= 0)
+            y[to[i]] += force[i];
+        if (from[i] >= 0)
+            y[from[i]] -= force[i];
     }
-    return y;
 }
 
 bool Stiffness::factorise(const Assembly& assembly, const std::vector<Tangent>& tangents)

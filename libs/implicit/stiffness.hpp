@@ -33,6 +33,8 @@ using mechanics::Vector2d;
 struct Tangent {
     double normal, shear, coupling;
 
+    bool operator==(const Tangent&) const = default;
+
     // Change of {normal, shear} traction [Pa] for one of the {normal, shear} jump [m].
     Vector2d times(const Vector2d& jump) const
     {
@@ -57,6 +59,10 @@ public:
     // K x with the tangents given, one for each contact.
     VectorXd times(const Assembly& assembly, const std::vector<Tangent>& tangents, const VectorXd& x) const;
 
+    // What that changes by when the tangents go from `before` to `after`.
+    VectorXd change(const Assembly& assembly, const std::vector<Tangent>& before,
+                    const std::vector<Tangent>& after, const VectorXd& x) const;
+
     // Factorises with these tangents; false if the matrix has no Cholesky factor.
     bool factorise(const Assembly& assembly, const std::vector<Tangent>& tangents);
     VectorXd solve(const VectorXd& right) const { return factor_.solve(right); }
@@ -73,6 +79,8 @@ private:
     void number_unknowns(const Assembly& assembly);
     void find_pattern(const Assembly& assembly);
     void fill_zones(const Assembly& assembly);
+    void add_contact(const Assembly& assembly, Index contact, const Tangent& tangent, const VectorXd& x,
+                     VectorXd& y) const;
 
     Eigen::Index n_ = 0;
     std::vector<std::array<int, 2>> unknown_; // of each gridpoint's {x, y}; -1 held

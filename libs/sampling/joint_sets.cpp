@@ -477,14 +477,14 @@ Joints sample_joints(const Scene& scene, std::uint64_t seed, std::int32_t realiz
         sample(first_mapped + i, scene.mapped[i]);
     for (const std::size_t i : sampling_order(scene.joint_sets)) {
         const JointSet& set = scene.joint_sets[i];
-        TraceIndex stops;
+        std::vector<const Joints*> stops;
         for (const std::string& name : set.terminates_at) {
             const auto found = std::find(names.joint_set.begin(), names.joint_set.end(), name);
             if (found == names.joint_set.end())
                 throw input_error(quoted(set) + " ends at \"" + name + "\", of which there is none");
-            stops.add(of_set[static_cast<std::size_t>(found - names.joint_set.begin())]);
+            stops.push_back(&of_set[static_cast<std::size_t>(found - names.joint_set.begin())]);
         }
-        sample(i, set, stops);
+        sample(i, set, TraceIndex(stops));
     }
     Joints joints;
     for (const Joints& more : of_set)

@@ -5,7 +5,10 @@
 #include <boost/geometry.hpp>
 #include <boost/geometry/index/rtree.hpp>
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 
 namespace jointcreep
@@ -41,21 +44,27 @@ struct TraceIndex::Tree {
     bg::index::rtree<Entry, bg::index::quadratic<16>> entries;
 };
 
-TraceIndex::TraceIndex() : tree_(std::make_unique<Tree>()) {}
-TraceIndex::~TraceIndex() = default;
-
 // Long traces go in by pieces: the box about a slanting one holds far more than the trace.
-void TraceIndex::add(const Joints& joints)
+TraceIndex::TraceIndex(const std::vector<const Joints*>& sets) : tree_(std::make_unique<Tree>())
 {
-    for (std::size_t t = 0; t < joints.trace_from.size(); ++t) {
-        const Vector2d &from = joints.trace_from[t], &to = joints.trace_to[t];
-        const int parts = 16;
-        for (int i = 0; i < parts; ++i)
-            tree_->entries.insert(
-                {box_of(from + double(i) / parts * (to - from), from + double(i + 1) / parts * (to - from)),
-                 {from, to}});
-    }
+    const double pieces_across = 64;
+    Eigen::AlignedBox2d all;
+    for (const Joints* const joints : sets)
+        for (std::size_t t = 0; t < joints->trace_from.size(); ++t)
+            all.extend(joints->trace_from[t]).extend(joints->trace_to[t]);
+    std::vector<Entry> entries;
+    for (const Joints* const joints : sets)
+        for (std::size_t t = 0; t < joints->trace_from.size(); ++t) {
+            const Vector2d &from = joints->trace_from[t], run = joints->trace_to[t] - from;
+            const double parts = std::ceil(pieces_across * run.norm() / all.diagonal().norm());
+            for (double i = 0; i < parts; ++i)
+                entries.push_back({box_of(from + i / parts * run, from + (i + 1) / parts * run),
+                                   {from, joints->trace_to[t]}});
+        }
+    tree_->entries = decltype(tree_->entries)(entries);
 }
+
+TraceIndex::~TraceIndex() = default;
 
 bool TraceIndex::empty() const
 {

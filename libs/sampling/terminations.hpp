@@ -15,10 +15,9 @@ namespace jointcreep
 class TraceIndex
 {
 public:
-    TraceIndex();
+    explicit TraceIndex(const std::vector<const Joints*>& sets);
     ~TraceIndex();
 
-    void add(const Joints& joints);
     bool empty() const;
 
     // How far a trace comes that goes from the line's point along it, `reach` at most [m]: in order, each

@@ -135,10 +135,10 @@ std::vector<std::string> named_files(const TomlValue& root)
     return names;
 }
 
-// As a TOML string, on one line a line of the text.
-std::string as_toml(const std::string& text)
+// As a TOML string, a line for each of the text, the first after `begin`.
+std::string as_toml(const std::string& text, const std::string& begin = "\n")
 {
-    std::string out = "\"\"\"\n";
+    std::string out = "\"\"\"" + begin;
     for (const char c : text) {
         constexpr const char* digits = "0123456789abcdef";
         const auto code = static_cast<unsigned char>(c);
@@ -189,8 +189,10 @@ std::string files_beside(const std::string& path, const std::string& scene)
         const std::filesystem::path beside = std::filesystem::path(path).parent_path() / name;
         if (std::error_code ignored; !std::filesystem::is_regular_file(beside, ignored))
             continue;
-        tables += "\n[[file]] # as it was beside the scene\nname = " + as_toml(name) +
-                  "text = " + as_toml(read_text_file(beside.string(), "poles or traces of a scene"));
+        const std::string text = read_text_file(beside.string(), "poles or traces of a scene");
+        parse_toml("text = " + as_toml(text, ""), beside.string()); // names the line of what is not UTF-8
+        tables +=
+            "\n[[file]] # as it was beside the scene\nname = " + as_toml(name) + "text = " + as_toml(text);
     }
     return tables;
 }

@@ -82,6 +82,13 @@ class Kinds(ChainTest):
                 self.assertRegex(done.stderr, r"scene\.toml, line \d+: \[\[")
                 self.assertFalse(output.exists())
 
+    def test_a_file_that_is_not_utf_8_is_refused_by_its_name_and_line(self):
+        scene = self.scene()
+        scene.with_name("poles.csv").write_bytes(b"dip_deg,dip_direction_deg\n1,2\n3,4 # \xe9\n")
+        done = self.chain.answer("jointgen", scene, "-o", scene.with_name("network.h5"))
+        self.assertEqual(done.returncode, 2)
+        self.assertRegex(done.stderr, r"poles\.csv, line 3: .*UTF-8")
+
     def test_other_sets_stay_the_same(self):
         """Byte for byte, when a set changes, comes, goes or moves; but traces end at other traces."""
         text = self.chain.text("tests/pipeline/kinds/scene.toml")

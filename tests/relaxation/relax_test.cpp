@@ -182,6 +182,44 @@ TEST(relax, a_bar_under_traction)
     }
 }
 
+// A block of stiff rock on one joint, its weight put on at once: an oscillator, whose dashpots are alpha
+// times its mass and the contacts' beta times their springs.
+//   u = -m g / K (1 - exp(-z w t) (cos w_d t + z w / w_d sin w_d t)),
+//   w = sqrt(K / m),  z = alpha / (2 w) + beta w / 2,  w_d = w sqrt(1 - z^2)
+TEST(relax, the_dashpots_of_contacts)
+{
+    const double K = 1e8, mass = 2700, w = std::sqrt(K / mass), alpha = 4;
+    for (const double beta : {0.0, 1e-4, 5e-4}) {
+        Scene scene = section({{0, 0}, {1, 0}, {1, 1}, {0, 1}}, 0.01);
+        scene.rocks = {{"rock", mass, 1e12, 0, std::nullopt}};
+        scene.zone_size = 2;
+        scene.gravity = 9.81;
+        scene.boundaries = {{.from = {0, 0}, .to = {1, 0}, .joint = "joint"},
+                            {.from = {0, 0}, .to = {0, 1}, .fix_x = true},
+                            {.from = {1, 0}, .to = {1, 1}, .fix_x = true}};
+        Section s = assembled(std::move(scene), {}, K, 0);
+        Equilibrium how = settings(Damping::mass, Masses::real);
+        how.mass_damping = alpha;
+        how.stiffness_damping = beta;
+        how.most_steps = 20'000'000;
+        how.tolerance = 1e-2;
+        const double z = alpha / (2 * w) + beta * w / 2, damped_w = w * std::sqrt(1 - z * z);
+        const double rest = -mass * 9.81 / K;
+        std::size_t top = 0;
+        while (s.assembly.position[top].y() < 1)
+            ++top;
+        double worst = 0;
+        relaxation::relax(s.assembly, how, [&](double t) {
+            const double u = s.assembly.displacement[top].y();
+            const double exact =
+                rest * (1 - std::exp(-z * w * t) *
+                                (std::cos(damped_w * t) + z * w / damped_w * std::sin(damped_w * t)));
+            worst = std::max(worst, std::abs(u - exact));
+        });
+        EXPECT_LT(worst, 1e-3 * std::abs(rest)) << beta;
+    }
+}
+
 TEST(relax, a_block_on_an_incline_slides_above_the_friction_angle)
 {
     Section s = incline(35 * deg, 30 * deg);

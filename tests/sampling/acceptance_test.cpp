@@ -1211,7 +1211,9 @@ TEST(Terminations, MakeTNodesForTheCutter)
                     parts += length_in(trace, low, high) > 0;
             }
             const Blocks blocks = blocks::cut(scene, joints);
-            EXPECT_EQ(int(blocks.block_area.size()), parts) << r;
+            if (blocks.report.merged_block_area == 0) { // else a sliver below the limits is gone
+                EXPECT_EQ(int(blocks.block_area.size()), parts) << r;
+            }
             EXPECT_NEAR(blocks.report.pruned_length, cut_back, 1e-3);
         }
     }
