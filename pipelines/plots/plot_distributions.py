@@ -2,11 +2,14 @@
 """Histograms of spacing and trace length, set by set, with the law they were drawn from, and of block areas.
 
 Spacing is that of neighbouring lines in space. Lengths are those of traces that begin and end inside the section; the
-longer a trace, the less often it does, and by that it is weighed, so that the histogram estimates the law itself.
+longer a trace, the less often it does, and by that it is weighed, so that the histogram estimates the law itself. Of
+segments and discs they are those of traces with their midpoint inside. No law is drawn for the traces of discs, for those
+that end at other sets, and for a spacing that follows from a density.
 """
 
 import matplotlib.lines
 import matplotlib.patches
+import matplotlib.path
 import numpy as np
 
 import figure
@@ -30,6 +33,12 @@ def spacings(joints, i):
 def lengths(joints, i):
     """Lengths of the traces of a set that begin and end inside (m), and what each counts."""
     windows = joints.windows(i)
+    if joints.sets[i].get("kind", "lines") != "lines":  # those whose midpoint is inside, however far they reach
+        inside = joints.set == i
+        for polygon in windows:
+            inside &= matplotlib.path.Path(polygon).contains_points(joints.point)
+        found = np.linalg.norm(joints.ends[inside, 1] - joints.ends[inside, 0], axis=1)
+        return found, np.full(len(found), 1 / max(1, len(found)))
     stretched, found = [], []
     for j in np.flatnonzero(joints.set == i):
         begin, end = joints.ends[j]
@@ -55,6 +64,8 @@ def draw_law(axes, law, values, weights, what):
         axes.set_xticks([])
         axes.set_yticks([])
         return
+    if law is None:
+        law = {"law": "none"}
     if law["law"] == "constant":
         axes.axvline(law["mean_m"], **LAW)
         high = 1.3 * law["mean_m"]
@@ -99,12 +110,14 @@ def draw(file, _):
         left, right = plot.add_subplot(grid[i, 0]), plot.add_subplot(grid[i, 1])
         values = spacings(joints, i)
         if "spacing" in joint_set:
-            draw_law(left, joint_set["spacing"], values, np.full(len(values), 1 / max(1, len(values))), "spacing")
+            law = None if "density" in joint_set else joint_set["spacing"]  # else its mean follows from the density
+            draw_law(left, law, values, np.full(len(values), 1 / max(1, len(values))), "spacing")
         else:
             left.axis("off")
         left.set_title(joint_set["name"], loc="left")
-        if "length" in joint_set:
-            draw_law(right, joint_set["length"], *lengths(joints, i), "trace length")
+        if "length" in joint_set or "diameter" in joint_set:
+            law = None if joint_set.get("terminates_at") else joint_set.get("length")
+            draw_law(right, law, *lengths(joints, i), "trace length")
         else:
             right.axis("off")
         if i == 0:
