@@ -13,6 +13,7 @@
 #include "model/version.hpp"
 #include "sampling/joint_sets.hpp"
 #include "scene/scene.hpp"
+#include "statistics/statistics.hpp"
 #include "store/files.hpp"
 
 #include <iostream>
@@ -31,6 +32,8 @@ const Program program{
     .output = "network.h5",
     .options = {{"seed", "N", "seed of the joint sets (default: the scene's)"},
                 {"realization", "R", "which of the seed's networks (default 0)"},
+                {"report", "",
+                 "test the network against the laws of the scene, print that, and keep it in the file"},
                 {"check", "", "read the scene, cut it, report, and write nothing"},
                 {"scene-keys", "", "print every scene key as a table, tab separated"},
                 {"scene-keys-markdown", "", "print docs/scene.md"}},
@@ -97,6 +100,10 @@ void generate(const Arguments& arguments)
     // 3. Its blocks.
     network.blocks = blocks::cut(scene, network.joints);
 
+    // 4. What the network is like, beside what the scene asked for.
+    if (arguments.has("report"))
+        network.statistics = statistics::statistics_of(scene, network);
+
     if (!check)
         write_network(arguments.output(),
                       {.scene = text,
@@ -105,10 +112,12 @@ void generate(const Arguments& arguments)
                        .program = {program.name},
                        .version = {std::string(version())},
                        .input_sha256 = {sha256_of(input)},
-                       .options = {""}},
+                       .options = {arguments.has("report") ? "--report" : ""}},
                       network);
     if (!arguments.quiet())
         report(network);
+    if (!arguments.quiet() && arguments.has("report"))
+        std::cout << '\n' << statistics::table(network.statistics);
 }
 
 } // namespace

@@ -3,6 +3,8 @@
 
 #pragma once
 
+#include "model/statistics.hpp"
+
 #include <Eigen/Core>
 
 #include <array>
@@ -12,8 +14,6 @@
 
 namespace jointcreep
 {
-
-using Index = std::int32_t;
 
 enum class EdgeKind : Index {
     boundary = 0, // on the section's outline: rock on one side only
@@ -44,6 +44,11 @@ struct Joints {
     // The joint traces. What a line has between its traces is rock bridge.
     std::vector<Index> trace_joint;                    // the joint it lies on
     std::vector<Eigen::Vector2d> trace_from, trace_to; // [m]
+
+    // Upward unit normal of the joint's plane: {x, y} in the section, z across it, at the azimuth plus 90
+    // degrees. Zero where only the trace angle was drawn [-].
+    std::vector<Eigen::Vector3d> pole{};
+    std::vector<Eigen::Vector2d> point{}; // where the joint was placed, about which it turns [m]
 };
 
 // What cutting had to change to keep edges and angles above the scene's limits.
@@ -87,6 +92,7 @@ struct Network {
     Names names;
     Joints joints;
     Blocks blocks;
+    Statistics statistics; // on request
 };
 
 // What lies along the joints inside the section: traces and rock bridges. Made by strength-averaging.

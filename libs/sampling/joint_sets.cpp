@@ -100,7 +100,8 @@ private:
                                         double end);
 
     void add_row(const std::string& name, const std::string& material, Index set, Index number,
-                 const Vector2d& from, const Vector2d& to);
+                 const Vector2d& from, const Vector2d& to, const Eigen::Vector3d& pole,
+                 const Vector2d& point);
     void add_trace(const Vector2d& from, const Vector2d& to);
     void check_pieces(const JointSet& set, std::size_t pieces) const;
     void count_skipped(const JointSet& set);
@@ -145,7 +146,8 @@ void Sampler::add_lines(const JointSet& set, Index index)
         Stream orientation(streams, number, Purpose::orientation),
             position(streams, number, Purpose::position);
         const double turning = window.low + uniform(position) * (window.high - window.low);
-        const Line line{place * across + turning * along, orientations.draw_trace(orientation)};
+        const Orientations::Drawn drawn = orientations.draw_joint(orientation);
+        const Line line{place * across + turning * along, drawn.trace};
         const std::vector<Interval> joint_pieces = pieces(set, scene_, line);
         if (joint_pieces.empty())
             return count_skipped(set);
@@ -155,7 +157,7 @@ void Sampler::add_lines(const JointSet& set, Index index)
         for (std::size_t p = 0; p < joint_pieces.size(); ++p) {
             const Interval& piece = joint_pieces[p];
             add_row(quoted(set), set.material, index, number + static_cast<Index>(p) * piece_step,
-                    line.at(piece.low), line.at(piece.high));
+                    line.at(piece.low), line.at(piece.high), drawn.pole, line.point);
             for (const Interval& trace : open) {
                 const double low = std::max(trace.low, piece.low), high = std::min(trace.high, piece.high);
                 if (low < high)
@@ -210,7 +212,8 @@ void Sampler::add_traces(const JointSet& set, Index index, const TraceIndex& sto
         const double half = size / 2 * (discs ? std::sqrt(1 - off * off) : 1);
         const double across = x.low - size / 2 + uniform(position) * (w + size);
         const Vector2d middle(across, y.low - size / 2 + uniform(position) * (h + size));
-        const Line line{middle, orientations.draw_trace(orientation)};
+        const Orientations::Drawn drawn = orientations.draw_joint(orientation);
+        const Line line{middle, drawn.trace};
 
         Interval trace{-half, half};
         std::vector<Interval> kept;
@@ -232,7 +235,8 @@ void Sampler::add_traces(const JointSet& set, Index index, const TraceIndex& sto
         check_pieces(set, kept.size());
         for (std::size_t p = 0; p < kept.size(); ++p) {
             const Vector2d from = line.at(kept[p].low), to = line.at(kept[p].high);
-            add_row(quoted(set), set.material, index, number + static_cast<Index>(p) * piece_step, from, to);
+            add_row(quoted(set), set.material, index, number + static_cast<Index>(p) * piece_step, from, to,
+                    drawn.pole, middle);
             add_trace(from, to);
         }
     }
@@ -240,7 +244,8 @@ void Sampler::add_traces(const JointSet& set, Index index, const TraceIndex& sto
 
 void Sampler::add(const SingleJoint& joint, Index index)
 {
-    add_row("joint \"" + joint.name + "\"", joint.material, index, 0, joint.from, joint.to);
+    add_row("joint \"" + joint.name + "\"", joint.material, index, 0, joint.from, joint.to,
+            Eigen::Vector3d::Zero(), (joint.from + joint.to) / 2);
     add_trace(joint.from, joint.to);
 }
 
@@ -260,7 +265,7 @@ void Sampler::add(const MappedSet& mapped, Index index)
                     throw input_error(name + ": trace " + std::to_string(trace.id) + " has more than " +
                                       std::to_string(mapped_step) + " straight pieces");
                 add_row(name, mapped.material, index, trace.id * mapped_step + piece++, polyline[i],
-                        polyline[i + 1]);
+                        polyline[i + 1], Eigen::Vector3d::Zero(), (polyline[i] + polyline[i + 1]) / 2);
                 add_trace(polyline[i], polyline[i + 1]);
             }
     }
@@ -348,7 +353,8 @@ double Sampler::draw_length(const JointSet& set, Stream& stream)
 }
 
 void Sampler::add_row(const std::string& name, const std::string& material, Index set, Index number,
-                      const Vector2d& from, const Vector2d& to)
+                      const Vector2d& from, const Vector2d& to, const Eigen::Vector3d& pole,
+                      const Vector2d& point)
 {
     const auto& materials = scene_.joint_materials;
     const auto found = std::find_if(materials.begin(), materials.end(), [&](const JointMaterial& candidate) {
@@ -364,6 +370,8 @@ void Sampler::add_row(const std::string& name, const std::string& material, Inde
     joints.material.push_back(static_cast<Index>(found - materials.begin()));
     joints.from.push_back(from);
     joints.to.push_back(to);
+    joints.pole.push_back(pole);
+    joints.point.push_back(point);
 }
 
 void Sampler::add_trace(const Vector2d& from, const Vector2d& to)
@@ -415,6 +423,8 @@ void append(Joints& joints, const Joints& more)
     put(joints.material, more.material);
     put(joints.from, more.from);
     put(joints.to, more.to);
+    put(joints.pole, more.pole);
+    put(joints.point, more.point);
     put(joints.trace_from, more.trace_from);
     put(joints.trace_to, more.trace_to);
     if (static_cast<std::int64_t>(joints.set.size()) > most_joints)

@@ -210,21 +210,23 @@ Vector3d Orientations::draw_pole(Stream& stream) const
     return pole_of(dip, draw(*set_.dip_direction, stream), azimuth_);
 }
 
-Vector2d Orientations::draw_trace(Stream& stream) const
+Orientations::Drawn Orientations::draw_joint(Stream& stream) const
 {
+    const auto upward = [](const Vector3d& pole) -> Vector3d { return pole.y() < 0 ? -pole : pole; };
     if (set_.trace_angle)
-        return trace_at(draw(*set_.trace_angle, stream));
+        return {trace_at(draw(*set_.trace_angle, stream)), Vector3d::Zero()};
     if (!pole_.empty()) {
         const auto after = std::upper_bound(sum_.begin(), sum_.end(), uniform(stream) * sum_.back());
         const auto i = std::min<std::ptrdiff_t>(after - sum_.begin(), std::ssize(sum_) - 1);
-        return trace_of(pole_[i].head<2>()).normalized();
+        return {trace_of(pole_[i].head<2>()).normalized(), upward(pole_[i])};
     }
     const int most_tries = 10000;
     for (int i = 0; i < most_tries; ++i) {
-        const Vector2d trace = trace_of(draw_pole(stream).head<2>());
+        const Vector3d pole = draw_pole(stream);
+        const Vector2d trace = trace_of(pole.head<2>());
         const bool met = set_.kind == SetKind::lines || uniform(stream) < trace.norm();
         if (met && trace.norm() >= least_section_normal)
-            return trace.normalized();
+            return {trace.normalized(), upward(pole)};
     }
     throw input_error(quoted(set_) + " has next to no joints that are not parallel to the section");
 }

@@ -67,8 +67,12 @@ public:
     // [rad].
     double steepest() const;
 
-    // Unit vector along the trace of one joint that is in the section.
-    Eigen::Vector2d draw_trace(Stream& stream) const;
+    // One joint that is in the section.
+    struct Drawn {
+        Eigen::Vector2d trace; // unit vector along it
+        Eigen::Vector3d pole;  // upward unit normal; zero if the set has a law of the trace angle
+    };
+    Drawn draw_joint(Stream& stream) const;
 
     // Of all joints of the set; in the section itself, if it has a law of the trace angle. Of lines, traces
     // more than 85 degrees off the mean trace and planes less than 3 degrees off the section are left out.

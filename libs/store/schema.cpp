@@ -83,6 +83,11 @@ std::vector<Field> fields_of(Joints& joints)
         {"/joints/material", &joints.material, {"joint"}, "1", index_of("joint_material"), "Joint material."},
         {"/joints/from", &joints.from, {"joint"}, "m", any(), "One end of the joint's line {x, y}."},
         {"/joints/to", &joints.to, {"joint"}, "m", any(), "The other end {x, y}."},
+        {"/joints/pole", &joints.pole, {"joint"}, "1", between(-1, 1),
+         "Upward unit normal of the joint's plane {x, y, z}, z being across the section, at its azimuth plus 90 "
+         "degrees; 0 where only a trace angle was drawn."},
+        {"/joints/point", &joints.point, {"joint"}, "m", any(),
+         "Where the joint was placed, about which it turns {x, y}; need not be inside the section."},
 
         {"/traces/joint", &joints.trace_joint, {"trace"}, "1", index_of("joint"), "Joint the trace lies on."},
         {"/traces/from", &joints.trace_from, {"trace"}, "m", any(), "One end of the joint trace {x, y}."},
@@ -135,6 +140,42 @@ std::vector<Field> fields_of(Blocks& blocks)
          "Shortest edge that is left."},
         {"/cutting/smallest_angle", &report.smallest_angle, {}, "rad", at_least(0),
          "Smallest angle between neighbouring edges that is left."},
+    };
+    // clang-format on
+}
+
+std::vector<Field> fields_of(Statistics& rows)
+{
+    const std::vector<std::string> statistic = {"statistic"};
+    const std::string unit = "1"; // the row's own, /statistics/unit
+    // clang-format off
+    return {
+        {"/statistics/subject", &rows.subject, statistic, "1", any(),
+         "What the row is about: a joint set, `blocks` or `nodes`. Rows are there only if a report was asked for."},
+        {"/statistics/quantity", &rows.quantity, statistic, "1", any(), "What is looked at."},
+        {"/statistics/unit", &rows.unit, statistic, "1", any(),
+         "Unit of target, achieved value and interval: SI, angles in rad."},
+        {"/statistics/has_target", &rows.has_target, statistic, "1", between(0, 1), "1 if there is a target."},
+        {"/statistics/target", &rows.target, statistic, unit, any(),
+         "By the laws of the scene; 0 where there is none."},
+        {"/statistics/achieved", &rows.achieved, statistic, unit, any(),
+         "What the network has; of a law, the largest distance between the two distribution functions."},
+        {"/statistics/has_interval", &rows.has_interval, statistic, "1", between(0, 1),
+         "1 if there is a confidence interval."},
+        {"/statistics/low", &rows.low, statistic, unit, any(),
+         "Lower end of the confidence interval; the achieved value where there is none."},
+        {"/statistics/high", &rows.high, statistic, unit, any(), "Its upper end."},
+        {"/statistics/sample_size", &rows.sample_size, statistic, "1", at_least(0),
+         "How many joints, traces, intervals, blocks or nodes were looked at."},
+        {"/statistics/is_tested", &rows.is_tested, statistic, "1", between(0, 1),
+         "1 if the verdict follows from the p-value."},
+        {"/statistics/p_value", &rows.p_value, statistic, "1", between(0, 1),
+         "Probability that chance takes a network by the scene's laws so far from the target; 1 where not tested."},
+        {"/statistics/verdict", &rows.verdict, statistic, "1", between(0, 3),
+         "0 not judged, 1 sample too small for a verdict, 2 pass, 3 fail."},
+        {"/statistics/confidence", &rows.confidence, {}, "1", between(0, 1), "Of the confidence intervals."},
+        {"/statistics/false_alarm_rate", &rows.false_alarm_rate, {}, "1", between(0, 1),
+         "Largest probability that a network by the scene's laws fails in any row."},
     };
     // clang-format on
 }
@@ -276,6 +317,7 @@ std::vector<Field> fields_of(Network& network)
     std::vector<Field> fields = fields_of(network.names);
     append(fields, fields_of(network.joints));
     append(fields, fields_of(network.blocks));
+    append(fields, fields_of(network.statistics));
     return fields;
 }
 
@@ -488,6 +530,7 @@ const std::vector<Described>& dimensions()
         {"block", "a face of the cut section"},
         {"ring", "a closed outline of a block, outer or hole"},
         {"corner", "a corner of a ring"},
+        {"statistic", "a row of the report on the network"},
         {"gridpoint", "a corner of zones, split along joints"},
         {"zone", "a constant-strain triangle"},
         {"tie", "a pair of gridpoints that are one until a stage"},

@@ -43,6 +43,50 @@ class Plots(ChainTest):
                     self.assertEqual([path.name for path in picture.parent.iterdir()], ["picture.png"])
                     self.assertEqual(picture.read_bytes()[:8], PNG)
 
+    def test_pictures_of_joint_sets(self):
+        scenes = {"data/slope/scene.toml": ["stereonet", "rose", "distributions"],
+                  "tests/pipeline/random_slope.toml": ["rose", "distributions"]}
+        for scene, names in scenes.items():
+            network = self.chain.network(self.chain.text(scene))
+            for name in names:
+                with self.subTest(name, scene=scene):
+                    picture = network.with_name(f"{name}.png")
+                    done = self.plot(name, network, picture)
+                    self.assertEqual((done.returncode, done.stderr), (0, ""))
+                    self.assertEqual(picture.read_bytes()[:8], PNG)
+        done = self.plot("stereonet", network, network.with_name("none.png"))  # of trace angles only
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("no joint has a pole", done.stderr)
+        self.assertFalse(network.with_name("none.png").exists())
+
+    def test_stereonet_places_poles(self):
+        """A plane that dips steeply to the east has its pole far west, in the lower hemisphere."""
+        import plot_stereonet
+
+        dip, direction, azimuth = numpy.radians([80, 90, 30])
+        upward = numpy.array([[numpy.sin(dip) * numpy.cos(direction - azimuth), numpy.cos(dip),
+                               numpy.sin(dip) * numpy.sin(direction - azimuth)]])
+        ((east, north, down),) = plot_stereonet.downward(upward, azimuth)
+        numpy.testing.assert_allclose([east, north, down], [-numpy.sin(dip), 0, numpy.cos(dip)], atol=1e-12)
+        numpy.testing.assert_allclose(plot_stereonet.pole_of((dip, direction)), [[east, north, down]], atol=1e-12)
+        ((x, y),) = plot_stereonet.net(numpy.array([[east, north, down]]))
+        self.assertAlmostEqual(x, -2**0.5 * numpy.sin(dip / 2))  # Schmidt's projection
+        self.assertAlmostEqual(y, 0)
+
+    def test_laws_are_densities(self):
+        import joint_sets
+
+        x = numpy.linspace(0, 400, 400001)[1:]
+        for law in [{"law": "negative exponential", "mean_m": 6}, {"law": "lognormal", "mean_m": 6, "deviation_m": 4},
+                    {"law": "normal", "mean_m": 6, "deviation_m": 2},
+                    {"law": "uniform", "shortest_m": 2, "longest_m": 9},
+                    {"law": "power", "exponent": 2.5, "shortest_m": 2, "longest_m": 50},
+                    {"law": "power", "exponent": 1, "shortest_m": 2, "longest_m": 50}]:
+            curve = joint_sets.density(law, x)
+            self.assertAlmostEqual(numpy.trapz(curve, x), 1, places=2)
+            if law["law"] in ("lognormal", "negative exponential"):
+                self.assertAlmostEqual(numpy.trapz(x * curve, x), law["mean_m"], places=2)
+
     def test_whole_or_not_at_all(self):
         import figure
 
