@@ -236,7 +236,7 @@ bool Engine::converge(Assembly& assembly, const State& start, const Equilibrium&
 
         const double enough = is_balanced
                                   ? 0.1 * force_.norm()
-                                  : std::max(0.5 * settings.tolerance * balance.mean, (corrections_ == first ? 1e-2 : 1e-3) * force_.norm());
+                                  : std::max(0.5 * settings.tolerance * balance.mean, 1e-2 * force_.norm());
         const VectorXd du = correction(assembly, force_, enough, hold);
         ++corrections_;
         if (du.size() == 0 || !du.allFinite()) {

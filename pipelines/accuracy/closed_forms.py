@@ -361,3 +361,33 @@ def v_groove(scene, contacts, first_traction, days, step=0.01):
     q, tractions = rigid_body(contacts, law_of(scene, contacts), first_traction, force_at, days, step)
     (x, y), = points(scene).values()
     return np.stack([q[:, 0] - q[:, 2] * y, q[:, 1] + q[:, 2] * x], axis=1), tractions
+
+
+def single_contact(scene, contacts, first_traction, days, step=1e-3):
+    """data/verification/single-contact: tractions [day, contact, 2] of contacts whose jump is the top's displacement.
+
+    In tiny steps: the Kelvin parts go to the end of each with the mean of the tractions at its two ends.
+    """
+    law = law_of(scene, contacts)
+    top = next(b for b in scene["boundary"] if "displacement_mm" in b)
+    times, factors = np.array(top["course"], float).T
+    to_jump = np.stack([contacts.normal, contacts.tangent], axis=1) @ (1e-3 * np.array(top["displacement_mm"], float))
+    last = np.array(first_traction, float)
+    kelvin, slip, now, found = np.zeros_like(last), np.zeros(len(last)), 0.0, [last]
+    for day in days[1:]:
+        n_steps = max(1, math.ceil((day - now) / step * (1 - 1e-9)))
+        dt = (day - now) / n_steps
+        decay = np.exp(-law.e / law.eta * dt)
+        for i in range(n_steps):
+            sprung = to_jump * np.interp(now + (i + 1) * dt, times, factors)
+            traction = last
+            for _ in range(3):
+                after = kelvin * decay + (1 - decay) * ((last + traction) / 2 - first_traction) / law.e
+                sigma, trial = (first_traction + law.k * (sprung - after)).T - np.stack([0 * slip, law.k[:, 1] * slip])
+                limit = np.maximum(-sigma * law.tan_phi, 0)
+                tau = np.clip(trial, -limit, limit)
+                traction = np.stack([np.minimum(sigma, 0), tau], axis=1)
+            kelvin, last, slip = after, traction, slip + (trial - tau) / law.k[:, 1]
+        now = day
+        found.append(last)
+    return np.array(found)
