@@ -15,10 +15,6 @@ namespace
 
 using Eigen::Vector2d;
 
-struct Box {
-    Vector2d low, high;
-};
-
 // Calls meet(a, b, box) for pairs of segments that come close together: at least once for every two that have
 // a place in common, with a box that holds the place. Segments are sorted into the cells of a grid, and
 // crowded cells divided further.
@@ -26,13 +22,16 @@ template <class Meet>
 class Neighbours
 {
 public:
-    Neighbours(const std::vector<Segment>& segments, Meet& meet)
+    Neighbours(const std::vector<Segment>& segments, const std::optional<Box>& window, Meet& meet)
         : segments_(segments), meet_(meet), grid_(segments)
     {
         // Twice what a place may be off by where segments are not nearly parallel (crosses_elsewhere).
         sure_ = 1e-9 * grid_.farthest() + grid_.margin();
         grid_.for_cells([&](std::span<const Index> in_cell, const Vector2d& low, const Vector2d& high) {
-            visit(in_cell, {low, high}, 0);
+            const double margin = grid_.margin();
+            if (!window || ((low.array() <= window->high.array() + margin).all() &&
+                            (high.array() >= window->low.array() - margin).all()))
+                visit(in_cell, {low, high}, 0);
         });
     }
 
@@ -96,9 +95,9 @@ private:
 };
 
 template <class Meet>
-void for_neighbours(const std::vector<Segment>& segments, Meet meet)
+void for_neighbours(const std::vector<Segment>& segments, const std::optional<Box>& window, Meet meet)
 {
-    Neighbours<Meet>(segments, meet);
+    Neighbours<Meet>(segments, window, meet);
 }
 
 bool boxes_apart(const Segment& p, const Segment& q)
@@ -212,7 +211,7 @@ void sort_and_unite(Graph& graph, Sources& sources)
 
 } // namespace
 
-Graph arrange(const Graph& lines, Sources& sources)
+Graph arrange(const Graph& lines, Sources& sources, const std::optional<Box>& window)
 {
     const std::vector<Segment> segments = segments_of(lines);
     const auto count = static_cast<Index>(segments.size());
@@ -227,7 +226,7 @@ Graph arrange(const Graph& lines, Sources& sources)
             stops.push_back({s, static_cast<Index>(place.size())});
             place.push_back(end);
         }
-    for_neighbours(segments, [&](Index a, Index b, const Box& box) {
+    for_neighbours(segments, window, [&](Index a, Index b, const Box& box) {
         const Segment &p = segments[a], &q = segments[b];
         if (boxes_apart(p, q) || crosses_elsewhere(p, q, box))
             return;
@@ -282,7 +281,7 @@ bool crosses_nowhere(const Graph& graph)
 {
     const std::vector<Segment> segments = segments_of(graph);
     bool is_clear = true;
-    for_neighbours(segments, [&](Index a, Index b, const Box& box) {
+    for_neighbours(segments, {}, [&](Index a, Index b, const Box& box) {
         const Segment &p = segments[a], &q = segments[b];
         if (is_clear && !boxes_apart(p, q) && !crosses_elsewhere(p, q, box))
             intersect(

@@ -165,7 +165,7 @@ public:
                 throw input_error("cutting: after " + std::to_string(most_passes) +
                                   " passes edges still come closer than " + shown(reach_) +
                                   " m; a smaller shortest_edge_m may settle");
-            graph_ = arrange(graph_, sources_);
+            graph_ = arrange(graph_, sources_, section_box());
             drop_outside();
             prune_ends();
             if (!merge_pass(graph_, sources_, outlines_, {reach_, scene_.cutting.smallest_angle}, report_))
@@ -245,6 +245,16 @@ private:
     bool is_in_section(const Vector2d& place) const
     {
         return is_inside(outlines_[0], place) && holes_.first_around(place) < 0;
+    }
+
+    Box section_box() const
+    {
+        Box box{outlines_[0][0], outlines_[0][0]};
+        for (const Vector2d& p : outlines_[0]) {
+            box.low = box.low.cwiseMin(p);
+            box.high = box.high.cwiseMax(p);
+        }
+        return box;
     }
 
     double section_area() const

@@ -9,6 +9,7 @@
 #include <Eigen/Core>
 
 #include <map>
+#include <optional>
 #include <span>
 #include <unordered_map>
 #include <vector>
@@ -72,7 +73,12 @@ struct Graph {
 //
 // Rounding moves a vertex by half a unit of its last place at most. Where other edges pass that near the
 // result may cross itself; crosses_nowhere() tells.
-Graph arrange(const Graph& lines, Sources& sources);
+//
+// What lies outside a window, if one is given, need not be arranged: crossings there may be left out.
+struct Box {
+    Eigen::Vector2d low, high;
+};
+Graph arrange(const Graph& lines, Sources& sources, const std::optional<Box>& window = {});
 
 // Whether edges meet at common ends only; exact.
 bool crosses_nowhere(const Graph& graph);
