@@ -122,7 +122,7 @@ bool crosses_elsewhere(const Segment& p, const Segment& q, const Box& box)
 }
 
 // What two segments have in common beyond an end they share: cross() once if they cross within both, and
-// touch(i, place) for every end of one that lies within the other, i telling which one is touched. Exact.
+// touch(i, is_from) for every end of one that lies within the other, i telling which one is touched. Exact.
 template <class Cross, class Touch>
 void intersect(const Segment& p, const Segment& q, Cross cross, Touch touch)
 {
@@ -135,13 +135,13 @@ void intersect(const Segment& p, const Segment& q, Cross cross, Touch touch)
     if (q_from * q_to < 0 && p_from * p_to < 0)
         return cross();
     if (q_from == 0 && is_between(p.from, p.to, q.from))
-        touch(0, q.from);
+        touch(0, true);
     if (q_to == 0 && is_between(p.from, p.to, q.to))
-        touch(0, q.to);
+        touch(0, false);
     if (p_from == 0 && is_between(q.from, q.to, p.from))
-        touch(1, p.from);
+        touch(1, true);
     if (p_to == 0 && is_between(q.from, q.to, p.to))
-        touch(1, p.to);
+        touch(1, false);
 }
 
 std::vector<Segment> segments_of(const Graph& graph)
@@ -217,14 +217,15 @@ Graph arrange(const Graph& lines, Sources& sources, const std::optional<Box>& wi
     const auto count = static_cast<Index>(segments.size());
 
     // Where the segments stop: their ends, crossings, and ends of others. Places may come more than once.
-    std::vector<Vector2d> place;
+    std::vector<Vector2d> place = lines.vertex;
     std::vector<Stop> stops;
+    stops.reserve(4 * segments.size());
+    std::size_t ends = 0;
     for (Index s = 0; s < count; ++s)
-        for (const Vector2d& end : {segments[s].from, segments[s].to}) {
-            if (segments[s].from == segments[s].to)
-                continue;
-            stops.push_back({s, static_cast<Index>(place.size())});
-            place.push_back(end);
+        if (segments[s].from != segments[s].to) {
+            stops.push_back({s, lines.edge[s].first});
+            stops.push_back({s, lines.edge[s].second});
+            ends += 2;
         }
     for_neighbours(segments, window, [&](Index a, Index b, const Box& box) {
         const Segment &p = segments[a], &q = segments[b];
@@ -237,14 +238,14 @@ Graph arrange(const Graph& lines, Sources& sources, const std::optional<Box>& wi
                     stops.push_back({s, static_cast<Index>(place.size())});
                 place.push_back(crossing(p.from, p.to, q.from, q.to));
             },
-            [&](int touched, const Vector2d& end) {
-                stops.push_back({touched == 0 ? a : b, static_cast<Index>(place.size())});
-                place.push_back(end);
+            [&](int touched, bool is_from) {
+                const Edge& other = lines.edge[touched == 0 ? b : a];
+                stops.push_back({touched == 0 ? a : b, is_from ? other.first : other.second});
             });
     });
 
     const std::vector<Index> vertex_of = number_in_order(place);
-    Graph planar{.vertex = std::move(place), .edge = {}};
+    Graph planar{.vertex = std::move(place), .edge = {}, .had_crossings = stops.size() != ends};
 
     std::vector<Index> start(segments.size() + 1, 0);
     for (const Stop& stop : stops)
@@ -285,7 +286,7 @@ bool crosses_nowhere(const Graph& graph)
         const Segment &p = segments[a], &q = segments[b];
         if (is_clear && !boxes_apart(p, q) && !crosses_elsewhere(p, q, box))
             intersect(
-                p, q, [&] { is_clear = false; }, [&](int, const Vector2d&) { is_clear = false; });
+                p, q, [&] { is_clear = false; }, [&](int, bool) { is_clear = false; });
     });
     return is_clear;
 }

@@ -175,6 +175,8 @@ public:
         while (prune_slits(faces) || straighten())
             faces = trace_faces(graph_);
         remove_holes(faces);
+        if (has_straightened_)
+            graph_.had_crossings = true; // as far as anyone knows
         check_faces(graph_, faces, section_area(), scene_.holes.size());
         return finish(faces);
     }
@@ -396,6 +398,7 @@ private:
             kept.first = std::min(a, b);
             kept.second = std::max(a, b);
             std::ranges::replace(incidence.at(b), f, e);
+            has_straightened_ = true;
         }
         if (any)
             remove_edges(gone);
@@ -592,6 +595,7 @@ private:
     FateRecord fates_;
     Graph graph_;
     CuttingReport report_;
+    bool has_straightened_ = false;
 };
 
 } // namespace

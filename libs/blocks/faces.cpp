@@ -17,42 +17,53 @@ using Eigen::Vector2d;
 class HalfEdges
 {
 public:
-    explicit HalfEdges(const Graph& graph) : graph_(graph), next_(2 * graph.edge.size())
+    explicit HalfEdges(const Graph& graph)
+        : graph_(graph), begin_(graph.vertex.size() + 1, 0), leaving_(2 * graph.edge.size()),
+          next_(2 * graph.edge.size()), has_fan_(graph.vertex.size(), 0)
     {
-        std::vector<Index> begin(graph.vertex.size() + 1, 0);
         for (const Edge& e : graph.edge) {
-            ++begin[e.first + 1];
-            ++begin[e.second + 1];
+            ++begin_[e.first + 1];
+            ++begin_[e.second + 1];
         }
-        std::partial_sum(begin.begin(), begin.end(), begin.begin());
-        std::vector<Index> leaving(next_.size());
-        std::vector<Index> place(begin.begin(), begin.end() - 1);
+        std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
+        std::vector<Index> place(begin_.begin(), begin_.end() - 1);
         for (Index h = 0; h < count(); ++h)
-            leaving[place[start(h)]++] = h;
-
-        for (std::size_t v = 0; v + 1 < begin.size(); ++v) {
-            const std::span<Index> fan(leaving.data() + begin[v], leaving.data() + begin[v + 1]);
-            const Vector2d& centre = graph.vertex[v];
-            std::sort(fan.begin(), fan.end(), [&](Index g, Index h) {
-                const Vector2d &a = graph.vertex[end(g)], &b = graph.vertex[end(h)];
-                const bool a_right = is_before(centre, a), b_right = is_before(centre, b);
-                return a_right != b_right ? a_right : turn(centre, a, b) > 0;
-            });
-            // With the face on the left, turn as sharply right as possible... that is, take the half-edge
-            // just before the way back, counter-clockwise.
-            for (std::size_t i = 0; i < fan.size(); ++i)
-                next_[fan[i] ^ 1] = fan[i == 0 ? fan.size() - 1 : i - 1];
-        }
+            leaving_[place[start(h)]++] = h;
     }
 
     Index count() const { return static_cast<Index>(next_.size()); }
     Index start(Index h) const { return h % 2 == 0 ? graph_.edge[h / 2].first : graph_.edge[h / 2].second; }
     Index end(Index h) const { return start(h ^ 1); }
-    Index next(Index h) const { return next_[h]; }
+
+    // The next half-edge of the face on the left.
+    Index next(Index h)
+    {
+        if (const Index v = end(h); !has_fan_[v])
+            make_fan(v);
+        return next_[h];
+    }
 
 private:
+    // Puts the half-edges that leave a vertex in order.
+    void make_fan(Index v)
+    {
+        has_fan_[v] = 1;
+        const std::span<Index> fan(leaving_.data() + begin_[v], leaving_.data() + begin_[v + 1]);
+        const Vector2d& centre = graph_.vertex[v];
+        std::sort(fan.begin(), fan.end(), [&](Index g, Index h) {
+            const Vector2d &a = graph_.vertex[end(g)], &b = graph_.vertex[end(h)];
+            const bool a_right = is_before(centre, a), b_right = is_before(centre, b);
+            return a_right != b_right ? a_right : turn(centre, a, b) > 0;
+        });
+        // With the face on the left, turn as sharply right as possible... that is, take the half-edge just
+        // before the way back, counter-clockwise.
+        for (std::size_t i = 0; i < fan.size(); ++i)
+            next_[fan[i] ^ 1] = fan[i == 0 ? fan.size() - 1 : i - 1];
+    }
+
     const Graph& graph_;
-    std::vector<Index> next_;
+    std::vector<Index> begin_, leaving_, next_;
+    std::vector<char> has_fan_;
 };
 
 // Closed rings of vertices, one after the other.
@@ -252,7 +263,7 @@ bool is_inside(const Polygon& polygon, const Vector2d& place)
 
 Faces trace_faces(const Graph& graph)
 {
-    const HalfEdges half(graph);
+    HalfEdges half(graph);
     Rings rings;
     rings.vertex.reserve(half.count());
     std::vector<Index> ring_of(half.count(), -1);
@@ -342,6 +353,25 @@ Faces trace_faces(const Graph& graph)
     for (std::size_t e = 0; e < graph.edge.size(); ++e)
         faces.sides[e] = {face_of_ring[ring_of[2 * e]], face_of_ring[ring_of[2 * e + 1]]};
     return faces;
+}
+
+void for_outer_rings(const Graph& graph, const std::vector<char>& is_chosen,
+                     const std::function<void(std::span<const Index>, double)>& visit)
+{
+    HalfEdges half(graph);
+    std::vector<char> is_done(half.count(), 0);
+    std::vector<Index> ring;
+    for (Index first = 0; first < half.count(); ++first) {
+        if (is_done[first] || !is_chosen[first / 2])
+            continue;
+        ring.clear();
+        for (Index h = first; !is_done[h]; h = half.next(h)) {
+            is_done[h] = 1;
+            ring.push_back(half.start(h));
+        }
+        if (!is_rim(graph.vertex, ring))
+            visit(ring, ring_area(graph.vertex, ring));
+    }
 }
 
 void remove_faces(Faces& faces, const std::vector<char>& is_gone)

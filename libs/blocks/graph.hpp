@@ -8,6 +8,7 @@
 
 #include <Eigen/Core>
 
+#include <functional>
 #include <map>
 #include <optional>
 #include <span>
@@ -63,6 +64,7 @@ struct Edge {
 struct Graph {
     std::vector<Eigen::Vector2d> vertex; // [m]
     std::vector<Edge> edge;
+    bool had_crossings = true; // false if arrange() found edges to meet at common ends only
 };
 
 // The planar arrangement of a graph's edges, which may cross, overlap and touch: every crossing becomes a
@@ -103,6 +105,12 @@ struct Faces {
 
 // Faces of a planar graph without crossings, in the order of their first edges.
 Faces trace_faces(const Graph& graph);
+
+// Calls visit(ring, area) for the outer ring of each face that has one of the chosen edges on its outer
+// border; rings as they run, through a vertex more than once where they touch themselves. Areas are without
+// holes [m2].
+void for_outer_rings(const Graph& graph, const std::vector<char>& is_chosen,
+                     const std::function<void(std::span<const Index>, double)>& visit);
 
 // Takes faces away, as belonging to the unbounded one.
 void remove_faces(Faces& faces, const std::vector<char>& is_gone);

@@ -392,19 +392,16 @@ bool merge_pass(Graph& graph, Sources& sources, const std::vector<Polygon>& outl
         unite(edges, graph.vertex, sources, report);
     }
 
-    // What the faces of before have become: those without area have merged into their neighbours.
-    const Faces before = trace_faces(graph);
-    for (std::size_t face = 0; face < before.size(); ++face) {
-        const std::span<const Index> outer = before.ring(before.first_ring[face]);
+    // What the faces of before have become: those without area have merged into their neighbours. Only faces
+    // with an edge that has changed need a look.
+    std::vector<char> has_changed(graph.edge.size(), 0);
+    for (std::size_t e = 0; e < graph.edge.size(); ++e) {
+        const auto [a, b, s] = graph.edge[e];
+        has_changed[e] = joined[a] != a || joined[b] != b || has_moved[a] || has_moved[b] ||
+                         (!bent.empty() && bent.contains(std::minmax(a, b)));
+    }
+    for_outer_rings(graph, has_changed, [&](std::span<const Index> outer, double area) {
         std::vector<Index> ring;
-        bool is_touched = false;
-        for (std::size_t i = 0; i < outer.size() && !is_touched; ++i) {
-            const Index a = outer[i], b = outer[i + 1 < outer.size() ? i + 1 : 0];
-            is_touched =
-                joined[a] != a || has_moved[a] || (!bent.empty() && bent.contains(std::minmax(a, b)));
-        }
-        if (!is_touched)
-            continue;
         for (std::size_t i = 0; i < outer.size(); ++i) {
             const Index a = joined[outer[i]], b = joined[outer[(i + 1) % outer.size()]];
             if (a == b)
@@ -418,9 +415,9 @@ bool merge_pass(Graph& graph, Sources& sources, const std::vector<Polygon>& outl
             }
         }
         const double left = ring.size() < 3 ? 0.0 : ring_area(moved, ring);
-        if (left <= 1e-9 * before.area[face])
-            report.merged_block_area += before.area[face];
-    }
+        if (left <= 1e-9 * area)
+            report.merged_block_area += area;
+    });
 
     Graph merged;
     std::vector<Index> index(n, -1);
