@@ -5,6 +5,7 @@
 #include "blocks/fate.hpp"
 #include "blocks/graph.hpp"
 #include "blocks/merge.hpp"
+#include "blocks/predicates.hpp"
 #include "model/error.hpp"
 
 #include <algorithm>
@@ -175,7 +176,7 @@ public:
         while (prune_slits(faces) || straighten())
             faces = trace_faces(graph_);
         remove_holes(faces);
-        if (has_straightened_)
+        if (has_bent_)
             graph_.had_crossings = true; // as far as anyone knows
         check_faces(graph_, faces, section_area(), scene_.holes.size());
         return finish(faces);
@@ -398,7 +399,7 @@ private:
             kept.first = std::min(a, b);
             kept.second = std::max(a, b);
             std::ranges::replace(incidence.at(b), f, e);
-            has_straightened_ = true;
+            has_bent_ = has_bent_ || turn(graph_.vertex[a], graph_.vertex[v], graph_.vertex[b]) != 0;
         }
         if (any)
             remove_edges(gone);
@@ -595,7 +596,7 @@ private:
     FateRecord fates_;
     Graph graph_;
     CuttingReport report_;
-    bool has_straightened_ = false;
+    bool has_bent_ = false; // by straightening what was straight but for rounding
 };
 
 } // namespace

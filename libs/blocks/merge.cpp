@@ -105,12 +105,12 @@ Foot foot_on(const Vector2d& p, const Vector2d& q, const Vector2d& v)
     return {along, (v - place).norm(), place};
 }
 
-// Neighbours of vertices along edges.
+// Neighbours of vertices along edges, and these edges.
 struct Adjacency {
-    std::vector<Index> start, neighbour;
+    std::vector<Index> start, neighbour, edge;
 
     Adjacency(std::size_t vertices, const std::vector<Edge>& edges)
-        : start(vertices + 1, 0), neighbour(2 * edges.size())
+        : start(vertices + 1, 0), neighbour(2 * edges.size()), edge(2 * edges.size())
     {
         for (const Edge& e : edges) {
             ++start[e.first + 1];
@@ -118,14 +118,20 @@ struct Adjacency {
         }
         std::partial_sum(start.begin(), start.end(), start.begin());
         std::vector<Index> next(start.begin(), start.end() - 1);
-        for (const Edge& e : edges) {
-            neighbour[next[e.first]++] = e.second;
-            neighbour[next[e.second]++] = e.first;
-        }
+        for (std::size_t e = 0; e < edges.size(); ++e)
+            for (const auto& [v, other] :
+                 {std::pair(edges[e].first, edges[e].second), std::pair(edges[e].second, edges[e].first)}) {
+                neighbour[next[v]] = other;
+                edge[next[v]++] = static_cast<Index>(e);
+            }
     }
     std::span<const Index> operator[](Index v) const
     {
         return {neighbour.data() + start[v], neighbour.data() + start[v + 1]};
+    }
+    std::span<const Index> edges_at(Index v) const
+    {
+        return {edge.data() + start[v], edge.data() + start[v + 1]};
     }
 };
 
@@ -288,19 +294,20 @@ bool merge_pass(Graph& graph, Sources& sources, const std::vector<Polygon>& outl
         }
         // Narrow wedges: neighbours of one vertex, of which one lies close to the other's edge.
         const double sine = std::sin(limits.smallest_angle) * (1 + 1e-6);
-        for (std::size_t e = 0; e < edges.size(); ++e)
-            for (const auto& [tip, end] :
-                 {std::pair(edges[e].first, edges[e].second), std::pair(edges[e].second, edges[e].first)}) {
-                const Vector2d d = graph.vertex[end] - graph.vertex[tip];
-                for (const Index v : neighbours[tip]) {
-                    if (v == end)
-                        continue;
-                    const Vector2d o = graph.vertex[v] - graph.vertex[tip];
+        for (const Index tip : used) {
+            const std::span<const Index> around = neighbours[tip], by = neighbours.edges_at(tip);
+            for (std::size_t i = 0; i < around.size(); ++i) {
+                const Vector2d d = graph.vertex[around[i]] - graph.vertex[tip];
+                for (std::size_t j = 0; j < i; ++j) {
+                    const Vector2d o = graph.vertex[around[j]] - graph.vertex[tip];
                     const double across = d.x() * o.y() - d.y() * o.x();
-                    if (d.dot(o) > 0 && across * across <= sine * sine * d.squaredNorm() * o.squaredNorm())
-                        near.push_back({static_cast<Index>(e), v});
+                    if (d.dot(o) > 0 && across * across <= sine * sine * d.squaredNorm() * o.squaredNorm()) {
+                        near.push_back({by[i], around[j]});
+                        near.push_back({by[j], around[i]});
+                    }
                 }
             }
+        }
     }
     std::sort(near.begin(), near.end());
     near.erase(std::unique(near.begin(), near.end(), [](const Near& a, const Near& b) { return a == b; }),

@@ -10,7 +10,6 @@ Processor times; each the least of three, or one where a run is long. Writes cut
 import argparse
 import csv
 import math
-import os
 import subprocess
 import sys
 from pathlib import Path
@@ -84,15 +83,11 @@ persistence = 1
     return text
 
 
-def measured(command):
-    """Processor time [s], most memory [bytes], output."""
-    process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
-    output = process.stdout.read()
-    _, status, usage = os.wait4(process.pid, 0)
-    process.returncode = os.waitstatus_to_exitcode(status)
-    if process.returncode != 0:
-        sys.exit(f"cutting.py: {' '.join(map(str, command))} ended with {process.returncode}")
-    return usage.ru_utime + usage.ru_stime, 1024 * usage.ru_maxrss, output
+def output_of(command):
+    done = subprocess.run(command, stdout=subprocess.PIPE, text=True)
+    if done.returncode != 0:
+        sys.exit(f"cutting.py: {' '.join(map(str, command))} ended with {done.returncode}")
+    return done.stdout
 
 
 def least(run):
@@ -111,7 +106,7 @@ def number_of_blocks(output):
 
 
 def rows(jointgen, benchmark, out, most):
-    start = measured([jointgen, "--version"])[1]
+    start = float(output_of([benchmark, "run", jointgen, "--version"]).splitlines()[-1].split(",")[1])
     for blocks in (1e3, 1e4, 1e5, 1e6):
         if blocks > most:
             break
@@ -119,7 +114,8 @@ def rows(jointgen, benchmark, out, most):
         scene.write_text(lines(blocks))
 
         def whole():
-            time, memory, output = measured([jointgen, scene, "-o", network])
+            output = output_of([benchmark, "run", jointgen, scene, "-o", network])
+            time, memory = map(float, output.splitlines()[-1].split(","))
             return time, memory - start, number_of_blocks(output)
 
         time, memory, faces = least(whole)
@@ -128,7 +124,7 @@ def rows(jointgen, benchmark, out, most):
         network.unlink()
         for method in list(METHODS)[1:]:
             def other():
-                fields = measured([benchmark, method, scene])[2].split(",")
+                fields = output_of([benchmark, method, scene]).split(",")
                 return float(fields[3]), float(fields[4]), int(fields[2])
 
             time, memory, others = least(other)

@@ -1,6 +1,7 @@
 // cutting_benchmark: what other ways of cutting take for the lines that jointgen cuts.
 //
 //   cutting_benchmark METHOD SCENE.toml
+//   cutting_benchmark run PROGRAM ARGUMENTS...
 //
 // METHOD is
 //   subdivision   this project's, lines to faces, without merging
@@ -20,9 +21,11 @@
 #endif
 
 #include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
-#include <cstdarg>
 #include <ctime>
+#include <fstream>
 #include <iostream>
 #include <stdexcept>
 #include <string>
@@ -105,17 +108,44 @@ std::size_t by_geos(const blocks::Graph& lines)
 #endif
 }
 
+// Of this program, without what it was started from [bytes].
 double most_memory()
 {
+    std::ifstream status("/proc/self/status");
+    for (std::string word; status >> word;)
+        if (double kilobytes = 0; word == "VmHWM:" && status >> kilobytes)
+            return 1024 * kilobytes;
+    return 0;
+}
+
+// Runs another program and prints its processor time [s] and most memory [bytes]; from a small process, as a
+// system counts the memory of the one that starts it, too.
+int run(char** command)
+{
+    const pid_t child = fork();
+    if (child == 0) {
+        execv(command[0], command);
+        std::_Exit(127);
+    }
+    int status = 0;
     rusage usage{};
-    getrusage(RUSAGE_SELF, &usage);
-    return 1024.0 * static_cast<double>(usage.ru_maxrss);
+    if (child < 0 || wait4(child, &status, 0, &usage) != child || !WIFEXITED(status) ||
+        WEXITSTATUS(status) != 0)
+        throw std::runtime_error(std::string(command[0]) + " failed");
+    const auto seconds = [](const timeval& t) {
+        return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+    };
+    std::cout << seconds(usage.ru_utime) + seconds(usage.ru_stime) << ','
+              << 1024 * static_cast<double>(usage.ru_maxrss) << std::endl;
+    return 0;
 }
 
 } // namespace
 
 int main(int argc, char** argv)
 try {
+    if (argc > 2 && std::string(argv[1]) == "run")
+        return run(argv + 2);
     if (argc != 3)
         throw std::runtime_error("usage: cutting_benchmark subdivision|cgal|geos SCENE.toml");
     const std::string method = argv[1];
