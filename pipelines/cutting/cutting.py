@@ -154,7 +154,7 @@ def plot(results, path):
     time.annotate("limit", (results[0]["blocks"], 1e6 * LIMIT), color="0.4", va="bottom")
     for axes, label in (time, "processor time, µs a face"), (memory, "memory, bytes a face"):
         axes.set(xscale="log", yscale="log", xlabel="blocks", ylabel=label)
-    time.legend(fontsize=6)
+    memory.legend(fontsize=6)
     figure.savefig(path, dpi=200)
 
 
