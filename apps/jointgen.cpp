@@ -16,6 +16,7 @@
 #include "statistics/statistics.hpp"
 #include "store/files.hpp"
 
+#include <algorithm>
 #include <iostream>
 #include <limits>
 #include <numeric>
@@ -59,7 +60,24 @@ void report(const Network& network)
     summary.add("merged edges", blocks.report.merged_edge_length, "m");
     summary.add("merged blocks", blocks.report.merged_block_area, "m2");
     summary.add("largest move", blocks.report.largest_move, "m");
-    summary.add("joints cut back", blocks.report.pruned_length, "m");
+    const auto total = [](const std::vector<double>& lengths) {
+        return std::accumulate(lengths.begin(), lengths.end(), 0.0);
+    };
+    const JointFates& fates = blocks.fates;
+    summary.add("length of joints",
+                total(fates.kept) + total(fates.shared) + total(fates.on_outline) + total(fates.outside) +
+                    total(fates.dead_end) + total(fates.merged),
+                "m");
+    summary.add("  on block edges", total(fates.kept), "m");
+    summary.add("  on edges of others", total(fates.shared), "m");
+    summary.add("  along the outline", total(fates.on_outline), "m");
+    summary.add("  outside, clipped", total(fates.outside), "m");
+    summary.add("  inside, cut back", total(fates.dead_end), "m");
+    summary.add("  merged away", total(fates.merged), "m");
+    if (const double extended = total(fates.extended); extended > 0)
+        summary.add("carried on", extended, "m");
+    summary.add("joints dropped",
+                std::count(fates.fate.begin(), fates.fate.end(), static_cast<Index>(JointFate::dropped)));
     std::vector<double> on_edges(network.names.joint_set.size(), 0.0);
     for (std::size_t e = 0; e < blocks.edge_joint.size(); ++e)
         if (blocks.edge_joint[e] >= 0) {

@@ -1,14 +1,11 @@
 #include "blocks/graph.hpp"
-
-#include <CGAL/Arr_consolidated_curve_data_traits_2.h>
-#include <CGAL/Arr_segment_traits_2.h>
-#include <CGAL/Arrangement_2.h>
-#include <CGAL/Exact_predicates_exact_constructions_kernel.h>
+#include "blocks/predicates.hpp"
+#include "blocks/segment_grid.hpp"
 
 #include <algorithm>
-#include <iterator>
+#include <cmath>
 #include <numeric>
-#include <unordered_map>
+#include <tuple>
 
 namespace jointcreep::blocks
 {
@@ -16,87 +13,282 @@ namespace jointcreep::blocks
 namespace
 {
 
-using Exact = CGAL::Exact_predicates_exact_constructions_kernel;
-using SegmentTraits = CGAL::Arr_segment_traits_2<Exact>;
-using Traits = CGAL::Arr_consolidated_curve_data_traits_2<SegmentTraits, Index>; // data: an edge of the input
-using Arrangement = CGAL::Arrangement_2<Traits>;
+using Eigen::Vector2d;
+
+// Calls meet(a, b, box) for pairs of segments that come close together: at least once for every two that have
+// a place in common, with a box that holds the place. Segments are sorted into the cells of a grid, and
+// crowded cells divided further.
+template <class Meet>
+class Neighbours
+{
+public:
+    Neighbours(const std::vector<Segment>& segments, const std::optional<Box>& window, Meet& meet)
+        : segments_(segments), meet_(meet), grid_(segments)
+    {
+        // Twice what a place may be off by where segments are not nearly parallel (crosses_elsewhere).
+        sure_ = 1e-9 * grid_.farthest() + grid_.margin();
+        grid_.for_cells([&](std::span<const Index> in_cell, const Vector2d& low, const Vector2d& high) {
+            const double margin = grid_.margin();
+            if (!window || ((low.array() <= window->high.array() + margin).all() &&
+                            (high.array() >= window->low.array() - margin).all()))
+                visit(in_cell, {low, high}, 0);
+        });
+    }
+
+private:
+    void visit(std::span<const Index> near, const Box& box, int depth)
+    {
+        constexpr std::size_t crowd = 24;
+        if (near.size() > crowd && depth < 40) {
+            std::array<std::vector<Index>, 2> best;
+            std::array<Box, 2> best_box;
+            double best_pairs = 0.75 * static_cast<double>(near.size()) * static_cast<double>(near.size());
+            for (const int axis : {0, 1}) {
+                const double middle = (box.low[axis] + box.high[axis]) / 2;
+                std::array<Box, 2> half{box, box};
+                half[0].high[axis] = half[1].low[axis] = middle;
+                if (half[0].high[axis] - half[0].low[axis] < 4 * grid_.margin())
+                    continue;
+                std::array<std::vector<Index>, 2> in;
+                for (const int side : {0, 1})
+                    std::ranges::copy_if(near, std::back_inserter(in[side]),
+                                         [&](Index i) { return may_touch(segments_[i], half[side]); });
+                double pairs = 0;
+                for (const auto& list : in)
+                    pairs += static_cast<double>(list.size()) * static_cast<double>(list.size());
+                if (pairs < best_pairs) {
+                    best_pairs = pairs;
+                    best = std::move(in);
+                    best_box = half;
+                }
+            }
+            if (!best[0].empty() || !best[1].empty()) {
+                for (const int side : {0, 1})
+                    visit(best[side], best_box[side], depth + 1);
+                return;
+            }
+        }
+        const Box wide{box.low - Vector2d(sure_, sure_), box.high + Vector2d(sure_, sure_)};
+        for (std::size_t i = 0; i < near.size(); ++i)
+            for (std::size_t j = i + 1; j < near.size(); ++j)
+                meet_(near[i], near[j], wide);
+    }
+
+    bool may_touch(const Segment& s, const Box& box) const
+    {
+        const double margin = grid_.margin();
+        const Vector2d reach(margin, margin), low = box.low - reach, high = box.high + reach;
+        if (std::max(s.from.x(), s.to.x()) < low.x() || std::min(s.from.x(), s.to.x()) > high.x() ||
+            std::max(s.from.y(), s.to.y()) < low.y() || std::min(s.from.y(), s.to.y()) > high.y())
+            return false;
+        const Vector2d middle = (low + high) / 2, half = (high - low) / 2, d = s.to - s.from,
+                       o = middle - s.from;
+        return std::abs(d.x() * o.y() - d.y() * o.x()) <= std::abs(d.x()) * half.y() +
+                                                              std::abs(d.y()) * half.x() +
+                                                              margin * (std::abs(d.x()) + std::abs(d.y()));
+    }
+
+    const std::vector<Segment>& segments_;
+    Meet& meet_;
+    SegmentGrid grid_;
+    double sure_ = 0;
+};
+
+template <class Meet>
+void for_neighbours(const std::vector<Segment>& segments, const std::optional<Box>& window, Meet meet)
+{
+    Neighbours<Meet>(segments, window, meet);
+}
+
+bool boxes_apart(const Segment& p, const Segment& q)
+{
+    return std::max(p.from.x(), p.to.x()) < std::min(q.from.x(), q.to.x()) ||
+           std::max(q.from.x(), q.to.x()) < std::min(p.from.x(), p.to.x()) ||
+           std::max(p.from.y(), p.to.y()) < std::min(q.from.y(), q.to.y()) ||
+           std::max(q.from.y(), q.to.y()) < std::min(p.from.y(), p.to.y());
+}
+
+// Whether the lines of two segments cross outside a box for sure, even if doubles err: the segments then need
+// no look in this box.
+bool crosses_elsewhere(const Segment& p, const Segment& q, const Box& box)
+{
+    const Vector2d d = p.to - p.from, e = q.to - q.from, o = q.from - p.from;
+    const double below = d.x() * e.y() - d.y() * e.x();
+    if (std::abs(below) < 1e-5 * (std::abs(d.x()) + std::abs(d.y())) * (std::abs(e.x()) + std::abs(e.y())))
+        return false; // nearly parallel
+    const Vector2d place = p.from + (o.x() * e.y() - o.y() * e.x()) / below * d;
+    return place.x() < box.low.x() || place.x() > box.high.x() || place.y() < box.low.y() ||
+           place.y() > box.high.y();
+}
+
+// What two segments have in common beyond an end they share: cross() once if they cross within both, and
+// touch(i, is_from) for every end of one that lies within the other, i telling which one is touched. Exact.
+template <class Cross, class Touch>
+void intersect(const Segment& p, const Segment& q, Cross cross, Touch touch)
+{
+    const int q_from = turn(p.from, p.to, q.from), q_to = turn(p.from, p.to, q.to);
+    if (q_from * q_to > 0)
+        return;
+    const int p_from = turn(q.from, q.to, p.from), p_to = turn(q.from, q.to, p.to);
+    if (p_from * p_to > 0)
+        return;
+    if (q_from * q_to < 0 && p_from * p_to < 0)
+        return cross();
+    if (q_from == 0 && is_between(p.from, p.to, q.from))
+        touch(0, true);
+    if (q_to == 0 && is_between(p.from, p.to, q.to))
+        touch(0, false);
+    if (p_from == 0 && is_between(q.from, q.to, p.from))
+        touch(1, true);
+    if (p_to == 0 && is_between(q.from, q.to, p.to))
+        touch(1, false);
+}
+
+std::vector<Segment> segments_of(const Graph& graph)
+{
+    std::vector<Segment> segments;
+    segments.reserve(graph.edge.size());
+    for (const Edge& e : graph.edge)
+        segments.push_back({graph.vertex[e.first], graph.vertex[e.second]});
+    return segments;
+}
+
+// A place on a segment; places are numbered.
+struct Stop {
+    Index segment, place;
+};
+
+// Replaces places by their numbers in lexicographic order, equal ones by one number.
+std::vector<Index> number_in_order(std::vector<Vector2d>& place)
+{
+    struct Numbered {
+        double x, y;
+        Index number;
+    };
+    std::vector<Numbered> sorted(place.size());
+    for (std::size_t i = 0; i < place.size(); ++i)
+        sorted[i] = {place[i].x() + 0.0, place[i].y() + 0.0, static_cast<Index>(i)}; // -0 becomes 0
+    std::sort(sorted.begin(), sorted.end(),
+              [](const Numbered& a, const Numbered& b) { return a.x != b.x ? a.x < b.x : a.y < b.y; });
+    std::vector<Index> number(place.size());
+    std::size_t count = 0;
+    for (const Numbered& n : sorted) {
+        const Vector2d here(n.x, n.y);
+        if (count == 0 || place[count - 1] != here)
+            place[count++] = here;
+        number[n.number] = static_cast<Index>(count) - 1;
+    }
+    place.resize(count);
+    return number;
+}
+
+// Edges by their ends; those with the same ends become one.
+void sort_and_unite(Graph& graph, Sources& sources)
+{
+    std::vector<Index> start(graph.vertex.size() + 1, 0);
+    for (const Edge& e : graph.edge)
+        ++start[e.first + 1];
+    std::partial_sum(start.begin(), start.end(), start.begin());
+    std::vector<Edge> sorted(graph.edge.size());
+    {
+        std::vector<Index> next(start.begin(), start.end() - 1);
+        for (const Edge& e : graph.edge)
+            sorted[next[e.first]++] = e;
+    }
+    graph.edge.clear();
+    for (std::size_t v = 0; v + 1 < start.size(); ++v) {
+        std::sort(sorted.begin() + start[v], sorted.begin() + start[v + 1], [](const Edge& a, const Edge& b) {
+            return std::tie(a.second, a.sources) < std::tie(b.second, b.sources);
+        });
+        for (Index i = start[v]; i < start[v + 1]; ++i) {
+            if (i > start[v] && graph.edge.back().second == sorted[i].second)
+                graph.edge.back().sources = sources.united(graph.edge.back().sources, sorted[i].sources);
+            else
+                graph.edge.push_back(sorted[i]);
+        }
+    }
+}
 
 } // namespace
 
-Graph arrange(const Graph& crossing)
+Graph arrange(const Graph& lines, Sources& sources, const std::optional<Box>& window)
 {
-    std::vector<Exact::Point_2> point;
-    point.reserve(crossing.vertex.size());
-    for (const Eigen::Vector2d& v : crossing.vertex)
-        point.emplace_back(v.x(), v.y());
+    const std::vector<Segment> segments = segments_of(lines);
+    const auto count = static_cast<Index>(segments.size());
 
-    std::vector<Traits::Curve_2> curves;
-    curves.reserve(crossing.edge.size());
-    for (std::size_t i = 0; i < crossing.edge.size(); ++i) {
-        const Edge& e = crossing.edge[i];
-        const auto &p = point[e.first], &q = point[e.second];
-        if (p != q)
-            curves.emplace_back(SegmentTraits::Curve_2(p, q), static_cast<Index>(i));
-    }
-    Arrangement arrangement;
-    CGAL::insert(arrangement, curves.begin(), curves.end());
-
-    std::vector<Arrangement::Vertex_const_handle> handles;
-    std::vector<Eigen::Vector2d> place;
-    handles.reserve(arrangement.number_of_vertices());
-    for (auto v = arrangement.vertices_begin(); v != arrangement.vertices_end(); ++v) {
-        handles.push_back(v);
-        place.emplace_back(CGAL::to_double(v->point().x()), CGAL::to_double(v->point().y()));
-    }
-
-    // The order of handles is that of CGAL's sweep; a sort by place makes it a property of the result.
-    std::vector<Index> order(place.size());
-    std::iota(order.begin(), order.end(), 0);
-    std::sort(order.begin(), order.end(), [&](Index i, Index j) {
-        return std::pair(place[i].x(), place[i].y()) < std::pair(place[j].x(), place[j].y());
+    // Where the segments stop: their ends, crossings, and ends of others. Places may come more than once.
+    std::vector<Vector2d> place = lines.vertex;
+    std::vector<Stop> stops;
+    stops.reserve(4 * segments.size());
+    std::size_t ends = 0;
+    for (Index s = 0; s < count; ++s)
+        if (segments[s].from != segments[s].to) {
+            stops.push_back({s, lines.edge[s].first});
+            stops.push_back({s, lines.edge[s].second});
+            ends += 2;
+        }
+    for_neighbours(segments, window, [&](Index a, Index b, const Box& box) {
+        const Segment &p = segments[a], &q = segments[b];
+        if (boxes_apart(p, q) || crosses_elsewhere(p, q, box))
+            return;
+        intersect(
+            p, q,
+            [&] {
+                for (const Index s : {a, b})
+                    stops.push_back({s, static_cast<Index>(place.size())});
+                place.push_back(crossing(p.from, p.to, q.from, q.to));
+            },
+            [&](int touched, bool is_from) {
+                const Edge& other = lines.edge[touched == 0 ? b : a];
+                stops.push_back({touched == 0 ? a : b, is_from ? other.first : other.second});
+            });
     });
 
-    // Two vertices closer than doubles can tell become one here; merge() would join them anyway.
-    Graph planar;
-    std::unordered_map<const void*, Index> vertex_of;
-    vertex_of.reserve(order.size());
-    for (const Index i : order) {
-        if (planar.vertex.empty() || planar.vertex.back() != place[i])
-            planar.vertex.push_back(place[i]);
-        vertex_of[&*handles[i]] = static_cast<Index>(planar.vertex.size()) - 1;
+    const std::vector<Index> vertex_of = number_in_order(place);
+    Graph planar{.vertex = std::move(place), .edge = {}, .had_crossings = stops.size() != ends};
+
+    std::vector<Index> start(segments.size() + 1, 0);
+    for (const Stop& stop : stops)
+        ++start[stop.segment + 1];
+    std::partial_sum(start.begin(), start.end(), start.begin());
+    std::vector<Index> on_segment(stops.size());
+    {
+        std::vector<Index> next(start.begin(), start.end() - 1);
+        for (const Stop& stop : stops)
+            on_segment[next[stop.segment]++] = vertex_of[stop.place];
     }
-    for (auto e = arrangement.edges_begin(); e != arrangement.edges_end(); ++e) {
-        Edge edge{vertex_of.at(&*e->source()), vertex_of.at(&*e->target()), {}};
-        if (edge.first == edge.second)
-            continue;
-        if (edge.first > edge.second)
-            std::swap(edge.first, edge.second);
-        for (auto d = e->curve().data().begin(); d != e->curve().data().end(); ++d) {
-            const auto& sources = crossing.edge[*d].sources;
-            edge.sources.insert(edge.sources.end(), sources.begin(), sources.end());
-        }
-        std::sort(edge.sources.begin(), edge.sources.end());
-        edge.sources.erase(std::unique(edge.sources.begin(), edge.sources.end()), edge.sources.end());
-        planar.edge.push_back(std::move(edge));
+    planar.edge.reserve(stops.size());
+    for (Index s = 0; s < count; ++s) {
+        const auto begin = on_segment.begin() + start[s], end = on_segment.begin() + start[s + 1];
+        std::sort(begin, end);
+        // The order of vertices is that along the segment, but for vertices of one x on a falling segment.
+        const Vector2d d = segments[s].to - segments[s].from;
+        if ((d.x() < 0) != (d.y() < 0))
+            for (auto from = begin; from != end;) {
+                const auto to = std::find_if(
+                    from, end, [&](Index v) { return planar.vertex[v].x() != planar.vertex[*from].x(); });
+                std::reverse(from, to);
+                from = to;
+            }
+        for (auto i = begin; i + 1 < end; ++i)
+            if (i[0] != i[1])
+                planar.edge.push_back({std::min(i[0], i[1]), std::max(i[0], i[1]), lines.edge[s].sources});
     }
-    std::sort(planar.edge.begin(), planar.edge.end(), [](const Edge& a, const Edge& b) {
-        return std::pair(a.first, a.second) < std::pair(b.first, b.second);
-    });
-    // A joint that runs along another line but for rounding makes edges of its own, with the same rounded
-    // ends.
-    std::vector<Edge> single;
-    for (Edge& edge : planar.edge) {
-        if (single.empty() || single.back().first != edge.first || single.back().second != edge.second) {
-            single.push_back(std::move(edge));
-            continue;
-        }
-        std::vector<Index> both;
-        std::set_union(single.back().sources.begin(), single.back().sources.end(), edge.sources.begin(),
-                       edge.sources.end(), std::back_inserter(both));
-        single.back().sources = std::move(both);
-    }
-    planar.edge = std::move(single);
+    sort_and_unite(planar, sources);
     return planar;
+}
+
+bool crosses_nowhere(const Graph& graph)
+{
+    const std::vector<Segment> segments = segments_of(graph);
+    bool is_clear = true;
+    for_neighbours(segments, {}, [&](Index a, Index b, const Box& box) {
+        const Segment &p = segments[a], &q = segments[b];
+        if (is_clear && !boxes_apart(p, q) && !crosses_elsewhere(p, q, box))
+            intersect(
+                p, q, [&] { is_clear = false; }, [&](int, bool) { is_clear = false; });
+    });
+    return is_clear;
 }
 
 } // namespace jointcreep::blocks

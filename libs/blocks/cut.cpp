@@ -1,13 +1,18 @@
 #include "blocks/cut.hpp"
 
+#include "blocks/check.hpp"
+#include "blocks/extend.hpp"
+#include "blocks/fate.hpp"
 #include "blocks/graph.hpp"
 #include "blocks/merge.hpp"
+#include "blocks/predicates.hpp"
 #include "model/error.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <numeric>
 
 namespace jointcreep::blocks
 {
@@ -39,28 +44,40 @@ double size_of(const Polygon& outline)
     return (high - low).norm();
 }
 
-// The outline, counter-clockwise, with the ends of boundary conditions as further corners.
-Polygon outline_with_boundary_ends(const Scene& scene)
+double twice_area(const Polygon& polygon)
 {
-    Polygon outline = scene.outline;
-    double twice_area = 0;
-    for (std::size_t i = 0; i < outline.size(); ++i)
-        twice_area += cross(outline[i] - outline[0], outline[(i + 1) % outline.size()] - outline[0]);
-    if (twice_area < 0)
-        std::reverse(outline.begin(), outline.end());
+    double twice = 0;
+    for (std::size_t i = 0; i < polygon.size(); ++i)
+        twice += cross(polygon[i] - polygon[0], polygon[(i + 1) % polygon.size()] - polygon[0]);
+    return twice;
+}
 
-    const double reach = 1e-6 * size_of(outline);
+// The section's outline, counter-clockwise, then its holes, clockwise, all with the ends of boundary
+// conditions as further corners.
+std::vector<Polygon> outlines_with_boundary_ends(const Scene& scene)
+{
+    std::vector<Polygon> outlines{scene.outline};
+    outlines.insert(outlines.end(), scene.holes.begin(), scene.holes.end());
+    for (std::size_t o = 0; o < outlines.size(); ++o)
+        if ((twice_area(outlines[o]) < 0) == (o == 0))
+            std::reverse(outlines[o].begin(), outlines[o].end());
+
+    const double reach = 1e-6 * size_of(outlines[0]);
     for (std::size_t b = 0; b < scene.boundaries.size(); ++b)
         for (const Vector2d& end : {scene.boundaries[b].from, scene.boundaries[b].to}) {
             double nearest = std::numeric_limits<double>::infinity();
-            std::size_t side = 0;
-            for (std::size_t i = 0; i < outline.size(); ++i) {
-                const double d = distance_to(outline[i], outline[(i + 1) % outline.size()], end);
-                if (d < nearest) {
-                    nearest = d;
-                    side = i;
+            std::size_t side = 0, of = 0;
+            for (std::size_t o = 0; o < outlines.size(); ++o)
+                for (std::size_t i = 0; i < outlines[o].size(); ++i) {
+                    const double d =
+                        distance_to(outlines[o][i], outlines[o][(i + 1) % outlines[o].size()], end);
+                    if (d < nearest) {
+                        nearest = d;
+                        side = i;
+                        of = o;
+                    }
                 }
-            }
+            Polygon& outline = outlines[of];
             const Vector2d p = outline[side], q = outline[(side + 1) % outline.size()];
             if (nearest > reach)
                 throw input_error("boundary " + std::to_string(b + 1) + ": its end " + shown(end) + " lies " +
@@ -68,19 +85,76 @@ Polygon outline_with_boundary_ends(const Scene& scene)
             if ((end - p).norm() > reach && (end - q).norm() > reach)
                 outline.insert(outline.begin() + static_cast<std::ptrdiff_t>(side) + 1, end);
         }
-    return outline;
+    return outlines;
 }
+
+// What a place is inside of: polygons with a value each, tried by their boxes first.
+class Areas
+{
+public:
+    void add(const Polygon& polygon, Index value)
+    {
+        Vector2d low = polygon[0], high = polygon[0];
+        for (const Vector2d& p : polygon) {
+            low = low.cwiseMin(p);
+            high = high.cwiseMax(p);
+        }
+        areas_.push_back({&polygon, low, high, value});
+    }
+    // The value of the first polygon that holds the place, -1 if none does.
+    Index first_around(const Vector2d& place) const
+    {
+        for (const Area& a : areas_)
+            if ((place.array() >= a.low.array()).all() && (place.array() <= a.high.array()).all() &&
+                is_inside(*a.polygon, place))
+                return a.value;
+        return -1;
+    }
+
+private:
+    struct Area {
+        const Polygon* polygon;
+        Vector2d low, high;
+        Index value;
+    };
+    std::vector<Area> areas_;
+};
+
+// The edges at each vertex.
+struct Incidence {
+    std::vector<Index> start, edge;
+
+    explicit Incidence(const Graph& graph) : start(graph.vertex.size() + 1, 0), edge(2 * graph.edge.size())
+    {
+        for (const Edge& e : graph.edge) {
+            ++start[e.first + 1];
+            ++start[e.second + 1];
+        }
+        std::partial_sum(start.begin(), start.end(), start.begin());
+        std::vector<Index> next(start.begin(), start.end() - 1);
+        for (std::size_t e = 0; e < graph.edge.size(); ++e) {
+            edge[next[graph.edge[e].first]++] = static_cast<Index>(e);
+            edge[next[graph.edge[e].second]++] = static_cast<Index>(e);
+        }
+    }
+    std::span<Index> at(Index v) { return {edge.data() + start[v], edge.data() + start[v + 1]}; }
+};
 
 class Cutter
 {
 public:
     Cutter(const Scene& scene, const Joints& joints)
-        : scene_(scene), joints_(joints), outline_(outline_with_boundary_ends(scene)),
-          reach_(scene.cutting.shortest_edge)
+        : scene_(scene), joints_(joints), outlines_(outlines_with_boundary_ends(scene)),
+          size_(size_of(outlines_[0])), reach_(scene.cutting.shortest_edge), traces_(joints), fates_(joints)
     {
-        trace_of_joint_.resize(joints.set.size());
-        for (std::size_t t = 0; t < joints.trace_joint.size(); ++t)
-            trace_of_joint_[joints.trace_joint[t]].push_back(t);
+        // Later regions cover earlier ones, earlier stages dig before later ones.
+        for (std::size_t r = scene.regions.size(); r-- > 0;)
+            regions_.add(scene.regions[r].outline, row_of_rock(scene.regions[r].rock));
+        for (std::size_t s = 0; s < scene.stages.size(); ++s)
+            for (const Polygon& polygon : scene.stages[s].remove)
+                stages_.add(polygon, static_cast<Index>(s));
+        for (std::size_t o = 1; o < outlines_.size(); ++o)
+            holes_.add(outlines_[o], 0);
     }
 
     Blocks blocks()
@@ -92,15 +166,19 @@ public:
                 throw input_error("cutting: after " + std::to_string(most_passes) +
                                   " passes edges still come closer than " + shown(reach_) +
                                   " m; a smaller shortest_edge_m may settle");
-            graph_ = arrange(graph_);
+            graph_ = arrange(graph_, sources_, section_box());
             drop_outside();
             prune_ends();
-            if (!merge_pass(graph_, sources_, outline_, {reach_, scene_.cutting.smallest_angle}, report_))
+            if (!merge_pass(graph_, sources_, outlines_, {reach_, scene_.cutting.smallest_angle}, report_))
                 break;
         }
         Faces faces = trace_faces(graph_);
         while (prune_slits(faces) || straighten())
             faces = trace_faces(graph_);
+        remove_holes(faces);
+        if (has_bent_)
+            graph_.had_crossings = true; // as far as anyone knows
+        check_faces(graph_, faces, section_area(), scene_.holes.size());
         return finish(faces);
     }
 
@@ -110,9 +188,8 @@ private:
         const auto n = static_cast<Index>(graph_.vertex.size());
         graph_.vertex.push_back(a);
         graph_.vertex.push_back(b);
-        graph_.edge.push_back({n, n + 1, {static_cast<Index>(sources_.size())}});
-        sources_.push_back(source);
-        lines_.push_back({a, b});
+        graph_.edge.push_back({n, n + 1, static_cast<Index>(lines_.size())});
+        lines_.push_back({source, a, b});
     }
 
     void add_polygon(const Polygon& polygon, Source::Kind kind)
@@ -123,12 +200,14 @@ private:
 
     void draw_lines()
     {
-        add_polygon(outline_, Source::Kind::outline);
+        for (const Polygon& outline : outlines_)
+            add_polygon(outline, Source::Kind::outline);
         for (const Region& region : scene_.regions)
             add_polygon(region.outline, Source::Kind::welded);
         for (const Stage& stage : scene_.stages)
             for (const Polygon& polygon : stage.remove)
                 add_polygon(polygon, Source::Kind::welded);
+        const std::size_t first_joint = lines_.size();
         for (std::size_t j = 0; j < joints_.set.size(); ++j) {
             // An end on a slanting line is, in doubles, a little off it: a bit of overlap makes it reach.
             // What overlaps in vain is pruned.
@@ -136,58 +215,114 @@ private:
             add_line(joints_.from[j] - overlap, joints_.to[j] + overlap,
                      {Source::Kind::joint, static_cast<Index>(j)});
         }
+        if (scene_.cutting.dead_ends == DeadEnds::extend)
+            carry_on(first_joint);
+        std::vector<Source> sources;
+        sources.reserve(lines_.size());
+        for (const Line& line : lines_)
+            sources.push_back(line.source);
+        sources_ = Sources(std::move(sources));
     }
 
-    bool is_on_outline(const Edge& edge) const
+    // Joints that end inside the section go on to the line they meet next.
+    void carry_on(std::size_t first_joint)
     {
-        return std::any_of(edge.sources.begin(), edge.sources.end(),
-                           [&](Index s) { return sources_[s].kind == Source::Kind::outline; });
+        std::vector<Segment> drawn;
+        for (const Line& line : lines_)
+            drawn.push_back({line.from, line.to});
+        const std::vector<Extension> extensions = extensions_to_next(
+            drawn, first_joint, reach_, [&](const Vector2d& place) { return is_in_section(place); });
+        for (std::size_t j = 0; j < extensions.size(); ++j) {
+            Line& line = lines_[first_joint + j];
+            const Vector2d along = (joints_.to[j] - joints_.from[j]).normalized();
+            line.from -= extensions[j].before * along;
+            line.to += extensions[j].beyond * along;
+            graph_.vertex[graph_.edge[first_joint + j].first] = line.from;
+            graph_.vertex[graph_.edge[first_joint + j].second] = line.to;
+            if (extensions[j].before > 0 || extensions[j].beyond > 0)
+                fates_.carry_on(static_cast<Index>(j));
+            traces_.end_before(static_cast<Index>(j), extensions[j].before > 0, extensions[j].beyond > 0);
+        }
     }
 
-    bool is_on_joint(const Edge& edge) const
+    bool is_in_section(const Vector2d& place) const
     {
-        return std::any_of(edge.sources.begin(), edge.sources.end(),
-                           [&](Index s) { return sources_[s].kind == Source::Kind::joint; });
+        return is_inside(outlines_[0], place) && holes_.first_around(place) < 0;
     }
+
+    Box section_box() const
+    {
+        Box box{outlines_[0][0], outlines_[0][0]};
+        for (const Vector2d& p : outlines_[0]) {
+            box.low = box.low.cwiseMin(p);
+            box.high = box.high.cwiseMax(p);
+        }
+        return box;
+    }
+
+    double section_area() const
+    {
+        double twice = 0;
+        for (const Polygon& outline : outlines_)
+            twice += twice_area(outline);
+        return twice / 2;
+    }
+
+    bool is_on_outline(const Edge& edge) const { return sources_.has_outline(edge.sources); }
+    bool is_on_joint(const Edge& edge) const { return sources_.has_joint(edge.sources); }
 
     double length(const Edge& edge) const
     {
         return (graph_.vertex[edge.first] - graph_.vertex[edge.second]).norm();
     }
 
+    void record(const Edge& edge, Fate fate)
+    {
+        if (is_on_joint(edge))
+            for (const Index s : sources_.lines_of(edge.sources))
+                if (sources_[s].kind == Source::Kind::joint)
+                    fates_.add(sources_[s].index, fate, graph_.vertex[edge.first],
+                               graph_.vertex[edge.second]);
+    }
+
     void drop_outside()
     {
         std::erase_if(graph_.edge, [&](const Edge& e) {
-            return !is_on_outline(e) &&
-                   !is_inside(outline_, (graph_.vertex[e.first] + graph_.vertex[e.second]) / 2);
+            if (is_on_outline(e) || is_in_section((graph_.vertex[e.first] + graph_.vertex[e.second]) / 2))
+                return false;
+            record(e, Fate::outside);
+            return true;
         });
     }
 
     // Cuts off edges that end at nothing, and what ends at nothing then.
     void prune_ends()
     {
-        std::vector<std::vector<Index>> at(graph_.vertex.size());
-        for (std::size_t e = 0; e < graph_.edge.size(); ++e) {
-            at[graph_.edge[e].first].push_back(static_cast<Index>(e));
-            at[graph_.edge[e].second].push_back(static_cast<Index>(e));
-        }
+        // Of the edges left at a vertex: how many, and all their numbers by exclusive or, which of one is
+        // itself.
+        std::vector<Index> degree(graph_.vertex.size(), 0), mixed(graph_.vertex.size(), 0);
+        for (std::size_t e = 0; e < graph_.edge.size(); ++e)
+            for (const Index v : {graph_.edge[e].first, graph_.edge[e].second}) {
+                ++degree[v];
+                mixed[v] ^= static_cast<Index>(e);
+            }
         std::vector<Index> ends;
-        std::vector<Index> degree(graph_.vertex.size());
-        for (std::size_t v = 0; v < at.size(); ++v) {
-            degree[v] = static_cast<Index>(at[v].size());
+        for (std::size_t v = 0; v < degree.size(); ++v)
             if (degree[v] == 1)
                 ends.push_back(static_cast<Index>(v));
-        }
+        if (ends.empty())
+            return;
         std::vector<char> gone(graph_.edge.size(), 0);
         while (!ends.empty()) {
             const Index v = ends.back();
             ends.pop_back();
-            for (const Index e : at[v]) {
-                if (gone[e])
-                    continue;
-                gone[e] = 1;
-                record_pruned(graph_.edge[e]);
-                const Index w = graph_.edge[e].first == v ? graph_.edge[e].second : graph_.edge[e].first;
+            if (degree[v] == 0)
+                continue; // the other end of the last edge
+            const Index e = mixed[v];
+            gone[e] = 1;
+            record_pruned(graph_.edge[e]);
+            for (const Index w : {graph_.edge[e].first, graph_.edge[e].second}) {
+                mixed[w] ^= e;
                 if (--degree[w] == 1)
                     ends.push_back(w);
             }
@@ -199,6 +334,7 @@ private:
     {
         if (is_on_joint(edge) && length(edge) > 1.001 * reach_) // shorter: overlap
             report_.pruned_length += length(edge);
+        record(edge, Fate::dead_end);
     }
 
     void remove_edges(const std::vector<char>& gone)
@@ -208,6 +344,17 @@ private:
             if (!gone[e])
                 graph_.edge[kept++] = graph_.edge[e];
         graph_.edge.resize(kept);
+    }
+
+    void remove_holes(Faces& faces) const
+    {
+        if (scene_.holes.empty())
+            return;
+        std::vector<char> is_hole(faces.size());
+        for (std::size_t face = 0; face < faces.size(); ++face)
+            is_hole[face] =
+                holes_.first_around(place_inside(graph_.vertex, faces, static_cast<Index>(face))) >= 0;
+        remove_faces(faces, is_hole);
     }
 
     // Edges with one face on both sides separate nothing.
@@ -231,64 +378,38 @@ private:
     // Removes vertices that only divide a straight edge, as pruning and merging leave behind.
     bool straighten()
     {
-        std::vector<std::vector<Index>> at(graph_.vertex.size());
-        for (std::size_t e = 0; e < graph_.edge.size(); ++e) {
-            at[graph_.edge[e].first].push_back(static_cast<Index>(e));
-            at[graph_.edge[e].second].push_back(static_cast<Index>(e));
-        }
+        Incidence incidence(graph_);
         std::vector<char> gone(graph_.edge.size(), 0);
         bool any = false;
-        for (std::size_t v = 0; v < at.size(); ++v) {
-            if (at[v].size() != 2)
+        for (Index v = 0; v < static_cast<Index>(graph_.vertex.size()); ++v) {
+            if (incidence.at(v).size() != 2)
                 continue;
-            const Index e = at[v][0], f = at[v][1];
+            const Index e = incidence.at(v)[0], f = incidence.at(v)[1];
             Edge &kept = graph_.edge[e], &dropped = graph_.edge[f];
             if (kept.sources != dropped.sources)
                 continue;
-            const auto other = [&](const Edge& edge) {
-                return edge.first == static_cast<Index>(v) ? edge.second : edge.first;
-            };
+            const auto other = [&](const Edge& edge) { return edge.first == v ? edge.second : edge.first; };
             const Index a = other(kept), b = other(dropped);
             const double off = distance_to(graph_.vertex[a], graph_.vertex[b], graph_.vertex[v]);
-            const double straight = is_on_outline(kept) ? 1e-13 * size_of(outline_) : 1e-3 * reach_;
-            if (off > straight || std::find(at[a].begin(), at[a].end(), f) != at[a].end())
+            const double straight = is_on_outline(kept) ? 1e-13 * size_ : 1e-3 * reach_;
+            if (off > straight || std::ranges::find(incidence.at(a), f) != incidence.at(a).end())
                 continue;
             gone[f] = 1;
             any = true;
             kept.first = std::min(a, b);
             kept.second = std::max(a, b);
-            std::replace(at[b].begin(), at[b].end(), f, e);
-            at[v].clear();
+            std::ranges::replace(incidence.at(b), f, e);
+            has_bent_ = has_bent_ || turn(graph_.vertex[a], graph_.vertex[v], graph_.vertex[b]) != 0;
         }
         if (any)
             remove_edges(gone);
         return any;
     }
 
-    // Fraction of the piece of joint `j` between two places that is joint trace.
-    double joint_fraction(Index j, const Vector2d& p, const Vector2d& q) const
-    {
-        const Vector2d along = (joints_.to[j] - joints_.from[j]).normalized();
-        const double total = (joints_.to[j] - joints_.from[j]).norm();
-        const auto place = [&](const Vector2d& x) { return (x - joints_.from[j]).dot(along); };
-        const auto [low, high] = std::minmax({place(p), place(q)});
-        double open = 0;
-        for (const std::size_t t : trace_of_joint_[j]) {
-            auto [from, to] = std::minmax({place(joints_.trace_from[t]), place(joints_.trace_to[t])});
-            if (from <=
-                1e-9 * total) // a trace that goes to the joint's end goes as far as the joint is drawn
-                from -= 2 * MergeLimits::farthest_closing * reach_;
-            if (to >= (1 - 1e-9) * total)
-                to += 2 * MergeLimits::farthest_closing * reach_;
-            open += std::max(0.0, std::min(high, to) - std::max(low, from));
-        }
-        return high > low ? std::min(1.0, open / (high - low)) : 0.0;
-    }
-
     // The boundary condition that holds an edge of the outline, -1 if none.
     Index boundary_of(const Vector2d& p, const Vector2d& q) const
     {
-        const double reach = 1e-6 * size_of(outline_) + reach_ / 2;
+        const double reach = 1e-6 * size_ + reach_ / 2;
         for (std::size_t b = 0; b < scene_.boundaries.size(); ++b) {
             const Vector2d &from = scene_.boundaries[b].from, &to = scene_.boundaries[b].to;
             if (distance_to(from, to, p) < reach && distance_to(from, to, q) < reach)
@@ -297,7 +418,7 @@ private:
         return -1;
     }
 
-    void describe_edge(Blocks& blocks, Edge edge, std::array<Index, 2> sides) const
+    void describe_edge(Blocks& blocks, Edge edge, std::array<Index, 2> sides)
     {
         EdgeKind kind = EdgeKind::welded;
         Index joint = -1, boundary = -1;
@@ -311,18 +432,35 @@ private:
             if (sides[0] < 0)
                 turn_round();
             boundary = boundary_of(graph_.vertex[edge.first], graph_.vertex[edge.second]);
+            record(edge, Fate::on_outline);
         } else if (is_on_joint(edge)) {
             kind = EdgeKind::joint;
-            for (const Index s : edge.sources) {
+            const auto first_share = static_cast<std::ptrdiff_t>(blocks.share_joint.size());
+            std::size_t own = 0;
+            for (const Index s : sources_.lines_of(edge.sources)) {
                 if (sources_[s].kind != Source::Kind::joint)
                     continue;
                 const Index j = sources_[s].index;
-                const double k = joint_fraction(j, graph_.vertex[edge.first], graph_.vertex[edge.second]);
+                const double k = traces_.fraction(j, graph_.vertex[edge.first], graph_.vertex[edge.second],
+                                                  2 * MergeLimits::farthest_closing * reach_);
                 if (joint < 0 || k > fraction) {
                     joint = j;
                     fraction = k;
+                    own = blocks.share_joint.size();
                 }
+                blocks.share_joint.push_back(j);
+                blocks.share_fraction.push_back(k);
             }
+            // Its own joint first, the others in order.
+            const auto to_front = [&](auto& values) {
+                const auto place = values.begin() + static_cast<std::ptrdiff_t>(own);
+                std::rotate(values.begin() + first_share, place, place + 1);
+            };
+            to_front(blocks.share_joint);
+            to_front(blocks.share_fraction);
+            for (auto s = static_cast<std::size_t>(first_share); s < blocks.share_joint.size(); ++s)
+                fates_.add(blocks.share_joint[s], blocks.share_joint[s] == joint ? Fate::kept : Fate::shared,
+                           graph_.vertex[edge.first], graph_.vertex[edge.second]);
             const Vector2d along = joints_.to[joint] - joints_.from[joint];
             if (along.dot(graph_.vertex[edge.second] - graph_.vertex[edge.first]) < 0)
                 turn_round();
@@ -332,6 +470,7 @@ private:
         blocks.edge_kind.push_back(static_cast<Index>(kind));
         blocks.edge_joint.push_back(joint);
         blocks.edge_joint_fraction.push_back(fraction);
+        blocks.edge_share.push_back(static_cast<Index>(blocks.share_joint.size()));
         blocks.edge_boundary.push_back(boundary);
     }
 
@@ -349,6 +488,7 @@ private:
             }
 
         std::vector<double> held(scene_.boundaries.size(), 0.0);
+        blocks.edge_share.push_back(0);
         for (std::size_t e = 0; e < graph_.edge.size(); ++e) {
             describe_edge(blocks, graph_.edge[e], faces.sides[e]);
             for (Index& v : blocks.edge_vertex.back())
@@ -367,25 +507,24 @@ private:
                     "a straight part of the outline");
         }
 
-        blocks.block_ring.push_back(0);
-        blocks.ring_start.push_back(0);
-        for (const Face& face : faces.face) {
-            for (const auto& ring : face.rings) {
-                for (const Index v : ring)
-                    blocks.ring_vertex.push_back(index[v]);
-                blocks.ring_start.push_back(static_cast<Index>(blocks.ring_vertex.size()));
-            }
-            blocks.block_ring.push_back(static_cast<Index>(blocks.ring_start.size()) - 1);
-            blocks.block_area.push_back(face.area);
-            const Vector2d inside = place_inside(graph_.vertex, face);
-            blocks.block_rock.push_back(rock_at(inside));
-            blocks.block_stage.push_back(stage_at(inside));
+        blocks.block_ring = faces.first_ring;
+        blocks.ring_start = faces.ring_start;
+        blocks.block_area = faces.area;
+        for (const Index v : faces.ring_vertex)
+            blocks.ring_vertex.push_back(index[v]);
+        const Index rock = row_of_rock(scene_.rock);
+        for (Index face = 0; face < static_cast<Index>(faces.size()); ++face) {
+            const Vector2d inside = place_inside(graph_.vertex, faces, face);
+            const Index other_rock = regions_.first_around(inside);
+            blocks.block_rock.push_back(other_rock < 0 ? rock : other_rock);
+            blocks.block_stage.push_back(stages_.first_around(inside));
         }
         for (std::size_t s = 0; s < scene_.stages.size(); ++s)
             if (std::find(blocks.block_stage.begin(), blocks.block_stage.end(), static_cast<Index>(s)) ==
                 blocks.block_stage.end())
                 throw input_error("stage \"" + scene_.stages[s].name +
                                   "\" removes nothing: its remove_m holds no rock that earlier stages leave");
+        blocks.fates = fates_.table(reach_);
         blocks.report = report_;
         measure_moves(blocks);
         measure_limits(blocks);
@@ -395,14 +534,21 @@ private:
     // What several passes have moved has moved farther than in any one of them: as far as it is off its line.
     void measure_moves(Blocks& blocks) const
     {
-        const double rounding = 1e-12 * size_of(outline_);
+        const double rounding = 1e-12 * size_;
         for (const Edge& edge : graph_.edge)
-            for (const Index s : edge.sources)
+            for (const Index s : sources_.lines_of(edge.sources))
                 for (const Index v : {edge.first, edge.second}) {
-                    const double off = distance_to(lines_[s][0], lines_[s][1], graph_.vertex[v]);
+                    const double off = distance_to(lines_[s].from, lines_[s].to, graph_.vertex[v]);
                     if (off > rounding)
                         blocks.report.largest_move = std::max(blocks.report.largest_move, off);
                 }
+    }
+
+    // Whether an angle is wider than an acute one for sure; spares most arc tangents.
+    static bool is_wider(const Vector2d& out, const Vector2d& back, double angle)
+    {
+        return angle < 1.5 && (out.dot(back) <= 0 || cross(out, back) <= 0 ||
+                               cross(out, back) > (1 + 1e-9) * std::tan(angle) * out.dot(back));
     }
 
     static void measure_limits(Blocks& blocks)
@@ -417,6 +563,8 @@ private:
             const auto corner = [&](Index i) { return blocks.vertex[blocks.ring_vertex[start + i % n]]; };
             for (Index i = 0; i < n; ++i) {
                 const Vector2d out = corner(i + 2) - corner(i + 1), back = corner(i) - corner(i + 1);
+                if (is_wider(out, back, blocks.report.smallest_angle))
+                    continue;
                 double angle = std::atan2(cross(out, back), out.dot(back));
                 if (angle <= 0)
                     angle += 2 * std::numbers::pi;
@@ -425,35 +573,30 @@ private:
         }
     }
 
-    Index rock_at(const Vector2d& place) const
+    Index row_of_rock(const std::string& name) const
     {
-        std::string name = scene_.rock;
-        for (const Region& region : scene_.regions)
-            if (is_inside(region.outline, place))
-                name = region.rock;
         const auto found = std::find_if(scene_.rocks.begin(), scene_.rocks.end(),
                                         [&](const Rock& rock) { return rock.name == name; });
         return static_cast<Index>(found - scene_.rocks.begin());
     }
 
-    Index stage_at(const Vector2d& place) const
-    {
-        for (std::size_t s = 0; s < scene_.stages.size(); ++s)
-            for (const Polygon& polygon : scene_.stages[s].remove)
-                if (is_inside(polygon, place))
-                    return static_cast<Index>(s);
-        return -1;
-    }
+    struct Line {
+        Source source;
+        Vector2d from, to; // as drawn
+    };
 
     const Scene& scene_;
     const Joints& joints_;
-    Polygon outline_;
-    double reach_;
-    std::vector<std::array<Vector2d, 2>> lines_; // of the sources, as they were drawn
-    std::vector<Source> sources_;
-    std::vector<std::vector<std::size_t>> trace_of_joint_;
+    std::vector<Polygon> outlines_; // of the section, then of its holes
+    double size_, reach_;
+    Areas regions_, stages_, holes_;
+    std::vector<Line> lines_;
+    Sources sources_;
+    TracesAlong traces_;
+    FateRecord fates_;
     Graph graph_;
     CuttingReport report_;
+    bool has_bent_ = false; // by straightening what was straight but for rounding
 };
 
 } // namespace

@@ -1,10 +1,8 @@
 #include "blocks/graph.hpp"
-
-#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
-#include <CGAL/Polygon_2_algorithms.h>
+#include "blocks/predicates.hpp"
 
 #include <algorithm>
-#include <limits>
+#include <cmath>
 #include <numeric>
 
 namespace jointcreep::blocks
@@ -13,144 +11,342 @@ namespace jointcreep::blocks
 namespace
 {
 
-using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel; // predicates only
-using Point = Kernel::Point_2;
+using Eigen::Vector2d;
 
-Point point(const Eigen::Vector2d& v)
+// Half-edge 2 e runs from an edge's first vertex to its second, 2 e + 1 back.
+class HalfEdges
 {
-    return {v.x(), v.y()};
+public:
+    explicit HalfEdges(const Graph& graph)
+        : graph_(graph), begin_(graph.vertex.size() + 1, 0), leaving_(2 * graph.edge.size()),
+          next_(2 * graph.edge.size()), has_fan_(graph.vertex.size(), 0)
+    {
+        for (const Edge& e : graph.edge) {
+            ++begin_[e.first + 1];
+            ++begin_[e.second + 1];
+        }
+        std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
+        std::vector<Index> place(begin_.begin(), begin_.end() - 1);
+        for (Index h = 0; h < count(); ++h)
+            leaving_[place[start(h)]++] = h;
+    }
+
+    Index count() const { return static_cast<Index>(next_.size()); }
+    Index start(Index h) const { return h % 2 == 0 ? graph_.edge[h / 2].first : graph_.edge[h / 2].second; }
+    Index end(Index h) const { return start(h ^ 1); }
+
+    // The next half-edge of the face on the left.
+    Index next(Index h)
+    {
+        if (const Index v = end(h); !has_fan_[v])
+            make_fan(v);
+        return next_[h];
+    }
+
+private:
+    // Puts the half-edges that leave a vertex in order.
+    void make_fan(Index v)
+    {
+        has_fan_[v] = 1;
+        const std::span<Index> fan(leaving_.data() + begin_[v], leaving_.data() + begin_[v + 1]);
+        const Vector2d& centre = graph_.vertex[v];
+        std::sort(fan.begin(), fan.end(), [&](Index g, Index h) {
+            const Vector2d &a = graph_.vertex[end(g)], &b = graph_.vertex[end(h)];
+            const bool a_right = is_before(centre, a), b_right = is_before(centre, b);
+            return a_right != b_right ? a_right : turn(centre, a, b) > 0;
+        });
+        // With the face on the left, turn as sharply right as possible... that is, take the half-edge just
+        // before the way back, counter-clockwise.
+        for (std::size_t i = 0; i < fan.size(); ++i)
+            next_[fan[i] ^ 1] = fan[i == 0 ? fan.size() - 1 : i - 1];
+    }
+
+    const Graph& graph_;
+    std::vector<Index> begin_, leaving_, next_;
+    std::vector<char> has_fan_;
+};
+
+// Closed rings of vertices, one after the other.
+struct Rings {
+    std::vector<Index> start{0}, vertex;
+
+    Index count() const { return static_cast<Index>(start.size()) - 1; }
+    std::span<const Index> operator[](Index r) const
+    {
+        return {vertex.data() + start[r], vertex.data() + start[r + 1]};
+    }
+    void add(std::span<const Index> ring)
+    {
+        vertex.insert(vertex.end(), ring.begin(), ring.end());
+        start.push_back(static_cast<Index>(vertex.size()));
+    }
+};
+
+// Which component of a graph a vertex is in, named by one of its vertices.
+class Components
+{
+public:
+    explicit Components(const Graph& graph) : parent_(graph.vertex.size())
+    {
+        std::iota(parent_.begin(), parent_.end(), 0);
+        for (const Edge& e : graph.edge)
+            parent_[root(e.first)] = root(e.second);
+    }
+    Index root(Index v)
+    {
+        while (parent_[v] != v)
+            v = parent_[v] = parent_[parent_[v]];
+        return v;
+    }
+
+private:
+    std::vector<Index> parent_;
+};
+
+// Finds the half-edge that a leftward ray from a vertex meets first, just above the vertex's y so that it
+// passes no vertex.
+class LeftwardRays
+{
+public:
+    explicit LeftwardRays(const Graph& graph) : graph_(graph)
+    {
+        low_ = high_ = graph.vertex[0].y();
+        for (const Vector2d& v : graph.vertex) {
+            low_ = std::min(low_, v.y());
+            high_ = std::max(high_, v.y());
+        }
+        strips_ = std::max<Index>(1, static_cast<Index>(std::sqrt(static_cast<double>(graph.edge.size()))));
+        start_.assign(static_cast<std::size_t>(strips_) + 1, 0);
+        for_strips([&](Index, Index strip) { ++start_[strip + 1]; });
+        std::partial_sum(start_.begin(), start_.end(), start_.begin());
+        edge_.resize(start_.back());
+        std::vector<std::size_t> next(start_.begin(), start_.end() - 1);
+        for_strips([&](Index e, Index strip) { edge_[next[strip]++] = e; });
+    }
+
+    // The half-edge with the ray's face on its left; -1 if the ray meets none. Edges of the vertex's own
+    // component must lie to its right.
+    Index first_met(Index vertex) const
+    {
+        const Vector2d& from = graph_.vertex[vertex];
+        Index nearest = -1;
+        const Index strip = strip_of(from.y());
+        for (std::size_t i = start_[strip]; i < start_[strip + 1]; ++i) {
+            const auto [below, above] = upward(edge_[i]);
+            if (!(below.y() <= from.y() && from.y() < above.y()) || turn(below, above, from) >= 0)
+                continue; // off the ray, or not left of the vertex
+            if (nearest < 0 || is_left_of(nearest, edge_[i]))
+                nearest = edge_[i];
+        }
+        if (nearest < 0)
+            return -1;
+        const Edge& e = graph_.edge[nearest]; // downward, what is on its left is on the right of the page
+        return graph_.vertex[e.first].y() < graph_.vertex[e.second].y() ? 2 * nearest + 1 : 2 * nearest;
+    }
+
+private:
+    Index strip_of(double y) const
+    {
+        const double strip = high_ > low_ ? (y - low_) / (high_ - low_) * strips_ : 0;
+        return std::min(static_cast<Index>(strip), strips_ - 1);
+    }
+    template <class Visit>
+    void for_strips(Visit visit) const
+    {
+        for (std::size_t e = 0; e < graph_.edge.size(); ++e) {
+            const auto [below, above] = upward(static_cast<Index>(e));
+            for (Index s = strip_of(below.y()); s <= strip_of(above.y()); ++s)
+                visit(static_cast<Index>(e), s);
+        }
+    }
+    std::pair<Vector2d, Vector2d> upward(Index e) const
+    {
+        const Vector2d &p = graph_.vertex[graph_.edge[e].first], &q = graph_.vertex[graph_.edge[e].second];
+        return p.y() < q.y() ? std::pair(p, q) : std::pair(q, p);
+    }
+    // Of two edges that the ray meets and that do not cross.
+    bool is_left_of(Index e, Index f) const
+    {
+        const auto [a, b] = upward(e);
+        const auto [c, d] = upward(f);
+        // The higher of the lower ends is beside the other edge; at a common lower end the upper ends decide.
+        if (a == c)
+            return turn(a, b, d) < 0;
+        if (a.y() < c.y()) {
+            const int side = turn(a, b, c);
+            return side != 0 ? side < 0 : turn(a, b, d) < 0;
+        }
+        const int side = turn(c, d, a);
+        return side != 0 ? side > 0 : turn(c, d, b) > 0;
+    }
+
+    const Graph& graph_;
+    double low_, high_;
+    Index strips_;
+    std::vector<std::size_t> start_;
+    std::vector<Index> edge_;
+};
+
+// Whether a ring is the rim of a component, seen from outside it; exact. At the ring's first vertex from the
+// left all edges go to the right, and of the ring's corners there only a rim's has the left within: it turns
+// right, or back.
+bool is_rim(const std::vector<Vector2d>& vertex, std::span<const Index> ring)
+{
+    Index first = ring[0];
+    for (const Index v : ring)
+        if (is_before(vertex[v], vertex[first]))
+            first = v;
+    const std::size_t n = ring.size();
+    for (std::size_t i = 0; i < n; ++i)
+        if (ring[i] == first && turn(vertex[ring[i > 0 ? i - 1 : n - 1]], vertex[first],
+                                     vertex[ring[i + 1 < n ? i + 1 : 0]]) <= 0)
+            return true;
+    return false;
 }
 
-// +1 left turn, -1 right turn, 0 straight on; exact.
-int turn(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c)
+// Rings that visit no vertex twice: where one does, what lies between the visits is a ring of its own.
+void split_at_pinches(std::span<const Index> ring, std::vector<Index>& visited_at, Rings& simple)
 {
-    return static_cast<int>(CGAL::orientation(point(a), point(b), point(c)));
-}
-
-// Whether direction centre -> a comes before centre -> b, counter-clockwise from +x; exact.
-bool is_before(const Eigen::Vector2d& centre, const Eigen::Vector2d& a, const Eigen::Vector2d& b)
-{
-    const auto is_upper = [&](const Eigen::Vector2d& v) {
-        return v.y() > centre.y() || (v.y() == centre.y() && v.x() > centre.x());
-    };
-    if (is_upper(a) != is_upper(b))
-        return is_upper(a);
-    return turn(centre, a, b) > 0;
+    std::vector<Index> way;
+    for (const Index v : ring) {
+        if (visited_at[v] >= 0) {
+            const auto from = static_cast<std::size_t>(visited_at[v]);
+            simple.add(std::span(way).subspan(from));
+            for (std::size_t i = from + 1; i < way.size(); ++i)
+                visited_at[way[i]] = -1;
+            way.resize(from + 1);
+            continue;
+        }
+        visited_at[v] = static_cast<Index>(way.size());
+        way.push_back(v);
+    }
+    simple.add(way);
+    for (const Index v : way)
+        visited_at[v] = -1;
 }
 
 } // namespace
 
-double ring_area(const std::vector<Eigen::Vector2d>& vertex, const std::vector<Index>& ring)
+double ring_area(const std::vector<Vector2d>& vertex, std::span<const Index> ring)
 {
-    const Eigen::Vector2d& origin = vertex[ring[0]];
+    const Vector2d& origin = vertex[ring[0]];
     double twice = 0;
     for (std::size_t i = 1; i + 1 < ring.size(); ++i) {
-        const Eigen::Vector2d a = vertex[ring[i]] - origin, b = vertex[ring[i + 1]] - origin;
+        const Vector2d a = vertex[ring[i]] - origin, b = vertex[ring[i + 1]] - origin;
         twice += a.x() * b.y() - a.y() * b.x();
     }
     return twice / 2;
 }
 
-bool is_inside(const Polygon& polygon, const Eigen::Vector2d& place)
+bool is_inside(const Polygon& polygon, const Vector2d& place)
 {
-    std::vector<Point> corners;
-    corners.reserve(polygon.size());
-    for (const Eigen::Vector2d& v : polygon)
-        corners.push_back(point(v));
-    return CGAL::bounded_side_2(corners.begin(), corners.end(), point(place), Kernel()) !=
-           CGAL::ON_UNBOUNDED_SIDE;
+    bool inside = false;
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+        const Vector2d &p = polygon[i], &q = polygon[i + 1 < polygon.size() ? i + 1 : 0];
+        const bool p_above = p.y() > place.y(), q_above = q.y() > place.y();
+        if (p_above == q_above) {
+            // Neither crosses the ray to the right; but the place may be on a level side, or at a corner.
+            if (p.y() == place.y() && q.y() == place.y() && std::min(p.x(), q.x()) <= place.x() &&
+                place.x() <= std::max(p.x(), q.x()))
+                return true;
+            if (p == place || q == place)
+                return true;
+            continue;
+        }
+        const int side = p_above ? turn(q, p, place) : turn(p, q, place);
+        if (side == 0)
+            return true;
+        inside ^= side > 0;
+    }
+    return inside;
 }
 
 Faces trace_faces(const Graph& graph)
 {
-    // Half-edge 2 e runs from an edge's first vertex to its second, 2 e + 1 back.
-    const auto n_half = static_cast<Index>(2 * graph.edge.size());
-    const auto start = [&](Index h) {
-        return h % 2 == 0 ? graph.edge[h / 2].first : graph.edge[h / 2].second;
-    };
-    const auto end = [&](Index h) { return start(h ^ 1); };
-
-    std::vector<std::vector<Index>> leaving(graph.vertex.size());
-    for (Index h = 0; h < n_half; ++h)
-        leaving[start(h)].push_back(h);
-    std::vector<Index> place_in_fan(n_half);
-    for (std::size_t v = 0; v < leaving.size(); ++v) {
-        std::sort(leaving[v].begin(), leaving[v].end(), [&](Index g, Index h) {
-            return is_before(graph.vertex[v], graph.vertex[end(g)], graph.vertex[end(h)]);
-        });
-        for (std::size_t i = 0; i < leaving[v].size(); ++i)
-            place_in_fan[leaving[v][i]] = static_cast<Index>(i);
-    }
-    // With the face on the left, turn as sharply right as possible... that is, take the half-edge just before
-    // the way back, counter-clockwise.
-    const auto next = [&](Index h) {
-        const auto& fan = leaving[end(h)];
-        const Index back = place_in_fan[h ^ 1];
-        return fan[(back + static_cast<Index>(fan.size()) - 1) % static_cast<Index>(fan.size())];
-    };
-
-    std::vector<Index> ring_of(n_half, -1);
-    std::vector<std::vector<Index>> rings;
-    for (Index first = 0; first < n_half; ++first) {
+    HalfEdges half(graph);
+    Rings rings;
+    rings.vertex.reserve(half.count());
+    std::vector<Index> ring_of(half.count(), -1);
+    for (Index first = 0; first < half.count(); ++first) {
         if (ring_of[first] >= 0)
             continue;
-        std::vector<Index> ring;
-        for (Index h = first; ring_of[h] < 0; h = next(h)) {
-            ring_of[h] = static_cast<Index>(rings.size());
-            ring.push_back(start(h));
+        for (Index h = first; ring_of[h] < 0; h = half.next(h)) {
+            ring_of[h] = rings.count();
+            rings.vertex.push_back(half.start(h));
         }
-        rings.push_back(std::move(ring));
+        rings.start.push_back(static_cast<Index>(rings.vertex.size()));
+    }
+
+    std::vector<double> ring_areas(rings.count());
+    std::vector<Index> face_of_ring(rings.count(), -1), rims;
+    std::vector<char> is_outer(rings.count(), 1);
+    Index n_faces = 0;
+    for (Index r = 0; r < rings.count(); ++r) {
+        ring_areas[r] = ring_area(graph.vertex, rings[r]);
+        if (is_rim(graph.vertex, rings[r])) {
+            rims.push_back(r);
+            is_outer[r] = 0;
+        } else {
+            face_of_ring[r] = n_faces++;
+        }
+    }
+
+    // A rim is a hole in the face around it, or the rim of all.
+    std::vector<std::vector<Index>> holes; // of faces; empty if there are none
+    if (rims.size() > 1) {
+        holes.resize(n_faces);
+        const LeftwardRays rays(graph);
+        std::vector<std::pair<Index, Index>> by_tip; // vertex farthest left, rim
+        for (const Index r : rims)
+            by_tip.emplace_back(
+                *std::ranges::min_element(
+                    rings[r], [&](Index a, Index b) { return is_before(graph.vertex[a], graph.vertex[b]); }),
+                r);
+        std::ranges::sort(by_tip, [&](const auto& a, const auto& b) {
+            return is_before(graph.vertex[a.first], graph.vertex[b.first]);
+        });
+        // From the left: the rim that a ray meets has been placed before.
+        for (const auto& [tip, r] : by_tip)
+            if (const Index met = rays.first_met(tip); met >= 0)
+                face_of_ring[r] = face_of_ring[ring_of[met]];
+        for (const Index r : rims)
+            if (face_of_ring[r] >= 0)
+                holes[face_of_ring[r]].push_back(r);
     }
 
     Faces faces;
-    std::vector<Index> face_of_ring(rings.size(), -1);
-    for (std::size_t r = 0; r < rings.size(); ++r) {
-        const double area = ring_area(graph.vertex, rings[r]);
-        if (area > 0) {
-            face_of_ring[r] = static_cast<Index>(faces.face.size());
-            faces.face.push_back({{rings[r]}, area});
-        }
-    }
-
-    // A clockwise ring is the rim of a connected part: a hole in the smallest face around it, or the rim of
-    // all.
-    std::vector<Index> part(graph.vertex.size());
-    std::iota(part.begin(), part.end(), 0);
-    const auto root = [&](Index v) {
-        while (part[v] != v)
-            v = part[v] = part[part[v]];
-        return v;
+    faces.area.reserve(n_faces);
+    faces.first_ring = {0};
+    faces.ring_start = {0};
+    faces.ring_vertex.reserve(rings.vertex.size());
+    std::vector<Index> visited_at(graph.vertex.size(), -1);
+    Rings simple;
+    const auto add_ring = [&](std::span<const Index> ring) {
+        faces.ring_vertex.insert(faces.ring_vertex.end(), ring.begin(), ring.end());
+        faces.ring_start.push_back(static_cast<Index>(faces.ring_vertex.size()));
     };
-    for (const Edge& e : graph.edge)
-        part[root(e.first)] = root(e.second);
-    std::vector<std::size_t> rims;
-    for (std::size_t r = 0; r < rings.size(); ++r)
-        if (face_of_ring[r] < 0)
-            rims.push_back(r);
-    for (const std::size_t r : rims) {
-        if (rims.size() == 1)
-            break; // one connected part has no holes
-        double smallest = std::numeric_limits<double>::infinity();
-        for (std::size_t f = 0; f < faces.face.size(); ++f) {
-            const auto& outer = faces.face[f].rings[0];
-            if (root(outer[0]) == root(rings[r][0]))
-                continue;
-            const double area = ring_area(graph.vertex, outer);
-            if (area >= smallest)
-                continue;
-            Polygon polygon;
-            for (const Index v : outer)
-                polygon.push_back(graph.vertex[v]);
-            if (is_inside(polygon, graph.vertex[rings[r][0]])) {
-                smallest = area;
-                face_of_ring[r] = static_cast<Index>(f);
+    for (Index r = 0; r < rings.count(); ++r) {
+        if (!is_outer[r])
+            continue;
+        const Index face = face_of_ring[r];
+        double area = ring_areas[r];
+        simple = {};
+        split_at_pinches(rings[r], visited_at, simple);
+        if (!holes.empty())
+            for (const Index hole : holes[face]) {
+                split_at_pinches(rings[hole], visited_at, simple);
+                area += ring_areas[hole];
             }
-        }
-        if (face_of_ring[r] >= 0) {
-            Face& face = faces.face[face_of_ring[r]];
-            face.rings.push_back(rings[r]);
-            face.area += ring_area(graph.vertex, rings[r]);
-        }
+        // The outer ring first.
+        Index outer = 0;
+        for (Index i = 1; i < simple.count() && ring_area(graph.vertex, simple[outer]) <= 0; ++i)
+            outer = i;
+        add_ring(simple[outer]);
+        for (Index i = 0; i < simple.count(); ++i)
+            if (i != outer)
+                add_ring(simple[i]);
+        faces.area.push_back(area);
+        faces.first_ring.push_back(static_cast<Index>(faces.ring_start.size()) - 1);
     }
 
     faces.sides.resize(graph.edge.size());
@@ -159,12 +355,53 @@ Faces trace_faces(const Graph& graph)
     return faces;
 }
 
-Eigen::Vector2d place_inside(const std::vector<Eigen::Vector2d>& vertex, const Face& face)
+void for_outer_rings(const Graph& graph, const std::vector<char>& is_chosen,
+                     const std::function<void(std::span<const Index>, double)>& visit)
+{
+    HalfEdges half(graph);
+    std::vector<char> is_done(half.count(), 0);
+    std::vector<Index> ring;
+    for (Index first = 0; first < half.count(); ++first) {
+        if (is_done[first] || !is_chosen[first / 2])
+            continue;
+        ring.clear();
+        for (Index h = first; !is_done[h]; h = half.next(h)) {
+            is_done[h] = 1;
+            ring.push_back(half.start(h));
+        }
+        if (!is_rim(graph.vertex, ring))
+            visit(ring, ring_area(graph.vertex, ring));
+    }
+}
+
+void remove_faces(Faces& faces, const std::vector<char>& is_gone)
+{
+    Faces left;
+    left.first_ring = left.ring_start = {0};
+    std::vector<Index> number(faces.size(), -1);
+    for (Index face = 0; face < static_cast<Index>(faces.size()); ++face) {
+        if (is_gone[face])
+            continue;
+        number[face] = static_cast<Index>(left.size());
+        left.area.push_back(faces.area[face]);
+        for (Index r = faces.first_ring[face]; r < faces.first_ring[face + 1]; ++r) {
+            const std::span<const Index> ring = faces.ring(r);
+            left.ring_vertex.insert(left.ring_vertex.end(), ring.begin(), ring.end());
+            left.ring_start.push_back(static_cast<Index>(left.ring_vertex.size()));
+        }
+        left.first_ring.push_back(static_cast<Index>(left.ring_start.size()) - 1);
+    }
+    for (const auto& [a, b] : faces.sides)
+        left.sides.push_back({a < 0 ? -1 : number[a], b < 0 ? -1 : number[b]});
+    faces = std::move(left);
+}
+
+Vector2d place_inside(const std::vector<Vector2d>& vertex, const Faces& faces, Index face)
 {
     // At the lowest, leftmost corner the ring turns left. The middle of the triangle it makes with its
     // neighbours is inside, unless other vertices are in that triangle: then the middle between the corner
     // and the one farthest from the opposite side is.
-    const auto& ring = face.rings[0];
+    const std::span<const Index> ring = faces.ring(faces.first_ring[face]);
     const std::size_t n = ring.size();
     std::size_t lowest = 0;
     for (std::size_t i = 1; i < n; ++i) {
@@ -172,17 +409,17 @@ Eigen::Vector2d place_inside(const std::vector<Eigen::Vector2d>& vertex, const F
         if (std::pair(v.y(), v.x()) < std::pair(w.y(), w.x()))
             lowest = i;
     }
-    const Eigen::Vector2d &a = vertex[ring[(lowest + n - 1) % n]], &b = vertex[ring[lowest]],
-                          &c = vertex[ring[(lowest + 1) % n]];
-    const Eigen::Vector2d across = c - a;
-    const auto distance = [&](const Eigen::Vector2d& p) {
+    const Vector2d &a = vertex[ring[(lowest + n - 1) % n]], &b = vertex[ring[lowest]],
+                   &c = vertex[ring[(lowest + 1) % n]];
+    const Vector2d across = c - a;
+    const auto distance = [&](const Vector2d& p) {
         return across.x() * (a.y() - p.y()) - across.y() * (a.x() - p.x());
     };
     double farthest = 0;
-    Eigen::Vector2d opposite = (a + c) / 2;
-    for (const auto& r : face.rings)
-        for (const Index i : r) {
-            const Eigen::Vector2d& p = vertex[i];
+    Vector2d opposite = (a + c) / 2;
+    for (Index r = faces.first_ring[face]; r < faces.first_ring[face + 1]; ++r)
+        for (const Index i : faces.ring(r)) {
+            const Vector2d& p = vertex[i];
             if (p == a || p == b || p == c)
                 continue;
             if (turn(a, b, p) < 0 || turn(b, c, p) < 0 || turn(c, a, p) < 0)

@@ -1,5 +1,5 @@
-// A planar graph on its way to becoming blocks: straight edges between vertices, each edge knowing which
-// lines of the scene it lies on. Inside libs/blocks only.
+// A planar graph on its way from the lines of a scene to blocks: vertices, straight edges between them
+// knowing which lines of the scene they lie on, and faces. Inside libs/blocks only.
 
 #pragma once
 
@@ -8,6 +8,11 @@
 
 #include <Eigen/Core>
 
+#include <functional>
+#include <map>
+#include <optional>
+#include <span>
+#include <unordered_map>
 #include <vector>
 
 namespace jointcreep::blocks
@@ -17,48 +22,107 @@ namespace jointcreep::blocks
 struct Source {
     enum class Kind { outline, welded, joint };
     Kind kind;
-    Index index; // side of the outline; stage or region polygon; joint
+    Index index; // side of the outline and its holes; side of a stage or region polygon; joint
+};
+
+// The lines of a scene, and the sets of them that lie on one edge. A set is named by a number: that of its
+// only line, or one past all lines, given out as sets are met. The same lines are always the same number.
+class Sources
+{
+public:
+    explicit Sources(std::vector<Source> lines = {});
+
+    const Source& operator[](Index line) const { return lines_[line]; }
+    Index count() const { return static_cast<Index>(lines_.size()); }
+
+    Index united(Index a, Index b) { return a == b ? a : united_sets(a, b); }
+    std::span<const Index> lines_of(Index set) const; // ascending
+    bool has_outline(Index set) const { return has_[set] & bit(Source::Kind::outline); }
+    bool has_welded(Index set) const { return has_[set] & bit(Source::Kind::welded); }
+    bool has_joint(Index set) const { return has_[set] & bit(Source::Kind::joint); }
+
+private:
+    static unsigned char bit(Source::Kind kind)
+    {
+        return static_cast<unsigned char>(1 << static_cast<int>(kind));
+    }
+    Index united_sets(Index a, Index b);
+
+    std::vector<Source> lines_;
+    std::vector<Index> own_;                        // 0, 1, 2 ...: a line as the set of itself
+    std::vector<unsigned char> has_;                // of each set, by kind
+    std::vector<const std::vector<Index>*> sets_;   // of several lines
+    std::map<std::vector<Index>, Index> number_of_; // of these
+    std::unordered_map<std::uint64_t, Index> known_;
 };
 
 struct Edge {
-    Index first, second;        // vertices
-    std::vector<Index> sources; // into the list of sources; sorted, no duplicates
+    Index first, second; // vertices
+    Index sources;       // a set of Sources
 };
 
 struct Graph {
     std::vector<Eigen::Vector2d> vertex; // [m]
     std::vector<Edge> edge;
+    bool had_crossings = true; // false if arrange() found edges to meet at common ends only
 };
 
-// The exact planar arrangement of a graph's edges, which may cross, overlap and touch: every crossing becomes
-// a vertex, overlapping pieces become one edge with the sources of all. Computed with exact arithmetic; only
-// the resulting vertices are rounded to doubles. Vertices come out in lexicographic order, edges by their
-// ends, so the result depends on the edges alone and not on their order.
-Graph arrange(const Graph& crossing);
-
-// What a graph's faces are made of. A ring runs with its face on the left.
-struct Face {
-    std::vector<std::vector<Index>> rings; // vertices; the outer ring first, counter-clockwise; then holes
-    double area;                           // [m2]
+// The planar arrangement of a graph's edges, which may cross, overlap and touch: every crossing becomes a
+// vertex, overlapping pieces become one edge with the sources of all. What crosses what is decided exactly;
+// each vertex is the exact one rounded to the nearest doubles, and vertices that round to one place are one.
+// Vertices come out in lexicographic order, edges by their ends, first < second, so the result depends on the
+// edges alone and not on their order.
+//
+// Rounding moves a vertex by half a unit of its last place at most. Where other edges pass that near the
+// result may cross itself; crosses_nowhere() tells.
+//
+// What lies outside a window, if one is given, need not be arranged: crossings there may be left out.
+struct Box {
+    Eigen::Vector2d low, high;
 };
+Graph arrange(const Graph& lines, Sources& sources, const std::optional<Box>& window = {});
 
+// Whether edges meet at common ends only; exact.
+bool crosses_nowhere(const Graph& graph);
+
+// What a graph's faces are made of. A ring runs with its face on the left: the first of a face is the outer
+// one, counter-clockwise, the others are holes, clockwise. No ring visits a vertex twice; rings may touch at
+// vertices.
 struct Faces {
-    std::vector<Face> face; // bounded faces
+    std::vector<double> area;      // of bounded faces [m2]
+    std::vector<Index> first_ring; // [faces + 1] of each face
+    std::vector<Index> ring_start; // [rings + 1] into ring_vertex
+    std::vector<Index> ring_vertex;
     std::vector<std::array<Index, 2>>
         sides; // of each edge: face on its {left, right}; -1 is the unbounded one
+
+    std::size_t size() const { return area.size(); }
+    std::span<const Index> ring(Index r) const
+    {
+        return {ring_vertex.data() + ring_start[r], ring_vertex.data() + ring_start[r + 1]};
+    }
 };
 
-// Faces of a planar graph without crossings.
+// Faces of a planar graph without crossings, in the order of their first edges.
 Faces trace_faces(const Graph& graph);
+
+// Calls visit(ring, area) for the outer ring of each face that has one of the chosen edges on its outer
+// border; rings as they run, through a vertex more than once where they touch themselves. Areas are without
+// holes [m2].
+void for_outer_rings(const Graph& graph, const std::vector<char>& is_chosen,
+                     const std::function<void(std::span<const Index>, double)>& visit);
+
+// Takes faces away, as belonging to the unbounded one.
+void remove_faces(Faces& faces, const std::vector<char>& is_gone);
 
 // Area inside a closed ring, positive if counter-clockwise, taken about one of its own vertices so that small
 // blocks far from the origin keep their digits [m2].
-double ring_area(const std::vector<Eigen::Vector2d>& vertex, const std::vector<Index>& ring);
+double ring_area(const std::vector<Eigen::Vector2d>& vertex, std::span<const Index> ring);
 
 // Whether a place is inside a polygon, exactly; places on its border count as inside.
 bool is_inside(const Polygon& polygon, const Eigen::Vector2d& place);
 
 // A place well inside a face, found from its rings alone.
-Eigen::Vector2d place_inside(const std::vector<Eigen::Vector2d>& vertex, const Face& face);
+Eigen::Vector2d place_inside(const std::vector<Eigen::Vector2d>& vertex, const Faces& faces, Index face);
 
 } // namespace jointcreep::blocks

@@ -1,10 +1,11 @@
 #include "blocks/merge.hpp"
 
+#include "blocks/predicates.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <numeric>
-#include <unordered_map>
 
 namespace jointcreep::blocks
 {
@@ -15,55 +16,80 @@ namespace
 using Eigen::Vector2d;
 
 // Who moves to whom: the lower level moves.
-enum Level { free_vertex = 0, on_welded = 1, on_outline = 2, outline_corner = 3 };
+enum Level : char { free_vertex = 0, on_welded = 1, on_outline = 2, outline_corner = 3 };
 
-// Vertices by square cells, for finding those near a place.
-class CellGrid
+Level level_of(const Edge& edge, const Sources& sources)
+{
+    if (sources.has_outline(edge.sources))
+        return on_outline;
+    return sources.has_welded(edge.sources) ? on_welded : free_vertex;
+}
+
+// Vertices by square cells of a size that puts few into one, for finding those near a place.
+class VertexGrid
 {
 public:
-    explicit CellGrid(double cell) : cell_(cell) {}
-
-    void insert(Index id, const Vector2d& place)
+    VertexGrid(const std::vector<Vector2d>& vertex, std::vector<Index> which, double least_cell)
     {
-        cells_[key(index(place.x()), index(place.y()))].push_back(id);
+        if (which.empty())
+            return;
+        Vector2d high = low_ = vertex[which[0]];
+        for (const Index v : which) {
+            low_ = low_.cwiseMin(vertex[v]);
+            high = high.cwiseMax(vertex[v]);
+        }
+        const Vector2d extent = (high - low_).cwiseMax(least_cell);
+        const auto count = static_cast<double>(which.size());
+        cell_ = std::max(
+            {least_cell, std::sqrt(extent.x() * extent.y() / count), extent.maxCoeff() / (4 * count + 4)});
+        columns_ = static_cast<Index>(extent.x() / cell_) + 1;
+        rows_ = static_cast<Index>(extent.y() / cell_) + 1;
+        const auto cell_of = [&](Index v) {
+            return static_cast<std::size_t>(column(vertex[v].x())) * rows_ + row(vertex[v].y());
+        };
+        start_.assign(static_cast<std::size_t>(columns_) * rows_ + 1, 0);
+        for (const Index v : which)
+            ++start_[cell_of(v) + 1];
+        std::partial_sum(start_.begin(), start_.end(), start_.begin());
+        entry_.resize(which.size());
+        std::vector<Index> next(start_.begin(), start_.end() - 1);
+        for (const Index v : which)
+            entry_[next[cell_of(v)]++] = {vertex[v], v};
     }
 
-    // Calls found(id) for every entry in the cells that a square of half width `reach` around `place`
-    // touches.
+    double cell() const { return cell_; }
+
+    // Calls found(v, place) for every vertex in the cells that the rectangle from `low` to `high` touches.
     template <class Found>
-    void near(const Vector2d& place, double reach, Found&& found) const
+    void in_rectangle(const Vector2d& low, const Vector2d& high, Found&& found) const
     {
-        const auto x0 = index(place.x() - reach), x1 = index(place.x() + reach);
-        const auto y0 = index(place.y() - reach), y1 = index(place.y() + reach);
-        for (auto x = x0; x <= x1; ++x)
-            for (auto y = y0; y <= y1; ++y)
-                if (const auto cell = cells_.find(key(x, y)); cell != cells_.end())
-                    for (const Index id : cell->second)
-                        found(id);
+        if (entry_.empty())
+            return;
+        const Index first = row(low.y()), last = row(high.y());
+        for (Index c = column(low.x()); c <= column(high.x()); ++c) {
+            const std::size_t base = static_cast<std::size_t>(c) * rows_;
+            for (Index i = start_[base + first]; i < start_[base + last + 1]; ++i)
+                found(entry_[i].vertex, entry_[i].place);
+        }
     }
 
 private:
-    std::int64_t index(double x) const { return static_cast<std::int64_t>(std::floor(x / cell_)); }
-    static std::uint64_t key(std::int64_t x, std::int64_t y)
+    struct Entry {
+        Vector2d place;
+        Index vertex;
+    };
+    Index column(double x) const
     {
-        return (static_cast<std::uint64_t>(x) << 32) ^ (static_cast<std::uint64_t>(y) & 0xffffffffu);
+        return std::clamp(static_cast<Index>((x - low_.x()) / cell_), 0, columns_ - 1);
     }
+    Index row(double y) const { return std::clamp(static_cast<Index>((y - low_.y()) / cell_), 0, rows_ - 1); }
 
-    double cell_;
-    std::unordered_map<std::uint64_t, std::vector<Index>> cells_;
+    Vector2d low_;
+    double cell_ = 1;
+    Index columns_ = 1, rows_ = 1;
+    std::vector<Index> start_;
+    std::vector<Entry> entry_;
 };
-
-Level level_of(const Edge& edge, const std::vector<Source>& sources)
-{
-    Level level = free_vertex;
-    for (const Index s : edge.sources) {
-        if (sources[s].kind == Source::Kind::outline)
-            return on_outline;
-        if (sources[s].kind == Source::Kind::welded)
-            level = on_welded;
-    }
-    return level;
-}
 
 struct Foot {
     double along;    // 0 at the edge's first end, 1 at its second
@@ -79,9 +105,63 @@ Foot foot_on(const Vector2d& p, const Vector2d& q, const Vector2d& v)
     return {along, (v - place).norm(), place};
 }
 
+// Neighbours of vertices along edges, and these edges.
+struct Adjacency {
+    std::vector<Index> start, neighbour, edge;
+
+    Adjacency(std::size_t vertices, const std::vector<Edge>& edges)
+        : start(vertices + 1, 0), neighbour(2 * edges.size()), edge(2 * edges.size())
+    {
+        for (const Edge& e : edges) {
+            ++start[e.first + 1];
+            ++start[e.second + 1];
+        }
+        std::partial_sum(start.begin(), start.end(), start.begin());
+        std::vector<Index> next(start.begin(), start.end() - 1);
+        for (std::size_t e = 0; e < edges.size(); ++e)
+            for (const auto& [v, other] :
+                 {std::pair(edges[e].first, edges[e].second), std::pair(edges[e].second, edges[e].first)}) {
+                neighbour[next[v]] = other;
+                edge[next[v]++] = static_cast<Index>(e);
+            }
+    }
+    std::span<const Index> operator[](Index v) const
+    {
+        return {neighbour.data() + start[v], neighbour.data() + start[v + 1]};
+    }
+    std::span<const Index> edges_at(Index v) const
+    {
+        return {edge.data() + start[v], edge.data() + start[v + 1]};
+    }
+};
+
+// Edges by their ends; those that have become one are united, and one length of each pair is merged away.
+void unite(std::vector<Edge>& edges, const std::vector<Vector2d>& vertex, Sources& sources,
+           CuttingReport& report)
+{
+    for (Edge& e : edges)
+        if (e.first > e.second)
+            std::swap(e.first, e.second);
+    const auto is_less = [](const Edge& a, const Edge& b) {
+        return a.first != b.first ? a.first < b.first : a.second < b.second;
+    };
+    if (!std::is_sorted(edges.begin(), edges.end(), is_less))
+        std::stable_sort(edges.begin(), edges.end(), is_less);
+    std::size_t count = 0;
+    for (const Edge& e : edges) {
+        if (count > 0 && edges[count - 1].first == e.first && edges[count - 1].second == e.second) {
+            edges[count - 1].sources = sources.united(edges[count - 1].sources, e.sources);
+            report.merged_edge_length += (vertex[e.first] - vertex[e.second]).norm();
+            continue;
+        }
+        edges[count++] = e;
+    }
+    edges.resize(count);
+}
+
 } // namespace
 
-bool merge_pass(Graph& graph, const std::vector<Source>& sources, const Polygon& outline,
+bool merge_pass(Graph& graph, Sources& sources, const std::vector<Polygon>& outlines,
                 const MergeLimits& limits, CuttingReport& report)
 {
     const double reach = limits.shortest_edge;
@@ -89,117 +169,188 @@ bool merge_pass(Graph& graph, const std::vector<Source>& sources, const Polygon&
 
     std::vector<Level> level(n, free_vertex);
     for (const Edge& e : graph.edge)
-        for (const Index v : {e.first, e.second})
-            level[v] = std::max(level[v], level_of(e, sources));
-    std::map<std::pair<double, double>, int> corners;
-    for (const Vector2d& c : outline)
-        corners[{c.x(), c.y()}] = 1;
+        if (const Level of_edge = level_of(e, sources); of_edge > free_vertex)
+            for (const Index v : {e.first, e.second})
+                level[v] = std::max(level[v], of_edge);
+    std::vector<Vector2d> corners;
+    for (const Polygon& outline : outlines)
+        corners.insert(corners.end(), outline.begin(), outline.end());
+    std::sort(corners.begin(), corners.end(), is_before);
     for (Index v = 0; v < n; ++v)
-        if (level[v] == on_outline && corners.contains({graph.vertex[v].x(), graph.vertex[v].y()}))
+        if (level[v] == on_outline &&
+            std::binary_search(corners.begin(), corners.end(), graph.vertex[v], is_before))
             level[v] = outline_corner;
 
-    // Vertices on the outline may only join a neighbour along it: two sides of the section never meet.
-    std::vector<std::vector<Index>> outline_neighbours(n);
+    // 1. Vertices within reach of one that does not move join it. Those in use:
+    std::vector<char> is_used(n, 0);
     for (const Edge& e : graph.edge)
-        if (level_of(e, sources) == on_outline) {
-            outline_neighbours[e.first].push_back(e.second);
-            outline_neighbours[e.second].push_back(e.first);
-        }
+        is_used[e.first] = is_used[e.second] = 1;
+    std::vector<Index> used;
+    for (Index v = 0; v < n; ++v)
+        if (is_used[v])
+            used.push_back(v);
+    struct Pair {
+        Index vertex, other;
+        double distance;
+    };
+    std::vector<Pair> close;
+    {
+        const VertexGrid grid(graph.vertex, used, reach);
+        const Vector2d around(reach, reach);
+        for (const Index v : used)
+            grid.in_rectangle(graph.vertex[v] - around, graph.vertex[v] + around,
+                              [&](Index w, const Vector2d& place) {
+                                  if (const double d = (place - graph.vertex[v]).norm(); d < reach && w != v)
+                                      close.push_back({v, w, d});
+                              });
+    }
+    // Vertices on the outline may only join a neighbour along it: two sides of the section never meet.
+    std::map<Index, std::vector<Index>> along_outline;
+    for (const Pair& pair : close)
+        if (level[pair.vertex] >= on_outline)
+            along_outline[pair.vertex] = {};
+    if (!along_outline.empty())
+        for (const Edge& e : graph.edge)
+            if (level_of(e, sources) == on_outline)
+                for (const auto& [v, other] : {std::pair(e.first, e.second), std::pair(e.second, e.first)})
+                    if (const auto found = along_outline.find(v); found != along_outline.end())
+                        found->second.push_back(other);
     const auto may_join = [&](Index v, Index target) {
         if (level[v] < on_outline)
             return true;
-        const auto& along = outline_neighbours[v];
+        const auto& along = along_outline[v];
         return level[v] != outline_corner && std::find(along.begin(), along.end(), target) != along.end();
     };
 
-    // 1. Vertices within reach of one that does not move join it.
-    std::vector<Index> order(n);
-    std::iota(order.begin(), order.end(), 0);
-    std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return level[a] > level[b]; });
     std::vector<Index> joined(n);
     std::iota(joined.begin(), joined.end(), 0);
-    CellGrid kept(reach);
     bool changed = false;
-    for (const Index v : order) {
+    std::stable_sort(close.begin(), close.end(),
+                     [&](const Pair& a, const Pair& b) { return level[a.vertex] > level[b.vertex]; });
+    const auto comes_before = [&](Index a, Index b) { // in that order
+        return level[a] != level[b] ? level[a] > level[b] : a < b;
+    };
+    for (auto from = close.begin(); from != close.end();) {
+        const Index v = from->vertex;
         Index nearest = -1;
         double distance = reach;
-        kept.near(graph.vertex[v], reach, [&](Index w) {
-            const double d = (graph.vertex[w] - graph.vertex[v]).norm();
-            if ((d < distance || (d == distance && w < nearest)) && may_join(v, w)) {
+        for (; from != close.end() && from->vertex == v; ++from) {
+            const auto [same, w, d] = *from;
+            if (comes_before(w, v) && joined[w] == w && (d < distance || (d == distance && w < nearest)) &&
+                may_join(v, w)) {
                 distance = d;
                 nearest = w;
             }
-        });
-        if (nearest < 0) {
-            kept.insert(v, graph.vertex[v]);
-            continue;
         }
+        if (nearest < 0)
+            continue;
         joined[v] = nearest;
         ++report.merged_vertices;
         report.largest_move = std::max(report.largest_move, distance);
         changed = true;
     }
 
-    std::map<std::pair<Index, Index>, std::vector<Index>> edges; // by ends, so that doubles become one
-    const auto add_edge = [&](Index a, Index b, const std::vector<Index>& edge_sources) {
-        auto& all = edges[std::minmax(a, b)];
-        if (!all.empty()) // two edges have become one
-            report.merged_edge_length += (graph.vertex[a] - graph.vertex[b]).norm();
-        all.insert(all.end(), edge_sources.begin(), edge_sources.end());
-    };
+    std::vector<Edge> edges;
+    edges.reserve(graph.edge.size());
     for (const Edge& e : graph.edge) {
         if (joined[e.first] == joined[e.second])
             report.merged_edge_length += (graph.vertex[e.first] - graph.vertex[e.second]).norm();
         else
-            add_edge(joined[e.first], joined[e.second], e.sources);
+            edges.push_back({joined[e.first], joined[e.second], e.sources});
     }
+    unite(edges, graph.vertex, sources, report);
 
     // 2. Edges that pass within half the reach of a vertex go through it, or the vertex moves onto them.
     // (With the whole reach all three corners of a small triangle could be close to their opposite sides, for
-    // ever.)
-    double mean_length = 0;
-    for (const auto& [ends, s] : edges)
-        mean_length += (graph.vertex[ends.first] - graph.vertex[ends.second]).norm();
-    mean_length = edges.empty() ? 1 : mean_length / static_cast<double>(edges.size());
+    // ever.) The same for the far end of a wedge narrower than the limit.
     const double far_reach = MergeLimits::farthest_closing * reach;
-    const double cell = std::max(far_reach, mean_length / 2);
-    CellGrid all(cell);
-    std::vector<std::vector<Index>> neighbours(n);
-    for (const auto& [ends, s] : edges) {
-        neighbours[ends.first].push_back(ends.second);
-        neighbours[ends.second].push_back(ends.first);
+    const Adjacency neighbours(graph.vertex.size(), edges);
+    struct Near {
+        Index edge, vertex;
+        auto operator<=>(const Near&) const = default;
+    };
+    std::vector<Near> near;
+    {
+        std::erase_if(used, [&](Index v) { return joined[v] != v || neighbours[v].empty(); });
+        const VertexGrid grid(graph.vertex, used, 2 * reach);
+        const double margin = (0.5 + 1e-6) * reach;
+        for (std::size_t e = 0; e < edges.size(); ++e) {
+            const auto [first, second, s] = edges[e];
+            const Vector2d &p = graph.vertex[first], &q = graph.vertex[second], d = q - p;
+            const double length = d.norm();
+            // In pieces of about a cell each, so that a long slanting edge looks only along itself.
+            const int pieces = static_cast<int>(std::ceil(length / (2 * grid.cell())));
+            for (int i = 0; i < pieces; ++i) {
+                const Vector2d from = p + d * (static_cast<double>(i) / pieces),
+                               to = p + d * ((i + 1.0) / pieces);
+                grid.in_rectangle(from.cwiseMin(to).array() - margin, from.cwiseMax(to).array() + margin,
+                                  [&](Index v, const Vector2d& place) {
+                                      const Vector2d o = place - p;
+                                      if (std::abs(d.x() * o.y() - d.y() * o.x()) < margin * length &&
+                                          v != first && v != second)
+                                          near.push_back({static_cast<Index>(e), v});
+                                  });
+            }
+        }
+        // Narrow wedges: neighbours of one vertex, of which one lies close to the other's edge.
+        const double sine = std::sin(limits.smallest_angle) * (1 + 1e-6);
+        for (const Index tip : used) {
+            const std::span<const Index> around = neighbours[tip], by = neighbours.edges_at(tip);
+            for (std::size_t i = 0; i < around.size(); ++i) {
+                const Vector2d d = graph.vertex[around[i]] - graph.vertex[tip];
+                for (std::size_t j = 0; j < i; ++j) {
+                    const Vector2d o = graph.vertex[around[j]] - graph.vertex[tip];
+                    const double across = d.x() * o.y() - d.y() * o.x();
+                    if (d.dot(o) > 0 && across * across <= sine * sine * d.squaredNorm() * o.squaredNorm()) {
+                        near.push_back({by[i], around[j]});
+                        near.push_back({by[j], around[i]});
+                    }
+                }
+            }
+        }
     }
-    for (Index v = 0; v < n; ++v)
-        if (joined[v] == v && !neighbours[v].empty())
-            all.insert(v, graph.vertex[v]);
+    std::sort(near.begin(), near.end());
+    near.erase(std::unique(near.begin(), near.end(), [](const Near& a, const Near& b) { return a == b; }),
+               near.end());
 
     std::vector<Vector2d> moved = graph.vertex;
     std::vector<char> has_moved(n, 0);
     std::map<std::pair<Index, Index>, std::vector<Index>> bent;
-    for (const auto& [ends, edge_sources] : edges) {
-        const Index first = ends.first, second = ends.second;
+    for (auto from = near.begin(); from != near.end();) {
+        const Edge& edge = edges[from->edge];
+        const Index first = edge.first, second = edge.second;
         const Vector2d p = graph.vertex[first], q = graph.vertex[second];
-        const Level edge_level = level_of({first, second, edge_sources}, sources);
-        const double length = (q - p).norm();
+        const Level edge_level = level_of(edge, sources);
         std::vector<std::pair<double, Index>> through;
+        Index closed_from =
+            -1; // a tip: not both in one pass, or the diagonal of a narrow strip only turns over
         const auto consider = [&](Index v) {
-            if (v == first || v == second)
-                return;
             const Vector2d& place = graph.vertex[v];
             const Foot foot = foot_on(p, q, place);
             if (foot.distance >= far_reach || foot.along <= 0 || foot.along >= 1)
                 return;
-            bool close = foot.distance < reach / 2;
-            if (!close) { // the far end of a narrow wedge
-                const auto is_wedge_from = [&](Index tip) {
-                    const auto& around = neighbours[v];
-                    return std::find(around.begin(), around.end(), tip) != around.end() &&
-                           foot.distance <
-                               (place - graph.vertex[tip]).norm() * std::sin(limits.smallest_angle);
+            bool is_close = foot.distance < reach / 2;
+            Index tip_of_wedge = -1;
+            if (!is_close) { // the far end of a narrow wedge
+                // Where both sides are as long, each would go through the other's end: they would change
+                // places, for ever. The first one does.
+                const auto is_closed_already = [&](Index tip, Index end) {
+                    const auto other = bent.find(std::minmax(tip, v));
+                    return other != bent.end() &&
+                           std::ranges::find(other->second, end) != other->second.end();
                 };
-                close = is_wedge_from(first) || is_wedge_from(second);
+                const auto is_wedge_from = [&](Index tip, Index end) {
+                    return closed_from != end &&
+                           std::ranges::find(neighbours[v], tip) != neighbours[v].end() &&
+                           foot.distance <
+                               (place - graph.vertex[tip]).norm() * std::sin(limits.smallest_angle) &&
+                           !is_closed_already(tip, end);
+                };
+                const bool from_first = is_wedge_from(first, second);
+                is_close = from_first || is_wedge_from(second, first);
+                tip_of_wedge = from_first ? first : second;
             }
-            if (!close || (level[v] >= on_outline && edge_level == on_outline))
+            if (!is_close || (level[v] >= on_outline && edge_level == on_outline))
                 return;
             if (level[v] < edge_level) {
                 if (has_moved[v])
@@ -207,48 +358,59 @@ bool merge_pass(Graph& graph, const std::vector<Source>& sources, const Polygon&
                 has_moved[v] = 1;
                 moved[v] = foot.place;
             }
+            if (tip_of_wedge >= 0)
+                closed_from = tip_of_wedge;
             report.largest_move = std::max(report.largest_move, foot.distance);
             through.emplace_back(foot.along, v);
         };
-        // The edge in pieces of a cell each, so that a long slanting edge looks only along itself.
-        const int pieces = static_cast<int>(std::ceil(length / cell));
-        std::vector<Index> candidates;
-        for (int i = 0; i < pieces; ++i)
-            all.near(p + (q - p) * ((i + 0.5) / pieces), length / pieces / 2 + far_reach,
-                     [&](Index v) { candidates.push_back(v); });
-        std::sort(candidates.begin(), candidates.end());
-        candidates.erase(std::unique(candidates.begin(), candidates.end()), candidates.end());
-        for (const Index v : candidates)
-            consider(v);
+        for (const Index e = from->edge; from != near.end() && from->edge == e; ++from)
+            consider(from->vertex);
         if (through.empty())
             continue;
         std::sort(through.begin(), through.end());
+        auto& via = bent[{first, second}];
         for (const auto& [along, v] : through)
-            bent[ends].push_back(v);
+            via.push_back(v);
         report.merged_vertices += static_cast<Index>(through.size());
         changed = true;
     }
     if (!changed)
         return false;
 
-    for (const auto& [ends, through] : bent) {
-        const auto edge_sources = edges.at(ends);
-        edges.erase(ends);
-        Index from = ends.first;
-        for (const Index v : through) {
-            add_edge(from, v, edge_sources);
-            from = v;
+    if (!bent.empty()) {
+        std::vector<Edge> all;
+        all.reserve(edges.size() + 4 * bent.size());
+        std::vector<Edge> pieces;
+        for (const Edge& e : edges) {
+            const auto through = bent.find({e.first, e.second});
+            if (through == bent.end()) {
+                all.push_back(e);
+                continue;
+            }
+            Index from = e.first;
+            for (const Index v : through->second) {
+                pieces.push_back({from, v, e.sources});
+                from = v;
+            }
+            pieces.push_back({from, e.second, e.sources});
         }
-        add_edge(from, ends.second, edge_sources);
+        all.insert(all.end(), pieces.begin(), pieces.end());
+        edges = std::move(all);
+        unite(edges, graph.vertex, sources, report);
     }
 
-    // What the faces of before have become: those without area have merged into their neighbours.
-    const Faces before = trace_faces(graph);
-    for (const Face& face : before.face) {
+    // What the faces of before have become: those without area have merged into their neighbours. Only faces
+    // with an edge that has changed need a look.
+    std::vector<char> has_changed(graph.edge.size(), 0);
+    for (std::size_t e = 0; e < graph.edge.size(); ++e) {
+        const auto [a, b, s] = graph.edge[e];
+        has_changed[e] = joined[a] != a || joined[b] != b || has_moved[a] || has_moved[b] ||
+                         (!bent.empty() && bent.contains(std::minmax(a, b)));
+    }
+    for_outer_rings(graph, has_changed, [&](std::span<const Index> outer, double area) {
         std::vector<Index> ring;
-        for (std::size_t i = 0; i < face.rings[0].size(); ++i) {
-            const Index a = joined[face.rings[0][i]],
-                        b = joined[face.rings[0][(i + 1) % face.rings[0].size()]];
+        for (std::size_t i = 0; i < outer.size(); ++i) {
+            const Index a = joined[outer[i]], b = joined[outer[(i + 1) % outer.size()]];
             if (a == b)
                 continue;
             ring.push_back(a);
@@ -260,16 +422,13 @@ bool merge_pass(Graph& graph, const std::vector<Source>& sources, const Polygon&
             }
         }
         const double left = ring.size() < 3 ? 0.0 : ring_area(moved, ring);
-        if (left <= 1e-9 * face.area)
-            report.merged_block_area += face.area;
-    }
+        if (left <= 1e-9 * area)
+            report.merged_block_area += area;
+    });
 
     Graph merged;
     std::vector<Index> index(n, -1);
-    for (auto& [ends, edge_sources] : edges) {
-        std::sort(edge_sources.begin(), edge_sources.end());
-        edge_sources.erase(std::unique(edge_sources.begin(), edge_sources.end()), edge_sources.end());
-        Edge edge{ends.first, ends.second, std::move(edge_sources)};
+    for (Edge& edge : edges) {
         for (Index* v : {&edge.first, &edge.second}) {
             if (index[*v] < 0) {
                 index[*v] = static_cast<Index>(merged.vertex.size());
@@ -277,8 +436,8 @@ bool merge_pass(Graph& graph, const std::vector<Source>& sources, const Polygon&
             }
             *v = index[*v];
         }
-        merged.edge.push_back(std::move(edge));
     }
+    merged.edge = std::move(edges);
     graph = std::move(merged);
     return true;
 }

@@ -16,10 +16,10 @@ struct MergeLimits {
 };
 
 // One pass of merging over a planar graph. Vertices give way in this order: a vertex between joints moves to
-// a stage outline or rock border, and both move to the section's outline; corners of the outline never move,
+// a stage outline or rock border, and both move to the section's outline; corners of the outlines never move,
 // and vertices on a side of the outline stay on it. The result may cross itself where much moved: arrange()
 // it again, and repeat until a pass changes nothing (returns false).
-bool merge_pass(Graph& graph, const std::vector<Source>& sources, const Polygon& outline,
+bool merge_pass(Graph& graph, Sources& sources, const std::vector<Polygon>& outlines,
                 const MergeLimits& limits, CuttingReport& report);
 
 } // namespace jointcreep::blocks

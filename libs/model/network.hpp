@@ -62,6 +62,28 @@ struct CuttingReport {
     double smallest_angle = 0;     // between neighbouring edges that is left [rad]
 };
 
+// What became of a joint when the section was cut; judged up to the shortest edge.
+enum class JointFate : Index {
+    kept = 0,    // all of it is on block edges
+    clipped = 1, // what lies in the section is, but for what runs along its outline
+    trimmed = 2, // some of it ended inside a block, and was cut back
+    merged = 3,  // some of it was on edges too short, or too close to others, to stay
+    dropped = 4  // none of it is on block edges
+};
+
+// The same in lengths; rows are joints. The lengths but the last sum to the length of the joint's line,
+// traces and bridges together [m].
+struct JointFates {
+    std::vector<Index> fate;        // JointFate
+    std::vector<double> kept;       // on block edges that have its properties
+    std::vector<double> shared;     // on block edges that have another joint's
+    std::vector<double> on_outline; // along the section's outline
+    std::vector<double> outside;    // of the section: clipped
+    std::vector<double> dead_end;   // inside a block: cut back
+    std::vector<double> merged;     // on edges that vanished
+    std::vector<double> extended;   // carried on beyond its ends, to the next block edge
+};
+
 // The cut section: a planar map whose faces are the blocks.
 struct Blocks {
     std::vector<Eigen::Vector2d> vertex; // [m]
@@ -74,6 +96,11 @@ struct Blocks {
     std::vector<double> edge_joint_fraction;      // joint length / edge length, on joint edges [-]
     std::vector<Index> edge_boundary;             // into the scene's [[boundary]]; on boundary edges
 
+    // All joints that a joint edge lies on, its own first.
+    std::vector<Index> edge_share; // [edges + 1] those of edge e are rows edge_share[e] .. edge_share[e + 1]
+    std::vector<Index> share_joint;
+    std::vector<double> share_fraction; // of the edge that is joint trace of this one [-]
+
     // Blocks. Several blocks on welded edges hold together as one.
     std::vector<Index> block_rock;  // into Names::rock
     std::vector<Index> block_stage; // that removes it, into Names::stage; -1 stays
@@ -84,6 +111,7 @@ struct Blocks {
     std::vector<Index> ring_start;  // [rings + 1] its vertices are rows ring_start[r] .. of ring_vertex
     std::vector<Index> ring_vertex; // into vertex
 
+    JointFates fates;
     CuttingReport report;
 };
 

@@ -267,15 +267,23 @@ struct Averaging {
     StiffnessRule stiffness = StiffnessRule::joint;
 };
 
+// What is done with a joint that ends inside a block.
+enum class DeadEnds {
+    prune, // it is cut back to the last block edge it met
+    extend // it is carried on to the next one, as rock bridge
+};
+
 struct Cutting {
     double shortest_edge = 0;  // vertices closer than this, or than half of it to an edge, are merged [m]
     double smallest_angle = 0; // narrower wedges between edges are closed where that moves nothing far [rad]
+    DeadEnds dead_ends = DeadEnds::prune;
 };
 
 struct Scene {
     std::string title;
 
     Polygon outline;
+    std::vector<Polygon> holes{};  // inside the outline, where there is no rock from the start
     std::string rock;              // name of the Rock that no region covers
     double gravity = 0;            // downward [m/s2]
     std::optional<double> azimuth; // bearing of +x, clockwise from north [rad]

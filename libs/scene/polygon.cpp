@@ -1,6 +1,7 @@
 #include "scene/polygon.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
 
 namespace jointcreep
@@ -111,6 +112,33 @@ double polygon_size(const Polygon& polygon)
         high = high.cwiseMax(corner);
     }
     return (high - low).norm();
+}
+
+double distance_to_sides(const Polygon& polygon, const Point& point)
+{
+    double nearest = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+        const Point &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
+        const double along = std::clamp((point - a).dot(b - a) / (b - a).squaredNorm(), 0.0, 1.0);
+        nearest = std::min(nearest, (a + along * (b - a) - point).norm());
+    }
+    return nearest;
+}
+
+bool sides_come_near(const Polygon& a, const Polygon& b, double tolerance)
+{
+    // Where no sides cross, a corner is as near to the other polygon as anything.
+    for (const Point& corner : a)
+        if (distance_to_sides(b, corner) <= tolerance)
+            return true;
+    for (const Point& corner : b)
+        if (distance_to_sides(a, corner) <= tolerance)
+            return true;
+    for (std::size_t i = 0; i < a.size(); ++i)
+        for (std::size_t j = 0; j < b.size(); ++j)
+            if (meet(a[i], a[(i + 1) % a.size()], b[j], b[(j + 1) % b.size()]))
+                return true;
+    return false;
 }
 
 bool covers(const Polygon& polygon, const Point& point, double tolerance)

@@ -17,6 +17,12 @@ double polygon_size(const Polygon& polygon);
 // Whether a point lies inside a simple polygon, or within `tolerance` [m] of its sides.
 bool covers(const Polygon& polygon, const Eigen::Vector2d& point, double tolerance);
 
+// Distance [m] of a point from the nearest side.
+double distance_to_sides(const Polygon& polygon, const Eigen::Vector2d& point);
+
+// Whether sides of two polygons cross, or come within `tolerance` [m] of each other.
+bool sides_come_near(const Polygon& a, const Polygon& b, double tolerance);
+
 // Length [m] of the line from `from` to `to` that runs along sides of the polygon, within `tolerance` [m].
 double length_on_sides(const Polygon& polygon, const Eigen::Vector2d& from, const Eigen::Vector2d& to,
                        double tolerance);

@@ -178,6 +178,7 @@ private:
     void check_polygons() const
     {
         check_polygon(once("section"), "outline_m", scene_.outline);
+        check_holes();
         for (std::size_t i = 0; i < scene_.regions.size(); ++i)
             check_polygon(in_list("region", i), "outline_m", scene_.regions[i].outline);
         for (std::size_t i = 0; i < scene_.joint_sets.size(); ++i)
@@ -186,6 +187,25 @@ private:
         for (std::size_t i = 0; i < scene_.stages.size(); ++i)
             for (const Polygon& polygon : scene_.stages[i].remove)
                 check_polygon(in_list("stage", i), "remove_m", polygon);
+    }
+
+    void check_holes() const
+    {
+        const Given section = once("section");
+        const auto& holes = scene_.holes;
+        for (std::size_t i = 0; i < holes.size(); ++i) {
+            check_polygon(section, "holes_m", holes[i]);
+            const std::string which = "hole " + std::to_string(i + 1);
+            if (sides_come_near(scene_.outline, holes[i], tolerance()) ||
+                !covers(scene_.outline, holes[i][0], 0))
+                section.refuse("holes_m", which + " is not inside outline_m; wanted one that is, and does "
+                                                  "not touch it");
+            for (std::size_t j = 0; j < i; ++j)
+                if (sides_come_near(holes[i], holes[j], tolerance()) || covers(holes[i], holes[j][0], 0) ||
+                    covers(holes[j], holes[i][0], 0))
+                    section.refuse("holes_m", which + " meets hole " + std::to_string(j + 1) +
+                                                  "; wanted holes apart from each other");
+        }
     }
 
     double tolerance() const { return same_place * polygon_size(scene_.outline); }
@@ -232,8 +252,10 @@ private:
             const double length = (all[i].to - all[i].from).norm();
             if (!(length > tolerance()))
                 given.refuse("to_m", "wanted another point than from_m");
-            if (length_on_sides(scene_.outline, all[i].from, all[i].to, tolerance()) <
-                length - 2 * tolerance())
+            double on_sides = length_on_sides(scene_.outline, all[i].from, all[i].to, tolerance());
+            for (const Polygon& hole : scene_.holes)
+                on_sides += length_on_sides(hole, all[i].from, all[i].to, tolerance());
+            if (on_sides < length - 2 * tolerance())
                 given.refuse("to_m", "wanted from_m and to_m on one straight piece of the section's outline");
             for (std::size_t j = 0; j < i; ++j)
                 if (common_length(all[i].from, all[i].to, all[j].from, all[j].to, tolerance()) >
@@ -246,11 +268,18 @@ private:
     void check_places() const
     {
         const auto check = [this](const std::string& table, const auto& records) {
-            for (std::size_t i = 0; i < records.size(); ++i)
+            for (std::size_t i = 0; i < records.size(); ++i) {
+                for (const Polygon& hole : scene_.holes)
+                    if (covers(hole, records[i].at, 0) &&
+                        distance_to_sides(hole, records[i].at) > tolerance())
+                        in_list(table, i).refuse(
+                            "at_m", "[" + shown(records[i].at.x()) + ", " + shown(records[i].at.y()) +
+                                        "] is in a hole of the section; wanted a point in the rock");
                 if (!covers(scene_.outline, records[i].at, tolerance()))
                     in_list(table, i).refuse(
                         "at_m", "[" + shown(records[i].at.x()) + ", " + shown(records[i].at.y()) +
                                     "] is outside the section's outline; wanted a point inside");
+            }
         };
         check("point", scene_.points);
         check("gauge", scene_.gauges);
@@ -423,6 +452,14 @@ private:
         if (scene_.cutting.shortest_edge > scene_.zone_size)
             cutting.refuse("shortest_edge_m",
                            "wanted at most [zones] size_m, " + shown(scene_.zone_size) + " m");
+
+        if (scene_.cutting.dead_ends == DeadEnds::extend)
+            for (const Rock& rock : scene_.rocks)
+                if (!rock.strength)
+                    cutting.refuse("dead_ends",
+                                   "the rock bridges it makes need cohesion_MPa, friction_angle_deg and "
+                                   "tensile_strength_MPa of [[rock]] \"" +
+                                       rock.name + "\"");
 
         const Given equilibrium = once("equilibrium");
         const Damping damping = scene_.equilibrium.damping;

@@ -56,6 +56,10 @@ Table<Scene> section()
     return {
         {"section", once, required, "The section: a vertical plane through the rock, x to the right, y up."},
         {polygon("outline_m", &Scene::outline, "Its outline, either way round."),
+         polygons("holes_m", &Scene::holes,
+                  "Where there is no rock from the start, a tunnel for example: inside the outline, apart "
+                  "from it and from each other.")
+             .optional(),
          text("rock", &Scene::rock, "Name of the rock that no region covers."),
          number("gravity_m_per_s2", &Scene::gravity, m_per_s2, from(0).to(100), "Gravity, downward."),
          number("azimuth_deg", &Scene::azimuth, degrees, from(0).to(360),
@@ -820,7 +824,12 @@ Table<Cutting> cutting()
              .optional("0.02 x zones.size_m"),
          number("smallest_angle_deg", &Cutting::smallest_angle, degrees, from(0).to(30),
                 "Narrower wedges between edges are closed where that moves nothing far.")
-             .or_else(std::int64_t{1})}};
+             .or_else(std::int64_t{1}),
+         choice("dead_ends", &Cutting::dead_ends, {{"prune", DeadEnds::prune}, {"extend", DeadEnds::extend}},
+                "What becomes of a joint that ends inside a block: it is cut back to the last block edge it "
+                "met, or carried on in its own direction to the line it meets next, as rock bridge, which "
+                "needs the strength of every rock.")
+             .or_else("prune")}};
 }
 
 Table<Averaging> averaging()

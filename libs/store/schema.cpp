@@ -100,6 +100,7 @@ std::vector<Field> fields_of(Joints& joints)
 std::vector<Field> fields_of(Blocks& blocks)
 {
     CuttingReport& report = blocks.report;
+    JointFates& fates = blocks.fates;
     // clang-format off
     return {
         {"/vertices/position", &blocks.vertex, {"vertex"}, "m", any(), "Position of the vertex {x, y}."},
@@ -115,6 +116,13 @@ std::vector<Field> fields_of(Blocks& blocks)
         {"/edges/boundary", &blocks.edge_boundary, {"edge"}, "1", at_least(-1),
          "Which of the scene's boundary entries holds a boundary edge, counted from 0; -1 none."},
 
+        {"/edges/first_share", &blocks.edge_share, {"edge+1"}, "1", rows_in("share"),
+         "Edge e lies on the joints of the shares first_share[e] up to, not including, first_share[e + 1]; the "
+         "first is /edges/joint."},
+        {"/shares/joint", &blocks.share_joint, {"share"}, "1", index_of("joint"), "Joint that the edge lies on."},
+        {"/shares/joint_fraction", &blocks.share_fraction, {"share"}, "1", between(0, 1),
+         "Length of this joint's traces on the edge over edge length."},
+
         {"/blocks/rock", &blocks.block_rock, {"block"}, "1", index_of("rock"), "Rock of the block."},
         {"/blocks/stage", &blocks.block_stage, {"block"}, "1", index_or_none("stage"),
          "Stage that removes the block; -1 if it stays."},
@@ -125,6 +133,22 @@ std::vector<Field> fields_of(Blocks& blocks)
         {"/rings/first_corner", &blocks.ring_start, {"ring+1"}, "1", rows_in("corner"),
          "Ring r has the corners first_corner[r] up to, not including, first_corner[r + 1]."},
         {"/rings/vertex", &blocks.ring_vertex, {"corner"}, "1", index_of("vertex"), "Vertex at the corner."},
+
+        {"/fates/fate", &fates.fate, {"joint"}, "1", between(0, 4),
+         "What became of the joint, up to the shortest edge: 0 kept (all on block edges), 1 clipped (what lies in "
+         "the section is), 2 trimmed (some ended inside a block), 3 merged (some was on edges that vanished), 4 "
+         "dropped (none is on block edges). The lengths below, without the extension, sum to the joint's."},
+        {"/fates/kept_length", &fates.kept, {"joint"}, "m", at_least(0), "On block edges with its properties."},
+        {"/fates/shared_length", &fates.shared, {"joint"}, "m", at_least(0),
+         "On block edges with the properties of another joint on them."},
+        {"/fates/outline_length", &fates.on_outline, {"joint"}, "m", at_least(0),
+         "Along the outline of the section."},
+        {"/fates/outside_length", &fates.outside, {"joint"}, "m", at_least(0), "Outside the section."},
+        {"/fates/dead_end_length", &fates.dead_end, {"joint"}, "m", at_least(0),
+         "Inside a block, and cut back."},
+        {"/fates/merged_length", &fates.merged, {"joint"}, "m", at_least(0), "On edges that vanished."},
+        {"/fates/extended_length", &fates.extended, {"joint"}, "m", at_least(0),
+         "Carried on beyond its ends to the next block edge, as rock bridge."},
 
         {"/cutting/merged_vertices", &report.merged_vertices, {}, "1", at_least(0),
          "Vertices that cutting merged into others."},
@@ -526,6 +550,7 @@ const std::vector<Described>& dimensions()
         {"edge", "a straight piece of the cut between blocks"},
         {"piece", "a joint trace or a rock bridge inside the section"},
         {"bridge", "a rock bridge: rock between the traces of a joint"},
+        {"share", "a joint on an edge; where joints share an edge it has several"},
         {"kelvin_unit", "a Kelvin unit of a joint's chain, as many as the longest chain has"},
         {"block", "a face of the cut section"},
         {"ring", "a closed outline of a block, outer or hole"},

@@ -118,6 +118,8 @@ def draw(file, _):
     outline = np.array(scene["section"]["outline_m"], float)
     plot, axes = figure.section_axes(outline)
     inside = matplotlib.patches.Polygon(outline, facecolor="none", edgecolor="k", linewidth=1.0, zorder=3)
+    for hole in scene["section"].get("holes_m", []):
+        axes.add_patch(matplotlib.patches.Polygon(hole, facecolor="w", edgecolor="k", linewidth=1.0, zorder=3))
     axes.add_patch(inside)
 
     joints = draw_joints(file, axes, inside)

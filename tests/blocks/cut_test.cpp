@@ -167,3 +167,142 @@ TEST(cut, vertices_closer_than_the_limit_are_merged_and_the_outline_keeps_its_co
     for (const Vector2d& corner : square)
         EXPECT_NE(std::find(blocks.vertex.begin(), blocks.vertex.end(), corner), blocks.vertex.end());
 }
+
+TEST(cut, a_joint_that_ends_inside_a_block_may_be_carried_on_as_rock_bridge)
+{
+    Scene scene = section(square, 0.1);
+    scene.cutting.dead_ends = DeadEnds::extend;
+    Joints joints;
+    add_joint(joints, {0, 5}, {10, 5});
+    add_joint(joints, {4, 0}, {4, 8}); // 2 m on to the outline
+    add_joint(joints, {6, 7}, {8, 9}); // to the second and the outline
+    const Blocks blocks = blocks::cut(scene, joints);
+    EXPECT_EQ(faults(scene, blocks), "");
+    EXPECT_EQ(blocks.block_area.size(), 5u);
+    const JointFates& fates = blocks.fates;
+    EXPECT_EQ(fates.dead_end, std::vector<double>(3, 0.0));
+    EXPECT_NEAR(fates.extended[0], 0, 1e-12);
+    EXPECT_NEAR(fates.extended[1], 2, 1e-12);
+    EXPECT_NEAR(fates.extended[2], 2 * std::sqrt(2.0) + std::sqrt(2.0), 1e-12); // to (4, 5) and to (9, 10)
+    // A rock bridge is no joint: of the piece of the second joint above the first, 3 m of 5 are.
+    for (std::size_t e = 0; e < blocks.edge_vertex.size(); ++e) {
+        const Vector2d &a = blocks.vertex[blocks.edge_vertex[e][0]],
+                       &b = blocks.vertex[blocks.edge_vertex[e][1]];
+        if (blocks.edge_joint[e] == 1 && std::max(a.y(), b.y()) > 9) {
+            EXPECT_NEAR(blocks.edge_joint_fraction[e], 3.0 / 5, 1e-12);
+        }
+        if (blocks.edge_joint[e] == 2) {
+            EXPECT_NEAR(blocks.edge_joint_fraction[e], 2.0 / 5, 1e-12);
+        }
+    }
+}
+
+TEST(cut, a_joint_that_meets_another_is_not_carried_on)
+{
+    Scene scene = section(square, 0.1);
+    scene.cutting.dead_ends = DeadEnds::extend;
+    Joints joints;
+    add_joint(joints, {0, 5}, {10, 5});
+    add_joint(joints, {4, 0}, {4, 5 - 1e-9}); // but for a hair
+    add_joint(joints, {-3, 8}, {7, 8});       // from outside
+    const Blocks blocks = blocks::cut(scene, joints);
+    EXPECT_EQ(faults(scene, blocks), "");
+    EXPECT_EQ(blocks.block_area.size(), 4u);
+    EXPECT_EQ(blocks.fates.extended[1], 0);
+    EXPECT_NEAR(blocks.fates.extended[2], 3, 1e-12);
+}
+
+TEST(cut, what_becomes_of_each_joint_is_told_in_metres)
+{
+    const Scene scene = section(square, 0.1);
+    Joints joints;
+    add_joint(joints, {-2, 5}, {13, 5});      // 5 m outside
+    add_joint(joints, {4, 0}, {4, 8});        // 3 m dead end
+    add_joint(joints, {6, 7}, {8, 9});        // nothing but dead end
+    add_joint(joints, {2, 5}, {4, 5});        // on the first
+    add_joint(joints, {3, 10}, {9, 10});      // on the outline
+    add_joint(joints, {11, 1}, {12, 3});      // outside
+    add_joint(joints, {0, 5.04}, {10, 5.04}); // so near to the first that they become one
+    add_joint(joints, {7, 0}, {7, 5});        // simply there
+    const Blocks blocks = blocks::cut(scene, joints);
+    EXPECT_EQ(faults(scene, blocks), "");
+    const JointFates& fates = blocks.fates;
+    const auto code = [](JointFate fate) { return static_cast<Index>(fate); };
+    EXPECT_EQ(fates.fate,
+              (std::vector<Index>{code(JointFate::clipped), code(JointFate::trimmed),
+                                  code(JointFate::dropped), code(JointFate::kept), code(JointFate::dropped),
+                                  code(JointFate::dropped), code(JointFate::kept), code(JointFate::kept)}));
+    const auto expect_near = [](const std::vector<double>& lengths, const std::vector<double>& wanted) {
+        ASSERT_EQ(lengths.size(), wanted.size());
+        for (std::size_t j = 0; j < wanted.size(); ++j)
+            EXPECT_NEAR(lengths[j], wanted[j], 0.1) << "joint " << j;
+    };
+    expect_near(fates.kept, {10, 5, 0, 0, 0, 0, 0, 5});
+    expect_near(fates.shared, {0, 0, 0, 2, 0, 0, 10, 0});
+    expect_near(fates.outside, {5, 0, 0, 0, 0, std::sqrt(5.0), 0, 0});
+    expect_near(fates.on_outline, {0, 0, 0, 0, 6, 0, 0, 0});
+    expect_near(fates.dead_end, {0, 3, std::sqrt(8.0), 0, 0, 0, 0, 0});
+    expect_near(fates.merged, {0, 0, 0, 0, 0, 0, 0, 0});
+    EXPECT_EQ(fates.extended, std::vector<double>(8, 0.0));
+
+    // The joints of the edge from x = 2 to x = 4: its own first, and none lost.
+    bool found = false;
+    for (std::size_t e = 0; e < blocks.edge_vertex.size(); ++e) {
+        const Index first = blocks.edge_share[e], end = blocks.edge_share[e + 1];
+        EXPECT_EQ(end > first, blocks.edge_joint[e] >= 0);
+        if (end > first) {
+            EXPECT_EQ(blocks.share_joint[first], blocks.edge_joint[e]);
+            EXPECT_EQ(blocks.share_fraction[first], blocks.edge_joint_fraction[e]);
+        }
+        if (end - first == 3) {
+            found = true;
+            EXPECT_EQ(
+                std::vector<Index>(blocks.share_joint.begin() + first, blocks.share_joint.begin() + end),
+                (std::vector<Index>{0, 3, 6}));
+        }
+    }
+    EXPECT_TRUE(found);
+}
+
+TEST(cut, a_section_may_have_holes)
+{
+    Scene scene = section({{0, 0}, {20, 0}, {20, 20}, {12, 20}, {12, 12}, {8, 12}, {8, 20}, {0, 20}}, 0.1);
+    scene.holes = {{{4, 4}, {7, 4}, {7, 7}, {4, 7}}, {{13, 4}, {13, 8}, {17, 8}, {17, 4}}};
+    scene.boundaries = {{{4, 7}, {7, 7}, true, true, ""}};
+    Joints joints;
+    add_joint(joints, {-1, 5}, {21, 5}); // through both
+    add_joint(joints, {2, 10}, {18, 10});
+    add_joint(joints, {2, 8}, {2, 12}); // with nothing to hold on to
+    const Blocks blocks = blocks::cut(scene, joints);
+    EXPECT_EQ(faults(scene, blocks), "");
+    EXPECT_EQ(blocks.block_area.size(), 2u);
+    EXPECT_NEAR(total_area(blocks), 400 - 32 - 9 - 16, 1e-9);
+    EXPECT_NEAR(blocks.fates.outside[0], 2 + 3 + 4, 1e-9);
+    EXPECT_EQ(count(blocks, EdgeKind::joint), 3u);
+    EXPECT_EQ(std::count(blocks.edge_boundary.begin(), blocks.edge_boundary.end(), 0), 1);
+    Joints across;
+    add_joint(across, {2, 5}, {5, 5}); // from nowhere into a hole: no edge
+    EXPECT_EQ(blocks::cut(scene, across).block_area.size(), 1u);
+    scene.cutting.dead_ends = DeadEnds::extend; // carried on to the outline, it alone parts nothing
+    EXPECT_EQ(blocks::cut(scene, across).block_area.size(), 1u);
+}
+
+// A block that hangs in another by one corner: the outer one's ring would touch itself there.
+TEST(cut, a_block_that_touches_the_border_of_another_in_one_corner_is_a_hole_in_it)
+{
+    const Scene scene = section(square, 0.1);
+    Joints joints;
+    add_joint(joints, {0, 5}, {10, 5});
+    add_joint(joints, {5, 5}, {3, 9});
+    add_joint(joints, {5, 5}, {7, 9});
+    add_joint(joints, {3, 8}, {7, 8});
+    const Blocks blocks = blocks::cut(scene, joints);
+    EXPECT_EQ(faults(scene, blocks), "");
+    ASSERT_EQ(blocks.block_area.size(), 3u);
+    Index with_hole = -1;
+    for (Index b = 0; b < 3; ++b)
+        if (blocks.block_ring[b + 1] - blocks.block_ring[b] == 2)
+            with_hole = b;
+    ASSERT_GE(with_hole, 0);
+    EXPECT_NEAR(blocks.block_area[with_hole], 50 - 4.5, 0.1);
+}

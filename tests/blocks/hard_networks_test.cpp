@@ -23,6 +23,7 @@ void expect_sound(const Scene& scene, const Joints& joints, const std::string& w
     const Blocks blocks = blocks::cut(scene, joints);
     EXPECT_EQ(faults(scene, blocks), "") << what;
     EXPECT_GE(blocks.report.shortest_edge, scene.cutting.shortest_edge * (1 - 1e-9)) << what;
+    EXPECT_EQ(lost_length(joints, blocks), "") << what;
 }
 
 } // namespace
@@ -111,6 +112,72 @@ RC_GTEST_PROP(hard_networks, random_lines_of_all_kinds, ())
     const Blocks blocks = blocks::cut(scene, joints);
     RC_ASSERT(faults(scene, blocks) == "");
     RC_ASSERT(blocks.report.shortest_edge >= scene.cutting.shortest_edge * (1 - 1e-9));
+    RC_ASSERT(lost_length(joints, blocks) == "");
+}
+
+// With next to no merging the lengths must add up by themselves, and what is merged away is next to nothing.
+RC_GTEST_PROP(hard_networks, no_metre_of_a_joint_is_lost, ())
+{
+    Scene scene = section(slope, 1e-6);
+    scene.cutting.smallest_angle = 0;
+    scene.cutting.dead_ends = *rc::gen::element(DeadEnds::prune, DeadEnds::extend);
+    const int n = *rc::gen::inRange(1, 40);
+    std::mt19937 random(*rc::gen::arbitrary<unsigned>());
+    std::uniform_real_distribution<double> x(-10, 110);
+    Joints joints;
+    for (int i = 0; i < n; ++i)
+        add_joint(joints, {x(random), x(random)}, {x(random), x(random)});
+    const Blocks blocks = blocks::cut(scene, joints);
+    RC_ASSERT(faults(scene, blocks) == "");
+    RC_ASSERT(lost_length(joints, blocks) == "");
+    const JointFates& fates = blocks.fates;
+    double on_edges = 0;
+    for (std::size_t j = 0; j < fates.fate.size(); ++j) {
+        RC_ASSERT(fates.merged[j] < 1e-4);
+        on_edges += fates.kept[j] + fates.extended[j];
+        if (scene.cutting.dead_ends == DeadEnds::extend)
+            RC_ASSERT(fates.dead_end[j] < 1e-4);
+    }
+    double edges = 0;
+    for (std::size_t e = 0; e < blocks.edge_vertex.size(); ++e)
+        if (blocks.edge_joint[e] >= 0)
+            edges +=
+                (blocks.vertex[blocks.edge_vertex[e][0]] - blocks.vertex[blocks.edge_vertex[e][1]]).norm();
+    RC_ASSERT(std::abs(edges - on_edges) < 1e-3);
+}
+
+// Two sides of a narrow wedge as long as each other, and a narrow strip with its diagonal: what closes one
+// must not open the next.
+TEST(hard_networks, narrow_wedges_and_strips_settle)
+{
+    const Scene scene = section({{0, 0}, {100, 0}, {100, 100}, {0, 100}}, 0.05);
+    for (const double wide : {0.06, 0.1, 0.16, 0.2}) {
+        Joints wedge, strip;
+        add_joint(wedge, {0, 50}, {100, 50 - wide});
+        add_joint(wedge, {0, 50}, {100, 50 + wide});
+        expect_sound(scene, wedge, "wedge");
+        for (const double y : {50.0, 50 + wide})
+            add_joint(strip, {0, y}, {100, y});
+        add_joint(strip, {0, 50 + wide}, {100, 50});
+        expect_sound(scene, strip, "strip");
+    }
+}
+
+TEST(hard_networks, a_hundred_thousand_joints)
+{
+    const Scene scene = section({{0, 0}, {1000, 0}, {1000, 600}, {500, 1000}, {0, 1000}}, 0.02);
+    std::mt19937 random(5);
+    std::uniform_real_distribution<double> x(0, 1000), length(5, 15), nudge(-0.1, 0.1);
+    Joints joints;
+    for (int i = 0; i < 100'000; ++i) {
+        const double angle = (i % 3) * std::numbers::pi / 3 + nudge(random);
+        const Vector2d from(x(random), x(random));
+        add_joint(joints, from, from + length(random) * Vector2d(std::cos(angle), std::sin(angle)));
+    }
+    const Blocks blocks = blocks::cut(scene, joints);
+    EXPECT_EQ(faults(scene, blocks), "");
+    EXPECT_EQ(lost_length(joints, blocks), "");
+    EXPECT_GT(blocks.block_area.size(), 150'000u);
 }
 
 TEST(hard_networks, the_order_of_joints_does_not_change_the_blocks)

@@ -73,7 +73,9 @@ inline bool properly_cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b, c
 inline std::string faults(const Scene& scene, const Blocks& blocks)
 {
     std::string faults;
-    const double area = area_of(scene.outline);
+    double area = area_of(scene.outline);
+    for (const Polygon& hole : scene.holes)
+        area -= area_of(hole);
     if (std::abs(total_area(blocks) - area) > 1e-12 * area)
         faults += "areas do not add up; ";
     for (const double a : blocks.block_area)
@@ -108,7 +110,8 @@ inline std::string faults(const Scene& scene, const Blocks& blocks)
                 const auto found = left_of.find({a, b});
                 if (found == left_of.end() || found->second != static_cast<Index>(block))
                     faults += "a ring off its edges; ";
-                seen.insert(a);
+                if (!seen.insert(a).second)
+                    faults += "a ring that touches itself; ";
                 ++ring_edges;
             }
             if (n < 3)
@@ -126,6 +129,24 @@ inline std::string faults(const Scene& scene, const Blocks& blocks)
                 faults += "edges cross; ";
         }
     return faults;
+}
+
+// "" if every metre of every joint has its fate.
+inline std::string lost_length(const Joints& joints, const Blocks& blocks)
+{
+    const JointFates& fates = blocks.fates;
+    for (std::size_t j = 0; j < joints.set.size(); ++j) {
+        const double length = (joints.to[j] - joints.from[j]).norm();
+        const double sum = fates.kept[j] + fates.shared[j] + fates.on_outline[j] + fates.outside[j] +
+                           fates.dead_end[j] + fates.merged[j];
+        if (!(std::abs(sum - length) <= 1e-9 * length))
+            return "of joint " + std::to_string(j) + " with " + std::to_string(length) + " m there are " +
+                   std::to_string(sum);
+        if ((fates.fate[j] == static_cast<Index>(JointFate::dropped)) !=
+            (fates.kept[j] + fates.shared[j] == 0))
+            return "joint " + std::to_string(j) + " is dropped, but has edges, or the other way round";
+    }
+    return {};
 }
 
 } // namespace jointcreep::test

@@ -41,6 +41,9 @@ inline Network small_network()
     blocks.edge_kind = {0, 0, 1, 0, 0, 0, 0, 2, 2, 2, 2};
     blocks.edge_joint = {-1, -1, 0, -1, -1, -1, -1, -1, -1, -1, -1};
     blocks.edge_joint_fraction = {0, 0, 0.7, 0, 0, 0, 0, 0, 0, 0, 0};
+    blocks.edge_share = {0, 0, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1};
+    blocks.share_joint = {0};
+    blocks.share_fraction = {0.7};
     blocks.edge_boundary = {0, -1, -1, -1, -1, -1, -1, -1, -1, -1, -1};
     blocks.block_rock = {0, 1, 0};
     blocks.block_stage = {0, -1, -1};
@@ -48,6 +51,7 @@ inline Network small_network()
     blocks.block_ring = {0, 1, 3, 4};
     blocks.ring_start = {0, 4, 8, 12, 16};
     blocks.ring_vertex = {3, 2, 4, 5, 0, 1, 2, 3, 6, 9, 8, 7, 6, 7, 8, 9};
+    blocks.fates = {{0}, {10}, {0}, {0}, {0}, {0}, {0}, {0}};
     return network;
 }
 

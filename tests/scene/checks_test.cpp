@@ -113,6 +113,11 @@ TEST(checks, polygons)
     expect_refused(outline, "outline_m = [[0, 0], [40, 0], [20, 0]]", "meet");
     expect_refused("region_m = [[0, 5], [40, 5]", "region_m = [[0, 5], [0, 5]", "comes twice");
     expect_refused("remove_m = [[[25, 15], [40, 15]", "remove_m = [[[25, 15], [25, 21], [40, 15]", "meet");
+    const std::string hole = "holes_m = [[[3, 14], [5, 14], [5, 16], [3, 16]]]";
+    expect_refused(hole, "holes_m = [[[3, 14], [5, 14], [5, 21], [3, 16]]]", "not inside outline_m");
+    expect_refused(hole, "holes_m = [[[0, 14], [5, 14], [5, 16]]]", "not inside outline_m");
+    expect_refused(hole, "holes_m = [[[3, 14], [5, 14], [5, 16]], [[4, 14.5], [6, 14], [6, 16]]]",
+                   "meets hole 1");
     expect_refused("outline_m = [[0, 0], [40, 0], [40, 5]", "outline_m = [[0, 0], [40, 5], [40, 0]",
                    "[[region]] outline_m");
 }

@@ -144,6 +144,9 @@ TEST(every_key, all_else)
     EXPECT_EQ(scene.cutting.smallest_angle, 3 * deg);
     EXPECT_EQ(scene.averaging.over, AverageOver::line);
     EXPECT_EQ(scene.averaging.stiffness, StiffnessRule::lower_bound);
+    EXPECT_EQ(scene.cutting.dead_ends, DeadEnds::extend);
+    ASSERT_EQ(scene.holes.size(), 1u);
+    EXPECT_EQ(scene.holes[0][2], Eigen::Vector2d(5, 16));
     EXPECT_EQ(scene.equilibrium.tolerance, 1e-5);
     EXPECT_EQ(scene.equilibrium.unloading_increments, 2);
     EXPECT_EQ(scene.equilibrium.most_steps, 100000);
@@ -199,8 +202,9 @@ TEST(every_key, optional_tables_may_be_left_out)
 TEST(every_key, a_fully_persistent_set_needs_neither_length_nor_strength)
 {
     auto text = every_key_text();
-    for (const char* key : {"cohesion_MPa = 1.5\n", "friction_angle_deg = 45\n", "tensile_strength_MPa = 1\n",
-                            "length = { law = \"lognormal\", mean_m = 6, deviation_m = 2 }\n"})
+    for (const char* key :
+         {"cohesion_MPa = 1.5\n", "friction_angle_deg = 45\n", "tensile_strength_MPa = 1\n",
+          "length = { law = \"lognormal\", mean_m = 6, deviation_m = 2 }\n", "dead_ends = \"extend\"\n"})
         text = replaced(text, key, "");
     text = replaced(text, "persistence = 0.6", "persistence = 1");
     text = replaced(text, "persistence = 0.8", "persistence = 1");

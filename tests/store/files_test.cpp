@@ -124,7 +124,7 @@ TEST(Files, MayHaveEmptyArrays)
     NetworkFile file;
     file.provenance.program = file.provenance.version = file.provenance.input_sha256 =
         file.provenance.options = {""};
-    file.network.blocks.block_ring = file.network.blocks.ring_start = {0};
+    file.network.blocks.block_ring = file.network.blocks.ring_start = file.network.blocks.edge_share = {0};
     write_network(folder / "network.h5", file.provenance, file.network);
     EXPECT_TRUE(same(read_network(folder / "network.h5"), file));
 }

@@ -1,0 +1,161 @@
+#include "blocks/fate.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+namespace jointcreep::blocks
+{
+
+namespace
+{
+
+using Eigen::Vector2d;
+
+constexpr std::size_t fates = 5;
+
+} // namespace
+
+void FateRecord::add(Index joint, Fate fate, const Vector2d& from, const Vector2d& to)
+{
+    const Vector2d along = (joints_.to[joint] - joints_.from[joint]).normalized();
+    const auto [low, high] =
+        std::minmax({(from - joints_.from[joint]).dot(along), (to - joints_.from[joint]).dot(along)});
+    pieces_.push_back({joint, fate, low, high});
+}
+
+void FateRecord::carry_on(Index joint)
+{
+    carried_on_.resize(joints_.set.size(), 0);
+    carried_on_[joint] = 1;
+}
+
+JointFates FateRecord::table(double tolerance) const
+{
+    const std::size_t count = joints_.set.size();
+    JointFates table;
+    for (auto* column : {&table.kept, &table.shared, &table.on_outline, &table.outside, &table.dead_end,
+                         &table.merged, &table.extended})
+        column->assign(count, 0);
+    table.fate.assign(count, 0);
+
+    std::vector<std::size_t> start(count + 1, 0);
+    for (const Piece& piece : pieces_)
+        ++start[piece.joint + 1];
+    std::partial_sum(start.begin(), start.end(), start.begin());
+    std::vector<Piece> sorted(pieces_.size());
+    {
+        std::vector<std::size_t> next(start.begin(), start.end() - 1);
+        for (const Piece& piece : pieces_)
+            sorted[next[piece.joint]++] = piece;
+    }
+    struct End {
+        double place;
+        std::size_t fate;
+        int change; // of how many pieces with that fate there are
+    };
+    std::vector<End> ends;
+    for (std::size_t j = 0; j < count; ++j) {
+        const double length = (joints_.to[j] - joints_.from[j]).norm();
+        ends.clear();
+        for (std::size_t i = start[j]; i < start[j + 1]; ++i) {
+            const auto [joint, fate, low, high] = sorted[i];
+            if (fate == Fate::kept || fate == Fate::shared)
+                table.extended[j] +=
+                    std::max(0.0, std::min(high, 0.0) - low) + std::max(0.0, high - std::max(low, length));
+            const double from = std::clamp(low, 0.0, length), to = std::clamp(high, 0.0, length);
+            if (from < to) {
+                ends.push_back({from, static_cast<std::size_t>(fate), 1});
+                ends.push_back({to, static_cast<std::size_t>(fate), -1});
+            }
+        }
+        std::sort(ends.begin(), ends.end(), [](const End& a, const End& b) { return a.place < b.place; });
+        std::array<double, fates> sum{};
+        std::array<int, fates> open{};
+        double place = 0, covered = 0;
+        for (const End& end : ends) {
+            const auto first = std::find_if(open.begin(), open.end(), [](int n) { return n > 0; });
+            if (first != open.end()) {
+                sum[static_cast<std::size_t>(first - open.begin())] += end.place - place;
+                covered += end.place - place;
+            }
+            open[end.fate] += end.change;
+            place = end.place;
+        }
+        const auto of = [&](Fate fate) { return sum[static_cast<std::size_t>(fate)]; };
+        table.kept[j] = of(Fate::kept);
+        table.shared[j] = of(Fate::shared);
+        table.on_outline[j] = of(Fate::on_outline);
+        table.outside[j] = of(Fate::outside);
+        table.dead_end[j] = of(Fate::dead_end);
+        table.merged[j] = std::max(0.0, length - covered);
+        if (carried_on_.empty() || !carried_on_[j])
+            table.extended[j] = 0; // the overlap at its ends, or merging has moved an end
+
+        JointFate fate = JointFate::kept;
+        if (of(Fate::kept) + of(Fate::shared) == 0)
+            fate = JointFate::dropped;
+        else if (of(Fate::dead_end) > tolerance)
+            fate = JointFate::trimmed;
+        else if (table.merged[j] > tolerance)
+            fate = JointFate::merged;
+        else if (of(Fate::outside) + of(Fate::on_outline) > tolerance)
+            fate = JointFate::clipped;
+        table.fate[j] = static_cast<Index>(fate);
+    }
+    return table;
+}
+
+TracesAlong::TracesAlong(const Joints& joints)
+    : joints_(joints), start_(joints.set.size() + 1, 0), stretch_(joints.trace_joint.size())
+{
+    for (const Index j : joints.trace_joint)
+        ++start_[j + 1];
+    std::partial_sum(start_.begin(), start_.end(), start_.begin());
+    std::vector<Index> next(start_.begin(), start_.end() - 1);
+    for (std::size_t t = 0; t < joints.trace_joint.size(); ++t) {
+        const Index j = joints.trace_joint[t];
+        const Vector2d along = (joints.to[j] - joints.from[j]).normalized();
+        const auto place = [&](const Vector2d& x) { return (x - joints.from[j]).dot(along); };
+        const auto [low, high] = std::minmax({place(joints.trace_from[t]), place(joints.trace_to[t])});
+        stretch_[next[j]++] = {low, high, high};
+    }
+    for (std::size_t j = 0; j + 1 < start_.size(); ++j) {
+        const auto begin = stretch_.begin() + start_[j], end = stretch_.begin() + start_[j + 1];
+        std::stable_sort(begin, end, [](const Stretch& a, const Stretch& b) { return a.low < b.low; });
+        for (auto s = begin; s != end; ++s)
+            s->highest_yet = s == begin ? s->high : std::max((s - 1)->highest_yet, s->high);
+    }
+}
+
+void TracesAlong::end_before(Index joint, bool first_end, bool second_end)
+{
+    if (ends_.empty())
+        ends_.assign(joints_.set.size(), {false, false});
+    ends_[joint] = {first_end, second_end};
+}
+
+double TracesAlong::fraction(Index j, const Vector2d& p, const Vector2d& q, double overlap) const
+{
+    const Vector2d along = (joints_.to[j] - joints_.from[j]).normalized();
+    const double total = (joints_.to[j] - joints_.from[j]).norm();
+    const auto place = [&](const Vector2d& x) { return (x - joints_.from[j]).dot(along); };
+    const auto [low, high] = std::minmax({place(p), place(q)});
+    const std::array<bool, 2> ends = ends_.empty() ? std::array<bool, 2>{} : ends_[j];
+    double open = 0;
+    const auto last = stretch_.begin() + start_[j + 1];
+    auto s = std::lower_bound(stretch_.begin() + start_[j], last, low - overlap,
+                              [](const Stretch& stretch, double to) { return stretch.highest_yet < to; });
+    for (; s != last && s->low <= high + overlap; ++s) {
+        double from = s->low, to = s->high;
+        if (from <= 1e-9 * total && !ends[0])
+            from -= overlap;
+        if (to >= (1 - 1e-9) * total && !ends[1])
+            to += overlap;
+        open += std::max(0.0, std::min(high, to) - std::max(low, from));
+    }
+    return high > low ? std::min(1.0, open / (high - low)) : 0.0;
+}
+
+} // namespace jointcreep::blocks

@@ -1,0 +1,69 @@
+// What becomes of each joint's line while the section is cut. Inside libs/blocks only.
+
+#pragma once
+
+#include "model/network.hpp"
+
+#include <Eigen/Core>
+
+#include <vector>
+
+namespace jointcreep::blocks
+{
+
+// What a piece of a joint's line ended as. Where pieces overlap, which merging by moving brings about, the
+// first named counts.
+enum class Fate : Index { kept, shared, on_outline, dead_end, outside };
+
+// Collects pieces of joints with their fates. What no piece covers in the end has merged away.
+class FateRecord
+{
+public:
+    explicit FateRecord(const Joints& joints) : joints_(joints) {}
+
+    // A piece between two places near the line of a joint.
+    void add(Index joint, Fate fate, const Eigen::Vector2d& from, const Eigen::Vector2d& to);
+
+    // A joint goes on beyond an end; what lies beyond counts for others as overlap only.
+    void carry_on(Index joint);
+
+    // Lengths by joint; a length up to `tolerance` [m] does not make a joint's fate.
+    JointFates table(double tolerance) const;
+
+private:
+    struct Piece {
+        Index joint;
+        Fate fate;
+        double low, high; // along the joint from its first end [m]
+    };
+    const Joints& joints_;
+    std::vector<Piece> pieces_;
+    std::vector<char> carried_on_; // by joint; empty if none is
+};
+
+// The joint traces of each joint, in order along it.
+class TracesAlong
+{
+public:
+    explicit TracesAlong(const Joints& joints);
+
+    // Where a joint has been carried on beyond an end, its traces are taken to stop there. Elsewhere a trace
+    // that goes to the joint's end goes on with the joint as far as it is drawn, or moved.
+    void end_before(Index joint, bool first_end, bool second_end);
+
+    // Fraction of the piece of a joint between two places that is joint trace; `overlap` [m] is how far
+    // traces that go to its end go on.
+    double fraction(Index joint, const Eigen::Vector2d& p, const Eigen::Vector2d& q, double overlap) const;
+
+private:
+    struct Stretch {
+        double low, high;   // [m]
+        double highest_yet; // of this and all before
+    };
+    const Joints& joints_;
+    std::vector<Index> start_; // [joints + 1]
+    std::vector<Stretch> stretch_;
+    std::vector<std::array<bool, 2>> ends_; // of each joint; empty if none does
+};
+
+} // namespace jointcreep::blocks
