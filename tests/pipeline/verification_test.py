@@ -182,7 +182,8 @@ class Verification(ChainTest):
                     result = errors.result_of(self.chain.run(
                         "demsolve", joints, joints.with_name("halved.h5"), "--states", 1, "--engine", engine,
                         "--tolerance", "1e-9", "--creep-scheme", scheme, "--creep-step", step))
-                    self.assertEqual({int(s) for s in result.status.flat}, {1, 2, 3}, "it sticks, slips and opens")
+                    self.assertLessEqual({1, 3} if engine == "explicit" else {1, 2, 3}, set(result.status.flat),
+                                         "it sticks, slips (in motion, and is stuck after it) and opens")
                     return cases.contact_error(result).traction
 
                 coarse = error(1)
