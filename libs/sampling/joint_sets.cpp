@@ -196,9 +196,10 @@ void Sampler::add_traces(const JointSet& set, Index index, const TraceIndex& sto
     const std::array<double, 3> share{w * h * moment(order), (w + h) * moment(order + 1), moment(order + 2)};
     const double all = share[0] + share[1] + share[2], expected = p20 * all / moment(order);
     if (!(expected <= static_cast<double>(most_joints)))
-        throw input_error(quoted(set) + ": its density is too large for the section, or its sizes: about " +
-                          shown(expected) + " joints would have to be drawn, and at most " +
-                          std::to_string(most_joints) + " can be");
+        throw input_error(
+            quoted(set) + ": its density is too large for the section, or its sizes: " +
+            (std::isfinite(expected) ? "about " + shown(expected) + " joints" : "joints without end") +
+            " would have to be drawn, and at most " + std::to_string(most_joints) + " can be");
     Stream count(streams, 0, Purpose::count);
     const Index joints_drawn = static_cast<Index>(draw_poisson(expected, count));
 
@@ -347,8 +348,8 @@ double Sampler::draw_length(const JointSet& set, Stream& stream)
 {
     if (++intervals_ > most_intervals)
         throw input_error(quoted(set) + ": its length (mean " + shown(set.length->mean) +
-                          " m) is too small for the section: more than " + std::to_string(most_intervals) +
-                          " joint traces would result");
+                          " m) is too small for the section, or its lines are too dense: more than " +
+                          std::to_string(most_intervals) + " joint traces would result");
     return draw_positive(*set.length, stream);
 }
 
@@ -363,7 +364,7 @@ void Sampler::add_row(const std::string& name, const std::string& material, Inde
     if (found == materials.end())
         throw input_error(name + ": there is no joint material \"" + material + "\"");
     if (joints.set.size() >= most_joints)
-        throw input_error(name + ": spacing is too small for the section: more than " +
+        throw input_error(name + ": spacing is too small, or density too large, for the section: more than " +
                           std::to_string(most_joints) + " joints would result");
     joints.set.push_back(set);
     joints.number.push_back(number);

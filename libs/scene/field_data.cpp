@@ -93,6 +93,21 @@ public:
         }
         if (rows.empty())
             throw input_error("wanted a line of column names, and rows");
+        for (const std::string_view name : columns_)
+            if (std::count(columns_.begin(), columns_.end(), name) > 1)
+                refuse(head_, "has the column " + std::string(name) + " more than once");
+    }
+
+    // Refuses a column that has none of these names.
+    void allow_only(const std::vector<std::string>& names) const
+    {
+        for (const std::string_view column : columns_)
+            if (std::find(names.begin(), names.end(), column) == names.end()) {
+                std::string all;
+                for (const std::string& name : names)
+                    all += (all.empty() ? "" : ", ") + name;
+                refuse(head_, "has a column " + std::string(column) + "; wanted none but " + all);
+            }
     }
 
     bool has(std::string_view name) const
@@ -201,9 +216,11 @@ Polygon polyline_of(const json& coordinates, const std::string& where)
     if (!coordinates.is_array())
         throw input_error(where + " has no coordinates");
     for (const json& place : coordinates) {
-        if (!place.is_array() || place.size() != 2 || !place[0].is_number() || !place[1].is_number())
-            throw input_error(where + " has the coordinates " + place.dump().substr(0, 60) +
-                              "; wanted [x, y], in metres of the section");
+        if (!place.is_array() || place.size() < 2 || place.size() > 3 || !place[0].is_number() ||
+            !place[1].is_number())
+            throw input_error(
+                where + " has the coordinates " + place.dump().substr(0, 60) +
+                "; wanted [x, y], in metres of the section (a third one, the height, is not used)");
         const Vector2d at(place[0].get<double>(), place[1].get<double>());
         if (!coordinate.holds(at.x()) || !coordinate.holds(at.y()))
             throw input_error(where + " has the coordinates " + place.dump().substr(0, 60) +
@@ -223,14 +240,20 @@ const json& member(const json& object, const char* name)
 
 std::vector<FoundTrace> traces_in_geojson(std::string_view text, const TraceFilter& filter)
 {
+    constexpr int deepest = 32; // a feature's coordinates are at 6
+    const auto not_too_deep = [](int depth, json::parse_event_t, const json&) {
+        if (depth > deepest)
+            throw input_error("is nested too deeply; wanted GeoJSON");
+        return true;
+    };
     json all;
     try {
-        all = json::parse(text);
+        all = json::parse(text, not_too_deep);
     } catch (const json::exception& error) {
         throw input_error(std::string("is not JSON: ") + error.what());
     }
-    const json one = json::array({all});
     const json& collection = member(all, "features");
+    const json one = collection.is_array() ? json() : json::array({all});
     const json& features = collection.is_array() ? collection : one;
 
     std::vector<FoundTrace> found;
@@ -269,6 +292,9 @@ std::vector<FoundTrace> traces_in_geojson(std::string_view text, const TraceFilt
 std::vector<MeasuredPole> poles_in_csv(std::string_view text)
 {
     const Csv csv(text);
+    for (const char* needed : {"dip_deg", "dip_direction_deg"})
+        csv.column(needed);
+    csv.allow_only({"dip_deg", "dip_direction_deg", "weight"});
     std::vector<MeasuredPole> poles;
     for (const Row& row : csv.rows)
         poles.push_back({csv.number(row, "dip_deg", from(0).to(90)) * unit::deg,
@@ -287,15 +313,15 @@ std::vector<MappedTrace> mapped_traces(std::string_view text, const TraceFilter&
         throw input_error(filter.property.empty()
                               ? "has no traces"
                               : "has no trace whose " + filter.property + " is \"" + filter.value + "\"");
-    const bool have_ids =
-        std::all_of(found.begin(), found.end(), [](const FoundTrace& trace) { return trace.id.has_value(); });
+    const bool have_ids = std::all_of(found.begin(), found.end(), [](const FoundTrace& trace) {
+        return trace.id && *trace.id >= 0 && *trace.id <= largest_id;
+    });
     std::set<std::int64_t> ids;
     std::vector<MappedTrace> traces;
     for (const FoundTrace& trace : found) {
         const std::int64_t id = have_ids ? *trace.id : trace.place;
-        if (id < 0 || id > largest_id)
-            throw input_error(trace.where + ": its id is " + std::to_string(id) + "; wanted 0 to " +
-                              std::to_string(largest_id));
+        if (id > largest_id)
+            throw input_error("has more than " + std::to_string(largest_id + 1) + " traces");
         if (!ids.insert(id).second)
             throw input_error(trace.where + ": another trace has the id " + std::to_string(id) + ", too");
         if (trace.polylines.empty())

@@ -190,6 +190,8 @@ std::string files_beside(const std::string& path, const std::string& scene)
         if (std::error_code ignored; !std::filesystem::is_regular_file(beside, ignored))
             continue;
         const std::string text = read_text_file(beside.string(), "poles or traces of a scene");
+        if (text.find_first_not_of(" \t\r\n") == std::string::npos)
+            throw input_error(beside.string() + ": is empty; wanted poles or traces of a scene");
         parse_toml("text = " + as_toml(text, ""), beside.string()); // names the line of what is not UTF-8
         tables +=
             "\n[[file]] # as it was beside the scene\nname = " + as_toml(name) + "text = " + as_toml(text);

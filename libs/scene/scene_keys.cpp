@@ -72,7 +72,8 @@ Table<Rock> rock()
     return {
         {"rock", in_list, required,
          "Intact rock: elastic, plane strain. Its strength is that of the rock bridges, and is needed where "
-         "a joint set has a persistence below 1. With a Kelvin unit or a Maxwell dashpot it creeps, in shear "
+         "a joint set has a persistence below 1, and where dead ends are extended. With a Kelvin unit or a "
+         "Maxwell dashpot it creeps, in shear "
          "only: its volume stays elastic."},
         {text("name", &Rock::name, "Name, once among the rocks."),
          number("density_kg_per_m3", &Rock::density, kg_per_m3, above(0).to(3e4), "Density."),
@@ -197,7 +198,7 @@ Table<SingleJoint> joint()
 {
     return {{"joint", in_list, optional,
              "One joint or fault given by its ends: all of it joint, no rock bridges."},
-            {text("name", &SingleJoint::name, "Name, once among the joints and joint sets."),
+            {text("name", &SingleJoint::name, "Name, once among the joints, joint sets and mapped sets."),
              text("material", &SingleJoint::material, "Name of its joint material."),
              point("from_m", &SingleJoint::from, "One end."),
              point("to_m", &SingleJoint::to, "The other end.")}};
@@ -660,11 +661,13 @@ Table<WrittenMapped> mapped()
          "bridges."},
         {text("name", &W::name, "Name, once among the joints, joint sets and mapped sets."),
          text("material", &W::material, "Name of the joint material."),
-         text("file", &W::file,
-              "File beside the scene, with coordinates in metres of the section. GeoJSON of LineString and "
-              "MultiLineString; or CSV with the columns x1_m, y1_m, x2_m, y2_m and, if wanted, id; or CSV "
-              "with "
-              "the columns id, x_m, y_m, a row a place, those of a trace together."),
+         text(
+             "file", &W::file,
+             "File beside the scene, with coordinates in metres of the section. GeoJSON of LineString and "
+             "MultiLineString; or CSV with the columns x1_m, y1_m, x2_m, y2_m and, if wanted, id; or CSV "
+             "with the columns id, x_m, y_m, a row a place, those of a trace together. Where every id is a "
+             "whole "
+             "number from 0 to 2097151 it becomes the joint's number; elsewhere the place in the file does."),
          text("property", &W::property,
               "Takes only the traces whose property of this name, in CSV a column, has the value below.")
              .together("property"),

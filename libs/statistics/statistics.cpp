@@ -37,7 +37,7 @@ std::optional<Expected> expected_of(const Scene& scene)
     const auto is_other = [](const JointSet& set) {
         return set.kind != SetKind::lines || set.density || !set.poles.empty() || !set.rocks.empty();
     };
-    if (!scene.joints.empty() || !scene.mapped.empty() || scene.joint_sets.empty() ||
+    if (!scene.holes.empty() || !scene.joints.empty() || !scene.mapped.empty() || scene.joint_sets.empty() ||
         std::any_of(scene.joint_sets.begin(), scene.joint_sets.end(), is_other))
         return {};
     const Window window(scene.outline);

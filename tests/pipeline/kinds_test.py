@@ -69,7 +69,7 @@ class Kinds(ChainTest):
             "wanted the name of a file beside the scene": {"poles": None},
             "line 4: dip_deg is \"x\"": {"poles": "# a\ndip_deg,dip_direction_deg\n1,2\nx,3\n"},
             "is not JSON": {"traces": traces[:-9]},
-            "feature 0 has the coordinates": {"traces": traces.replace("[20, 21]", "[20, 21, 0]", 1)},
+            "feature 0 has the coordinates": {"traces": traces.replace("[20, 21]", "[20, 21, 0, 1]", 1)},
             "whose set is \"J\"": {"traces": traces.replace('"J"', '"K"')},
         }
         for wanted, texts in cases.items():

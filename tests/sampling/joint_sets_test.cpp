@@ -589,7 +589,7 @@ TEST(SampleJoints, WorksFarFromTheOrigin)
 TEST(SampleJoints, RefusesTooManyJointsOrTraces)
 {
     expect_refusal(scene_of({joint_set("a", .3, .1, 1e-6, 1)}),
-                   {"\"a\"", "spacing is too small for the section"});
+                   {"\"a\"", "spacing is too small, or density too large, for the section"});
     JointSet set = joint_set("a", .3, .1, 1, .5);
     set.length = Law{Kind::constant, 1e-6, 0};
     expect_refusal(scene_of({set}), {"\"a\"", "length (mean 1e-06 m) is too small for the section"});

@@ -104,16 +104,41 @@ TEST(MappedTraces, RefusesWhatIsWrong)
     expect_refused("id,x_m,y_m\n1,0,0\n", "two places");
     expect_refused("id,x_m,y_m,s\n1,0,0,A\n1,1,1,B\n", "more than one s", {"s", "A"});
     expect_refused("x1_m,y1_m,x2_m,y2_m,id\n1,2,3,4,8\n1,2,3,5,8\n", "has the id 8, too");
-    expect_refused("x1_m,y1_m,x2_m,y2_m,id\n1,2,3,4,-8\n", "its id is -8; wanted 0 to");
+    expect_refused("x1_m,y1_m,x2_m,y2_m,x1_m\n1,2,3,4,5\n", "has the column x1_m more than once");
+    expect_refused(R"({"features": )" + std::string(200000, '[') + std::string(200000, ']') + "}",
+                   "nested too deeply");
     expect_refused("{\"type\": ", "is not JSON");
     expect_refused("{}", "feature 0 is of the type null");
     expect_refused(collection({}), "has no traces");
-    for (const std::string wrong : {"[1, 2, 3]", "[1]", "[1, \"2\"]", "5", "[1, 1e300]", "null"})
+    for (const std::string wrong : {"[1, 2, 3, 4]", "[1]", "[1, \"2\"]", "5", "[1, 1e300]", "null"})
         expect_refused(R"({"type": "LineString", "coordinates": [[0, 0], )" + wrong + "]}",
                        "feature 0 has the coordinates");
     expect_refused(R"({"type": "LineString", "coordinates": []})", "two places");
     expect_refused(R"({"type": "MultiLineString"})", "no coordinates");
     expect_refused(R"({"type": "MultiLineString", "coordinates": []})", "no coordinates");
+}
+
+// Ids that are no numbers of a joint are not used at all; heights are not, either.
+TEST(MappedTraces, HaveTheirPlacesWhereIdsAreNoNumbersOfJoints)
+{
+    for (const std::string id : {"-8", "2097152", "18446744073709551615"}) {
+        const auto in_csv = mapped_traces("x1_m,y1_m,x2_m,y2_m,id\n1,2,3,4,5\n1,2,3,5," + id + "\n", {});
+        EXPECT_EQ(in_csv.at(0).id, 0);
+        EXPECT_EQ(in_csv.at(1).id, 1);
+        const std::string high = R"({"type": "LineString", "coordinates": [[0, 1, 300], [2, 3.5, 301]]})";
+        const auto in_json =
+            mapped_traces(collection({feature(line, R"("id": 7)"), feature(high, R"("id": )" + id)}), {});
+        EXPECT_EQ(in_json.at(0).id, 0);
+        EXPECT_EQ(in_json.at(1).id, 1);
+        EXPECT_EQ(in_json.at(1).polylines.at(0).at(1), Eigen::Vector2d(2, 3.5));
+    }
+}
+
+TEST(MeasuredPoles, HaveNoColumnsBesideTheirOwn)
+{
+    const std::string message = refusal([] { poles_in_csv("dip_deg,dip_direction_deg,wieght\n10,20,3\n"); });
+    EXPECT_NE(message.find("line 1: has a column wieght; wanted none but dip_deg"), std::string::npos)
+        << message;
 }
 
 TEST(ScanlineCorrection, WeighsByTerzaghi)
