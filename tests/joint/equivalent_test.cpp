@@ -373,6 +373,8 @@ TEST(AverageStrength, SpacesStaggeredLinesByTheBlocksWhereTheSetMayBe)
     expect_area(lines, 30);
     set.rocks = {"soft", "rock"};
     expect_area(lines, 100);
+    set.rocks = {"eroded"}; // without a block
+    expect_area(lines, 100);
 }
 
 TEST(AverageStrength, ReportsASetBesideJointAndBridges)
