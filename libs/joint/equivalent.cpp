@@ -106,6 +106,69 @@ double area_of(const Polygon& polygon)
     return std::abs(twice) / 2;
 }
 
+// Of a block's outer ring.
+Eigen::Vector2d centroid_of(const Blocks& blocks, std::size_t block)
+{
+    const Index ring = blocks.block_ring[block];
+    const Index begin = blocks.ring_start[ring], end = blocks.ring_start[ring + 1];
+    const Eigen::Vector2d origin = blocks.vertex[blocks.ring_vertex[begin]];
+    double twice = 0;
+    Eigen::Vector2d moment(0, 0);
+    for (Index i = begin, j = end - 1; i < end; j = i++) {
+        const Eigen::Vector2d a = blocks.vertex[blocks.ring_vertex[j]] - origin,
+                              b = blocks.vertex[blocks.ring_vertex[i]] - origin;
+        const double turn = a.x() * b.y() - a.y() * b.x();
+        twice += turn;
+        moment += turn * (a + b) / 3;
+    }
+    return origin + moment / twice;
+}
+
+// Area of the blocks where a set may be [m2]; average_strength() says which they are.
+double area_of_set(const Scene& scene, const Network& network, const std::string& name)
+{
+    const auto found = std::find_if(scene.joint_sets.begin(), scene.joint_sets.end(),
+                                    [&](const JointSet& one) { return one.name == name; });
+    const Blocks& blocks = network.blocks;
+    const auto holds_set = [&](std::size_t block) {
+        if (found == scene.joint_sets.end())
+            return true;
+        if (!found->rocks.empty())
+            return std::count(found->rocks.begin(), found->rocks.end(),
+                              network.names.rock[blocks.block_rock[block]]) > 0;
+        return !found->region || covers(*found->region, centroid_of(blocks, block));
+    };
+    double all = 0, of_set = 0;
+    for (std::size_t block = 0; block < blocks.block_area.size(); ++block) {
+        all += blocks.block_area[block];
+        if (holds_set(block))
+            of_set += blocks.block_area[block];
+    }
+    if (of_set > 0)
+        return of_set;
+    return found != scene.joint_sets.end() && found->region ? area_of(*found->region) : all;
+}
+
+// How much of an edge lies on its joint's own line. The rest is where the joint was carried on [-].
+double share_on_line(const Network& network, std::size_t edge)
+{
+    const Blocks& blocks = network.blocks;
+    const Index joint = blocks.edge_joint[edge];
+    if (blocks.fates.extended.empty() || !(blocks.fates.extended[joint] > 0))
+        return 1; // merging may have moved the edge past the line's ends
+    const Eigen::Vector2d from = network.joints.from[joint], along = network.joints.to[joint] - from;
+    const auto place = [&](Index vertex) {
+        return (blocks.vertex[vertex] - from).dot(along) / along.squaredNorm();
+    };
+    const auto [low, high] =
+        std::minmax({place(blocks.edge_vertex[edge][0]), place(blocks.edge_vertex[edge][1])});
+    if (!(high > low))
+        return 1;
+    const double on_line = std::max(0.0, std::min(high, 1.0) - std::max(low, 0.0)) / (high - low);
+    // What the cutter found to be joint trace is on the line, also where merging has moved its other end.
+    return std::min(1.0, std::max(on_line, blocks.edge_joint_fraction[edge]));
+}
+
 // Sums over the lines of a set, and what averages over lines and sets are taken with.
 class Lines
 {
@@ -124,13 +187,8 @@ public:
                 }
             }
         }
-        for (std::size_t set = 0; set < of_set_.size(); ++set) {
-            const auto found =
-                std::find_if(scene.joint_sets.begin(), scene.joint_sets.end(),
-                             [&](const JointSet& one) { return one.name == network.names.joint_set[set]; });
-            const bool has_region = found != scene.joint_sets.end() && found->region;
-            area_[set] = area_of(has_region ? *found->region : scene.outline);
-        }
+        for (std::size_t set = 0; set < of_set_.size(); ++set)
+            area_[set] = area_of_set(scene, network, network.names.joint_set[set]);
     }
 
     double length(std::size_t set) const { return of_set_[set].line; }
@@ -145,9 +203,9 @@ public:
         case AverageOver::edge:
             break;
         case AverageOver::line:
-            return {line.persistence(), line.trace_length(), spacing};
+            return {line.persistence() * share_on_line(network_, edge), line.trace_length(), spacing};
         case AverageOver::set:
-            return {all.persistence(), all.trace_length(), spacing};
+            return {all.persistence() * share_on_line(network_, edge), all.trace_length(), spacing};
         }
         const double fraction = network_.blocks.edge_joint_fraction[edge];
         if (!(fraction >= 0 && fraction <= 1 + rounding))
@@ -315,7 +373,7 @@ SetAverages averages_of(const Scene& scene, const Network& network, const Pieces
             std::find_if(scene.joint_sets.begin(), scene.joint_sets.end(),
                          [&](const JointSet& one) { return one.name == network.names.joint_set[set]; });
         const bool is_set = found != scene.joint_sets.end();
-        const double target = is_set ? found->persistence : 1.0;
+        const double target = is_set && found->kind == SetKind::lines ? found->persistence : 1.0;
         std::vector<double> line_length;
         for (std::size_t joint = 0; joint < network.joints.set.size(); ++joint)
             if (network.joints.set[joint] == static_cast<Index>(set))
@@ -363,7 +421,7 @@ EquivalentJoints average_strength(const Scene& scene, const Network& network)
 {
     const Blocks& blocks = network.blocks;
     EquivalentJoints joints = without_joints(blocks.edge_kind.size(), most_kelvin_units(scene));
-    joints.pieces = pieces_of(network.joints, scene.outline);
+    joints.pieces = pieces_of(network.joints, scene.outline, scene.holes);
     const Lines lines(scene, network, joints.pieces);
     Stiffnesses stiffnesses(scene, network);
     std::vector<SetSum> sums(network.names.joint_set.size());

@@ -21,12 +21,17 @@ struct Strength {
 Strength average(const Strength& joint, const Strength& rock, double persistence);
 
 // The equivalent joint of every edge, with the joint fraction of that edge, or the persistence of its line or
-// of its set inside the section, as the scene's averaging says. The rock is the weaker of the two on the
-// edge's sides, in cohesion, friction angle and tensile strength each by itself. Stiffnesses and the
-// constants of creep are the joint's own, or by another rule those of libs/joint/bridged.hpp, for
-//     the trace length    sum of L^2 / sum of L over the traces of the line (with averages over lines), or of
-//     the set the spacing         the area where the set may be / length of its lines the rock 1/E' the mean
-//     of the rocks' on the edge's sides
+// of its set inside the section, as the scene's averaging says. Of an edge on which its joint was carried on
+// beyond its ends, the persistence of line or set counts for the part between these ends, and the rest is
+// rock. The rock is the weaker of the two on the edge's sides, in cohesion, friction angle and tensile
+// strength each by itself. Stiffnesses and the constants of creep are the joint's own, or by another rule
+// those of libs/joint/bridged.hpp, for
+//  - the trace length: sum of L^2 / sum of L over the traces of the line (with averages over lines), or of
+//    the set;
+//  - the spacing: the area of the blocks where the set may be / length of its lines inside the section.
+//    These blocks are those of its rocks; those with the centroid of their outer ring in its region (if
+//    there are none, the area is the region's); or else all blocks;
+//  - the rock: 1/E' the mean of the rocks' on the edge's sides.
 // A stiffness is at most ten times that of a zone beside the edge, E (1 - nu) / ((1 + nu) (1 - 2 nu)) over
 // the zone size, or the joint's own: rock bridges alone would be infinitely stiff. An edge that is all joint
 // has the joint's stiffness whatever the rule, and so has a boundary edge that rests on a joint, with its

@@ -22,6 +22,56 @@ double cross(const Vector2d& a, const Vector2d& b)
     return a.x() * b.y() - a.y() * b.x();
 }
 
+// Appends an interval, or lengthens the last one where they touch.
+void append(std::vector<Interval>& intervals, const Interval& next)
+{
+    if (next.high - next.low <= rounding)
+        return;
+    if (!intervals.empty() && next.low <= intervals.back().high + rounding)
+        intervals.back().high = std::max(intervals.back().high, next.high);
+    else
+        intervals.push_back(next);
+}
+
+// Appends where a line crosses a polygon's sides, as fractions of the line.
+void append_crossings(std::vector<double>& cuts, const Polygon& polygon, const Vector2d& from,
+                      const Vector2d& along)
+{
+    for (std::size_t i = 0, j = polygon.empty() ? 0 : polygon.size() - 1; i < polygon.size(); j = i++) {
+        const Vector2d side = polygon[i] - polygon[j], reach = polygon[j] - from;
+        const double turn = cross(along, side);
+        if (turn == 0)
+            continue;
+        const double on_side = cross(reach, along) / turn, on_line = cross(reach, side) / turn;
+        if (on_side >= -rounding && on_side <= 1 + rounding && on_line > 0 && on_line < 1)
+            cuts.push_back(on_line);
+    }
+}
+
+std::vector<Interval> inside(const Polygon& outline, const std::vector<Polygon>& holes, const Vector2d& from,
+                             const Vector2d& to)
+{
+    const Vector2d along = to - from;
+    std::vector<Interval> intervals;
+    if (along.isZero())
+        return intervals;
+    std::vector<double> cuts = {0, 1};
+    append_crossings(cuts, outline, from, along);
+    for (const Polygon& hole : holes)
+        append_crossings(cuts, hole, from, along);
+    std::sort(cuts.begin(), cuts.end());
+    for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
+        const Vector2d middle = from + (cuts[i] + cuts[i + 1]) / 2 * along;
+        if (covers(outline, middle) && std::none_of(holes.begin(), holes.end(), [&](const Polygon& hole) {
+                return covers(hole, middle);
+            }))
+            append(intervals, {cuts[i], cuts[i + 1]});
+    }
+    return intervals;
+}
+
+} // namespace
+
 bool covers(const Polygon& polygon, const Vector2d& place)
 {
     bool inside = false;
@@ -34,43 +84,7 @@ bool covers(const Polygon& polygon, const Vector2d& place)
     return inside;
 }
 
-// Appends an interval, or lengthens the last one where they touch.
-void append(std::vector<Interval>& intervals, const Interval& next)
-{
-    if (next.high - next.low <= rounding)
-        return;
-    if (!intervals.empty() && next.low <= intervals.back().high + rounding)
-        intervals.back().high = std::max(intervals.back().high, next.high);
-    else
-        intervals.push_back(next);
-}
-
-std::vector<Interval> inside(const Polygon& outline, const Vector2d& from, const Vector2d& to)
-{
-    const Vector2d along = to - from;
-    std::vector<double> cuts = {0, 1};
-    for (std::size_t i = 0, j = outline.empty() ? 0 : outline.size() - 1; i < outline.size(); j = i++) {
-        const Vector2d side = outline[i] - outline[j], reach = outline[j] - from;
-        const double turn = cross(along, side);
-        if (turn == 0)
-            continue;
-        const double on_side = cross(reach, along) / turn, on_line = cross(reach, side) / turn;
-        if (on_side >= -rounding && on_side <= 1 + rounding && on_line > 0 && on_line < 1)
-            cuts.push_back(on_line);
-    }
-    std::sort(cuts.begin(), cuts.end());
-    std::vector<Interval> intervals;
-    if (along.isZero())
-        return intervals;
-    for (std::size_t i = 0; i + 1 < cuts.size(); ++i)
-        if (covers(outline, from + (cuts[i] + cuts[i + 1]) / 2 * along))
-            append(intervals, {cuts[i], cuts[i + 1]});
-    return intervals;
-}
-
-} // namespace
-
-Pieces pieces_of(const Joints& joints, const Polygon& outline)
+Pieces pieces_of(const Joints& joints, const Polygon& outline, const std::vector<Polygon>& holes)
 {
     std::vector<std::vector<Interval>> traces(joints.from.size());
     for (std::size_t t = 0; t < joints.trace_joint.size(); ++t) {
@@ -108,7 +122,7 @@ Pieces pieces_of(const Joints& joints, const Polygon& outline)
             pieces.to.emplace_back(from + high * along);
             pieces.length.push_back(length);
         };
-        for (const Interval& stretch : inside(outline, from, joints.to[joint])) {
+        for (const Interval& stretch : inside(outline, holes, from, joints.to[joint])) {
             double done = stretch.low;
             for (const Interval& trace : open) {
                 const double low = std::max(trace.low, stretch.low),

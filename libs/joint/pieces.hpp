@@ -8,10 +8,14 @@
 namespace jointcreep
 {
 
-// The pieces of all joints inside the section's outline, in the joints' order and along each from `from` to
-// `to`. Traces that overlap are one piece. A line that leaves the section and comes back has pieces on both
-// sides of the gap. Ends and gaps shorter than 1e-9 of the line are rounding and are left out.
-Pieces pieces_of(const Joints& joints, const Polygon& outline);
+// Whether a place is inside a polygon; on its sides either may be said.
+bool covers(const Polygon& polygon, const Eigen::Vector2d& place);
+
+// The pieces of all joints inside the section, its outline without its holes, in the joints' order and along
+// each from `from` to `to`. Traces that overlap are one piece. A line that leaves the section and comes back,
+// or crosses a hole, has pieces on both sides of the gap. Ends and gaps shorter than 1e-9 of the line are
+// rounding and are left out.
+Pieces pieces_of(const Joints& joints, const Polygon& outline, const std::vector<Polygon>& holes);
 
 // Expected standard error of the persistence of lines with the lengths `line_length` [m], on which traces by
 // the law `length` alternate with negative exponential bridges: traces and bridges are an alternating renewal

@@ -1,5 +1,6 @@
 #include "joint/equivalent.hpp"
 
+#include "joint/bridged.hpp"
 #include "model/error.hpp"
 #include "model/units.hpp"
 
@@ -49,8 +50,9 @@ struct Section {
     }
 };
 
-// Two level lines of a set through a square of 10 m, each cut into edges at the given places; the third edge
-// list is the persistence by edge. One rock above, one below each line.
+// Level lines of a set through a square of 10 m, 3 m above its base and every 2 m from there, each cut into
+// edges at the given places; the third edge list is the persistence by edge. The first line has a block below
+// and one above it, of one rock.
 struct Lines {
     Scene scene;
     Network network;
@@ -105,6 +107,16 @@ struct Lines {
                 blocks.edge_joint_fraction.push_back(std::min(1.0, open / (to - from)));
             }
         }
+        blocks.block_area = {30, 70};
+        blocks.block_ring = {0, 1, 2};
+        blocks.ring_start = {0, 4, 8};
+        for (const double base : {0, 3})
+            for (const Eigen::Vector2d& corner :
+                 {Eigen::Vector2d(0, base), Eigen::Vector2d(10, base),
+                  Eigen::Vector2d(10, base == 0 ? 3 : 10), Eigen::Vector2d(0, base == 0 ? 3 : 10)}) {
+                blocks.ring_vertex.push_back(static_cast<Index>(blocks.vertex.size()));
+                blocks.vertex.push_back(corner);
+            }
     }
 
     EquivalentJoints averaged(AverageOver over, StiffnessRule stiffness = StiffnessRule::joint)
@@ -118,6 +130,13 @@ struct Lines {
 Lines two_lines()
 {
     return Lines({{{{0, 4}, {6, 7}}, {0, 4, 8, 10}}, {{{5, 8}}, {0, 10}}});
+}
+
+void expect_near(const std::vector<double>& found, const std::vector<double>& wanted)
+{
+    ASSERT_EQ(found.size(), wanted.size());
+    for (std::size_t i = 0; i < wanted.size(); ++i)
+        EXPECT_NEAR(found[i], wanted[i], 1e-12) << i;
 }
 
 std::string refusal(const Section& section)
@@ -265,16 +284,97 @@ TEST(AverageStrength, TakesThePersistenceOfEdgeLineOrSet)
 {
     Lines lines = two_lines();
     EXPECT_EQ(lines.averaged(AverageOver::edge).persistence, (std::vector<double>{1, .25, 0, .3}));
-    const auto expect_near = [](const std::vector<double>& found, const std::vector<double>& wanted) {
-        ASSERT_EQ(found.size(), wanted.size());
-        for (std::size_t i = 0; i < wanted.size(); ++i)
-            EXPECT_NEAR(found[i], wanted[i], 1e-12) << i;
-    };
     const EquivalentJoints by_line = lines.averaged(AverageOver::line);
     expect_near(by_line.persistence, {.5, .5, .5, .3});
     EXPECT_NEAR(by_line.cohesion[2], (.5 * .1 + .5 * 2) * MPa, 1e-6);
     EXPECT_NEAR(by_line.tensile_strength[3], (.3 * .05 + .7 * 3) * MPa, 1e-6);
     expect_near(lines.averaged(AverageOver::set).persistence, {.4, .4, .4, .4});
+}
+
+TEST(AverageStrength, TakesForRockWhereAJointWasCarriedOn)
+{
+    // The first joint is 6 m long and carried on by 4: its edges lie wholly, half and not at all on it.
+    Lines lines({{{{0, 4}}, {0, 4, 8, 10}}, {{{5, 8}}, {0, 10}}});
+    lines.network.joints.from[0].x() = 0;
+    lines.network.joints.to[0].x() = 6;
+    lines.network.blocks.fates.extended = {4, 0};
+    expect_near(lines.averaged(AverageOver::edge).persistence, {1, 0, 0, .3});
+    const EquivalentJoints by_line = lines.averaged(AverageOver::line);
+    expect_near(by_line.persistence, {4. / 6, 2. / 6, 0, .3});
+    EXPECT_NEAR(by_line.cohesion[1], (2. / 6 * .1 + 4. / 6 * 2) * MPa, 1e-6);
+    EXPECT_NEAR(by_line.cohesion[2], 2 * MPa, 1e-6);
+    expect_near(lines.averaged(AverageOver::set).persistence, {7. / 16, 3.5 / 16, 0, 7. / 16});
+    std::swap(lines.network.joints.from[0], lines.network.joints.to[0]);
+    expect_near(lines.averaged(AverageOver::line).persistence, {4. / 6, 2. / 6, 0, .3});
+
+    // At an end that was not carried on merging moves the edge, and takes the trace along.
+    lines.network.joints.to[0].x() = .1;
+    EXPECT_NEAR(lines.averaged(AverageOver::line).persistence[0], 3.9 / 5.9, 1e-12);
+    lines.network.blocks.fates.extended = {0, 0};
+    EXPECT_NEAR(lines.averaged(AverageOver::line).persistence[2], 3.9 / 5.9, 1e-12);
+
+    // All joint between its ends: over lines and edges alike.
+    Lines whole({{{{0, 6}}, {0, 4, 8, 10}}});
+    whole.network.joints.from[0].x() = 0;
+    whole.network.joints.to[0].x() = 6;
+    whole.network.blocks.fates.extended = {4};
+    for (const AverageOver over : {AverageOver::edge, AverageOver::line, AverageOver::set})
+        expect_near(whole.averaged(over).persistence, {1, .5, 0});
+}
+
+TEST(AverageStrength, LeavesOutWhatOfALineIsInAHole)
+{
+    Lines lines = two_lines();
+    lines.scene.holes = {{{4, 1}, {6, 1}, {6, 9}, {4, 9}}};
+    const EquivalentJoints joints = lines.averaged(AverageOver::line);
+    expect_near(joints.persistence, {5. / 8, 5. / 8, 5. / 8, 2. / 8});
+    EXPECT_NEAR(joints.sets.line_length[0], 16, 1e-9);
+}
+
+TEST(AverageStrength, WantsNoBridgesOfSegmentsAndDiscs)
+{
+    Lines lines = two_lines();
+    for (const SetKind kind : {SetKind::segments, SetKind::discs}) {
+        lines.scene.joint_sets[0].kind = kind;
+        lines.scene.joint_sets[0].persistence = 0; // of lines alone
+        const SetAverages sets = lines.averaged(AverageOver::edge).sets;
+        EXPECT_EQ(sets.target_persistence[0], 1);
+        EXPECT_EQ(sets.persistence_error[0], 0);
+    }
+}
+
+TEST(AverageStrength, SpacesStaggeredLinesByTheBlocksWhereTheSetMayBe)
+{
+    // The fourth edge, of 10 m by 20 m of lines, k = .4, L = 3.25 m; stiffness of the spacing area / 20 m.
+    const auto expect_area = [](Lines& lines, double area) {
+        const EquivalentJoints joints = lines.averaged(AverageOver::set, StiffnessRule::staggered);
+        const Bridging wanted = bridging(StiffnessRule::staggered, {.4, 3.25, area / 20, 30 * GPa / .96},
+                                         6.9e8, Direction::normal);
+        EXPECT_NEAR(joints.normal_stiffness[3] / (wanted.bridges + wanted.share * 6.9e8), 1, 1e-9) << area;
+    };
+    Lines lines = two_lines();
+    expect_area(lines, 100);
+    lines.scene.outline = {{0, 0}, {10, 0}, {10, 20}, {0, 20}}; // with a hole: blocks are where they were
+    lines.scene.holes = {{{1, 11}, {9, 11}, {9, 19}, {1, 19}}};
+    expect_area(lines, 100);
+    JointSet& set = lines.scene.joint_sets[0];
+    set.region = {{-50, -50}, {60, -50}, {60, 4}, {-50, 4}}; // goes past the section; the upper block's
+    expect_area(lines, 30);                                  // centroid is above it
+    set.region = {{-50, 2}, {60, 2}, {60, 50}, {-50, 50}};
+    expect_area(lines, 70);
+    set.region = {{0, 2}, {10, 2}, {10, 6}, {0, 6}}; // without a block's centroid
+    expect_area(lines, 40);
+    set.region.reset();
+    lines.scene.rocks[1].youngs_modulus = 30 * GPa;
+    lines.network.blocks.block_rock = {0, 1};
+    set.rocks = {"soft"};
+    expect_area(lines, 70);
+    set.rocks = {"rock"};
+    expect_area(lines, 30);
+    set.rocks = {"soft", "rock"};
+    expect_area(lines, 100);
+    set.rocks = {"eroded"}; // without a block
+    expect_area(lines, 100);
 }
 
 TEST(AverageStrength, ReportsASetBesideJointAndBridges)

@@ -63,7 +63,7 @@ void expect_pieces(const Pieces& pieces, const std::vector<Trace>& wanted,
 TEST(Pieces, AlternateInsideTheSection)
 {
     // The first trace comes in from outside, the last one is outside.
-    const Pieces pieces = pieces_of(level({5}, {{0, 6, 8}, {0, -1, 3}, {0, 10.5, 11}}), square);
+    const Pieces pieces = pieces_of(level({5}, {{0, 6, 8}, {0, -1, 3}, {0, 10.5, 11}}), square, {});
     expect_pieces(pieces, {{0, 0, 3}, {0, 3, 6}, {0, 6, 8}, {0, 8, 10}}, {0, 1, 0, 1});
     EXPECT_NEAR(pieces.line_length[0], 10, 1e-9);
     EXPECT_NEAR(pieces.line_persistence[0], .5, 1e-9);
@@ -71,7 +71,7 @@ TEST(Pieces, AlternateInsideTheSection)
 
 TEST(Pieces, AreInterruptedWhereTheLineIsOutside)
 {
-    const Pieces pieces = pieces_of(level({7, 2, 20}, {{0, 1, 9}, {1, -5, 15}}), notched);
+    const Pieces pieces = pieces_of(level({7, 2, 20}, {{0, 1, 9}, {1, -5, 15}}), notched, {});
     expect_pieces(pieces, {{0, 0, 1}, {0, 1, 4}, {0, 6, 9}, {0, 9, 10}, {1, 0, 10}}, {1, 0, 0, 1, 0});
     EXPECT_NEAR(pieces.line_length[0], 8, 1e-9);
     EXPECT_NEAR(pieces.line_persistence[0], 6. / 8, 1e-9);
@@ -80,15 +80,25 @@ TEST(Pieces, AreInterruptedWhereTheLineIsOutside)
     EXPECT_EQ(pieces.line_persistence[2], 0);
 }
 
+TEST(Pieces, AreInterruptedByHoles)
+{
+    const std::vector<Polygon> holes = {{{3, 4}, {5, 4}, {5, 8}, {3, 8}}, {{8, 4}, {9, 4}, {9, 8}, {8, 8}}};
+    const Pieces pieces = pieces_of(level({5, 2}, {{0, 1, 6}}), square, holes);
+    expect_pieces(pieces, {{0, 0, 1}, {0, 1, 3}, {0, 5, 6}, {0, 6, 8}, {0, 9, 10}, {1, 0, 10}},
+                  {1, 0, 0, 1, 1, 1});
+    EXPECT_NEAR(pieces.line_length[0], 7, 1e-9);
+    EXPECT_NEAR(pieces.line_persistence[0], 3. / 7, 1e-9);
+}
+
 TEST(Pieces, OfTracesThatOverlapAreOne)
 {
-    const Pieces pieces = pieces_of(level({5}, {{0, 1, 4}, {0, 3, 6}, {0, 6, 7}, {0, 6.2, 6.5}}), square);
+    const Pieces pieces = pieces_of(level({5}, {{0, 1, 4}, {0, 3, 6}, {0, 6, 7}, {0, 6.2, 6.5}}), square, {});
     expect_pieces(pieces, {{0, 0, 1}, {0, 1, 7}, {0, 7, 10}}, {1, 0, 1});
 }
 
 TEST(Pieces, OfALineWithoutTracesAreOneBridge)
 {
-    const Pieces pieces = pieces_of(level({5}, {}), square);
+    const Pieces pieces = pieces_of(level({5}, {}), square, {});
     expect_pieces(pieces, {{0, 0, 10}}, {1});
     EXPECT_EQ(pieces.line_persistence[0], 0);
 }
