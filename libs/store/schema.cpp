@@ -377,7 +377,7 @@ std::vector<Field> fields_of(SetAverages& sets)
     // clang-format off
     return {
         {"/sets/target_persistence", &sets.target_persistence, set, "1", fraction,
-         "Persistence that the scene asks for; 1 for a single joint."},
+         "Persistence that the scene asks for; 1 for all but sets of lines."},
         {"/sets/line_persistence", &sets.line_persistence, set, "1", fraction,
          "Fraction of the set's lines inside the section that is joint."},
         {"/sets/persistence_error", &sets.persistence_error, set, "1", natural,
