@@ -44,8 +44,9 @@ Bridging bridging(StiffnessRule rule, const BridgedLine& line, double stiffness,
 // K_eq L / (k E') of staggered lines: of parallel lines the spacing S apart, each shifted by b against its
 // neighbours; `stiffness` is K_j L / (k E'), `spacing` S k / L. Their traces open as
 //     D(x) = sum over j of a_j sqrt(1 - xi^2) U_2j(xi) ,     xi = 2 x / L ,
-// with Chebyshev's polynomials U of the second kind and the a_j of least energy (Galerkin's method). A wave of
-// the opening, of amplitude D and wave number q, puts -(E' / 4) q D (1 +- q y) exp(-q y) on the plane y away,
+// with Chebyshev's polynomials U of the second kind and the a_j of least energy (Galerkin's method). A wave
+// of the opening, of amplitude D and wave number q, puts -(E' / 4) q D (1 +- q y) exp(-q y) on the plane y
+// away,
 // + for the normal and - for the shear traction; the sum over all lines is closed. Eight terms are exact to
 // 1e-3 where `spacing` is at least 1/8.
 double staggered_stiffness(double persistence, double spacing, double stiffness, Direction direction);
