@@ -7,6 +7,7 @@
 #include "blocks/merge.hpp"
 #include "blocks/predicates.hpp"
 #include "model/error.hpp"
+#include "model/polygon.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -21,11 +22,6 @@ namespace
 {
 
 using Eigen::Vector2d;
-
-double cross(const Vector2d& a, const Vector2d& b)
-{
-    return a.x() * b.y() - a.y() * b.x();
-}
 
 double distance_to(const Vector2d& a, const Vector2d& b, const Vector2d& p)
 {

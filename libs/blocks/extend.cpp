@@ -1,5 +1,7 @@
 #include "blocks/extend.hpp"
 
+#include "model/polygon.hpp"
+
 #include <cmath>
 #include <limits>
 
@@ -10,11 +12,6 @@ namespace
 {
 
 using Eigen::Vector2d;
-
-double cross(const Vector2d& a, const Vector2d& b)
-{
-    return a.x() * b.y() - a.y() * b.x();
-}
 
 constexpr double none = std::numeric_limits<double>::infinity();
 

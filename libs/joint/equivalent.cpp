@@ -3,6 +3,7 @@
 #include "joint/bridged.hpp"
 #include "joint/pieces.hpp"
 #include "model/error.hpp"
+#include "model/polygon.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -96,16 +97,6 @@ double edge_length(const Blocks& blocks, std::size_t edge)
     return (blocks.vertex[blocks.edge_vertex[edge][0]] - blocks.vertex[blocks.edge_vertex[edge][1]]).norm();
 }
 
-double area_of(const Polygon& polygon)
-{
-    double twice = 0;
-    for (std::size_t i = 0, j = polygon.empty() ? 0 : polygon.size() - 1; i < polygon.size(); j = i++) {
-        const Eigen::Vector2d a = polygon[j] - polygon[0], b = polygon[i] - polygon[0];
-        twice += a.x() * b.y() - a.y() * b.x();
-    }
-    return std::abs(twice) / 2;
-}
-
 // Of a block's outer ring.
 Eigen::Vector2d centroid_of(const Blocks& blocks, std::size_t block)
 {
@@ -117,7 +108,7 @@ Eigen::Vector2d centroid_of(const Blocks& blocks, std::size_t block)
     for (Index i = begin, j = end - 1; i < end; j = i++) {
         const Eigen::Vector2d a = blocks.vertex[blocks.ring_vertex[j]] - origin,
                               b = blocks.vertex[blocks.ring_vertex[i]] - origin;
-        const double turn = a.x() * b.y() - a.y() * b.x();
+        const double turn = cross(a, b);
         twice += turn;
         moment += turn * (a + b) / 3;
     }

@@ -1,5 +1,7 @@
 #include "joint/pieces.hpp"
 
+#include "model/polygon.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -12,15 +14,6 @@ namespace
 using Eigen::Vector2d;
 
 constexpr double rounding = 1e-9; // of a line's length
-
-struct Interval {
-    double low, high; // fractions of a line
-};
-
-double cross(const Vector2d& a, const Vector2d& b)
-{
-    return a.x() * b.y() - a.y() * b.x();
-}
 
 // Appends an interval, or lengthens the last one where they touch.
 void append(std::vector<Interval>& intervals, const Interval& next)
@@ -48,6 +41,7 @@ void append_crossings(std::vector<double>& cuts, const Polygon& polygon, const V
     }
 }
 
+// By fractions of the line.
 std::vector<Interval> inside(const Polygon& outline, const std::vector<Polygon>& holes, const Vector2d& from,
                              const Vector2d& to)
 {
@@ -71,18 +65,6 @@ std::vector<Interval> inside(const Polygon& outline, const std::vector<Polygon>&
 }
 
 } // namespace
-
-bool covers(const Polygon& polygon, const Vector2d& place)
-{
-    bool inside = false;
-    for (std::size_t i = 0, j = polygon.empty() ? 0 : polygon.size() - 1; i < polygon.size(); j = i++) {
-        const Vector2d &a = polygon[i], &b = polygon[j];
-        if ((a.y() > place.y()) != (b.y() > place.y()) &&
-            place.x() < a.x() + (place.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x()))
-            inside = !inside;
-    }
-    return inside;
-}
 
 Pieces pieces_of(const Joints& joints, const Polygon& outline, const std::vector<Polygon>& holes)
 {

@@ -8,9 +8,6 @@
 namespace jointcreep
 {
 
-// Whether a place is inside a polygon; on its sides either may be said.
-bool covers(const Polygon& polygon, const Eigen::Vector2d& place);
-
 // The pieces of all joints inside the section, its outline without its holes, in the joints' order and along
 // each from `from` to `to`. Traces that overlap are one piece. A line that leaves the section and comes back,
 // or crosses a hole, has pieces on both sides of the gap. Ends and gaps shorter than 1e-9 of the line are

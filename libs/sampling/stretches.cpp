@@ -73,40 +73,10 @@ std::vector<Interval> inside_rocks(const JointSet& set, const Scene& scene, cons
 
 } // namespace
 
-Interval extent(const Polygon& polygon, const Vector2d& direction)
-{
-    Interval extent{polygon[0].dot(direction), polygon[0].dot(direction)};
-    for (const Vector2d& corner : polygon) {
-        extent.low = std::min(extent.low, corner.dot(direction));
-        extent.high = std::max(extent.high, corner.dot(direction));
-    }
-    return extent;
-}
-
 double overshoot_of(const Polygon& polygon)
 {
     const Interval x = extent(polygon, Vector2d::UnitX()), y = extent(polygon, Vector2d::UnitY());
     return 1e-6 * std::hypot(x.high - x.low, y.high - y.low);
-}
-
-std::vector<Interval> inside(const Polygon& polygon, const Line& line)
-{
-    const auto distance = [&](const Vector2d& corner) {
-        const Vector2d offset = corner - line.point;
-        return line.direction.x() * offset.y() - line.direction.y() * offset.x();
-    };
-    std::vector<double> crossings;
-    for (std::size_t i = 0; i < polygon.size(); ++i) {
-        const Vector2d &from = polygon[i], &to = polygon[(i + 1) % polygon.size()];
-        const double a = distance(from), b = distance(to);
-        if ((a < 0) != (b < 0))
-            crossings.push_back((from + a / (a - b) * (to - from) - line.point).dot(line.direction));
-    }
-    std::sort(crossings.begin(), crossings.end());
-    std::vector<Interval> stretches;
-    for (std::size_t i = 0; i + 1 < crossings.size(); i += 2)
-        stretches.push_back({crossings[i], crossings[i + 1]});
-    return stretches;
 }
 
 std::vector<Interval> where_set_exists(const JointSet& set, const Scene& scene, const Line& line)

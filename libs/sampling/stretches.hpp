@@ -2,32 +2,15 @@
 
 #pragma once
 
-#include "model/scene.hpp"
+#include "model/polygon.hpp"
 
 #include <vector>
 
 namespace jointcreep
 {
 
-// A stretch of a line, by distance from the line's point, or of an axis through the origin [m].
-struct Interval {
-    double low, high;
-};
-
-struct Line {
-    Eigen::Vector2d point, direction; // unit
-    Eigen::Vector2d at(double distance) const { return point + distance * direction; }
-};
-
-// Of a polygon along a unit vector.
-Interval extent(const Polygon& polygon, const Eigen::Vector2d& direction);
-
 // By which joints go past where they are to end: 1e-6 of the polygon's size [m].
 double overshoot_of(const Polygon& polygon);
-
-// The stretches of a line inside a polygon. A corner on the line counts as left of it, so that crossings pair
-// up.
-std::vector<Interval> inside(const Polygon& polygon, const Line& line);
 
 // The stretches of a line in a set's region or rocks, each with its overshoot; in the section, if it has
 // neither, without.

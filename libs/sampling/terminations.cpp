@@ -33,11 +33,6 @@ Box box_of(const Vector2d& a, const Vector2d& b)
     return {Point(low.x(), low.y()), Point(high.x(), high.y())};
 }
 
-double cross(const Vector2d& a, const Vector2d& b)
-{
-    return a.x() * b.y() - a.y() * b.x();
-}
-
 } // namespace
 
 struct TraceIndex::Tree {

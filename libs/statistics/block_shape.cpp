@@ -1,5 +1,7 @@
 #include "statistics/block_shape.hpp"
 
+#include "model/polygon.hpp"
+
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
@@ -17,11 +19,6 @@ namespace
 {
 
 using Ring = std::vector<Vector2d>;
-
-double cross(const Vector2d& a, const Vector2d& b)
-{
-    return a.x() * b.y() - a.y() * b.x();
-}
 
 // Area and its moments about a point, holes negative as they run clockwise.
 struct Area {

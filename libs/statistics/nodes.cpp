@@ -1,5 +1,7 @@
 #include "statistics/nodes.hpp"
 
+#include "model/polygon.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -10,22 +12,6 @@ using Eigen::Vector2d;
 
 namespace
 {
-
-double cross(const Vector2d& a, const Vector2d& b)
-{
-    return a.x() * b.y() - a.y() * b.x();
-}
-
-bool covers(const Polygon& polygon, const Vector2d& place)
-{
-    bool is_inside = false;
-    for (std::size_t i = 0; i < polygon.size(); ++i) {
-        const Vector2d &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
-        if ((a.y() > place.y()) != (b.y() > place.y()) && (cross(b - a, place - a) > 0) == (b.y() > a.y()))
-            is_inside = !is_inside;
-    }
-    return is_inside;
-}
 
 struct Segment {
     Vector2d from, to;

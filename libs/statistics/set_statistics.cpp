@@ -1,5 +1,6 @@
 #include "statistics/set_statistics.hpp"
 
+#include "model/polygon.hpp"
 #include "sampling/density.hpp"
 #include "sampling/joint_sets.hpp"
 #include "sampling/orientations.hpp"
@@ -25,11 +26,6 @@ namespace
 
 constexpr double pi = std::numbers::pi;
 constexpr double rounding = 1e-6; // of constants, relative or in radians
-
-double cross(const Vector2d& a, const Vector2d& b)
-{
-    return a.x() * b.y() - a.y() * b.x();
-}
 
 // The same line's angle in (-pi/2, pi/2].
 double as_line(double angle)
@@ -87,18 +83,18 @@ Window window_of(const Scene& scene, const JointSet& set)
 }
 
 struct Scanline {
-    double offset; // along the mean trace
-    Range reach;   // along the mean normal
+    double offset;  // along the mean trace
+    Interval reach; // along the mean normal
 };
 
 Scanline scanline_of(const Window& window, const MeanTrace& mean)
 {
-    const Range width = window.extent(mean.along);
+    const Interval width = window.extent(mean.along);
     Scanline best{0, {0, 0}};
     const int tries = 32;
     for (int i = 0; i < tries; ++i) {
         const double offset = width.low + (i + 0.5) / tries * (width.high - width.low);
-        for (const Range& stretch : window.stretches({offset * mean.along, mean.across()}))
+        for (const Interval& stretch : window.stretches({offset * mean.along, mean.across()}))
             if (stretch.high - stretch.low > best.reach.high - best.reach.low)
                 best = {offset, stretch};
     }
@@ -135,7 +131,7 @@ Seen look_at(const JointSet& set, const Window& window, const MeanTrace& mean, c
     Seen seen;
     const Scanline scanline = scanline_of(window, mean);
     seen.scanline = scanline.reach.high - scanline.reach.low;
-    const Range extent = window.extent(mean.across());
+    const Interval extent = window.extent(mean.across());
     std::map<Index, Tally> lines;
     std::map<Index, double> places;
     for (std::size_t j = 0; j < joints.set.size(); ++j) {
@@ -172,7 +168,7 @@ Seen look_at(const JointSet& set, const Window& window, const MeanTrace& mean, c
         }
 
         Tally& tally = lines[number];
-        for (const Range& stretch : window.stretches({from, direction})) {
+        for (const Interval& stretch : window.stretches({from, direction})) {
             tally.length +=
                 std::max(0.0, std::min(stretch.high, (to - from).norm()) - std::max(stretch.low, 0.0));
             for (const Trace& trace : open) {
@@ -401,7 +397,7 @@ double blur_of(const std::vector<Crossing>& crossings, const Renewal& renewal, d
 }
 
 // Variance of the number of lines that the window meets, over its mean.
-double dispersion_of(const JointSet& set, const MeanTrace& mean, const Range& extent, const Seen& seen)
+double dispersion_of(const JointSet& set, const MeanTrace& mean, const Interval& extent, const Seen& seen)
 {
     const Moments moments = positive_moments(set.spacing);
     Renewal lines{moments.mean / mean.normal_part, moments.squared_variation, moments.third};
@@ -728,7 +724,7 @@ void add_traces(Statistics& statistics, const Scene& scene, const JointSet& set,
         const Vector2d from = joints.from[j], to = joints.to[j], direction = (to - from).normalized();
         const double length = (to - from).norm();
         const Index number = line_of(joints.number[j]);
-        for (const Range& stretch : window.stretches({from, direction}))
+        for (const Interval& stretch : window.stretches({from, direction}))
             inside[number] += std::max(0.0, std::min(stretch.high, length) - std::max(stretch.low, 0.0));
         if (window.contains(joints.point[j]) && !has_point[number]) {
             has_point[number] = true;

@@ -64,7 +64,7 @@ std::optional<Expected> expected_of(const Scene& scene)
                             static_cast<double>(lines.turns.size());
         }
         const Renewal renewal{1 / lines.frequency, spacing.squared_variation, spacing.third};
-        const Range extent = window.extent(mean.across());
+        const Interval extent = window.extent(mean.across());
         lines.dispersion = count_variance(extent.high - extent.low, renewal) /
                            ((extent.high - extent.low) * lines.frequency);
         expected.pieces += lines.pieces;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace jointcreep::statistics
 {
@@ -11,34 +12,12 @@ using Eigen::Vector2d;
 namespace
 {
 
-double cross(const Vector2d& a, const Vector2d& b)
+std::vector<Interval> common(const std::vector<Interval>& a, const std::vector<Interval>& b)
 {
-    return a.x() * b.y() - a.y() * b.x();
-}
-
-// A corner on the line counts as left of it, so that crossings pair up.
-std::vector<Range> inside(const Polygon& polygon, const Line& line)
-{
-    std::vector<double> crossings;
-    for (std::size_t i = 0; i < polygon.size(); ++i) {
-        const Vector2d &from = polygon[i], &to = polygon[(i + 1) % polygon.size()];
-        const double a = cross(line.direction, from - line.point), b = cross(line.direction, to - line.point);
-        if ((a < 0) != (b < 0))
-            crossings.push_back((from + a / (a - b) * (to - from) - line.point).dot(line.direction));
-    }
-    std::sort(crossings.begin(), crossings.end());
-    std::vector<Range> stretches;
-    for (std::size_t i = 0; i + 1 < crossings.size(); i += 2)
-        stretches.push_back({crossings[i], crossings[i + 1]});
-    return stretches;
-}
-
-std::vector<Range> common(const std::vector<Range>& a, const std::vector<Range>& b)
-{
-    std::vector<Range> both;
-    for (const Range& x : a)
-        for (const Range& y : b)
-            if (const Range part{std::max(x.low, y.low), std::min(x.high, y.high)}; part.low < part.high)
+    std::vector<Interval> both;
+    for (const Interval& x : a)
+        for (const Interval& y : b)
+            if (const Interval part{std::max(x.low, y.low), std::min(x.high, y.high)}; part.low < part.high)
                 both.push_back(part);
     return both;
 }
@@ -54,35 +33,26 @@ double distance_to_side(const Vector2d& place, const Vector2d& from, const Vecto
 double depth(const Polygon& polygon, const Vector2d& place)
 {
     double nearest = std::numeric_limits<double>::infinity();
-    bool is_inside = false;
-    for (std::size_t i = 0; i < polygon.size(); ++i) {
-        const Vector2d &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
-        nearest = std::min(nearest, distance_to_side(place, a, b));
-        if ((a.y() > place.y()) != (b.y() > place.y()) && (cross(b - a, place - a) > 0) == (b.y() > a.y()))
-            is_inside = !is_inside;
-    }
-    return is_inside ? nearest : -nearest;
+    for (std::size_t i = 0; i < polygon.size(); ++i)
+        nearest = std::min(nearest, distance_to_side(place, polygon[i], polygon[(i + 1) % polygon.size()]));
+    return covers(polygon, place) ? nearest : -nearest;
 }
 
 } // namespace
 
-std::vector<Range> Window::stretches(const Line& line) const
+std::vector<Interval> Window::stretches(const Line& line) const
 {
-    std::vector<Range> stretches = inside(polygons_[0], line);
+    std::vector<Interval> stretches = inside(polygons_[0], line);
     for (std::size_t i = 1; i < polygons_.size(); ++i)
         stretches = common(stretches, inside(polygons_[i], line));
     return stretches;
 }
 
-Range Window::extent(const Vector2d& direction) const
+Interval Window::extent(const Vector2d& direction) const
 {
-    Range extent{-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
+    Interval extent{-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
     for (const Polygon& polygon : polygons_) {
-        Range of_polygon{polygon[0].dot(direction), polygon[0].dot(direction)};
-        for (const Vector2d& corner : polygon) {
-            of_polygon.low = std::min(of_polygon.low, corner.dot(direction));
-            of_polygon.high = std::max(of_polygon.high, corner.dot(direction));
-        }
+        const Interval of_polygon = jointcreep::extent(polygon, direction);
         extent = {std::max(extent.low, of_polygon.low), std::min(extent.high, of_polygon.high)};
     }
     return extent;
@@ -92,18 +62,13 @@ Range Window::extent(const Vector2d& direction) const
 // two, where it only serves for densities.
 double Window::area() const
 {
-    if (polygons_.size() == 1) {
-        double twice = 0;
-        const Polygon& polygon = polygons_[0];
-        for (std::size_t i = 1; i + 1 < polygon.size(); ++i)
-            twice += cross(polygon[i] - polygon[0], polygon[i + 1] - polygon[0]);
-        return std::abs(twice) / 2;
-    }
-    const Range y = extent(Vector2d::UnitY());
+    if (polygons_.size() == 1)
+        return area_of(polygons_[0]);
+    const Interval y = extent(Vector2d::UnitY());
     const int levels = 2000;
     double area = 0;
     for (int i = 0; i < levels; ++i)
-        for (const Range& stretch :
+        for (const Interval& stretch :
              stretches({{0, y.low + (i + 0.5) / levels * (y.high - y.low)}, Vector2d::UnitX()}))
             area += (stretch.high - stretch.low) * (y.high - y.low) / levels;
     return area;
@@ -126,7 +91,7 @@ double Window::stretches_per_density(const Vector2d& direction) const
 
 Circle Window::circle() const
 {
-    const Range x = extent(Vector2d::UnitX()), y = extent(Vector2d::UnitY());
+    const Interval x = extent(Vector2d::UnitX()), y = extent(Vector2d::UnitY());
     Vector2d centre((x.low + x.high) / 2, (y.low + y.high) / 2),
         reach = Vector2d(x.high - x.low, y.high - y.low) / 2;
     Circle best{centre, 0};

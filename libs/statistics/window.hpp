@@ -3,8 +3,7 @@
 
 #pragma once
 
-#include "model/scene.hpp"
-#include "statistics/distribution.hpp"
+#include "model/polygon.hpp"
 
 #include <Eigen/Core>
 
@@ -12,11 +11,6 @@
 
 namespace jointcreep::statistics
 {
-
-struct Line {
-    Eigen::Vector2d point, direction; // unit
-    Eigen::Vector2d at(double distance) const { return point + distance * direction; }
-};
 
 struct Circle {
     Eigen::Vector2d centre;
@@ -30,10 +24,10 @@ public:
     Window(const Polygon& outline, const Polygon& region) : polygons_{outline, region} {}
 
     // The stretches of a line inside, by distance from its point, in order [m].
-    std::vector<Range> stretches(const Line& line) const;
+    std::vector<Interval> stretches(const Line& line) const;
 
     // From the least to the largest of its corners, in a direction [m].
-    Range extent(const Eigen::Vector2d& direction) const;
+    Interval extent(const Eigen::Vector2d& direction) const;
 
     double area() const; // [m2]
     bool contains(const Eigen::Vector2d& place) const;
