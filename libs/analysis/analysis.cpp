@@ -221,6 +221,9 @@ bool Analysis::step_to(double target, bool is_loaded)
     const std::optional<creep::Creep> creep_at_start = creep_;
     if (closing_)
         closing_->start(rock_);
+    const std::optional<sensitivity::Sensitivity> sensitivity_at_start = sensitivity_;
+    if (sensitivity_)
+        sensitivity_->start_step(rock_);
     double end = target;
     int halvings = engine_ == Engine::explicit_engine ? most_halvings : 0;
     for (;;) {
@@ -235,6 +238,8 @@ bool Analysis::step_to(double target, bool is_loaded)
         } else if (!settles_nearby(guess)) {
             ++halvings;
             end = halvings < most_halvings ? now_ + (end - now_) / 2 : target;
+            if (sensitivity_)
+                sensitivity_->shorten(0.5);
             continue;
         }
         const double longest =
@@ -242,19 +247,19 @@ bool Analysis::step_to(double target, bool is_loaded)
         if (longest >= end - now_ || longest < 1e-9 * (target - now_))
             break;
         --cuts_left_;
+        if (sensitivity_)
+            sensitivity_->cut(closing_->last_cut(), *creep_, end - now_, rock_, implicit_, end);
         go_back(rock_, start);
         end = now_ + longest;
     }
-    std::optional<sensitivity::Sensitivity> sensitivity_at_start;
     if (sensitivity_) {
-        sensitivity_at_start = sensitivity_;
         if (creeps())
             sensitivity_->creep_step(*creep_, end - now_, rock_, implicit_, end);
         else
             sensitivity_->settle(rock_, implicit_, end);
     }
     if (creeps() && !step_->stands(end - now_, creep_->end(rock_))) {
-        sensitivity_ = std::move(sensitivity_at_start);
+        sensitivity_ = sensitivity_at_start;
         go_back(rock_, start);
         creep_ = creep_at_start;
         loading_.apply(rock_, now_);
@@ -262,6 +267,8 @@ bool Analysis::step_to(double target, bool is_loaded)
     }
     if (closing_)
         closing_->finish(rock_, end - now_);
+    if (closing_ && sensitivity_)
+        sensitivity_->finish_step(*closing_, end - now_, end == target, rock_);
     last_step_ = end - now_;
     last_move_ = rock_.displacement;
     for (std::size_t g = 0; g < last_move_.size(); ++g)
@@ -321,6 +328,8 @@ void Analysis::start_afresh()
         step_->start_afresh();
     if (closing_)
         closing_->start_afresh();
+    if (sensitivity_)
+        sensitivity_->start_afresh();
 }
 
 // Equilibrium by factorisation, if the engine is not the explicit one; false if there is none nearby.

@@ -99,7 +99,7 @@ struct Part {
 };
 
 template <class Number>
-Part<Number> part_of(Number stiffness, Number viscosity, Number rate, CreepScheme scheme, double duration)
+Part<Number> part_of(Number stiffness, Number viscosity, Number rate, CreepScheme scheme, Number duration)
 {
     Number x = stiffness / viscosity * duration, flow = duration / viscosity;
     if (x > for_ever) {
@@ -155,7 +155,8 @@ Step step_of(const Chain& chain, CreepScheme scheme, double duration)
     return step;
 }
 
-Step change_of_step(const Chain& chain, const Chain& change, CreepScheme scheme, double duration)
+Step change_of_step(const Chain& chain, const Chain& change, CreepScheme scheme, double duration,
+                    double duration_change)
 {
     const Changing spring(chain.spring, change.spring);
     std::vector<std::pair<Changing, Changing>> units;
@@ -166,7 +167,7 @@ Step change_of_step(const Chain& chain, const Chain& change, CreepScheme scheme,
     Step step{{}, 0, 0, 0};
     Changing compliance = 0;
     for (const auto& [stiffness, viscosity] : units) {
-        const auto part = part_of(stiffness, viscosity, rate, scheme, duration);
+        const auto part = part_of(stiffness, viscosity, rate, scheme, Changing(duration, duration_change));
         step.units.push_back({part.decay.change, part.first.change, part.last.change});
         compliance = compliance + part.last;
     }

@@ -59,12 +59,16 @@ Sensitivity::Sensitivity(std::vector<Parameter> parameters, const Scene& scene, 
                       .slip = std::vector<double>(n, 0.0),
                       .initial_stress = no_zones,
                       .stress = no_zones,
+                      .shear_modulus = std::vector<double>(zones, 0.0),
                       .reference = {},
                       .before = {},
                       .crept = {},
                       .reference_stress = {},
                       .before_stress = {},
-                      .crept_strain = {}};
+                      .crept_strain = {},
+                      .opening_before = {},
+                      .opening = std::vector<double>(n, 0.0),
+                      .rate = std::vector<double>(n, 0.0)};
         if (parameter == Parameter::joint_stiffness)
             for (std::size_t c = 0; c < n; ++c)
                 change.stiffness[c] = {contacts.law[c].k_n, contacts.law[c].k_s};
@@ -122,18 +126,23 @@ ResponseChange Sensitivity::response(const Assembly& assembly, const Change& cha
 Vector3d Sensitivity::stress(const Assembly& assembly, const Change& change, std::size_t z,
                              bool with_displacement) const
 {
-    if (!with_displacement)
-        return change.initial_stress[z];
-    double exx = 0, eyy = 0, gxy = 0;
-    for (int i = 0; i < 3; ++i) {
-        const Vector2d &u = change.displacement[assembly.zones.gridpoint[z][i]],
-                       &gradient = assembly.zones.gradient[z][i];
-        exx += gradient.x() * u.x();
-        eyy += gradient.y() * u.y();
-        gxy += gradient.y() * u.x() + gradient.x() * u.y();
-    }
-    const Vector3d& c = assembly.zones.stiffness[z];
-    return change.initial_stress[z] + Vector3d(c[0] * exx + c[1] * eyy, c[1] * exx + c[0] * eyy, c[2] * gxy);
+    const auto stress_of = [&](const std::vector<Vector2d>& displacement, const Vector3d& c) {
+        double exx = 0, eyy = 0, gxy = 0;
+        for (int i = 0; i < 3; ++i) {
+            const Vector2d &u = displacement[assembly.zones.gridpoint[z][i]],
+                           &gradient = assembly.zones.gradient[z][i];
+            exx += gradient.x() * u.x();
+            eyy += gradient.y() * u.y();
+            gxy += gradient.y() * u.x() + gradient.x() * u.y();
+        }
+        return Vector3d(c[0] * exx + c[1] * eyy, c[1] * exx + c[0] * eyy, c[2] * gxy);
+    };
+    Vector3d sum = change.initial_stress[z];
+    if (with_displacement)
+        sum += stress_of(change.displacement, assembly.zones.stiffness[z]);
+    if (change.shear_modulus[z] != 0) // the bulk modulus stays
+        sum += stress_of(assembly.displacement, change.shear_modulus[z] * Vector3d(4. / 3, -2. / 3, 1));
+    return sum;
 }
 
 std::vector<Vector2d> Sensitivity::forces(const Assembly& assembly, const Change& change,
@@ -257,15 +266,22 @@ void Sensitivity::creep_step(const creep::Creep& creep, double duration, const A
     std::vector<creep::Step> steps;
     for (const creep::Chain& chain : creep.chains())
         steps.push_back(creep::step_of(chain, creep.scheme(), duration));
-    std::vector<std::vector<creep::Step>> step_changes; // [parameter, chain]
+    // [parameter, chain]; those of rock change by the duration only.
+    std::vector<std::vector<creep::Step>> step_changes, rock_changes;
     std::vector<std::vector<creep::Chain>> chain_changes;
-    for (const Parameter parameter : parameters_) {
+    for (std::size_t p = 0; p < parameters_.size(); ++p) {
+        const double by = changes_[p].duration;
         chain_changes.emplace_back();
         step_changes.emplace_back();
+        rock_changes.emplace_back();
         for (const creep::Chain& chain : creep.chains()) {
-            chain_changes.back().push_back(change_of(chain, parameter));
-            step_changes.back().push_back(
-                creep::change_of_step(chain, chain_changes.back().back(), creep.scheme(), duration));
+            const creep::Chain change = change_of(chain, parameters_[p]);
+            creep::Chain none = change;
+            none.spring = 0;
+            std::fill(none.units.begin(), none.units.end(), creep::Unit{0, 0});
+            chain_changes[p].push_back(change);
+            step_changes[p].push_back(creep::change_of_step(chain, change, creep.scheme(), duration, by));
+            rock_changes[p].push_back(creep::change_of_step(chain, none, creep.scheme(), duration, by));
         }
     }
     const auto is_there = [&](const creep::Creep::Spring& spring) {
@@ -298,7 +314,7 @@ void Sensitivity::creep_step(const creep::Creep& creep, double duration, const A
             const creep::Creep::Shear& shear = shears[s];
             if (!assembly.zones.is_present[shear.zone])
                 continue;
-            const creep::Step& step = steps[shear.chain];
+            const creep::Step &step = steps[shear.chain], &by = rock_changes[p][shear.chain];
             Vector3d crept(0, 0, 0), offset(0, 0, 0);
             for (std::size_t u = 0; u < step.units.size(); ++u)
                 crept += change.crept_strain[shear.first_unit + u];
@@ -307,12 +323,18 @@ void Sensitivity::creep_step(const creep::Creep& creep, double duration, const A
                                          change.stress[shear.zone] - change.reference_stress[s]);
             for (std::size_t u = 0; u < step.units.size(); ++u)
                 offset += step.units[u].decay * change.crept_strain[shear.first_unit + u] +
-                          step.units[u].first * change.before_stress[s];
-            change.initial_stress[shear.zone] = change.reference_stress[s] - step.acting_stiffness * offset;
+                          by.units[u].decay * creep.crept_strain()[shear.first_unit + u] +
+                          step.units[u].first * change.before_stress[s] + by.units[u].first * shear.before;
+            change.shear_modulus[shear.zone] = by.acting_stiffness / 2;
+            change.initial_stress[shear.zone] = change.reference_stress[s] - step.acting_stiffness * offset -
+                                                by.acting_stiffness * shear.offset;
         }
     }
 
     settle(assembly, engine, time);
+    for (Change& change : changes_)
+        for (std::size_t c = 0; c < change.opening.size(); ++c)
+            change.opening[c] = opening(assembly, change, c);
 
     // Creep follows, and contacts and zones get their own stiffnesses back, with the offset crept so far.
     for (std::size_t p = 0; p < changes_.size(); ++p) {
@@ -341,24 +363,109 @@ void Sensitivity::creep_step(const creep::Creep& creep, double duration, const A
             const creep::Creep::Shear& shear = shears[s];
             if (!assembly.zones.is_present[shear.zone])
                 continue;
-            const creep::Step& step = steps[shear.chain];
+            const creep::Step &step = steps[shear.chain], &by = rock_changes[p][shear.chain];
+            const double bulk = shear.bulk_modulus, modulus = step.acting_stiffness / 2,
+                         modulus_change = by.acting_stiffness / 2;
+            const Vector3d now = assembly.zones.stress[shear.zone] - shear.reference;
             // initial stress = reference - 2 G_t offset
-            const Vector3d acting =
-                (change.reference_stress[s] - change.initial_stress[shear.zone]) / step.acting_stiffness;
-            const Vector3d after =
-                creep::Creep::deviatoric(shear.bulk_modulus, step.acting_stiffness / 2, acting,
-                                         change.stress[shear.zone] - change.reference_stress[s]);
+            const Vector3d offset = (change.reference_stress[s] - change.initial_stress[shear.zone] -
+                                     2 * modulus_change * shear.offset) /
+                                    (2 * modulus);
+            Vector3d after_change = creep::Creep::deviatoric(
+                bulk, modulus, offset, change.stress[shear.zone] - change.reference_stress[s]);
+            const Vector3d after = creep::Creep::deviatoric(bulk, modulus, shear.offset, now);
+            // deviatoric() depends on the modulus by its mean stress, B t.
+            const double mean = now[0] - after[0];
+            const double mean_change = (bulk * (shear.offset[0] + shear.offset[1]) - mean / 3) /
+                                       (bulk + modulus / 3) * modulus_change;
+            after_change -= Vector3d(mean_change, mean_change, 0);
             Vector3d crept(0, 0, 0);
             for (std::size_t u = 0; u < step.units.size(); ++u) {
                 Vector3d& strain = change.crept_strain[shear.first_unit + u];
-                strain = step.units[u].decay * strain + step.units[u].first * change.before_stress[s] +
-                         step.units[u].last * after;
+                strain = step.units[u].decay * strain +
+                         by.units[u].decay * creep.crept_strain()[shear.first_unit + u] +
+                         step.units[u].first * change.before_stress[s] + by.units[u].first * shear.before +
+                         step.units[u].last * after_change + by.units[u].last * after;
                 crept += strain;
             }
+            change.shear_modulus[shear.zone] = 0;
             change.initial_stress[shear.zone] =
                 change.reference_stress[s] - creep.chains()[shear.chain].spring * crept;
         }
     }
+}
+
+// How far a contact is open, or closed, as creep::Closing has it.
+double Sensitivity::opening(const Assembly& assembly, const Change& change, std::size_t c)
+{
+    const auto [a, b] = assembly.contacts.gridpoint[c];
+    const double k_n = assembly.contacts.law[c].k_n;
+    return (change.initial_traction[c].x() -
+            assembly.contacts.initial_traction[c].x() / k_n * change.stiffness[c].x()) /
+               k_n +
+           assembly.contacts.normal[c].dot(change.displacement[b] - change.displacement[a]) -
+           change.offset[c].x();
+}
+
+void Sensitivity::start_step(const Assembly& assembly)
+{
+    for (Change& change : changes_) {
+        for (std::size_t c = 0; c < change.opening.size(); ++c)
+            change.opening[c] = opening(assembly, change, c);
+        change.opening_before = change.opening;
+        change.duration = -change.now; // up to a time that no parameter changes
+    }
+}
+
+void Sensitivity::shorten(double share)
+{
+    for (Change& change : changes_)
+        change.duration *= share;
+}
+
+void Sensitivity::cut(const creep::Closing::Cut& cut, const creep::Creep& creep, double duration,
+                      const Assembly& assembly, implicit::Engine& engine, double time)
+{
+    if (cut.is_by_rate) {
+        for (Change& change : changes_)
+            change.duration =
+                cut.share / cut.rate *
+                (cut.opening / cut.rate * change.rate[cut.contact] - change.opening_before[cut.contact]);
+        return;
+    }
+    Sensitivity trial = *this;
+    trial.creep_step(creep, duration, assembly, engine, time);
+    const double way = cut.opening - cut.closed;
+    for (std::size_t p = 0; p < changes_.size(); ++p) {
+        const double opening = changes_[p].opening_before[cut.contact],
+                     closed = cut.closed < 0 ? trial.changes_[p].opening[cut.contact] : 0.0;
+        changes_[p].duration = cut.share *
+                               (changes_[p].duration * cut.opening +
+                                duration * (cut.opening * closed - cut.closed * opening) / way) /
+                               way;
+    }
+}
+
+void Sensitivity::finish_step(const creep::Closing& closing, double duration, bool is_whole,
+                              const Assembly& assembly)
+{
+    for (Change& change : changes_) {
+        for (std::size_t c = 0; c < change.opening.size(); ++c) {
+            change.rate[c] = 0;
+            if (closing.was_open(c) && assembly.contacts.status[c] == ContactStatus::open)
+                change.rate[c] = (opening(assembly, change, c) - change.opening_before[c] -
+                                  closing.rate(c) * change.duration) /
+                                 duration;
+        }
+        change.now = is_whole ? 0.0 : change.now + change.duration;
+        change.duration = 0;
+    }
+}
+
+void Sensitivity::start_afresh()
+{
+    for (Change& change : changes_)
+        change.rate.assign(change.rate.size(), 0.0);
 }
 
 void Sensitivity::before_excavation(const Assembly& assembly)

@@ -4,14 +4,15 @@
 //     K du/dp = -dr/dp ,     K the tangent stiffness, from the factor that found the equilibrium,
 // and the states that contacts and creep go on with are differentiated by the formulas that made them.
 //
-// Contacts are differentiated on the branch that they are on (contact_change.hpp), and creep steps as long as
-// they are: that a parameter moves the moment at which a contact closes, and so the end of a step that was
-// cut there, is left out.
+// Contacts are differentiated on the branch that they are on (contact_change.hpp). Where a creep step ends
+// because a contact closes, a parameter moves that moment, too. Steps chosen by their error are taken as long
+// as they are. Where loads change during a step that is cut, what they change by until then is left out.
 //
 // Parameters are factors, and sensitivities those to their logarithms: du/dp at p = 1.
 
 #pragma once
 
+#include "creep/closing.hpp"
 #include "creep/creep.hpp"
 #include "implicit/equilibrium.hpp"
 #include "sensitivity/contact_change.hpp"
@@ -51,6 +52,19 @@ public:
     // After that, with what creeps.
     void start_creep(const creep::Creep& creep);
 
+    // Before a step, with the assembly's own stiffnesses.
+    void start_step(const mechanics::Assembly& assembly);
+    // The step will be shorter: by a share, or to where a contact closes, after the equilibrium at the end of
+    // `duration` [s].
+    void shorten(double share);
+    void cut(const creep::Closing::Cut& cut, const creep::Creep& creep, double duration,
+             const mechanics::Assembly& assembly, implicit::Engine& engine, double time);
+    // It stands, up to where it was to end if it `is_whole`.
+    void finish_step(const creep::Closing& closing, double duration, bool is_whole,
+                     const mechanics::Assembly& assembly);
+    // After a jump of loads.
+    void start_afresh();
+
     // Before Creep::end, at the equilibrium of a step of `duration` [s].
     void creep_step(const creep::Creep& creep, double duration, const mechanics::Assembly& assembly,
                     implicit::Engine& engine, double time);
@@ -73,12 +87,17 @@ private:
         std::vector<Vector2d> stiffness, initial_traction, offset, traction;
         std::vector<double> slip;
         std::vector<Vector3d> initial_stress, stress;
+        std::vector<double> shear_modulus; // zones
         // Of creep::Creep.
         std::vector<double> reference, before, crept;                        // springs; springs; units
         std::vector<Vector3d> reference_stress, before_stress, crept_strain; // zones; zones; units
+        // Of creep::Closing, and times.
+        std::vector<double> opening_before, opening, rate; // contacts
+        double now = 0, duration = 0;                      // [s]
     };
 
     creep::Chain change_of(const creep::Chain& chain, Parameter parameter) const;
+    static double opening(const mechanics::Assembly& assembly, const Change& change, std::size_t c);
     ContactNow contact(const mechanics::Assembly& assembly, std::size_t c) const;
     // Forces on gridpoints; with the change of displacements, or at displacements as they are.
     std::vector<Vector2d> forces(const mechanics::Assembly& assembly, const Change& change,
