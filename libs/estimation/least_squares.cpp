@@ -9,6 +9,40 @@
 namespace jointcreep::estimation
 {
 
+namespace
+{
+
+// Of the free parameters. Those that would go beyond a bound go to it, and the others as is best then.
+VectorXd step_within(const MatrixXd& information, const VectorXd& downhill, double lambda,
+                     std::vector<Eigen::Index> free, const VectorXd& low, const VectorXd& high)
+{
+    VectorXd step = VectorXd::Zero(downhill.size());
+    while (!free.empty()) {
+        const VectorXd right = (downhill - information * step)(free);
+        MatrixXd damped = information(free, free);
+        damped.diagonal() *= 1 + lambda;
+        const VectorXd found = damped.ldlt().solve(right);
+        std::vector<Eigen::Index> within;
+        VectorXd next = step;
+        for (std::size_t k = 0; k < free.size(); ++k) {
+            const Eigen::Index i = free[k];
+            const double wanted = found[static_cast<Eigen::Index>(k)];
+            next[i] = std::clamp(wanted, low[i], high[i]);
+            if (next[i] == wanted)
+                within.push_back(i);
+        }
+        if (within.size() == free.size())
+            return next;
+        for (const Eigen::Index i : within)
+            next[i] = 0;
+        step = next;
+        free = std::move(within);
+    }
+    return step;
+}
+
+} // namespace
+
 Minimum minimise(const Model& model, const VectorXd& start, const VectorXd& low, const VectorXd& high,
                  int most_evaluations, double relative)
 {
@@ -39,15 +73,9 @@ Minimum minimise(const Model& model, const VectorXd& start, const VectorXd& low,
         }
         const double sum = r.squaredNorm();
         for (;;) {
-            VectorXd step = VectorXd::Zero(start.size());
-            if (!free.empty()) {
-                MatrixXd damped = information(free, free);
-                damped.diagonal() *= 1 + lambda;
-                const VectorXd found_step = damped.ldlt().solve(VectorXd(downhill(free)));
-                step(free) = found_step;
-            }
+            const VectorXd step = step_within(information, downhill, lambda, free, low - best.parameters,
+                                              high - best.parameters);
             const VectorXd next = (best.parameters + step).cwiseMax(low).cwiseMin(high);
-            step = next - best.parameters;
             const double predicted = sum - (r + J * step).squaredNorm();
             if (!(predicted > relative * sum) || step.lpNorm<Eigen::Infinity>() < smallest_step ||
                 lambda > largest_lambda) {

@@ -1,9 +1,10 @@
 // Nonlinear least squares within bounds, by Levenberg and Marquardt: the parameters that make the sum of
 // squared residuals least.
 //
-// Each step solves (J^T J + lambda diag(J^T J)) step = -J^T r for the parameters that no bound stops, and is
-// cut at the bounds; lambda follows Nielsen (1999) by how much of the predicted decrease came true. Eigen's
-// own (unsupported/Eigen/LevenbergMarquardt) knows no bounds, and no place where a model has no answer.
+// Each step solves (J^T J + lambda diag(J^T J)) step = -J^T r for the parameters that no bound stops; those
+// that it would carry beyond a bound stop there, and the others step as is best then. lambda follows Nielsen
+// (1999) by how much of the predicted decrease came true. Eigen's own (unsupported/Eigen/LevenbergMarquardt)
+// knows no bounds, and no place where a model has no answer.
 
 #pragma once
 

