@@ -116,7 +116,21 @@ auto of_file(const std::string& path, const Read& read)
     try {
         return read();
     } catch (const input_error& error) {
-        throw input_error(path + ": " + error.what());
+        const std::string_view message = error.what();
+        throw input_error(path + (message.starts_with("line ") ? ", " : ": ") + error.what());
+    }
+}
+
+// The same, where other things may be refused, too.
+template <class Read>
+auto of_lines_of_file(const std::string& path, const Read& read)
+{
+    try {
+        return read();
+    } catch (const input_error& error) {
+        if (const std::string_view message = error.what(); message.starts_with("line "))
+            throw input_error(path + ", " + error.what());
+        throw;
     }
 }
 
@@ -240,7 +254,8 @@ void fit_curve(const Arguments& arguments)
     };
     const double per_day = K / unit::day;
     const std::vector<Row> rows{
-        {"elastic part", "mm", fit.elastic_part * 1e3, times(fit.elastic_interval, 1e3)},
+        {"elastic part", "mm", fit.elastic_part * 1e3,
+         curve.elastic_part ? std::nullopt : std::optional(times(fit.elastic_interval, 1e3))},
         {"creep part", "mm", fit.creep_part * 1e3, times(fit.creep_interval, 1e3)},
         estimate("retardation time", "day", fit.time, 1 / unit::day),
         estimate("Kelvin stiffness E", unit_E, fit.stiffness, K),
@@ -283,16 +298,16 @@ void fit_curve(const Arguments& arguments)
             "warning: record too short",
             "it is " + rounded(fit.record_length, 2) +
                 " retardation times long: it tells how fast creep begins, about 1 / eta, but not where "
-                "it ends, 1 / E; E and eta rise and fall together");
+                "it ends, 1 / E");
     if (fit.is_too_coarse)
         summary.add(
             "warning: readings too coarse",
             "creep is all but over at the first reading after the load: eta is at most what is found");
-    if (closed.left > 0.02)
-        summary.add("warning: creep not over",
-                    rounded(100 * closed.left, 2) +
-                        " percent of it is left at the end that Eq. 14 takes: its E "
-                        "is too high by about as much");
+    const double left = std::exp(-end / fit.retardation_time);
+    if (left > 0.02)
+        summary.add("warning: creep not over", rounded(100 * left, 2) +
+                                                   " percent of it is left at the end that "
+                                                   "Eq. 14 takes: its E is too high by about as much");
     warn_of_lag(summary, "", fit.lag_one, fit.computed.size());
     summary.print();
 }
@@ -490,9 +505,7 @@ void report(const back_analysis::Found& found, const std::vector<Measurement>& m
     summary.add("noise taken as", noise_in_words(confidence, knows));
     report_points(summary, found, measurements, scene);
     if (confidence.parameters > 1)
-        summary.add("condition number of the scaled sensitivities",
-                    rounded(1 / std::sqrt(confidence.smallest_eigenvalue), 3) + " at most times " +
-                        rounded(std::sqrt(static_cast<double>(confidence.parameters)), 3));
+        summary.add("condition number of the scaled sensitivities", rounded(confidence.condition_number, 3));
     if (const auto weak = estimation::weak_combination(found.minimum, confidence)) {
         const double half = confidence.quantile * weak->standard_error;
         summary.add(weak->is_alike_effects ? "warning: hardly told apart" : "warning: hardly known",
@@ -564,7 +577,7 @@ void fit_section(const Arguments& arguments)
         throw input_error(measured + ": " + std::to_string(measurements.size()) + " readings for " +
                           std::to_string(settings.factors.size()) + " factors; wanted more readings");
     std::optional<Progress> progress(arguments.quiet());
-    const back_analysis::Found found = of_file(measured, [&] {
+    const back_analysis::Found found = of_lines_of_file(measured, [&] {
         return back_analysis::fit(scene, file.network, file.equivalent, measurements, settings,
                                   [&](int run, const std::vector<double>& factors) {
                                       std::string words = "run " + std::to_string(run + 1) + ":";

@@ -69,11 +69,11 @@ Engine engine_for(const Scene& scene, const Recording& recording)
     const bool is_about_motion = scene.equilibrium.masses == Masses::real || recording.trace_every > 0;
     if (scene.equilibrium.engine == Engine::implicit_engine && recording.trace_every > 0)
         throw input_error("--trace records motion, which the implicit engine has none of");
-    if (!recording.parameters.empty()) {
-        if (scene.equilibrium.engine == Engine::explicit_engine || is_about_motion)
+    if (!recording.parameters.empty()) { // masses make no difference at rest
+        if (scene.equilibrium.engine == Engine::explicit_engine || recording.trace_every > 0)
             throw input_error(
-                "sensitivities come from factorisation; wanted a scene that is not about motion: "
-                "equilibrium.engine \"auto\" or \"implicit\", no real masses");
+                "sensitivities are found by factorisation; wanted an equilibrium.engine other than "
+                "\"explicit\", and no trace");
         return Engine::implicit_engine;
     }
     if (scene.equilibrium.engine == Engine::automatic && is_about_motion)

@@ -83,6 +83,8 @@ Confidence confidence_of(const Minimum& minimum, bool deviations_are_known)
     const MatrixXd scaled = columns * length.cwiseInverse().asDiagonal();
     const Eigen::SelfAdjointEigenSolver<MatrixXd> parts(scaled.transpose() * scaled);
     found.smallest_eigenvalue = std::max(parts.eigenvalues()[0], 1e-15);
+    found.condition_number =
+        std::sqrt(parts.eigenvalues()[parts.eigenvalues().size() - 1] / found.smallest_eigenvalue);
     const MatrixXd inverse = parts.eigenvectors() *
                              parts.eigenvalues().cwiseMax(1e-15).cwiseInverse().asDiagonal() *
                              parts.eigenvectors().transpose();

@@ -36,7 +36,8 @@ struct Confidence {
     double quantile_all = 0; // of intervals that hold all together with 95 percent (Bonferroni)
 
     // Of J with its columns scaled to length 1: alike effects on the readings make it small.
-    double smallest_eigenvalue = 1;
+    double smallest_eigenvalue = 1; // of their products with each other [-]
+    double condition_number = 1;    // of J so scaled [-]
 
     double standard_error(Eigen::Index i) const;
     // 95 percent, of one parameter by itself or of all together; without bounds where the data have none.

@@ -227,11 +227,6 @@ ClosedEstimate closed_estimate(const CreepCurve& curve, double end)
                                      vector(std::log(longest)), 200, 1e-12);
     const double tau = std::exp(minimum.parameters[0]);
     const Confidence confidence = confidence_of(minimum, !curve.deviation.empty());
-    double squares = 0;
-    for (Eigen::Index i = 0; i < n; ++i)
-        squares += std::pow(minimum.there.residual[i] * deviation_of(curve, static_cast<std::size_t>(i)), 2);
-    found.noise = std::sqrt(squares / static_cast<double>(n - 1));
-    found.left = std::exp(-end / tau);
 
     // What an error of d(T_c), and of d_e where it is a reading, makes of the logarithms of E and tau.
     const VectorXd of_tau = minimum.there.jacobian.col(0);

@@ -52,8 +52,6 @@ struct ClosedEstimate {
     double elastic_part, creep_part; // [m]
     double end;                      // T_c [s]
     Estimate stiffness, viscosity;   // E / K [-], eta / K [s]
-    double noise;                    // standard deviation of the residuals [m]
-    double left;                     // of creep at T_c, by tau [-]
 };
 ClosedEstimate closed_estimate(const CreepCurve& curve, double end);
 
