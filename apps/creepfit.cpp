@@ -89,7 +89,8 @@ std::string rounded(double value, int digits = 4)
 
 std::string shown_interval(const Interval& interval)
 {
-    return rounded(interval.low) + " to " + rounded(interval.high);
+    return rounded(interval.low) + " to " +
+           (std::isfinite(interval.high) ? rounded(interval.high) : "infinity");
 }
 
 std::string mm(double metres)
@@ -199,7 +200,11 @@ std::string table_of(const std::vector<Row>& rows)
     std::string table = "quantity,unit,value,low_95,high_95\n";
     for (const Row& row : rows) {
         table += row.quantity + ',' + row.unit + ',' + shown(row.value) + ',';
-        table += row.interval ? shown(row.interval->low) + ',' + shown(row.interval->high) : ",";
+        if (row.interval)
+            table += shown(row.interval->low);
+        table += ',';
+        if (row.interval && std::isfinite(row.interval->high))
+            table += shown(row.interval->high);
         table += '\n';
     }
     return table;
@@ -217,6 +222,8 @@ void fit_curve(const Arguments& arguments)
     const std::optional<std::string> readings_path = readings_file(arguments);
     check_writable(arguments.output());
     const std::string text = text_of(input);
+    if (text.starts_with("\x89HDF"))
+        throw input_error("--measurements is not given, and " + input + " is no curve");
     const std::vector<Measurement> measurements = of_file(input, [&] { return creep_curve_in_csv(text); });
 
     const double load =

@@ -83,6 +83,87 @@ double best_on_grid(double shortest, double longest, const std::function<double(
     return best;
 }
 
+// Profiles of the sum of squares: its least with one of E / K, eta / K and tau held, over the others.
+class Profiles
+{
+public:
+    enum Held { stiffness, viscosity, time };
+
+    // Around the best fit, d_e [m], e = E / K and tau [s].
+    Profiles(const CreepCurve& curve, double elastic_part, double ratio, double tau)
+        : curve_(curve), size_(elastic_part),
+          best_(curve.elastic_part ? VectorXd(2) : VectorXd(VectorXd::Ones(3)))
+    {
+        best_[0] = std::log(ratio);
+        best_[1] = std::log(tau);
+    }
+
+    // Where it is below `limit`. An end is 0 or infinite where that is more than a factor of 1000 away.
+    Interval interval(Held held, double limit, double first_step) const
+    {
+        const double farthest = std::log(1e3);
+        VectorXd at = best_;
+        if (held == viscosity)
+            at[0] += at[1];
+        const Eigen::Index i = held == time ? 1 : 0;
+        const double middle = at[i];
+        const auto end = [&](double side) {
+            VectorXd start = at;
+            const auto is_within = [&](double distance) {
+                VectorXd low = VectorXd::Constant(at.size(), -1e3), high = -low;
+                // Far off on the flat, where creep is over at once or hardly begins, nothing would bring it
+                // back.
+                low[1] = std::log(shortest_share * shortest_interval(curve_));
+                high[1] = std::log(longest_share * curve_.time.back());
+                low[i] = high[i] = middle + side * distance;
+                const Minimum least = minimise(model(held == viscosity), start, low, high, 100, 1e-10);
+                start = least.parameters;
+                return least.sum_of_squares() <= limit;
+            };
+            double within = 0, beyond = std::clamp(first_step, 1e-7, 0.5);
+            while (is_within(beyond)) {
+                within = beyond;
+                beyond *= 1.5;
+                if (within > farthest)
+                    return side * std::numeric_limits<double>::infinity();
+            }
+            while (beyond - within > 1e-4 * beyond) {
+                const double between = (within + beyond) / 2;
+                (is_within(between) ? within : beyond) = between;
+            }
+            return middle + side * beyond;
+        };
+        return {std::exp(end(-1)), std::exp(end(1))};
+    }
+
+private:
+    // Over {ln e or, by viscosity, ln (e tau); ln tau; d_e over its best unless that is known}.
+    Model model(bool by_viscosity) const
+    {
+        return [this, by_viscosity](const VectorXd& p) -> std::optional<Evaluation> {
+            const auto n = static_cast<Eigen::Index>(curve_.time.size());
+            Evaluation at{VectorXd(n), MatrixXd(n, p.size())};
+            const double inverse = std::exp((by_viscosity ? p[1] : 0) - p[0]), // 1 / e
+                d = p.size() == 3 ? size_ * p[2] : size_;
+            for (Eigen::Index i = 0; i < n; ++i) {
+                const auto k = static_cast<std::size_t>(i);
+                const double x = curve_.time[k] / std::exp(p[1]), crept = -std::expm1(-x) * inverse,
+                             weight = 1 / deviation_of(curve_, k);
+                at.residual[i] = weight * (d * (1 + crept) - curve_.displacement[k]);
+                at.jacobian(i, 0) = -weight * d * crept;
+                at.jacobian(i, 1) = weight * d * ((by_viscosity ? crept : 0) - x * std::exp(-x) * inverse);
+                if (p.size() == 3)
+                    at.jacobian(i, 2) = weight * size_ * (1 + crept);
+            }
+            return at;
+        };
+    }
+
+    const CreepCurve& curve_;
+    double size_;
+    VectorXd best_;
+};
+
 } // namespace
 
 CurveFit fit_curve(const CreepCurve& curve)
@@ -161,9 +242,13 @@ CurveFit fit_curve(const CreepCurve& curve)
     const double stiffness_error = confidence.standard_error(of_stiffness),
                  viscosity_error = confidence.standard_error(of_viscosity);
     const double ratio = fit.elastic_part / fit.creep_part;
-    fit.time = estimate(fit.retardation_time, quantile * confidence.standard_error(of_time));
-    fit.stiffness = estimate(ratio, quantile * stiffness_error);
-    fit.viscosity = estimate(ratio * fit.retardation_time, quantile * viscosity_error);
+    const Profiles profiles(curve, fit.elastic_part, ratio, fit.retardation_time);
+    const double noise = quantile * confidence.noise_factor, limit = minimum.sum_of_squares() + noise * noise;
+    fit.time = {fit.retardation_time,
+                profiles.interval(Profiles::time, limit, quantile * confidence.standard_error(of_time))};
+    fit.stiffness = {ratio, profiles.interval(Profiles::stiffness, limit, quantile * stiffness_error)};
+    fit.viscosity = {ratio * fit.retardation_time,
+                     profiles.interval(Profiles::viscosity, limit, quantile * viscosity_error)};
     const double product = stiffness_error * viscosity_error;
     fit.correlation = product > 0 ? of_stiffness.dot(confidence.covariance * of_viscosity) / product : 0;
 
@@ -174,11 +259,10 @@ CurveFit fit_curve(const CreepCurve& curve)
         fit.computed.push_back(curve.displacement[k] + minimum.there.residual[i] * deviation_of(curve, k));
     }
     fit.lag_one = lag_one_correlation(residuals);
-    const AtBound at = minimum.at_bound[static_cast<std::size_t>(log_tau)];
     fit.record_length = curve.time.back() / fit.retardation_time;
     const auto second = std::find_if(curve.time.begin(), curve.time.end(), [](double t) { return t > 0; });
     fit.is_too_coarse = *second > 4 * fit.retardation_time; // 98 percent of creep
-    fit.is_too_short = at == AtBound::high || quantile * stiffness_error > std::log(2.0);
+    fit.is_too_short = fit.stiffness.interval.low < ratio / 2 || fit.stiffness.interval.high > 2 * ratio;
     return fit;
 }
 

@@ -18,13 +18,15 @@ struct CreepCurve {
     std::optional<double> elastic_part{}; // d_e, where it is known [m]
 };
 
-// A value above 0 with its interval of 95 percent, from the standard error of its logarithm.
+// A value above 0 with its interval of 95 percent.
 struct Estimate {
     double value;
     Interval interval;
 };
 
-// By least squares over d_e (unless known), d_c and tau.
+// By least squares over d_e (unless known), d_c and tau. Intervals of tau, E and eta are those of the
+// profile: where the least sum of squares with that value held exceeds the least of all by no more than
+// chance (Student's t, squared). In short records these are far from even; an end may be 0 or infinite.
 struct CurveFit {
     double elastic_part, creep_part, retardation_time; // d_e [m], d_c [m], tau [s]
     Interval elastic_interval, creep_interval;
@@ -36,7 +38,7 @@ struct CurveFit {
     double lag_one;               // correlation of neighbouring residuals
 
     // What the record does not tell.
-    bool is_too_short = false;  // E: its interval is wider than a factor of 2 either way, or tau has no end
+    bool is_too_short = false;  // E: its interval goes beyond a factor of 2 either way
     bool is_too_coarse = false; // tau: it is all but over at the first reading after the load
     double record_length;       // over tau [-]
 };
