@@ -262,7 +262,8 @@ CurveFit fit_curve(const CreepCurve& curve)
     fit.record_length = curve.time.back() / fit.retardation_time;
     const auto second = std::find_if(curve.time.begin(), curve.time.end(), [](double t) { return t > 0; });
     fit.is_too_coarse = *second > 4 * fit.retardation_time; // 98 percent of creep
-    fit.is_too_short = fit.stiffness.interval.low < ratio / 2 || fit.stiffness.interval.high > 2 * ratio;
+    fit.is_too_short = minimum.at_bound[static_cast<std::size_t>(log_tau)] == AtBound::high ||
+                       fit.stiffness.interval.low < ratio / 2 || fit.stiffness.interval.high > 2 * ratio;
     return fit;
 }
 
