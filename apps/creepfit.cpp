@@ -546,7 +546,7 @@ void report(const back_analysis::Found& found, const std::vector<Measurement>& m
             eta *= f;
             break;
         case Parameter::horizontal_stress:
-            std::cout << "\n[in_situ_stress]\ncompression_xx_MPa = "
+            std::cout << "\nIn the scene:\n[in_situ_stress]\ncompression_xx_MPa = "
                       << rounded(scene.in_situ_stress.compression_xx * f / unit::MPa, 6)
                       << "\ncompression_xx_gradient_MPa_per_m = "
                       << rounded(scene.in_situ_stress.gradient_xx * f / unit::MPa, 6) << '\n';
