@@ -69,6 +69,13 @@ Engine engine_for(const Scene& scene, const Recording& recording)
     const bool is_about_motion = scene.equilibrium.masses == Masses::real || recording.trace_every > 0;
     if (scene.equilibrium.engine == Engine::implicit_engine && recording.trace_every > 0)
         throw input_error("--trace records motion, which the implicit engine has none of");
+    if (!recording.parameters.empty()) { // masses make no difference at rest
+        if (scene.equilibrium.engine == Engine::explicit_engine || recording.trace_every > 0)
+            throw input_error(
+                "sensitivities are found by factorisation; wanted an equilibrium.engine other than "
+                "\"explicit\", and no trace");
+        return Engine::implicit_engine;
+    }
     if (scene.equilibrium.engine == Engine::automatic && is_about_motion)
         return Engine::explicit_engine;
     return scene.equilibrium.engine;
@@ -111,9 +118,14 @@ Analysis::Analysis(const Scene& scene, const Network& network, const EquivalentJ
     rock_.threads =
         std::min(threads, 1 + static_cast<int>(result_.mesh.zone_gridpoint.size()) / zones_per_thread);
     loading_.apply(rock_, 0);
+    if (!recording.parameters.empty())
+        sensitivity_.emplace(recording.parameters, scene, result_.mesh, rock_);
+    sensitivities_.resize(recording.parameters.size());
     settle_in_situ();
     if (scene.creep) {
         creep_.emplace(scene, network, joints, result_.mesh, rock_);
+        if (sensitivity_)
+            sensitivity_->start_creep(*creep_);
         if (creep_->anything_creeps()) {
             step_.emplace(*scene.creep, creep_->fastest_rate(),
                           stable_limit_ ? stable_limit_->step : std::numeric_limits<double>::infinity());
@@ -153,6 +165,10 @@ void Analysis::settle_in_situ()
     for (std::size_t c = 0; c < contacts.status.size(); ++c)
         if (contacts.status[c] != ContactStatus::stuck)
             ++beyond_strength_[joint_name(scene_, network_, result_.mesh.contact_edge[c])];
+    if (sensitivity_) {
+        sensitivity_->settle(rock_, implicit_, 0);
+        sensitivity_->start_from_here(rock_);
+    }
     start_from_here(rock_);
     loading_.apply(rock_, 0);
     take_down_equilibrium();
@@ -205,6 +221,9 @@ bool Analysis::step_to(double target, bool is_loaded)
     const std::optional<creep::Creep> creep_at_start = creep_;
     if (closing_)
         closing_->start(rock_);
+    const std::optional<sensitivity::Sensitivity> sensitivity_at_start = sensitivity_;
+    if (sensitivity_)
+        sensitivity_->start_step(rock_);
     double end = target;
     int halvings = engine_ == Engine::explicit_engine ? most_halvings : 0;
     for (;;) {
@@ -219,6 +238,8 @@ bool Analysis::step_to(double target, bool is_loaded)
         } else if (!settles_nearby(guess)) {
             ++halvings;
             end = halvings < most_halvings ? now_ + (end - now_) / 2 : target;
+            if (sensitivity_)
+                sensitivity_->shorten(0.5);
             continue;
         }
         const double longest =
@@ -226,10 +247,19 @@ bool Analysis::step_to(double target, bool is_loaded)
         if (longest >= end - now_ || longest < 1e-9 * (target - now_))
             break;
         --cuts_left_;
+        if (sensitivity_)
+            sensitivity_->cut(closing_->last_cut(), *creep_, end - now_, rock_, implicit_, end);
         go_back(rock_, start);
         end = now_ + longest;
     }
+    if (sensitivity_) {
+        if (creeps())
+            sensitivity_->creep_step(*creep_, end - now_, rock_, implicit_, end);
+        else
+            sensitivity_->settle(rock_, implicit_, end);
+    }
     if (creeps() && !step_->stands(end - now_, creep_->end(rock_))) {
+        sensitivity_ = sensitivity_at_start;
         go_back(rock_, start);
         creep_ = creep_at_start;
         loading_.apply(rock_, now_);
@@ -237,6 +267,8 @@ bool Analysis::step_to(double target, bool is_loaded)
     }
     if (closing_)
         closing_->finish(rock_, end - now_);
+    if (closing_ && sensitivity_)
+        sensitivity_->finish_step(*closing_, end - now_, end == target, rock_);
     last_step_ = end - now_;
     last_move_ = rock_.displacement;
     for (std::size_t g = 0; g < last_move_.size(); ++g)
@@ -259,7 +291,11 @@ bool Analysis::is_slower_than(double rate) const
 void Analysis::excavate(const Stage& stage, Index number)
 {
     observe_(now_ / scene_.end, stage.name);
+    if (sensitivity_)
+        sensitivity_->before_excavation(rock_);
     const auto released = mechanics::excavate(rock_, network_.blocks, result_.mesh, loading_, number);
+    if (sensitivity_)
+        sensitivity_->after_excavation(rock_);
     const std::vector<Vector2d> load = rock_.load;
     // In the scene's increments; in smaller ones where factorisation finds nothing nearby.
     const int finest = engine_ == Engine::explicit_engine ? 1 : 1 << most_halvings;
@@ -275,6 +311,8 @@ void Analysis::excavate(const Stage& stage, Index number)
             }
             settle_by_motion(now_);
         }
+        if (sensitivity_)
+            sensitivity_->settle(rock_, implicit_, now_, held);
         done += increment;
         take_down_equilibrium();
     }
@@ -290,6 +328,8 @@ void Analysis::start_afresh()
         step_->start_afresh();
     if (closing_)
         closing_->start_afresh();
+    if (sensitivity_)
+        sensitivity_->start_afresh();
 }
 
 // Equilibrium by factorisation, if the engine is not the explicit one; false if there is none nearby.
@@ -337,6 +377,8 @@ void Analysis::take_down_equilibrium()
 void Analysis::take_down(const std::string& event, bool with_state)
 {
     recorder_.record_history(result_, now_, event, rock_);
+    for (std::size_t p = 0; p < sensitivities_.size(); ++p)
+        recorder_.append_at_points(sensitivities_[p], sensitivity_->displacement(p), rock_);
     if (with_state)
         recorder_.record_state(result_, now_, event, rock_);
 }

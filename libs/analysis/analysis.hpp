@@ -9,6 +9,7 @@
 #include "mechanics/assembly.hpp"
 #include "mechanics/loading.hpp"
 #include "mechanics/recorder.hpp"
+#include "sensitivity/sensitivity.hpp"
 
 #include <functional>
 #include <map>
@@ -18,10 +19,12 @@
 namespace jointcreep
 {
 
-// What the result file is to hold besides histories and the states at dates; 0 is never.
+// What is to be recorded besides histories and the states at dates; 0 is never.
 struct Recording {
     std::uint64_t state_every = 0; // creep steps
     std::uint64_t trace_every = 0; // solver steps
+    // Whose sensitivities are found along with the histories: by the implicit engine alone.
+    std::vector<sensitivity::Parameter> parameters{};
 };
 
 // The longest stable creep step, and what sets it: a joint or rock, by name.
@@ -44,6 +47,8 @@ public:
     void run();
 
     const Result& result() const { return result_; }
+    // Of the histories' displacements, [parameter][time, point]: per unit of the parameter's logarithm [m].
+    const std::vector<std::vector<mechanics::Vector2d>>& sensitivities() const { return sensitivities_; }
     const mechanics::Assembly& rock() const { return rock_; }
     Engine engine() const { return engine_; }
     bool creeps() const { return step_.has_value(); }
@@ -80,6 +85,8 @@ private:
     std::optional<creep::Creep> creep_;
     std::optional<creep::StepLength> step_;
     std::optional<creep::Closing> closing_;
+    std::optional<sensitivity::Sensitivity> sensitivity_;
+    std::vector<std::vector<mechanics::Vector2d>> sensitivities_;
 
     double now_ = 0;         // since start [s]
     double solver_time_ = 0; // of motion, over all equilibria [s]

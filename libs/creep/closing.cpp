@@ -37,6 +37,7 @@ double Closing::longest_step(const mechanics::Assembly& assembly, double duratio
 {
     const mechanics::Contacts& contacts = assembly.contacts;
     double longest = duration;
+    cut_ = {};
     for (std::size_t c = 0; c < was_open_.size(); ++c) {
         if (!was_open_[c] || contacts.status[c] == ContactStatus::open ||
             contacts.status[c] == ContactStatus::removed || opening_[c] <= 0)
@@ -44,18 +45,29 @@ double Closing::longest_step(const mechanics::Assembly& assembly, double duratio
         // As fast as in the last step, or else straight on to where it is now; that is later than in truth,
         // since once it touches it closes more slowly.
         const bool knows_rate = !rate_.empty() && rate_[c].x() < 0;
-        const double until_now =
-            duration * opening_[c] / (opening_[c] - std::min(opening_of(contacts, c), 0.0));
-        const double touches = knows_rate ? std::min(opening_[c] / -rate_[c].x(), until_now) : until_now / 2;
+        const double closed = std::min(opening_of(contacts, c), 0.0);
+        const double until_now = duration * opening_[c] / (opening_[c] - closed);
+        const bool is_by_rate = knows_rate && opening_[c] / -rate_[c].x() < until_now;
+        const double touches =
+            is_by_rate ? opening_[c] / -rate_[c].x() : (knows_rate ? until_now : until_now / 2);
         // Stuck at the wrong place it may seem not to shear at all.
         const double shear_rate = std::max(std::abs(contacts.jump[c].y() - shear_[c]) / duration,
                                            knows_rate ? std::abs(rate_[c].y()) : 0.0);
-        if (touches * shear_rate > tolerance_)
-            longest = std::min(longest, touches);
+        if (touches * shear_rate > tolerance_ && touches < longest) {
+            longest = touches;
+            cut_ = {static_cast<Index>(c),
+                    is_by_rate,
+                    is_by_rate || knows_rate ? 1.0 : 0.5,
+                    opening_[c],
+                    is_by_rate ? rate_[c].x() : 0.0,
+                    closed};
+        }
     }
-    if (longest < duration)
-        longest *=
-            ++cuts_ == 1 ? 0.99 : 0.9; // a little before it touches, so that it is open at the step's end
+    if (longest < duration) {
+        const double before = ++cuts_ == 1 ? 0.99 : 0.9; // it touches, so that it is open at the step's end
+        longest *= before;
+        cut_.share *= before;
+    }
     return longest;
 }
 

@@ -24,8 +24,22 @@ public:
     // step may last [s], `duration` itself if no contact closes in it that matters.
     double longest_step(const mechanics::Assembly& assembly, double duration);
 
+    // What made the last longest_step shorter than the duration:  share * opening / -rate, or
+    // share * duration * opening / (opening - closed), whichever it `is_by_rate`.
+    struct Cut {
+        Index contact = -1; // none
+        bool is_by_rate = false;
+        double share = 0;
+        double opening = 0, rate = 0, closed = 0; // [m], [m/s], [m]
+    };
+    const Cut& last_cut() const { return cut_; }
+
     // The step stands.
     void finish(const mechanics::Assembly& assembly, double duration);
+
+    // Whether a contact was open at the step's start; after finish(), how fast it opens then [m/s].
+    bool was_open(std::size_t contact) const { return was_open_[contact] != 0; }
+    double rate(std::size_t contact) const { return rate_[contact].x(); }
 
     // Forgets how fast contacts were closing: after a jump of loads.
     void start_afresh() { rate_.clear(); }
@@ -33,6 +47,7 @@ public:
 private:
     double tolerance_;
     int cuts_ = 0; // of this step
+    Cut cut_;
     std::vector<char> was_open_;
     std::vector<double> opening_, shear_; // at the step's start [m]
     std::vector<Eigen::Vector2d> rate_;   // of {opening, shear} in the last step [m/s]

@@ -112,15 +112,14 @@ double Creep::fastest_rate() const
     return fastest;
 }
 
-// The deviatoric part of what the stress has changed by. Plane strain leaves the stress across the section to
-// be found: with t the volume strain, sxx + syy = 2 (B + G / 3) t - 2 G (offset_xx + offset_yy).
-Eigen::Vector3d Creep::deviatoric(const Shear& shear, double shear_modulus, const Vector3d& offset,
-                                  const Vector3d& stress) const
+// Plane strain leaves the stress across the section to be found: with t the volume strain,
+// sxx + syy = 2 (B + G / 3) t - 2 G (offset_xx + offset_yy).
+Eigen::Vector3d Creep::deviatoric(double bulk_modulus, double shear_modulus, const Vector3d& offset,
+                                  const Vector3d& change)
 {
-    const Vector3d change = stress - shear.reference;
     const double volume_strain = (change[0] + change[1] + 2 * shear_modulus * (offset[0] + offset[1])) /
-                                 (2 * (shear.bulk_modulus + shear_modulus / 3));
-    const double mean = shear.bulk_modulus * volume_strain;
+                                 (2 * (bulk_modulus + shear_modulus / 3));
+    const double mean = bulk_modulus * volume_strain;
     return {change[0] - mean, change[1] - mean, change[2]};
 }
 
@@ -182,8 +181,8 @@ void Creep::begin(double duration, mechanics::Assembly& assembly)
         if (!assembly.zones.is_present[shear.zone])
             continue;
         if (!is_under_way_)
-            shear.before = deviatoric(shear, chains_[shear.chain].spring / 2, crept(shear),
-                                      assembly.zones.stress[shear.zone]);
+            shear.before = deviatoric(shear.bulk_modulus, chains_[shear.chain].spring / 2, crept(shear),
+                                      assembly.zones.stress[shear.zone] - shear.reference);
         const Step& step = steps_[shear.chain];
         shear.offset.setZero();
         for (std::size_t u = 0; u < step.units.size(); ++u)
@@ -214,8 +213,8 @@ double Creep::end(mechanics::Assembly& assembly)
         if (!assembly.zones.is_present[shear.zone])
             continue;
         const Step& step = steps_[shear.chain];
-        const Vector3d after =
-            deviatoric(shear, step.acting_stiffness / 2, shear.offset, assembly.zones.stress[shear.zone]);
+        const Vector3d after = deviatoric(shear.bulk_modulus, step.acting_stiffness / 2, shear.offset,
+                                          assembly.zones.stress[shear.zone] - shear.reference);
         for (std::size_t u = 0; u < step.units.size(); ++u) {
             Vector3d& strain = crept_strain_[shear.first_unit + u];
             strain = step.units[u].decay * strain + step.units[u].first * shear.before +

@@ -44,7 +44,6 @@ public:
     // Gives them back without a step.
     void cancel(mechanics::Assembly& assembly);
 
-private:
     using Vector3d = Eigen::Vector3d;
 
     // One direction of a contact.
@@ -68,9 +67,20 @@ private:
         Vector3d offset{0, 0, 0}; // strain during the step [-]
     };
 
+    // For sensitivities.
+    CreepScheme scheme() const { return scheme_; }
+    const std::vector<Chain>& chains() const { return chains_; }
+    const std::vector<Spring>& springs() const { return springs_; }
+    const std::vector<Shear>& shears() const { return shears_; }
+    const std::vector<double>& crept_displacement() const { return crept_; }
+    const std::vector<Vector3d>& crept_strain() const { return crept_strain_; }
+
+    // The deviatoric part of a change of stress, during which the strain `offset` has crept.
+    static Vector3d deviatoric(double bulk_modulus, double shear_modulus, const Vector3d& offset,
+                               const Vector3d& change);
+
+private:
     Index number_of(const Chain& chain); // among chains_
-    Vector3d deviatoric(const Shear& shear, double shear_modulus, const Vector3d& offset,
-                        const Vector3d& stress) const;
     static void set(mechanics::Assembly& assembly, const Spring& spring, double stiffness, double offset);
     static void set(mechanics::Assembly& assembly, const Shear& shear, double shear_modulus,
                     const Vector3d& offset);

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace jointcreep::creep
 {
@@ -14,15 +15,47 @@ namespace
 // Lengths of a step in times 1 / lam, 1 / rho beyond which nothing changes any more.
 constexpr double for_ever = 1e12;
 
+// A number with what it changes by: the weights below are found with their derivatives by the same formulas.
+struct Changing {
+    double value, change = 0;
+
+    Changing(double v) : value(v) {} // a constant
+    Changing(double v, double c) : value(v), change(c) {}
+
+    friend Changing operator+(Changing a, Changing b) { return {a.value + b.value, a.change + b.change}; }
+    friend Changing operator-(Changing a, Changing b) { return {a.value - b.value, a.change - b.change}; }
+    friend Changing operator-(Changing a) { return {-a.value, -a.change}; }
+    friend Changing operator*(Changing a, Changing b)
+    {
+        return {a.value * b.value, a.change * b.value + a.value * b.change};
+    }
+    friend Changing operator/(Changing a, Changing b)
+    {
+        return {a.value / b.value, (a.change - a.value / b.value * b.change) / b.value};
+    }
+    friend bool operator<(Changing a, Changing b) { return a.value < b.value; }
+    friend bool operator>(Changing a, Changing b) { return a.value > b.value; }
+    friend bool operator==(Changing a, Changing b) { return a.value == b.value; }
+    friend Changing exp(Changing a) { return {std::exp(a.value), std::exp(a.value) * a.change}; }
+    friend Changing expm1(Changing a) { return {std::expm1(a.value), std::exp(a.value) * a.change}; }
+    friend Changing abs(Changing a) { return a.value < 0 ? -a : a; }
+};
+
+using std::abs;
+using std::exp;
+using std::expm1;
+
 // The mean of exp(-y s) over 0 <= s <= 1.
-double mean_decay(double y)
+template <class Number>
+Number mean_decay(Number y)
 {
-    return y == 0 ? 1 : -std::expm1(-y) / y;
+    return y == 0 ? Number(1) : -expm1(-y) / y;
 }
 
 // Integral over 0 <= s <= 1 of exp(-x (1 - s)) phi(s), phi = (1 - exp(-r s)) / (1 - exp(-r)), for r = 0 its
 // limit phi = s. The closed form loses its digits where x and r are small.
-double fitted_weight(double x, double r)
+template <class Number>
+Number fitted_weight(Number x, Number r)
 {
     if (x < 0.5 && r < 0.5) { // Gauss's quadrature of 5 points: exact to rounding here
         constexpr std::array<std::array<double, 2>, 5> rule{{{0.046910077030668004, 0.11846344252809454},
@@ -30,20 +63,21 @@ double fitted_weight(double x, double r)
                                                              {0.5, 0.28444444444444444},
                                                              {0.76923465505284155, 0.23931433524968324},
                                                              {0.953089922969332, 0.11846344252809454}}};
-        double sum = 0;
+        Number sum = 0;
         for (const auto& [s, weight] : rule)
-            sum += weight * std::exp(-x * (1 - s)) * (r == 0 ? s : std::expm1(-r * s) / std::expm1(-r));
+            sum = sum + weight * exp(-x * (1 - s)) * (r == 0 ? Number(s) : expm1(-r * s) / expm1(-r));
         return sum;
     }
     if (r < 1e-5) { // phi = s + r (s - s^2) / 2
-        const double m1 = (1 - mean_decay(x)) / x, m2 = (1 - 2 * m1) / x;
+        const Number m1 = (1 - mean_decay(x)) / x, m2 = (1 - 2 * m1) / x;
         return m1 + r / 2 * (m1 - m2);
     }
-    return (mean_decay(x) - std::exp(-std::min(x, r)) * mean_decay(std::abs(x - r))) / -std::expm1(-r);
+    return (mean_decay(x) - exp(-std::min(x, r)) * mean_decay(abs(x - r))) / -expm1(-r);
 }
 
 // Part of the integral over 0 <= s <= 1 of exp(-x (1 - s)) that goes with the force at the end.
-double last_weight(CreepScheme scheme, double x, double r)
+template <class Number>
+Number last_weight(CreepScheme scheme, Number x, Number r)
 {
     switch (scheme) {
     case CreepScheme::published:
@@ -51,23 +85,51 @@ double last_weight(CreepScheme scheme, double x, double r)
     case CreepScheme::backward:
         return mean_decay(x);
     case CreepScheme::linear_force:
-        return fitted_weight(x, 0);
+        return fitted_weight(x, Number(0));
     case CreepScheme::fitted:
         return fitted_weight(x, r);
     }
     return 0;
 }
 
+// One unit's part of a step.
+template <class Number>
+struct Part {
+    Number decay, first, last;
+};
+
+template <class Number>
+Part<Number> part_of(Number stiffness, Number viscosity, Number rate, CreepScheme scheme, Number duration)
+{
+    Number x = stiffness / viscosity * duration, flow = duration / viscosity;
+    if (x > for_ever) {
+        x = for_ever;
+        flow = for_ever / stiffness;
+    }
+    const Number r = std::min(rate * duration, Number(for_ever));
+    const Number last = last_weight(scheme, x, r);
+    return {exp(-x), flow * (mean_decay(x) - last), flow * last};
+}
+
+template <class Number>
+Number relaxation_rate(Number spring, const std::vector<std::pair<Number, Number>>& units)
+{
+    Number fluidity = 0, slowing = 0;
+    for (const auto& [stiffness, viscosity] : units) {
+        fluidity = fluidity + 1 / viscosity;
+        slowing = slowing + stiffness / viscosity / viscosity;
+    }
+    return fluidity == 0 ? Number(0) : spring * fluidity + slowing / fluidity;
+}
+
 } // namespace
 
 double relaxation_rate(const Chain& chain)
 {
-    double fluidity = 0, slowing = 0;
-    for (const Unit& unit : chain.units) {
-        fluidity += 1 / unit.viscosity;
-        slowing += unit.stiffness / unit.viscosity / unit.viscosity;
-    }
-    return fluidity == 0 ? 0 : chain.spring * fluidity + slowing / fluidity;
+    std::vector<std::pair<double, double>> units;
+    for (const Unit& unit : chain.units)
+        units.emplace_back(unit.stiffness, unit.viscosity);
+    return relaxation_rate(chain.spring, units);
 }
 
 bool is_second_order(CreepScheme scheme)
@@ -79,22 +141,38 @@ Step step_of(const Chain& chain, CreepScheme scheme, double duration)
 {
     const CreepScheme other =
         scheme == CreepScheme::linear_force ? CreepScheme::fitted : CreepScheme::linear_force;
-    const double r = std::min(relaxation_rate(chain) * duration, for_ever);
+    const double rate = relaxation_rate(chain);
     Step step{{}, 0, 0, 0};
     double others = 0;
     for (const Unit& unit : chain.units) {
-        double x = unit.stiffness / unit.viscosity * duration, flow = duration / unit.viscosity;
-        if (x > for_ever) {
-            x = for_ever;
-            flow = for_ever / unit.stiffness;
-        }
-        const double last = last_weight(scheme, x, r);
-        step.units.push_back({std::exp(-x), flow * (mean_decay(x) - last), flow * last});
-        step.compliance += flow * last;
-        others += flow * last_weight(other, x, r);
+        const auto part = part_of(unit.stiffness, unit.viscosity, rate, scheme, duration);
+        step.units.push_back({part.decay, part.first, part.last});
+        step.compliance += part.last;
+        others += part_of(unit.stiffness, unit.viscosity, rate, other, duration).last;
     }
     step.acting_stiffness = 1 / (1 / chain.spring + step.compliance);
     step.doubt = std::abs(step.compliance - others);
+    return step;
+}
+
+Step change_of_step(const Chain& chain, const Chain& change, CreepScheme scheme, double duration,
+                    double duration_change)
+{
+    const Changing spring(chain.spring, change.spring);
+    std::vector<std::pair<Changing, Changing>> units;
+    for (std::size_t u = 0; u < chain.units.size(); ++u)
+        units.push_back({{chain.units[u].stiffness, change.units[u].stiffness},
+                         {chain.units[u].viscosity, change.units[u].viscosity}});
+    const Changing rate = relaxation_rate(spring, units);
+    Step step{{}, 0, 0, 0};
+    Changing compliance = 0;
+    for (const auto& [stiffness, viscosity] : units) {
+        const auto part = part_of(stiffness, viscosity, rate, scheme, Changing(duration, duration_change));
+        step.units.push_back({part.decay.change, part.first.change, part.last.change});
+        compliance = compliance + part.last;
+    }
+    step.compliance = compliance.change;
+    step.acting_stiffness = (1 / (1 / spring + compliance)).change;
     return step;
 }
 

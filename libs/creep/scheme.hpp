@@ -55,6 +55,12 @@ bool is_second_order(CreepScheme scheme);
 
 Step step_of(const Chain& chain, CreepScheme scheme, double duration);
 
+// What the weights of a step, its compliance and acting stiffness change by, to first order, where spring and
+// units change by `change`, which has the chain's units, and the duration by `duration_change` [s]; doubt is
+// 0.
+Step change_of_step(const Chain& chain, const Chain& change, CreepScheme scheme, double duration,
+                    double duration_change = 0);
+
 // rho [1/s].
 double relaxation_rate(const Chain& chain);
 

@@ -345,6 +345,7 @@ std::optional<Certificate> Engine::equilibrate(Assembly& assembly, const Equilib
     take_states(assembly, start, true);
     if (!stiffness_.has_factor()) {
         space_.forget();
+        linear_space_.forget();
         acting_ = tangents(assembly, soft);
         ++factorisations_;
         if (!stiffness_.factorise(assembly, acting_)) {

@@ -38,6 +38,12 @@ public:
                                                       const std::vector<Vector2d>& guess = {});
     const std::string& reason() const { return reason_; }
 
+    // After equilibrate(), at the same stiffnesses: the x with K x = right, K made of the contacts' tangents
+    // given. By the last factor, which is renewed where it is too far off. Empty if K has no inverse.
+    VectorXd solve_linear(const Assembly& assembly, const std::vector<Tangent>& tangents,
+                          const VectorXd& right);
+    const Stiffness& stiffness() const { return stiffness_; }
+
     // What the last equilibrium, or the search for it, has cost.
     Index corrections() const { return corrections_; }
     Index factorisations() const { return factorisations_; }
@@ -67,8 +73,10 @@ private:
     double force_change(const Assembly& assembly, const VectorXd& displacement) const;
 
     Stiffness stiffness_;
-    KrylovSpace space_{24};       // of the stiffness
-    std::vector<Tangent> acting_; // with these tangents
+    KrylovSpace space_{24};        // of the stiffness
+    std::vector<Tangent> acting_;  // with these tangents
+    KrylovSpace linear_space_{24}; // of solve_linear
+    std::vector<Tangent> linear_;
     std::vector<Active> active_;
     std::vector<char> breaks_, openings_;
     VectorXd scale_;      // of forces: the stiffness against which they act [Pa]

@@ -98,8 +98,8 @@ bool Recorder::is_present(const Place& place, const Assembly& assembly)
     return assembly.zones.is_present[place.zone] != 0;
 }
 
-void Recorder::append_displacements(std::vector<Vector2d>& rows, const std::vector<Vector2d>& before,
-                                    const Assembly& assembly) const
+void Recorder::append(std::vector<Vector2d>& rows, const std::vector<Vector2d>& before,
+                      const std::vector<Vector2d>& of_gridpoints, const Assembly& assembly) const
 {
     // Where it starts is settled first: `rows` and `before` may be one.
     const std::size_t last_row = before.size() - std::min(before.size(), point_.size());
@@ -108,7 +108,7 @@ void Recorder::append_displacements(std::vector<Vector2d>& rows, const std::vect
         Vector2d u = Vector2d::Zero();
         if (is_present(place, assembly))
             for (int i = 0; i < 3; ++i)
-                u += place.share[i] * assembly.displacement[place.gridpoint[i]];
+                u += place.share[i] * of_gridpoints[place.gridpoint[i]];
         else if (last_row + p < before.size())
             u = before[last_row + p];
         rows.push_back(u);
@@ -126,7 +126,7 @@ void Recorder::record_history(Result& result, double time, const std::string& ev
     }
     for (const Place& place : point_)
         history.present.push_back(is_present(place, assembly) ? 1 : 0);
-    append_displacements(history.displacement, history.displacement, assembly);
+    append(history.displacement, history.displacement, assembly.displacement, assembly);
     history.time.push_back(time / unit::day);
     history.event.push_back(event);
 }
@@ -178,7 +178,7 @@ void Recorder::record_trace(Result& result, double time, double solver_time, con
     trace.gauge_contact = gauge_contact_;
     trace.time.push_back(time / unit::day);
     trace.solver_time.push_back(solver_time);
-    append_displacements(trace.displacement, result.history.displacement, assembly);
+    append(trace.displacement, result.history.displacement, assembly.displacement, assembly);
     for (const Index c : gauge_contact_)
         trace.traction.push_back(assembly.contacts.traction[c]);
 }

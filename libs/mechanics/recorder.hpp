@@ -26,6 +26,14 @@ public:
     // Counts the readings of the points whose date of first reading is `time` from the last recorded row.
     void start_readings(Result& result, double time) const;
 
+    // Appends a row of what the measuring points are given by the values of gridpoints; a removed point has
+    // what it had in the row before.
+    void append_at_points(std::vector<Vector2d>& rows, const std::vector<Vector2d>& of_gridpoints,
+                          const Assembly& assembly) const
+    {
+        append(rows, rows, of_gridpoints, assembly);
+    }
+
     void record_state(Result& result, double time, const std::string& event, const Assembly& assembly) const;
 
     void record_equilibrium(Result& result, double time, const Certificate& certificate,
@@ -44,9 +52,9 @@ private:
     // longest.
     static std::optional<Place> find(const Vector2d& at, double reach, const Blocks& blocks,
                                      const Mesh& mesh);
-    // A row of the points' displacements; a removed point keeps what the last row of `before` has.
-    void append_displacements(std::vector<Vector2d>& rows, const std::vector<Vector2d>& before,
-                              const Assembly& assembly) const;
+    // A row of values at the points; a removed point keeps what the last row of `before` has.
+    void append(std::vector<Vector2d>& rows, const std::vector<Vector2d>& before,
+                const std::vector<Vector2d>& of_gridpoints, const Assembly& assembly) const;
 
     std::vector<Place> point_;
     std::vector<double> first_reading_;

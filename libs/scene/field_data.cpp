@@ -2,6 +2,7 @@
 
 #include "model/error.hpp"
 #include "model/units.hpp"
+#include "scene/csv.hpp"
 #include "scene/keys.hpp"
 
 #include <nlohmann/json.hpp>
@@ -20,126 +21,6 @@ using Eigen::Vector2d;
 using nlohmann::json;
 
 constexpr std::int64_t largest_id = 2097151; // 2^31 / mapped_step - 1 (sampling/joint_sets.hpp)
-
-struct Row {
-    std::size_t line;
-    std::vector<std::string_view> field;
-};
-
-std::string_view trimmed(std::string_view text)
-{
-    const auto is_space = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
-    while (!text.empty() && is_space(text.front()))
-        text.remove_prefix(1);
-    while (!text.empty() && is_space(text.back()))
-        text.remove_suffix(1);
-    return text;
-}
-
-[[noreturn]] void refuse(std::size_t line, const std::string& what)
-{
-    throw input_error("line " + std::to_string(line) + ": " + what);
-}
-
-std::vector<std::string_view> fields_of(std::string_view line, std::size_t number)
-{
-    std::vector<std::string_view> fields;
-    while (true) {
-        line = trimmed(line);
-        std::string_view field;
-        if (line.starts_with('"')) {
-            const auto end = line.find('"', 1);
-            if (end == std::string_view::npos)
-                refuse(number, "a field begins with \" and does not end");
-            field = line.substr(1, end - 1);
-            line = trimmed(line.substr(end + 1));
-            if (!line.empty() && line.front() != ',')
-                refuse(number, "wanted a comma after a field in double quotes");
-        } else {
-            field = trimmed(line.substr(0, line.find(',')));
-            line.remove_prefix(std::min(line.size(), line.find(',')));
-        }
-        fields.push_back(field);
-        if (line.empty())
-            return fields;
-        line.remove_prefix(1);
-    }
-}
-
-// A table of text with named columns.
-class Csv
-{
-public:
-    explicit Csv(std::string_view text)
-    {
-        if (text.starts_with("\xef\xbb\xbf")) // a byte order mark
-            text.remove_prefix(3);
-        for (std::size_t line = 1; !text.empty(); ++line) {
-            const std::string_view whole = text.substr(0, text.find('\n'));
-            text.remove_prefix(std::min(text.size(), whole.size() + 1));
-            if (trimmed(whole).empty() || trimmed(whole).front() == '#')
-                continue;
-            Row row{line, fields_of(whole, line)};
-            if (columns_.empty()) {
-                columns_ = std::move(row.field);
-                head_ = line;
-            } else {
-                if (row.field.size() != columns_.size())
-                    refuse(line, "has " + std::to_string(row.field.size()) + " fields; wanted " +
-                                     std::to_string(columns_.size()) + ", as in line " +
-                                     std::to_string(head_));
-                rows.push_back(std::move(row));
-            }
-        }
-        if (rows.empty())
-            throw input_error("wanted a line of column names, and rows");
-        for (const std::string_view name : columns_)
-            if (std::count(columns_.begin(), columns_.end(), name) > 1)
-                refuse(head_, "has the column " + std::string(name) + " more than once");
-    }
-
-    // Refuses a column that has none of these names.
-    void allow_only(const std::vector<std::string>& names) const
-    {
-        for (const std::string_view column : columns_)
-            if (std::find(names.begin(), names.end(), column) == names.end()) {
-                std::string all;
-                for (const std::string& name : names)
-                    all += (all.empty() ? "" : ", ") + name;
-                refuse(head_, "has a column " + std::string(column) + "; wanted none but " + all);
-            }
-    }
-
-    bool has(std::string_view name) const
-    {
-        return std::find(columns_.begin(), columns_.end(), name) != columns_.end();
-    }
-
-    std::size_t column(std::string_view name) const
-    {
-        const auto found = std::find(columns_.begin(), columns_.end(), name);
-        if (found == columns_.end())
-            refuse(head_, "wanted a column " + std::string(name));
-        return static_cast<std::size_t>(found - columns_.begin());
-    }
-
-    double number(const Row& row, std::string_view name, const Range& range) const
-    {
-        const std::string_view field = row.field[column(name)];
-        double value = 0;
-        const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
-        if (error != std::errc{} || end != field.data() + field.size() || !range.holds(value))
-            refuse(row.line, std::string(name) + " is \"" + std::string(field) + "\"; wanted a number in " +
-                                 shown(range, Unit{""}));
-        return value;
-    }
-
-    std::vector<Row> rows;
-
-private:
-    std::vector<std::string_view> columns_;
-    std::size_t head_ = 0;
-};
 
 // A trace on its way, with what the file says of its id.
 struct FoundTrace {
@@ -162,13 +43,13 @@ constexpr Range coordinate = within(farthest_metre);
 
 std::vector<FoundTrace> traces_in_csv(const Csv& csv, const TraceFilter& filter)
 {
-    const auto taken = [&](const Row& row) {
+    const auto taken = [&](const Csv::Row& row) {
         return filter.property.empty() || row.field[csv.column(filter.property)] == filter.value;
     };
     std::vector<FoundTrace> found;
     if (csv.has("x1_m")) {
         std::int64_t place = 0;
-        for (const Row& row : csv.rows) {
+        for (const Csv::Row& row : csv.rows) {
             if (taken(row)) {
                 const auto at = [&](std::string_view x, std::string_view y) {
                     return Vector2d(csv.number(row, x, coordinate), csv.number(row, y, coordinate));
@@ -184,26 +65,26 @@ std::vector<FoundTrace> traces_in_csv(const Csv& csv, const TraceFilter& filter)
     }
     const std::size_t id = csv.column("id");
     std::int64_t place = -1;
-    const Row* before = nullptr;
+    const Csv::Row* before = nullptr;
     std::set<std::string_view> seen;
-    for (const Row& row : csv.rows) {
+    for (const Csv::Row& row : csv.rows) {
         const bool begins = !before || before->field[id] != row.field[id];
         if (begins) {
             ++place;
             if (!seen.insert(row.field[id]).second)
-                refuse(row.line, "id \"" + std::string(row.field[id]) +
-                                     "\" comes again; wanted the rows of a trace together");
+                refuse_line(row.line, "id \"" + std::string(row.field[id]) +
+                                          "\" comes again; wanted the rows of a trace together");
         }
         if (taken(row)) {
             if (begins)
                 found.push_back(
                     {id_of(row.field[id]), place, {Polygon{}}, "line " + std::to_string(row.line)});
             else if (!taken(*before))
-                refuse(row.line, "a trace has more than one " + filter.property);
+                refuse_line(row.line, "a trace has more than one " + filter.property);
             found.back().polylines[0].emplace_back(csv.number(row, "x_m", coordinate),
                                                    csv.number(row, "y_m", coordinate));
         } else if (!begins && taken(*before)) {
-            refuse(row.line, "a trace has more than one " + filter.property);
+            refuse_line(row.line, "a trace has more than one " + filter.property);
         }
         before = &row;
     }
@@ -296,7 +177,7 @@ std::vector<MeasuredPole> poles_in_csv(std::string_view text)
         csv.column(needed);
     csv.allow_only({"dip_deg", "dip_direction_deg", "weight"});
     std::vector<MeasuredPole> poles;
-    for (const Row& row : csv.rows)
+    for (const Csv::Row& row : csv.rows)
         poles.push_back({csv.number(row, "dip_deg", from(0).to(90)) * unit::deg,
                          csv.number(row, "dip_direction_deg", from(0).to(360)) * unit::deg,
                          csv.has("weight") ? csv.number(row, "weight", above(0).to(1e6)) : 1.0});

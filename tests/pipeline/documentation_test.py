@@ -8,7 +8,8 @@ import h5py
 
 from chain import ChainTest, main
 
-PROGRAMS = ["jointgen", "strength-averaging", "demsolve", "jointexport"]
+CHAIN = ["jointgen", "strength-averaging", "demsolve", "jointexport"]
+PROGRAMS = [*CHAIN, "creepfit"]
 BUILD_AND_RUN = "sh pipelines/setup.sh && make -C pipelines/slope"
 BUILD_AND_TEST = "sh pipelines/setup.sh && ctest --preset release"
 
@@ -70,7 +71,7 @@ class Documentation(ChainTest):
         (chain,) = (block for block in code_blocks(readme, "sh") if "demsolve" in block)
         path, *commands = chain.splitlines()
         self.assertEqual(path, 'export PATH="$PWD/build/release/apps:$PATH"')
-        self.assertEqual([command.split()[0] for command in commands], PROGRAMS)
+        self.assertEqual([command.split()[0] for command in commands], CHAIN)
 
         folder = self.chain.new_folder()
         (folder / "two.toml").write_text(scene)

@@ -7,7 +7,7 @@ import unittest
 
 from chain import ChainTest, main
 
-APPS = ["jointgen", "strength-averaging", "demsolve", "jointexport"]
+APPS = ["jointgen", "strength-averaging", "demsolve", "jointexport", "creepfit"]
 
 
 class Install(ChainTest):

@@ -1,0 +1,618 @@
+// creepfit: find creep constants from what was measured.
+//
+//   creepfit curve.csv --stiffness 690 -o constants.csv                 of one joint, from one curve
+//   creepfit joints.h5 --measurements readings.csv --fit kelvin-stiffness,joint-stiffness -o factors.csv
+//                                                                       of all joints, through the solver
+//
+// Reads   curve.csv, or joints.h5 (from strength-averaging) and readings.csv
+// Writes  a table of what was found, and one of the readings on request   (docs/programs.md)
+//
+// The curve is in libs/estimation, the way through the solver in libs/back_analysis.
+
+#include "program.hpp"
+
+#include "back_analysis/back_analysis.hpp"
+#include "estimation/creep_curve.hpp"
+#include "model/error.hpp"
+#include "model/units.hpp"
+#include "scene/measurements.hpp"
+#include "scene/scene.hpp"
+#include "store/files.hpp"
+#include "store/save.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <span>
+#include <sstream>
+
+using namespace jointcreep;
+using estimation::AtBound;
+using estimation::Confidence;
+using estimation::Interval;
+using sensitivity::Parameter;
+
+namespace
+{
+
+const Program program{
+    .name = "creepfit",
+    .summary = "Finds creep constants of joints from measured displacements.",
+    .input = "CURVE.csv|joints.h5",
+    .output = "FOUND.csv",
+    .options =
+        {{"readings", "FILE.csv", "write measured and computed displacements, too"},
+         {"stiffness", "MPA_PER_M", "of a curve: K of the joint, to give E and eta as such, not over K"},
+         {"elastic-mm", "MM", "of a curve: what the joint did at once, if known (default: found)"},
+         {"load-day", "DAY", "of a curve: when the load changed (default: day of the first reading)"},
+         {"converged-day", "DAY",
+          "of a curve: when creep is taken to be over, for the closed estimate (default: last reading)"},
+         {"measurements", "FILE.csv", "through the solver: displacements of the scene's points"},
+         {"fit", "NAMES",
+          "through the solver: factors to find, of kelvin-stiffness, kelvin-viscosity, joint-stiffness and "
+          "horizontal-stress, parted by commas, each with bounds if wanted: joint-stiffness=0.5:2 (default "
+          "bounds: 0.05:20)"},
+         {"since-first-reading", "",
+          "through the solver: measurements count from each point's first reading"},
+         {"runs", "N", "through the solver: at most so many runs (default 60)"},
+         {"threads", "N", "through the solver: threads (default 1)"}},
+    .example = "creepfit joints.h5 --measurements readings.csv --fit kelvin-stiffness,kelvin-viscosity -o "
+               "factors.csv",
+};
+
+struct Name {
+    std::string_view option, words;
+    Parameter parameter;
+};
+constexpr std::array<Name, 4> names{
+    {{"kelvin-stiffness", "Kelvin stiffness E", Parameter::kelvin_stiffness},
+     {"kelvin-viscosity", "Kelvin viscosity eta", Parameter::kelvin_viscosity},
+     {"joint-stiffness", "joint stiffness K", Parameter::joint_stiffness},
+     {"horizontal-stress", "horizontal stress", Parameter::horizontal_stress}}};
+
+const Name& name_of(Parameter parameter)
+{
+    return *std::find_if(names.begin(), names.end(),
+                         [&](const Name& name) { return name.parameter == parameter; });
+}
+
+std::string rounded(double value, int digits = 4)
+{
+    std::ostringstream text;
+    text.precision(digits);
+    text << value;
+    return text.str();
+}
+
+std::string shown_interval(const Interval& interval)
+{
+    return rounded(interval.low) + " to " +
+           (std::isfinite(interval.high) ? rounded(interval.high) : "infinity");
+}
+
+std::string mm(double metres)
+{
+    return rounded(metres / 1e-3);
+}
+
+std::string text_of(const std::string& path)
+{
+    if (std::error_code none; std::filesystem::is_directory(path, none))
+        throw file_error(path + ": is a folder");
+    std::ifstream file(path, std::ios::binary);
+    std::ostringstream text;
+    text << file.rdbuf();
+    if (!file)
+        throw file_error(path + ": cannot be read");
+    return text.str();
+}
+
+// Whatever refuses what is in a file names the file.
+template <class Read>
+auto of_file(const std::string& path, const Read& read)
+{
+    try {
+        return read();
+    } catch (const input_error& error) {
+        const std::string_view message = error.what();
+        throw input_error(path + (message.starts_with("line ") ? ", " : ": ") + error.what());
+    }
+}
+
+// The same, where other things may be refused, too.
+template <class Read>
+auto of_lines_of_file(const std::string& path, const Read& read)
+{
+    try {
+        return read();
+    } catch (const input_error& error) {
+        if (const std::string_view message = error.what(); message.starts_with("line "))
+            throw input_error(path + ", " + error.what());
+        throw;
+    }
+}
+
+void write(const std::string& path, const std::string& text)
+{
+    try {
+        save(path, std::as_bytes(std::span(text)));
+    } catch (const file_error& error) {
+        throw file_error(path + ": " + error.what());
+    }
+}
+
+// Where to write the readings; refuses what would lose another file.
+std::optional<std::string> readings_file(const Arguments& arguments)
+{
+    const std::optional<std::string> path = arguments.text("readings");
+    if (!path)
+        return {};
+    for (const std::string& other :
+         {arguments.input(), arguments.output(), arguments.text("measurements").value_or("")})
+        if (std::error_code absent; *path == other || std::filesystem::equivalent(*path, other, absent))
+            throw input_error("--readings: " + *path + " is used already; give it another name");
+    check_writable(*path);
+    return path;
+}
+
+void refuse_options(const Arguments& arguments, const std::string& why,
+                    std::initializer_list<const char*> options)
+{
+    for (const char* option : options)
+        if (arguments.has(option))
+            throw input_error("--" + std::string(option) + " goes with " + why);
+}
+
+std::string noise_in_words(const Confidence& confidence, bool knows_deviations)
+{
+    std::string words = "independent and normal, ";
+    if (!knows_deviations)
+        return words + "alike for all readings, as large as the residuals are";
+    if (!confidence.is_noise_from_residuals)
+        return words + "with the readings' sigma";
+    return words + "with the readings' sigma times " + rounded(confidence.noise_factor, 3) +
+           ": the fit is worse than these allow, so intervals are wider";
+}
+
+// What says that intervals are too narrow: residuals that follow each other.
+void warn_of_lag(Summary& summary, const std::string& label, double lag_one, std::size_t readings)
+{
+    if (lag_one > 2 / std::sqrt(static_cast<double>(readings)))
+        summary.add(
+            "warning: residuals follow each other" + label,
+            "correlation of neighbours " + rounded(lag_one, 2) +
+                ": the noise is not independent, or the model is not right, and intervals are too narrow");
+}
+
+// --- one curve -------------------------------------------------------------------------------------------
+
+struct Row {
+    std::string quantity, unit;
+    double value;
+    std::optional<Interval> interval;
+};
+
+std::string table_of(const std::vector<Row>& rows)
+{
+    std::string table = "quantity,unit,value,low_95,high_95\n";
+    for (const Row& row : rows) {
+        table += row.quantity + ',' + row.unit + ',' + shown(row.value) + ',';
+        if (row.interval)
+            table += shown(row.interval->low);
+        table += ',';
+        if (row.interval && std::isfinite(row.interval->high))
+            table += shown(row.interval->high);
+        table += '\n';
+    }
+    return table;
+}
+
+void fit_curve(const Arguments& arguments)
+{
+    refuse_options(arguments, "joints.h5 and --measurements",
+                   {"fit", "since-first-reading", "runs", "threads"});
+    const std::string& input = arguments.input();
+    const std::optional<double> stiffness = arguments.number("stiffness");
+    if (stiffness)
+        require(*stiffness > 0 && *stiffness <= 1e9, "--stiffness", *stiffness, "MPa/m",
+                "must be above 0 and at most 1e9");
+    const std::optional<std::string> readings_path = readings_file(arguments);
+    check_writable(arguments.output());
+    const std::string text = text_of(input);
+    if (text.starts_with("\x89HDF"))
+        throw input_error("--measurements is not given, and " + input + " is no curve");
+    const std::vector<Measurement> measurements = of_file(input, [&] { return creep_curve_in_csv(text); });
+
+    const double load =
+        arguments.number("load-day").value_or(measurements.front().time / unit::day) * unit::day;
+    estimation::CreepCurve curve;
+    for (const Measurement& m : measurements) {
+        if (m.time < load)
+            continue; // before the load changed
+        curve.time.push_back(m.time - load);
+        curve.displacement.push_back(m.displacement);
+        if (m.deviation)
+            curve.deviation.push_back(*m.deviation);
+    }
+    if (const auto elastic = arguments.number("elastic-mm")) {
+        require(std::abs(*elastic) > 0 && std::abs(*elastic) <= 1e6, "--elastic-mm", *elastic, "mm",
+                "must not be 0, and at most 1e6");
+        curve.elastic_part = *elastic * 1e-3;
+    }
+    if (curve.time.empty())
+        throw input_error("--load-day is " + shown(load / unit::day) + "; " + input +
+                          " has no reading from then on");
+    const double end =
+        arguments.number("converged-day").value_or((load + curve.time.back()) / unit::day) * unit::day - load;
+    const estimation::CurveFit fit = of_file(input, [&] { return estimation::fit_curve(curve); });
+    const estimation::ClosedEstimate closed =
+        of_file(input, [&] { return estimation::closed_estimate(curve, end); });
+
+    // E and eta in MPa/m and MPa day/m, or over K.
+    const double K = stiffness.value_or(1);
+    const std::string unit_E = stiffness ? "MPa/m" : "K", unit_eta = stiffness ? "MPa day/m" : "K day";
+    const auto times = [](const Interval& i, double by) { return Interval{i.low * by, i.high * by}; };
+    const auto estimate = [&](const std::string& quantity, const std::string& unit,
+                              const estimation::Estimate& e, double by) {
+        return Row{quantity, unit, e.value * by, times(e.interval, by)};
+    };
+    const double per_day = K / unit::day;
+    const std::vector<Row> rows{
+        {"elastic part", "mm", fit.elastic_part * 1e3,
+         curve.elastic_part ? std::nullopt : std::optional(times(fit.elastic_interval, 1e3))},
+        {"creep part", "mm", fit.creep_part * 1e3, times(fit.creep_interval, 1e3)},
+        estimate("retardation time", "day", fit.time, 1 / unit::day),
+        estimate("Kelvin stiffness E", unit_E, fit.stiffness, K),
+        estimate("Kelvin viscosity eta", unit_eta, fit.viscosity, per_day),
+        estimate("E by Eq. 14", unit_E, closed.stiffness, K),
+        estimate("eta by least squares with that E", unit_eta, closed.viscosity, per_day)};
+    if (readings_path) {
+        std::string table = "time_day,measured_mm,computed_mm,residual_mm\n";
+        for (std::size_t i = 0; i < curve.time.size(); ++i)
+            table += shown((load + curve.time[i]) / unit::day) + ',' + shown(curve.displacement[i] * 1e3) +
+                     ',' + shown(fit.computed[i] * 1e3) + ',' +
+                     shown((fit.computed[i] - curve.displacement[i]) * 1e3) + '\n';
+        write(*readings_path, table);
+    }
+    write(arguments.output(), table_of(rows));
+    if (arguments.quiet())
+        return;
+
+    Summary summary;
+    summary.add("readings", curve.time.size());
+    summary.add("days since the load", curve.time.back() / unit::day);
+    for (const Row& row : rows)
+        summary.add(row.quantity, rounded(row.value) +
+                                      (row.interval ? " (95 %: " + shown_interval(*row.interval) + ")" : "") +
+                                      ' ' + row.unit);
+    summary.add("correlation of ln E and ln eta", fit.correlation);
+    const bool knows = !curve.deviation.empty();
+    double squares = 0;
+    for (std::size_t i = 0; i < fit.computed.size(); ++i)
+        squares += std::pow(fit.computed[i] - curve.displacement[i], 2);
+    summary.add("residuals, root mean square",
+                mm(std::sqrt(squares / static_cast<double>(fit.computed.size()))) + " mm");
+    if (knows)
+        summary.add("chi squared", rounded(fit.confidence.sum_of_squares) + " of " +
+                                       std::to_string(fit.confidence.readings - fit.confidence.parameters) +
+                                       " degrees of freedom");
+    summary.add("noise taken as", noise_in_words(fit.confidence, knows));
+    if (fit.is_too_short)
+        summary.add(
+            "warning: record too short",
+            "it is " + rounded(fit.record_length, 2) +
+                " retardation times long: it tells how fast creep begins, about 1 / eta, but not where "
+                "it ends, 1 / E");
+    if (fit.is_too_coarse)
+        summary.add(
+            "warning: readings too coarse",
+            "creep is all but over at the first reading after the load: eta is at most what is found");
+    const double left = std::exp(-end / fit.retardation_time);
+    if (left > 0.02)
+        summary.add("warning: creep not over", rounded(100 * left, 2) +
+                                                   " percent of it is left at the end that "
+                                                   "Eq. 14 takes: its E is too high by about as much");
+    warn_of_lag(summary, "", fit.lag_one, fit.computed.size());
+    summary.print();
+}
+
+// --- through the solver ----------------------------------------------------------------------------------
+
+std::vector<back_analysis::Factor> factors_in(const std::string& text)
+{
+    std::vector<back_analysis::Factor> factors;
+    std::istringstream list(text);
+    for (std::string item; std::getline(list, item, ',');) {
+        const std::string option = item.substr(0, item.find('='));
+        const auto name =
+            std::find_if(names.begin(), names.end(), [&](const Name& n) { return n.option == option; });
+        if (name == names.end())
+            throw input_error("--fit: \"" + option +
+                              "\" is none of kelvin-stiffness, kelvin-viscosity, "
+                              "joint-stiffness, horizontal-stress");
+        for (const back_analysis::Factor& other : factors)
+            if (other.parameter == name->parameter)
+                throw input_error("--fit: " + option + " is given twice");
+        back_analysis::Factor factor{name->parameter};
+        if (item.size() > option.size()) {
+            double low = 0, high = 0;
+            char colon = 0, rest = 0;
+            std::istringstream bounds(item.substr(option.size() + 1));
+            if (!(bounds >> low >> colon >> high) || colon != ':' || bounds >> rest || !(low > 0) ||
+                !(low < high) || low < 1e-6 || high > 1e6)
+                throw input_error("--fit: the bounds of " + option + " are \"" +
+                                  item.substr(option.size() + 1) +
+                                  "\"; wanted two factors LOW:HIGH, 1e-6 at least, rising, 1e6 at most");
+            factor.low = low;
+            factor.high = high;
+            factor.start = low <= 1 && 1 <= high ? 1 : std::sqrt(low * high);
+        }
+        factors.push_back(factor);
+    }
+    if (factors.empty())
+        throw input_error("--fit is empty; wanted one factor at least");
+    return factors;
+}
+
+std::string found_table(const back_analysis::Found& found, const std::vector<back_analysis::Factor>& factors)
+{
+    std::string table =
+        "factor,value,low_95,high_95,low_95_all,high_95_all,standard_error_of_logarithm,at_bound";
+    for (const back_analysis::Factor& factor : factors)
+        table += ",correlation_" + std::string(name_of(factor.parameter).option);
+    table += '\n';
+    const auto bounded = [](double logarithm) {
+        return std::isfinite(logarithm) ? shown(std::exp(logarithm)) : std::string();
+    };
+    for (std::size_t i = 0; i < factors.size(); ++i) {
+        const auto index = static_cast<Eigen::Index>(i);
+        const double logarithm = found.minimum.parameters[index];
+        const Interval each = found.confidence.interval(logarithm, index),
+                       all = found.confidence.interval(logarithm, index, true);
+        const AtBound at = found.minimum.at_bound[i];
+        table += std::string(name_of(factors[i].parameter).option) + ',' + shown(found.factors[i]) + ',' +
+                 bounded(each.low) + ',' + bounded(each.high) + ',' + bounded(all.low) + ',' +
+                 bounded(all.high) + ',' +
+                 (found.confidence.is_fixed[i] ? "" : shown(found.confidence.standard_error(index))) + ',' +
+                 (at == AtBound::no    ? "no"
+                  : at == AtBound::low ? "low"
+                                       : "high");
+        for (Eigen::Index j = 0; j < found.confidence.correlation.cols(); ++j)
+            table += ',' + shown(found.confidence.correlation(index, j));
+        table += '\n';
+    }
+    return table;
+}
+
+std::string in_quotes(const std::string& name)
+{
+    if (name.find_first_of(",\"\r\n") == std::string::npos)
+        return name;
+    std::string quoted = "\"";
+    for (const char c : name)
+        quoted.append(c == '"' ? 2 : 1, c);
+    return quoted + '"';
+}
+
+std::string readings_table(const back_analysis::Found& found, const std::vector<Measurement>& measurements,
+                           const Scene& scene)
+{
+    const bool knows = measurements.front().deviation.has_value();
+    std::string table = "time_day,point,component,measured_mm,computed_mm,residual_mm,computed_at_start_mm";
+    table += knows ? ",sigma_mm\n" : "\n";
+    for (std::size_t m = 0; m < measurements.size(); ++m) {
+        const Measurement& measured = measurements[m];
+        const auto& [at_start, at_end] = found.computed[m];
+        table += shown(measured.time / unit::day) + ',' + in_quotes(scene.points[measured.point].name) + ',' +
+                 (measured.component == 0 ? "x" : "y") + ',' + shown(measured.displacement * 1e3) + ',' +
+                 shown(at_end * 1e3) + ',' + shown((at_end - measured.displacement) * 1e3) + ',' +
+                 shown(at_start * 1e3);
+        if (knows)
+            table += ',' + shown(*measured.deviation * 1e3);
+        table += '\n';
+    }
+    return table;
+}
+
+void report_points(Summary& summary, const back_analysis::Found& found,
+                   const std::vector<Measurement>& measurements, const Scene& scene)
+{
+    for (std::size_t p = 0; p < scene.points.size(); ++p)
+        for (const int component : {0, 1}) {
+            std::vector<std::pair<double, double>> residuals; // by time
+            double sum = 0, squares = 0;
+            for (std::size_t m = 0; m < measurements.size(); ++m) {
+                if (measurements[m].point != p || measurements[m].component != component)
+                    continue;
+                const double residual = found.computed[m].at_end - measurements[m].displacement;
+                residuals.emplace_back(measurements[m].time, residual);
+                sum += residual;
+                squares += residual * residual;
+            }
+            if (residuals.empty())
+                continue;
+            const std::string label = scene.points[p].name + (component == 0 ? ", x" : ", y");
+            const auto n = static_cast<double>(residuals.size());
+            summary.add("residuals of " + label, "mean " + mm(sum / n) + " mm, root mean square " +
+                                                     mm(std::sqrt(squares / n)) + " mm, " +
+                                                     std::to_string(residuals.size()) + " readings");
+            std::stable_sort(residuals.begin(), residuals.end(),
+                             [](const auto& a, const auto& b) { return a.first < b.first; });
+            std::vector<double> in_time;
+            for (const auto& [time, residual] : residuals)
+                in_time.push_back(residual);
+            if (in_time.size() > 3)
+                warn_of_lag(summary, ", " + label, estimation::lag_one_correlation(in_time), in_time.size());
+        }
+}
+
+// What a combination of factors changes, in words: "kelvin-stiffness x 1.1 with joint-stiffness x 0.95".
+std::string combination_in_words(const Eigen::VectorXd& direction, double by,
+                                 const std::vector<back_analysis::Factor>& factors)
+{
+    std::string words;
+    for (std::size_t i = 0; i < factors.size(); ++i) {
+        const double share = direction[static_cast<Eigen::Index>(i)];
+        if (std::abs(share) < 0.1)
+            continue;
+        words += (words.empty() ? "" : " with ") + std::string(name_of(factors[i].parameter).option) + " x " +
+                 rounded(std::exp(share * by), 3);
+    }
+    return words;
+}
+
+void report(const back_analysis::Found& found, const std::vector<Measurement>& measurements,
+            const Scene& scene, const back_analysis::Settings& settings)
+{
+    const Confidence& confidence = found.confidence;
+    const auto& factors = settings.factors;
+    Summary summary;
+    summary.add("readings", measurements.size());
+    summary.add("runs", found.minimum.evaluations);
+    if (!found.minimum.is_converged)
+        summary.add("warning: not converged",
+                    std::string("--runs were too few; the best so far is reported"));
+    for (std::size_t i = 0; i < factors.size(); ++i) {
+        const auto index = static_cast<Eigen::Index>(i);
+        const auto exponential = [](const Interval& of) {
+            return Interval{std::exp(of.low), std::exp(of.high)};
+        };
+        const double logarithm = found.minimum.parameters[index];
+        std::string words = rounded(found.factors[i]);
+        if (found.minimum.at_bound[i] != AtBound::no)
+            words += std::string(": at its ") +
+                     (found.minimum.at_bound[i] == AtBound::low ? "lower" : "upper") +
+                     " bound; the readings want it beyond";
+        else if (confidence.is_fixed[i])
+            words += ": it does not change these readings";
+        else
+            words += " (95 %: " + shown_interval(exponential(confidence.interval(logarithm, index))) +
+                     "; all together: " +
+                     shown_interval(exponential(confidence.interval(logarithm, index, true))) + ")";
+        summary.add("factor on " + std::string(name_of(factors[i].parameter).words), words);
+    }
+    for (std::size_t i = 0; i < factors.size(); ++i)
+        for (std::size_t j = i + 1; j < factors.size(); ++j)
+            if (!confidence.is_fixed[i] && !confidence.is_fixed[j])
+                summary.add("correlation of " + std::string(name_of(factors[i].parameter).option) + " and " +
+                                std::string(name_of(factors[j].parameter).option),
+                            rounded(confidence.correlation(static_cast<Eigen::Index>(i),
+                                                           static_cast<Eigen::Index>(j)),
+                                    3));
+    const auto degrees = confidence.readings - confidence.parameters;
+    const bool knows = measurements.front().deviation.has_value();
+    if (knows)
+        summary.add("chi squared", rounded(confidence.sum_of_squares) + " of " + std::to_string(degrees) +
+                                       " degrees of freedom, p " + rounded(confidence.p_value, 2));
+    else
+        summary.add("standard deviation of residuals", mm(1e-3 * confidence.noise_factor) + " mm");
+    summary.add("noise taken as", noise_in_words(confidence, knows));
+    report_points(summary, found, measurements, scene);
+    if (confidence.parameters > 1)
+        summary.add("condition number of the scaled sensitivities", rounded(confidence.condition_number, 3));
+    if (const auto weak = estimation::weak_combination(found.minimum, confidence)) {
+        const double half = confidence.quantile * weak->standard_error;
+        summary.add(weak->is_alike_effects ? "warning: hardly told apart" : "warning: hardly known",
+                    combination_in_words(weak->direction, half, factors) +
+                        (weak->is_alike_effects ? " changes the readings by no more than their noise"
+                                                : " is still within the readings' noise"));
+    }
+    const double noise = knows ? measurements.front().deviation.value() : 1e-3 * confidence.noise_factor;
+    if (found.interpolation_error > 0.2 * noise)
+        summary.add("warning: readings between steps",
+                    "may be off by " + mm(found.interpolation_error) +
+                        " mm, the history being straight between creep steps; shorter steps help");
+    summary.print();
+
+    // For the scene: constants of joint materials, where these are those of the joints.
+    if (scene.averaging.stiffness != StiffnessRule::joint)
+        return;
+    double E = 1, eta = 1, K = 1;
+    for (std::size_t i = 0; i < factors.size(); ++i) {
+        const double f = found.factors[i];
+        switch (factors[i].parameter) {
+        case Parameter::kelvin_stiffness:
+            E *= f;
+            break;
+        case Parameter::kelvin_viscosity:
+            eta *= f;
+            break;
+        case Parameter::joint_stiffness:
+            K *= f;
+            E *= f;
+            eta *= f;
+            break;
+        case Parameter::horizontal_stress:
+            std::cout << "\nIn the scene:\n[in_situ_stress]\ncompression_xx_MPa = "
+                      << rounded(scene.in_situ_stress.compression_xx * f / unit::MPa, 6)
+                      << "\ncompression_xx_gradient_MPa_per_m = "
+                      << rounded(scene.in_situ_stress.gradient_xx * f / unit::MPa, 6) << '\n';
+        }
+    }
+    if (E == 1 && eta == 1 && K == 1)
+        return;
+    std::cout << "\nIn the scene: times " << rounded(K, 6) << " all stiffnesses of joint materials, times "
+              << rounded(E, 6) << " their Kelvin stiffnesses, times " << rounded(eta, 6)
+              << " their Kelvin and Maxwell viscosities.\n";
+}
+
+void fit_section(const Arguments& arguments)
+{
+    refuse_options(arguments, "a curve, not with --measurements",
+                   {"stiffness", "elastic-mm", "load-day", "converged-day"});
+    const std::string& input = arguments.input();
+    const std::string measured = *arguments.text("measurements");
+    if (!arguments.has("fit"))
+        throw input_error("--fit is not given; wanted the factors to find");
+    back_analysis::Settings settings;
+    settings.factors = factors_in(*arguments.text("fit"));
+    settings.since_first_reading = arguments.has("since-first-reading");
+    settings.threads = static_cast<int>(arguments.whole_number("threads", 1, 1024).value_or(1));
+    settings.most_runs = static_cast<int>(arguments.whole_number("runs", 1, 100000).value_or(60));
+    const std::optional<std::string> readings_path = readings_file(arguments);
+    check_writable(arguments.output());
+
+    const JointsFile file = read_joints(input);
+    const Scene scene = parse_scene(file.provenance.scene, input + ": /scene");
+    const std::string text = text_of(measured);
+    const std::vector<Measurement> measurements =
+        of_file(measured, [&] { return measurements_in_csv(text, scene); });
+    if (measurements.size() <= settings.factors.size())
+        throw input_error(measured + ": " + std::to_string(measurements.size()) + " readings for " +
+                          std::to_string(settings.factors.size()) + " factors; wanted more readings");
+    std::optional<Progress> progress(arguments.quiet());
+    const back_analysis::Found found = of_lines_of_file(measured, [&] {
+        return back_analysis::fit(scene, file.network, file.equivalent, measurements, settings,
+                                  [&](int run, const std::vector<double>& factors) {
+                                      std::string words = "run " + std::to_string(run + 1) + ":";
+                                      for (const double factor : factors)
+                                          words += ' ' + rounded(factor, 3);
+                                      progress->show(1 - std::pow(0.8, run), words);
+                                  });
+    });
+    progress.reset();
+    if (readings_path)
+        write(*readings_path, readings_table(found, measurements, scene));
+    write(arguments.output(), found_table(found, settings.factors));
+    if (!arguments.quiet())
+        report(found, measurements, scene, settings);
+}
+
+void fit_and_write(const Arguments& arguments)
+{
+    arguments.output(); // refuse early
+    if (arguments.has("measurements"))
+        fit_section(arguments);
+    else
+        fit_curve(arguments);
+}
+
+} // namespace
+
+int main(int argc, char** argv)
+{
+    return run(program, argc, argv, fit_and_write);
+}

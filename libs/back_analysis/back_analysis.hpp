@@ -1,0 +1,63 @@
+// Back analysis: the factors on joint constants and in-situ stress with which a section moves as was
+// measured.
+//
+// Each evaluation is an analysis from the in-situ state to the scene's end, with sensitivities found along
+// with it (libs/sensitivity); least squares (libs/estimation) over the factors' logarithms.
+
+#pragma once
+
+#include "analysis/analysis.hpp"
+#include "estimation/confidence.hpp"
+#include "scene/measurements.hpp"
+
+namespace jointcreep::back_analysis
+{
+
+struct Factor {
+    sensitivity::Parameter parameter;
+    double start = 1, low = 0.05, high = 20; // [-]
+};
+
+struct Settings {
+    std::vector<Factor> factors;
+    bool since_first_reading =
+        false; // measurements count from each point's first reading, not from the start
+    int threads = 1;
+    int most_runs = 60;
+};
+
+struct Computed {
+    double at_start, at_end; // at the factors that the search started from, and at those found [m]
+};
+
+struct Found {
+    std::vector<double> factors;
+    estimation::Minimum
+        minimum; // over logarithms; residuals over deviations, or over 1 mm where there are none
+    estimation::Confidence confidence;
+    std::vector<Computed> computed; // of the measurements
+    // Between its steps an analysis is taken to go straight; by how much that may be off, at most [m].
+    double interpolation_error = 0;
+};
+
+// Told before every run, with the factors it is for.
+using RunObserver = std::function<void(int run, const std::vector<double>& factors)>;
+
+// Throws input_error where the measurements are not of what the section has (rock that is gone, times before
+// a first reading), and equilibrium_error where there is no equilibrium at the start; elsewhere in the search
+// factors without an equilibrium are kept away from.
+Found fit(const Scene& scene, const Network& network, const EquivalentJoints& joints,
+          const std::vector<Measurement>& measurements, const Settings& settings,
+          const RunObserver& observe = {});
+
+// What an analysis has for the measurements [m], and their sensitivities, [measurement, parameter].
+struct Prediction {
+    std::vector<double> displacement;
+    estimation::MatrixXd sensitivity;
+    double interpolation_error = 0;
+};
+Prediction predict(const Scene& scene, const History& history,
+                   const std::vector<std::vector<Eigen::Vector2d>>& sensitivities,
+                   const std::vector<Measurement>& measurements, bool since_first_reading);
+
+} // namespace jointcreep::back_analysis

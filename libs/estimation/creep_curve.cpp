@@ -1,0 +1,345 @@
+#include "estimation/creep_curve.hpp"
+
+#include "model/error.hpp"
+#include "model/units.hpp"
+
+#include <Eigen/QR>
+
+#include <algorithm>
+#include <cmath>
+
+namespace jointcreep::estimation
+{
+
+namespace
+{
+
+// tau is looked for between the shortest time between readings and many records.
+constexpr double shortest_share = 0.05, longest_share = 100;
+
+double shortest_interval(const CreepCurve& curve)
+{
+    double shortest = curve.time.back();
+    for (std::size_t i = 0; i < curve.time.size(); ++i) {
+        const double since = curve.time[i] - (i > 0 ? curve.time[i - 1] : 0.0);
+        if (since > 0)
+            shortest = std::min(shortest, since);
+    }
+    return shortest;
+}
+
+void check(const CreepCurve& curve)
+{
+    const std::size_t wanted = curve.elastic_part ? 3 : 4;
+    if (curve.time.size() < wanted)
+        throw input_error(std::to_string(curve.time.size()) + " readings; wanted at least " +
+                          std::to_string(wanted));
+    if (!(curve.time.back() > 0))
+        throw input_error("all readings are of the moment when the load changed");
+}
+
+double deviation_of(const CreepCurve& curve, std::size_t i)
+{
+    return curve.deviation.empty() ? 1.0 : curve.deviation[i];
+}
+
+// With tau given, what is left is linear: {d_e, d_c}, or {d_c}.
+VectorXd linear_parts(const CreepCurve& curve, double tau, double& sum_of_squares)
+{
+    const auto n = static_cast<Eigen::Index>(curve.time.size());
+    MatrixXd A(n, curve.elastic_part ? 1 : 2);
+    VectorXd b(n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+        const auto k = static_cast<std::size_t>(i);
+        const double weight = 1 / deviation_of(curve, k), crept = -std::expm1(-curve.time[k] / tau);
+        if (!curve.elastic_part)
+            A(i, 0) = weight;
+        A(i, A.cols() - 1) = weight * crept;
+        b[i] = weight * (curve.displacement[k] - curve.elastic_part.value_or(0));
+    }
+    const VectorXd parts = A.colPivHouseholderQr().solve(b);
+    sum_of_squares = (A * parts - b).squaredNorm();
+    return parts;
+}
+
+// exp(value +- half), as a value with its interval.
+Estimate estimate(double value, double half)
+{
+    return {value, {value * std::exp(-half), value * std::exp(half)}};
+}
+
+// The best tau on a grid, by the sum of squares that `sum_at` gives.
+double best_on_grid(double shortest, double longest, const std::function<double(double)>& sum_at)
+{
+    constexpr int steps = 400;
+    double best = shortest, least = std::numeric_limits<double>::infinity();
+    for (int i = 0; i <= steps; ++i) {
+        const double tau = shortest * std::pow(longest / shortest, static_cast<double>(i) / steps);
+        if (const double sum = sum_at(tau); sum < least) {
+            least = sum;
+            best = tau;
+        }
+    }
+    return best;
+}
+
+// Profiles of the sum of squares: its least with one of E / K, eta / K and tau held, over the others.
+class Profiles
+{
+public:
+    enum Held { stiffness, viscosity, time };
+
+    // Around the best fit, d_e [m], e = E / K and tau [s].
+    Profiles(const CreepCurve& curve, double elastic_part, double ratio, double tau)
+        : curve_(curve), size_(elastic_part),
+          best_(curve.elastic_part ? VectorXd(2) : VectorXd(VectorXd::Ones(3)))
+    {
+        best_[0] = std::log(ratio);
+        best_[1] = std::log(tau);
+    }
+
+    // Where it is below `limit`. An end is 0 or infinite where that is more than a factor of 1000 away.
+    Interval interval(Held held, double limit, double first_step) const
+    {
+        const double farthest = std::log(1e3);
+        VectorXd at = best_;
+        if (held == viscosity)
+            at[0] += at[1];
+        const Eigen::Index i = held == time ? 1 : 0;
+        const double middle = at[i];
+        const auto end = [&](double side) {
+            VectorXd start = at;
+            const auto is_within = [&](double distance) {
+                VectorXd low = VectorXd::Constant(at.size(), -1e3), high = -low;
+                // Far off on the flat, where creep is over at once or hardly begins, nothing would bring it
+                // back.
+                low[1] = std::log(shortest_share * shortest_interval(curve_));
+                high[1] = std::log(longest_share * curve_.time.back());
+                low[i] = high[i] = middle + side * distance;
+                const Minimum least = minimise(model(held == viscosity), start, low, high, 100, 1e-10);
+                start = least.parameters;
+                return least.sum_of_squares() <= limit;
+            };
+            double within = 0, beyond = std::clamp(first_step, 1e-7, 0.5);
+            while (is_within(beyond)) {
+                within = beyond;
+                beyond *= 1.5;
+                if (within > farthest)
+                    return side * std::numeric_limits<double>::infinity();
+            }
+            while (beyond - within > 1e-4 * beyond) {
+                const double between = (within + beyond) / 2;
+                (is_within(between) ? within : beyond) = between;
+            }
+            return middle + side * beyond;
+        };
+        return {std::exp(end(-1)), std::exp(end(1))};
+    }
+
+private:
+    // Over {ln e or, by viscosity, ln (e tau); ln tau; d_e over its best unless that is known}.
+    Model model(bool by_viscosity) const
+    {
+        return [this, by_viscosity](const VectorXd& p) -> std::optional<Evaluation> {
+            const auto n = static_cast<Eigen::Index>(curve_.time.size());
+            Evaluation at{VectorXd(n), MatrixXd(n, p.size())};
+            const double inverse = std::exp((by_viscosity ? p[1] : 0) - p[0]), // 1 / e
+                d = p.size() == 3 ? size_ * p[2] : size_;
+            for (Eigen::Index i = 0; i < n; ++i) {
+                const auto k = static_cast<std::size_t>(i);
+                const double x = curve_.time[k] / std::exp(p[1]), crept = -std::expm1(-x) * inverse,
+                             weight = 1 / deviation_of(curve_, k);
+                at.residual[i] = weight * (d * (1 + crept) - curve_.displacement[k]);
+                at.jacobian(i, 0) = -weight * d * crept;
+                at.jacobian(i, 1) = weight * d * ((by_viscosity ? crept : 0) - x * std::exp(-x) * inverse);
+                if (p.size() == 3)
+                    at.jacobian(i, 2) = weight * size_ * (1 + crept);
+            }
+            return at;
+        };
+    }
+
+    const CreepCurve& curve_;
+    double size_;
+    VectorXd best_;
+};
+
+} // namespace
+
+CurveFit fit_curve(const CreepCurve& curve)
+{
+    check(curve);
+    const auto n = static_cast<Eigen::Index>(curve.time.size());
+    const Eigen::Index elastic = curve.elastic_part ? -1 : 0, creep = elastic + 1, log_tau = elastic + 2;
+    const double shortest = shortest_share * shortest_interval(curve),
+                 longest = longest_share * curve.time.back();
+    // Displacements in a unit of their own size, so that all parameters are numbers of about 1.
+    double size = 0;
+    for (const double d : curve.displacement)
+        size = std::max(size, std::abs(d));
+    if (size == 0)
+        throw input_error("all displacements are 0");
+
+    double sum = 0;
+    const double start_tau = best_on_grid(shortest, longest, [&](double tau) {
+        linear_parts(curve, tau, sum);
+        return sum;
+    });
+    VectorXd start(log_tau + 1);
+    start.head(log_tau) = linear_parts(curve, start_tau, sum) / size;
+    start[log_tau] = std::log(start_tau);
+
+    const auto part = [&](const VectorXd& p) {
+        return elastic < 0 ? *curve.elastic_part : p[elastic] * size;
+    };
+    const Model model = [&](const VectorXd& p) -> std::optional<Evaluation> {
+        Evaluation at{VectorXd(n), MatrixXd(n, p.size())};
+        for (Eigen::Index i = 0; i < n; ++i) {
+            const auto k = static_cast<std::size_t>(i);
+            const double x = curve.time[k] / std::exp(p[log_tau]), crept = -std::expm1(-x),
+                         weight = 1 / deviation_of(curve, k);
+            at.residual[i] = weight * (part(p) + p[creep] * size * crept - curve.displacement[k]);
+            if (elastic >= 0)
+                at.jacobian(i, elastic) = weight * size;
+            at.jacobian(i, creep) = weight * size * crept;
+            at.jacobian(i, log_tau) = -weight * size * p[creep] * x * std::exp(-x);
+        }
+        return at;
+    };
+    VectorXd low = VectorXd::Constant(start.size(), -1e6), high = -low;
+    low[log_tau] = std::log(shortest);
+    high[log_tau] = std::log(longest);
+    const Minimum minimum = minimise(model, start, low, high, 200, 1e-12);
+
+    CurveFit fit;
+    const VectorXd& p = minimum.parameters;
+    fit.elastic_part = part(p);
+    fit.creep_part = p[creep] * size;
+    fit.retardation_time = std::exp(p[log_tau]);
+    if (!(fit.creep_part / fit.elastic_part > 0) || !std::isfinite(fit.creep_part / fit.elastic_part))
+        throw input_error("the elastic part is " + shown(fit.elastic_part) + " m and the creep part " +
+                          shown(fit.creep_part) +
+                          " m; wanted both to go the same way, as those of a joint under one load do");
+    fit.confidence = confidence_of(minimum, !curve.deviation.empty());
+    const Confidence& confidence = fit.confidence;
+    const double quantile = confidence.quantile;
+    const auto linear = [&](Eigen::Index i, double value) -> Interval {
+        if (i < 0)
+            return {value, value};
+        const double half = quantile * confidence.standard_error(i) * size;
+        return {value - half, value + half};
+    };
+    fit.elastic_interval = linear(elastic, fit.elastic_part);
+    fit.creep_interval = linear(creep, fit.creep_part);
+
+    // Logarithms of E / K = d_e / d_c and eta / K = tau E / K.
+    VectorXd of_stiffness = VectorXd::Zero(p.size()), of_time = of_stiffness;
+    if (elastic >= 0)
+        of_stiffness[elastic] = 1 / p[elastic];
+    of_stiffness[creep] = -1 / p[creep];
+    of_time[log_tau] = 1;
+    const VectorXd of_viscosity = of_stiffness + of_time;
+    const double stiffness_error = confidence.standard_error(of_stiffness),
+                 viscosity_error = confidence.standard_error(of_viscosity);
+    const double ratio = fit.elastic_part / fit.creep_part;
+    const Profiles profiles(curve, fit.elastic_part, ratio, fit.retardation_time);
+    const double noise = quantile * confidence.noise_factor, limit = minimum.sum_of_squares() + noise * noise;
+    fit.time = {fit.retardation_time,
+                profiles.interval(Profiles::time, limit, quantile * confidence.standard_error(of_time))};
+    fit.stiffness = {ratio, profiles.interval(Profiles::stiffness, limit, quantile * stiffness_error)};
+    fit.viscosity = {ratio * fit.retardation_time,
+                     profiles.interval(Profiles::viscosity, limit, quantile * viscosity_error)};
+    const double product = stiffness_error * viscosity_error;
+    fit.correlation = product > 0 ? of_stiffness.dot(confidence.covariance * of_viscosity) / product : 0;
+
+    std::vector<double> residuals;
+    for (Eigen::Index i = 0; i < n; ++i) {
+        const auto k = static_cast<std::size_t>(i);
+        residuals.push_back(minimum.there.residual[i]);
+        fit.computed.push_back(curve.displacement[k] + minimum.there.residual[i] * deviation_of(curve, k));
+    }
+    fit.lag_one = lag_one_correlation(residuals);
+    fit.record_length = curve.time.back() / fit.retardation_time;
+    const auto second = std::find_if(curve.time.begin(), curve.time.end(), [](double t) { return t > 0; });
+    fit.is_too_coarse = *second > 4 * fit.retardation_time; // 98 percent of creep
+    fit.is_too_short = minimum.at_bound[static_cast<std::size_t>(log_tau)] == AtBound::high ||
+                       fit.stiffness.interval.low < ratio / 2 || fit.stiffness.interval.high > 2 * ratio;
+    return fit;
+}
+
+ClosedEstimate closed_estimate(const CreepCurve& curve, double end)
+{
+    check(curve);
+    if (!(end > curve.time.front()) || end > curve.time.back())
+        throw input_error("creep is taken to be over on day " + shown(end / unit::day) +
+                          " after the load; wanted a time after the first reading and not after the last, " +
+                          shown(curve.time.back() / unit::day));
+    ClosedEstimate found{};
+    found.end = end;
+    found.elastic_part = curve.elastic_part.value_or(curve.displacement.front());
+    const auto after = static_cast<std::size_t>(
+        std::find_if(curve.time.begin(), curve.time.end(), [&](double t) { return t >= end; }) -
+        curve.time.begin());
+    const double share = (end - curve.time[after - 1]) / (curve.time[after] - curve.time[after - 1]);
+    const double at_end =
+        curve.displacement[after - 1] + share * (curve.displacement[after] - curve.displacement[after - 1]);
+    found.creep_part = at_end - found.elastic_part;
+    const double ratio = found.elastic_part / found.creep_part;
+    if (!(ratio > 0) || !std::isfinite(ratio))
+        throw input_error("the elastic part is " + shown(found.elastic_part) + " m and the creep part " +
+                          shown(found.creep_part) +
+                          " m; wanted both to go the same way, as those of a joint under one load do");
+
+    // tau, with d_e and d_c held.
+    const auto n = static_cast<Eigen::Index>(curve.time.size());
+    const Model model = [&](const VectorXd& p) -> std::optional<Evaluation> {
+        Evaluation at{VectorXd(n), MatrixXd(n, 1)};
+        for (Eigen::Index i = 0; i < n; ++i) {
+            const auto k = static_cast<std::size_t>(i);
+            const double x = curve.time[k] / std::exp(p[0]), weight = 1 / deviation_of(curve, k);
+            at.residual[i] =
+                weight * (found.elastic_part - found.creep_part * std::expm1(-x) - curve.displacement[k]);
+            at.jacobian(i, 0) = -weight * found.creep_part * x * std::exp(-x);
+        }
+        return at;
+    };
+    const double shortest = shortest_share * shortest_interval(curve),
+                 longest = longest_share * curve.time.back();
+    const auto vector = [](double value) { return VectorXd::Constant(1, value); };
+    const double start = best_on_grid(
+        shortest, longest, [&](double tau) { return model(vector(std::log(tau)))->residual.squaredNorm(); });
+    const Minimum minimum = minimise(model, vector(std::log(start)), vector(std::log(shortest)),
+                                     vector(std::log(longest)), 200, 1e-12);
+    const double tau = std::exp(minimum.parameters[0]);
+    const Confidence confidence = confidence_of(minimum, !curve.deviation.empty());
+
+    // What an error of d(T_c), and of d_e where it is a reading, makes of the logarithms of E and tau.
+    const VectorXd of_tau = minimum.there.jacobian.col(0);
+    VectorXd of_end(n), of_elastic(n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+        const auto k = static_cast<std::size_t>(i);
+        const double crept = -std::expm1(-curve.time[k] / tau), weight = 1 / deviation_of(curve, k);
+        of_end[i] = weight * crept;
+        of_elastic[i] = weight * (1 - crept);
+    }
+    const double squared = of_tau.squaredNorm();
+    const auto carried = [&](const VectorXd& effect) {
+        return squared > 0 ? -of_tau.dot(effect) / squared : 0.0;
+    };
+    const double end_noise =
+                     confidence.noise_factor * std::hypot((1 - share) * deviation_of(curve, after - 1),
+                                                          share * deviation_of(curve, after)),
+                 elastic_noise = curve.elastic_part ? 0.0 : confidence.noise_factor * deviation_of(curve, 0);
+    const double stiffness_by_end = -end_noise / found.creep_part,
+                 stiffness_by_elastic = elastic_noise * (1 / found.elastic_part + 1 / found.creep_part);
+    found.stiffness =
+        estimate(ratio, confidence.quantile * std::hypot(stiffness_by_end, stiffness_by_elastic));
+    found.viscosity = estimate(
+        ratio * tau, confidence.quantile *
+                         std::hypot(std::hypot(stiffness_by_end + carried(of_end) * end_noise,
+                                               stiffness_by_elastic + carried(of_elastic) * elastic_noise),
+                                    confidence.standard_error(Eigen::Index{0})));
+    return found;
+}
+
+} // namespace jointcreep::estimation

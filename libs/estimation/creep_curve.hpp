@@ -1,0 +1,60 @@
+// Creep of one joint, from one curve of displacement after one change of load (the paper's Eqs. 11 to 14 and
+// its Fig. 12):
+//     d(t) = d_e + d_c (1 - exp(-t / tau)),      d_e = F / K,   d_c = F / E,   tau = eta / E .
+// With K known,  E = K d_e / d_c,  eta = E tau. d_e is what the joint does at once; the elastic part of the
+// rock beside it is to be taken off before.
+
+#pragma once
+
+#include "estimation/confidence.hpp"
+
+namespace jointcreep::estimation
+{
+
+struct CreepCurve {
+    std::vector<double> time;             // since the load changed, 0 or later, rising [s]
+    std::vector<double> displacement;     // [m]
+    std::vector<double> deviation{};      // standard deviations [m]; empty: alike, and not known
+    std::optional<double> elastic_part{}; // d_e, where it is known [m]
+};
+
+// A value above 0 with its interval of 95 percent.
+struct Estimate {
+    double value;
+    Interval interval;
+};
+
+// By least squares over d_e (unless known), d_c and tau. Intervals of tau, E and eta are those of the
+// profile: where the least sum of squares with that value held exceeds the least of all by no more than
+// chance (Student's t, squared). In short records these are far from even; an end may be 0 or infinite.
+struct CurveFit {
+    double elastic_part, creep_part, retardation_time; // d_e [m], d_c [m], tau [s]
+    Interval elastic_interval, creep_interval;
+    Estimate time;                 // tau [s]
+    Estimate stiffness, viscosity; // E / K [-], eta / K [s]
+    double correlation;            // of the logarithms of E and eta
+    Confidence confidence;
+    std::vector<double> computed; // [m]
+    double lag_one;               // correlation of neighbouring residuals
+
+    // What the record does not tell.
+    bool is_too_short = false;  // E: its interval goes beyond a factor of 2 either way
+    bool is_too_coarse = false; // tau: it is all but over at the first reading after the load
+    double record_length;       // over tau [-]
+};
+
+// Throws input_error where the curve is none of creep: fewer readings than parameters, or no creep in the
+// direction of the elastic part.
+CurveFit fit_curve(const CreepCurve& curve);
+
+// The paper's: E by Eq. 14 from d(T_c), T_c being when creep is taken to be over, and tau by least squares
+// with E held. d_e is the known one, or the first reading. Intervals carry the noise of d_e's and d(T_c)'s
+// readings, and of all others into tau; that creep goes on after T_c they do not know.
+struct ClosedEstimate {
+    double elastic_part, creep_part; // [m]
+    double end;                      // T_c [s]
+    Estimate stiffness, viscosity;   // E / K [-], eta / K [s]
+};
+ClosedEstimate closed_estimate(const CreepCurve& curve, double end);
+
+} // namespace jointcreep::estimation

@@ -1,0 +1,103 @@
+#include "estimation/least_squares.hpp"
+
+#include "model/error.hpp"
+
+#include <Eigen/Cholesky>
+
+#include <algorithm>
+
+namespace jointcreep::estimation
+{
+
+namespace
+{
+
+// Of the free parameters. Those that would go beyond a bound go to it, and the others as is best then.
+VectorXd step_within(const MatrixXd& information, const VectorXd& downhill, double lambda,
+                     std::vector<Eigen::Index> free, const VectorXd& low, const VectorXd& high)
+{
+    VectorXd step = VectorXd::Zero(downhill.size());
+    while (!free.empty()) {
+        const VectorXd right = (downhill - information * step)(free);
+        MatrixXd damped = information(free, free);
+        damped.diagonal() *= 1 + lambda;
+        const VectorXd found = damped.ldlt().solve(right);
+        std::vector<Eigen::Index> within;
+        VectorXd next = step;
+        for (std::size_t k = 0; k < free.size(); ++k) {
+            const Eigen::Index i = free[k];
+            const double wanted = found[static_cast<Eigen::Index>(k)];
+            next[i] = std::clamp(wanted, low[i], high[i]);
+            if (next[i] == wanted)
+                within.push_back(i);
+        }
+        if (within.size() == free.size())
+            return next;
+        for (const Eigen::Index i : within)
+            next[i] = 0;
+        step = next;
+        free = std::move(within);
+    }
+    return step;
+}
+
+} // namespace
+
+Minimum minimise(const Model& model, const VectorXd& start, const VectorXd& low, const VectorXd& high,
+                 int most_evaluations, double relative)
+{
+    constexpr double smallest_step = 1e-10, least_gain = 1e-4, largest_lambda = 1e10;
+    const auto n = static_cast<std::size_t>(start.size());
+    Minimum best{.parameters = start.cwiseMax(low).cwiseMin(high), .there = {}, .at_bound = {}};
+    std::optional<Evaluation> found = model(best.parameters);
+    best.evaluations = 1;
+    if (!found)
+        throw input_error("the model has no answer where the search starts");
+    best.there = std::move(*found);
+    double lambda = 1e-3, growth = 2;
+    for (;;) {
+        const VectorXd& r = best.there.residual;
+        const MatrixXd& J = best.there.jacobian;
+        const VectorXd downhill = -J.transpose() * r;
+        const MatrixXd information = J.transpose() * J;
+        best.at_bound.assign(n, AtBound::no);
+        std::vector<Eigen::Index> free; // and not without effect
+        for (std::size_t k = 0; k < n; ++k) {
+            const auto i = static_cast<Eigen::Index>(k);
+            if (best.parameters[i] <= low[i] && downhill[i] < 0)
+                best.at_bound[k] = AtBound::low;
+            else if (best.parameters[i] >= high[i] && downhill[i] > 0)
+                best.at_bound[k] = AtBound::high;
+            else if (information(i, i) > 0)
+                free.push_back(i);
+        }
+        const double sum = r.squaredNorm();
+        for (;;) {
+            const VectorXd step = step_within(information, downhill, lambda, free, low - best.parameters,
+                                              high - best.parameters);
+            const VectorXd next = (best.parameters + step).cwiseMax(low).cwiseMin(high);
+            const double predicted = sum - (r + J * step).squaredNorm();
+            if (!(predicted > relative * sum) || step.lpNorm<Eigen::Infinity>() < smallest_step ||
+                lambda > largest_lambda) {
+                best.is_converged = true;
+                return best;
+            }
+            if (best.evaluations == most_evaluations)
+                return best;
+            found = model(next);
+            ++best.evaluations;
+            const double gain = found ? (sum - found->residual.squaredNorm()) / predicted : -1.0;
+            if (gain > least_gain) {
+                best.parameters = next;
+                best.there = std::move(*found);
+                lambda *= std::max(1. / 3, 1 - (2 * gain - 1) * (2 * gain - 1) * (2 * gain - 1));
+                growth = 2;
+                break;
+            }
+            lambda *= growth;
+            growth *= 2;
+        }
+    }
+}
+
+} // namespace jointcreep::estimation

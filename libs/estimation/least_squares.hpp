@@ -1,0 +1,48 @@
+// Nonlinear least squares within bounds, by Levenberg and Marquardt: the parameters that make the sum of
+// squared residuals least.
+//
+// Each step solves (J^T J + lambda diag(J^T J)) step = -J^T r for the parameters that no bound stops; those
+// that it would carry beyond a bound stop there, and the others step as is best then. lambda follows Nielsen
+// (1999) by how much of the predicted decrease came true. Eigen's own (unsupported/Eigen/LevenbergMarquardt)
+// knows no bounds, and no place where a model has no answer.
+
+#pragma once
+
+#include <Eigen/Core>
+
+#include <functional>
+#include <optional>
+#include <vector>
+
+namespace jointcreep::estimation
+{
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+struct Evaluation {
+    VectorXd residual; // model less reading, each over its standard deviation [-]
+    MatrixXd jacobian; // of the residuals, [reading, parameter]
+};
+
+// Nothing where the model has no answer, which is then not gone to.
+using Model = std::function<std::optional<Evaluation>(const VectorXd& parameters)>;
+
+enum class AtBound { no, low, high };
+
+struct Minimum {
+    VectorXd parameters;
+    Evaluation there;
+    std::vector<AtBound> at_bound; // where the sum would fall on beyond
+    int evaluations = 0;
+    bool is_converged = false; // else it ran out of evaluations
+
+    double sum_of_squares() const { return there.residual.squaredNorm(); }
+};
+
+// The minimum nearest to the start. Throws input_error if the model has no answer at the start. Converged:
+// the next step would lessen the sum by less than `relative` of itself, or change no parameter by 1e-10.
+Minimum minimise(const Model& model, const VectorXd& start, const VectorXd& low, const VectorXd& high,
+                 int most_evaluations = 100, double relative = 1e-9);
+
+} // namespace jointcreep::estimation

@@ -1,0 +1,52 @@
+// Linear systems at an equilibrium: what it would change by.
+
+#include "implicit/equilibrium.hpp"
+
+namespace jointcreep::implicit
+{
+
+VectorXd Engine::solve_linear(const Assembly& assembly, const std::vector<Tangent>& tangents,
+                              const VectorXd& right)
+{
+    constexpr double exact = 1e-10, hardly = 1e-6; // residuals over the right side
+    constexpr double soft = 1e-6;
+    constexpr int patience = 15, most_refinements = 3;
+    const auto product = [&](const VectorXd& x) { return stiffness_.times(assembly, tangents, x); };
+    const auto precondition = [&](const VectorXd& x) { return stiffness_.solve(x); };
+    if (tangents != linear_ && linear_.size() == tangents.size()) {
+        const Stiffness::Change change = stiffness_.change(assembly, linear_, tangents);
+        linear_space_.follow(change.unknowns, [&](const auto& x, auto y) {
+            for (const auto& [contact, tangent] : change.contacts)
+                stiffness_.add_contact(assembly, contact, tangent, x, y);
+        });
+    }
+    linear_ = tangents;
+
+    const double norm = right.norm();
+    VectorXd x = VectorXd::Zero(right.size()), residual = right, correction;
+    const auto is_solved = [&](double enough) { return residual.norm() <= enough * norm; };
+    const auto refine = [&](int iterations) {
+        for (int i = 0; i < most_refinements && !is_solved(exact); ++i) {
+            linear_space_.solve(product, precondition, residual, exact / 2 * norm, iterations, correction);
+            x += correction;
+            residual = right - product(x);
+        }
+    };
+    refine(patience);
+    if (is_solved(exact))
+        return x;
+    std::vector<Tangent> firm = tangents; // a Cholesky factor does not know slip
+    for (std::size_t c = 0; c < firm.size(); ++c) {
+        const joint::Coulomb& law = assembly.contacts.law[c];
+        if (firm[c].normal == 0)
+            firm[c].normal = soft * law.k_n;
+        if (firm[c].shear == 0)
+            firm[c].shear = soft * (law.k_s > 0 ? law.k_s : law.k_n);
+    }
+    if (!stiffness_.factorise(assembly, firm))
+        return {};
+    refine(4 * patience);
+    return is_solved(hardly) && x.allFinite() ? x : VectorXd();
+}
+
+} // namespace jointcreep::implicit

@@ -1,0 +1,209 @@
+// Factors found back from a section's own displacements, with noise: whole fits, with an analysis at every
+// step.
+
+#include "../sensitivity/jointed_section.hpp"
+
+#include "back_analysis/back_analysis.hpp"
+#include "model/error.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+using namespace jointcreep;
+using namespace jointcreep::test;
+using back_analysis::Found;
+using sensitivity::Parameter;
+
+namespace
+{
+
+constexpr double day = unit::day;
+
+struct Truth {
+    Parameter parameter;
+    double factor;
+};
+
+// What points "top" and "toe" of the section would read at these factors, every day and a half from `first`
+// [day] on, in x and y.
+std::vector<Measurement> made(const JointedSection& section, const std::vector<Truth>& truth,
+                              double first = 1)
+{
+    Scene scene = section.scene;
+    EquivalentJoints joints = section.joints;
+    for (const Truth& t : truth)
+        sensitivity::scale(joints, scene.in_situ_stress, t.parameter, t.factor);
+    const Recording recording;
+    Analysis analysis(scene, section.network, joints, 1, recording, [](double, const std::string&) {});
+    analysis.run();
+    std::vector<Measurement> measurements;
+    for (double t = first; t <= 20; t += 1.5)
+        for (std::size_t point = 0; point < 2; ++point)
+            for (const int component : {0, 1})
+                measurements.push_back({.point = point,
+                                        .component = component,
+                                        .time = t * day,
+                                        .displacement = 0,
+                                        .deviation = {},
+                                        .line = measurements.size() + 2});
+    const auto prediction = back_analysis::predict(scene, analysis.result().history, {}, measurements, false);
+    for (std::size_t m = 0; m < measurements.size(); ++m)
+        measurements[m].displacement = prediction.displacement[m];
+    return measurements;
+}
+
+std::vector<Measurement> noisy(std::vector<Measurement> measurements, double noise, std::mt19937_64& random,
+                               bool says_so)
+{
+    std::normal_distribution<double> error(0, noise);
+    for (Measurement& m : measurements) {
+        m.displacement += error(random);
+        if (says_so)
+            m.deviation = noise;
+    }
+    return measurements;
+}
+
+back_analysis::Settings settings_for(const std::vector<Truth>& truth)
+{
+    back_analysis::Settings settings;
+    for (const Truth& t : truth)
+        settings.factors.push_back({t.parameter});
+    return settings;
+}
+
+const std::vector<Truth> three{{Parameter::kelvin_stiffness, 0.8},
+                               {Parameter::kelvin_viscosity, 1.5},
+                               {Parameter::joint_stiffness, 1.25}};
+
+// In how many trials each factor, and all of them at once, lie in their intervals; and the same for intervals
+// half as wide.
+struct Coverage {
+    std::vector<int> each, each_by_half;
+    int all = 0;
+};
+Coverage coverage(int trials, const JointedSection& section, const std::vector<Truth>& truth, double noise,
+                  bool says_so)
+{
+    std::mt19937_64 random(20030501);
+    const std::vector<Measurement> exact = made(section, truth);
+    const std::vector<int> none(truth.size(), 0);
+    Coverage count{none, none};
+    for (int i = 0; i < trials; ++i) {
+        const Found found = back_analysis::fit(section.scene, section.network, section.joints,
+                                               noisy(exact, noise, random, says_so), settings_for(truth));
+        bool all = true;
+        for (std::size_t p = 0; p < truth.size(); ++p) {
+            const auto index = static_cast<Eigen::Index>(p);
+            const double off = std::abs(found.minimum.parameters[index] - std::log(truth[p].factor)),
+                         error = found.confidence.standard_error(index);
+            count.each[p] += off <= found.confidence.quantile * error ? 1 : 0;
+            count.each_by_half[p] += off <= found.confidence.quantile * error / 2 ? 1 : 0;
+            all = all && off <= found.confidence.quantile_all * error;
+        }
+        count.all += all ? 1 : 0;
+    }
+    return count;
+}
+
+} // namespace
+
+TEST(back_analysis, without_noise_gives_back_what_made_it)
+{
+    for (const std::optional<double> friction_angle : {std::optional<double>{}, std::optional<double>{0.5}}) {
+        const JointedSection section(friction_angle);
+        std::vector<Truth> four = three;
+        four.push_back({Parameter::horizontal_stress, 1.1});
+        for (const std::vector<Truth>& truth : {three, four}) {
+            const Found found = back_analysis::fit(section.scene, section.network, section.joints,
+                                                   made(section, truth), settings_for(truth));
+            for (std::size_t p = 0; p < truth.size(); ++p)
+                EXPECT_NEAR(found.factors[p] / truth[p].factor, 1, 1e-5) << p;
+            EXPECT_TRUE(found.minimum.is_converged);
+        }
+    }
+}
+
+// The second section slips, opens and closes.
+TEST(back_analysis, truth_lies_in_its_intervals_in_90_of_100_trials)
+{
+    for (const std::optional<double> friction_angle : {std::optional<double>{}, std::optional<double>{0.5}}) {
+        const bool says_so = friction_angle.has_value();
+        const Coverage count = coverage(100, JointedSection(friction_angle), three, 2e-6, says_so);
+        for (const int held : count.each)
+            EXPECT_GE(held, 90);
+        EXPECT_GE(count.all, 90);
+        for (const int held : count.each_by_half) // the control
+            EXPECT_LT(held, 90);
+    }
+}
+
+TEST(back_analysis, counts_from_first_readings)
+{
+    JointedSection section;
+    section.scene.points[0].first_reading = 4 * day;
+    section.scene.points[1].first_reading = 6 * day;
+    std::vector<Measurement> totals = made(section, three, 7), since = totals;
+    const std::vector<Measurement> at_first = made(section, three, 4);
+    for (Measurement& m : since)
+        for (const Measurement& first : at_first) // days 4, 5.5, 7: that of day 6 is not among them
+            if (m.point == 0 && first.point == 0 && first.component == m.component && first.time == 4 * day)
+                m.displacement -= first.displacement;
+    std::erase_if(since, [](const Measurement& m) { return m.point == 1; });
+    back_analysis::Settings settings = settings_for(three);
+    settings.since_first_reading = true;
+    const Found found = back_analysis::fit(section.scene, section.network, section.joints, since, settings);
+    for (std::size_t p = 0; p < three.size(); ++p)
+        EXPECT_NEAR(found.factors[p] / three[p].factor, 1, 1e-4) << p;
+    since.front().time = 3 * day;
+    EXPECT_THROW(back_analysis::fit(section.scene, section.network, section.joints, since, settings),
+                 input_error);
+}
+
+TEST(back_analysis, says_which_bound_it_stops_at)
+{
+    const JointedSection section;
+    back_analysis::Settings settings = settings_for(three);
+    settings.factors[2].high = 1.1; // the truth is 1.25
+    const Found found =
+        back_analysis::fit(section.scene, section.network, section.joints, made(section, three), settings);
+    EXPECT_EQ(found.minimum.at_bound[2], estimation::AtBound::high);
+    EXPECT_NEAR(found.factors[2], 1.1, 1e-12);
+    EXPECT_TRUE(found.confidence.is_fixed[2]);
+    EXPECT_EQ(found.minimum.at_bound[0], estimation::AtBound::no);
+}
+
+// Late readings of displacements since the last stage: what has crept in all is known, and hardly how fast.
+TEST(back_analysis, names_what_measurements_do_not_tell_apart)
+{
+    const JointedSection section;
+    std::vector<Measurement> late = made(section, three);
+    std::erase_if(late,
+                  [](const Measurement& m) { return m.time < 19 * day || m.point == 0 || m.component == 0; });
+    std::mt19937_64 random(1);
+    for (int i = 0; i < 3; ++i)
+        late.insert(late.end(), late.begin(), late.begin() + 1);
+    const Found found = back_analysis::fit(section.scene, section.network, section.joints,
+                                           noisy(late, 1e-7, random, true), settings_for(three));
+    const auto weak = estimation::weak_combination(found.minimum, found.confidence);
+    ASSERT_TRUE(weak);
+    EXPECT_TRUE(weak->is_alike_effects);
+    EXPECT_LT(found.confidence.smallest_eigenvalue, 1e-6);
+}
+
+TEST(back_analysis, rock_that_is_gone_has_no_readings)
+{
+    const JointedSection section;
+    std::vector<Measurement> measurements = made(section, three);
+    measurements[5].point = 2; // removed on day 1
+    measurements[5].line = 77;
+    try {
+        back_analysis::fit(section.scene, section.network, section.joints, measurements, settings_for(three));
+        FAIL();
+    } catch (const input_error& error) {
+        EXPECT_NE(std::string(error.what()).find("line 77: point \"gone\""), std::string::npos)
+            << error.what();
+    }
+}

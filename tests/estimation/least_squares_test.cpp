@@ -1,0 +1,183 @@
+// Minima that are known, bounds, and what is said of them.
+
+#include "estimation/confidence.hpp"
+#include "model/error.hpp"
+
+#include <Eigen/Dense>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+using namespace jointcreep;
+using namespace jointcreep::estimation;
+
+namespace
+{
+
+const double none = 1e9;
+
+VectorXd vector(std::initializer_list<double> values)
+{
+    VectorXd v(static_cast<Eigen::Index>(values.size()));
+    std::copy(values.begin(), values.end(), v.begin());
+    return v;
+}
+
+// Rosenbrock's valley: 100 (y - x^2)^2 + (1 - x)^2.
+std::optional<Evaluation> valley(const VectorXd& p)
+{
+    Evaluation at{VectorXd(2), MatrixXd(2, 2)};
+    at.residual << 10 * (p[1] - p[0] * p[0]), 1 - p[0];
+    at.jacobian << -20 * p[0], 10, -1, 0;
+    return at;
+}
+
+// Readings y of a straight line a + b x.
+Model line(const VectorXd& x, const VectorXd& y, double deviation = 1)
+{
+    return [=](const VectorXd& p) -> std::optional<Evaluation> {
+        Evaluation at{(p[0] + p[1] * x.array() - y.array()) / deviation, MatrixXd(x.size(), 2)};
+        at.jacobian.col(0).setConstant(1 / deviation);
+        at.jacobian.col(1) = x / deviation;
+        return at;
+    };
+}
+
+} // namespace
+
+TEST(least_squares, finds_the_end_of_a_bent_valley)
+{
+    const Minimum found = minimise(valley, vector({-1.2, 1}), vector({-none, -none}), vector({none, none}));
+    EXPECT_TRUE(found.is_converged);
+    EXPECT_NEAR(found.parameters[0], 1, 1e-6);
+    EXPECT_NEAR(found.parameters[1], 1, 1e-6);
+    EXPECT_LT(found.evaluations, 60);
+    EXPECT_EQ(found.at_bound, (std::vector<AtBound>{AtBound::no, AtBound::no}));
+}
+
+// On the bound x = 0.5 the least sum is at y = x^2.
+TEST(least_squares, stops_at_bounds_and_says_so)
+{
+    const Minimum found = minimise(valley, vector({-1.2, 1}), vector({-none, -none}), vector({0.5, none}));
+    EXPECT_TRUE(found.is_converged);
+    EXPECT_EQ(found.parameters[0], 0.5);
+    EXPECT_NEAR(found.parameters[1], 0.25, 1e-5);
+    EXPECT_EQ(found.at_bound, (std::vector<AtBound>{AtBound::high, AtBound::no}));
+    const Minimum low = minimise(valley, vector({3, 3}), vector({2, -none}), vector({none, 3.5}));
+    EXPECT_EQ(low.parameters, vector({2, 3.5}));
+    EXPECT_EQ(low.at_bound, (std::vector<AtBound>{AtBound::low, AtBound::high}));
+}
+
+// With a at most 1 the line goes on with b alone: b = sum of x (y - 1) / sum of x^2 = 54 / 55. Cutting the
+// step at the bound without turning it would go uphill.
+TEST(least_squares, turns_along_a_bound)
+{
+    const VectorXd x = vector({1, 2, 3, 4, 5}), y = vector({2, 3, 5, 4, 6});
+    const Minimum found =
+        minimise(line(x, y), vector({0.99, 1}), vector({-none, -none}), vector({1, none}), 100, 1e-15);
+    EXPECT_EQ(found.at_bound, (std::vector<AtBound>{AtBound::high, AtBound::no}));
+    EXPECT_EQ(found.parameters[0], 1);
+    EXPECT_NEAR(found.parameters[1], 54. / 55, 1e-6);
+}
+
+TEST(least_squares, goes_round_where_there_is_no_answer)
+{
+    int refused = 0;
+    const auto holed = [&](const VectorXd& p) -> std::optional<Evaluation> {
+        if (p[1] < -0.2) {
+            ++refused;
+            return {};
+        }
+        return valley(p);
+    };
+    const Minimum found = minimise(holed, vector({-1.2, 1}), vector({-none, -none}), vector({none, none}));
+    EXPECT_NEAR(found.parameters[0], 1, 1e-5);
+    const auto nowhere = [](const VectorXd&) { return std::optional<Evaluation>(); };
+    EXPECT_THROW(minimise(nowhere, vector({0, 0}), vector({-1, -1}), vector({1, 1})), input_error);
+}
+
+TEST(least_squares, leaves_alone_what_has_no_effect)
+{
+    const auto flat = [](const VectorXd& p) -> std::optional<Evaluation> {
+        Evaluation at{VectorXd(3), MatrixXd::Zero(3, 2)};
+        at.residual << p[0] - 1, p[0] - 2, p[0] - 3;
+        at.jacobian.col(0).setOnes();
+        return at;
+    };
+    const Minimum found = minimise(flat, vector({0, 0.25}), vector({-9, -9}), vector({9, 9}), 100, 1e-15);
+    EXPECT_NEAR(found.parameters[0], 2, 1e-9);
+    EXPECT_EQ(found.parameters[1], 0.25);
+    const Confidence confidence = confidence_of(found, false);
+    EXPECT_EQ(confidence.is_fixed, (std::vector<bool>{false, true}));
+    EXPECT_NEAR(confidence.standard_error(Eigen::Index{0}), 1 / std::sqrt(3.0), 1e-9); // s = 1
+    EXPECT_EQ(confidence.interval(0.25, 1).low, -std::numeric_limits<double>::infinity());
+}
+
+// Textbook: the regression line through (1,2) (2,3) (3,5) (4,4) (5,6): slope 0.9, s^2 = 1.9 / 3, the slope's
+// variance s^2 / 10, the intercept's s^2 (1/5 + 9/10), their correlation -3 / sqrt(11), t(3) = 3.182446.
+TEST(confidence, is_that_of_linear_regression)
+{
+    const VectorXd x = vector({1, 2, 3, 4, 5}), y = vector({2, 3, 5, 4, 6});
+    const Minimum found =
+        minimise(line(x, y), vector({0, 0}), vector({-none, -none}), vector({none, none}), 100, 1e-15);
+    EXPECT_NEAR(found.parameters[1], 0.9, 1e-7);
+    const Confidence confidence = confidence_of(found, false);
+    const double s2 = 1.9 / 3;
+    EXPECT_NEAR(confidence.noise_factor, std::sqrt(s2), 1e-9);
+    EXPECT_NEAR(confidence.standard_error(Eigen::Index{1}), std::sqrt(s2 / 10), 1e-9);
+    EXPECT_NEAR(confidence.standard_error(Eigen::Index{0}), std::sqrt(s2 * 1.1), 1e-9);
+    EXPECT_NEAR(confidence.correlation(0, 1), -3 / std::sqrt(11.0), 1e-9);
+    EXPECT_NEAR(confidence.quantile, 3.182446, 1e-6);
+    EXPECT_NEAR(confidence.quantile_all, 4.176535, 1e-6); // t(3) beyond 0.0125
+    EXPECT_NEAR(confidence.interval(0.9, 1).high, 0.9 + 3.182446 * std::sqrt(s2 / 10), 1e-6);
+
+    // With deviations known the residuals do not matter, unless they are too large for them.
+    const Confidence known = confidence_of(
+        minimise(line(x, y, 1), vector({0, 0}), vector({-none, -none}), vector({none, none})), true);
+    EXPECT_FALSE(known.is_noise_from_residuals);
+    EXPECT_NEAR(known.p_value, 1, 1e-9); // 1.9 over 3 degrees of freedom: nothing to wonder at
+    EXPECT_NEAR(known.standard_error(Eigen::Index{1}), std::sqrt(0.1), 1e-9);
+    const Confidence exceeded = confidence_of(
+        minimise(line(x, y, 0.1), vector({0, 0}), vector({-none, -none}), vector({none, none})), true);
+    EXPECT_TRUE(exceeded.is_noise_from_residuals);
+    EXPECT_LT(exceeded.p_value, 1e-9);
+    EXPECT_NEAR(exceeded.standard_error(Eigen::Index{1}), std::sqrt(s2 / 10), 1e-9);
+}
+
+TEST(confidence, names_the_combination_that_readings_leave_open)
+{
+    // x hardly varies: a + b x knows a + 5 b only.
+    const VectorXd x = vector({5, 5.01, 4.99, 5, 5.005}), y = vector({1, 2, 1.5, 1.2, 1.4});
+    const Minimum found = minimise(line(x, y), vector({0, 0}), vector({-none, -none}), vector({none, none}));
+    const Confidence confidence = confidence_of(found, false);
+    const auto weak = weak_combination(found, confidence);
+    ASSERT_TRUE(weak);
+    EXPECT_TRUE(weak->is_alike_effects);
+    EXPECT_NEAR(weak->direction[0], 1, 1e-9);
+    EXPECT_NEAR(weak->direction[1], -0.2, 1e-3);
+    EXPECT_GT(weak->standard_error, 10);
+    EXPECT_LT(confidence.smallest_eigenvalue, 1e-4);
+
+    const VectorXd wide = vector({-1, 1, -1, 1, 0}), good = vector({-1.001, 1, -0.999, 1, 0});
+    const Minimum clear =
+        minimise(line(wide, good), vector({0, 0}), vector({-none, -none}), vector({none, none}));
+    EXPECT_FALSE(weak_combination(clear, confidence_of(clear, false)));
+}
+
+TEST(confidence, needs_more_readings_than_parameters)
+{
+    const Minimum found =
+        minimise(line(vector({1, 2}), vector({3, 4})), vector({0, 0}), vector({-9, -9}), vector({9, 9}));
+    EXPECT_THROW(confidence_of(found, false), input_error);
+}
+
+TEST(confidence, sees_residuals_that_follow_each_other)
+{
+    std::vector<double> wave, turns;
+    for (int i = 0; i < 100; ++i) {
+        wave.push_back(std::sin(0.1 * i));
+        turns.push_back(i % 2 == 0 ? 1 : -1);
+    }
+    EXPECT_GT(lag_one_correlation(wave), 0.95);
+    EXPECT_LT(lag_one_correlation(turns), -0.95);
+}

@@ -1,0 +1,183 @@
+"""creepfit finds constants back: of a curve by its formula, of the column by its closed form; and what it refuses."""
+
+import csv
+import math
+import random
+import subprocess
+import sys
+
+from chain import ChainTest, changed, main
+
+TRUTH = {"kelvin-stiffness": 0.7, "kelvin-viscosity": 1.6, "joint-stiffness": 1.2}
+
+
+def table(path):
+    with open(path, newline="") as file:
+        return list(csv.DictReader(file))
+
+
+class Creepfit(ChainTest):
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.joints = cls.chain.joints(cls.chain.text("data/column/scene.toml"))
+
+    def readings(self, *options):
+        """Readings of the column with other constants than the scene's."""
+        path = self.chain.new_folder() / "readings.csv"
+        script = self.chain.source / "pipelines" / "column" / "measured.py"
+        subprocess.run([sys.executable, script, self.chain.source / "data/column/scene.toml", "-o", path, *options],
+                       check=True)
+        return path
+
+    def found(self, measurements, *options, fit=",".join(TRUTH)):
+        """Rows of the table that is written, by factor; and stdout."""
+        folder = self.chain.new_folder()
+        done = self.chain.answer("creepfit", self.joints, "--measurements", measurements, "--fit", fit, *options,
+                                 "-o", folder / "factors.csv", "--readings", folder / "fitted.csv")
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        return {row["factor"]: row for row in table(folder / "factors.csv")}, done.stdout, table(folder / "fitted.csv")
+
+    def test_column_without_noise(self):
+        """The readings are exact, so the factors are, to what the solver is off the closed form."""
+        rows, _, fitted = self.found(self.readings("--sigma-mm", "1e-9"))
+        for name, truth in TRUTH.items():
+            self.assertAlmostEqual(float(rows[name]["value"]) / truth, 1, delta=2e-4)
+            self.assertEqual(rows[name]["at_bound"], "no")
+        for row in fitted:
+            self.assertAlmostEqual(float(row["computed_mm"]), float(row["measured_mm"]), delta=1e-5)
+            self.assertGreater(abs(float(row["computed_at_start_mm"]) - float(row["measured_mm"])), 0.03)
+
+    def test_column_with_noise(self):
+        """Of 10 sets of readings, 3 intervals each: 30 chances of 95 percent."""
+        held = 0
+        for seed in range(10):
+            rows, text, _ = self.found(self.readings("--seed", str(seed)))
+            held += sum(float(rows[name]["low_95"]) <= truth <= float(rows[name]["high_95"])
+                        for name, truth in TRUTH.items())
+        self.assertGreaterEqual(held, 26)
+        self.assertIn("with the readings' sigma", text)
+        self.assertIn("factor on Kelvin stiffness E", text)
+
+    def test_histories_are_measurements(self):
+        """What jointexport writes is read as it is: the scene's own history has factors of 1."""
+        result = self.chain.run("demsolve", self.joints, self.chain.new_folder() / "result.h5")
+        histories = self.chain.run("jointexport", result, result.with_name("histories.csv"))
+        rows, _, _ = self.found(histories)
+        for row in rows.values():
+            self.assertAlmostEqual(float(row["value"]), 1, delta=1e-5)
+
+    def test_bounds(self):
+        rows, text, _ = self.found(self.readings(), fit="joint-stiffness=0.9:1.1,kelvin-viscosity")
+        self.assertEqual((rows["joint-stiffness"]["at_bound"], rows["joint-stiffness"]["low_95"]), ("high", ""))
+        self.assertAlmostEqual(float(rows["joint-stiffness"]["value"]), 1.1)
+        self.assertIn("at its upper bound", text)
+
+    def test_what_has_no_effect_is_named(self):
+        """The column is free at its sides."""
+        rows, text, _ = self.found(self.readings(), fit="kelvin-stiffness,horizontal-stress")
+        self.assertEqual(rows["horizontal-stress"]["low_95"], "")
+        self.assertIn("does not change these readings", text)
+
+    def curve(self, days, step=7, noise=0.1, seed=3):
+        """The paper's Table 2, normal direction, K 690 MPa/m: E 480 MPa/m, eta 57600 MPa day/m."""
+        path = self.chain.new_folder() / "curve.csv"
+        chance = random.Random(seed)
+        lines = [f"{day},{4 + 4 * 690 / 480 * (1 - math.exp(-day / 120)) + chance.gauss(0, noise):.4f}"
+                 for day in range(0, days, step)]
+        path.write_text("\n".join(["time_day,displacement_mm", *lines, ""]))
+        return path
+
+    def test_curve(self):
+        curve = self.curve(730)
+        out = self.chain.run("creepfit", curve, curve.with_name("out.csv"), "--stiffness", "690")
+        rows = {row["quantity"]: row for row in table(out)}
+        for quantity, truth in ("Kelvin stiffness E", 480), ("Kelvin viscosity eta", 57600), ("retardation time", 120):
+            self.assertLessEqual(float(rows[quantity]["low_95"]), truth)
+            self.assertGreaterEqual(float(rows[quantity]["high_95"]), truth)
+            self.assertAlmostEqual(float(rows[quantity]["value"]) / truth, 1, delta=0.1)
+        # Eq. 14, from the file's own first and last readings.
+        first, last = (float(row["displacement_mm"]) for row in (table(curve)[0], table(curve)[-1]))
+        self.assertAlmostEqual(float(rows["E by Eq. 14"]["value"]), 690 * first / (last - first), places=6)
+
+    def test_short_record(self):
+        curve = self.curve(40, step=2, noise=0.1)
+        done = self.chain.answer("creepfit", curve, "-o", curve.with_name("out.csv"))
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("record too short", done.stdout)
+        long = self.chain.answer("creepfit", self.curve(730), "-o", curve.with_name("out.csv"))
+        self.assertNotIn("record too short", long.stdout)
+
+    def refused(self, arguments, *wanted, code=2):
+        out = self.chain.new_folder() / "out.csv"
+        done = self.chain.answer("creepfit", *arguments, "-o", out)
+        self.assertEqual(done.returncode, code, done.stderr)
+        for text in wanted:
+            self.assertIn(text, done.stderr)
+        self.assertEqual(list(out.parent.iterdir()), [])
+
+    def test_refusals_of_readings(self):
+        head = "time_day,point,component,displacement_mm,sigma_mm"
+        good = [f"{day},C,y,{day},0.1" for day in range(1, 9)]
+        for line, *wanted in [
+            ("1,Z,y,1,0.1", "line 2", 'point is "Z"'), ("1,C,z,1,0.1", "line 2", 'component is "z"'),
+            ("41,C,y,1,0.1", "line 2", 'time_day is "41"', "40"), ("1,C,y,one,0.1", "line 2", 'displacement_mm is "one"'),
+            ("1,C,y,1,0", "line 2", 'sigma_mm is "0"'), ("1,C,y,nan,0.1", "line 2", 'displacement_mm is "nan"'),
+            ("1,C,y,1", "line 2", "4 fields"), ("15,A,y,1,0.1", "line 2", "has been removed"),
+        ]:
+            path = self.chain.new_folder() / "readings.csv"
+            path.write_text("\n".join([head, line, *good, ""]))
+            with self.subTest(line):
+                self.refused([self.joints, "--measurements", path, "--fit", "joint-stiffness"], str(path), *wanted)
+        for text, wanted in [("time_day,C_z_mm\n1,2\n", '"C_z_mm"'), ("time_day,event\n1,\n", "no column of a measuring"),
+                             ("", "wanted a line of column names"), (f"{head}\n{good[0]}\n", "wanted more readings"),
+                             ("time_day,C_x_mm,C_y_mm,C_y_sigma_mm\n1,2,3,4\n", "sigma of some")]:
+            path = self.chain.new_folder() / "readings.csv"
+            path.write_text(text)
+            with self.subTest(text):
+                self.refused([self.joints, "--measurements", path, "--fit", "joint-stiffness"], str(path), wanted)
+
+    def test_refusals_of_options(self):
+        readings, curve = self.readings(), self.curve(100)
+        for options, wanted in [
+            ([], "--fit is not given"), (["--fit", "stiffness"], '"stiffness" is none of'), (["--fit", ""], "--fit is empty"),
+            (["--fit", "joint-stiffness,joint-stiffness"], "twice"), (["--fit", "joint-stiffness=2:1"], "LOW:HIGH"),
+            (["--fit", "joint-stiffness=1"], "LOW:HIGH"), (["--fit", "joint-stiffness=0:2"], "LOW:HIGH"),
+            (["--fit", "joint-stiffness", "--stiffness", "3"], "--stiffness goes with"),
+            (["--fit", "joint-stiffness", "--readings", readings], "is used already"),
+        ]:
+            with self.subTest(options):
+                self.refused([self.joints, "--measurements", readings, *options], wanted)
+        for options, wanted in [(["--fit", "joint-stiffness"], "--fit goes with"), (["--stiffness", "-1"], "--stiffness is -1"),
+                                (["--load-day", "200"], "no reading from then on"), (["--elastic-mm", "0"], "must not be 0"),
+                                (["--converged-day", "500"], "taken to be over")]:
+            with self.subTest(options):
+                self.refused([curve, *options], wanted)
+        self.refused([curve.with_name("none.csv")], "none.csv", code=4)
+        self.refused([self.joints, "--measurements", curve.with_name("none.csv"), "--fit", "joint-stiffness"],
+                     "none.csv", code=4)
+        self.refused([self.joints], "--measurements is not given", "is no curve")
+
+    def test_motion_has_no_sensitivities(self):
+        text = changed(self.chain.text("data/column/scene.toml"), r"^\[equilibrium\]", '[equilibrium]\nengine = "explicit"')
+        self.refused([self.chain.joints(text), "--measurements", self.readings(), "--fit", "joint-stiffness"],
+                     "sensitivities are found by factorisation")
+
+    def test_picture(self):
+        """Of both tables of readings."""
+        _, _, _ = self.found(self.readings())
+        folder = self.chain.new_folder()
+        for command in ([self.curve(365)], [self.joints, "--measurements", self.readings(), "--fit", "joint-stiffness"]):
+            done = self.chain.answer("creepfit", *command, "-q", "-o", folder / "o.csv", "--readings", folder / "r.csv")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            subprocess.run([sys.executable, self.chain.source / "pipelines/plots/plot_fit.py", folder / "r.csv", "-o",
+                            folder / "fit.png"], check=True)
+            self.assertEqual((folder / "fit.png").read_bytes()[:4], b"\x89PNG")
+        done = subprocess.run([sys.executable, self.chain.source / "pipelines/plots/plot_fit.py", folder / "o.csv", "-o",
+                               folder / "none.png"], capture_output=True, text=True)
+        self.assertEqual(done.returncode, 2)
+        self.assertFalse((folder / "none.png").exists())
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,177 @@
+// Sensitivities of whole analyses against central differences of whole runs.
+
+#include "jointed_section.hpp"
+
+#include "analysis/analysis.hpp"
+#include "model/error.hpp"
+#include "model/units.hpp"
+
+#include <gtest/gtest.h>
+
+using namespace jointcreep;
+using namespace jointcreep::test;
+using Eigen::Vector2d;
+using sensitivity::Parameter;
+
+namespace
+{
+
+constexpr double day = unit::day;
+
+const std::vector<Parameter> all{Parameter::kelvin_stiffness, Parameter::kelvin_viscosity,
+                                 Parameter::joint_stiffness, Parameter::horizontal_stress};
+
+struct Study : JointedSection {
+    using JointedSection::JointedSection;
+
+    struct Found {
+        History history;
+        std::vector<std::vector<Vector2d>> sensitivities;
+        Index slipping = 0, open = 0, slipping_in_situ = 0;
+    };
+    Found run(bool with_sensitivities, Parameter parameter = {}, double logarithm = 0) const
+    {
+        Scene changed = scene;
+        EquivalentJoints stiffer = joints;
+        sensitivity::scale(stiffer, changed.in_situ_stress, parameter, std::exp(logarithm));
+        const Recording recording{0, 0, with_sensitivities ? all : std::vector<Parameter>{}};
+        Analysis analysis(changed, network, stiffer, 1, recording, [](double, const std::string&) {});
+        analysis.run();
+        Found found{analysis.result().history, analysis.sensitivities()};
+        const std::vector<Index>& status = analysis.result().states.contact_status;
+        found.slipping = static_cast<Index>(
+            std::count(status.begin(), status.end(), static_cast<Index>(ContactStatus::slipping)));
+        for (const auto& [joint, n] : analysis.beyond_strength())
+            found.slipping_in_situ += n;
+        found.open = static_cast<Index>(
+            std::count(status.begin(), status.end(), static_cast<Index>(ContactStatus::open)));
+        return found;
+    }
+
+    // The largest difference over rows and points between a sensitivity and the central difference of runs,
+    // over the largest sensitivity to the parameter, which is to be at least 1e-5 m.
+    double error(Parameter parameter, double h) const
+    {
+        const Found middle = run(true), below = run(false, parameter, -h), above = run(false, parameter, h);
+        if (middle.history.time != below.history.time || middle.history.time != above.history.time)
+            return 1e9;
+        const auto p = static_cast<std::size_t>(std::find(all.begin(), all.end(), parameter) - all.begin());
+        double largest = 0, difference = 0;
+        for (std::size_t i = 0; i < middle.sensitivities[p].size(); ++i) {
+            const Vector2d by_runs =
+                (above.history.displacement[i] - below.history.displacement[i]) / (2 * h);
+            largest = std::max(largest, by_runs.norm());
+            difference = std::max(difference, (middle.sensitivities[p][i] - by_runs).norm());
+        }
+        return largest < 1e-5 ? 1e9 : difference / largest;
+    }
+    double largest_error(double h) const
+    {
+        double largest = 0;
+        for (const Parameter parameter : all)
+            largest = std::max(largest, error(parameter, h));
+        return largest;
+    }
+};
+
+const std::vector<CreepScheme> schemes{CreepScheme::published, CreepScheme::backward,
+                                       CreepScheme::linear_force, CreepScheme::fitted};
+
+} // namespace
+
+TEST(sensitivity, of_joints_that_hold_is_that_of_whole_runs)
+{
+    for (const CreepScheme scheme : schemes) {
+        Study study;
+        study.scene.creep->scheme = scheme;
+        study.scene.creep->step = 0.5 * day;
+        EXPECT_LT(study.largest_error(3e-4), 1e-7) << static_cast<int>(scheme);
+    }
+}
+
+TEST(sensitivity, of_joints_that_slip_open_and_close_is_that_of_whole_runs)
+{
+    for (const CreepScheme scheme : schemes)
+        for (const double friction_angle : {0.8, 0.5, 0.35}) {
+            Study study(friction_angle);
+            study.scene.creep->scheme = scheme;
+            const Study::Found found = study.run(true);
+            EXPECT_GT(found.slipping, 2);
+            EXPECT_GT(found.open, 3);
+            EXPECT_LT(study.largest_error(1e-4), 1e-6) << static_cast<int>(scheme) << ' ' << friction_angle;
+        }
+}
+
+// With these joints slip before anything is dug.
+TEST(sensitivity, of_in_situ_slip_is_that_of_whole_runs)
+{
+    Study study(0.35);
+    study.scene.in_situ_stress.compression_xx = 0;
+    study.scene.in_situ_stress.gradient_xx = 0.2 * 2700 * 9.81;
+    EXPECT_GT(study.run(true).slipping_in_situ, 0);
+    EXPECT_LT(study.largest_error(1e-4), 1e-6);
+}
+
+TEST(sensitivity, of_unloading_in_increments_is_that_of_whole_runs)
+{
+    Study study(0.5);
+    study.scene.equilibrium.unloading_increments = 3;
+    EXPECT_LT(study.largest_error(1e-4), 1e-6);
+}
+
+TEST(sensitivity, of_chains_dashpots_and_creeping_rock_is_that_of_whole_runs)
+{
+    for (const std::optional<double> friction_angle : {std::optional<double>{}, std::optional<double>{0.5}}) {
+        Study study(friction_angle);
+        study.scene.rocks[0].kelvin = ShearKelvin{2e9, 4e9 * day};
+        study.scene.rocks[0].maxwell_viscosity = 1e11 * day;
+        EquivalentJoints& joints = study.joints;
+        for (auto* list : {&joints.normal_kelvin_stiffness, &joints.shear_kelvin_stiffness,
+                           &joints.normal_kelvin_viscosity, &joints.shear_kelvin_viscosity}) {
+            std::vector<double> two;
+            for (const double value : *list) {
+                two.push_back(value);
+                two.push_back(3 * value);
+            }
+            *list = two;
+        }
+        for (std::size_t e = 0; e < joints.normal_stiffness.size(); ++e) {
+            joints.normal_maxwell_viscosity[e] = joints.normal_stiffness[e] * 50 * day;
+            joints.shear_maxwell_viscosity[e] = joints.shear_stiffness[e] * 90 * day;
+        }
+        EXPECT_LT(study.largest_error(1e-4), 1e-6) << friction_angle.value_or(0);
+    }
+}
+
+// Loads on the outline that change while joints creep, and do not depend on the parameters.
+TEST(sensitivity, of_loads_over_time_is_that_of_whole_runs)
+{
+    Study study;
+    study.scene.boundaries[2].displacement = Vector2d(-1e-3, 0);
+    study.scene.boundaries[2].course = {{{0, 0}, {7.3 * day, 1}, {12 * day, 0.5}}};
+    EXPECT_LT(study.largest_error(3e-4), 1e-7);
+}
+
+// Steps chosen by their error are taken as they are; a run at another parameter chooses others, which makes
+// the difference of runs rough.
+TEST(sensitivity, of_chosen_steps_is_nearly_that_of_whole_runs)
+{
+    Study study(0.5);
+    study.scene.creep->step.reset();
+    study.scene.creep->tolerance = 1e-7;
+    study.scene.creep->longest_step = 2 * day;
+    const Study::Found middle = study.run(true), below = study.run(false, Parameter::kelvin_stiffness, -0.01),
+                       above = study.run(false, Parameter::kelvin_stiffness, 0.01);
+    for (int point = 0; point < 2; ++point) {
+        const auto last = [point](const auto& rows) { return *(rows.end() - 3 + point); };
+        const Vector2d by_runs = (last(above.history.displacement) - last(below.history.displacement)) / 0.02;
+        EXPECT_LT((last(middle.sensitivities[0]) - by_runs).norm(), 0.02 * by_runs.norm()) << point;
+    }
+}
+
+TEST(sensitivity, motion_has_none)
+{
+    Study study;
+    study.scene.equilibrium.engine = Engine::explicit_engine;
+    EXPECT_THROW(study.run(true), input_error);
+}
