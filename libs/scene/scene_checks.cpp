@@ -1,6 +1,7 @@
 #include "scene/scene_checks.hpp"
 
 #include "model/error.hpp"
+#include "model/polygon.hpp"
 #include "scene/polygon.hpp"
 
 #include <cmath>
@@ -185,6 +186,8 @@ private:
         for (std::size_t i = 0; i < scene_.joint_sets.size(); ++i)
             if (scene_.joint_sets[i].region)
                 check_polygon(in_list("joint_set", i), "region_m", *scene_.joint_sets[i].region);
+        if (scene_.fine_zones)
+            check_polygon(once("zones"), "fine_m", *scene_.fine_zones);
         for (std::size_t i = 0; i < scene_.stages.size(); ++i)
             for (const Polygon& polygon : scene_.stages[i].remove)
                 check_polygon(in_list("stage", i), "remove_m", polygon);

@@ -57,10 +57,10 @@ def number_place(corners, points, size):
     return middle
 
 
-def draw_stages(scene, outline, axes, inside):
+def draw_stages(scene, axes, inside):
     entries = []
     points = [np.array(point["at_m"], float) for point in scene.get("point", [])]
-    size = np.max(np.ptp(outline, axis=0))
+    size = max(np.ptp(axes.get_xlim()), np.ptp(axes.get_ylim()))
     for number, stage in enumerate(scene.get("stage", []), 1):
         for corners in stage["remove_m"]:
             patch = matplotlib.patches.Polygon(corners, facecolor=str(0.8 + 0.13 * (number % 2)), edgecolor="0.25",
@@ -68,6 +68,7 @@ def draw_stages(scene, outline, axes, inside):
             axes.add_patch(patch)
             patch.set_clip_path(inside)
             axes.annotate(str(number), number_place(corners, points, size), ha="center", va="center", zorder=4,
+                          annotation_clip=True,
                           bbox={"boxstyle": "circle,pad=0.2", "facecolor": "white", "linewidth": 0.5})
         when = f"day {stage['date']}" if isinstance(stage["date"], (int, float)) else str(stage["date"])
         entries.append(matplotlib.lines.Line2D([], [], linestyle="none", marker=f"${number}$", color="k",
@@ -109,21 +110,22 @@ def draw_places(scene, key, label, marker, axes):
     look = {"linestyle": "none", "marker": marker, "color": "k", "markersize": 3.5}
     for name, place in places.items():
         axes.plot(*place, zorder=5, path_effects=figure.HALO, **look)
-        axes.annotate(name, place, xytext=(4, 3), textcoords="offset points", zorder=5, path_effects=figure.HALO)
+        axes.annotate(name, place, xytext=(4, 3), textcoords="offset points", zorder=5, path_effects=figure.HALO,
+                      annotation_clip=True)
     return [matplotlib.lines.Line2D([], [], label=label, **look)] if places else []
 
 
-def draw(file, _):
+def draw(file, arguments):
     scene = figure.scene_of(file)
     outline = np.array(scene["section"]["outline_m"], float)
-    plot, axes = figure.section_axes(outline)
+    plot, axes = figure.section_axes(outline, arguments.window)
     inside = matplotlib.patches.Polygon(outline, facecolor="none", edgecolor="k", linewidth=1.0, zorder=3)
     for hole in scene["section"].get("holes_m", []):
         axes.add_patch(matplotlib.patches.Polygon(hole, facecolor="w", edgecolor="k", linewidth=1.0, zorder=3))
     axes.add_patch(inside)
 
     joints = draw_joints(file, axes, inside)
-    stages = draw_stages(scene, outline, axes, inside)
+    stages = draw_stages(scene, axes, inside)
     others = draw_boundaries(scene, outline, axes)
     others += draw_places(scene, "point", "measuring point", "o", axes)
     others += draw_places(scene, "gauge", "gauge on a joint", "D", axes)
@@ -132,4 +134,4 @@ def draw(file, _):
 
 
 if __name__ == "__main__":
-    figure.run(draw, figure.arguments_of(__doc__))
+    figure.run(draw, figure.arguments_of(__doc__, figure.WINDOW))
