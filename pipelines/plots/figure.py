@@ -158,6 +158,11 @@ def section_axes(outline, window=None):
     return figure, axes
 
 
+def is_in(axes, place):
+    """Whether a place is in what the axes show."""
+    return all(low <= at <= high for at, (low, high) in zip(place, (axes.get_xlim(), axes.get_ylim())))
+
+
 def legend_below(axes, *groups):
     """A legend under the axes, a column for each group of entries if there is room; the figure grows by its height."""
     width, height = axes.figure.get_size_inches()

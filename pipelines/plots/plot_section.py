@@ -10,6 +10,11 @@ from matplotlib.collections import LineCollection
 import figure
 
 
+def clip(artist, inside):
+    artist.set_clip_path(inside)
+    artist.set_in_layout(False)  # layout fails on what is clipped and outside of the window
+
+
 def draw_joints(file, axes, inside):
     """Joint lines dotted, and over them, solid, what of them is joint: the dots left are rock bridges. Returns legend
     entries."""
@@ -29,7 +34,7 @@ def draw_joints(file, axes, inside):
     if np.any(has_bridges):
         dots = {"color": "0.3", "linewidth": 0.6 * width, "linestyle": (0, (1, 2.2))}
         bridges = LineCollection(lines[has_bridges], **dots)
-        bridges.set_clip_path(inside)
+        clip(bridges, inside)
         axes.add_collection(bridges)
         entries.append(matplotlib.lines.Line2D([], [], label="rock bridge", **dots))
     for i, name in enumerate(sets):
@@ -38,7 +43,7 @@ def draw_joints(file, axes, inside):
             continue
         style = {"color": figure.COLORS[i % 6], "linewidth": width * figure.WIDTHS[i % 6]}
         collection = LineCollection(traces[of_set], capstyle="butt", zorder=2, **style)
-        collection.set_clip_path(inside)
+        clip(collection, inside)
         axes.add_collection(collection)
         entries.append(matplotlib.lines.Line2D([], [], **style, label=name))
     if len(entries) > 8:  # many single joints: one entry for all
@@ -66,9 +71,11 @@ def draw_stages(scene, axes, inside):
             patch = matplotlib.patches.Polygon(corners, facecolor=str(0.8 + 0.13 * (number % 2)), edgecolor="0.25",
                                                linewidth=0.8, linestyle=(0, (6, 2, 1, 2)), zorder=0.5)
             axes.add_patch(patch)
-            patch.set_clip_path(inside)
-            axes.annotate(str(number), number_place(corners, points, size), ha="center", va="center", zorder=4,
-                          annotation_clip=True,
+            clip(patch, inside)
+            place = number_place(corners, points, size)
+            if not figure.is_in(axes, place):
+                continue
+            axes.annotate(str(number), place, ha="center", va="center", zorder=4,
                           bbox={"boxstyle": "circle,pad=0.2", "facecolor": "white", "linewidth": 0.5})
         when = f"day {stage['date']}" if isinstance(stage["date"], (int, float)) else str(stage["date"])
         entries.append(matplotlib.lines.Line2D([], [], linestyle="none", marker=f"${number}$", color="k",
@@ -109,9 +116,10 @@ def draw_places(scene, key, label, marker, axes):
     places = {place["name"]: place["at_m"] for place in scene.get(key, [])}
     look = {"linestyle": "none", "marker": marker, "color": "k", "markersize": 3.5}
     for name, place in places.items():
+        if not figure.is_in(axes, place):
+            continue
         axes.plot(*place, zorder=5, path_effects=figure.HALO, **look)
-        axes.annotate(name, place, xytext=(4, 3), textcoords="offset points", zorder=5, path_effects=figure.HALO,
-                      annotation_clip=True)
+        axes.annotate(name, place, xytext=(4, 3), textcoords="offset points", zorder=5, path_effects=figure.HALO)
     return [matplotlib.lines.Line2D([], [], label=label, **look)] if places else []
 
 
