@@ -148,6 +148,8 @@ def section_axes(outline, window=None):
     low, high = np.min(outline, axis=0), np.max(outline, axis=0)
     width, height = high - low
     scale = min((TWO_COLUMNS - 0.8) / width, 5.5 / height)
+    if window:  # it has no margins of its own, into which a legend could reach
+        plt.rcParams.update({"savefig.bbox": "tight", "savefig.pad_inches": 0.03})
     figure, axes = plt.subplots(figsize=(max(ONE_COLUMN, width * scale + 0.8), height * scale + 0.5))
     margin = 0 if window else 0.05 * max(width, height)
     axes.set_xlim(low[0] - margin, high[0] + margin)

@@ -9,6 +9,8 @@ from matplotlib.collections import LineCollection
 
 import figure
 
+SET_COLORS = [*figure.COLORS, "#8e4f9f", "#5d3b1e"]
+
 
 def clip(artist, inside):
     artist.set_clip_path(inside)
@@ -41,13 +43,13 @@ def draw_joints(file, axes, inside):
         of_set = joint_set[trace_joint] == i
         if not np.any(of_set):
             continue
-        style = {"color": figure.COLORS[i % 6], "linewidth": width * figure.WIDTHS[i % 6]}
+        style = {"color": SET_COLORS[i % 8], "linewidth": width * figure.WIDTHS[i % 6]}
         collection = LineCollection(traces[of_set], capstyle="butt", zorder=2, **style)
         clip(collection, inside)
         axes.add_collection(collection)
         entries.append(matplotlib.lines.Line2D([], [], **style, label=name))
-    if len(entries) > 8:  # many single joints: one entry for all
-        bridge = entries[:1] if np.any(has_bridges) else []
+    bridge = entries[:1] if np.any(has_bridges) else []
+    if len(entries) - len(bridge) > 8:  # many single joints: one entry for all
         entries = [*bridge, matplotlib.lines.Line2D([], [], color=figure.COLORS[0], label="joints")]
     return entries
 
@@ -67,6 +69,7 @@ def draw_stages(scene, axes, inside):
     points = [np.array(point["at_m"], float) for point in scene.get("point", [])]
     size = max(np.ptp(axes.get_xlim()), np.ptp(axes.get_ylim()))
     for number, stage in enumerate(scene.get("stage", []), 1):
+        shown = False
         for corners in stage["remove_m"]:
             patch = matplotlib.patches.Polygon(corners, facecolor=str(0.8 + 0.13 * (number % 2)), edgecolor="0.25",
                                                linewidth=0.8, linestyle=(0, (6, 2, 1, 2)), zorder=0.5)
@@ -75,8 +78,11 @@ def draw_stages(scene, axes, inside):
             place = number_place(corners, points, size)
             if not figure.is_in(axes, place):
                 continue
+            shown = True
             axes.annotate(str(number), place, ha="center", va="center", zorder=4,
                           bbox={"boxstyle": "circle,pad=0.2", "facecolor": "white", "linewidth": 0.5})
+        if not shown:
+            continue
         when = f"day {stage['date']}" if isinstance(stage["date"], (int, float)) else str(stage["date"])
         entries.append(matplotlib.lines.Line2D([], [], linestyle="none", marker=f"${number}$", color="k",
                                                markeredgewidth=0, markersize=5, label=f"{stage['name']}, {when}"))
@@ -104,6 +110,8 @@ def draw_boundaries(scene, outline, axes):
             marker, label = "o", "fixed across, free along"
         count = max(2, round(14 * length / size))
         places = first + np.outer((np.arange(count) + 0.5) / count, along) + 0.018 * size * outward
+        if not any(figure.is_in(axes, place) for place in places):
+            continue
         axes.plot(*places.T, linestyle="none", marker=marker, markersize=3.5, markerfacecolor="white",
                   markeredgecolor="k", markeredgewidth=0.6)
         entries[marker, label] = matplotlib.lines.Line2D([], [], linestyle="none", marker=marker,
