@@ -106,6 +106,34 @@ class Shiplock(ChainTest):
             self.assertTrue(10 < moved < 150, f"{name}: {moved} mm")
         self.assertGreater(sum(crept.values()), 1.05 * sum(at_once.values()))
 
+    def test_pictures_and_table_of_one_network(self):
+        text = changed(self.variant("--spacing-times", "3"), r"^step_days = \S+", "step_days = 180")
+        result = self.chain.result(text, "--zone-size", "25")
+        targets = self.chain.source / "data" / "shiplock" / "targets.toml"
+        for script, *options in (["plot_lock"], ["plot_lock", "--plan"],
+                                 ["plot_records", "--side", "S", "--targets", targets, "--without", result],
+                                 ["plot_records", "--side", "N"]):
+            picture = self.chain.new_folder() / "picture.png"
+            done = subprocess.run([sys.executable, self.folder / f"{script}.py", result, *options, "-o", picture],
+                                  capture_output=True, text=True, timeout=200)
+            self.assertEqual((done.returncode, done.stderr), (0, ""))
+            self.assertEqual(picture.read_bytes()[:8], b"\x89PNG\r\n\x1a\n")
+        table = result.with_name("points.md")
+        done = subprocess.run([sys.executable, self.folder / "points.py", result, result, targets, "-o", table],
+                              capture_output=True, text=True, timeout=100)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        history = datasets(result)
+        lines = [line for line in table.read_text().split("\n") if re.match(r"\| [NS]\d", line)]
+        rows = {cells[1].split()[0]: cells for cells in (line.split("|") for line in lines)}
+        self.assertEqual(set(rows), set(history["/history/point"]))
+        end = 2025 + 1e-6  # 1999-12-31, days since 1994-06-15
+        for i, name in enumerate(history["/history/point"]):
+            toward = -1e3 * numpy.sign(history["/history/point_position"][i, 0]) * history["/history/displacement"][:, i, 0]
+            total = numpy.interp(end, history["/history/time"], toward)
+            self.assertAlmostEqual(float(rows[name][2]), total, delta=0.06)
+            recorded = total - toward[history["/history/first_reading_row"][i]]
+            self.assertAlmostEqual(float(rows[name][5]), recorded, delta=0.06)
+
     def test_tables_of_the_page(self):
         """The page's tables have the columns that the scripts write, and a row for every point and choice."""
         import points
