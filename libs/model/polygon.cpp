@@ -45,6 +45,17 @@ bool covers(const Polygon& polygon, const Vector2d& place)
     return is_inside;
 }
 
+double distance_to_sides(const Polygon& polygon, const Vector2d& place)
+{
+    double nearest = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+        const Vector2d &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
+        const double along = std::clamp((place - a).dot(b - a) / (b - a).squaredNorm(), 0.0, 1.0);
+        nearest = std::min(nearest, (a + along * (b - a) - place).norm());
+    }
+    return nearest;
+}
+
 double area_of(const Polygon& polygon)
 {
     double twice = 0;

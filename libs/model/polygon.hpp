@@ -34,6 +34,9 @@ std::vector<Interval> inside(const Polygon& polygon, const Line& line);
 // Whether a place is inside a polygon; on its sides either may be said.
 bool covers(const Polygon& polygon, const Eigen::Vector2d& place);
 
+// Distance of a place from the nearest side [m].
+double distance_to_sides(const Polygon& polygon, const Eigen::Vector2d& place);
+
 // About a corner of its own, whichever way round the polygon runs [m2].
 double area_of(const Polygon& polygon);
 

@@ -159,20 +159,27 @@ struct Region {
     Polygon outline;
 };
 
-// Initial stress, linear in depth below `elevation`: compression(y) = at_elevation + gradient * (elevation -
-// y).
+// Stress before excavation as a function of depth: below one elevation, or vertically below a ground surface;
+// linear, or straight between the levels of a profile.
 struct InSituStress {
-    double elevation = 0;                                        // [m]
-    double compression_xx = 0, compression_yy = 0, shear_xy = 0; // at `elevation` [Pa]; shear_xy is sigma_xy
+    double elevation = 0;                  // where the depth is 0 [m], without `ground`
+    std::vector<Eigen::Vector2d> ground{}; // line from left to right across the section [m]
+
+    // Without a profile: stress(depth) = at depth 0 + gradient * depth.
+    double compression_xx = 0, compression_yy = 0, shear_xy = 0; // at depth 0 [Pa]; shear_xy is sigma_xy
     double gradient_xx = 0, gradient_yy = 0, gradient_xy = 0;    // per metre of depth [Pa/m]
 
-    // {sigma_xx, sigma_yy, sigma_xy}, tension positive [Pa].
-    Eigen::Vector3d at(const Eigen::Vector2d& place) const
-    {
-        const double depth = elevation - place.y();
-        return {-(compression_xx + gradient_xx * depth), -(compression_yy + gradient_yy * depth),
-                shear_xy + gradient_xy * depth};
-    }
+    struct Level {
+        double depth = 0;                                            // [m]
+        double compression_xx = 0, compression_yy = 0, shear_xy = 0; // [Pa]
+    };
+    std::vector<Level> profile{}; // none, or two at least, in order of depth
+
+    // Vertically below the ground, which goes on level beyond its ends; or below the elevation [m].
+    double depth_of(const Eigen::Vector2d& place) const;
+    // {sigma_xx, sigma_yy, sigma_xy}, tension positive [Pa]. Above its first level and below its last one a
+    // profile goes straight on.
+    Eigen::Vector3d at(const Eigen::Vector2d& place) const;
 };
 
 // A factor that goes piecewise straight through (time since start [s], factor) pairs, and stays what it is at
@@ -307,6 +314,8 @@ struct Scene {
     std::uint64_t seed = 0; // needed by joint sets only
     std::optional<Creep> creep;
     double zone_size = 0; // longest zone side aimed at [m]
+    std::optional<Polygon> fine_zones{}; // where zones have that size, or else everywhere
+    double zone_coarsening = 0;          // distance from there in which the size grows by `zone_size` [m]
     Cutting cutting;
     Averaging averaging;
     Equilibrium equilibrium;

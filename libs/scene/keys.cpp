@@ -62,6 +62,8 @@ std::string TableInfo::shown() const
         return "[" + name + "]";
     const auto dot = name.find('.');
     const auto inner = dot == std::string::npos ? "" : " " + name.substr(dot + 1);
+    if (written == Written::inside && outer == Written::once)
+        return "[" + name.substr(0, dot) + "]" + inner;
     return "[[" + name.substr(0, dot) + "]]" + inner;
 }
 
@@ -229,6 +231,22 @@ Course read_course(const KeyInfo& key, const TomlValue& value, const Place& plac
         course.points.emplace_back(time, read_number(key, both->back(), place));
     }
     return course;
+}
+
+std::vector<Eigen::Vector2d> read_polyline(const KeyInfo& key, const TomlValue& value, const Place& place)
+{
+    const auto* const list = as_list(value);
+    if (!list || list->size() < 2)
+        place.refuse(key, value, "at least 2 corners");
+    if (list->size() > most_corners)
+        place.refuse(key, value, "at most " + std::to_string(most_corners) + " corners");
+    std::vector<Eigen::Vector2d> corners;
+    for (const TomlValue& corner : *list) {
+        corners.push_back(read_point(key, corner, place));
+        if (corners.size() > 1 && !(corners.back().x() > corners[corners.size() - 2].x()))
+            place.refuse(key, value, "x increasing from corner to corner");
+    }
+    return corners;
 }
 
 Polygon read_polygon(const KeyInfo& key, const TomlValue& value, const Place& place)

@@ -61,8 +61,8 @@ enum class Need { required, optional, together }; // together: all keys of one g
 // What is known of a key without knowing the record it fills.
 struct KeyInfo {
     std::string name;
-    std::string kind{}; // number, integer, text, date, point, polygon, polygons, law, Kelvin units, names,
-                        // poles, file text, density or the allowed words
+    std::string kind{}; // number, integer, text, date, point, polyline, polygon, polygons, law, Kelvin units,
+                        // levels, names, poles, file text, density or the allowed words
     Unit unit{};
     std::optional<Range> range{};
     std::string doc{};
@@ -106,6 +106,8 @@ double read_date(const KeyInfo& key, const TomlValue& value, const Place& place)
 Calendar read_start(const KeyInfo& key, const TomlValue& value, const Place& place);
 Eigen::Vector2d read_point(const KeyInfo& key, const TomlValue& value, const Place& place);
 Course read_course(const KeyInfo& key, const TomlValue& value, const Place& place);
+// From left to right: x increases.
+std::vector<Eigen::Vector2d> read_polyline(const KeyInfo& key, const TomlValue& value, const Place& place);
 Polygon read_polygon(const KeyInfo& key, const TomlValue& value, const Place& place);
 std::vector<Polygon> read_polygons(const KeyInfo& key, const TomlValue& value, const Place& place);
 
@@ -143,6 +145,7 @@ struct TableInfo {
     Written written = Written::once;
     Need need = Need::required;
     std::string doc{};
+    Written outer = Written::in_list; // of a table inside another: how that one is written
 
     std::string shown() const; // "[section]", "[[rock]]", "[[joint_set]] spacing"
 };
@@ -232,6 +235,13 @@ Key<Record> course(std::string name, Course Record::*member, std::string doc)
 {
     return key_of<Record>({std::move(name), "course", {}, within(farthest_day), std::move(doc)}, member,
                           read_course);
+}
+
+template <class Record>
+Key<Record> polyline(std::string name, std::vector<Eigen::Vector2d> Record::*member, std::string doc)
+{
+    return key_of<Record>({std::move(name), "polyline", metres, within(farthest_metre), std::move(doc)},
+                          member, read_polyline);
 }
 
 template <class Record, class Value>

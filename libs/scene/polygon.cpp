@@ -1,5 +1,7 @@
 #include "scene/polygon.hpp"
 
+#include "model/polygon.hpp"
+
 #include <algorithm>
 #include <limits>
 #include <numeric>
@@ -112,17 +114,6 @@ double polygon_size(const Polygon& polygon)
         high = high.cwiseMax(corner);
     }
     return (high - low).norm();
-}
-
-double distance_to_sides(const Polygon& polygon, const Point& point)
-{
-    double nearest = std::numeric_limits<double>::infinity();
-    for (std::size_t i = 0; i < polygon.size(); ++i) {
-        const Point &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
-        const double along = std::clamp((point - a).dot(b - a) / (b - a).squaredNorm(), 0.0, 1.0);
-        nearest = std::min(nearest, (a + along * (b - a) - point).norm());
-    }
-    return nearest;
 }
 
 bool sides_come_near(const Polygon& a, const Polygon& b, double tolerance)

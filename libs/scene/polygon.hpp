@@ -17,9 +17,6 @@ double polygon_size(const Polygon& polygon);
 // Whether a point lies inside a simple polygon, or within `tolerance` [m] of its sides.
 bool covers(const Polygon& polygon, const Eigen::Vector2d& point, double tolerance);
 
-// Distance [m] of a point from the nearest side.
-double distance_to_sides(const Polygon& polygon, const Eigen::Vector2d& point);
-
 // Whether sides of two polygons cross, or come within `tolerance` [m] of each other.
 bool sides_come_near(const Polygon& a, const Polygon& b, double tolerance);
 

@@ -1,6 +1,7 @@
 #include "scene/scene_checks.hpp"
 
 #include "model/error.hpp"
+#include "model/polygon.hpp"
 #include "scene/polygon.hpp"
 
 #include <cmath>
@@ -54,6 +55,7 @@ public:
         check_joint_materials();
         check_rocks();
         check_joint_sets();
+        check_in_situ_stress();
         check_boundaries();
         check_times();
         check_places();
@@ -185,6 +187,8 @@ private:
         for (std::size_t i = 0; i < scene_.joint_sets.size(); ++i)
             if (scene_.joint_sets[i].region)
                 check_polygon(in_list("joint_set", i), "region_m", *scene_.joint_sets[i].region);
+        if (scene_.fine_zones)
+            check_polygon(once("zones"), "fine_m", *scene_.fine_zones);
         for (std::size_t i = 0; i < scene_.stages.size(); ++i)
             for (const Polygon& polygon : scene_.stages[i].remove)
                 check_polygon(in_list("stage", i), "remove_m", polygon);
@@ -243,6 +247,29 @@ private:
         for (std::size_t i = 0; i < scene_.joints.size(); ++i)
             if (scene_.joints[i].from == scene_.joints[i].to)
                 in_list("joint", i).refuse("to_m", "wanted another point than from_m");
+    }
+
+    void check_in_situ_stress() const
+    {
+        const Given given = once("in_situ_stress");
+        const auto& ground = scene_.in_situ_stress.ground;
+        if (given.find("ground_m") && given.find("elevation_m"))
+            given.refuse("ground_m", "wanted either it or elevation_m, not both");
+        if (!given.find("ground_m") && !given.find("elevation_m"))
+            given.refuse("elevation_m", "wanted it, or ground_m");
+        if (given.find("profile") && given.find("compression_xx_MPa"))
+            given.refuse("profile", "wanted either it, or the keys of a linear law, not both");
+        if (!given.find("profile") && !given.find("compression_xx_MPa"))
+            given.refuse("compression_xx_MPa",
+                         "wanted the keys of a linear law (compression_xx_MPa, ...), or a profile");
+        if (ground.empty())
+            return;
+        const auto [left, right] =
+            std::minmax_element(scene_.outline.begin(), scene_.outline.end(),
+                                [](const auto& one, const auto& other) { return one.x() < other.x(); });
+        if (ground.front().x() > left->x() + tolerance() || ground.back().x() < right->x() - tolerance())
+            given.refuse("ground_m", "wanted a line across the whole section, from x = " + shown(left->x()) +
+                                         " to " + shown(right->x()) + " m");
     }
 
     void check_boundaries() const

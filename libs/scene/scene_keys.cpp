@@ -694,23 +694,72 @@ Table<HeldFile> held_file()
 
 // ----------------------------------------------------------------------------------------------------------------
 
-Table<InSituStress> in_situ_stress()
+Table<InSituStress::Level> stress_profile()
+{
+    using L = InSituStress::Level;
+    return {
+        {"in_situ_stress.profile", inside, optional,
+         "The stress at a depth. Levels stand in order of depth, two at least. Between them the stress is "
+         "straight; above the first one and below the last one it goes straight on.",
+         once},
+        {number("depth_m", &L::depth, metres, from(0).to(farthest_metre), "Depth."),
+         number("compression_xx_MPa", &L::compression_xx, MPa, stress, "Horizontal compression there."),
+         number("compression_yy_MPa", &L::compression_yy, MPa, stress, "Vertical compression there."),
+         number("shear_xy_MPa", &L::shear_xy, MPa, stress, "Shear stress there.")}};
+}
+
+std::vector<InSituStress::Level> read_profile(const Table<InSituStress::Level>& table, const KeyInfo& key,
+                                              const TomlValue& value, const Place& outer)
+{
+    constexpr std::size_t most_levels = 1000;
+    const auto* const list = std::get_if<TomlValue::List>(&value.content);
+    if (!list || list->size() < 2 || list->size() > most_levels)
+        outer.refuse(key, value, "2 of them at least, and at most " + std::to_string(most_levels));
+    const Place place{outer.reading, table.info.shown()};
+    std::vector<InSituStress::Level> levels(list->size());
+    for (std::size_t i = 0; i < list->size(); ++i) {
+        read_table(table, (*list)[i], place, levels[i]);
+        if (i > 0 && !(levels[i].depth > levels[i - 1].depth))
+            outer.refuse(key, value, "depth_m increasing from level to level");
+    }
+    return levels;
+}
+
+Table<InSituStress> in_situ_stress(const Table<InSituStress::Level>& profile)
 {
     using S = InSituStress;
-    return {{"in_situ_stress", once, required,
-             "Stress before excavation, linear in depth: compression(y) = compression + gradient x "
-             "(elevation - y). "
-             "Compression is positive here; shear_xy is the stress component sigma_xy itself."},
-            {number("elevation_m", &S::elevation, metres, coordinate, "Elevation y where the depth is 0."),
-             number("compression_xx_MPa", &S::compression_xx, MPa, stress, "Horizontal compression there."),
-             number("compression_yy_MPa", &S::compression_yy, MPa, stress, "Vertical compression there."),
-             number("shear_xy_MPa", &S::shear_xy, MPa, stress, "Shear stress there."),
-             number("compression_xx_gradient_MPa_per_m", &S::gradient_xx, MPa_per_m, gradient,
-                    "Increase per metre of depth."),
-             number("compression_yy_gradient_MPa_per_m", &S::gradient_yy, MPa_per_m, gradient,
-                    "Increase per metre of depth."),
-             number("shear_xy_gradient_MPa_per_m", &S::gradient_xy, MPa_per_m, gradient,
-                    "Increase per metre of depth.")}};
+    const auto levels = [profile](const KeyInfo& key, const TomlValue& value, const Place& place) {
+        return read_profile(profile, key, value, place);
+    };
+    return {
+        {"in_situ_stress", once, required,
+         "Stress before excavation, by depth: below elevation_m, or vertically below ground_m. Either "
+         "linear, "
+         "compression(depth) = compression + gradient x depth, or by a profile. Compression is positive "
+         "here; shear_xy is the stress component sigma_xy itself."},
+        {number("elevation_m", &S::elevation, metres, coordinate, "Elevation y where the depth is 0.")
+             .optional(),
+         polyline("ground_m", &S::ground,
+                  "In place of elevation_m: the ground surface, a line across the whole section with x "
+                  "increasing from corner to corner.")
+             .optional(),
+         number("compression_xx_MPa", &S::compression_xx, MPa, stress, "Horizontal compression at depth 0.")
+             .together("linear"),
+         number("compression_yy_MPa", &S::compression_yy, MPa, stress, "Vertical compression at depth 0.")
+             .together("linear"),
+         number("shear_xy_MPa", &S::shear_xy, MPa, stress, "Shear stress at depth 0.").together("linear"),
+         number("compression_xx_gradient_MPa_per_m", &S::gradient_xx, MPa_per_m, gradient,
+                "Increase per metre of depth.")
+             .together("linear"),
+         number("compression_yy_gradient_MPa_per_m", &S::gradient_yy, MPa_per_m, gradient,
+                "Increase per metre of depth.")
+             .together("linear"),
+         number("shear_xy_gradient_MPa_per_m", &S::gradient_xy, MPa_per_m, gradient,
+                "Increase per metre of depth.")
+             .together("linear"),
+         key_of<S>({"profile", "levels", {}, {}, "Stress at some depths, in place of the linear law."},
+                   &S::profile, levels)
+             .optional()}};
 }
 
 Table<Boundary> boundary()
@@ -822,7 +871,15 @@ Table<Creep> creep()
 Table<Scene> zones()
 {
     return {{"zones", once, required, "Zones: the constant-strain triangles inside the blocks."},
-            {number("size_m", &Scene::zone_size, metres, length, "Longest zone side aimed at.")}};
+            {number("size_m", &Scene::zone_size, metres, length, "Longest zone side aimed at."),
+             polygon("fine_m", &Scene::fine_zones,
+                     "Where they are of that size; outside they are larger. Without it they are of that "
+                     "size everywhere.")
+                 .together("coarsening"),
+             number("coarsening_m", &Scene::zone_coarsening, metres, length,
+                    "Distance from fine_m in which the size grows by size_m: at twice the distance zones are "
+                    "three times as large.")
+                 .together("coarsening")}};
 }
 
 Table<Cutting> cutting()
@@ -934,7 +991,8 @@ SceneTables all_tables()
     all.density = density_table();
     all.joint_set = joint_set(all);
     all.mapped = mapped();
-    all.in_situ_stress = in_situ_stress();
+    all.profile = stress_profile();
+    all.in_situ_stress = in_situ_stress(all.profile);
     all.boundary = boundary();
     all.schedule = schedule();
     all.stage = stage();

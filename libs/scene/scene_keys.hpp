@@ -62,6 +62,7 @@ struct SceneTables {
     Table<WrittenDensity> density;                                                // inside joint_set
     Table<WrittenMapped> mapped;
     Table<InSituStress> in_situ_stress;
+    Table<InSituStress::Level> profile; // inside in_situ_stress
     Table<Boundary> boundary;
     Table<Schedule> schedule;
     Table<Stage> stage;
@@ -83,7 +84,8 @@ struct SceneTables {
         visit(kelvin_chain), visit(joint), visit(joint_set), visit(trace_angle), visit(dip),
             visit(dip_direction), visit(orientation), visit(spacing), visit(length), visit(diameter),
             visit(density), visit(mapped);
-        visit(in_situ_stress), visit(boundary), visit(schedule), visit(stage), visit(point), visit(gauge);
+        visit(in_situ_stress), visit(profile), visit(boundary), visit(schedule), visit(stage), visit(point),
+            visit(gauge);
         visit(creep), visit(zones), visit(cutting), visit(averaging), visit(equilibrium), visit(random),
             visit(file);
     }

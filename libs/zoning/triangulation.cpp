@@ -33,27 +33,37 @@ Eigen::Vector2d place(Cdt::Vertex_handle v)
     return {v->point().x(), v->point().y()};
 }
 
-// CGAL's criteria for size and angle, but a triangle whose sides are all below a floor is good enough
-// whatever its angles: in a corner of blocks sharper than the angle asked for no triangle is ever good, and
-// refinement would go on there until rounding ends it, with a crash.
+using SizeAt = std::function<double(const Eigen::Vector2d&)>;
+
+Eigen::Vector2d middle_of(const Cdt::Face_handle& face)
+{
+    return (place(face->vertex(0)) + place(face->vertex(1)) + place(face->vertex(2))) / 3;
+}
+
+// CGAL's criteria for size and angle, with a size that changes from place to place. But a triangle whose
+// sides are all below a floor is good enough whatever its angles: in a corner of blocks sharper than the
+// angle asked for no triangle is ever good, and refinement would go on there until rounding ends it, with a
+// crash.
 class Criteria : public CGAL::Delaunay_mesh_size_criteria_2<Cdt>
 {
     using Sized = CGAL::Delaunay_mesh_size_criteria_2<Cdt>;
 
 public:
-    Criteria(double shape, double size, double floor) : Sized(shape, size), floor_(floor) {}
+    Criteria(double shape, const SizeAt& size, double floor) : Sized(shape), size_(&size), floor_(floor) {}
 
     class Is_bad : public Sized::Is_bad
     {
     public:
-        Is_bad(double shape, double size, double floor) : Sized::Is_bad(shape, size, Kernel()), floor_(floor)
+        Is_bad(double shape, const SizeAt& size, double floor)
+            : Sized::Is_bad(shape, 0, Kernel()), size_(&size), floor_(floor)
         {
         }
 
         using Sized::Is_bad::operator();
         CGAL::Mesh_2::Face_badness operator()(const Cdt::Face_handle& face, Sized::Quality& quality) const
         {
-            const CGAL::Mesh_2::Face_badness badness = Sized::Is_bad::operator()(face, quality);
+            const Sized::Is_bad here(this->B, (*size_)(middle_of(face)), this->traits);
+            const CGAL::Mesh_2::Face_badness badness = here(face, quality);
             for (int i = 0; i < 3; ++i)
                 if ((place(face->vertex(i)) - place(face->vertex((i + 1) % 3))).norm() >= floor_)
                     return badness;
@@ -62,11 +72,13 @@ public:
         }
 
     private:
+        const SizeAt* size_;
         double floor_;
     };
-    Is_bad is_bad_object() const { return {bound(), size_bound(), floor_}; }
+    Is_bad is_bad_object() const { return {bound(), *size_, floor_}; }
 
 private:
+    const SizeAt* size_;
     double floor_; // [m]
 };
 
@@ -101,7 +113,7 @@ Cdt::Edge next_piece(const Cdt& cdt, Cdt::Vertex_handle at, Cdt::Vertex_handle t
 
 } // namespace
 
-Triangulation triangulate(const Blocks& blocks, double size)
+Triangulation triangulate(const Blocks& blocks, double least, const SizeAt& size)
 {
     Cdt cdt;
     std::vector<Cdt::Vertex_handle> corner;
@@ -138,7 +150,7 @@ Triangulation triangulate(const Blocks& blocks, double size)
     for (const auto f : cdt.all_face_handles())
         f->set_in_domain(f->info() >= 0);
 
-    const double floor = std::min(size, blocks.report.shortest_edge) / 4;
+    const double floor = std::min(least, blocks.report.shortest_edge) / 4;
     CGAL::Delaunay_mesher_2<Cdt, Criteria> mesher(cdt, Criteria(0.125, size, floor));
     mesher.init(true); // the domain is marked already
     mesher.refine_mesh();
@@ -190,11 +202,8 @@ Triangulation triangulate(const Blocks& blocks, double size)
     for (const auto f : cdt.finite_face_handles())
         if (f->info() >= 0)
             faces.push_back(f);
-    const auto middle = [](Cdt::Face_handle f) {
-        return Eigen::Vector2d((place(f->vertex(0)) + place(f->vertex(1)) + place(f->vertex(2))) / 3);
-    };
     std::sort(faces.begin(), faces.end(), [&](Cdt::Face_handle f, Cdt::Face_handle g) {
-        const Eigen::Vector2d a = middle(f), b = middle(g);
+        const Eigen::Vector2d a = middle_of(f), b = middle_of(g);
         return std::tuple(f->info(), a.x(), a.y()) < std::tuple(g->info(), b.x(), b.y());
     });
     for (const auto v : cdt.finite_vertex_handles())

@@ -5,6 +5,7 @@
 #include "model/network.hpp"
 
 #include <array>
+#include <functional>
 #include <vector>
 
 namespace jointcreep::zoning
@@ -26,8 +27,10 @@ struct Triangulation {
         neighbour; // across the side opposite each corner; -1 across block edges
 };
 
-// Delaunay refinement of all blocks at once, with the block edges kept: no side longer than `size` [m], no
-// angle below about 20 degrees except where the blocks' own corners are sharper.
-Triangulation triangulate(const Blocks& blocks, double size);
+// Delaunay refinement of all blocks at once, with the block edges kept: no side longer than the size at the
+// triangle's middle [m], no angle below about 20 degrees except where the blocks' own corners are sharper.
+// `least` is the smallest size [m].
+Triangulation triangulate(const Blocks& blocks, double least,
+                          const std::function<double(const Eigen::Vector2d&)>& size);
 
 } // namespace jointcreep::zoning

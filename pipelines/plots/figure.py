@@ -135,19 +135,34 @@ def name_index(names, wanted, what):
     return names.index(wanted)
 
 
-def section_axes(outline):
-    """A figure for a section, with equal scales."""
+WINDOW = (["--window"], {"nargs": 4, "type": float, "metavar": ("X0", "Y0", "X1", "Y1"),
+                         "help": "part of the section to draw, in m; default: all of it"})
+
+
+def section_axes(outline, window=None):
+    """A figure for a section, or for the window x0, y0, x1, y1 of it, with equal scales."""
+    if window:
+        outline = np.reshape(window, (2, 2))
+        if not np.all(outline[0] < outline[1]):
+            raise NotWanted("--window: wanted X0 below X1, and Y0 below Y1")
     low, high = np.min(outline, axis=0), np.max(outline, axis=0)
     width, height = high - low
     scale = min((TWO_COLUMNS - 0.8) / width, 5.5 / height)
+    if window:  # it has no margins of its own, into which a legend could reach
+        plt.rcParams.update({"savefig.bbox": "tight", "savefig.pad_inches": 0.03})
     figure, axes = plt.subplots(figsize=(max(ONE_COLUMN, width * scale + 0.8), height * scale + 0.5))
-    margin = 0.05 * max(width, height)
+    margin = 0 if window else 0.05 * max(width, height)
     axes.set_xlim(low[0] - margin, high[0] + margin)
     axes.set_ylim(low[1] - margin, high[1] + margin)
     axes.set_aspect("equal")
     axes.set_xlabel("x (m)")
     axes.set_ylabel("y (m)")
     return figure, axes
+
+
+def is_in(axes, place):
+    """Whether a place is in what the axes show."""
+    return all(low <= at <= high for at, (low, high) in zip(place, (axes.get_xlim(), axes.get_ylim())))
 
 
 def legend_below(axes, *groups):

@@ -72,7 +72,7 @@ def draw(file, arguments):
     paths = block_paths(file)
     position = figure.array(file, "/vertices/position")
     area = figure.array(file, "/blocks/area")
-    plot, axes = figure.section_axes(position)
+    plot, axes = figure.section_axes(position, arguments.window)
     entries = draw_edges(file, axes)
 
     fills = []
@@ -103,5 +103,5 @@ def draw(file, arguments):
 
 
 if __name__ == "__main__":
-    figure.run(draw, figure.arguments_of(__doc__, (["--by"], {"choices": ["size", "set", "rock", "stage"],
+    figure.run(draw, figure.arguments_of(__doc__, figure.WINDOW, (["--by"], {"choices": ["size", "set", "rock", "stage"],
                                                               "default": "size", "help": "default: size"})))

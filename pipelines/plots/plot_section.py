@@ -9,6 +9,13 @@ from matplotlib.collections import LineCollection
 
 import figure
 
+SET_COLORS = [*figure.COLORS, "#8e4f9f", "#5d3b1e"]
+
+
+def clip(artist, inside):
+    artist.set_clip_path(inside)
+    artist.set_in_layout(False)  # layout fails on what is clipped and outside of the window
+
 
 def draw_joints(file, axes, inside):
     """Joint lines dotted, and over them, solid, what of them is joint: the dots left are rock bridges. Returns legend
@@ -29,20 +36,20 @@ def draw_joints(file, axes, inside):
     if np.any(has_bridges):
         dots = {"color": "0.3", "linewidth": 0.6 * width, "linestyle": (0, (1, 2.2))}
         bridges = LineCollection(lines[has_bridges], **dots)
-        bridges.set_clip_path(inside)
+        clip(bridges, inside)
         axes.add_collection(bridges)
         entries.append(matplotlib.lines.Line2D([], [], label="rock bridge", **dots))
     for i, name in enumerate(sets):
         of_set = joint_set[trace_joint] == i
         if not np.any(of_set):
             continue
-        style = {"color": figure.COLORS[i % 6], "linewidth": width * figure.WIDTHS[i % 6]}
+        style = {"color": SET_COLORS[i % 8], "linewidth": width * figure.WIDTHS[i % 6]}
         collection = LineCollection(traces[of_set], capstyle="butt", zorder=2, **style)
-        collection.set_clip_path(inside)
+        clip(collection, inside)
         axes.add_collection(collection)
         entries.append(matplotlib.lines.Line2D([], [], **style, label=name))
-    if len(entries) > 8:  # many single joints: one entry for all
-        bridge = entries[:1] if np.any(has_bridges) else []
+    bridge = entries[:1] if np.any(has_bridges) else []
+    if len(entries) - len(bridge) > 8:  # many single joints: one entry for all
         entries = [*bridge, matplotlib.lines.Line2D([], [], color=figure.COLORS[0], label="joints")]
     return entries
 
@@ -57,18 +64,25 @@ def number_place(corners, points, size):
     return middle
 
 
-def draw_stages(scene, outline, axes, inside):
+def draw_stages(scene, axes, inside):
     entries = []
     points = [np.array(point["at_m"], float) for point in scene.get("point", [])]
-    size = np.max(np.ptp(outline, axis=0))
+    size = max(np.ptp(axes.get_xlim()), np.ptp(axes.get_ylim()))
     for number, stage in enumerate(scene.get("stage", []), 1):
+        shown = False
         for corners in stage["remove_m"]:
             patch = matplotlib.patches.Polygon(corners, facecolor=str(0.8 + 0.13 * (number % 2)), edgecolor="0.25",
                                                linewidth=0.8, linestyle=(0, (6, 2, 1, 2)), zorder=0.5)
             axes.add_patch(patch)
-            patch.set_clip_path(inside)
-            axes.annotate(str(number), number_place(corners, points, size), ha="center", va="center", zorder=4,
+            clip(patch, inside)
+            place = number_place(corners, points, size)
+            if not figure.is_in(axes, place):
+                continue
+            shown = True
+            axes.annotate(str(number), place, ha="center", va="center", zorder=4,
                           bbox={"boxstyle": "circle,pad=0.2", "facecolor": "white", "linewidth": 0.5})
+        if not shown:
+            continue
         when = f"day {stage['date']}" if isinstance(stage["date"], (int, float)) else str(stage["date"])
         entries.append(matplotlib.lines.Line2D([], [], linestyle="none", marker=f"${number}$", color="k",
                                                markeredgewidth=0, markersize=5, label=f"{stage['name']}, {when}"))
@@ -98,6 +112,8 @@ def draw_boundaries(scene, outline, axes):
             marker, label = "o", "fixed across, free along"
         count = max(2, round(14 * length / size))
         places = first + np.outer((np.arange(count) + 0.5) / count, along) + 0.018 * size * outward
+        if not any(figure.is_in(axes, place) for place in places):
+            continue
         axes.plot(*places.T, linestyle="none", marker=marker, markersize=3.5, markerfacecolor="white",
                   markeredgecolor="k", markeredgewidth=0.6)
         entries[marker, label] = matplotlib.lines.Line2D([], [], linestyle="none", marker=marker,
@@ -110,22 +126,24 @@ def draw_places(scene, key, label, marker, axes):
     places = {place["name"]: place["at_m"] for place in scene.get(key, [])}
     look = {"linestyle": "none", "marker": marker, "color": "k", "markersize": 3.5}
     for name, place in places.items():
+        if not figure.is_in(axes, place):
+            continue
         axes.plot(*place, zorder=5, path_effects=figure.HALO, **look)
         axes.annotate(name, place, xytext=(4, 3), textcoords="offset points", zorder=5, path_effects=figure.HALO)
     return [matplotlib.lines.Line2D([], [], label=label, **look)] if places else []
 
 
-def draw(file, _):
+def draw(file, arguments):
     scene = figure.scene_of(file)
     outline = np.array(scene["section"]["outline_m"], float)
-    plot, axes = figure.section_axes(outline)
+    plot, axes = figure.section_axes(outline, arguments.window)
     inside = matplotlib.patches.Polygon(outline, facecolor="none", edgecolor="k", linewidth=1.0, zorder=3)
     for hole in scene["section"].get("holes_m", []):
         axes.add_patch(matplotlib.patches.Polygon(hole, facecolor="w", edgecolor="k", linewidth=1.0, zorder=3))
     axes.add_patch(inside)
 
     joints = draw_joints(file, axes, inside)
-    stages = draw_stages(scene, outline, axes, inside)
+    stages = draw_stages(scene, axes, inside)
     others = draw_boundaries(scene, outline, axes)
     others += draw_places(scene, "point", "measuring point", "o", axes)
     others += draw_places(scene, "gauge", "gauge on a joint", "D", axes)
@@ -134,4 +152,4 @@ def draw(file, _):
 
 
 if __name__ == "__main__":
-    figure.run(draw, figure.arguments_of(__doc__))
+    figure.run(draw, figure.arguments_of(__doc__, figure.WINDOW))

@@ -58,7 +58,8 @@ def state_index(file, wanted):
 class Section:
     """The zones that are there in a state, with their gridpoints where the picture has them."""
 
-    def __init__(self, file, state, magnify):
+    def __init__(self, file, state, magnify, window=None):
+        self.window = window
         self.start = figure.array(file, "/mesh/gridpoint_position")
         self.displacement = figure.array(file, "/states/displacement")[state]
         self.position = self.start + magnify * self.displacement
@@ -84,7 +85,7 @@ class Section:
 
     def on_grid(self, columns):
         """Zones that lie on a coarse grid with so many columns, and the grid's spacing [m]."""
-        low, high = self.start.min(axis=0), self.start.max(axis=0)
+        low, high = np.reshape(self.window, (2, 2)) if self.window else (self.start.min(axis=0), self.start.max(axis=0))
         spacing = np.max(high - low) / columns
         middle = self.start[self.zones].mean(axis=1)
         cell = np.floor((middle - low) / spacing).astype(int)
@@ -92,6 +93,7 @@ class Section:
         order = np.argsort(off_centre)
         _, first = np.unique(cell[order], axis=0, return_index=True)
         chosen = order[first]
+        chosen = chosen[np.all((middle[chosen] > low) & (middle[chosen] < high), axis=1)]
         return chosen[off_centre[chosen] < 0.35], spacing
 
 
@@ -254,8 +256,8 @@ def draw(file, arguments):
     if figure.file_type(file) != "jointcreep result":
         raise figure.NotWanted("there are no states in this file; demsolve makes one that has them")
     state = state_index(file, arguments.state)
-    section = Section(file, state, arguments.magnify)
-    plot, axes = figure.section_axes(section.start)
+    section = Section(file, state, arguments.magnify, arguments.window)
+    plot, axes = figure.section_axes(section.start, arguments.window)
     plot.set_figheight(plot.get_figheight() + 0.2)  # for the title
     field = {"displacement": draw_displacement, "stress": draw_stress, "contacts": draw_contacts}[arguments.field]
     entries = field(file, state, section, axes, arguments)
@@ -277,6 +279,7 @@ if __name__ == "__main__":
         (["--component"], {"choices": list(COMPONENTS), "default": "major",
                            "help": "of the stress; major and minor come with crosses along their directions; "
                                    "default: major"}),
+        figure.WINDOW,
         (["--magnify"], {"type": float, "default": 0, "metavar": "TIMES",
                          "help": "draw the rock displaced so many times; default: 0"}),
         (["--range"], {"nargs": 2, "type": float, "metavar": ("LOW", "HIGH"),

@@ -9,7 +9,8 @@
 # It ends with one of two files in FOLDER, each of which appears whole or not at all:
 #   NUMBER.h5      the result: every equilibrium was found
 #   NUMBER.failed  which program gave up, with what exit code, and its message
-# and NUMBER.log has the closing screens. With KEEP=1 in the environment NUMBER-network.h5 and NUMBER-joints.h5 stay.
+# and NUMBER.log has the closing screens. With KEEP=1 in the environment NUMBER-network.h5 and NUMBER-joints.h5 stay;
+# SOLVE has options of demsolve.
 #
 # Exit code 0 if it has ended, either way. A program that was stopped from outside, or that could not write (exit
 # code 4), is not the end of a realization: its exit code is handed on, and the next time it is tried again.
@@ -58,7 +59,8 @@ run() {
 { # in braces it is read at once: this script may be replaced while it runs
     run jointgen "$scene" --realization "$number" -o "$work/network.h5"
     run strength-averaging "$work/network.h5" -o "$work/joints.h5"
-    run demsolve "$work/joints.h5" -o "$work/result.h5"
+    # shellcheck disable=SC2086 # options, one word each
+    run demsolve "$work/joints.h5" ${SOLVE:-} -o "$work/result.h5"
 
     if [ -n "${KEEP:-}" ]; then
         mv "$work/network.h5" "$ended-network.h5" && mv "$work/joints.h5" "$ended-joints.h5" || exit 4

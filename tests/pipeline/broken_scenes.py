@@ -24,7 +24,22 @@ WITH_TOLERANCE = (
     "step_days = 5",
     "tolerance_m = 1e-5\nfirst_step_days = 0.5\nshortest_step_days = 0.1\nlongest_step_days = 10",
 )
-OTHERWISE = {"local_damping": WITH_LOCAL_DAMPING, "tolerance_m": WITH_TOLERANCE, "first_step_days": WITH_TOLERANCE,
+LINEAR_STRESS = """elevation_m = 20
+compression_xx_MPa = 0
+compression_yy_MPa = 0
+shear_xy_MPa = 0
+compression_xx_gradient_MPa_per_m = 0.013
+compression_yy_gradient_MPa_per_m = 0.026487
+shear_xy_gradient_MPa_per_m = 0
+"""
+WITH_GROUND = ("elevation_m = 20\n", "ground_m = [[0, 20], [25, 21], [40, 20]]\n")
+WITH_PROFILE = (LINEAR_STRESS, """elevation_m = 20
+profile = [{ depth_m = 0, compression_xx_MPa = 1, compression_yy_MPa = 0, shear_xy_MPa = 0 }, \
+{ depth_m = 20, compression_xx_MPa = 1.3, compression_yy_MPa = 0.5, shear_xy_MPa = 0.1 }]
+""")
+OTHERWISE = {"ground_m": WITH_GROUND, "profile": WITH_PROFILE,
+             "in_situ_stress.profile": WITH_PROFILE,
+             "local_damping": WITH_LOCAL_DAMPING, "tolerance_m": WITH_TOLERANCE, "first_step_days": WITH_TOLERANCE,
              "shortest_step_days": WITH_TOLERANCE, "longest_step_days": WITH_TOLERANCE}  # keys not in every_key.toml
 CHECK_TIME = 60  # s, far more than any check takes
 
@@ -50,7 +65,7 @@ def find(lines, table, key):
 def wrap(kind, number):
     """The number where a value of this kind has one."""
     corners = f"[[{number}, 0], [1, 0], [0, 1]]"
-    lists = {"point": f"[0, {number}]", "course": f"[[1, 0], [2, {number}]]", "polygon": corners,
+    lists = {"point": f"[0, {number}]", "polyline": f"[[0, {number}], [1, 0]]", "course": f"[[1, 0], [2, {number}]]", "polygon": corners,
              "polygons": f"[{corners}]"}
     return lists.get(kind, number)
 
@@ -134,14 +149,17 @@ def main():
     text = (HERE / "every_key.toml").read_text()
     broken = []
     for key in keys_of(jointgen):
-        base = text.replace(*OTHERWISE[key["key"]]) if key["key"] in OTHERWISE else text
+        otherwise = OTHERWISE.get(key["table"]) or OTHERWISE.get(key["key"])
+        base = text.replace(*otherwise) if otherwise else text
         where = f"{key['table']} {key['key']}"
         broken += [(f"{where}, {what}", *rest) for what, *rest in variants(key, base)]
 
     failures = 0
     with tempfile.TemporaryDirectory() as folder:
         for name, valid in (("every_key.toml", text), ("local.toml", text.replace(*WITH_LOCAL_DAMPING)),
-                            ("tolerance.toml", text.replace(*WITH_TOLERANCE))):
+                            ("tolerance.toml", text.replace(*WITH_TOLERANCE)),
+                            ("ground.toml", text.replace(*WITH_GROUND)),
+                            ("profile.toml", text.replace(*WITH_PROFILE))):
             scene = pathlib.Path(folder) / name
             scene.write_text(valid)
             command = [jointgen, str(scene), "-o", str(scene) + ".h5", "--check"]

@@ -59,6 +59,24 @@ class InSituPatch(ChainTest):
         text = changed(text, r'^\[\[boundary\]\]\nfrom_m = \[60, 40\]\nto_m = \[0, 40\]\nfix = "xy"\n', "")
         self.assert_rests(self.chain.result(text))
 
+    def test_uniform_by_a_profile_below_uneven_ground(self):
+        level = "{ depth_m = %d, compression_xx_MPa = 6, compression_yy_MPa = 4, shear_xy_MPa = 1.5 }"
+        text = changed(self.chain.text("tests/pipeline/patch.toml"), r"^elevation_m = 40\n(compression|shear)_(.*\n)*?\n",
+                       "ground_m = [[0, 40], [20, 47], [60, 30]]\n"
+                       f"profile = [{level % 0}, {level % 5}, {level % 50}]\n\n")
+        self.assert_rests(self.chain.result(text))
+
+    def test_linear_law_by_flat_ground_and_profile(self):
+        """A slope under its weight, excavated: the same to rounding by either way of writing the stress."""
+        text = self.chain.text("tests/pipeline/random_slope.toml")
+        level = "{ depth_m = %g, compression_xx_MPa = %.9g, compression_yy_MPa = %.9g, shear_xy_MPa = 0 }"
+        levels = ", ".join(level % (h, 0.013 * h, 0.026487 * h) for h in (0, 50))
+        by_profile = changed(text, r"^elevation_m = 50\n(compression|shear)_(.*\n)*?\n",
+                             f"ground_m = [[-1000, 50], [10, 50], [1000, 50]]\nprofile = [{levels}]\n\n")
+        one, other = (datasets(self.chain.result(scene))["/history/displacement"] for scene in (text, by_profile))
+        self.assertGreater(numpy.abs(one).max(), 1e-4)
+        self.assertLess(numpy.abs(one - other).max(), 1e-6 * numpy.abs(one).max())
+
     def test_with_a_stage_at_the_end(self):
         """Stage outlines cut through solid rock change nothing before their day."""
         text = changed(self.chain.text("tests/pipeline/patch.toml"), r"^end = 3$", "end = 3\n" + STAGE_AT_THE_END)

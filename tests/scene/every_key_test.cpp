@@ -143,6 +143,9 @@ TEST(every_key, all_else)
     EXPECT_EQ(scene.creep->scheme, CreepScheme::published);
     EXPECT_FALSE(scene.creep->tolerance);
     EXPECT_EQ(scene.equilibrium.engine, Engine::explicit_engine);
+    ASSERT_TRUE(scene.fine_zones);
+    EXPECT_EQ((*scene.fine_zones)[1], Eigen::Vector2d(35, 5));
+    EXPECT_EQ(scene.zone_coarsening, 10);
     EXPECT_EQ(scene.cutting.shortest_edge, 0.2);
     EXPECT_EQ(scene.cutting.smallest_angle, 3 * deg);
     EXPECT_EQ(scene.averaging.over, AverageOver::line);

@@ -145,6 +145,36 @@ TEST(zone, what_rock_to_be_removed_holds_together_at_one_gridpoint_is_tied_until
     EXPECT_TRUE(zoning::zone(scene, blocks::cut(scene, joints)).tie_gridpoint.empty());
 }
 
+TEST(zone, zones_grow_outside_where_they_are_fine)
+{
+    Scene scene = section({{0, 0}, {200, 0}, {200, 100}, {0, 100}}, 0.1);
+    scene.zone_size = 2;
+    const auto longest_and_count = [&scene] {
+        Joints joints;
+        add_joint(joints, {-1, 40}, {201, 60});
+        const Blocks blocks = blocks::cut(scene, joints);
+        const Mesh mesh = zoning::zone(scene, blocks);
+        expect_sound(blocks, mesh);
+        double worst = 0; // longest side over the size that the scene asks for at the zone's middle
+        for (const auto& g : mesh.zone_gridpoint) {
+            const Vector2d &a = mesh.gridpoint[g[0]], &b = mesh.gridpoint[g[1]], &c = mesh.gridpoint[g[2]];
+            const double side = std::max({(a - b).norm(), (b - c).norm(), (c - a).norm()});
+            const double x = (a.x() + b.x() + c.x()) / 3; // fine for x below 20
+            worst = std::max(worst, side / (2 * (1 + std::max(0.0, x - 20) / 30)));
+        }
+        return std::pair(worst, mesh.zone_gridpoint.size());
+    };
+    const auto [even, all] = longest_and_count();
+    scene.fine_zones = Polygon{{-5, -5}, {20, -5}, {20, 105}, {-5, 105}};
+    scene.zone_coarsening = 30;
+    const auto [graded, fewer] = longest_and_count();
+    EXPECT_LE(even, 1);
+    EXPECT_LE(graded, 1);
+    EXPECT_GT(graded, 0.8); // no finer than asked for
+    // Zones over an area dA are dA over the size squared: 20 m and 30 (1 - 1 / 7) m of 200 m.
+    EXPECT_NEAR(static_cast<double>(fewer) / static_cast<double>(all), (20 + 30 * 6 / 7.0) / 200, 0.06);
+}
+
 TEST(zone, boundaries_are_held_or_rest_on_the_ground)
 {
     Scene scene = section({{0, 0}, {10, 0}, {10, 10}, {0, 10}}, 0.1);

@@ -1,0 +1,230 @@
+#!/usr/bin/python3
+"""What each uncertain choice does to the points of the shiplock: a table and a tornado plot.
+
+    study.py PROGRAMS SCENE.toml TARGETS.toml -n NETWORKS -o OUT
+
+Each choice is changed alone, on the same NETWORKS networks (realizations 0, 1, ...) as the scene's own run. In OUT it
+writes study.md, study.csv and tornado.png. Every run leaves OUT/runs/CHOICE-NUMBER.json and is not made again until scene
+or programs are newer: stopped at any time, the study goes on from there.
+
+The numbers are of the points below the crest: for every point the median over networks, and of these the mean. First
+readings and the network itself change without further runs: the former by reading the same histories on other days, the
+latter as the 5th and 95th percent over networks of the mean over points.
+"""
+
+import argparse
+import concurrent.futures
+import csv
+import datetime
+import io
+import json
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import tomllib
+
+import numpy as np
+
+import records
+from records import figure
+
+HERE = pathlib.Path(__file__).resolve().parent
+CHOICES = {  # name: (what is changed, its value, options of variant.py)
+    "scene": ("", "", []),
+    "stress-low": ("horizontal stress", "2 MPa + 0.020 h", ["--stress", "low"]),
+    "stress-high": ("horizontal stress", "5 MPa + 0.025 h", ["--stress", "high"]),
+    "decay-none": ("its decay towards the surface", "none", ["--stress", "3,0.022,0.01"]),
+    "spacing-less": ("factor on the spacing (tuned)", "1.8", ["--spacing-times", "0.9"]),
+    "spacing-more": ("factor on the spacing (tuned)", "2.2", ["--spacing-times", "1.1"]),
+    "stiffness-less": ("factor on K, E and eta", "1/2", ["--stiffness-times", "0.5"]),
+    "stiffness-more": ("factor on K, E and eta", "2", ["--stiffness-times", "2"]),
+    "rule-own": ("stiffness rule", "K itself", ["--rule", "K"]),
+    "rule-bridges": ("stiffness rule", "K/k beside rock bridges", ["--rule", "bridges"]),
+    "table-2-by-rock": ("reading of Table 2", "by rock, E = 2 K_n", ["--table-2", "by rock"]),
+    "box-small": ("jointed box", "150 m to each side, above 90 m", ["--box", "150", "90"]),
+    "box-large": ("jointed box", "330 m to each side, above 0 m", ["--box", "330", "0"]),
+    "rock-soft": ("Young's modulus of the rock", "20 and 12 GPa", ["--youngs-modulus", "low"]),
+    "rock-stiff": ("Young's modulus of the rock", "40 and 17 GPa", ["--youngs-modulus", "high"]),
+    "domain-half": ("domain", "900 m to each side, down to -400 m", ["--domain", "900", "-400"]),
+    "domain-double": ("domain", "3600 m to each side, down to -2200 m", ["--domain", "3600", "-2200"]),
+    "linear": ("contacts", "neither slip nor open", ["--linear"]),
+    "no-creep": ("creep", "none", ["--no-creep"]),
+}
+SHIFTS = {"reading-earlier": -60, "reading-later": 60}  # of the first readings [days]
+
+
+class Failed(Exception):
+    """A run gave no result."""
+
+
+def run(program, *arguments):
+    done = subprocess.run([program, *map(str, arguments)], capture_output=True, text=True)
+    if done.returncode != 0:
+        raise Failed(f"{pathlib.Path(program).name}, exit code {done.returncode}: {done.stderr.strip()}")
+
+
+def computed(programs, scene, options, number):
+    """Days and curves of one network, as JSON takes them."""
+    with tempfile.TemporaryDirectory(prefix="jointcreep-") as folder:
+        folder = pathlib.Path(folder)
+        run(sys.executable, HERE / "variant.py", scene, *options, "-o", folder / "scene.toml")
+        run(programs / "jointgen", folder / "scene.toml", "--realization", number, "--quiet", "-o", folder / "n.h5")
+        run(programs / "strength-averaging", folder / "n.h5", "--quiet", "-o", folder / "j.h5")
+        run(programs / "demsolve", folder / "j.h5", "--quiet", "-o", folder / "r.h5")
+        with figure.opened(folder / "r.h5") as file:
+            record = records.record_of(file)
+            there = figure.array(file, "/history/present")[-1] == 1
+            zones = len(figure.array(file, "/mesh/zone_block"))
+    return {"names": record.names, "days": record.days.tolist(), "total": record.total[1].round(4).tolist(),
+            "first": [int(record.days[row]) for row in record.first], "there": there.tolist(), "zones": zones,
+            "start": record.start.isoformat()}
+
+
+def result_of(programs, scene, out, choice, number):
+    """One run, from its file if that is newer than all that it hangs on."""
+    path = out / "runs" / f"{choice}-{number:02d}.json"
+    sources = [scene, HERE / "variant.py", *(programs / name for name in ("jointgen", "strength-averaging", "demsolve"))]
+    if path.exists() and all(path.stat().st_mtime >= source.stat().st_mtime for source in sources):
+        return json.loads(path.read_text())
+    try:
+        result = computed(programs, scene, CHOICES[choice][2], number)
+    except Failed as error:
+        result = {"failed": str(error)}
+    print(f"{choice}, network {number}: {result.get('failed', 'equilibrium')}", flush=True)
+    partial = path.with_name(f"{path.name}.partial-{os.getpid()}")
+    partial.write_text(json.dumps(result))
+    os.replace(partial, path)
+    return result
+
+
+def values_of(result, targets, shift=0):
+    """Total and recorded displacement at the end of the record of each point, not a number where it is gone [mm]."""
+    days, total = np.array(result["days"]), np.array(result["total"])
+    end = (targets["end_of_record"] - datetime.date.fromisoformat(result["start"])).days + 1e-6
+    at = lambda day, point: np.interp(day, days, total[:, point])
+    gone = np.where(result["there"], 0.0, np.nan)
+    points = range(len(result["names"]))
+    whole = np.array([at(end, i) for i in points]) + gone
+    # On the day of a stage the reading is after it.
+    before = np.array([at(max(0, result["first"][i] + shift) + 1e-6, i) for i in points])
+    return whole, whole - before
+
+
+def summary(results, targets, below, shift=0):
+    """Of the networks with a result: medians of each point and their mean, total and recorded [mm]."""
+    kept = [values_of(result, targets, shift) for result in results if "failed" not in result]
+    if not kept:
+        return None
+    total, recorded = (np.array([one[i] for one in kept])[:, below] for i in (0, 1))
+    medians = np.nanmedian(total, axis=0), np.nanmedian(recorded, axis=0)
+    terms = [((one - np.mean(targets[key])) / (np.ptp(targets[key]) / 2)) ** 2
+             for one, key in zip(medians, ("total_mm", "recorded_mm"))]
+    return {"networks": len(kept), "failed": len(results) - len(kept), "total": float(medians[0].mean()),
+            "recorded": float(medians[1].mean()), "misfit": float(np.mean(terms)),
+            "each": (np.nanmean(total, axis=1), np.nanmean(recorded, axis=1))}
+
+
+def markdown(own, rows):
+    lines = ["| what is changed | to | total (mm) | change | recorded (mm) | change | misfit |",
+             "|---|---|---|---|---|---|---|",
+             f"| nothing | | {own['total']:.1f} | | {own['recorded']:.1f} | | {own['misfit']:.2f} |"]
+    for what, to, found in rows:
+        if isinstance(found, str):
+            lines.append(f"| {what} | {to} | {found} | | | | |")
+            continue
+        cells = [what, to]
+        for key in ("total", "recorded"):
+            cells += [f"{found[key]:.1f}", f"{found[key] - own[key]:+.1f}"]
+        cells.append(f"{found['misfit']:.2f}" if "misfit" in found else "")
+        lines.append("| " + " | ".join(cells) + " |")
+    lines += ["", f"Horizontal, toward the lock, at the end of 1999: the mean over the points below the crest of the medians "
+                  f"over {own['networks']} networks."]
+    return "\n".join(lines) + "\n"
+
+
+def tornado(own, rows, targets, path):
+    """Bars from the scene's own value to that of each choice, the longest on top; total and recorded beside each other."""
+    groups = {}
+    for what, to, found in rows:
+        if not isinstance(found, str):
+            groups.setdefault(what, []).append((to, found))
+    order = sorted(groups, key=lambda what: max(abs(found["total"] - own["total"]) for _, found in groups[what]))
+    plot, panels = figure.plt.subplots(1, 2, sharey=True, figsize=(figure.TWO_COLUMNS, 0.8 + 0.36 * len(order)),
+                                       width_ratios=[1, 1])
+    for axes, key, label in ((panels[0], "total", "total"), (panels[1], "recorded", "since the first reading")):
+        low, high = targets[f"{key}_mm"]
+        axes.axvspan(low, high, color="#e3efe6", linewidth=0, zorder=0)
+        longest = 2.2 * high  # what goes beyond is cut, and says its value
+        for y, what in enumerate(order):
+            for i, (to, found) in enumerate(groups[what]):
+                height = 0.7 / len(groups[what])
+                at = y + 0.35 - (i + 0.5) * height
+                value = min(found[key], longest)
+                axes.barh(at, value - own[key], height=0.85 * height, left=own[key], zorder=2, linewidth=0.4,
+                          edgecolor="k", color=[figure.COLORS[0], figure.COLORS[4], figure.COLORS[5]][i % 3])
+                side = 1 if value >= own[key] else -1
+                text = (to if key == "total" else "") + (f" ({found[key]:.0f})" if found[key] > longest else "")
+                axes.annotate(text, (value, at), xytext=(2 * side, 0), textcoords="offset points", va="center",
+                              ha="left" if side > 0 else "right", fontsize=5.5, path_effects=figure.HALO, zorder=4)
+        axes.axvline(own[key], color="k", linewidth=0.8, zorder=3)
+        axes.set_xlabel(f"{label} (mm)")
+        axes.set_xlim(left=0)
+        axes.margins(x=0.3 if key == "total" else 0.05)
+    panels[0].set_yticks(range(len(order)), order)
+    panels[0].set_ylim(-0.6, len(order) - 0.4)
+    figure.save(plot, path)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("programs", type=pathlib.Path)
+    parser.add_argument("scene", type=pathlib.Path)
+    parser.add_argument("targets", type=pathlib.Path)
+    parser.add_argument("-n", "--networks", type=int, default=6)
+    parser.add_argument("-j", "--jobs", type=int, default=1)
+    parser.add_argument("--choice", action="append", choices=list(CHOICES), help="only these, beside the scene's own")
+    parser.add_argument("-o", "--output", type=pathlib.Path, required=True)
+    arguments = parser.parse_args()
+    targets = records.targets_of(arguments.targets)
+    choices = [name for name in CHOICES if not arguments.choice or name in ("scene", *arguments.choice)]
+    (arguments.output / "runs").mkdir(parents=True, exist_ok=True)
+    with open(arguments.scene, "rb") as file:
+        names = [point["name"] for point in tomllib.load(file)["point"]]
+    below = [i for i, name in enumerate(names) if not targets["point"].get(name, {}).get("crest", False)]
+
+    # Network by network, so that a study that is stopped has all choices on fewer networks.
+    todo = [(choice, number) for number in range(arguments.networks) for choice in choices]
+    with concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:
+        done = list(pool.map(lambda one: result_of(arguments.programs, arguments.scene, arguments.output, *one), todo))
+    results = {choice: [result for (name, _), result in zip(todo, done) if name == choice] for choice in choices}
+
+    own = summary(results["scene"], targets, below)
+    if own is None:
+        sys.exit(f"study.py: no run of the scene itself has a result: {results['scene'][0]['failed']}")
+    rows = []
+    for choice in choices[1:]:
+        found = summary(results[choice], targets, below)
+        rows.append((*CHOICES[choice][:2], found or results[choice][0]["failed"]))
+    for days in SHIFTS.values():
+        rows.append(("first readings", f"{abs(days)} days {'later' if days > 0 else 'earlier'}",
+                     summary(results["scene"], targets, below, days)))
+    if own["networks"] > 1:
+        for p in (5, 95):
+            rows.append(("network", f"{p} percent", {"total": float(np.percentile(own["each"][0], p)),
+                                                     "recorded": float(np.percentile(own["each"][1], p))}))
+    text = io.StringIO()
+    out = csv.writer(text, lineterminator="\n")
+    out.writerow(["changed", "to", "networks", "total_mm", "recorded_mm", "misfit"])
+    for what, to, found in [("nothing", "", own), *rows]:
+        if not isinstance(found, str):
+            out.writerow([what, to, found.get("networks", ""), round(found["total"], 3), round(found["recorded"], 3),
+                          round(found["misfit"], 4) if "misfit" in found else ""])
+    (arguments.output / "study.csv").write_text(text.getvalue())
+    (arguments.output / "study.md").write_text(markdown(own, rows))
+    tornado(own, rows, targets, arguments.output / "tornado.png")
+
+
+if __name__ == "__main__":
+    main()

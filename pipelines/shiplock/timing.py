@@ -1,0 +1,69 @@
+#!/usr/bin/python3
+"""Processor time of demsolve on a scene of the shiplock, with contact states and with linear joints, by both engines.
+
+    timing.py PROGRAMS SCENE.toml [--zone-size M] -o OUT
+
+writes OUT/timing.md. By motion only the excavation is computed; with creep it is estimated as that time by equilibrium
+times the number of equilibria of the other engine.
+"""
+
+import argparse
+import os
+import pathlib
+import resource
+import subprocess
+import sys
+import tempfile
+
+from records import figure
+
+HERE = pathlib.Path(__file__).resolve().parent
+
+
+def timed(command):
+    """Processor seconds of a command that must succeed."""
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    done = subprocess.run([str(word) for word in command], capture_output=True, text=True)
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    if done.returncode != 0:
+        sys.exit(f"timing.py: {command[0]}: {done.stderr.strip()}")
+    return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+
+
+def solved(programs, joints, result, *options):
+    seconds = timed([programs / "demsolve", joints, "--quiet", *options, "-o", result])
+    with figure.opened(result) as file:
+        return seconds, len(figure.array(file, "/mesh/zone_block")), len(figure.array(file, "/equilibria/steps"))
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("programs", type=pathlib.Path)
+    parser.add_argument("scene")
+    parser.add_argument("--zone-size", metavar="M", help="default: the scene's")
+    parser.add_argument("-o", "--output", type=pathlib.Path, required=True)
+    arguments = parser.parse_args()
+    programs, size = arguments.programs, ["--zone-size", arguments.zone_size] if arguments.zone_size else []
+    lines = ["| joints | engine | zones | equilibria | processor time (s) |", "|---|---|---|---|---|"]
+    with tempfile.TemporaryDirectory(prefix="jointcreep-") as folder:
+        folder = pathlib.Path(folder)
+        for words, options in (("linear", ["--linear"]), ("slip and open", [])):
+            scene, network, joints, result = (folder / name for name in ("s.toml", "n.h5", "j.h5", "r.h5"))
+            timed([sys.executable, HERE / "variant.py", arguments.scene, *options, "-o", scene])
+            timed([programs / "jointgen", scene, "--quiet", "-o", network])
+            timed([programs / "strength-averaging", network, "--quiet", "-o", joints])
+            seconds, zones, equilibria = solved(programs, joints, result, *size)
+            lines.append(f"| {words} | implicit | {zones} | {equilibria} | {seconds:.1f} |")
+            seconds, zones, excavated = solved(programs, joints, result, *size, "--no-creep", "--engine", "explicit")
+            lines.append(f"| {words} | explicit, excavation only | {zones} | {excavated} | {seconds:.0f} |")
+            lines.append(f"| {words} | explicit, with creep, estimated | {zones} | {equilibria} | "
+                         f"{seconds / excavated * equilibria:.0f} |")
+    path = arguments.output / "timing.md"
+    partial = path.with_name(f"{path.name}.partial-{os.getpid()}")
+    partial.write_text("\n".join(lines) + "\n")
+    os.replace(partial, path)
+    print(path.read_text(), end="")
+
+
+if __name__ == "__main__":
+    main()

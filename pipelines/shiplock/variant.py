@@ -1,0 +1,347 @@
+#!/usr/bin/python3
+"""A variant of a scene of the shiplock: the same text but for what the options change.
+
+    variant.py SCENE.toml --stress high --spacing-times 2 -o NAME.toml
+
+Comments, order and every other value stay those of the scene.
+"""
+
+import argparse
+import datetime
+import json
+import math
+import os
+import re
+import sys
+import tomllib
+
+WIDTH = 118  # of a line of the scene, in characters
+DECAY = 20  # of the tectonic stress towards the surface [m]
+STRESSES = {"low": (2.0, 0.020), "mid": (3.0, 0.022), "high": (5.0, 0.025)}  # a [MPa], b [MPa/m]
+BY_ROCK = {"fresh": (1400.0, 168000.0), "weathered": (480.0, 57600.0)}  # E [MPa], eta [MPa day]: Table 2 by rock
+LINEAR = 1e4  # a strength that no joint reaches [MPa]
+SPRINGS = ("normal_stiffness_MPa_per_m", "shear_stiffness_MPa_per_m")
+KELVIN = ("normal_kelvin_stiffness_MPa_per_m", "normal_kelvin_viscosity_MPa_day_per_m",
+          "shear_kelvin_stiffness_MPa_per_m", "shear_kelvin_viscosity_MPa_day_per_m")
+PLACES = ("outline_m", "region_m", "ground_m", "from_m", "to_m", "remove_m", "at_m", "fine_m")
+# Chamber 3, the candidate for section B-B, by the elevations of chamber 2: floor, wall top, and 20 m less above.
+CHAMBER_3 = ((112, 92.2), (160, 139), (170, 150), (1000, 980))
+
+
+class NotWanted(Exception):
+    """The scene cannot be changed as asked."""
+
+
+# --- A scene's text, with some values changed -----------------------------------------------------------------------------
+
+
+def shown(value):
+    """A value as TOML."""
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, (int, float)):
+        return f"{value:.12g}"
+    if isinstance(value, str):
+        return json.dumps(value, ensure_ascii=False)
+    if isinstance(value, datetime.date):
+        return value.isoformat()
+    if isinstance(value, dict):
+        return "{ " + ", ".join(f"{key} = {shown(one)}" for key, one in value.items()) + " }"
+    return "[" + ", ".join(map(shown, value)) + "]"
+
+
+def line_of(key, value, comment):
+    """`key = value  # comment`; a list too long for a line goes on in further ones."""
+    line = f"{key} = {shown(value)}"
+    if len(line) + 2 + len(comment) <= WIDTH or not isinstance(value, list):
+        return f"{line:<46} {comment}".rstrip()
+    nested = key == "remove_m"  # a list of polygons, of which a stage has one
+    items = value[0] if nested and len(value) == 1 else value
+    lines, row = [], "   "
+    for item in items:
+        text = f" {shown(item)},"
+        if len(row) + len(text) > WIDTH or (isinstance(item, dict) and row.strip()):
+            lines.append(row)
+            row = "   "
+        row += text
+    opening, closing = ("[[", "]]") if items is not value else ("[", "]")
+    return "\n".join([f"{f'{key} = {opening}':<46} {comment}".rstrip(), *lines, row, closing])
+
+
+def edited(text, change):
+    """The text with change(table, record, key, value) in place of every value; None leaves it."""
+    lines, out, at = text.split("\n"), [], 0
+    counts, table, record = {}, "", {}
+    scene = tomllib.loads(text)
+    while at < len(lines):
+        line = lines[at]
+        header = re.fullmatch(r"\[(\[?)([a-z_]+)\]\]?\s*(#.*)?", line)
+        if header:
+            table = header[2]
+            if header[1]:
+                record = scene[table][counts.get(table, 0)]
+                counts[table] = counts.get(table, 0) + 1
+            else:
+                record = scene[table]
+        entry = re.match(r"([a-z_A-Z0-9]+) = ", line)
+        if not entry:
+            out.append(line)
+            at += 1
+            continue
+        end = at + 1
+        while True:
+            written = "\n".join(lines[at:end])
+            try:
+                value = tomllib.loads(written)[entry[1]]
+                break
+            except tomllib.TOMLDecodeError:
+                if end == len(lines):
+                    raise
+                end += 1
+        new = change(table, record, entry[1], value)
+        comment = re.search(r"#.*$", line)
+        out.append(written if new is None or new == value else line_of(entry[1], new, comment[0] if comment else ""))
+        at = end
+    return "\n".join(out)
+
+
+# --- The changes -------------------------------------------------------------------------------------------------------------
+
+
+def stress_profile(levels, a, b, decay=DECAY):
+    """sigma_x = a (1 - exp(-h / decay)) + b h [MPa] at the levels of the scene, all else as there."""
+    return [{**level, "compression_xx_MPa":
+             round(a * (1 - math.exp(-level["depth_m"] / decay)) + b * level["depth_m"], 4)} for level in levels]
+
+
+def stress(which):
+    if which in STRESSES:
+        a, b, decay = *STRESSES[which], DECAY
+    else:
+        try:
+            a, b, decay = map(float, which.split(","))
+        except ValueError:
+            raise NotWanted(f"--stress {which}: wanted low, mid, high or A,B,DECAY") from None
+
+    def change(table, _, key, value):
+        return stress_profile(value, a, b, decay) if (table, key) == ("in_situ_stress", "profile") else None
+
+    return change
+
+
+def spacing(times):
+    def change(table, _, key, value):
+        if (table, key) == ("joint_set", "spacing"):
+            return {**value, "mean_m": value["mean_m"] * times}
+
+    return change
+
+
+def stiffness(times):
+    """K, E and eta alike, so that creep keeps its share and its time."""
+    def change(table, _, key, value):
+        return value * times if table == "joint_material" and key in SPRINGS + KELVIN else None
+
+    return change
+
+
+def kelvin(times):
+    """E and eta alike: the share of creep, in the same time."""
+    def change(table, _, key, value):
+        return value * times if table == "joint_material" and key in KELVIN else None
+
+    return change
+
+
+def persistence_of(material):
+    found = re.search(r", k ([0-9.]+)$", material["name"])
+    if not found:
+        raise NotWanted(f"the joint material {material['name']} does not say its persistence: NAME, k 0.25")
+    return float(found[1])
+
+
+def rule(name):
+    """K / k, as in the scene; K itself; or K / k beside rock bridges, for which the material has K itself."""
+    def change(table, record, key, value):
+        if name != "K/k" and table == "joint_material" and key in SPRINGS + KELVIN:
+            return value * persistence_of(record)
+        if name == "bridges" and (table, key) == ("averaging", "stiffness"):
+            return "lower bound"
+
+    return change
+
+
+def table_2(reading):
+    """As printed: normal 480, tangential 1400. By rock: fresh 1400, weathered 480, in both directions."""
+    def change(table, record, key, value):
+        if reading == "by rock" and table == "joint_material" and key in KELVIN:
+            return BY_ROCK[record["name"].split(",")[0]]["viscosity" in key] / persistence_of(record)
+
+    return change
+
+
+def line_at(corners, x):
+    for (x0, y0), (x1, y1) in zip(corners, corners[1:]):
+        if x0 <= x <= x1:
+            return y0 + (y1 - y0) * (x - x0) / (x1 - x0)
+    raise NotWanted(f"x = {x} m is outside the section")
+
+
+def box(scene, half, bottom):
+    """Joints in |x| < half, y > bottom: in the weathered rock down to its base, and in the fresh rock below."""
+    ground = scene["in_situ_stress"]["ground_m"]
+    weak = next(region["outline_m"] for region in scene["region"] if region["rock"] == "weak")
+    base = sorted(corner for corner in weak if corner not in ground)
+
+    def part(line):
+        ends = [[x, round(line_at(line, x), 3)] for x in (-half, half)]
+        return [ends[0], *[corner for corner in line if -half < corner[0] < half], ends[1]]
+
+    regions = {"fresh": [[-half, bottom], [half, bottom], *reversed(part(base))],
+               "weathered": [*part(base), *reversed(part(ground))]}
+
+    def change(table, record, key, _):
+        if (table, key) == ("joint_set", "region_m"):
+            return regions[record["name"].split()[1]]
+        if (table, key) == ("zones", "fine_m"):  # zones grow from the box outwards, as before
+            return [[-half - 10, bottom - 10], [half + 10, bottom - 10], [half + 10, 300], [-half - 10, 300]]
+
+    return change
+
+
+def domain(scene, half, bottom):
+    """Sides and base of the section elsewhere; the ground goes on level."""
+    left = min(x for x, _ in scene["section"]["outline_m"])
+    lowest = min(y for _, y in scene["section"]["outline_m"])
+
+    def moved(value):
+        if isinstance(value[0], list):
+            corners = [moved(one) for one in value]
+            return [one for one, before in zip(corners, [None, *corners]) if one != before]
+        return [math.copysign(half, value[0]) if abs(value[0]) == -left else value[0],
+                bottom if value[1] == lowest else value[1]]
+
+    def change(_, __, key, value):
+        return moved(value) if key in PLACES else None
+
+    return change
+
+
+def first_reading(days):
+    def change(table, _, key, value):
+        return value + datetime.timedelta(days) if (table, key) == ("point", "first_reading") else None
+
+    return change
+
+
+def linear(_):
+    """Joints that neither slip nor open."""
+    def change(table, _, key, __):
+        if table in ("joint_material", "rock") and key in ("cohesion_MPa", "tensile_strength_MPa"):
+            return LINEAR
+
+    return change
+
+
+def youngs_modulus(which):
+    """The ends of Table 1's ranges."""
+    ranges = {"fresh": (20, 40), "weak": (12, 17)}
+
+    def change(table, record, key, _):
+        if (table, key) == ("rock", "youngs_modulus_GPa") and record["name"] in ranges:
+            return ranges[record["name"]][which == "high"]
+
+    return change
+
+
+def section_b(scene):
+    """Chamber 3 in place of chamber 2: the same section with its elevations moved."""
+    lowest = min(y for _, y in scene["section"]["outline_m"])
+
+    def elevation(y):
+        if y == lowest:
+            return y
+        for (y0, new0), (y1, new1) in zip(CHAMBER_3, CHAMBER_3[1:]):
+            if y0 <= y <= y1:
+                return round(new0 + (new1 - new0) * (y - y0) / (y1 - y0), 3)
+        return round(y - CHAMBER_3[0][0] + CHAMBER_3[0][1], 3)
+
+    def moved(value):
+        return [moved(one) for one in value] if isinstance(value[0], list) else [value[0], elevation(value[1])]
+
+    def renamed(name):
+        return re.sub(r"\d+$", lambda y: f"{elevation(float(y[0])):.0f}", name)
+
+    def change(table, _, key, value):
+        if key in PLACES:
+            return moved(value)
+        if table in ("point", "stage") and key == "name":
+            return renamed(value)
+        if key == "title":
+            return value.replace("section A-A", "section B-B (chamber 3)")
+
+    return change
+
+
+# --- What is asked for ------------------------------------------------------------------------------------------------------
+
+
+def changes_of(arguments, scene):
+    """The changes that the command line asks for, in its order of meaning."""
+    given = vars(arguments)
+    for name, make in (("section_b", lambda _: section_b(scene)), ("stress", stress), ("spacing_times", spacing),
+                       ("rule", rule), ("table_2", table_2), ("stiffness_times", stiffness),
+                       ("kelvin_times", kelvin), ("youngs_modulus", youngs_modulus),
+                       ("box", lambda of: box(scene, *of)), ("domain", lambda of: domain(scene, *of)),
+                       ("first_reading_days", first_reading), ("linear", linear)):
+        if given[name] not in (None, False):
+            yield make(given[name])
+
+
+def variant(text, arguments):
+    for change in list(changes_of(arguments, tomllib.loads(text))):
+        text = edited(text, change)
+    if arguments.no_creep:
+        text = re.sub(r"^\[creep\]\n(?:[a-z].*\n)*", "", text, flags=re.MULTILINE)
+    return text
+
+
+def parser_of(description):
+    parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("scene", metavar="SCENE.toml")
+    parser.add_argument("--section-b", action="store_true", help="chamber 3, the candidate for section B-B")
+    parser.add_argument("--stress", metavar="NAME", help="low, mid, high; or A,B,DECAY in MPa, MPa/m and m")
+    parser.add_argument("--spacing-times", type=float, metavar="FACTOR", help="of all sets")
+    parser.add_argument("--rule", choices=["K/k", "K", "bridges"], help="joint stiffness: bridges is K/k beside them")
+    parser.add_argument("--table-2", choices=["as printed", "by rock"], help="reading of the Kelvin constants")
+    parser.add_argument("--stiffness-times", type=float, metavar="FACTOR", help="K, E and eta of all joints")
+    parser.add_argument("--kelvin-times", type=float, metavar="FACTOR", help="E and eta of all joints")
+    parser.add_argument("--youngs-modulus", choices=["low", "high"], help="ends of Table 1's ranges")
+    parser.add_argument("--box", type=float, nargs=2, metavar=("HALF", "BOTTOM"), help="where joints are, in m")
+    parser.add_argument("--domain", type=float, nargs=2, metavar=("HALF", "BOTTOM"), help="sides and base, in m")
+    parser.add_argument("--first-reading-days", type=int, metavar="DAYS", help="later than in the scene")
+    parser.add_argument("--linear", action="store_true", help="joints that neither slip nor open")
+    parser.add_argument("--no-creep", action="store_true", help="without the table [creep]")
+    return parser
+
+
+def main():
+    parser = parser_of(__doc__)
+    parser.add_argument("-o", "--output", metavar="NAME.toml", required=True)
+    arguments = parser.parse_args()
+    try:
+        with open(arguments.scene, encoding="utf-8") as file:
+            text = file.read()
+        new = variant(text, arguments)
+        tomllib.loads(new)
+        partial = f"{arguments.output}.partial-{os.getpid()}"
+        with open(partial, "w", encoding="utf-8") as file:
+            file.write(new)
+        os.replace(partial, arguments.output)
+    except (OSError, NotWanted, tomllib.TOMLDecodeError) as error:
+        print(f"variant.py: {arguments.scene}: {error}", file=sys.stderr)
+        sys.exit(2)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,156 @@
+"""The shiplock's scene, its variants and the page: sources of every value, a coarse run, tables as their scripts write them."""
+
+import math
+import re
+import subprocess
+import sys
+import tomllib
+
+import numpy
+
+from chain import ChainTest, changed, datasets, main
+
+TAG = re.compile(r"# (paper|published|inferred|assumed)\b")
+SCENE = "data/shiplock/section-a.toml"
+
+
+class Shiplock(ChainTest):
+    def setUp(self):
+        self.folder = self.chain.source / "pipelines" / "shiplock"
+        sys.path.insert(0, str(self.folder))
+        self.addCleanup(sys.path.remove, str(self.folder))
+
+    def variant(self, *options):
+        """Text of a variant of the scene."""
+        path = self.chain.new_folder() / "scene.toml"
+        done = subprocess.run([sys.executable, self.folder / "variant.py", self.chain.source / SCENE, *options, "-o", path],
+                              capture_output=True, text=True, timeout=100)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        return path.read_text()
+
+    def test_every_value_says_its_source(self):
+        for path in sorted((self.chain.source / "data" / "shiplock").iterdir()):
+            for number, line in enumerate(path.read_text().split("\n"), 1):
+                if re.match(r"\w+ = ", line):
+                    self.assertRegex(line, TAG, f"{path.name}, line {number}")
+
+    def test_scene(self):
+        """The dates, stages and points that the paper has; weight as vertical stress; the horizontal one by its law."""
+        scene = tomllib.loads(self.chain.text(SCENE))
+        self.assertEqual(len(scene["stage"]), 17)
+        self.assertEqual(len(scene["point"]), 12)
+        levels = scene["in_situ_stress"]["profile"]
+        density = {rock["name"]: rock["density_kg_per_m3"] for rock in scene["rock"]}
+        for level in levels:
+            h = level["depth_m"]
+            weight = 9.81e-6 * (density["cover"] * min(h, 17) + density["weak"] * min(max(h - 17, 0), 15)
+                                + density["fresh"] * max(h - 32, 0))
+            self.assertAlmostEqual(level["compression_yy_MPa"], weight, delta=6e-5)
+            self.assertAlmostEqual(level["compression_xx_MPa"], 3 * (1 - math.exp(-h / 20)) + 0.022 * h, delta=6e-5)
+        tables = {("fresh", 0): (690, 280), ("weathered", 0): (240, 96)}
+        for material in scene["joint_material"]:
+            rock, k = re.fullmatch(r"(\w+), k ([\d.]+)", material["name"]).groups()
+            wanted = (*tables[rock, 0], 480, 57600, 1400, 168000)
+            keys = ("normal_stiffness_MPa_per_m", "shear_stiffness_MPa_per_m", "normal_kelvin_stiffness_MPa_per_m",
+                    "normal_kelvin_viscosity_MPa_day_per_m", "shear_kelvin_stiffness_MPa_per_m",
+                    "shear_kelvin_viscosity_MPa_day_per_m")
+            for key, value in zip(keys, wanted):
+                self.assertAlmostEqual(material[key] * float(k) / value, 1, delta=1e-5, msg=f"{material['name']} {key}")
+        sets = {one["name"]: one for one in scene["joint_set"]}
+        for name, one in sets.items():
+            self.assertEqual(float(one["material"].split()[-1]), one["persistence"], name)
+            self.assertEqual(one["material"].split(",")[0], name.split()[1])
+
+    def test_variants_are_scenes(self):
+        """Each choice of the study changes the scene, and what it makes is one; section B-B too."""
+        import study
+        own = tomllib.loads(self.chain.text(SCENE))
+        for options in [["--section-b"], *(choice[2] for name, choice in study.CHOICES.items() if name != "scene")]:
+            with self.subTest(options):
+                text = self.variant(*options)
+                self.assertNotEqual(tomllib.loads(text), own)
+                self.chain.network(text)
+
+    def test_what_variants_change(self):
+        self.assertEqual(self.variant(), self.chain.text(SCENE))
+        own, text = tomllib.loads(self.chain.text(SCENE)), self.variant("--stiffness-times", "2")
+        new = tomllib.loads(text)
+        for one, other in zip(own["joint_material"], new["joint_material"]):
+            for key, value in one.items():
+                factor = 2 if "stiffness" in key or "viscosity" in key else None
+                self.assertEqual(other[key], value * factor if factor else value)
+        self.assertEqual({**own, "joint_material": 0}, {**new, "joint_material": 0})
+        by_rock = {one["name"]: one for one in tomllib.loads(self.variant("--table-2", "by rock"))["joint_material"]}
+        self.assertAlmostEqual(by_rock["fresh, k 0.2"]["shear_kelvin_stiffness_MPa_per_m"], 1400 / 0.2)
+        self.assertAlmostEqual(by_rock["weathered, k 0.2"]["shear_kelvin_stiffness_MPa_per_m"], 480 / 0.2)
+        bridges = tomllib.loads(self.variant("--rule", "bridges"))
+        self.assertEqual(bridges["averaging"]["stiffness"], "lower bound")
+        self.assertAlmostEqual(bridges["joint_material"][0]["normal_stiffness_MPa_per_m"], 690)
+        lower = tomllib.loads(self.variant("--section-b"))
+        self.assertEqual([point["name"] for point in lower["point"]][:6], ["N212", "N195", "N180", "N165", "N150", "N139"])
+        floor = min(y for stage in lower["stage"] for polygon in stage["remove_m"] for _, y in polygon)
+        self.assertEqual(floor, 92.2)
+
+    def coarse(self, *options):
+        """Displacements toward the lock [mm] at the end, of a scene of few large blocks in few creep steps."""
+        text = changed(self.variant("--spacing-times", "3"), r"^step_days = \S+", "step_days = 180")
+        result = datasets(self.chain.result(text, "--zone-size", "25", *options))
+        self.assertTrue((result["/equilibria/out_of_balance_ratio"] <= 1e-6).all())
+        position, moved = result["/history/point_position"], result["/history/displacement"][-1]
+        return dict(zip(result["/history/point"], -1e3 * numpy.sign(position[:, 0]) * moved[:, 0]))
+
+    def test_points_move_toward_the_lock(self):
+        crept, at_once = self.coarse(), self.coarse("--no-creep")
+        self.assertEqual(len(crept), 12)
+        for name, moved in crept.items():
+            self.assertTrue(10 < moved < 150, f"{name}: {moved} mm")
+        self.assertGreater(sum(crept.values()), 1.05 * sum(at_once.values()))
+
+    def test_pictures_and_table_of_one_network(self):
+        text = changed(self.variant("--spacing-times", "3"), r"^step_days = \S+", "step_days = 180")
+        result = self.chain.result(text, "--zone-size", "25")
+        targets = self.chain.source / "data" / "shiplock" / "targets.toml"
+        for script, *options in (["plot_lock"], ["plot_lock", "--plan"],
+                                 ["plot_records", "--side", "S", "--targets", targets, "--without", result],
+                                 ["plot_records", "--side", "N"]):
+            picture = self.chain.new_folder() / "picture.png"
+            done = subprocess.run([sys.executable, self.folder / f"{script}.py", result, *options, "-o", picture],
+                                  capture_output=True, text=True, timeout=200)
+            self.assertEqual((done.returncode, done.stderr), (0, ""))
+            self.assertEqual(picture.read_bytes()[:8], b"\x89PNG\r\n\x1a\n")
+        table = result.with_name("points.md")
+        done = subprocess.run([sys.executable, self.folder / "points.py", result, result, targets, "-o", table],
+                              capture_output=True, text=True, timeout=100)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        history = datasets(result)
+        lines = [line for line in table.read_text().split("\n") if re.match(r"\| [NS]\d", line)]
+        rows = {cells[1].split()[0]: cells for cells in (line.split("|") for line in lines)}
+        self.assertEqual(set(rows), set(history["/history/point"]))
+        end = 2025 + 1e-6  # 1999-12-31, days since 1994-06-15
+        for i, name in enumerate(history["/history/point"]):
+            toward = -1e3 * numpy.sign(history["/history/point_position"][i, 0]) * history["/history/displacement"][:, i, 0]
+            total = numpy.interp(end, history["/history/time"], toward)
+            self.assertAlmostEqual(float(rows[name][2]), total, delta=0.06)
+            recorded = total - toward[history["/history/first_reading_row"][i]]
+            self.assertAlmostEqual(float(rows[name][5]), recorded, delta=0.06)
+
+    def test_tables_of_the_page(self):
+        """The page's tables have the columns that the scripts write, and a row for every point and choice."""
+        import points
+        import study
+        page = self.chain.text("docs/shiplock.md")
+        tables = dict(re.findall(r"<!-- ([\w/-]+\.md) -->\n(.*?)<!-- end of \1 -->", page, flags=re.DOTALL))
+        head = points.markdown([{"crest": False, "name": "N1", **{key: numpy.array([1.0, 2, 3]) for key in
+                                                                 ("total", "recorded", "before", "total_without",
+                                                                  "recorded_without")}, "year": 0.0, "later": 0.0}],
+                               {"point": {}, "total_mm": [60, 90], "recorded_mm": [20, 40]}, 2).split("\n")[0]
+        self.assertIn(head, tables["networks.md"])
+        for point in tomllib.loads(self.chain.text(SCENE))["point"]:
+            self.assertRegex(tables["networks.md"], rf"\n\| {point['name']}\b")
+        for name, (what, to, _) in study.CHOICES.items():
+            if name != "scene":
+                self.assertIn(f"\n| {what} | {to} |", tables["study/study.md"])
+
+
+if __name__ == "__main__":
+    main()

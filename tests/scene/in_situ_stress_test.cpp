@@ -1,0 +1,94 @@
+// Stress before excavation by depth: the ground surface and the profile beside the linear law.
+
+#include "text.hpp"
+
+using namespace jointcreep;
+
+namespace
+{
+
+const std::string linear = R"(elevation_m = 20
+compression_xx_MPa = 0
+compression_yy_MPa = 0
+shear_xy_MPa = 0
+compression_xx_gradient_MPa_per_m = 0.013
+compression_yy_gradient_MPa_per_m = 0.026487
+shear_xy_gradient_MPa_per_m = 0
+)";
+
+InSituStress stress_of(const std::string& keys)
+{
+    return parse_scene(replaced(every_key_text(), linear, keys), "scene.toml").in_situ_stress;
+}
+
+std::string level(double depth, double xx, double yy, double xy)
+{
+    return "{ depth_m = " + shown(depth) + ", compression_xx_MPa = " + shown(xx) +
+           ", compression_yy_MPa = " + shown(yy) + ", shear_xy_MPa = " + shown(xy) + " }";
+}
+
+// The linear law from -10 m to 30 m, over ground at 25 m.
+TEST(in_situ_stress, flat_ground_and_two_levels_are_the_linear_law)
+{
+    const auto gradients = "compression_xx_MPa = 1.5\ncompression_yy_MPa = 0.2\nshear_xy_MPa = -0.3\n"
+                           "compression_xx_gradient_MPa_per_m = 0.02\n"
+                           "compression_yy_gradient_MPa_per_m = 0.027\nshear_xy_gradient_MPa_per_m = 0.01\n";
+    const auto profile = "profile = [" + level(5, 1.6, 0.335, -0.25) + ", " + level(15, 1.8, 0.605, -0.15) +
+                         "]\n"; // the law at 5 m and 15 m: above and below them it goes straight on
+    const auto elevation = "elevation_m = 25\n", ground = "ground_m = [[-3, 25], [17, 25], [40, 25]]\n";
+    const InSituStress law = stress_of(elevation + std::string(gradients)),
+                       on_ground = stress_of(ground + std::string(gradients)),
+                       by_levels = stress_of(elevation + profile), both = stress_of(ground + profile);
+    for (const double x : {0.0, 16.9, 17.0, 40.0})
+        for (const double y : {-10.0, 8.0, 10.0, 15.0, 20.0, 25.0, 30.0}) {
+            const Eigen::Vector3d expected = law.at({x, y});
+            EXPECT_NEAR(expected[1], -(0.2e6 + 0.027e6 * (25 - y)), 1e-6);
+            for (const InSituStress* other : {&on_ground, &by_levels, &both})
+                EXPECT_LT((other->at({x, y}) - expected).norm(), 1e-3) << x << ", " << y; // Pa, of 1e6
+        }
+}
+
+TEST(in_situ_stress, depth_is_vertical_below_the_ground)
+{
+    const InSituStress stress = stress_of("ground_m = [[0, 20], [10, 24], [40, 18]]\n"
+                                          "profile = [" +
+                                          level(0, 0, 0, 0) + ", " + level(2, 3, 0.05, 0.1) + ", " +
+                                          level(12, 3.5, 0.35, 0.4) + "]\n");
+    EXPECT_DOUBLE_EQ(stress.depth_of({0, 20}), 0);
+    EXPECT_DOUBLE_EQ(stress.depth_of({5, 12}), 10);
+    EXPECT_DOUBLE_EQ(stress.depth_of({10, 12}), 12);
+    EXPECT_DOUBLE_EQ(stress.depth_of({25, 12}), 9);
+    EXPECT_DOUBLE_EQ(stress.depth_of({40, 12}), 6);
+    EXPECT_DOUBLE_EQ(stress.depth_of({41, 12}), 6); // level beyond its ends
+    EXPECT_DOUBLE_EQ(stress.depth_of({-1, 12}), 8);
+    // Depths of 1, 2, 7 and 22 m, half way down the first piece, at the kink, and beyond.
+    EXPECT_LT((stress.at({10, 23}) - Eigen::Vector3d(-1.5e6, -0.025e6, 0.05e6)).norm(), 1e-3);
+    EXPECT_LT((stress.at({10, 22}) - Eigen::Vector3d(-3e6, -0.05e6, 0.1e6)).norm(), 1e-3);
+    EXPECT_LT((stress.at({10, 17}) - Eigen::Vector3d(-3.25e6, -0.2e6, 0.25e6)).norm(), 1e-3);
+    EXPECT_LT((stress.at({10, 2}) - Eigen::Vector3d(-4e6, -0.65e6, 0.7e6)).norm(), 1e-3);
+}
+
+TEST(in_situ_stress, either_this_or_that)
+{
+    const auto text = every_key_text();
+    const auto by = [&](const std::string& keys) { return refusal(replaced(text, linear, keys)); };
+    const std::string profile = "profile = [" + level(0, 1, 0, 0) + ", " + level(9, 1, 0, 0) + "]\n";
+    expect_part(by(linear + "ground_m = [[0, 20], [40, 20]]\n"), "either it or elevation_m");
+    expect_part(by(profile), "has no elevation_m: wanted it, or ground_m");
+    expect_part(by(linear + profile), "either it, or the keys of a linear law");
+    expect_part(by("elevation_m = 20\n"), "wanted the keys of a linear law");
+    expect_part(by("elevation_m = 20\nshear_xy_MPa = 0\n"), "has no compression_xx_MPa");
+    expect_part(by("ground_m = [[0, 20], [39, 20]]\n" + profile),
+                "across the whole section, from x = 0 to 40 m");
+    expect_part(by("ground_m = [[1, 20], [40, 20]]\n" + profile), "across the whole section");
+    expect_part(by("ground_m = [[0, 20], [20, 20], [20, 22], [40, 20]]\n" + profile), "x increasing");
+    expect_part(by("ground_m = [[0, 20]]\n" + profile), "at least 2 corners");
+    expect_part(by("elevation_m = 20\nprofile = [" + level(0, 1, 0, 0) + "]\n"), "2 of them at least");
+    expect_part(by("elevation_m = 20\nprofile = [" + level(2, 1, 0, 0) + ", " + level(2, 1, 0, 0) + "]\n"),
+                "depth_m increasing");
+    expect_part(by("elevation_m = 20\nprofile = [" + level(-2, 1, 0, 0) + ", " + level(2, 1, 0, 0) + "]\n"),
+                "[in_situ_stress] profile depth_m = -2");
+    EXPECT_EQ(by("ground_m = [[0, 20], [40, 20]]\n" + profile), "accepted");
+}
+
+} // namespace
