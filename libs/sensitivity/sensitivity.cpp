@@ -4,6 +4,7 @@
 #include "model/signs.hpp"
 #include "model/units.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace jointcreep::sensitivity
@@ -35,6 +36,8 @@ void scale(EquivalentJoints& joints, InSituStress& stress, Parameter parameter, 
     case Parameter::horizontal_stress:
         stress.compression_xx *= factor;
         stress.gradient_xx *= factor;
+        for (InSituStress::Level& level : stress.profile)
+            level.compression_xx *= factor;
     }
 }
 
@@ -44,6 +47,8 @@ Sensitivity::Sensitivity(std::vector<Parameter> parameters, const Scene& scene, 
 {
     const mechanics::Contacts& contacts = assembly.contacts;
     const std::size_t n = contacts.law.size(), zones = assembly.zones.area.size();
+    if (std::ranges::any_of(contacts.law, [](const joint::Coulomb& law) { return law.tan_psi > 0; }))
+        throw input_error("some joints dilate (dilation_angle_deg), which sensitivities do not follow");
     branch_.assign(n, Branch::stuck);
     last_slip_.assign(n, 0.0);
     const std::vector<Vector2d> no_gridpoints(assembly.position.size(), Vector2d::Zero()),

@@ -38,7 +38,7 @@ void scale(EquivalentJoints& joints, InSituStress& stress, Parameter parameter, 
 class Sensitivity
 {
 public:
-    // Of an assembly before its in-situ equilibrium.
+    // Of an assembly before its in-situ equilibrium. Throws input_error for joints that dilate.
     Sensitivity(std::vector<Parameter> parameters, const Scene& scene, const Mesh& mesh,
                 const mechanics::Assembly& assembly);
 

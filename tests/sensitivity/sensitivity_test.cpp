@@ -102,6 +102,24 @@ TEST(sensitivity, of_joints_that_slip_open_and_close_is_that_of_whole_runs)
         }
 }
 
+TEST(sensitivity, of_stress_by_a_profile_is_that_of_whole_runs)
+{
+    Study study;
+    InSituStress& stress = study.scene.in_situ_stress;
+    stress.ground = {{0, 10}, {20, 10}};
+    stress.profile = {{0, 5e4, 0, 0}, {4, 3e5, 4 * 2700 * 9.81, 0}, {10, 4e5, 10 * 2700 * 9.81, 0}};
+    EXPECT_LT(study.error(Parameter::horizontal_stress, 3e-4), 1e-7);
+}
+
+TEST(sensitivity, does_not_follow_joints_that_dilate)
+{
+    Study study(0.5);
+    for (double& angle : study.joints.dilation_angle)
+        angle = 0.1;
+    study.run(false);
+    EXPECT_THROW(study.run(true), input_error);
+}
+
 // With these joints slip before anything is dug.
 TEST(sensitivity, of_in_situ_slip_is_that_of_whole_runs)
 {
