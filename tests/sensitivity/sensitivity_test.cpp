@@ -102,6 +102,17 @@ TEST(sensitivity, of_joints_that_slip_open_and_close_is_that_of_whole_runs)
         }
 }
 
+TEST(sensitivity, of_joints_that_dilate_is_that_of_whole_runs)
+{
+    for (const CreepScheme scheme : {CreepScheme::backward, CreepScheme::fitted})
+        for (const double friction_angle : {0.8, 0.5, 0.35}) {
+            Study study(friction_angle);
+            study.scene.creep->scheme = scheme;
+            std::fill(study.joints.dilation_angle.begin(), study.joints.dilation_angle.end(), 0.2);
+            EXPECT_LT(study.largest_error(1e-4), 1e-6) << static_cast<int>(scheme) << ' ' << friction_angle;
+        }
+}
+
 // With these joints slip before anything is dug.
 TEST(sensitivity, of_in_situ_slip_is_that_of_whole_runs)
 {
