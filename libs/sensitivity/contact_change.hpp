@@ -1,12 +1,14 @@
-// What the traction and the slip of a contact change by, to first order, when its springs, its state at the
-// start, and its displacement change: the derivative of joint/coulomb.hpp on the branch that the contact is
-// on. At the border between two branches there are two derivatives, and this is one of them.
+// What the traction, slip and dilation of a contact change by, to first order, when its springs, its state at
+// the start, and its displacement change: the derivative of joint/coulomb.hpp on the branch that the contact
+// is on. At the border between two branches there are two derivatives, and this is one of them.
 //
-//     open      sigma_n = tau = 0                                   slip = u_s + tau_0 / k_s
-//     stuck     sigma_n = sigma_0 + k_n u_n,   tau = tau_0 + k_s (u_s - slip)
-//     slipping  sigma_n the same,  tau = +-(c - sigma_n tan(phi))    slip = u_s + (tau_0 - tau) / k_s
-//
-// Open and slipping contacts forget the slip that they had before.
+// With sigma = sigma_0 + k_n (u_n - dilation) and tau_trial = tau_0 + k_s (u_s - slip), slip and dilation
+// being those at the start,
+//     open       sigma_n = tau = 0;   slip + tau_trial / k_s
+//     stuck      sigma_n = sigma,   tau = tau_trial
+//     slipping   by delta = (|tau_trial| - c + sigma tan(phi)) / (k_s + k_n tan(phi) tan(psi)), or, where no
+//                strength is left, |tau_trial| / k_s:   slip + -delta, dilation + delta tan(psi),
+//                sigma_n = sigma - k_n delta tan(psi),   tau = +-(|tau_trial| - k_s delta) .
 
 #pragma once
 
@@ -18,72 +20,79 @@ namespace jointcreep::sensitivity
 
 using Eigen::Vector2d;
 
-enum class Branch : char { removed, open, stuck, slips_forward, slips_backward };
+enum class Branch : char { removed, open, stuck, slips, slips_without_strength };
 
 // Pairs are {normal, shear}.
 struct ContactNow {
     joint::Coulomb law;
     Branch branch;
-    Vector2d initial_traction; // sigma_0, tau_0 [Pa]
-    Vector2d spring;           // u_n, u_s: the jump less the offset [m]
-    Vector2d traction;         // [Pa]
-    double slip;               // [m]
-    bool has_strength = true;  // slipping below a limit above 0
+    double sign;           // of the slip
+    Vector2d spring;       // u_n, u_s: the jump less the offset [m]
+    double initial_shear;  // tau_0 [Pa]
+    double slip, dilation; // at the start [m]
+    double slipped;        // delta [m]
 };
 
 struct ContactChange {
     Vector2d stiffness, initial_traction, spring;
-    double slip; // at the start
+    double slip, dilation; // at the start
 };
 
 struct ResponseChange {
     Vector2d traction;
-    double slip;
+    double slip, dilation; // at the end
 };
 
 inline ResponseChange respond(const ContactNow& now, const ContactChange& by)
 {
-    const Vector2d stiffness(now.law.k_n, now.law.k_s);
-    const double slip = now.branch == Branch::stuck ? by.slip : 0.0;
-    // As long as it holds.
-    Vector2d traction = by.initial_traction;
-    traction.x() += by.stiffness.x() * now.spring.x() + stiffness.x() * by.spring.x();
-    traction.y() += by.stiffness.y() * (now.spring.y() - now.slip) + stiffness.y() * (by.spring.y() - slip);
+    const joint::Coulomb& law = now.law;
+    const double sigma = by.initial_traction.x() + by.stiffness.x() * (now.spring.x() - now.dilation) +
+                         law.k_n * (by.spring.x() - by.dilation),
+                 tau_trial = by.initial_traction.y() + by.stiffness.y() * (now.spring.y() - now.slip) +
+                             law.k_s * (by.spring.y() - by.slip);
     switch (now.branch) {
     case Branch::removed:
-        return {Vector2d::Zero(), by.slip};
+        return {Vector2d::Zero(), by.slip, by.dilation};
     case Branch::stuck:
-        return {traction, by.slip};
-    case Branch::open:
-        traction.setZero();
-        break;
-    case Branch::slips_forward:
-    case Branch::slips_backward:
-        traction.y() = now.has_strength
-                           ? (now.branch == Branch::slips_forward ? -1 : 1) * now.law.tan_phi * traction.x()
-                           : 0.0;
+        return {{sigma, tau_trial}, by.slip, by.dilation};
+    case Branch::open: {
+        const double slip =
+            law.k_s == 0
+                ? 0.0
+                : by.spring.y() +
+                      (by.initial_traction.y() - now.initial_shear / law.k_s * by.stiffness.y()) / law.k_s;
+        return {Vector2d::Zero(), slip, by.dilation};
     }
-    if (stiffness.y() == 0) // smooth: slip means nothing
-        return {traction, 0};
-    return {traction, by.spring.y() + (by.initial_traction.y() - traction.y()) / stiffness.y() -
-                          (now.initial_traction.y() - now.traction.y()) / (stiffness.y() * stiffness.y()) *
-                              by.stiffness.y()};
+    default:
+        break;
+    }
+    const bool has_strength = now.branch == Branch::slips;
+    const double firmness = has_strength ? law.k_s + law.k_n * law.tan_phi * law.tan_psi : law.k_s,
+                 firmness_change =
+                     by.stiffness.y() + (has_strength ? by.stiffness.x() * law.tan_phi * law.tan_psi : 0.0),
+                 excess_change = now.sign * tau_trial + (has_strength ? sigma * law.tan_phi : 0.0);
+    const double slipped = (excess_change - now.slipped * firmness_change) / firmness;
+    return {{sigma - (by.stiffness.x() * now.slipped + law.k_n * slipped) * law.tan_psi,
+             tau_trial - now.sign * (by.stiffness.y() * now.slipped + law.k_s * slipped)},
+            by.slip + now.sign * slipped,
+            by.dilation + slipped * law.tan_psi};
 }
 
 // Change of its traction over change of its jump.
 inline implicit::Tangent tangent_of(const ContactNow& now)
 {
+    const joint::Coulomb& law = now.law;
     switch (now.branch) {
     case Branch::stuck:
-        return {now.law.k_n, now.law.k_s, 0};
-    case Branch::slips_forward:
-    case Branch::slips_backward:
-        return {now.law.k_n, 0,
-                now.has_strength
-                    ? (now.branch == Branch::slips_forward ? -1 : 1) * now.law.tan_phi * now.law.k_n
-                    : 0.0};
+        return {law.k_n, law.k_s, 0, 0};
+    case Branch::slips: {
+        const double k = law.k_n * law.k_s / (law.k_s + law.k_n * law.tan_phi * law.tan_psi);
+        return {k, k * law.tan_phi * law.tan_psi, -now.sign * k * law.tan_phi, -now.sign * k * law.tan_psi};
+    }
+    case Branch::slips_without_strength:
+        return {law.k_n, 0, 0, -now.sign * law.k_n * law.tan_psi};
     default:
-        return {0, 0, 0};
+        return {0, 0, 0, 0};
     }
 }
 

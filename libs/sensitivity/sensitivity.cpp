@@ -47,10 +47,9 @@ Sensitivity::Sensitivity(std::vector<Parameter> parameters, const Scene& scene, 
 {
     const mechanics::Contacts& contacts = assembly.contacts;
     const std::size_t n = contacts.law.size(), zones = assembly.zones.area.size();
-    if (std::ranges::any_of(contacts.law, [](const joint::Coulomb& law) { return law.tan_psi > 0; }))
-        throw input_error("some joints dilate (dilation_angle_deg), which sensitivities do not follow");
     branch_.assign(n, Branch::stuck);
-    last_slip_.assign(n, 0.0);
+    start_slip_.assign(n, 0.0);
+    start_dilation_.assign(n, 0.0);
     const std::vector<Vector2d> no_gridpoints(assembly.position.size(), Vector2d::Zero()),
         no_contacts(n, Vector2d::Zero());
     const std::vector<Vector3d> no_zones(zones, Vector3d::Zero());
@@ -62,6 +61,7 @@ Sensitivity::Sensitivity(std::vector<Parameter> parameters, const Scene& scene, 
                       .offset = no_contacts,
                       .traction = no_contacts,
                       .slip = std::vector<double>(n, 0.0),
+                      .dilation = std::vector<double>(n, 0.0),
                       .initial_stress = no_zones,
                       .stress = no_zones,
                       .shear_modulus = std::vector<double>(zones, 0.0),
@@ -103,15 +103,15 @@ creep::Chain Sensitivity::change_of(const creep::Chain& chain, Parameter paramet
 ContactNow Sensitivity::contact(const Assembly& assembly, std::size_t c) const
 {
     const mechanics::Contacts& contacts = assembly.contacts;
-    const joint::Coulomb& law = contacts.law[c];
-    const double cohesion = contacts.state[c].is_broken ? 0.0 : law.cohesion;
-    return {law,
+    const double slipped = contacts.state[c].slip - start_slip_[c];
+    return {contacts.law[c],
             contacts.status[c] == ContactStatus::removed ? Branch::removed : branch_[c],
-            contacts.initial_traction[c],
+            slipped < 0 ? -1.0 : 1.0,
             contacts.jump[c] - contacts.offset[c],
-            contacts.traction[c],
-            contacts.state[c].slip,
-            cohesion > contacts.traction[c].x() * law.tan_phi};
+            contacts.initial_traction[c].y(),
+            start_slip_[c],
+            start_dilation_[c],
+            std::abs(slipped)};
 }
 
 ResponseChange Sensitivity::response(const Assembly& assembly, const Change& change, std::size_t c,
@@ -124,8 +124,8 @@ ResponseChange Sensitivity::response(const Assembly& assembly, const Change& cha
         const Vector2d jump = change.displacement[b] - change.displacement[a];
         spring += Vector2d(normal.dot(jump), along(normal).dot(jump));
     }
-    return respond(contact(assembly, c),
-                   {change.stiffness[c], change.initial_traction[c], spring, change.slip[c]});
+    return respond(contact(assembly, c), {change.stiffness[c], change.initial_traction[c], spring,
+                                          change.slip[c], change.dilation[c]});
 }
 
 Vector3d Sensitivity::stress(const Assembly& assembly, const Change& change, std::size_t z,
@@ -151,14 +151,14 @@ Vector3d Sensitivity::stress(const Assembly& assembly, const Change& change, std
 }
 
 std::vector<Vector2d> Sensitivity::forces(const Assembly& assembly, const Change& change,
-                                          bool with_displacement) const
+                                          bool is_settled) const
 {
     std::vector<Vector2d> force(assembly.position.size(), Vector2d::Zero());
     const mechanics::Zones& zones = assembly.zones;
     for (std::size_t z = 0; z < zones.area.size(); ++z) {
         if (!zones.is_present[z])
             continue;
-        const Vector3d s = stress(assembly, change, z, with_displacement);
+        const Vector3d s = is_settled ? change.stress[z] : stress(assembly, change, z, false);
         for (int i = 0; i < 3; ++i) {
             const Vector2d& gradient = zones.gradient[z][i];
             force[zones.gridpoint[z][i]] -=
@@ -170,7 +170,8 @@ std::vector<Vector2d> Sensitivity::forces(const Assembly& assembly, const Change
     for (std::size_t c = 0; c < contacts.length.size(); ++c) {
         if (contacts.status[c] == ContactStatus::removed)
             continue;
-        const Vector2d traction = response(assembly, change, c, with_displacement).traction;
+        const Vector2d traction =
+            is_settled ? change.traction[c] : response(assembly, change, c, false).traction;
         const Vector2d &normal = contacts.normal[c],
                        on_a = contacts.length[c] * (traction.x() * normal + traction.y() * along(normal));
         force[contacts.gridpoint[c][0]] += on_a;
@@ -191,16 +192,15 @@ void Sensitivity::settle(const Assembly& assembly, implicit::Engine& engine, dou
     for (std::size_t c = 0; c < n; ++c) {
         // What counts as slipping may just stand still a little below its limit.
         constexpr double rounding = 1e-9;
-        const Vector2d& traction = contacts.traction[c];
-        const double slipped = contacts.law[c].k_s * std::abs(contacts.state[c].slip - last_slip_[c]);
-        last_slip_[c] = contacts.state[c].slip;
+        const double shear = std::abs(contacts.traction[c].y()),
+                     slipped = contacts.law[c].k_s * std::abs(contacts.state[c].slip - start_slip_[c]);
         branch_[c] = Branch::stuck;
         if (contacts.status[c] == ContactStatus::removed)
             branch_[c] = Branch::removed;
         else if (contacts.status[c] == ContactStatus::open)
             branch_[c] = Branch::open;
-        else if (contacts.status[c] == ContactStatus::slipping && slipped > rounding * std::abs(traction.y()))
-            branch_[c] = traction.y() > 0 ? Branch::slips_forward : Branch::slips_backward;
+        else if (contacts.status[c] == ContactStatus::slipping && slipped > rounding * shear)
+            branch_[c] = shear > rounding * slipped ? Branch::slips : Branch::slips_without_strength;
         tangents[c] = tangent_of(contact(assembly, c));
     }
     for (Change& change : changes_) {
@@ -220,10 +220,15 @@ void Sensitivity::settle(const Assembly& assembly, implicit::Engine& engine, dou
             const ResponseChange found = response(assembly, change, c, true);
             change.traction[c] = found.traction;
             change.slip[c] = found.slip;
+            change.dilation[c] = found.dilation;
         }
         for (std::size_t z = 0; z < change.stress.size(); ++z)
             change.stress[z] =
                 assembly.zones.is_present[z] ? stress(assembly, change, z, true) : Vector3d(Vector3d::Zero());
+    }
+    for (std::size_t c = 0; c < n; ++c) {
+        start_slip_[c] = contacts.state[c].slip;
+        start_dilation_[c] = contacts.state[c].dilation;
     }
 }
 
@@ -235,15 +240,17 @@ void Sensitivity::start_from_here(const Assembly& assembly)
             const auto [a, b] = contacts.gridpoint[c];
             const Vector2d jump = change.displacement[b] - change.displacement[a];
             const double normal = change.initial_traction[c].x() +
-                                  change.stiffness[c].x() * (contacts.jump[c].x() - contacts.offset[c].x()) +
-                                  contacts.law[c].k_n * contacts.normal[c].dot(jump);
+                                  change.stiffness[c].x() * (contacts.jump[c].x() - contacts.offset[c].x() -
+                                                             contacts.state[c].dilation) +
+                                  contacts.law[c].k_n * (contacts.normal[c].dot(jump) - change.dilation[c]);
             change.initial_traction[c] = {normal, change.traction[c].y()};
-            change.slip[c] = 0;
+            change.slip[c] = change.dilation[c] = 0;
         }
         change.initial_stress = change.stress;
         change.displacement.assign(change.displacement.size(), Vector2d::Zero());
     }
-    last_slip_.assign(last_slip_.size(), 0.0);
+    start_slip_.assign(start_slip_.size(), 0.0);
+    start_dilation_.assign(start_dilation_.size(), 0.0);
 }
 
 void Sensitivity::start_creep(const creep::Creep& creep)
@@ -409,7 +416,7 @@ double Sensitivity::opening(const Assembly& assembly, const Change& change, std:
             assembly.contacts.initial_traction[c].x() / k_n * change.stiffness[c].x()) /
                k_n +
            assembly.contacts.normal[c].dot(change.displacement[b] - change.displacement[a]) -
-           change.offset[c].x();
+           change.offset[c].x() - change.dilation[c];
 }
 
 void Sensitivity::start_step(const Assembly& assembly)

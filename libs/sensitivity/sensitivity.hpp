@@ -38,7 +38,7 @@ void scale(EquivalentJoints& joints, InSituStress& stress, Parameter parameter, 
 class Sensitivity
 {
 public:
-    // Of an assembly before its in-situ equilibrium. Throws input_error for joints that dilate.
+    // Of an assembly before its in-situ equilibrium.
     Sensitivity(std::vector<Parameter> parameters, const Scene& scene, const Mesh& mesh,
                 const mechanics::Assembly& assembly);
 
@@ -85,7 +85,7 @@ private:
     struct Change {
         std::vector<Vector2d> displacement, released;
         std::vector<Vector2d> stiffness, initial_traction, offset, traction;
-        std::vector<double> slip;
+        std::vector<double> slip, dilation;
         std::vector<Vector3d> initial_stress, stress;
         std::vector<double> shear_modulus; // zones
         // Of creep::Creep.
@@ -99,18 +99,18 @@ private:
     creep::Chain change_of(const creep::Chain& chain, Parameter parameter) const;
     static double opening(const mechanics::Assembly& assembly, const Change& change, std::size_t c);
     ContactNow contact(const mechanics::Assembly& assembly, std::size_t c) const;
-    // Forces on gridpoints; with the change of displacements, or at displacements as they are.
+    // Forces on gridpoints, as settled; or before, at displacements as they are.
     std::vector<Vector2d> forces(const mechanics::Assembly& assembly, const Change& change,
-                                 bool with_displacement) const;
+                                 bool is_settled) const;
     ResponseChange response(const mechanics::Assembly& assembly, const Change& change, std::size_t c,
                             bool with_displacement) const;
     Vector3d stress(const mechanics::Assembly& assembly, const Change& change, std::size_t z,
                     bool with_displacement) const;
 
     std::vector<Parameter> parameters_;
-    std::vector<Change> changes_; // of the parameters
-    std::vector<Branch> branch_;  // of the contacts, at the last equilibrium
-    std::vector<double> last_slip_;
+    std::vector<Change> changes_;                     // of the parameters
+    std::vector<Branch> branch_;                      // of the contacts, at the last equilibrium
+    std::vector<double> start_slip_, start_dilation_; // of that equilibrium; then at its end
 };
 
 } // namespace jointcreep::sensitivity
