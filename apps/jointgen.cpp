@@ -9,6 +9,7 @@
 #include "program.hpp"
 
 #include "blocks/cut.hpp"
+#include "model/error.hpp"
 #include "model/units.hpp"
 #include "model/version.hpp"
 #include "sampling/joint_sets.hpp"
@@ -113,10 +114,14 @@ void generate(const Arguments& arguments)
     // 2. Its joints.
     Network network;
     network.names = names_of(scene);
-    network.joints = sample_joints(scene, seed, realization);
+    try {
+        network.joints = sample_joints(scene, seed, realization);
 
-    // 3. Its blocks.
-    network.blocks = blocks::cut(scene, network.joints);
+        // 3. Its blocks.
+        network.blocks = blocks::cut(scene, network.joints);
+    } catch (const input_error& error) { // of what one key alone does not tell
+        throw input_error(input + ": " + error.what());
+    }
 
     // 4. What the network is like, beside what the scene asked for.
     if (arguments.has("report"))
@@ -135,7 +140,7 @@ void generate(const Arguments& arguments)
     if (!arguments.quiet())
         report(network);
     if (!arguments.quiet() && arguments.has("report"))
-        std::cout << '\n' << statistics::table(network.statistics);
+        std::cout << '\n' << statistics::table(network.statistics) << statistics::left_out(scene);
 }
 
 } // namespace

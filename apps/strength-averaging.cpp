@@ -79,6 +79,11 @@ void report(const Network& network, const EquivalentJoints& joints)
                     beside(sets.joint_tensile_strength[set], sets.bridge_tensile_strength[set],
                            sets.tensile_strength[set], unit::MPa),
                     "MPa");
+        if (sets.dilation_angle[set] > 0)
+            summary.add(name + ": dilation angle",
+                        beside(sets.joint_dilation_angle[set], sets.bridge_dilation_angle[set],
+                               sets.dilation_angle[set], unit::deg),
+                        "deg");
         summary.add(name + ": normal stiffness",
                     beside(sets.joint_normal_stiffness[set], {}, sets.normal_stiffness[set], unit::MPa),
                     "MPa/m");

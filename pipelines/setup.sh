@@ -5,7 +5,7 @@ cd "$(dirname "$0")/.."
 
 packages="
   g++ cmake ninja-build make git ca-certificates pkg-config
-  libeigen3-dev libcgal-dev libboost-dev libboost-program-options-dev libhdf5-dev libssl-dev
+  libeigen3-dev libcgal-dev libboost-dev libboost-program-options-dev libhdf5-dev libssl-dev zlib1g-dev
   libtomlplusplus-dev nlohmann-json3-dev librandom123-dev libsuitesparse-dev libopenblas0-serial
   googletest libgtest-dev librapidcheck-dev groff-base
   python3 python3-h5py python3-matplotlib python3-numpy"

@@ -42,8 +42,9 @@ public:
         const auto count = static_cast<double>(which.size());
         cell_ = std::max(
             {least_cell, std::sqrt(extent.x() * extent.y() / count), extent.maxCoeff() / (4 * count + 4)});
-        columns_ = static_cast<Index>(extent.x() / cell_) + 1;
-        rows_ = static_cast<Index>(extent.y() / cell_) + 1;
+        per_cell_ = 1 / cell_;
+        columns_ = static_cast<Index>(extent.x() * per_cell_) + 1;
+        rows_ = static_cast<Index>(extent.y() * per_cell_) + 1;
         const auto cell_of = [&](Index v) {
             return static_cast<std::size_t>(column(vertex[v].x())) * rows_ + row(vertex[v].y());
         };
@@ -80,12 +81,15 @@ private:
     };
     Index column(double x) const
     {
-        return std::clamp(static_cast<Index>((x - low_.x()) / cell_), 0, columns_ - 1);
+        return std::clamp(static_cast<Index>((x - low_.x()) * per_cell_), 0, columns_ - 1);
     }
-    Index row(double y) const { return std::clamp(static_cast<Index>((y - low_.y()) / cell_), 0, rows_ - 1); }
+    Index row(double y) const
+    {
+        return std::clamp(static_cast<Index>((y - low_.y()) * per_cell_), 0, rows_ - 1);
+    }
 
     Vector2d low_;
-    double cell_ = 1;
+    double cell_ = 1, per_cell_ = 1;
     Index columns_ = 1, rows_ = 1;
     std::vector<Index> start_;
     std::vector<Entry> entry_;
@@ -200,7 +204,10 @@ bool merge_pass(Graph& graph, Sources& sources, const std::vector<Polygon>& outl
         for (const Index v : used)
             grid.in_rectangle(graph.vertex[v] - around, graph.vertex[v] + around,
                               [&](Index w, const Vector2d& place) {
-                                  if (const double d = (place - graph.vertex[v]).norm(); d < reach && w != v)
+                                  const double squared = (place - graph.vertex[v]).squaredNorm();
+                                  if (squared >= 1.001 * reach * reach || w == v)
+                                      return;
+                                  if (const double d = std::sqrt(squared); d < reach)
                                       close.push_back({v, w, d});
                               });
     }

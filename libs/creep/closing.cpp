@@ -13,7 +13,7 @@ namespace
 double opening_of(const mechanics::Contacts& contacts, std::size_t c)
 {
     return contacts.initial_traction[c].x() / contacts.law[c].k_n + contacts.jump[c].x() -
-           contacts.offset[c].x();
+           contacts.offset[c].x() - contacts.state[c].dilation;
 }
 
 } // namespace

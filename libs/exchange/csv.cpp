@@ -111,7 +111,7 @@ std::string edges_csv(const Network& network, const EquivalentJoints* equivalent
     std::string table = "edge,x1_m,y1_m,x2_m,y2_m,left_block,right_block,kind,set,number,joint_fraction";
     if (equivalent)
         table += ",normal_stiffness_Pa_per_m,shear_stiffness_Pa_per_m,cohesion_Pa,friction_angle_rad,"
-                 "tensile_strength_Pa";
+                 "tensile_strength_Pa,dilation_angle_rad";
     const std::size_t units = equivalent ? equivalent->kelvin_units() : 0;
     for (std::size_t unit = 0; unit < units; ++unit) {
         const std::string number = units == 1 ? "" : "_" + std::to_string(unit + 1);
@@ -136,7 +136,8 @@ std::string edges_csv(const Network& network, const EquivalentJoints* equivalent
             table.back() = ',';
             add_row(table, field(equivalent->normal_stiffness[edge]),
                     field(equivalent->shear_stiffness[edge]), field(equivalent->cohesion[edge]),
-                    field(equivalent->friction_angle[edge]), field(equivalent->tensile_strength[edge]));
+                    field(equivalent->friction_angle[edge]), field(equivalent->tensile_strength[edge]),
+                    field(equivalent->dilation_angle[edge]));
             for (std::size_t unit = edge * units; unit < (edge + 1) * units; ++unit) {
                 table.back() = ',';
                 add_row(table, field(equivalent->normal_kelvin_stiffness[unit]),

@@ -71,15 +71,20 @@ std::vector<Tangent> Engine::tangents(const Assembly& assembly, double softness)
         const double soft_shear = softness * (law.k_s > 0 ? law.k_s : law.k_n);
         switch (active_[c]) {
         case Active::open:
-            all[c] = {softness * law.k_n, soft_shear, 0};
+            all[c] = {softness * law.k_n, soft_shear, 0, 0};
             break;
         case Active::stuck:
-            all[c] = {law.k_n, law.k_s > 0 ? law.k_s : soft_shear, 0};
+            all[c] = {law.k_n, law.k_s > 0 ? law.k_s : soft_shear, 0, 0};
             break;
-        default:
-            all[c] = {law.k_n, soft_shear,
-                      (1 - softness) * (active_[c] == Active::slips_forward ? -1 : 1) * law.tan_phi *
-                          law.k_n};
+        default: {
+            // The flow rule leaves k_n k_s / (k_s + k_n tan(phi) tan(psi)) of the normal stiffness.
+            const double dilatant = law.k_n * law.tan_phi * law.tan_psi;
+            const double k = law.k_s > 0 && dilatant > 0 ? law.k_n * law.k_s / (law.k_s + dilatant) : law.k_n;
+            const double sliding = (1 - softness) * (active_[c] == Active::slips_forward ? -k : k);
+            const double tan_psi = law.k_s > 0 ? law.tan_psi : 0;
+            all[c] = {k + softness * (law.k_n - k), soft_shear + (1 - softness) * k * law.tan_phi * tan_psi,
+                      sliding * law.tan_phi, sliding * tan_psi};
+        }
         }
     }
     return all;
@@ -370,8 +375,10 @@ std::optional<Certificate> Engine::equilibrate(Assembly& assembly, const Equilib
     certificate.stored = stored_energy(assembly) - stored_at_start;
     for (std::size_t c = 0; c < contacts.status.size(); ++c)
         if (contacts.status[c] == ContactStatus::slipping)
-            certificate.dissipated += contacts.length[c] * contacts.traction[c].y() *
-                                      (contacts.state[c].slip - start.joint[c].slip);
+            certificate.dissipated +=
+                contacts.length[c] *
+                (contacts.traction[c].y() * (contacts.state[c].slip - start.joint[c].slip) +
+                 contacts.traction[c].x() * (contacts.state[c].dilation - start.joint[c].dilation));
     certificate.work_of_loads = work_of_loads(assembly, start.displacement);
     certificate.damped = certificate.work_of_loads - certificate.stored - certificate.dissipated;
     return certificate;

@@ -178,8 +178,9 @@ Stiffness::Change Stiffness::change(const Assembly& assembly, const std::vector<
         const Tangent &from = before[c], &to = after[c];
         if (from == to)
             continue;
-        change.contacts.push_back(
-            {c, {to.normal - from.normal, to.shear - from.shear, to.coupling - from.coupling}});
+        change.contacts.push_back({c,
+                                   {to.normal - from.normal, to.shear - from.shear,
+                                    to.friction - from.friction, to.dilation - from.dilation}});
         for (const int unknown : unknowns_of(unknown_, assembly.contacts.gridpoint[c]))
             if (unknown >= 0)
                 change.unknowns.push_back(unknown);

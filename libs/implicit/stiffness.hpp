@@ -2,7 +2,8 @@
 //
 // Unknowns are the displacements of gridpoints that are free; gridpoints tied to another share its unknowns.
 // The tangent is K = sum over zones + sum over contacts, the latter by what each contact does now (Tangent).
-// A contact that slips couples its shear to its normal displacement: then K is not symmetric. The factor is
+// A contact that slips couples its shear traction to its normal displacement, and, if it dilates, its normal
+// traction to its shear displacement: then K is not symmetric. The factor is
 // one of the symmetric part in which open and slipping contacts keep a small part of their springs, so that
 // it exists also where K is singular; it preconditions, and only its nearness to K decides how many
 // iterations a solution takes.
@@ -29,16 +30,16 @@ using mechanics::Assembly;
 using mechanics::Vector2d;
 
 // Change of a contact's traction over change of its jump [Pa/m]: {normal over normal, shear over shear, shear
-// over normal}.
+// over normal, normal over shear}.
 struct Tangent {
-    double normal, shear, coupling;
+    double normal, shear, friction, dilation;
 
     bool operator==(const Tangent&) const = default;
 
     // Change of {normal, shear} traction [Pa] for one of the {normal, shear} jump [m].
     Vector2d times(const Vector2d& jump) const
     {
-        return {normal * jump.x(), shear * jump.y() + coupling * jump.x()};
+        return {normal * jump.x() + dilation * jump.y(), shear * jump.y() + friction * jump.x()};
     }
 };
 

@@ -1,8 +1,13 @@
 // A joint's instantaneous law: springs along the normal and along the joint, no tension beyond the strength
-// of its bonds, and Coulomb friction.
+// of its bonds, Coulomb friction, and dilation by slip.
 //
-//     sigma_n = sigma_0 + k_n u_n          up to the tensile strength; beyond, the joint opens
-//     tau     = tau_0   + k_s (u_s - slip) with |tau| <= c - sigma_n tan(phi)
+//     sigma_n = sigma_0 + k_n (u_n - dilation)   up to the tensile strength; beyond, the joint opens
+//     tau     = tau_0   + k_s (u_s - slip)       with |tau| <= c - sigma_n tan(phi)
+//     d(dilation) = tan(psi) |d(slip)|           whichever way it slips; psi <= phi, or slip would give
+//     energy
+//
+// That is the plastic flow of Coulomb's law with a potential of its own, psi in place of phi. A joint that is
+// open shears without dilating.
 //
 // Opening breaks the joint's bonds: its cohesion and tensile strength are lost for good. (A cohesion that
 // came back on closing would let a contact flicker between open and closed.) Slip alone leaves them. Signs as
@@ -23,11 +28,13 @@ struct Coulomb {
     double cohesion;         // [Pa]
     double tan_phi;          // [-]
     double tensile_strength; // [Pa]
+    double tan_psi = 0;      // of the dilation angle [-]
 };
 
 // What the joint remembers.
 struct CoulombState {
-    double slip = 0; // [m]
+    double slip = 0;     // [m]
+    double dilation = 0; // opening by slip [m]
     bool is_broken = false;
 };
 
@@ -36,26 +43,42 @@ struct Response {
     ContactStatus status;
 };
 
-// The traction at displacements u_n, u_s [m] from a state of traction sigma_0, tau_0 [Pa]; takes slip and
-// breaking into `state`. sigma_0 may be above the tensile strength: the joint is open then, by sigma_0 / k_n.
+// The traction at displacements u_n, u_s [m] from a state of traction sigma_0, tau_0 [Pa]; takes slip,
+// dilation and breaking into `state`. The slip is found at once, with the traction it ends with (backward
+// Euler). sigma_0 may be above the tensile strength: the joint is open then, by sigma_0 / k_n.
 inline Response respond(const Coulomb& law, CoulombState& state, double sigma_0, double tau_0, double u_n,
                         double u_s)
 {
-    const double sigma_n = sigma_0 + law.k_n * u_n;
+    const double sigma_n = sigma_0 + law.k_n * (u_n - state.dilation);
     const double tau_trial = tau_0 + law.k_s * (u_s - state.slip);
     const double give = law.k_s > 0 ? 1 / law.k_s : 0.0;
     if (sigma_n > (state.is_broken ? 0.0 : law.tensile_strength)) {
         state.is_broken = true;
-        state.slip += tau_trial * give; // the joint closes again without shear
-        return {0, 0, ContactStatus::open};
+        // Slip until no shear is left may press the joint together again. (Or tractions would jump here.)
+        if (sigma_n > law.k_n * law.tan_psi * std::abs(tau_trial) * give) {
+            state.slip += tau_trial * give; // the joint closes again without shear
+            return {0, 0, ContactStatus::open};
+        }
     }
-    const double limit = std::max(0.0, (state.is_broken ? 0.0 : law.cohesion) - sigma_n * law.tan_phi);
+    const double cohesion = state.is_broken ? 0.0 : law.cohesion;
+    const double limit = std::max(0.0, cohesion - sigma_n * law.tan_phi);
     // A joint at its limit counts as slipping, also while it stands still there.
     if (std::abs(tau_trial) < (1 - 1e-6) * limit || tau_trial == 0)
         return {sigma_n, tau_trial, ContactStatus::stuck};
-    const double tau = std::copysign(std::min(limit, std::abs(tau_trial)), tau_trial);
-    state.slip += (tau_trial - tau) * give;
-    return {sigma_n, tau, ContactStatus::slipping};
+    if (law.tan_psi == 0 || law.k_s == 0) {
+        const double tau = std::copysign(std::min(limit, std::abs(tau_trial)), tau_trial);
+        state.slip += (tau_trial - tau) * give;
+        return {sigma_n, tau, ContactStatus::slipping};
+    }
+    // Slip presses the joint together by k_n tan(psi) times itself, and strength grows with that; where it
+    // starts with none at all, under tension, it may slip until no shear is left.
+    const double excess = std::abs(tau_trial) - (cohesion - sigma_n * law.tan_phi);
+    const double slip =
+        std::clamp(excess / (law.k_s + law.k_n * law.tan_phi * law.tan_psi), 0.0, std::abs(tau_trial) * give);
+    state.slip += std::copysign(slip, tau_trial);
+    state.dilation += slip * law.tan_psi;
+    return {sigma_n - law.k_n * slip * law.tan_psi,
+            std::copysign(std::abs(tau_trial) - law.k_s * slip, tau_trial), ContactStatus::slipping};
 }
 
 } // namespace jointcreep::joint

@@ -33,13 +33,14 @@ const Named& by_name(const std::vector<Named>& all, const std::string& name, con
 
 Strength strength_of(const JointMaterial& material)
 {
-    return {material.cohesion, material.friction_angle, material.tensile_strength};
+    return {material.cohesion, material.friction_angle, material.tensile_strength, material.dilation_angle};
 }
 
 Strength weaker(const Strength& one, const Strength& other)
 {
     return {std::min(one.cohesion, other.cohesion), std::min(one.friction_angle, other.friction_angle),
-            std::min(one.tensile_strength, other.tensile_strength)};
+            std::min(one.tensile_strength, other.tensile_strength),
+            std::min(one.dilation_angle, other.dilation_angle)};
 }
 
 std::string place_of(const Blocks& blocks, std::size_t edge)
@@ -79,7 +80,7 @@ Strength bridge_strength(const Scene& scene, const Network& network, std::size_t
                               " of " + place_of(network.blocks, edge) +
                               "; it needs a cohesion, a friction angle and a tensile strength");
         const Strength strength{rock.strength->cohesion, rock.strength->friction_angle,
-                                rock.strength->tensile_strength};
+                                rock.strength->tensile_strength, rock.dilation_angle};
         weakest = weakest ? weaker(*weakest, strength) : strength;
     }
     return *weakest;
@@ -292,7 +293,8 @@ private:
 EquivalentJoints without_joints(std::size_t edges, std::size_t kelvin_units)
 {
     const std::vector<double> none(edges, 0.0), no_units(edges * kelvin_units, 0.0);
-    return {none, none, none, none, none, no_units, no_units, no_units, no_units, none, none, none, {}, {}};
+    return {none,     none,     none, none, none, none, no_units, no_units,
+            no_units, no_units, none, none, none, {},   {}};
 }
 
 // Rock bridges make a Kelvin unit of a Maxwell dashpot.
@@ -315,6 +317,7 @@ void set_joint(EquivalentJoints& joints, std::size_t edge, const Stiffnesses::Fo
     joints.cohesion[edge] = strength.cohesion;
     joints.friction_angle[edge] = strength.friction_angle;
     joints.tensile_strength[edge] = strength.tensile_strength;
+    joints.dilation_angle[edge] = strength.dilation_angle;
     joints.persistence[edge] = persistence;
     const std::size_t row = edge * joints.kelvin_units();
     for (std::size_t unit = 0; unit < normal.units.size(); ++unit) {
@@ -331,7 +334,7 @@ void set_joint(EquivalentJoints& joints, std::size_t edge, const Stiffnesses::Fo
 
 // Sums of strengths times lengths.
 struct StrengthSum {
-    double length = 0, cohesion = 0, tan_phi = 0, tensile_strength = 0;
+    double length = 0, cohesion = 0, tan_phi = 0, tensile_strength = 0, tan_psi = 0;
 
     void add(double l, const Strength& strength)
     {
@@ -339,12 +342,14 @@ struct StrengthSum {
         cohesion += l * strength.cohesion;
         tan_phi += l * std::tan(strength.friction_angle);
         tensile_strength += l * strength.tensile_strength;
+        tan_psi += l * std::tan(strength.dilation_angle);
     }
     Strength mean() const
     {
         if (length == 0)
-            return {0, 0, 0};
-        return {cohesion / length, std::atan(tan_phi / length), tensile_strength / length};
+            return {0, 0, 0, 0};
+        return {cohesion / length, std::atan(tan_phi / length), tensile_strength / length,
+                std::atan(tan_psi / length)};
     }
 };
 
@@ -380,15 +385,19 @@ SetAverages averages_of(const Scene& scene, const Network& network, const Pieces
         sets.line_length.push_back(lines.length(set));
         sets.edge_length.push_back(length);
 
-        const auto add = [](const Strength& strength, auto& cohesion, auto& friction_angle, auto& tension) {
+        const auto add = [](const Strength& strength, auto& cohesion, auto& friction_angle, auto& tension,
+                            auto& dilation_angle) {
             cohesion.push_back(strength.cohesion);
             friction_angle.push_back(strength.friction_angle);
             tension.push_back(strength.tensile_strength);
+            dilation_angle.push_back(strength.dilation_angle);
         };
-        add(sum.joint.mean(), sets.joint_cohesion, sets.joint_friction_angle, sets.joint_tensile_strength);
-        add(sum.bridge.mean(), sets.bridge_cohesion, sets.bridge_friction_angle,
-            sets.bridge_tensile_strength);
-        add(sum.equivalent.mean(), sets.cohesion, sets.friction_angle, sets.tensile_strength);
+        add(sum.joint.mean(), sets.joint_cohesion, sets.joint_friction_angle, sets.joint_tensile_strength,
+            sets.joint_dilation_angle);
+        add(sum.bridge.mean(), sets.bridge_cohesion, sets.bridge_friction_angle, sets.bridge_tensile_strength,
+            sets.bridge_dilation_angle);
+        add(sum.equivalent.mean(), sets.cohesion, sets.friction_angle, sets.tensile_strength,
+            sets.dilation_angle);
         sets.joint_normal_stiffness.push_back(sum.joint_stiffness.x() * per_length);
         sets.joint_shear_stiffness.push_back(sum.joint_stiffness.y() * per_length);
         sets.normal_stiffness.push_back(sum.stiffness.x() * per_length);
@@ -405,7 +414,8 @@ Strength average(const Strength& joint, const Strength& rock, double persistence
     const double k = persistence;
     return {k * joint.cohesion + (1 - k) * rock.cohesion,
             std::atan(k * std::tan(joint.friction_angle) + (1 - k) * std::tan(rock.friction_angle)),
-            k * joint.tensile_strength + (1 - k) * rock.tensile_strength};
+            k * joint.tensile_strength + (1 - k) * rock.tensile_strength,
+            std::atan(k * std::tan(joint.dilation_angle) + (1 - k) * std::tan(rock.dilation_angle))};
 }
 
 EquivalentJoints average_strength(const Scene& scene, const Network& network)

@@ -14,18 +14,20 @@ struct Strength {
     double cohesion;         // [Pa]
     double friction_angle;   // [rad]
     double tensile_strength; // [Pa]
+    double dilation_angle;   // [rad]
 };
 
 // Weighted by length, k = persistence, the fraction that is joint:
 //     c = k c_j + (1 - k) c_r,   tan(phi) = k tan(phi_j) + (1 - k) tan(phi_r),   T = k T_j + (1 - k) T_r
+// and tan(psi), of the dilation, as tan(phi).
 Strength average(const Strength& joint, const Strength& rock, double persistence);
 
 // The equivalent joint of every edge, with the joint fraction of that edge, or the persistence of its line or
 // of its set inside the section, as the scene's averaging says. Of an edge on which its joint was carried on
 // beyond its ends, the persistence of line or set counts for the part between these ends, and the rest is
-// rock. The rock is the weaker of the two on the edge's sides, in cohesion, friction angle and tensile
-// strength each by itself. Stiffnesses and the constants of creep are the joint's own, or by another rule
-// those of libs/joint/bridged.hpp, for
+// rock. The rock is the weaker of the two on the edge's sides, in cohesion, friction angle, tensile
+// strength and dilation angle each by itself. Stiffnesses and the constants of creep are the joint's own, or
+// by another rule those of libs/joint/bridged.hpp, for
 //  - the trace length: sum of L^2 / sum of L over the traces of the line (with averages over lines), or of
 //    the set;
 //  - the spacing: the area of the blocks where the set may be / length of its lines inside the section.

@@ -52,7 +52,8 @@ void add_contacts(Assembly& assembly, const Scene& scene, const EquivalentJoints
     for (std::size_t c = 0; c < n; ++c) {
         const Index e = mesh.contact_edge[c];
         contacts.law.push_back({joints.normal_stiffness[e], joints.shear_stiffness[e], joints.cohesion[e],
-                                std::tan(joints.friction_angle[e]), joints.tensile_strength[e]});
+                                std::tan(joints.friction_angle[e]), joints.tensile_strength[e],
+                                std::tan(joints.dilation_angle[e])});
         const Vector3d stress = scene.in_situ_stress.at(mesh.contact_centre[c]);
         const Vector2d normal = mesh.contact_normal[c], tangent = along(normal);
         const Vector2d pull(stress[0] * normal.x() + stress[2] * normal.y(),
@@ -340,9 +341,10 @@ void start_from_here(Assembly& assembly)
     for (std::size_t c = 0; c < contacts.gridpoint.size(); ++c) {
         // An open contact keeps its gap as the tension its spring would have.
         const double normal = contacts.initial_traction[c].x() +
-                              contacts.law[c].k_n * (contacts.jump[c].x() - contacts.offset[c].x());
+                              contacts.law[c].k_n * (contacts.jump[c].x() - contacts.offset[c].x() -
+                                                     contacts.state[c].dilation);
         contacts.initial_traction[c] = {normal, contacts.traction[c].y()};
-        contacts.state[c].slip = 0;
+        contacts.state[c].slip = contacts.state[c].dilation = 0;
         contacts.offset[c].setZero();
     }
     assembly.zones.initial_stress = assembly.zones.stress;

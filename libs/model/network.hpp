@@ -149,6 +149,7 @@ struct SetAverages {
     std::vector<double> joint_cohesion, joint_friction_angle, joint_tensile_strength;    // [Pa], [rad], [Pa]
     std::vector<double> bridge_cohesion, bridge_friction_angle, bridge_tensile_strength; // 0 without bridges
     std::vector<double> cohesion, friction_angle, tensile_strength;                      // of the averages
+    std::vector<double> joint_dilation_angle, bridge_dilation_angle, dilation_angle;     // [rad]
     std::vector<double> joint_normal_stiffness, joint_shear_stiffness;                   // [Pa/m]
     std::vector<double> normal_stiffness, shear_stiffness; // of the averages [Pa/m]
     std::vector<double> limited_length; // of edges that are stiffer than zones can tell [m]
@@ -161,6 +162,7 @@ struct EquivalentJoints {
     std::vector<double> cohesion;                          // [Pa]
     std::vector<double> friction_angle;                    // [rad]
     std::vector<double> tensile_strength;                  // [Pa]
+    std::vector<double> dilation_angle;                    // [rad]
     // Kelvin units in series, [edge, unit], the unit running fastest; a stiffness of 0 is no unit.
     std::vector<double> normal_kelvin_stiffness, shear_kelvin_stiffness; // [Pa/m]
     std::vector<double> normal_kelvin_viscosity, shear_kelvin_viscosity; // [Pa s/m]

@@ -42,6 +42,7 @@ struct Rock {
     std::optional<RockStrength> strength; // needed where a joint set leaves rock bridges
     std::optional<ShearKelvin> kelvin{};
     std::optional<double> maxwell_viscosity{}; // of a dashpot in series, in shear [Pa s]
+    double dilation_angle = 0;                 // of the rock bridges, beside their strength [rad]
 };
 
 // One Kelvin unit, spring beside dashpot, per direction.
@@ -68,6 +69,7 @@ struct JointMaterial {
     double tensile_strength;          // [Pa]
     std::vector<Kelvin> kelvin{};     // units in series with the springs; one and a Maxwell: Burgers
     std::optional<Maxwell> maxwell{}; // without either the joint does not creep
+    double dilation_angle = 0;        // [rad]
 };
 
 // What the joints of a set are (libs/sampling/joint_sets.hpp).

@@ -53,6 +53,7 @@ public:
         check_polygons();
         check_joints();
         check_joint_materials();
+        check_rocks();
         check_joint_sets();
         check_in_situ_stress();
         check_boundaries();
@@ -221,6 +222,23 @@ private:
             if (given.find("kelvin_chain") && given.find("normal_kelvin_stiffness_MPa_per_m"))
                 given.refuse("kelvin_chain",
                              "wanted either it, or the four keys of one Kelvin unit, not both");
+            const JointMaterial& material = scene_.joint_materials[i];
+            if (material.dilation_angle > material.friction_angle)
+                given.refuse("dilation_angle_deg", "wanted at most friction_angle_deg");
+            if (material.dilation_angle > 0 && material.shear_stiffness == 0)
+                given.refuse("dilation_angle_deg",
+                             "wanted 0 of a smooth joint, which has no shear stiffness");
+        }
+    }
+
+    void check_rocks() const
+    {
+        for (std::size_t i = 0; i < scene_.rocks.size(); ++i) {
+            const Rock& rock = scene_.rocks[i];
+            if (rock.dilation_angle > 0 &&
+                (!rock.strength || rock.dilation_angle > rock.strength->friction_angle))
+                in_list("rock", i).refuse("dilation_angle_deg",
+                                          "wanted at most friction_angle_deg, beside it");
         }
     }
 

@@ -88,6 +88,9 @@ Table<Rock> rock()
          number<Rock>("tensile_strength_MPa", part<&Rock::strength, &RockStrength::tensile_strength>, MPa,
                       strength, "Tensile strength, a positive number.")
              .together("strength"),
+         number("dilation_angle_deg", &Rock::dilation_angle, degrees, friction,
+                "Dilation angle of the rock bridges, at most their friction angle.")
+             .or_else(std::int64_t{0}),
          number<Rock>("kelvin_shear_modulus_GPa", part<&Rock::kelvin, &ShearKelvin::modulus>, GPa,
                       above(0).to(1e6), "Kelvin spring, in shear.")
              .together("Kelvin"),
@@ -165,6 +168,11 @@ Table<JointMaterial> joint_material(const Table<Kelvin>& chain)
          number("friction_angle_deg", &JointMaterial::friction_angle, degrees, friction, "Friction angle."),
          number("tensile_strength_MPa", &JointMaterial::tensile_strength, MPa, strength,
                 "Tensile strength, a positive number."),
+         number(
+             "dilation_angle_deg", &JointMaterial::dilation_angle, degrees, friction,
+             "Dilation angle, at most the friction angle: a joint that slips opens by its tangent times the "
+             "slip.")
+             .or_else(std::int64_t{0}),
          number<JointMaterial>("normal_kelvin_stiffness_MPa_per_m", unit_part<&Kelvin::normal_stiffness>,
                                MPa_per_m, stiffness, "Kelvin spring, normal.")
              .together("Kelvin"),
@@ -531,7 +539,7 @@ Table<WrittenDensity> density_table()
     const auto angle = [](W& all) -> std::optional<double>& { return all.scanline.angle; };
     const auto trend = [](W& all) -> double& { return all.scanline.trend; };
     const auto plunge = [](W& all) -> double& { return all.scanline.plunge; };
-    const Range dense = above(0).to(1e6);
+    const Range dense = from(1e-9).to(1e6);
     return {
         {"joint_set.density", inside, optional,
          "How much of a set there is, measured otherwise than by the spacing: one of five densities of joint "

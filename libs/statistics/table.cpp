@@ -100,4 +100,18 @@ std::string table(const Statistics& rows)
     return text;
 }
 
+std::string left_out(const Scene& scene)
+{
+    std::string text;
+    const auto add = [&](const std::string& name, const std::string& why) {
+        text += (text.empty() ? "not looked at: \"" : "; \"") + name + "\" (" + why + ")";
+    };
+    for (const JointSet& set : scene.joint_sets)
+        if (!set.rocks.empty())
+            add(set.name, "in some rocks only");
+    for (const MappedSet& mapped : scene.mapped)
+        add(mapped.name, "mapped");
+    return text.empty() ? text : text + "\n";
+}
+
 } // namespace jointcreep::statistics

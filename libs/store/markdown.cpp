@@ -92,7 +92,7 @@ This is format version )"
 - Indices count from 0. An index of -1 means none. No number is ever NaN or infinite.
 - Text is UTF-8 of fixed length, padded with zero bytes.
 - Equal input gives equal bytes: a file holds no dates, paths or user names.
-- Datasets are compressed and carry checksums. A damaged file is refused; a file made to do harm may not be.
+- Datasets carry checksums, and are compressed, but for those that would hardly get smaller. A damaged file is refused; a file made to do harm may not be.
 - Readers ignore datasets they do not know. A file of another major version, or one that is not complete, is refused.
 - While a file is written it is called `NAME.partial-` and a number; it is renamed when it is whole.
 

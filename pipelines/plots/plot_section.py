@@ -91,7 +91,7 @@ def draw_stages(scene, axes, inside):
 
 def draw_boundaries(scene, outline, axes):
     """Signs along the outside of the outline: triangles where it is fixed, circles where it can slide, squares
-    where it rests on a joint."""
+    where it rests on a joint, diamonds where it is free and loaded."""
     size = np.max(np.ptp(outline, axis=0))
     inside = matplotlib.path.Path(outline)
     entries = {}
@@ -104,6 +104,8 @@ def draw_boundaries(scene, outline, axes):
             outward = -outward
         if "joint" in boundary:
             marker, label = "s", f"rests on '{boundary['joint']}'"
+        elif "fix" not in boundary:
+            marker, label = "D", "loaded"
         elif boundary["fix"] == "xy":
             marker, label = "^", "fixed"
         else:

@@ -24,6 +24,7 @@ struct Gaps {
         contacts.initial_traction.assign(n, {-1e6, 0});
         contacts.offset.assign(n, {2e-4, 0}); // crept
         contacts.jump.resize(n);
+        contacts.state.resize(n);
         contacts.status.resize(n);
     }
     void put(double gap, double shear, std::size_t c = 0)

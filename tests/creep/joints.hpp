@@ -41,7 +41,7 @@ inline EquivalentJoints joints_of(const std::vector<Chain>& chains)
         }
     }
     joints.shear_stiffness = joints.cohesion = joints.friction_angle = joints.tensile_strength =
-        joints.shear_maxwell_viscosity = std::vector<double>(chains.size(), 0.0);
+        joints.dilation_angle = joints.shear_maxwell_viscosity = std::vector<double>(chains.size(), 0.0);
     joints.shear_kelvin_stiffness = joints.shear_kelvin_viscosity =
         std::vector<double>(chains.size() * units, 0.0);
     return joints;

@@ -87,15 +87,17 @@ TEST(edges_csv, adds_the_equivalent_joints)
 {
     const EquivalentJoints equivalent = small_equivalent();
     const auto rows = rows_of(edges_csv(small_network(), &equivalent));
-    ASSERT_EQ(rows[0].size(), 22u);
+    ASSERT_EQ(rows[0].size(), 23u);
     EXPECT_EQ(rows[0][11], "normal_stiffness_Pa_per_m");
     EXPECT_EQ(number(rows[3][11]), 1e9 / 3);
     EXPECT_EQ(rows[0][14], "friction_angle_rad");
     EXPECT_EQ(number(rows[3][14]), 0.6);
-    EXPECT_EQ(rows[0][19], "shear_kelvin_viscosity_Pa_s_per_m");
-    EXPECT_EQ(number(rows[3][19]), 8e13);
-    EXPECT_EQ(rows[0][21], "shear_maxwell_viscosity_Pa_s_per_m");
-    EXPECT_EQ(number(rows[3][21]), 3e15);
+    EXPECT_EQ(rows[0][16], "dilation_angle_rad");
+    EXPECT_EQ(number(rows[3][16]), 0.1);
+    EXPECT_EQ(rows[0][20], "shear_kelvin_viscosity_Pa_s_per_m");
+    EXPECT_EQ(number(rows[3][20]), 8e13);
+    EXPECT_EQ(rows[0][22], "shear_maxwell_viscosity_Pa_s_per_m");
+    EXPECT_EQ(number(rows[3][22]), 3e15);
     EXPECT_EQ(number(rows[2][11]), 0);
 }
 
@@ -109,12 +111,12 @@ TEST(edges_csv, numbers_kelvin_units_where_there_are_several)
     equivalent.normal_kelvin_viscosity.assign(2 * edges, 0);
     equivalent.shear_kelvin_viscosity.assign(2 * edges, 0);
     const auto rows = rows_of(edges_csv(small_network(), &equivalent));
-    ASSERT_EQ(rows[0].size(), 26u);
-    EXPECT_EQ(rows[0][16], "normal_kelvin_stiffness_1_Pa_per_m");
-    EXPECT_EQ(rows[0][20], "normal_kelvin_stiffness_2_Pa_per_m");
-    EXPECT_EQ(number(rows[3][16]), 0);
-    EXPECT_EQ(number(rows[3][20]), 5e8);
-    EXPECT_EQ(rows[0][25], "shear_maxwell_viscosity_Pa_s_per_m");
+    ASSERT_EQ(rows[0].size(), 27u);
+    EXPECT_EQ(rows[0][17], "normal_kelvin_stiffness_1_Pa_per_m");
+    EXPECT_EQ(rows[0][21], "normal_kelvin_stiffness_2_Pa_per_m");
+    EXPECT_EQ(number(rows[3][17]), 0);
+    EXPECT_EQ(number(rows[3][21]), 5e8);
+    EXPECT_EQ(rows[0][26], "shear_maxwell_viscosity_Pa_s_per_m");
 }
 
 TEST(histories_csv, has_a_row_a_time_and_three_columns_a_point)

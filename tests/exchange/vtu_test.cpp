@@ -122,6 +122,7 @@ TEST(joints_vtu, has_the_strengths_and_the_boundary_on_a_joint_once_they_are_kno
     EXPECT_EQ(array_of(grid, "cohesion"), (Numbers{0, 1e5}));
     EXPECT_EQ(array_of(grid, "friction_angle"), (Numbers{0.5, 0.6}));
     EXPECT_EQ(array_of(grid, "tensile_strength"), (Numbers{0, 1e4}));
+    EXPECT_EQ(array_of(grid, "dilation_angle"), (Numbers{0, 0.1}));
     EXPECT_EQ(array_of(grid, "normal_kelvin_stiffness"), (Numbers{6.9e8, 7e8}));
     EXPECT_EQ(array_of(grid, "shear_kelvin_stiffness"), (Numbers{1e8, 2e8}));
     EXPECT_EQ(array_of(grid, "normal_kelvin_viscosity"), (Numbers{5e13, 6e13}));

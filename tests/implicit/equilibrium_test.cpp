@@ -81,7 +81,7 @@ void expect_unchanged(const Assembly& a, const Assembly& b)
 
 // 20 m x 10 m with three joints, held below, pushed at the left side above 5 m and at the top by `traction`.
 Section plate(const Vector2d& side, const Vector2d& top, std::optional<double> friction_angle,
-              double cohesion, double tensile_strength)
+              double cohesion, double tensile_strength, double tan_psi = 0)
 {
     Scene scene = section({{0, 0}, {20, 0}, {20, 10}, {0, 10}}, 0.05);
     scene.zone_size = 1.5;
@@ -98,6 +98,7 @@ Section plate(const Vector2d& side, const Vector2d& top, std::optional<double> f
         for (joint::Coulomb& law : s.assembly.contacts.law) {
             law.cohesion = cohesion;
             law.tensile_strength = tensile_strength;
+            law.tan_psi = tan_psi;
         }
     mechanics::Loading(s.scene, s.mesh).apply(s.assembly, 0);
     return s;
@@ -196,6 +197,8 @@ INSTANTIATE_TEST_SUITE_P(
     plates, both_engines,
     testing::Values(std::tuple(plate({-1e5, 0}, {0, 0}, {}, 0, 0), ContactStatus::stuck, 1e-6),
                     std::tuple(plate({1e5, 0}, {0, -1e5}, 20 * deg, 0, 0), ContactStatus::slipping, 1e-2),
+                    std::tuple(plate({1e5, 0}, {0, -1e5}, 20 * deg, 0, 0, 0.15), ContactStatus::slipping,
+                               1e-2),
                     std::tuple(plate({-4e4, 0}, {0, 0}, 30 * deg, 0, 0), ContactStatus::open, 1e-2),
                     std::tuple(plate({3e5, 0}, {0, 0}, 20 * deg, 4e4, 1e12), ContactStatus::slipping, 1e-6)));
 

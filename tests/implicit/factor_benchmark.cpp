@@ -112,7 +112,7 @@ void measure(const std::string& path, double zone_size)
     const Assembly assembly = mechanics::assemble(scene, file.network, file.equivalent, mesh);
     std::vector<implicit::Tangent> stuck(assembly.contacts.law.size());
     for (std::size_t c = 0; c < stuck.size(); ++c)
-        stuck[c] = {assembly.contacts.law[c].k_n, assembly.contacts.law[c].k_s, 0};
+        stuck[c] = {assembly.contacts.law[c].k_n, assembly.contacts.law[c].k_s, 0, 0};
 
     implicit::Stiffness stiffness;
     stiffness.follow(assembly);

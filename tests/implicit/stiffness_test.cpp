@@ -51,10 +51,13 @@ std::vector<Tangent> excite(Assembly& assembly)
     const double tan_phi = std::tan(friction);
     for (std::size_t c = 0; c < contacts.status.size(); ++c) {
         const double k_n = contacts.law[c].k_n, k_s = contacts.law[c].k_s;
+        const double tan_psi = contacts.law[c].tan_psi = c % 8 < 4 ? 0.0 : 0.14;
+        const double k = k_n * k_s / (k_s + k_n * tan_phi * tan_psi); // k_n without dilation
         const std::array<Vector2d, 4> traction{Vector2d(1e6, 0), Vector2d(-1e6, 9e5), Vector2d(-1e6, -9e5),
                                                Vector2d(-1e6, 1e5)};
-        const std::array<Tangent, 4> tangent{Tangent{0, 0, 0}, Tangent{k_n, 0, -tan_phi * k_n},
-                                             Tangent{k_n, 0, tan_phi * k_n}, Tangent{k_n, k_s, 0}};
+        const std::array<Tangent, 4> tangent{
+            Tangent{0, 0, 0, 0}, Tangent{k, k * tan_phi * tan_psi, -k * tan_phi, -k * tan_psi},
+            Tangent{k, k * tan_phi * tan_psi, k * tan_phi, k * tan_psi}, Tangent{k_n, k_s, 0, 0}};
         contacts.initial_traction[c] = traction[c % 4];
         tangents.push_back(tangent[c % 4]);
     }
@@ -104,11 +107,13 @@ TEST_P(stiffness, is_what_forces_change_by)
     const VectorXd change = (force_at(K, s.assembly, x, -h) - force_at(K, s.assembly, x, h)) / (2 * h);
     const VectorXd product = K.times(s.assembly, tangents, x);
     EXPECT_LT((product - change).norm(), 1e-7 * change.norm());
-    // Without the coupling it would be something else.
-    std::vector<Tangent> uncoupled = tangents;
-    for (Tangent& t : uncoupled)
-        t.coupling = 0;
-    EXPECT_GT((K.times(s.assembly, uncoupled, x) - change).norm(), 1e-3 * change.norm());
+    // Without either coupling it would be something else.
+    for (double Tangent::*const coupling : {&Tangent::friction, &Tangent::dilation}) {
+        std::vector<Tangent> uncoupled = tangents;
+        for (Tangent& t : uncoupled)
+            t.*coupling = 0;
+        EXPECT_GT((K.times(s.assembly, uncoupled, x) - change).norm(), 1e-3 * change.norm());
+    }
 }
 
 TEST_P(stiffness, moves_nothing_that_is_held_and_ties_together)
@@ -140,7 +145,7 @@ TEST_P(stiffness, its_factor_solves_what_is_symmetric)
     Stiffness K;
     K.follow(s.assembly);
     EXPECT_FALSE(K.has_factor());
-    const std::vector<Tangent> stuck(s.assembly.contacts.law.size(), {5e9, 2e9, 0});
+    const std::vector<Tangent> stuck(s.assembly.contacts.law.size(), {5e9, 2e9, 0, 0});
     ASSERT_TRUE(K.factorise(s.assembly, stuck));
     const VectorXd x = random_vector(K.size());
     EXPECT_LT((K.solve(K.times(s.assembly, stuck, x)) - x).norm(), 1e-9 * x.norm());
@@ -153,7 +158,7 @@ INSTANTIATE_TEST_SUITE_P(before_and_after_excavation, stiffness, testing::Bool()
 TEST(stiffness, follows_what_changes_and_keeps_its_factor_otherwise)
 {
     Section s = plate(false);
-    const std::vector<Tangent> stuck(s.assembly.contacts.law.size(), {5e9, 2e9, 0});
+    const std::vector<Tangent> stuck(s.assembly.contacts.law.size(), {5e9, 2e9, 0, 0});
     Stiffness K;
     K.follow(s.assembly);
     K.factorise(s.assembly, stuck);
@@ -170,7 +175,7 @@ TEST(stiffness, follows_what_changes_and_keeps_its_factor_otherwise)
     EXPECT_EQ(K.size(), size);
     std::vector<Tangent> softer = stuck;
     for (Tangent& t : softer)
-        t = {2.5e9, 1e9, 0};
+        t = {2.5e9, 1e9, 0, 0};
     const VectorXd x = random_vector(size);
     const VectorXd half = K.times(s.assembly, softer, x);
     ASSERT_TRUE(K.factorise(s.assembly, softer));

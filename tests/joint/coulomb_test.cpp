@@ -64,20 +64,108 @@ TEST(coulomb, a_smooth_joint_without_shear_stiffness)
     EXPECT_EQ(r.status, ContactStatus::stuck);
 }
 
+// Slip of 4 mm along a joint that is held apart: k_n tan(psi) slip of normal stress comes to it, and tan(phi)
+// times that of shear stress.
+TEST(coulomb, dilates_by_slip)
+{
+    Coulomb dilatant = law;
+    dilatant.tan_psi = 0.1;
+    CoulombState state;
+    const double start = 6e5, slip = 4e-3; // cohesion and friction
+    const double sigma_n = -1e6 - 1e9 * 0.1 * slip, tau = start + 1e9 * 0.1 * slip * 0.5;
+    const Response r = respond(dilatant, state, -1e6, 0, 0, slip + tau / 5e8);
+    EXPECT_EQ(r.status, ContactStatus::slipping);
+    EXPECT_NEAR(state.slip, slip, 1e-15);
+    EXPECT_NEAR(state.dilation, 0.1 * slip, 1e-16);
+    EXPECT_NEAR(r.sigma_n, sigma_n, 1e-6);
+    EXPECT_NEAR(r.tau, tau, 1e-6);
+    // Unloaded it keeps that; on the way back it does not come together again, but rises further.
+    const double unloaded = respond(dilatant, state, -1e6, 0, 0, slip).tau;
+    EXPECT_NEAR(unloaded, 0, 1e-6);
+    EXPECT_NEAR(state.dilation, 0.1 * slip, 1e-16);
+    respond(dilatant, state, -1e6, 0, 0, 0);
+    EXPECT_LT(state.slip, 0.9 * slip);
+    EXPECT_NEAR(state.dilation, 0.1 * (slip + slip - state.slip), 1e-12);
+}
+
+TEST(coulomb, dilates_the_same_in_one_step_and_in_many_one_way)
+{
+    Coulomb dilatant = law;
+    dilatant.tan_psi = 0.2;
+    CoulombState once, often;
+    const Response r = respond(dilatant, once, -1e6, 0, 1e-4, 1e-2);
+    Response last{};
+    for (int i = 1; i <= 1000; ++i)
+        last = respond(dilatant, often, -1e6, 0, 1e-7 * i, 1e-5 * i);
+    EXPECT_NEAR(last.tau, r.tau, 1e-5 * std::abs(r.tau));
+    EXPECT_NEAR(often.dilation, once.dilation, 1e-5 * once.dilation);
+}
+
+// Traction follows displacement without jumps, also where a joint that dilates opens.
+TEST(coulomb, opens_without_a_jump)
+{
+    Coulomb dilatant = law;
+    dilatant.cohesion = dilatant.tensile_strength = 0;
+    dilatant.tan_psi = 0.1;
+    Response last{};
+    bool was_open = false, has_slipped_under_tension = false;
+    for (int i = -1000; i <= 1000; ++i) {
+        CoulombState state;
+        const double u_n = 1e-7 * i;
+        const Response r = respond(dilatant, state, 0, 0, u_n, 5e-4);
+        if (i > -1000) {
+            EXPECT_LT(std::abs(r.sigma_n - last.sigma_n), 1.1e-7 * dilatant.k_n) << i;
+            EXPECT_LT(std::abs(r.tau - last.tau), 1.1e-7 * dilatant.k_n) << i;
+        }
+        last = r;
+        was_open = was_open || r.status == ContactStatus::open;
+        has_slipped_under_tension =
+            has_slipped_under_tension || (u_n > 0 && r.status == ContactStatus::slipping && r.sigma_n < 0);
+    }
+    EXPECT_TRUE(was_open);
+    EXPECT_TRUE(has_slipped_under_tension);
+}
+
+// Pulled apart beyond where friction bears anything, but not beyond the bond's tension.
+TEST(coulomb, dilates_under_tension_too)
+{
+    Coulomb dilatant = law;
+    dilatant.cohesion = 1e4;
+    dilatant.tan_psi = 0.1;
+    CoulombState state;
+    const Response little = respond(dilatant, state, 4e4, 1e3, 0, 0); // no strength at 40 kPa: all shear goes
+    EXPECT_NEAR(little.tau, 0, 1e-9);
+    EXPECT_NEAR(state.slip, 1e3 / 5e8, 1e-20);
+    EXPECT_NEAR(little.sigma_n, 4e4 - 1e9 * 0.1 * 2e-6, 1e-8);
+    state = {};
+    const Response much = respond(dilatant, state, 4e4, 1e6, 0, 0); // slip presses it together again
+    EXPECT_NEAR(much.tau, 1e4 - 0.5 * much.sigma_n, 1e-6);
+    EXPECT_LT(much.sigma_n, 0);
+}
+
 RC_GTEST_PROP(coulomb, never_beyond_its_strength_and_the_same_when_asked_twice, ())
 {
+    Coulomb law = ::law;
+    law.tan_psi = *rc::gen::element(0.0, 0.1, 0.5);
     CoulombState state;
     const auto number = [](double scale) { return scale * (*rc::gen::inRange(-1000, 1001)) / 1000.0; };
     for (int i = 0; i < 10; ++i) {
         const double u_n = number(1e-2), u_s = number(1e-2);
+        const CoulombState start = state;
         const Response r = respond(law, state, -1e6, 1e5, u_n, u_s);
+        if (r.status == ContactStatus::slipping) { // slip takes energy, never gives it
+            const double slip = state.slip - start.slip, dilation = state.dilation - start.dilation;
+            RC_ASSERT(std::abs(dilation - law.tan_psi * std::abs(slip)) <= 1e-15);
+            RC_ASSERT(r.tau * slip + r.sigma_n * dilation >= -1e-9 * std::abs(r.tau * slip));
+        }
         RC_ASSERT(r.sigma_n <= (state.is_broken ? 0.0 : law.tensile_strength));
         const double cohesion = state.is_broken ? 0 : law.cohesion;
         RC_ASSERT(std::abs(r.tau) <= std::max(0.0, cohesion - r.sigma_n * law.tan_phi) + 1e-6);
         const CoulombState before = state;
         const Response again = respond(law, state, -1e6, 1e5, u_n, u_s);
         RC_ASSERT(std::abs(again.tau - r.tau) <= 1e-6);
-        RC_ASSERT(again.sigma_n == r.sigma_n);
+        RC_ASSERT(std::abs(again.sigma_n - r.sigma_n) <= 1e-6);
+        RC_ASSERT(std::abs(state.dilation - before.dilation) <= 1e-14);
         RC_ASSERT(std::abs(state.slip - before.slip) <= 1e-14);
     }
 }

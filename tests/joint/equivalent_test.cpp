@@ -17,8 +17,8 @@ using namespace jointcreep::unit;
 namespace
 {
 
-constexpr Strength joint{.1 * MPa, 30 * deg, 0};
-constexpr Strength rock{2 * MPa, 50 * deg, 1 * MPa};
+constexpr Strength joint{.1 * MPa, 30 * deg, 0, 4 * deg};
+constexpr Strength rock{2 * MPa, 50 * deg, 1 * MPa, 12 * deg};
 
 // Two unit squares of two rocks on top of each other, the joint between them the first edge; the second edge
 // is the lower one's base, the third its left side, the fourth a welded one.
@@ -169,6 +169,8 @@ TEST(Average, IsWhatAHandFinds)
     EXPECT_NEAR(quarter.cohesion, 1.525 * MPa, 1e-6);
     EXPECT_NEAR(std::tan(quarter.friction_angle), 1.038153, 1e-6);
     EXPECT_NEAR(quarter.tensile_strength, .75 * MPa, 1e-6);
+    // tan(psi) = .25 tan(4) + .75 tan(12) = .25 * .069927 + .75 * .212557 = .176899
+    EXPECT_NEAR(std::tan(quarter.dilation_angle), .176899, 1e-6);
 }
 
 TEST(Average, FallsWithPersistenceUnderAWeakerJoint)
@@ -244,9 +246,9 @@ TEST(AverageStrength, IsZeroWithoutAJoint)
     const EquivalentJoints joints = average_strength(section.scene, section.network);
     for (const auto& column :
          {joints.normal_stiffness, joints.shear_stiffness, joints.cohesion, joints.friction_angle,
-          joints.tensile_strength, joints.normal_kelvin_stiffness, joints.shear_kelvin_stiffness,
-          joints.normal_kelvin_viscosity, joints.shear_kelvin_viscosity, joints.normal_maxwell_viscosity,
-          joints.shear_maxwell_viscosity}) {
+          joints.tensile_strength, joints.dilation_angle, joints.normal_kelvin_stiffness,
+          joints.shear_kelvin_stiffness, joints.normal_kelvin_viscosity, joints.shear_kelvin_viscosity,
+          joints.normal_maxwell_viscosity, joints.shear_maxwell_viscosity}) {
         ASSERT_EQ(column.size(), 4);
         EXPECT_EQ(column[2], 0);
         EXPECT_EQ(column[3], 0);

@@ -36,6 +36,19 @@ class Kinds(ChainTest):
             self.assertIn(index, data["/joints/set"], name)
             self.assertIn(index, data["/joints/set"][on_edges[on_edges >= 0]], name)
 
+    def test_the_report_names_what_it_does_not_look_at(self):
+        done = self.chain.answer("jointgen", self.scene(), "--check", "--report")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(done.stdout.splitlines()[-1],
+                         'not looked at: "sheets" (in some rocks only); "map fault" (mapped); "map joints" (mapped)')
+
+    def test_what_shows_only_on_sampling_names_the_scene(self):
+        text = self.chain.text("tests/pipeline/kinds/scene.toml").replace("P21_per_m = 0.18", "P21_per_m = 1e6", 1)
+        scene = self.scene(scene=text)
+        done = self.chain.answer("jointgen", scene, "--check")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn(f'{scene}: joint set "bedding"', done.stderr)
+
     def test_mapped_joints_keep_their_ids(self):
         network = self.network(self.scene())
         number, start, end = self.ends_of(network, "map fault")

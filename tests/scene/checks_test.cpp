@@ -220,13 +220,24 @@ TEST(checks, laws)
 TEST(checks, rock_bridges)
 {
     auto weak = text;
-    for (const char* key :
-         {"cohesion_MPa = 0.5\n", "friction_angle_deg = 35\n", "tensile_strength_MPa = 0.2\n"})
+    for (const char* key : {"cohesion_MPa = 0.5\n", "friction_angle_deg = 35\n",
+                            "tensile_strength_MPa = 0.2\n", "dilation_angle_deg = 8\n"})
         weak = replaced(weak, key, "");
     expect_part(refusal(weak), "[[joint_set]] \"steep\" persistence = 0.6");
     expect_part(refusal(weak), "[[rock]] \"soft\"");
     expect_refused("length = { law = \"negative exponential\", mean_m = 8 }\n", "",
                    "a persistence of 0.8 needs it", "[[joint_set]]\nname = \"flat\"");
+}
+
+TEST(checks, dilation)
+{
+    expect_refused("dilation_angle_deg = 5", "dilation_angle_deg = 26",
+                   "[[joint_material]] \"gouge\" dilation_angle_deg = 26: wanted at most friction_angle_deg");
+    expect_refused("shear_stiffness_MPa_per_m = 400\n", "shear_stiffness_MPa_per_m = 0\n",
+                   "[[joint_material]] \"gouge\" dilation_angle_deg = 5: wanted 0 of a smooth joint",
+                   "dilation_angle_deg = 5");
+    expect_refused("dilation_angle_deg = 8", "dilation_angle_deg = 36",
+                   "[[rock]] \"soft\" dilation_angle_deg = 36: wanted at most friction_angle_deg");
 }
 
 TEST(checks, times)

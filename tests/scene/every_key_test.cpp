@@ -119,6 +119,9 @@ TEST(every_key, all_else)
     EXPECT_EQ(scene.rocks[1].strength->cohesion, 0.5 * MPa);
     EXPECT_EQ(scene.rocks[1].strength->friction_angle, 35 * deg);
     EXPECT_EQ(scene.rocks[1].strength->tensile_strength, 0.2 * MPa);
+    EXPECT_EQ(scene.rocks[1].dilation_angle, 8 * deg);
+    EXPECT_EQ(scene.rocks[0].dilation_angle, 0);
+    EXPECT_EQ(scene.joint_materials.at(1).dilation_angle, 5 * deg);
     ASSERT_TRUE(scene.rocks[0].kelvin && scene.rocks[0].maxwell_viscosity);
     EXPECT_EQ(scene.rocks[0].kelvin->modulus, 20 * GPa);
     EXPECT_EQ(scene.rocks[0].kelvin->viscosity, 2000 * (GPa * day));
