@@ -49,36 +49,43 @@ struct Response {
 inline Response respond(const Coulomb& law, CoulombState& state, double sigma_0, double tau_0, double u_n,
                         double u_s)
 {
-    const double sigma_n = sigma_0 + law.k_n * (u_n - state.dilation);
+    const double sigma_trial = sigma_0 + law.k_n * (u_n - state.dilation);
     const double tau_trial = tau_0 + law.k_s * (u_s - state.slip);
     const double give = law.k_s > 0 ? 1 / law.k_s : 0.0;
-    if (sigma_n > (state.is_broken ? 0.0 : law.tensile_strength)) {
+    // Slip presses a joint that dilates together, by this times itself, and its strength grows with that;
+    // where it has none to begin with, under tension, it slips until no shear is left at most.
+    const double pressing = law.k_s > 0 ? law.k_n * law.tan_psi : 0.0;
+    const auto slip_with = [&](double cohesion) {
+        const double excess = std::abs(tau_trial) - (cohesion - sigma_trial * law.tan_phi);
+        return std::clamp(excess / (law.k_s + pressing * law.tan_phi), 0.0, std::abs(tau_trial) * give);
+    };
+    const auto pressed_with = [&](double cohesion) {
+        return pressing > 0 ? sigma_trial - pressing * slip_with(cohesion) : sigma_trial;
+    };
+
+    double cohesion = state.is_broken ? 0.0 : law.cohesion;
+    if (pressed_with(cohesion) > (state.is_broken ? 0.0 : law.tensile_strength)) {
         state.is_broken = true;
-        // Slip until no shear is left may press the joint together again. (Or tractions would jump here.)
-        if (sigma_n > law.k_n * law.tan_psi * std::abs(tau_trial) * give) {
+        cohesion = 0;
+        if (pressed_with(cohesion) > 0) {
             state.slip += tau_trial * give; // the joint closes again without shear
             return {0, 0, ContactStatus::open};
         }
     }
-    const double cohesion = state.is_broken ? 0.0 : law.cohesion;
-    const double limit = std::max(0.0, cohesion - sigma_n * law.tan_phi);
+    const double limit = std::max(0.0, cohesion - sigma_trial * law.tan_phi);
     // A joint at its limit counts as slipping, also while it stands still there.
     if (std::abs(tau_trial) < (1 - 1e-6) * limit || tau_trial == 0)
-        return {sigma_n, tau_trial, ContactStatus::stuck};
-    if (law.tan_psi == 0 || law.k_s == 0) {
+        return {sigma_trial, tau_trial, ContactStatus::stuck};
+    if (pressing == 0) {
         const double tau = std::copysign(std::min(limit, std::abs(tau_trial)), tau_trial);
         state.slip += (tau_trial - tau) * give;
-        return {sigma_n, tau, ContactStatus::slipping};
+        return {sigma_trial, tau, ContactStatus::slipping};
     }
-    // Slip presses the joint together by k_n tan(psi) times itself, and strength grows with that; where it
-    // starts with none at all, under tension, it may slip until no shear is left.
-    const double excess = std::abs(tau_trial) - (cohesion - sigma_n * law.tan_phi);
-    const double slip =
-        std::clamp(excess / (law.k_s + law.k_n * law.tan_phi * law.tan_psi), 0.0, std::abs(tau_trial) * give);
+    const double slip = slip_with(cohesion);
     state.slip += std::copysign(slip, tau_trial);
     state.dilation += slip * law.tan_psi;
-    return {sigma_n - law.k_n * slip * law.tan_psi,
-            std::copysign(std::abs(tau_trial) - law.k_s * slip, tau_trial), ContactStatus::slipping};
+    return {sigma_trial - pressing * slip, std::copysign(std::abs(tau_trial) - law.k_s * slip, tau_trial),
+            ContactStatus::slipping};
 }
 
 } // namespace jointcreep::joint

@@ -126,6 +126,21 @@ TEST(coulomb, opens_without_a_jump)
     EXPECT_TRUE(has_slipped_under_tension);
 }
 
+// Raised by its own dilation, a bond does not break: it is under compression all the way.
+TEST(coulomb, keeps_its_bond_while_dilation_raises_it)
+{
+    Coulomb dilatant = law;
+    dilatant.tensile_strength = 0;
+    dilatant.tan_psi = 0.2;
+    CoulombState state;
+    const double slip = 5e-3, tau = 1e5 + 1e6 * 0.5;
+    const Response r = respond(dilatant, state, -1e6, 0, 0.2 * slip, slip + tau / 5e8); // at once
+    EXPECT_FALSE(state.is_broken);
+    EXPECT_NEAR(r.sigma_n, -1e6, 1e-5);
+    EXPECT_NEAR(r.tau, tau, 1e-5);
+    EXPECT_NEAR(state.slip, slip, 1e-14);
+}
+
 // Pulled apart beyond where friction bears anything, but not beyond the bond's tension.
 TEST(coulomb, dilates_under_tension_too)
 {
