@@ -169,7 +169,7 @@ def tornado(own, rows, targets, path):
                               ha="left", fontsize=5.5, path_effects=figure.HALO, zorder=4)
         axes.axvline(own[key], color="k", linewidth=0.8, zorder=3)
         axes.set_xlabel(f"{label} (mm)")
-        axes.set_xlim(0, (1.9 if key == "total" else 1.65) * high)
+        axes.set_xlim(0, (2.0 if key == "total" else 1.75) * high)
     panels[0].set_yticks(range(len(order)), order)
     panels[0].set_ylim(-0.6, len(order) - 0.4)
     figure.save(plot, path)
