@@ -313,7 +313,7 @@ struct Scene {
 
     std::uint64_t seed = 0; // needed by joint sets only
     std::optional<Creep> creep;
-    double zone_size = 0; // longest zone side aimed at [m]
+    double zone_size = 0;                // longest zone side aimed at [m]
     std::optional<Polygon> fine_zones{}; // where zones have that size, or else everywhere
     double zone_coarsening = 0;          // distance from there in which the size grows by `zone_size` [m]
     Cutting cutting;

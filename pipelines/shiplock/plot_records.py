@@ -103,9 +103,10 @@ def draw(file, arguments):
     if targets["point"]:
         entries.append(matplotlib.patches.Patch(facecolor="white", edgecolor="0.3", hatch="/////",
                                                 label="the paper's range, end of 1999"))
-    below = 0.28 / plot.get_figheight()
+    columns = min(len(entries), 3)
+    below = (0.14 + 0.15 * -(-len(entries) // columns)) / plot.get_figheight()
     plot.get_layout_engine().set(rect=(0, below, 1, 1 - below))
-    plot.legend(handles=entries, loc="lower center", ncol=len(entries), columnspacing=1.2, handlelength=1.8)
+    plot.legend(handles=entries, loc="lower center", ncol=columns, columnspacing=1.2, handlelength=1.8)
     return plot
 
 

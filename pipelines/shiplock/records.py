@@ -78,7 +78,8 @@ def targets_of(path):
 def levels_of(scene, side):
     """Dates and elevations of the excavation north or south of the pier's middle: [(date, level), ...]."""
     sign = {"N": 1, "S": -1}[side]
-    levels = [(scene["schedule"]["start"], max(point["at_m"][1] for point in scene["point"]))]
+    ground = np.interp(0, *np.array(scene["in_situ_stress"]["ground_m"], float).T)
+    levels = [(scene["schedule"]["start"], ground)]
     for stage in scene["stage"]:
         corners = np.concatenate([np.array(polygon, float) for polygon in stage["remove_m"]])
         if np.any(sign * corners[:, 0] > 0):

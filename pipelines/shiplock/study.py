@@ -140,7 +140,7 @@ def markdown(own, rows):
         cells.append(f"{found['misfit']:.2f}" if "misfit" in found else "")
         lines.append("| " + " | ".join(cells) + " |")
     lines += ["", f"Horizontal, toward the lock, at the end of 1999: the mean over the points below the crest of the medians "
-                  f"over {own['networks']} networks."]
+                  f"over {own['networks']} network{'s' if own['networks'] > 1 else ''}."]
     return "\n".join(lines) + "\n"
 
 
@@ -156,7 +156,7 @@ def tornado(own, rows, targets, path):
     for axes, key, label in ((panels[0], "total", "total"), (panels[1], "recorded", "since the first reading")):
         low, high = targets[f"{key}_mm"]
         axes.axvspan(low, high, color="#e3efe6", linewidth=0, zorder=0)
-        longest = 2.2 * high  # what goes beyond is cut, and says its value
+        longest = 1.5 * high  # what goes beyond is cut, and says its value
         for y, what in enumerate(order):
             for i, (to, found) in enumerate(groups[what]):
                 height = 0.7 / len(groups[what])
@@ -164,14 +164,12 @@ def tornado(own, rows, targets, path):
                 value = min(found[key], longest)
                 axes.barh(at, value - own[key], height=0.85 * height, left=own[key], zorder=2, linewidth=0.4,
                           edgecolor="k", color=[figure.COLORS[0], figure.COLORS[4], figure.COLORS[5]][i % 3])
-                side = 1 if value >= own[key] else -1
                 text = (to if key == "total" else "") + (f" ({found[key]:.0f})" if found[key] > longest else "")
-                axes.annotate(text, (value, at), xytext=(2 * side, 0), textcoords="offset points", va="center",
-                              ha="left" if side > 0 else "right", fontsize=5.5, path_effects=figure.HALO, zorder=4)
+                axes.annotate(text, (max(value, own[key]), at), xytext=(3, 0), textcoords="offset points", va="center",
+                              ha="left", fontsize=5.5, path_effects=figure.HALO, zorder=4)
         axes.axvline(own[key], color="k", linewidth=0.8, zorder=3)
         axes.set_xlabel(f"{label} (mm)")
-        axes.set_xlim(left=0)
-        axes.margins(x=0.3 if key == "total" else 0.05)
+        axes.set_xlim(0, (2.0 if key == "total" else 1.75) * high)
     panels[0].set_yticks(range(len(order)), order)
     panels[0].set_ylim(-0.6, len(order) - 0.4)
     figure.save(plot, path)
