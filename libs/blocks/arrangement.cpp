@@ -165,11 +165,32 @@ std::vector<Index> number_in_order(std::vector<Vector2d>& place)
         double x, y;
         Index number;
     };
+    // First into strips of x with a few places each: sorting them one by one stays in the cache.
+    double low = 0, high = 0;
+    for (const Vector2d& p : place) {
+        low = std::min(low, p.x());
+        high = std::max(high, p.x());
+    }
+    const std::size_t strips = place.size() / 8 + 1;
+    const double per_strip = high > low ? static_cast<double>(strips) / (high - low) : 0.0;
+    const auto strip_of = [&](const Vector2d& p) {
+        return std::min(static_cast<std::size_t>((p.x() - low) * per_strip), strips - 1);
+    };
+    std::vector<std::size_t> start(strips + 1, 0);
+    for (const Vector2d& p : place)
+        ++start[strip_of(p) + 1];
+    std::partial_sum(start.begin(), start.end(), start.begin());
     std::vector<Numbered> sorted(place.size());
-    for (std::size_t i = 0; i < place.size(); ++i)
-        sorted[i] = {place[i].x() + 0.0, place[i].y() + 0.0, static_cast<Index>(i)}; // -0 becomes 0
-    std::sort(sorted.begin(), sorted.end(),
-              [](const Numbered& a, const Numbered& b) { return a.x != b.x ? a.x < b.x : a.y < b.y; });
+    {
+        std::vector<std::size_t> next(start.begin(), start.end() - 1);
+        for (std::size_t i = 0; i < place.size(); ++i) // -0 becomes 0
+            sorted[next[strip_of(place[i])]++] = {place[i].x() + 0.0, place[i].y() + 0.0,
+                                                  static_cast<Index>(i)};
+    }
+    for (std::size_t s = 0; s < strips; ++s)
+        std::sort(sorted.begin() + static_cast<std::ptrdiff_t>(start[s]),
+                  sorted.begin() + static_cast<std::ptrdiff_t>(start[s + 1]),
+                  [](const Numbered& a, const Numbered& b) { return a.x != b.x ? a.x < b.x : a.y < b.y; });
     std::vector<Index> number(place.size());
     std::size_t count = 0;
     for (const Numbered& n : sorted) {

@@ -204,8 +204,10 @@ bool merge_pass(Graph& graph, Sources& sources, const std::vector<Polygon>& outl
         for (const Index v : used)
             grid.in_rectangle(graph.vertex[v] - around, graph.vertex[v] + around,
                               [&](Index w, const Vector2d& place) {
+                                  if (w == v)
+                                      return;
                                   const double squared = (place - graph.vertex[v]).squaredNorm();
-                                  if (squared >= 1.001 * reach * reach || w == v)
+                                  if (squared >= 1.001 * reach * reach)
                                       return;
                                   if (const double d = std::sqrt(squared); d < reach)
                                       close.push_back({v, w, d});
@@ -277,38 +279,49 @@ bool merge_pass(Graph& graph, Sources& sources, const std::vector<Polygon>& outl
         auto operator<=>(const Near&) const = default;
     };
     std::vector<Near> near;
+    std::ptrdiff_t of_edges = 0; // of these, in order of edges already
     {
         std::erase_if(used, [&](Index v) { return joined[v] != v || neighbours[v].empty(); });
         const VertexGrid grid(graph.vertex, used, 2 * reach);
-        const double margin = (0.5 + 1e-6) * reach;
+        const double margin = (0.5 + 1e-6) * reach, pieces_per_length = 0.5 / grid.cell();
         for (std::size_t e = 0; e < edges.size(); ++e) {
             const auto [first, second, s] = edges[e];
             const Vector2d &p = graph.vertex[first], &q = graph.vertex[second], d = q - p;
             const double length = d.norm();
             // In pieces of about a cell each, so that a long slanting edge looks only along itself.
-            const int pieces = static_cast<int>(std::ceil(length / (2 * grid.cell())));
+            const int pieces = static_cast<int>(length * pieces_per_length) + 1;
             for (int i = 0; i < pieces; ++i) {
                 const Vector2d from = p + d * (static_cast<double>(i) / pieces),
                                to = p + d * ((i + 1.0) / pieces);
                 grid.in_rectangle(from.cwiseMin(to).array() - margin, from.cwiseMax(to).array() + margin,
                                   [&](Index v, const Vector2d& place) {
+                                      if (v == first || v == second)
+                                          return;
                                       const Vector2d o = place - p;
-                                      if (std::abs(d.x() * o.y() - d.y() * o.x()) < margin * length &&
-                                          v != first && v != second)
+                                      if (std::abs(d.x() * o.y() - d.y() * o.x()) < margin * length)
                                           near.push_back({static_cast<Index>(e), v});
                                   });
             }
         }
+        of_edges = static_cast<std::ptrdiff_t>(near.size());
         // Narrow wedges: neighbours of one vertex, of which one lies close to the other's edge.
         const double sine = std::sin(limits.smallest_angle) * (1 + 1e-6);
+        std::vector<Vector2d> to; // the neighbours, from the tip
+        std::vector<double> squared;
         for (const Index tip : used) {
             const std::span<const Index> around = neighbours[tip], by = neighbours.edges_at(tip);
+            to.clear();
+            squared.clear();
             for (std::size_t i = 0; i < around.size(); ++i) {
                 const Vector2d d = graph.vertex[around[i]] - graph.vertex[tip];
+                to.push_back(d);
+                squared.push_back(d.squaredNorm());
                 for (std::size_t j = 0; j < i; ++j) {
-                    const Vector2d o = graph.vertex[around[j]] - graph.vertex[tip];
+                    const Vector2d& o = to[j];
+                    if (d.dot(o) <= 0)
+                        continue;
                     const double across = d.x() * o.y() - d.y() * o.x();
-                    if (d.dot(o) > 0 && across * across <= sine * sine * d.squaredNorm() * o.squaredNorm()) {
+                    if (across * across <= sine * sine * squared[i] * squared[j]) {
                         near.push_back({by[i], around[j]});
                         near.push_back({by[j], around[i]});
                     }
@@ -316,7 +329,14 @@ bool merge_pass(Graph& graph, Sources& sources, const std::vector<Polygon>& outl
             }
         }
     }
-    std::sort(near.begin(), near.end());
+    for (auto from = near.begin(); from != near.begin() + of_edges;) {
+        const auto to = std::find_if(from, near.begin() + of_edges,
+                                     [&](const Near& other) { return other.edge != from->edge; });
+        std::sort(from, to);
+        from = to;
+    }
+    std::sort(near.begin() + of_edges, near.end());
+    std::inplace_merge(near.begin(), near.begin() + of_edges, near.end());
     near.erase(std::unique(near.begin(), near.end(), [](const Near& a, const Near& b) { return a == b; }),
                near.end());
 
