@@ -47,16 +47,20 @@ const Program program{
         {{"readings", "FILE.csv", "write measured and computed displacements, too"},
          {"stiffness", "MPA_PER_M", "of a curve: K of the joint, to give E and eta as such, not over K"},
          {"elastic-mm", "MM", "of a curve: what the joint did at once, if known (default: found)"},
-         {"load-day", "DAY", "of a curve: when the load changed (default: day of the first reading)"},
+         {"load-day", "DAY",
+          "of a curve: when the load changed (default: day of the first reading); the mean of readings "
+          "before "
+          "it is taken as 0"},
          {"converged-day", "DAY",
           "of a curve: when creep is taken to be over, for the closed estimate (default: last reading)"},
          {"measurements", "FILE.csv", "through the solver: displacements of the scene's points"},
          {"fit", "NAMES",
           "through the solver: factors to find, of kelvin-stiffness, kelvin-viscosity, joint-stiffness and "
           "horizontal-stress, parted by commas, each with bounds if wanted: joint-stiffness=0.5:2 (default "
-          "bounds: 0.05:20)"},
+          "bounds: 0.05:20); kelvin-viscosity is that of Maxwell dashpots, too; the search starts from 1, or "
+          "from the root of low times high where that is out of bounds"},
          {"since-first-reading", "",
-          "through the solver: measurements count from each point's first reading"},
+          "through the solver: measurements count from each point's first reading, and share its error"},
          {"runs", "N", "through the solver: at most so many runs (default 60)"},
          {"threads", "N", "through the solver: threads (default 1)"}},
     .example = "creepfit joints.h5 --measurements readings.csv --fit kelvin-stiffness,kelvin-viscosity -o "
@@ -228,12 +232,24 @@ void fit_curve(const Arguments& arguments)
 
     const double load =
         arguments.number("load-day").value_or(measurements.front().time / unit::day) * unit::day;
+    // The mean of what was read before the load changed is where displacements count from.
+    std::size_t before = 0;
+    double zero = 0, weights = 0;
+    for (const Measurement& m : measurements)
+        if (m.time < load) {
+            const double weight = m.deviation ? 1 / (*m.deviation * *m.deviation) : 1.0;
+            zero += weight * m.displacement;
+            weights += weight;
+            ++before;
+        }
+    if (before > 0)
+        zero /= weights;
     estimation::CreepCurve curve;
     for (const Measurement& m : measurements) {
         if (m.time < load)
-            continue; // before the load changed
+            continue;
         curve.time.push_back(m.time - load);
-        curve.displacement.push_back(m.displacement);
+        curve.displacement.push_back(m.displacement - zero);
         if (m.deviation)
             curve.deviation.push_back(*m.deviation);
     }
@@ -251,6 +267,10 @@ void fit_curve(const Arguments& arguments)
     const estimation::ClosedEstimate closed =
         of_file(input, [&] { return estimation::closed_estimate(curve, end); });
 
+    // What is still to come when Eq. 14 takes creep to be over. With much of it the equation says nothing.
+    constexpr double most_left = 0.2;
+    const double left = std::exp(-end / fit.retardation_time);
+
     // E and eta in MPa/m and MPa day/m, or over K.
     const double K = stiffness.value_or(1);
     const std::string unit_E = stiffness ? "MPa/m" : "K", unit_eta = stiffness ? "MPa day/m" : "K day";
@@ -258,6 +278,13 @@ void fit_curve(const Arguments& arguments)
     const auto estimate = [&](const std::string& quantity, const std::string& unit,
                               const estimation::Estimate& e, double by) {
         return Row{quantity, unit, e.value * by, times(e.interval, by)};
+    };
+    const auto closed_row = [&](const std::string& quantity, const std::string& unit,
+                                const estimation::Estimate& e, double by) {
+        Row row = estimate(quantity, unit, e, by);
+        if (left > most_left)
+            row.interval.reset();
+        return row;
     };
     const double per_day = K / unit::day;
     const std::vector<Row> rows{
@@ -267,13 +294,14 @@ void fit_curve(const Arguments& arguments)
         estimate("retardation time", "day", fit.time, 1 / unit::day),
         estimate("Kelvin stiffness E", unit_E, fit.stiffness, K),
         estimate("Kelvin viscosity eta", unit_eta, fit.viscosity, per_day),
-        estimate("E by Eq. 14", unit_E, closed.stiffness, K),
-        estimate("eta by least squares with that E", unit_eta, closed.viscosity, per_day)};
+        closed_row("E by Eq. 14", unit_E, closed.stiffness, K),
+        closed_row("eta by least squares with that E", unit_eta, closed.viscosity, per_day)};
     if (readings_path) {
         std::string table = "time_day,measured_mm,computed_mm,residual_mm\n";
         for (std::size_t i = 0; i < curve.time.size(); ++i)
-            table += shown((load + curve.time[i]) / unit::day) + ',' + shown(curve.displacement[i] * 1e3) +
-                     ',' + shown(fit.computed[i] * 1e3) + ',' +
+            table += shown((load + curve.time[i]) / unit::day) + ',' +
+                     shown((curve.displacement[i] + zero) * 1e3) + ',' +
+                     shown((fit.computed[i] + zero) * 1e3) + ',' +
                      shown((fit.computed[i] - curve.displacement[i]) * 1e3) + '\n';
         write(*readings_path, table);
     }
@@ -283,6 +311,10 @@ void fit_curve(const Arguments& arguments)
 
     Summary summary;
     summary.add("readings", curve.time.size());
+    if (before > 0)
+        summary.add("readings before the load",
+                    std::to_string(before) + ", mean " + mm(zero) +
+                        " mm: taken off the others as their zero, and as free of error");
     summary.add("days since the load", curve.time.back() / unit::day);
     for (const Row& row : rows)
         summary.add(row.quantity, rounded(row.value) +
@@ -306,27 +338,55 @@ void fit_curve(const Arguments& arguments)
             "it is " + rounded(fit.record_length, 2) +
                 " retardation times long: it tells how fast creep begins, about 1 / eta, but not where "
                 "it ends, 1 / E");
+    else if (fit.is_stiffness_open)
+        summary.add("warning: E hardly known",
+                    "its interval goes beyond a factor of 2, though the record is " +
+                        rounded(fit.record_length, 2) +
+                        " retardation times long: noise, or too few readings");
+    // Where it is given there is no interval to look at.
+    if (const Interval& of = fit.elastic_interval; !curve.elastic_part && of.low <= 0 && of.high >= 0)
+        summary.add("warning: elastic part",
+                    "is not told apart from 0, and so are E and eta; displacements count from before the "
+                    "load, not from a reading after it");
     if (fit.is_too_coarse)
         summary.add(
             "warning: readings too coarse",
             "creep is all but over at the first reading after the load: eta is at most what is found");
-    const double left = std::exp(-end / fit.retardation_time);
     if (left > 0.02)
-        summary.add("warning: creep not over", rounded(100 * left, 2) +
-                                                   " percent of it is left at the end that "
-                                                   "Eq. 14 takes: its E is too high by about as much");
+        summary.add("warning: creep not over",
+                    rounded(100 * left, 2) + " percent of it is left at the end that Eq. 14 takes: " +
+                        (left > most_left
+                             ? "that is no end, and what it gives has no interval"
+                             : "its E is too high, about " + rounded(1 / (1 - left), 3) + " times"));
+    if (const double share = curve.time.front() / fit.retardation_time; !curve.elastic_part && share > 0.1)
+        summary.add("warning: first reading late",
+                    rounded(curve.time.front() / unit::day) + " days after the load, with " +
+                        rounded(-100 * std::expm1(-share), 2) +
+                        " percent of creep in it, which Eq. 14 takes for elastic");
     warn_of_lag(summary, "", fit.lag_one, fit.computed.size());
     summary.print();
 }
 
 // --- through the solver ----------------------------------------------------------------------------------
 
+std::string trimmed(const std::string& text)
+{
+    const std::size_t begin = text.find_first_not_of(" \t"), end = text.find_last_not_of(" \t");
+    return begin == std::string::npos ? std::string() : text.substr(begin, end - begin + 1);
+}
+
 std::vector<back_analysis::Factor> factors_in(const std::string& text)
 {
     std::vector<back_analysis::Factor> factors;
-    std::istringstream list(text);
-    for (std::string item; std::getline(list, item, ',');) {
-        const std::string option = item.substr(0, item.find('='));
+    for (std::size_t begin = 0; begin <= text.size();) {
+        const std::size_t end = std::min(text.find(',', begin), text.size());
+        const std::string item = trimmed(text.substr(begin, end - begin));
+        begin = end + 1;
+        if (item.empty())
+            throw input_error(trimmed(text).empty()
+                                  ? "--fit is empty; wanted one factor at least"
+                                  : "--fit: \"" + text + "\" has nothing before or after a comma");
+        const std::string option = trimmed(item.substr(0, item.find('=')));
         const auto name =
             std::find_if(names.begin(), names.end(), [&](const Name& n) { return n.option == option; });
         if (name == names.end())
@@ -337,14 +397,13 @@ std::vector<back_analysis::Factor> factors_in(const std::string& text)
             if (other.parameter == name->parameter)
                 throw input_error("--fit: " + option + " is given twice");
         back_analysis::Factor factor{name->parameter};
-        if (item.size() > option.size()) {
+        if (const std::size_t equals = item.find('='); equals != std::string::npos) {
             double low = 0, high = 0;
             char colon = 0, rest = 0;
-            std::istringstream bounds(item.substr(option.size() + 1));
+            std::istringstream bounds(item.substr(equals + 1));
             if (!(bounds >> low >> colon >> high) || colon != ':' || bounds >> rest || !(low > 0) ||
                 !(low < high) || low < 1e-6 || high > 1e6)
-                throw input_error("--fit: the bounds of " + option + " are \"" +
-                                  item.substr(option.size() + 1) +
+                throw input_error("--fit: the bounds of " + option + " are \"" + item.substr(equals + 1) +
                                   "\"; wanted two factors LOW:HIGH, 1e-6 at least, rising, 1e6 at most");
             factor.low = low;
             factor.high = high;
@@ -352,8 +411,6 @@ std::vector<back_analysis::Factor> factors_in(const std::string& text)
         }
         factors.push_back(factor);
     }
-    if (factors.empty())
-        throw input_error("--fit is empty; wanted one factor at least");
     return factors;
 }
 
@@ -401,15 +458,19 @@ std::string readings_table(const back_analysis::Found& found, const std::vector<
                            const Scene& scene)
 {
     const bool knows = measurements.front().deviation.has_value();
-    std::string table = "time_day,point,component,measured_mm,computed_mm,residual_mm,computed_at_start_mm";
+    std::string table =
+        "time_day,stages,point,component,measured_mm,computed_mm,residual_mm,computed_at_start_mm";
     table += knows ? ",sigma_mm\n" : "\n";
     for (std::size_t m = 0; m < measurements.size(); ++m) {
         const Measurement& measured = measurements[m];
         const auto& [at_start, at_end] = found.computed[m];
-        table += shown(measured.time / unit::day) + ',' + in_quotes(scene.points[measured.point].name) + ',' +
-                 (measured.component == 0 ? "x" : "y") + ',' + shown(measured.displacement * 1e3) + ',' +
-                 shown(at_end * 1e3) + ',' + shown((at_end - measured.displacement) * 1e3) + ',' +
-                 shown(at_start * 1e3);
+        const auto stages = std::count_if(scene.stages.begin(), scene.stages.end(), [&](const Stage& stage) {
+            return measured.is_before_stage ? stage.time < measured.time : stage.time <= measured.time;
+        });
+        table += shown(measured.time / unit::day) + ',' + std::to_string(stages) + ',' +
+                 in_quotes(scene.points[measured.point].name) + ',' + (measured.component == 0 ? "x" : "y") +
+                 ',' + shown(measured.displacement * 1e3) + ',' + shown(at_end * 1e3) + ',' +
+                 shown((at_end - measured.displacement) * 1e3) + ',' + shown(at_start * 1e3);
         if (knows)
             table += ',' + shown(*measured.deviation * 1e3);
         table += '\n';
@@ -418,7 +479,7 @@ std::string readings_table(const back_analysis::Found& found, const std::vector<
 }
 
 void report_points(Summary& summary, const back_analysis::Found& found,
-                   const std::vector<Measurement>& measurements, const Scene& scene)
+                   const std::vector<Measurement>& measurements, const Scene& scene, bool share_an_error)
 {
     for (std::size_t p = 0; p < scene.points.size(); ++p)
         for (const int component : {0, 1}) {
@@ -443,7 +504,7 @@ void report_points(Summary& summary, const back_analysis::Found& found,
                              [](const auto& a, const auto& b) { return a.first < b.first; });
             std::vector<double> in_time;
             for (const auto& [time, residual] : residuals)
-                in_time.push_back(residual);
+                in_time.push_back(share_an_error ? residual - sum / n : residual);
             if (in_time.size() > 3)
                 warn_of_lag(summary, ", " + label, estimation::lag_one_correlation(in_time), in_time.size());
         }
@@ -462,6 +523,55 @@ std::string combination_in_words(const Eigen::VectorXd& direction, double by,
                  rounded(std::exp(share * by), 3);
     }
     return words;
+}
+
+void print_stress(const InSituStress& stress, double factor)
+{
+    if (stress.profile.empty()) {
+        std::cout << "\nIn the scene:\n[in_situ_stress]\ncompression_xx_MPa = "
+                  << rounded(stress.compression_xx * factor / unit::MPa, 6)
+                  << "\ncompression_xx_gradient_MPa_per_m = "
+                  << rounded(stress.gradient_xx * factor / unit::MPa, 6) << '\n';
+        return;
+    }
+    std::cout << "\nIn the scene: times " << rounded(factor, 6)
+              << " all compression_xx_MPa of the profile of [in_situ_stress]:";
+    for (const InSituStress::Level& level : stress.profile)
+        std::cout << ' ' << rounded(level.compression_xx * factor / unit::MPa, 6);
+    std::cout << ".\n";
+}
+
+// What to write into the scene. A factor that does not change the readings says nothing of it.
+void print_for_the_scene(const back_analysis::Found& found, const Scene& scene,
+                         const std::vector<back_analysis::Factor>& factors)
+{
+    double E = 1, eta = 1, K = 1;
+    for (std::size_t i = 0; i < factors.size(); ++i) {
+        if (found.confidence.is_fixed[i] && found.minimum.at_bound[i] == AtBound::no)
+            continue;
+        const double f = found.factors[i];
+        switch (factors[i].parameter) {
+        case Parameter::kelvin_stiffness:
+            E *= f;
+            break;
+        case Parameter::kelvin_viscosity:
+            eta *= f;
+            break;
+        case Parameter::joint_stiffness:
+            K *= f;
+            E *= f;
+            eta *= f;
+            break;
+        case Parameter::horizontal_stress:
+            print_stress(scene.in_situ_stress, f);
+        }
+    }
+    // Of joint materials, where joints have their constants.
+    if (scene.averaging.stiffness != StiffnessRule::joint || (E == 1 && eta == 1 && K == 1))
+        return;
+    std::cout << "\nIn the scene: times " << rounded(K, 6) << " all stiffnesses of joint materials, times "
+              << rounded(E, 6) << " their Kelvin stiffnesses, times " << rounded(eta, 6)
+              << " their Kelvin and Maxwell viscosities.\n";
 }
 
 void report(const back_analysis::Found& found, const std::vector<Measurement>& measurements,
@@ -510,7 +620,10 @@ void report(const back_analysis::Found& found, const std::vector<Measurement>& m
     else
         summary.add("standard deviation of residuals", mm(1e-3 * confidence.noise_factor) + " mm");
     summary.add("noise taken as", noise_in_words(confidence, knows));
-    report_points(summary, found, measurements, scene);
+    if (settings.since_first_reading)
+        summary.add("first readings",
+                    std::string("have such noise, too, which is in all that count from them"));
+    report_points(summary, found, measurements, scene, settings.since_first_reading);
     if (confidence.parameters > 1)
         summary.add("condition number of the scaled sensitivities", rounded(confidence.condition_number, 3));
     if (const auto weak = estimation::weak_combination(found.minimum, confidence)) {
@@ -520,43 +633,17 @@ void report(const back_analysis::Found& found, const std::vector<Measurement>& m
                         (weak->is_alike_effects ? " changes the readings by no more than their noise"
                                                 : " is still within the readings' noise"));
     }
-    const double noise = knows ? measurements.front().deviation.value() : 1e-3 * confidence.noise_factor;
-    if (found.interpolation_error > 0.2 * noise)
+    double between_steps = 0;
+    for (std::size_t m = 0; m < measurements.size(); ++m)
+        if (const double error = found.interpolation_error[m];
+            error > 0.2 * measurements[m].deviation.value_or(1e-3 * confidence.noise_factor))
+            between_steps = std::max(between_steps, error);
+    if (between_steps > 0)
         summary.add("warning: readings between steps",
-                    "may be off by " + mm(found.interpolation_error) +
+                    "may be off by " + mm(between_steps) +
                         " mm, the history being straight between creep steps; shorter steps help");
     summary.print();
-
-    // For the scene: constants of joint materials, where these are those of the joints.
-    if (scene.averaging.stiffness != StiffnessRule::joint)
-        return;
-    double E = 1, eta = 1, K = 1;
-    for (std::size_t i = 0; i < factors.size(); ++i) {
-        const double f = found.factors[i];
-        switch (factors[i].parameter) {
-        case Parameter::kelvin_stiffness:
-            E *= f;
-            break;
-        case Parameter::kelvin_viscosity:
-            eta *= f;
-            break;
-        case Parameter::joint_stiffness:
-            K *= f;
-            E *= f;
-            eta *= f;
-            break;
-        case Parameter::horizontal_stress:
-            std::cout << "\nIn the scene:\n[in_situ_stress]\ncompression_xx_MPa = "
-                      << rounded(scene.in_situ_stress.compression_xx * f / unit::MPa, 6)
-                      << "\ncompression_xx_gradient_MPa_per_m = "
-                      << rounded(scene.in_situ_stress.gradient_xx * f / unit::MPa, 6) << '\n';
-        }
-    }
-    if (E == 1 && eta == 1 && K == 1)
-        return;
-    std::cout << "\nIn the scene: times " << rounded(K, 6) << " all stiffnesses of joint materials, times "
-              << rounded(E, 6) << " their Kelvin stiffnesses, times " << rounded(eta, 6)
-              << " their Kelvin and Maxwell viscosities.\n";
+    print_for_the_scene(found, scene, factors);
 }
 
 void fit_section(const Arguments& arguments)

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 namespace jointcreep::back_analysis
 {
@@ -58,6 +59,90 @@ double bend(const History& history, const Rows& rows, std::size_t point, int com
     return std::abs(second) / 2 * rows[0].second * rows[1].second * after * after;
 }
 
+double deviation_of(const Measurement& measurement)
+{
+    return measurement.deviation.value_or(usual_deviation);
+}
+
+// What is left of residuals, and of their derivatives, once they are made independent of each other. Readings
+// that count from a first one share its error, of the deviation sigma_0: over their own deviations their
+// covariance is 1 + v v^T, v_i = sigma_0 / sigma_i, and
+//     (1 + v v^T)^(-1/2) = 1 - (1 - 1 / sqrt(1 + v.v)) v v^T / v.v .
+// The sum of squares is then that with a free offset of each point and direction, the first reading, 0, being
+// among the readings. sigma_0 is that of the first reading where it is listed, or else of the next.
+class Whitening
+{
+public:
+    Whitening(const Scene& scene, const std::vector<Measurement>& measurements, bool since_first_reading)
+    {
+        std::map<std::pair<std::size_t, int>, std::vector<std::size_t>> places;
+        for (std::size_t m = 0; m < measurements.size(); ++m) {
+            const Measurement& measurement = measurements[m];
+            if (!since_first_reading) {
+                readings_.push_back(m);
+                continue;
+            }
+            places[{measurement.point, measurement.component}].push_back(m);
+            if (!is_first(scene, measurement))
+                readings_.push_back(m);
+            else if (std::abs(measurement.displacement) > 1e-9)
+                refuse(scene, measurement,
+                       "it is the first reading, from which measurements count, and " +
+                           shown(measurement.displacement) + " m; wanted 0");
+        }
+        std::vector<Eigen::Index> row(measurements.size(), -1);
+        for (std::size_t i = 0; i < readings_.size(); ++i)
+            row[readings_[i]] = static_cast<Eigen::Index>(i);
+        for (const auto& [place, of_place] : places) {
+            const std::size_t earliest =
+                *std::min_element(of_place.begin(), of_place.end(), [&](std::size_t a, std::size_t b) {
+                    return measurements[a].time < measurements[b].time;
+                });
+            Group group;
+            for (const std::size_t m : of_place)
+                if (row[m] >= 0)
+                    group.row.push_back(row[m]);
+            group.share.resize(static_cast<Eigen::Index>(group.row.size()));
+            for (std::size_t i = 0; i < group.row.size(); ++i)
+                group.share[static_cast<Eigen::Index>(i)] =
+                    deviation_of(measurements[earliest]) /
+                    deviation_of(measurements[readings_[static_cast<std::size_t>(group.row[i])]]);
+            if (!group.row.empty())
+                groups_.push_back(std::move(group));
+        }
+    }
+
+    // Those that tell anything: a first reading is 0 by itself.
+    const std::vector<std::size_t>& readings() const { return readings_; }
+
+    void apply(Evaluation& at) const
+    {
+        for (const Group& group : groups_) {
+            const VectorXd& v = group.share;
+            const double q = v.squaredNorm(), part = (1 - 1 / std::sqrt(1 + q)) / q;
+            const VectorXd residual = at.residual(group.row);
+            at.residual(group.row) = residual - part * v.dot(residual) * v;
+            const estimation::MatrixXd jacobian = at.jacobian(group.row, Eigen::all);
+            at.jacobian(group.row, Eigen::all) = jacobian - part * v * (v.transpose() * jacobian);
+        }
+    }
+
+private:
+    static bool is_first(const Scene& scene, const Measurement& measurement)
+    {
+        constexpr double rounding = 1e-3; // [s]
+        return std::abs(measurement.time - scene.points[measurement.point].first_reading) < rounding &&
+               !measurement.is_before_stage;
+    }
+
+    struct Group {
+        std::vector<Eigen::Index> row; // of the readings
+        VectorXd share;                // v
+    };
+    std::vector<std::size_t> readings_;
+    std::vector<Group> groups_;
+};
+
 } // namespace
 
 Prediction predict(const Scene& scene, const History& history,
@@ -75,8 +160,7 @@ Prediction predict(const Scene& scene, const History& history,
         for (const auto& [row, share] : rows)
             if (history.present[row * points + measurement.point] == 0)
                 refuse(scene, measurement, "the rock that the point is in has been removed by then");
-        found.interpolation_error = std::max(found.interpolation_error,
-                                             bend(history, rows, measurement.point, measurement.component));
+        found.interpolation_error.push_back(bend(history, rows, measurement.point, measurement.component));
         if (since_first_reading) {
             const double first = scene.points[measurement.point].first_reading;
             if (measurement.time < first)
@@ -121,8 +205,15 @@ Found fit(const Scene& scene, const Network& network, const EquivalentJoints& jo
     };
 
     int runs = 0;
-    std::vector<double> at_start;
-    double interpolation_error = 0; // of the last run
+    struct Run {
+        VectorXd logarithms;
+        std::vector<double> displacement, interpolation_error;
+    };
+    std::vector<Run> done;
+    const Whitening whitening(scene, measurements, settings.since_first_reading);
+    const std::vector<std::size_t>& readings = whitening.readings();
+    if (readings.empty())
+        throw input_error("all readings are first readings, from which measurements count");
     const estimation::Model model = [&](const VectorXd& logarithms) -> std::optional<Evaluation> {
         const bool is_first = runs == 0;
         const std::vector<double> factors = factors_at(logarithms);
@@ -137,18 +228,22 @@ Found fit(const Scene& scene, const Network& network, const EquivalentJoints& jo
             Analysis analysis(changed, network, stiffer, settings.threads, recording,
                               [](double, const std::string&) {});
             analysis.run();
-            const Prediction found = predict(scene, analysis.result().history, analysis.sensitivities(),
-                                             measurements, settings.since_first_reading);
-            interpolation_error = found.interpolation_error;
-            if (is_first)
-                at_start = found.displacement;
-            Evaluation at{VectorXd(found.sensitivity.rows()), found.sensitivity};
-            for (std::size_t m = 0; m < measurements.size(); ++m) {
-                const auto row = static_cast<Eigen::Index>(m);
-                const double deviation = measurements[m].deviation.value_or(usual_deviation);
+            Prediction found = predict(scene, analysis.result().history, analysis.sensitivities(),
+                                       measurements, settings.since_first_reading);
+            const auto rows = static_cast<Eigen::Index>(readings.size());
+            Evaluation at{VectorXd(rows), estimation::MatrixXd(rows, n)};
+            for (Eigen::Index row = 0; row < rows; ++row) {
+                const std::size_t m = readings[static_cast<std::size_t>(row)];
+                const double deviation = deviation_of(measurements[m]);
                 at.residual[row] = (found.displacement[m] - measurements[m].displacement) / deviation;
-                at.jacobian.row(row) /= deviation;
+                at.jacobian.row(row) = found.sensitivity.row(static_cast<Eigen::Index>(m)) / deviation;
             }
+            // Before the first stage nothing moves, whatever the factors.
+            if (is_first && at.jacobian.norm() == 0)
+                throw input_error("no factor changes any of the readings; wanted readings from the first "
+                                  "stage on, of what the factors change");
+            whitening.apply(at);
+            done.push_back({logarithms, std::move(found.displacement), std::move(found.interpolation_error)});
             return at;
         } catch (const equilibrium_error&) {
             if (is_first)
@@ -163,15 +258,14 @@ Found fit(const Scene& scene, const Network& network, const EquivalentJoints& jo
     Found found;
     // A step that would win a thousandth of a standard error is not worth a run.
     found.minimum = estimation::minimise(model, start, low, high, settings.most_runs,
-                                         1e-6 / static_cast<double>(measurements.size()));
+                                         1e-6 / static_cast<double>(readings.size()));
     found.factors = factors_at(found.minimum.parameters);
     found.confidence = estimation::confidence_of(found.minimum, knows_deviations);
-    found.interpolation_error = interpolation_error;
+    const Run& best = *std::find_if(
+        done.begin(), done.end(), [&](const Run& run) { return run.logarithms == found.minimum.parameters; });
+    found.interpolation_error = best.interpolation_error;
     for (std::size_t m = 0; m < measurements.size(); ++m)
-        found.computed.push_back(
-            {at_start[m],
-             measurements[m].displacement + found.minimum.there.residual[static_cast<Eigen::Index>(m)] *
-                                                measurements[m].deviation.value_or(usual_deviation)});
+        found.computed.push_back({done.front().displacement[m], best.displacement[m]});
     return found;
 }
 

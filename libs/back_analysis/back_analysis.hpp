@@ -20,8 +20,9 @@ struct Factor {
 
 struct Settings {
     std::vector<Factor> factors;
-    bool since_first_reading =
-        false; // measurements count from each point's first reading, not from the start
+    // Measurements count from each point's first reading, not from the start: it has been taken off all of
+    // a point's displacements in a direction, and its error is in all of them.
+    bool since_first_reading = false;
     int threads = 1;
     int most_runs = 60;
 };
@@ -32,20 +33,21 @@ struct Computed {
 
 struct Found {
     std::vector<double> factors;
-    estimation::Minimum
-        minimum; // over logarithms; residuals over deviations, or over 1 mm where there are none
+    estimation::Minimum minimum; // over logarithms; residuals over deviations, or over 1 mm where there are
+                                 // none, made independent where they share a first reading's error
     estimation::Confidence confidence;
     std::vector<Computed> computed; // of the measurements
-    // Between its steps an analysis is taken to go straight; by how much that may be off, at most [m].
-    double interpolation_error = 0;
+    // Between its steps an analysis is taken to go straight; by how much that may be off, each [m].
+    std::vector<double> interpolation_error;
 };
 
 // Told before every run, with the factors it is for.
 using RunObserver = std::function<void(int run, const std::vector<double>& factors)>;
 
 // Throws input_error where the measurements are not of what the section has (rock that is gone, times before
-// a first reading), and equilibrium_error where there is no equilibrium at the start; elsewhere in the search
-// factors without an equilibrium are kept away from.
+// a first reading, that reading itself and not 0), where no factor changes any of them, and equilibrium_error
+// where there is no equilibrium at the start; elsewhere in the search factors without an equilibrium are kept
+// away from.
 Found fit(const Scene& scene, const Network& network, const EquivalentJoints& joints,
           const std::vector<Measurement>& measurements, const Settings& settings,
           const RunObserver& observe = {});
@@ -54,7 +56,7 @@ Found fit(const Scene& scene, const Network& network, const EquivalentJoints& jo
 struct Prediction {
     std::vector<double> displacement;
     estimation::MatrixXd sensitivity;
-    double interpolation_error = 0;
+    std::vector<double> interpolation_error; // as in Found
 };
 Prediction predict(const Scene& scene, const History& history,
                    const std::vector<std::vector<Eigen::Vector2d>>& sensitivities,

@@ -64,9 +64,7 @@ Confidence confidence_of(const Minimum& minimum, bool deviations_are_known)
                           std::to_string(found.parameters) + " parameters; wanted more readings");
 
     if (deviations_are_known && found.sum_of_squares > 0)
-        found.p_value = found.sum_of_squares > degrees
-                            ? statistics::chi_squared_p(found.sum_of_squares, degrees) / 2
-                            : 1.0;
+        found.p_value = statistics::chi_squared_above(found.sum_of_squares, degrees);
     found.is_noise_from_residuals = !deviations_are_known || found.p_value < beyond;
     if (found.is_noise_from_residuals)
         found.noise_factor = std::sqrt(found.sum_of_squares / degrees);

@@ -17,6 +17,10 @@ namespace
 // tau is looked for between the shortest time between readings and many records.
 constexpr double shortest_share = 0.05, longest_share = 100;
 
+constexpr const char* same_way =
+    " m; wanted both to go the same way, as those of a joint under one load do (displacements count from "
+    "before the load, not from a reading after it)";
+
 double shortest_interval(const CreepCurve& curve)
 {
     double shortest = curve.time.back();
@@ -218,8 +222,7 @@ CurveFit fit_curve(const CreepCurve& curve)
     fit.retardation_time = std::exp(p[log_tau]);
     if (!(fit.creep_part / fit.elastic_part > 0) || !std::isfinite(fit.creep_part / fit.elastic_part))
         throw input_error("the elastic part is " + shown(fit.elastic_part) + " m and the creep part " +
-                          shown(fit.creep_part) +
-                          " m; wanted both to go the same way, as those of a joint under one load do");
+                          shown(fit.creep_part) + same_way);
     fit.confidence = confidence_of(minimum, !curve.deviation.empty());
     const Confidence& confidence = fit.confidence;
     const double quantile = confidence.quantile;
@@ -262,8 +265,9 @@ CurveFit fit_curve(const CreepCurve& curve)
     fit.record_length = curve.time.back() / fit.retardation_time;
     const auto second = std::find_if(curve.time.begin(), curve.time.end(), [](double t) { return t > 0; });
     fit.is_too_coarse = *second > 4 * fit.retardation_time; // 98 percent of creep
-    fit.is_too_short = minimum.at_bound[static_cast<std::size_t>(log_tau)] == AtBound::high ||
-                       fit.stiffness.interval.low < ratio / 2 || fit.stiffness.interval.high > 2 * ratio;
+    fit.is_stiffness_open = minimum.at_bound[static_cast<std::size_t>(log_tau)] == AtBound::high ||
+                            fit.stiffness.interval.low < ratio / 2 || fit.stiffness.interval.high > 2 * ratio;
+    fit.is_too_short = fit.is_stiffness_open && fit.record_length < 2;
     return fit;
 }
 
@@ -287,8 +291,7 @@ ClosedEstimate closed_estimate(const CreepCurve& curve, double end)
     const double ratio = found.elastic_part / found.creep_part;
     if (!(ratio > 0) || !std::isfinite(ratio))
         throw input_error("the elastic part is " + shown(found.elastic_part) + " m and the creep part " +
-                          shown(found.creep_part) +
-                          " m; wanted both to go the same way, as those of a joint under one load do");
+                          shown(found.creep_part) + same_way);
 
     // tau, with d_e and d_c held.
     const auto n = static_cast<Eigen::Index>(curve.time.size());

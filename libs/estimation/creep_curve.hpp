@@ -38,9 +38,10 @@ struct CurveFit {
     double lag_one;               // correlation of neighbouring residuals
 
     // What the record does not tell.
-    bool is_too_short = false;  // E: its interval goes beyond a factor of 2 either way
-    bool is_too_coarse = false; // tau: it is all but over at the first reading after the load
-    double record_length;       // over tau [-]
+    bool is_stiffness_open = false; // E: its interval goes beyond a factor of 2 either way,
+    bool is_too_short = false;      // and the record is below 2 tau, so that it need not be the noise
+    bool is_too_coarse = false;     // tau: it is all but over at the first reading after the load
+    double record_length;           // over tau [-]
 };
 
 // Throws input_error where the curve is none of creep: fewer readings than parameters, or no creep in the

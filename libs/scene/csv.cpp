@@ -108,9 +108,12 @@ std::size_t Csv::column(std::string_view name) const
 double Csv::number(const Row& row, std::string_view name, const Range& range) const
 {
     const std::string_view field = row.field[column(name)];
+    std::string_view digits = field;
+    if (digits.starts_with('+') && !digits.starts_with("+-")) // as spreadsheets may write
+        digits.remove_prefix(1);
     double value = 0;
-    const auto [end, error] = std::from_chars(field.data(), field.data() + field.size(), value);
-    if (error != std::errc{} || end != field.data() + field.size() || !range.holds(value))
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+    if (error != std::errc{} || end != digits.data() + digits.size() || !range.holds(value))
         refuse_line(row.line, std::string(name) + " is \"" + std::string(field) + "\"; wanted a number in " +
                                   shown(range, Unit{""}));
     return value;

@@ -6,7 +6,9 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <set>
+#include <tuple>
 
 namespace jointcreep
 {
@@ -64,6 +66,34 @@ double time_in(const Csv& csv, const Csv::Row& row, double end)
     return csv.number(row, "time_day", from(0).to(end / unit::day)) * unit::day;
 }
 
+// Of one point, component, time and event there is one reading. Times are compared as numbers.
+class Readings
+{
+public:
+    void add(const Measurement& measurement, std::string_view event, const Scene& scene)
+    {
+        const auto [other, is_new] =
+            line_.insert({{measurement.point, measurement.component, measurement.time, std::string(event)},
+                          measurement.line});
+        if (!is_new)
+            refuse_line(measurement.line, "point \"" + scene.points[measurement.point].name +
+                                              "\" has a reading of " +
+                                              (measurement.component == 0 ? "x" : "y") + " on day " +
+                                              shown(measurement.time / unit::day) + " in line " +
+                                              std::to_string(other->second) + " already; wanted one");
+        list.push_back(measurement);
+    }
+    std::vector<Measurement> list;
+
+private:
+    std::map<std::tuple<std::size_t, int, double, std::string>, std::size_t> line_;
+};
+
+std::string_view event_in(const Csv& csv, const Csv::Row& row)
+{
+    return csv.has("event") ? row.field[csv.column("event")] : std::string_view();
+}
+
 std::vector<Measurement> listed(const Csv& csv, const Scene& scene)
 {
     const Column displacement = column_of(csv, "displacement"), sigma = column_of(csv, "sigma");
@@ -73,7 +103,7 @@ std::vector<Measurement> listed(const Csv& csv, const Scene& scene)
         csv.column(needed);
     csv.allow_only({"time_day", "event", "point", "component", displacement.name,
                     sigma.name.empty() ? "sigma_mm" : sigma.name});
-    std::vector<Measurement> measurements;
+    Readings readings;
     for (const Csv::Row& row : csv.rows) {
         const std::string_view name = row.field[csv.column("point")],
                                component = row.field[csv.column("component")];
@@ -92,9 +122,9 @@ std::vector<Measurement> listed(const Csv& csv, const Scene& scene)
                                 .line = row.line};
         if (!sigma.name.empty())
             measurement.deviation = length(csv, row, sigma, deviations);
-        measurements.push_back(measurement);
+        readings.add(measurement, event_in(csv, row), scene);
     }
-    return measurements;
+    return readings.list;
 }
 
 std::vector<Measurement> tabled(const Csv& csv, const Scene& scene)
@@ -135,7 +165,7 @@ std::vector<Measurement> tabled(const Csv& csv, const Scene& scene)
                     "component and displacement_mm");
     if (any_sigma && !all_sigma)
         refuse_line(csv.head(), "has sigma of some displacements only; wanted it of all or of none");
-    std::vector<Measurement> measurements;
+    Readings readings;
     for (const Csv::Row& row : csv.rows)
         for (const Place& place : places) {
             if (is_empty(csv, row, place.displacement.name) ||
@@ -150,11 +180,11 @@ std::vector<Measurement> tabled(const Csv& csv, const Scene& scene)
                                     .line = row.line};
             if (!place.sigma.name.empty())
                 measurement.deviation = length(csv, row, place.sigma, deviations);
-            measurements.push_back(measurement);
+            readings.add(measurement, event_in(csv, row), scene);
         }
-    if (measurements.empty())
+    if (readings.list.empty())
         throw input_error("has no readings");
-    return measurements;
+    return readings.list;
 }
 
 } // namespace

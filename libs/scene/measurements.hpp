@@ -22,10 +22,11 @@ struct Measurement {
 };
 
 // One row a reading: time_day, point, component (x or y), displacement_mm and, if wanted, sigma_mm and event.
-// Or one row a time, as jointexport writes histories: time_day, event, then A_x_mm, A_y_mm, and if wanted
-// A_x_sigma_mm, A_y_sigma_mm and A_present (0: no reading) for any of the points; an empty field is no
-// reading. Either all readings have a deviation or none. With a column event, a reading at a stage's time
-// without an event is of the moment before it; without the column it is of the moment after.
+// Or one row a time, as jointexport writes histories: time_day, event, then A_x_m, A_y_m, and if wanted
+// A_x_sigma_m, A_y_sigma_m and A_present (0: no reading) for any of the points; an empty field is no
+// reading. A point has one reading of a component at a time and event. Either all readings have a deviation
+// or none. With a column event, a reading at a stage's time without an event is of the moment before it;
+// without the column it is of the moment after.
 std::vector<Measurement> measurements_in_csv(std::string_view text, const Scene& scene);
 
 // One curve: columns time_day, displacement_mm and, if wanted, sigma_mm; the reading's point means nothing.

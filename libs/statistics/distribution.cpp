@@ -178,6 +178,11 @@ double chi_squared_p(double value, double degrees)
     return two_sided(cdf(law, value), cdf(complement(law, value)));
 }
 
+double chi_squared_above(double value, double degrees)
+{
+    return cdf(complement(boost::math::chi_squared(degrees), value));
+}
+
 double fisher_f_p(double value, double degrees_above, double degrees_below)
 {
     return cdf(complement(boost::math::fisher_f(degrees_above, degrees_below), value));

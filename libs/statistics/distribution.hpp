@@ -46,6 +46,7 @@ double normal_p(double deviate);
 double student_p(double t, double degrees);
 double chi_squared_p(double value, double degrees);
 double fisher_f_p(double value, double degrees_above, double degrees_below); // upper tail only
+double chi_squared_above(double value, double degrees);                      // upper tail only
 
 // Where the upper tail has the probability p.
 double student_quantile(double p, double degrees);

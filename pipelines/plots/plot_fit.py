@@ -2,10 +2,11 @@
 """What creepfit was given and what it found: measured displacements as markers, computed ones as lines.
 
 Reads what `creepfit --readings` writes, of a curve or of a section's points; for these, thin dashed lines are what
-the section did before any factor was fitted. Residuals are below.
+the section did before any factor was fitted. Lines are broken at stages. Residuals are below.
 """
 
 import csv
+import math
 import sys
 from pathlib import Path
 
@@ -13,7 +14,7 @@ import figure
 
 
 def rows_of(path):
-    """(name of the curve, day, measured, computed, computed at start or None) of every reading; displacements in mm."""
+    """(name of the curve, day, stages done, measured, computed, computed at start or None) of every reading, in mm."""
     with open(path, newline="") as file:
         table = csv.DictReader(file)
         if not {"time_day", "measured_mm", "computed_mm"} <= set(table.fieldnames or []):
@@ -21,8 +22,18 @@ def rows_of(path):
         for row in table:
             name = f"{row['point']}, {row['component']}" if "point" in row else "curve"
             start = row.get("computed_at_start_mm")
-            yield (name, float(row["time_day"]), float(row["measured_mm"]), float(row["computed_mm"]),
-                   None if start is None else float(start))
+            yield (name, float(row["time_day"]), int(row.get("stages") or 0), float(row["measured_mm"]),
+                   float(row["computed_mm"]), None if start is None else float(start))
+
+
+def broken(stages, values):
+    """Values with a gap, NaN, before each that has more stages behind it than the one before."""
+    with_gaps = []
+    for i, value in enumerate(values):
+        if i > 0 and stages[i] != stages[i - 1]:
+            with_gaps.append(math.nan)
+        with_gaps.append(value)
+    return with_gaps
 
 
 def draw(rows):
@@ -32,20 +43,20 @@ def draw(rows):
     plot, (axes, below) = figure.plt.subplots(2, 1, sharex=True, figsize=(figure.TWO_COLUMNS, 4.2),
                                               gridspec_kw={"height_ratios": [3, 1]})
     for i, (name, values) in enumerate(curves.items()):
-        day, measured, computed, start = zip(*sorted(values))
+        day, stages, measured, computed, start = zip(*sorted(values))
         color, marker = figure.COLORS[i % 6], figure.MARKERS[i % 6]
         axes.plot(day, measured, marker, color=color, markerfacecolor="white", markeredgewidth=0.8, label=name)
-        axes.plot(day, computed, color=color, linewidth=1.0)
+        axes.plot(broken(stages, day), broken(stages, computed), color=color, linewidth=1.0)
         if start[0] is not None:
-            axes.plot(day, start, color=color, linewidth=0.7, linestyle=(0, (4, 2)))
+            axes.plot(broken(stages, day), broken(stages, start), color=color, linewidth=0.7, linestyle=(0, (4, 2)))
         below.plot(day, [c - m for c, m in zip(computed, measured)], marker, color=color, markerfacecolor="white",
                    markeredgewidth=0.8)
     below.axhline(0, color="0.3", linewidth=0.7)
     axes.set_ylabel("displacement (mm)")
     below.set_ylabel("computed less\nmeasured (mm)")
     below.set_xlabel("time (days)")
-    has_start = any(values[0][3] is not None for values in curves.values())
-    axes.legend(title="markers: measured\nlines: fitted" + ("\ndashed: at first" if has_start else ""),
+    has_start = any(values[0][-1] is not None for values in curves.values())
+    axes.legend(title="markers: measured\nlines: fitted" + ("\ndashed: with the scene's\nconstants" if has_start else ""),
                 title_fontsize=7, alignment="left", loc="upper left", bbox_to_anchor=(1.01, 1), borderaxespad=0)
     return plot
 

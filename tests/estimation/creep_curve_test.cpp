@@ -126,6 +126,18 @@ TEST(creep_curve, a_short_record_tells_viscosity_but_not_stiffness)
         line.displacement.push_back(1e-3 + 1e-5 * i);
     }
     EXPECT_TRUE(fit_curve(line).is_too_short);
+    // With long ones and much noise it is the noise, but for the odd one that looks like a straight line.
+    int open = 0, too_short = 0;
+    for (int i = 0; i < 40; ++i) {
+        CreepCurve loud = curve(8 * tau, 60, 1.5e-3, random);
+        loud.displacement.front() = elastic; // so that parts go the same way
+        const CurveFit loud_fit = fit_curve(loud);
+        open += loud_fit.is_stiffness_open ? 1 : 0;
+        too_short += loud_fit.is_too_short ? 1 : 0;
+        EXPECT_TRUE(!loud_fit.is_too_short || loud_fit.record_length < 2);
+    }
+    EXPECT_GT(open, 20);
+    EXPECT_LT(too_short, 4);
     // Over before the second reading.
     CreepCurve late;
     for (int i = 0; i < 30; ++i) {

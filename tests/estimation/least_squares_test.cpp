@@ -135,7 +135,11 @@ TEST(confidence, is_that_of_linear_regression)
     const Confidence known = confidence_of(
         minimise(line(x, y, 1), vector({0, 0}), vector({-none, -none}), vector({none, none})), true);
     EXPECT_FALSE(known.is_noise_from_residuals);
-    EXPECT_NEAR(known.p_value, 1, 1e-9); // 1.9 over 3 degrees of freedom: nothing to wonder at
+    // Of 3 degrees of freedom, beyond x: erfc(sqrt(x / 2)) + sqrt(2 x / pi) exp(-x / 2); 0.593 at 1.9.
+    const double x2 = 1.9, pi = 3.14159265358979;
+    EXPECT_NEAR(known.p_value, std::erfc(std::sqrt(x2 / 2)) + std::sqrt(2 * x2 / pi) * std::exp(-x2 / 2),
+                1e-6);
+    EXPECT_NEAR(known.p_value, 0.593, 1e-3);
     EXPECT_NEAR(known.standard_error(Eigen::Index{1}), std::sqrt(0.1), 1e-9);
     const Confidence exceeded = confidence_of(
         minimise(line(x, y, 0.1), vector({0, 0}), vector({-none, -none}), vector({none, none})), true);

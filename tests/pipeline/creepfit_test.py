@@ -30,11 +30,11 @@ class Creepfit(ChainTest):
                        check=True)
         return path
 
-    def found(self, measurements, *options, fit=",".join(TRUTH)):
+    def found(self, measurements, *options, fit=",".join(TRUTH), joints=None):
         """Rows of the table that is written, by factor; and stdout."""
         folder = self.chain.new_folder()
-        done = self.chain.answer("creepfit", self.joints, "--measurements", measurements, "--fit", fit, *options,
-                                 "-o", folder / "factors.csv", "--readings", folder / "fitted.csv")
+        done = self.chain.answer("creepfit", joints or self.joints, "--measurements", measurements, "--fit", fit,
+                                 *options, "-o", folder / "factors.csv", "--readings", folder / "fitted.csv")
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         return {row["factor"]: row for row in table(folder / "factors.csv")}, done.stdout, table(folder / "fitted.csv")
 
@@ -45,6 +45,7 @@ class Creepfit(ChainTest):
             self.assertAlmostEqual(float(rows[name]["value"]) / truth, 1, delta=2e-4)
             self.assertEqual(rows[name]["at_bound"], "no")
         for row in fitted:
+            self.assertEqual(int(row["stages"]), sum(float(row["time_day"]) >= day for day in (1, 10, 20)))
             self.assertAlmostEqual(float(row["computed_mm"]), float(row["measured_mm"]), delta=1e-5)
             self.assertGreater(abs(float(row["computed_at_start_mm"]) - float(row["measured_mm"])), 0.03)
 
@@ -79,6 +80,30 @@ class Creepfit(ChainTest):
         self.assertEqual(rows["horizontal-stress"]["low_95"], "")
         self.assertIn("does not change these readings", text)
 
+    def test_stress_for_the_scene(self):
+        """A bench held at its sides: its horizontal stress is found, and how to write it, be it a law or a profile."""
+        law = self.chain.text("tests/pipeline/welded.toml")
+        for rule in "joint", "lower bound":
+            with_rule = law + f'\n[averaging]\nstiffness = "{rule}"\n'
+            cut_at = with_rule.index("[in_situ_stress]"), with_rule.index("[[boundary]]")
+            profile = (with_rule[:cut_at[0]] + "[in_situ_stress]\nelevation_m = 40\nprofile = [\n"
+                       "  { depth_m = 0, compression_xx_MPa = 0.1, compression_yy_MPa = 0, shear_xy_MPa = 0 },\n"
+                       "  { depth_m = 40, compression_xx_MPa = 0.5, compression_yy_MPa = 1.05948, shear_xy_MPa = 0 },\n"
+                       "]\n\n" + with_rule[cut_at[1]:])
+            stronger = changed(changed(profile, "xx_MPa = 0.1,", "xx_MPa = 0.125,"), "xx_MPa = 0.5,", "xx_MPa = 0.625,")
+            history = self.history(stronger)
+            text = self.found(history, fit="horizontal-stress,kelvin-stiffness", joints=self.chain.joints(profile))[1]
+            self.assertIn("times 1.25 all compression_xx_MPa of the profile of [in_situ_stress]: 0.125 0.625.", text)
+            self.assertIn("does not change these readings", text)
+            self.assertNotIn("Kelvin stiffnesses", text)
+        stronger = changed(law, "xx_gradient_MPa_per_m = 0.013", "xx_gradient_MPa_per_m = 0.01625")
+        text = self.found(self.history(stronger), fit="horizontal-stress", joints=self.chain.joints(law))[1]
+        self.assertIn("compression_xx_gradient_MPa_per_m = 0.01625\n", text)
+
+    def history(self, scene):
+        result = self.chain.result(scene)
+        return self.chain.run("jointexport", result, result.with_name("history.csv"))
+
     def curve(self, days, step=7, noise=0.1, seed=3):
         """The paper's Table 2, normal direction, K 690 MPa/m: E 480 MPa/m, eta 57600 MPa day/m."""
         path = self.chain.new_folder() / "curve.csv"
@@ -105,8 +130,48 @@ class Creepfit(ChainTest):
         done = self.chain.answer("creepfit", curve, "-o", curve.with_name("out.csv"))
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("record too short", done.stdout)
+        # The end that Eq. 14 takes is none: no interval.
+        self.assertIn("that is no end", done.stdout)
+        rows = {row["quantity"]: row for row in table(curve.with_name("out.csv"))}
+        self.assertEqual((rows["E by Eq. 14"]["low_95"], rows["E by Eq. 14"]["high_95"]), ("", ""))
         long = self.chain.answer("creepfit", self.curve(730), "-o", curve.with_name("out.csv"))
         self.assertNotIn("record too short", long.stdout)
+        year = self.chain.answer("creepfit", self.curve(366, noise=1e-4), "-o", curve.with_name("out.csv"))
+        self.assertIn("its E is too high, about 1.05 times", year.stdout)
+        noisy = self.chain.answer("creepfit", self.curve(730, step=60, noise=2.5), "-o", curve.with_name("out.csv"))
+        self.assertIn("warning: E hardly known", noisy.stdout, noisy.stderr)
+        self.assertNotIn("too short", noisy.stdout)
+
+    def test_readings_before_the_load(self):
+        """Their mean is the zero; without them, and zeroed after the load, the elastic part is lost."""
+        curve = self.curve(730, noise=0.01)
+        rows = [(float(row["time_day"]), float(row["displacement_mm"])) for row in table(curve)]
+        def written(rows):
+            path = self.chain.new_folder() / "curve.csv"
+            path.write_text("".join(["time_day,displacement_mm\n", *(f"{day},{value:+.4f}\n" for day, value in rows)]))
+            return path
+        def found(rows, *options):
+            path = written(rows)
+            done = self.chain.answer("creepfit", path, "-o", path.with_name("out.csv"), *options)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            return {row["quantity"]: float(row["value"]) for row in table(path.with_name("out.csv"))}, done.stdout
+        plain, _ = found(rows)
+        moved = [(-3, 99.9), (-2, 100.1), *((day, value + 100) for day, value in rows)]
+        with_zero, text = found(moved, "--load-day", "0")
+        for quantity, value in plain.items():
+            self.assertAlmostEqual(with_zero[quantity] / value, 1, delta=1e-3)
+        self.assertIn("2, mean 100 mm: taken off the others", text)
+        self.assertNotIn("first reading late", text)
+        _, text = found(rows[2:], "--load-day", "0")  # day 14 of 120
+        self.assertIn("warning: first reading late", text)
+        for seed in range(1, 9):
+            noise = random.Random(seed)
+            zeroed = [(day, value - 4 + noise.gauss(0, 0.2)) for day, value in rows]
+            path = written(zeroed)
+            done = self.chain.answer("creepfit", path, "-o", path.with_name("out.csv"))
+            self.assertIn(done.returncode, (0, 2))
+            said = done.stdout if done.returncode == 0 else done.stderr
+            self.assertIn("displacements count from before the load", " ".join(said.split()))
 
     def refused(self, arguments, *wanted, code=2):
         out = self.chain.new_folder() / "out.csv"
@@ -123,7 +188,8 @@ class Creepfit(ChainTest):
             ("1,Z,y,1,0.1", "line 2", 'point is "Z"'), ("1,C,z,1,0.1", "line 2", 'component is "z"'),
             ("41,C,y,1,0.1", "line 2", 'time_day is "41"', "40"), ("1,C,y,one,0.1", "line 2", 'displacement_mm is "one"'),
             ("1,C,y,1,0", "line 2", 'sigma_mm is "0"'), ("1,C,y,nan,0.1", "line 2", 'displacement_mm is "nan"'),
-            ("1,C,y,1", "line 2", "4 fields"), ("15,A,y,1,0.1", "line 2", "has been removed"),
+            ("1,C,y,1", "line 2", "4 fields"), ("15,A,y,1,0.1", "line 2", "has been removed"), ("1,C,y,+-1,0.1", "line 2", "+-1"),
+            ("3.0,C,y,+1.5,0.1", "line 5", '"C" has a reading of y on day 3 in line 2 already'),
         ]:
             path = self.chain.new_folder() / "readings.csv"
             path.write_text("\n".join([head, line, *good, ""]))
@@ -142,7 +208,8 @@ class Creepfit(ChainTest):
         for options, wanted in [
             ([], "--fit is not given"), (["--fit", "stiffness"], '"stiffness" is none of'), (["--fit", ""], "--fit is empty"),
             (["--fit", "joint-stiffness,joint-stiffness"], "twice"), (["--fit", "joint-stiffness=2:1"], "LOW:HIGH"),
-            (["--fit", "joint-stiffness=1"], "LOW:HIGH"), (["--fit", "joint-stiffness=0:2"], "LOW:HIGH"),
+            (["--fit", "joint-stiffness=1"], "LOW:HIGH"),
+            (["--fit", "joint-stiffness,"], "before or after a comma"), (["--fit", ",joint-stiffness"], "a comma"), (["--fit", "joint-stiffness=0:2"], "LOW:HIGH"),
             (["--fit", "joint-stiffness", "--stiffness", "3"], "--stiffness goes with"),
             (["--fit", "joint-stiffness", "--readings", readings], "is used already"),
         ]:
@@ -157,6 +224,13 @@ class Creepfit(ChainTest):
         self.refused([self.joints, "--measurements", curve.with_name("none.csv"), "--fit", "joint-stiffness"],
                      "none.csv", code=4)
         self.refused([self.joints], "--measurements is not given", "is no curve")
+
+    def test_nothing_to_fit(self):
+        """Before the first removal, on day 1, nothing moves. Spaces after commas and plus signs are read."""
+        path = self.chain.new_folder() / "readings.csv"
+        path.write_text("time_day,point,component,displacement_mm\n" + "".join(f"0.{n},C,y,+0.0{n}\n" for n in range(1, 9)))
+        self.refused([self.joints, "--measurements", path, "--fit", "joint-stiffness, kelvin-stiffness"],
+                     "no factor changes any of the readings")
 
     def test_motion_has_no_sensitivities(self):
         text = changed(self.chain.text("data/column/scene.toml"), r"^\[equilibrium\]", '[equilibrium]\nengine = "explicit"')
