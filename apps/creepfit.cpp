@@ -346,7 +346,7 @@ void fit_curve(const Arguments& arguments)
     // Where it is given there is no interval to look at.
     if (const Interval& of = fit.elastic_interval; !curve.elastic_part && of.low <= 0 && of.high >= 0)
         summary.add("warning: elastic part",
-                    "is not told apart from 0, and so are E and eta; displacements count from before the "
+                    "is not told apart from 0, nor are E and eta; displacements count from before the "
                     "load, not from a reading after it");
     if (fit.is_too_coarse)
         summary.add(
