@@ -3,11 +3,10 @@
 //
 //     sigma_n = sigma_0 + k_n (u_n - dilation)   up to the tensile strength; beyond, the joint opens
 //     tau     = tau_0   + k_s (u_s - slip)       with |tau| <= c - sigma_n tan(phi)
-//     d(dilation) = tan(psi) |d(slip)|           whichever way it slips; psi <= phi, or slip would give
-//     energy
+//     d(dilation) = tan(psi) |d(slip)|           whichever way it slips
 //
-// That is the plastic flow of Coulomb's law with a potential of its own, psi in place of phi. A joint that is
-// open shears without dilating.
+// with psi at most phi, or slip would give energy. That is the plastic flow of Coulomb's law with a potential of
+// its own, psi in place of phi. A joint that is open shears without dilating.
 //
 // Opening breaks the joint's bonds: its cohesion and tensile strength are lost for good. (A cohesion that
 // came back on closing would let a contact flicker between open and closed.) Slip alone leaves them. Signs as

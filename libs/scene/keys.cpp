@@ -103,6 +103,11 @@ std::string KeyInfo::wanted() const
         return "pairs of a date and a number, [[date, factor], ...]";
     if (kind == "point")
         return "a point [x, y] of numbers" + in_range;
+    if (kind == "polyline")
+        return "a line [[x, y], [x, y], ...] of numbers" + in_range + " from left to right";
+    if (kind == "levels")
+        return "levels [{ depth_m = 0, compression_xx_MPa = 1, compression_yy_MPa = 0, shear_xy_MPa = 0 }, "
+               "...]";
     if (kind == "polygon")
         return "a polygon [[x, y], [x, y], [x, y], ...] of numbers" + in_range;
     if (kind == "polygons")
@@ -301,6 +306,13 @@ void check_present(const TomlValue& value, const std::vector<const KeyInfo*>& kn
     for (const KeyInfo* const key : known)
         if (key->need == Need::together && value.find(key->name))
             given[key->group] = key->name;
+    for (const KeyInfo* const key : known) {
+        const auto* const held = value.find(key->name);
+        if (held && !key->in_place_of.empty() && given.contains(key->in_place_of))
+            place.refuse(held->line, place.table + " " + key->name + " = " + shown(*held) +
+                                         ": wanted either " + key->name + " or the " + key->in_place_of +
+                                         " keys (" + given[key->in_place_of] + ", ...), not both");
+    }
     for (const KeyInfo* const key : known) {
         if (value.find(key->name))
             continue;

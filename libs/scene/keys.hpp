@@ -67,8 +67,9 @@ struct KeyInfo {
     std::optional<Range> range{};
     std::string doc{};
     Need need = Need::required;
-    std::string otherwise{}; // the default as text
-    std::string group{};     // of keys that come together
+    std::string otherwise{};   // the default as text
+    std::string group{};       // of keys that come together
+    std::string in_place_of{}; // a group of keys that do not go with it
 
     std::string wanted() const; // "a number in [0, 0.5)"
 };
@@ -127,6 +128,11 @@ struct Key {
     {
         info.need = Need::together;
         info.group = std::move(group);
+        return std::move(*this);
+    }
+    Key in_place_of(std::string group) &&
+    {
+        info.in_place_of = std::move(group);
         return std::move(*this);
     }
     template <class Default>
@@ -291,7 +297,8 @@ Key<Record> choice(std::string name, Value Record::*member,
 
 // Throws unless `value` is a table whose keys are all among `known`.
 void check_keys(const TomlValue& value, const std::vector<const KeyInfo*>& known, const Place& place);
-// Throws for a required key that is missing, or for one missing of those that come together.
+// Throws for a required key that is missing, for one missing of those that come together, and for a key
+// beside those that it stands in place of.
 void check_present(const TomlValue& value, const std::vector<const KeyInfo*>& known, const Place& place);
 
 template <class Record>

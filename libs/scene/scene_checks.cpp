@@ -188,10 +188,26 @@ private:
             if (scene_.joint_sets[i].region)
                 check_polygon(in_list("joint_set", i), "region_m", *scene_.joint_sets[i].region);
         if (scene_.fine_zones)
-            check_polygon(once("zones"), "fine_m", *scene_.fine_zones);
+            check_fine_zones(*scene_.fine_zones);
         for (std::size_t i = 0; i < scene_.stages.size(); ++i)
             for (const Polygon& polygon : scene_.stages[i].remove)
                 check_polygon(in_list("stage", i), "remove_m", polygon);
+    }
+
+    void check_fine_zones(const Polygon& fine) const
+    {
+        check_polygon(once("zones"), "fine_m", fine);
+        const auto apart = [&](const Polygon& other) { return !sides_come_near(other, fine, tolerance()); };
+        const auto inside = [&](const Polygon& one, const Polygon& other) {
+            return covers(other, one[0], 0);
+        };
+        bool outside =
+            apart(scene_.outline) && !inside(fine, scene_.outline) && !inside(scene_.outline, fine);
+        for (const Polygon& hole : scene_.holes)
+            outside = outside || (apart(hole) && inside(fine, hole));
+        if (outside)
+            once("zones").refuse("fine_m",
+                                 "it is outside the section; wanted a polygon that has a part of it inside");
     }
 
     void check_holes() const
@@ -235,8 +251,11 @@ private:
     {
         for (std::size_t i = 0; i < scene_.rocks.size(); ++i) {
             const Rock& rock = scene_.rocks[i];
-            if (rock.dilation_angle > 0 &&
-                (!rock.strength || rock.dilation_angle > rock.strength->friction_angle))
+            if (rock.dilation_angle > 0 && !rock.strength)
+                in_list("rock", i).refuse("dilation_angle_deg",
+                                          "it needs cohesion_MPa, friction_angle_deg and "
+                                          "tensile_strength_MPa beside it");
+            if (rock.dilation_angle > 0 && rock.dilation_angle > rock.strength->friction_angle)
                 in_list("rock", i).refuse("dilation_angle_deg",
                                           "wanted at most friction_angle_deg, beside it");
         }
@@ -257,8 +276,6 @@ private:
             given.refuse("ground_m", "wanted either it or elevation_m, not both");
         if (!given.find("ground_m") && !given.find("elevation_m"))
             given.refuse("elevation_m", "wanted it, or ground_m");
-        if (given.find("profile") && given.find("compression_xx_MPa"))
-            given.refuse("profile", "wanted either it, or the keys of a linear law, not both");
         if (!given.find("profile") && !given.find("compression_xx_MPa"))
             given.refuse("compression_xx_MPa",
                          "wanted the keys of a linear law (compression_xx_MPa, ...), or a profile");
@@ -270,6 +287,34 @@ private:
         if (ground.front().x() > left->x() + tolerance() || ground.back().x() < right->x() - tolerance())
             given.refuse("ground_m", "wanted a line across the whole section, from x = " + shown(left->x()) +
                                          " to " + shown(right->x()) + " m");
+        check_below_ground(given);
+    }
+
+    // Both lines are straight between their corners: where the section is highest above the ground, one of
+    // them has one.
+    void check_below_ground(const Given& given) const
+    {
+        const auto& in_situ = scene_.in_situ_stress;
+        double highest = tolerance(), at = 0;
+        const auto look = [&](const Eigen::Vector2d& place) {
+            if (const double above = -in_situ.depth_of(place); above > highest) {
+                highest = above;
+                at = place.x();
+            }
+        };
+        const Polygon& outline = scene_.outline;
+        for (std::size_t i = 0; i < outline.size(); ++i) {
+            const Eigen::Vector2d &from = outline[i], &to = outline[(i + 1) % outline.size()];
+            look(from);
+            for (const Eigen::Vector2d& corner : in_situ.ground)
+                if (std::min(from.x(), to.x()) < corner.x() && corner.x() < std::max(from.x(), to.x()))
+                    look(from + (to - from) * ((corner.x() - from.x()) / (to.x() - from.x())));
+        }
+        if (highest > tolerance())
+            given.refuse("ground_m", "the section's outline is " + shown(highest) +
+                                         " m above it at x = " + shown(at) +
+                                         " m; wanted the ground as it is before any excavation, "
+                                         "nowhere below the section's top");
     }
 
     void check_boundaries() const

@@ -741,7 +741,7 @@ Table<InSituStress> in_situ_stress(const Table<InSituStress::Level>& profile)
              .optional(),
          polyline("ground_m", &S::ground,
                   "In place of elevation_m: the ground surface, a line across the whole section with x "
-                  "increasing from corner to corner.")
+                  "increasing from corner to corner, nowhere below the section's top.")
              .optional(),
          number("compression_xx_MPa", &S::compression_xx, MPa, stress, "Horizontal compression at depth 0.")
              .together("linear"),
@@ -759,7 +759,8 @@ Table<InSituStress> in_situ_stress(const Table<InSituStress::Level>& profile)
              .together("linear"),
          key_of<S>({"profile", "levels", {}, {}, "Stress at some depths, in place of the linear law."},
                    &S::profile, levels)
-             .optional()}};
+             .optional()
+             .in_place_of("linear")}};
 }
 
 Table<Boundary> boundary()

@@ -6,6 +6,8 @@ The state is its number, counted from 0, the name of the stage that it follows (
 easier), or "last".
 """
 
+import datetime
+
 import matplotlib.colors
 import matplotlib.lines
 import matplotlib.patheffects
@@ -28,9 +30,14 @@ figure.plt.rcParams["savefig.pad_inches"] = 0.03
 
 
 def name_of(file, state):
-    """ "day 31, after bench 1", "day 31, before bench 1" or "day 548"."""
+    """ "16 July 1994, after bench 1", "16 July 1994, before bench 1" or "day 548" of a scene that counts days."""
     time, event = figure.array(file, "/states/time"), figure.texts(file, "/states/event")
-    name = f"day {time[state]:.5g}"
+    start = figure.scene_of(file)["schedule"]["start"]
+    if isinstance(start, datetime.date):
+        date = start + datetime.timedelta(float(time[state]))
+        name = f"{date.day} {date:%B %Y}"
+    else:
+        name = f"day {time[state]:.5g}"
     if event[state]:
         return f"{name}, after {event[state]}"
     if state + 1 < len(time) and event[state + 1] and time[state + 1] == time[state]:

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 """Displacements of the points of one slope toward the lock, and the excavation's level beneath: the paper's Figs 13
-and 14. With a run without creep beside, and the bands that the paper gives, if wanted.
+and 14. With a run without creep beside, and the ranges inferred from the paper, if wanted.
 
 FILE.h5 is a result of demsolve, or an ensemble.h5: then median and 5 to 95 percent of the networks are drawn.
 """
@@ -28,7 +28,7 @@ def draw_curves(axes, record, dates, curves, point, color, label_band):
 
 
 def draw_bands(axes, targets, end, days):
-    """Boxes at the right: where the paper's values lie at the end of the record."""
+    """Boxes at the right: the ranges inferred from the paper, at the end of the record."""
     for i, (key, color) in enumerate((("total_mm", TOTAL), ("recorded_mm", RECORDED))):
         low, high = targets[key]
         left = matplotlib.dates.date2num(end) + days * (0.02 + 0.035 * i)
@@ -102,7 +102,7 @@ def draw(file, arguments):
         entries.append(line([], [], color="0.3", label="without creep", **WITHOUT))
     if targets["point"]:
         entries.append(matplotlib.patches.Patch(facecolor="white", edgecolor="0.3", hatch="/////",
-                                                label="the paper's range, end of 1999"))
+                                                label="range inferred from the paper, end of 1999"))
     columns = min(len(entries), 3)
     below = (0.14 + 0.15 * -(-len(entries) // columns)) / plot.get_figheight()
     plot.get_layout_engine().set(rect=(0, below, 1, 1 - below))
@@ -115,5 +115,5 @@ if __name__ == "__main__":
         __doc__,
         (["--side"], {"choices": ["N", "S"], "required": True, "help": "north or south: how names of points begin"}),
         (["--without"], {"metavar": "FILE.h5", "help": "the same without creep"}),
-        (["--targets"], {"metavar": "TARGETS.toml", "help": "bands of the points"}),
+        (["--targets"], {"metavar": "TARGETS.toml", "help": "ranges of the points"}),
     ))

@@ -28,7 +28,9 @@ def shown(three):
 
 def misfit(rows, targets):
     """Mean of the squares of (median less the middle of the paper's range) over half its width, of both ranges, over the
-    points below the crest."""
+    points below the crest. None if a point is not one that the ranges are for."""
+    if any(row["name"] not in targets["point"] for row in rows):
+        return None
     terms = []
     for row in rows:
         if not row["crest"]:
@@ -58,6 +60,10 @@ def rows_of(record, without, targets):
     return rows
 
 
+def words_for(below, rows):
+    return "all points" if len(below) == len(rows) else "the points below the crest"
+
+
 def markdown(rows, targets, number):
     lines = ["| point | total | its range | | recorded | its range | | before | total without creep | recorded without |"
              " creep in the record | year after the end | later |",
@@ -80,12 +86,13 @@ def markdown(rows, targets, number):
 
     lines += ["", f"Horizontal, toward the lock, in mm, at the end of 1999; {number} network{'s' if number > 1 else ''}."]
     for words, values in (
-            ("Medians of the points below the crest, mean and extremes: total", [row["total"][1] for row in below]),
+            (f"Medians of {words_for(below, rows)}, mean and extremes: total", [row["total"][1] for row in below]),
             ("recorded", [row["recorded"][1] for row in below]),
             ("short of that without creep, in the record", [row["recorded"][1] - row["recorded_without"][1]
                                                             for row in below])):
         lines.append(f"{words} {spread(values)};")
-    lines.append(f"misfit {misfit(rows, targets):.2f}.")
+    found = misfit(rows, targets)
+    lines.append("no misfit: these points have no ranges." if found is None else f"misfit {found:.2f}.")
     return "\n".join(lines) + "\n"
 
 

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """What each uncertain choice does to the points of the shiplock: a table and a tornado plot.
 
-    study.py PROGRAMS SCENE.toml TARGETS.toml -n NETWORKS -o OUT
+    study.py PROGRAMS SCENE.toml TARGETS.toml -n NETWORKS [--realizations FOLDER] -o OUT
 
 Each choice is changed alone, on the same NETWORKS networks (realizations 0, 1, ...) as the scene's own run. In OUT it
 writes study.md, study.csv and tornado.png. Every run leaves OUT/runs/CHOICE-NUMBER.json and is not made again until scene
@@ -9,7 +9,10 @@ or programs are newer: stopped at any time, the study goes on from there.
 
 The numbers are of the points below the crest: for every point the median over networks, and of these the mean. First
 readings and the network itself change without further runs: the former by reading the same histories on other days, the
-latter as the 5th and 95th percent over networks of the mean over points.
+latter as the standard deviation over networks, of one point (the mean of the points' own) and of the mean over points. The
+networks are the results in FOLDER, or else the scene's own.
+
+A scene whose points are not those of the targets (section B-B) is summed up over all its points, and has no misfit.
 """
 
 import argparse
@@ -25,6 +28,8 @@ import sys
 import tempfile
 import tomllib
 
+import matplotlib.lines
+import matplotlib.patches
 import numpy as np
 
 import records
@@ -35,7 +40,7 @@ CHOICES = {  # name: (what is changed, its value, options of variant.py)
     "scene": ("", "", []),
     "stress-low": ("horizontal stress", "2 MPa + 0.020 h", ["--stress", "low"]),
     "stress-high": ("horizontal stress", "5 MPa + 0.025 h", ["--stress", "high"]),
-    "decay-none": ("its decay towards the surface", "none", ["--stress", "3,0.022,0.01"]),
+    "decay-none": ("decay of the stress to the surface", "none", ["--stress", "3,0.022,0.01"]),
     "spacing-less": ("factor on the spacing (tuned)", "1.8", ["--spacing-times", "0.9"]),
     "spacing-more": ("factor on the spacing (tuned)", "2.2", ["--spacing-times", "1.1"]),
     "stiffness-less": ("factor on K, E and eta", "1/2", ["--stiffness-times", "0.5"]),
@@ -73,10 +78,14 @@ def computed(programs, scene, options, number):
         run(programs / "jointgen", folder / "scene.toml", "--realization", number, "--quiet", "-o", folder / "n.h5")
         run(programs / "strength-averaging", folder / "n.h5", "--quiet", "-o", folder / "j.h5")
         run(programs / "demsolve", folder / "j.h5", "--quiet", "-o", folder / "r.h5")
-        with figure.opened(folder / "r.h5") as file:
-            record = records.record_of(file)
-            there = figure.array(file, "/history/present")[-1] == 1
-            zones = len(figure.array(file, "/mesh/zone_block"))
+        return read(folder / "r.h5")
+
+
+def read(path):
+    with figure.opened(path) as file:
+        record = records.record_of(file)
+        there = figure.array(file, "/history/present")[-1] == 1
+        zones = len(figure.array(file, "/mesh/zone_block"))
     return {"names": record.names, "days": record.days.tolist(), "total": record.total[1].round(4).tolist(),
             "first": [int(record.days[row]) for row in record.first], "there": there.tolist(), "zones": zones,
             "start": record.start.isoformat()}
@@ -119,17 +128,33 @@ def summary(results, targets, below, shift=0):
         return None
     total, recorded = (np.array([one[i] for one in kept])[:, below] for i in (0, 1))
     medians = np.nanmedian(total, axis=0), np.nanmedian(recorded, axis=0)
+    found = {"networks": len(kept), "failed": len(results) - len(kept), "total": float(medians[0].mean()),
+             "recorded": float(medians[1].mean()), "each": (total, recorded)}
+    if not all(name in targets["point"] for name in results[0]["names"]):
+        return found
     terms = [((one - np.mean(targets[key])) / (np.ptp(targets[key]) / 2)) ** 2
              for one, key in zip(medians, ("total_mm", "recorded_mm"))]
-    return {"networks": len(kept), "failed": len(results) - len(kept), "total": float(medians[0].mean()),
-            "recorded": float(medians[1].mean()), "misfit": float(np.mean(terms)),
-            "each": (np.nanmean(total, axis=1), np.nanmean(recorded, axis=1))}
+    return {**found, "misfit": float(np.mean(terms))}
 
 
-def markdown(own, rows):
+def spread(own, each):
+    """Rows of the network: what a point, and the mean of the points, differ by from network to network."""
+    number = len(each[0])
+    for what, deviations in (("network realization: a point", [np.nanmean(np.nanstd(one, axis=0, ddof=1)) for one in each]),
+                             ("network realization: mean", [np.std(np.nanmean(one, axis=1), ddof=1) for one in each])):
+        for sign, words in ((-1, "less"), (1, "plus")):
+            yield what, f"{words} one standard deviation of {number}", {
+                key: own[key] + sign * float(deviation) for key, deviation in zip(("total", "recorded"), deviations)}
+
+
+def misfit_of(found):
+    return f"{found['misfit']:.2f}" if "misfit" in found else ""
+
+
+def markdown(own, rows, networks, points):
     lines = ["| what is changed | to | total (mm) | change | recorded (mm) | change | misfit |",
              "|---|---|---|---|---|---|---|",
-             f"| nothing | | {own['total']:.1f} | | {own['recorded']:.1f} | | {own['misfit']:.2f} |"]
+             f"| nothing | | {own['total']:.1f} | | {own['recorded']:.1f} | | {misfit_of(own)} |"]
     for what, to, found in rows:
         if isinstance(found, str):
             lines.append(f"| {what} | {to} | {found} | | | | |")
@@ -137,10 +162,11 @@ def markdown(own, rows):
         cells = [what, to]
         for key in ("total", "recorded"):
             cells += [f"{found[key]:.1f}", f"{found[key] - own[key]:+.1f}"]
-        cells.append(f"{found['misfit']:.2f}" if "misfit" in found else "")
+        cells.append(misfit_of(found))
         lines.append("| " + " | ".join(cells) + " |")
-    lines += ["", f"Horizontal, toward the lock, at the end of 1999: the mean over the points below the crest of the medians "
-                  f"over {own['networks']} network{'s' if own['networks'] > 1 else ''}."]
+    lines += ["", f"Horizontal, toward the lock, at the end of 1999: the mean over {points} of the medians over "
+                  f"{own['networks']} network{'s' if own['networks'] > 1 else ''}."
+                  + (f" Rows of the network: {networks} networks." if networks > 1 else "")]
     return "\n".join(lines) + "\n"
 
 
@@ -151,11 +177,12 @@ def tornado(own, rows, targets, path):
         if not isinstance(found, str):
             groups.setdefault(what, []).append((to, found))
     order = sorted(groups, key=lambda what: max(abs(found["total"] - own["total"]) for _, found in groups[what]))
-    plot, panels = figure.plt.subplots(1, 2, sharey=True, figsize=(figure.TWO_COLUMNS, 0.8 + 0.36 * len(order)),
-                                       width_ratios=[1, 1])
+    plot, panels = figure.plt.subplots(1, 2, sharey=True, figsize=(figure.TWO_COLUMNS, 1.15 + 0.36 * len(order)),
+                                       width_ratios=[2.1, 1])
     for axes, key, label in ((panels[0], "total", "total"), (panels[1], "recorded", "since the first reading")):
         low, high = targets[f"{key}_mm"]
-        axes.axvspan(low, high, color="#e3efe6", linewidth=0, zorder=0)
+        if "misfit" in own:
+            axes.axvspan(low, high, color="#d5eadb", linewidth=0, zorder=0)
         longest = 1.5 * high  # what goes beyond is cut, and says its value
         for y, what in enumerate(order):
             for i, (to, found) in enumerate(groups[what]):
@@ -164,14 +191,28 @@ def tornado(own, rows, targets, path):
                 value = min(found[key], longest)
                 axes.barh(at, value - own[key], height=0.85 * height, left=own[key], zorder=2, linewidth=0.4,
                           edgecolor="k", color=[figure.COLORS[0], figure.COLORS[4], figure.COLORS[5]][i % 3])
-                text = (to if key == "total" else "") + (f" ({found[key]:.0f})" if found[key] > longest else "")
-                axes.annotate(text, (max(value, own[key]), at), xytext=(3, 0), textcoords="offset points", va="center",
-                              ha="left", fontsize=5.5, path_effects=figure.HALO, zorder=4)
+                cut = found[key] > longest
+                if cut:  # two white strokes across the bar
+                    for back in (0.04, 0.07):
+                        axes.plot([value - (back + 0.015) * high, value - back * high], [at - height / 2, at + height / 2],
+                                  color="w", linewidth=1.2, zorder=3)
+                text = " ".join(([to] if key == "total" else []) + ([f"to {found[key]:.0f} mm"] if cut else []))
+                rightward = value >= own[key]
+                axes.annotate(text, (value, at), xytext=(3 if rightward else -3, 0), textcoords="offset points", va="center",
+                              ha="left" if rightward else "right", fontsize=5.5, path_effects=figure.HALO, zorder=4)
         axes.axvline(own[key], color="k", linewidth=0.8, zorder=3)
         axes.set_xlabel(f"{label} (mm)")
-        axes.set_xlim(0, (2.0 if key == "total" else 1.75) * high)
+    panels[0].set_xlim(-0.85 * targets["total_mm"][1], 2.35 * targets["total_mm"][1])  # room for the words
+    panels[0].set_xticks(np.arange(0, 1.5 * targets["total_mm"][1], 30))
+    panels[1].set_xlim(0, 2.35 * targets["recorded_mm"][1])
     panels[0].set_yticks(range(len(order)), order)
     panels[0].set_ylim(-0.6, len(order) - 0.4)
+    entries = [matplotlib.lines.Line2D([], [], color="k", linewidth=0.8, label="the scene as it is")]
+    if "misfit" in own:
+        entries.append(matplotlib.patches.Patch(facecolor="#d5eadb", label="the paper's range"))
+    below = 0.3 / plot.get_figheight()
+    plot.get_layout_engine().set(rect=(0, below, 1, 1 - below))
+    plot.legend(handles=entries, loc="lower center", ncol=2)
     figure.save(plot, path)
 
 
@@ -183,6 +224,8 @@ def main():
     parser.add_argument("-n", "--networks", type=int, default=6)
     parser.add_argument("-j", "--jobs", type=int, default=1)
     parser.add_argument("--choice", action="append", choices=list(CHOICES), help="only these, beside the scene's own")
+    parser.add_argument("--realizations", type=pathlib.Path, metavar="FOLDER",
+                        help="results of more networks, for their spread")
     parser.add_argument("-o", "--output", type=pathlib.Path, required=True)
     arguments = parser.parse_args()
     targets = records.targets_of(arguments.targets)
@@ -191,6 +234,7 @@ def main():
     with open(arguments.scene, "rb") as file:
         names = [point["name"] for point in tomllib.load(file)["point"]]
     below = [i for i, name in enumerate(names) if not targets["point"].get(name, {}).get("crest", False)]
+    points = "all points" if len(below) == len(names) else "the points below the crest"
 
     # Network by network, so that a study that is stopped has all choices on fewer networks.
     todo = [(choice, number) for number in range(arguments.networks) for choice in choices]
@@ -208,10 +252,11 @@ def main():
     for days in SHIFTS.values():
         rows.append(("first readings", f"{abs(days)} days {'later' if days > 0 else 'earlier'}",
                      summary(results["scene"], targets, below, days)))
-    if own["networks"] > 1:
-        for p in (5, 95):
-            rows.append(("network", f"{p} percent", {"total": float(np.percentile(own["each"][0], p)),
-                                                     "recorded": float(np.percentile(own["each"][1], p))}))
+    several = ([read(path) for path in sorted(arguments.realizations.glob("*.h5"))] if arguments.realizations
+               else results["scene"])
+    each = summary(several, targets, below)["each"]
+    if len(each[0]) > 1:
+        rows += spread(own, each)
     text = io.StringIO()
     out = csv.writer(text, lineterminator="\n")
     out.writerow(["changed", "to", "networks", "total_mm", "recorded_mm", "misfit"])
@@ -220,7 +265,7 @@ def main():
             out.writerow([what, to, found.get("networks", ""), round(found["total"], 3), round(found["recorded"], 3),
                           round(found["misfit"], 4) if "misfit" in found else ""])
     (arguments.output / "study.csv").write_text(text.getvalue())
-    (arguments.output / "study.md").write_text(markdown(own, rows))
+    (arguments.output / "study.md").write_text(markdown(own, rows, len(each[0]), points))
     tornado(own, rows, targets, arguments.output / "tornado.png")
 
 

@@ -123,6 +123,29 @@ def variants(key, text):
             yield "missing", "\n".join(lines[:at] + [""] + lines[at + 1 :]), header + 1, name
 
 
+def wrong_together(text):
+    """Values that are wrong beside others: (what, name to be named, its line, broken text)"""
+    def edited(*changes):
+        new = text
+        for old, by in changes:
+            if new.count(old) != 1:
+                raise SystemExit(f"every_key.toml has '{old}' {new.count(old)} times")
+            new = new.replace(old, by)
+        return new
+
+    through = "ground_m = [[0, 20], [25, 19], [40, 20]]"
+    below = "ground_m = [[0, -5], [40, -5]]"
+    for what, line in (("through the section", through), ("below the section", below)):
+        yield what, "ground_m", line, edited(("elevation_m = 20\n", line + "\n"))
+    fine = "fine_m = [[50, 5], [60, 5], [60, 9]]"
+    yield "outside the section", "fine_m", fine, edited(("fine_m = [[5, 5], [35, 5], [35, 20], [5, 20]]", fine))
+    profile = WITH_PROFILE[1].split("\n")[1]
+    yield "beside one linear key", "profile", profile, edited((LINEAR_STRESS, WITH_PROFILE[1] + "shear_xy_MPa = 0\n"))
+    strength = "cohesion_MPa = 0.5\nfriction_angle_deg = 35\ntensile_strength_MPa = 0.2\n"
+    dilation = "dilation_angle_deg = 8"
+    yield "without a strength", "friction_angle_deg", dilation, edited((strength + dilation, dilation))
+
+
 def fault(jointgen, folder, number, text, line, name):
     """What is wrong with jointgen's answer to a broken scene, or None."""
     own = pathlib.Path(folder) / str(number)
@@ -153,6 +176,8 @@ def main():
         base = text.replace(*otherwise) if otherwise else text
         where = f"{key['table']} {key['key']}"
         broken += [(f"{where}, {what}", *rest) for what, *rest in variants(key, base)]
+    broken += [(f"{name}, {what}", changed, 1 + changed.split("\n").index(line), name)
+               for what, name, line, changed in wrong_together(text)]
 
     failures = 0
     with tempfile.TemporaryDirectory() as folder:

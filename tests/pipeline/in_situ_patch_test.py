@@ -62,7 +62,7 @@ class InSituPatch(ChainTest):
     def test_uniform_by_a_profile_below_uneven_ground(self):
         level = "{ depth_m = %d, compression_xx_MPa = 6, compression_yy_MPa = 4, shear_xy_MPa = 1.5 }"
         text = changed(self.chain.text("tests/pipeline/patch.toml"), r"^elevation_m = 40\n(compression|shear)_(.*\n)*?\n",
-                       "ground_m = [[0, 40], [20, 47], [60, 30]]\n"
+                       "ground_m = [[0, 44], [20, 51], [60, 40]]\n"
                        f"profile = [{level % 0}, {level % 5}, {level % 50}]\n\n")
         self.assert_rests(self.chain.result(text))
 

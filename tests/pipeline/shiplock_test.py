@@ -134,6 +134,35 @@ class Shiplock(ChainTest):
             recorded = total - toward[history["/history/first_reading_row"][i]]
             self.assertAlmostEqual(float(rows[name][5]), recorded, delta=0.06)
 
+    def test_points_without_ranges_have_no_misfit(self):
+        """Section B-B's points are not those of the targets."""
+        import points
+        import study
+        row = {"crest": False, **{key: numpy.array([50.0, 60, 70]) for key in
+                                  ("total", "recorded", "before", "total_without", "recorded_without")}, "year": 0, "later": 0}
+        ranges = {"total_mm": [60, 90], "recorded_mm": [20, 40]}
+        own = {"N215": {"crest": False, **ranges}}
+        for name, misfit in (("N215", "misfit 5.00."), ("N195", "no misfit")):  # squares of -1 and 3
+            text = points.markdown([{**row, "name": name}], {"point": own, **ranges}, 2)
+            self.assertIn(misfit, text)
+        start = study.datetime.date(1994, 6, 15)
+        result = {"names": ["N215"], "days": [0.0, 2025.0], "total": [[0.0], [60.0]], "first": [0], "there": [True],
+                  "start": start.isoformat()}
+        targets = {"point": own, "end_of_record": start + study.datetime.timedelta(2025), **ranges}
+        self.assertAlmostEqual(study.summary([result], targets, [0])["misfit"], 5)
+        self.assertNotIn("misfit", study.summary([{**result, "names": ["N195"]}], targets, [0]))
+
+    def test_spread_of_networks(self):
+        import study
+        each = (numpy.array([[1.0, 4], [3, 8]]), numpy.array([[0.0, 0], [0, 2]]))  # [network, point]
+        rows = list(study.spread({"total": 50.0, "recorded": 30.0}, each))
+        self.assertEqual([len(rows), len({what for what, _, _ in rows})], [4, 2])
+        root = math.sqrt(2)
+        for (_, _, found), total, recorded in zip(rows, (-1.5 * root, 1.5 * root, -1.5 * root, 1.5 * root),
+                                                  (-root / 2, root / 2, -root / 2, root / 2)):
+            self.assertAlmostEqual(found["total"], 50 + total)
+            self.assertAlmostEqual(found["recorded"], 30 + recorded)
+
     def test_tables_of_the_page(self):
         """The page's tables have the columns that the scripts write, and a row for every point and choice."""
         import points

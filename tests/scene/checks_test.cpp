@@ -238,6 +238,27 @@ TEST(checks, dilation)
                    "dilation_angle_deg = 5");
     expect_refused("dilation_angle_deg = 8", "dilation_angle_deg = 36",
                    "[[rock]] \"soft\" dilation_angle_deg = 36: wanted at most friction_angle_deg");
+    auto weak = text;
+    for (const char* key :
+         {"cohesion_MPa = 0.5\n", "friction_angle_deg = 35\n", "tensile_strength_MPa = 0.2\n"})
+        weak = replaced(weak, key, "");
+    expect_part(refusal(weak),
+                "[[rock]] \"soft\" dilation_angle_deg = 8: it needs cohesion_MPa, friction_angle_deg and "
+                "tensile_strength_MPa");
+}
+
+TEST(checks, fine_zones)
+{
+    const auto by = [](const std::string& corners) {
+        return refusal(
+            replaced(text, "fine_m = [[5, 5], [35, 5], [35, 20], [5, 20]]", "fine_m = [" + corners + "]"));
+    };
+    expect_part(by("[50, 5], [60, 5], [60, 9]"), "[zones] fine_m");
+    expect_part(by("[50, 5], [60, 5], [60, 9]"), "it is outside the section");
+    expect_part(by("[3.5, 14.5], [4.5, 14.5], [4.5, 15.5]"), "it is outside the section"); // in the hole
+    EXPECT_EQ(by("[10, 5], [20, 5], [20, 9]"), "accepted");
+    EXPECT_EQ(by("[30, 5], [60, 5], [60, 9]"), "accepted");                  // a part of it inside
+    EXPECT_EQ(by("[-10, -10], [60, -10], [60, 60], [-10, 60]"), "accepted"); // all around
 }
 
 TEST(checks, times)

@@ -50,16 +50,16 @@ TEST(in_situ_stress, flat_ground_and_two_levels_are_the_linear_law)
 
 TEST(in_situ_stress, depth_is_vertical_below_the_ground)
 {
-    const InSituStress stress = stress_of("ground_m = [[0, 20], [10, 24], [40, 18]]\n"
+    const InSituStress stress = stress_of("ground_m = [[0, 20], [10, 24], [40, 21]]\n"
                                           "profile = [" +
                                           level(0, 0, 0, 0) + ", " + level(2, 3, 0.05, 0.1) + ", " +
                                           level(12, 3.5, 0.35, 0.4) + "]\n");
     EXPECT_DOUBLE_EQ(stress.depth_of({0, 20}), 0);
     EXPECT_DOUBLE_EQ(stress.depth_of({5, 12}), 10);
     EXPECT_DOUBLE_EQ(stress.depth_of({10, 12}), 12);
-    EXPECT_DOUBLE_EQ(stress.depth_of({25, 12}), 9);
-    EXPECT_DOUBLE_EQ(stress.depth_of({40, 12}), 6);
-    EXPECT_DOUBLE_EQ(stress.depth_of({41, 12}), 6); // level beyond its ends
+    EXPECT_DOUBLE_EQ(stress.depth_of({25, 12}), 10.5);
+    EXPECT_DOUBLE_EQ(stress.depth_of({40, 12}), 9);
+    EXPECT_DOUBLE_EQ(stress.depth_of({41, 12}), 9); // level beyond its ends
     EXPECT_DOUBLE_EQ(stress.depth_of({-1, 12}), 8);
     // Depths of 1, 2, 7 and 22 m, half way down the first piece, at the kink, and beyond.
     EXPECT_LT((stress.at({10, 23}) - Eigen::Vector3d(-1.5e6, -0.025e6, 0.05e6)).norm(), 1e-3);
@@ -75,7 +75,10 @@ TEST(in_situ_stress, either_this_or_that)
     const std::string profile = "profile = [" + level(0, 1, 0, 0) + ", " + level(9, 1, 0, 0) + "]\n";
     expect_part(by(linear + "ground_m = [[0, 20], [40, 20]]\n"), "either it or elevation_m");
     expect_part(by(profile), "has no elevation_m: wanted it, or ground_m");
-    expect_part(by(linear + profile), "either it, or the keys of a linear law");
+    const auto either = "wanted either profile or the linear keys (";
+    expect_part(by(linear + profile), either);
+    expect_part(by("elevation_m = 20\n" + profile + "compression_xx_MPa = 0\n"), either);
+    expect_part(by("elevation_m = 20\nshear_xy_gradient_MPa_per_m = 0\n" + profile), either);
     expect_part(by("elevation_m = 20\n"), "wanted the keys of a linear law");
     expect_part(by("elevation_m = 20\nshear_xy_MPa = 0\n"), "has no compression_xx_MPa");
     expect_part(by("ground_m = [[0, 20], [39, 20]]\n" + profile),
@@ -88,7 +91,31 @@ TEST(in_situ_stress, either_this_or_that)
                 "depth_m increasing");
     expect_part(by("elevation_m = 20\nprofile = [" + level(-2, 1, 0, 0) + ", " + level(2, 1, 0, 0) + "]\n"),
                 "[in_situ_stress] profile depth_m = -2");
+    expect_part(by("ground_m = 20\n" + profile),
+                "ground_m = 20 m: wanted a line [[x, y], [x, y], ...] of numbers");
+    expect_part(by("elevation_m = 20\nprofile = 3\n"),
+                "profile = 3: wanted levels [{ depth_m = 0, compression_xx_MPa");
     EXPECT_EQ(by("ground_m = [[0, 20], [40, 20]]\n" + profile), "accepted");
+}
+
+// The section's top is at y = 20 from x = 0 to 40.
+TEST(in_situ_stress, no_rock_above_the_ground)
+{
+    const auto by = [](const std::string& line) {
+        return refusal(replaced(every_key_text(), linear,
+                                "ground_m = " + line + "\nprofile = [" + level(0, 1, 0, 0) + ", " +
+                                    level(9, 1, 0, 0) + "]\n"));
+    };
+    expect_part(by("[[0, 10], [40, 10]]"), "the section's outline is 10 m above it at x ="); // through it
+    expect_part(by("[[0, -9], [40, -9]]"),
+                "the section's outline is 29 m above it at x ="); // below all of it
+    expect_part(by("[[0, 20], [40, 19]]"), "outline is 1 m above it at x = 40 m");
+    expect_part(by("[[0, 21], [16, 18], [40, 21]]"),
+                "outline is 2 m above it at x = 16 m"); // between its corners
+    expect_part(by("[[0, 20], [40, 19.9999]]"), "above it");
+    EXPECT_EQ(by("[[0, 20], [16, 23], [40, 20]]"), "accepted");
+    EXPECT_EQ(by("[[-5, 7], [0, 20], [40, 20], [45, 7]]"), "accepted"); // beside the section it may be lower
+    EXPECT_EQ(by("[[0, 20], [40, 19.99999999]]"), "accepted");          // rounding
 }
 
 } // namespace
