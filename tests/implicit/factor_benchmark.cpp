@@ -2,10 +2,11 @@
 //
 //   factor_benchmark joints.h5 ZONE_SIZE_M
 //
-// Prints two lines of CSV, head and values, for the section before anything is dug, all contacts stuck: sizes
-// of mesh and matrix; processor time of analysing (the order in which unknowns are eliminated, and where the
-// factor is not zero), factorising and one back-substitution [s]; entries of the factor and the most memory
-// that CHOLMOD held on the way [MB]; what one product with the matrix takes [s].
+// Prints two lines of CSV, head and values, for the section before anything is dug, all contacts stuck, and a
+// little shear stiffness where a joint has none, as in the engine (implicit/linear.cpp): sizes of mesh and
+// matrix; processor time of analysing (the order in which unknowns are eliminated, and where the factor is
+// not zero), factorising and one back-substitution [s]; entries of the factor and the most memory that
+// CHOLMOD held on the way [MB]; what one product with the matrix takes [s].
 //
 // The matrix is assembled here once more, by itself, and must agree with the engine's
 // (implicit/stiffness.hpp).
@@ -63,8 +64,9 @@ std::vector<std::array<int, 2>> rows_of(const Assembly& assembly, const implicit
     return rows;
 }
 
-// Its lower half, all contacts stuck.
-Matrix matrix_of(const Assembly& assembly, const std::vector<std::array<int, 2>>& rows, Eigen::Index size)
+// Its lower half.
+Matrix matrix_of(const Assembly& assembly, const std::vector<implicit::Tangent>& tangents,
+                 const std::vector<std::array<int, 2>>& rows, Eigen::Index size)
 {
     std::vector<Eigen::Triplet<double, int>> entries;
     const auto add = [&](Index a, Index b, const Eigen::Matrix2d& block) {
@@ -92,8 +94,8 @@ Matrix matrix_of(const Assembly& assembly, const std::vector<std::array<int, 2>>
     for (std::size_t c = 0; c < contacts.gridpoint.size(); ++c) {
         const Vector2d& n = contacts.normal[c];
         const Vector2d t(n.y(), -n.x());
-        const Eigen::Matrix2d block = contacts.length[c] * (contacts.law[c].k_n * n * n.transpose() +
-                                                            contacts.law[c].k_s * t * t.transpose());
+        const Eigen::Matrix2d block = contacts.length[c] * (tangents[c].normal * n * n.transpose() +
+                                                            tangents[c].shear * t * t.transpose());
         for (int i = 0; i < 2; ++i)
             for (int j = 0; j < 2; ++j)
                 add(contacts.gridpoint[c][i], contacts.gridpoint[c][j], (i == j ? 1 : -1) * block);
@@ -111,12 +113,14 @@ void measure(const std::string& path, double zone_size)
     const Mesh mesh = zoning::zone(scene, file.network.blocks);
     const Assembly assembly = mechanics::assemble(scene, file.network, file.equivalent, mesh);
     std::vector<implicit::Tangent> stuck(assembly.contacts.law.size());
-    for (std::size_t c = 0; c < stuck.size(); ++c)
-        stuck[c] = {assembly.contacts.law[c].k_n, assembly.contacts.law[c].k_s, 0, 0};
+    for (std::size_t c = 0; c < stuck.size(); ++c) {
+        const joint::Coulomb& law = assembly.contacts.law[c];
+        stuck[c] = {law.k_n, law.k_s > 0 ? law.k_s : 1e-6 * law.k_n, 0, 0};
+    }
 
     implicit::Stiffness stiffness;
     stiffness.follow(assembly);
-    Matrix matrix = matrix_of(assembly, rows_of(assembly, stiffness), stiffness.size());
+    Matrix matrix = matrix_of(assembly, stuck, rows_of(assembly, stiffness), stiffness.size());
     const Eigen::VectorXd probe = Eigen::VectorXd::Random(stiffness.size());
     const Eigen::VectorXd product = stiffness.times(assembly, stuck, probe);
     const double apart = (matrix.selfadjointView<Eigen::Lower>() * probe - product).norm() / product.norm();
