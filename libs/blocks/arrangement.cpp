@@ -15,15 +15,49 @@ namespace
 
 using Eigen::Vector2d;
 
-// Calls meet(a, b, box) for pairs of segments that come close together: at least once for every two that have
-// a place in common, with a box that holds the place. Segments are sorted into the cells of a grid, and
-// crowded cells divided further.
+// The edges of a graph that must be compared: the unsettled ones with each other and with those settled ones
+// that come near them.
+struct ToCompare {
+    std::vector<Index> edge; // the unsettled ones first
+    std::vector<Segment> segment;
+    Index unsettled = 0;
+
+    explicit ToCompare(const Graph& graph)
+    {
+        edge.reserve(graph.edge.size());
+        segment.reserve(graph.edge.size());
+        for (const bool is_settled : {false, true}) {
+            for (std::size_t e = 0; e < graph.edge.size(); ++e)
+                if (const Edge& here = graph.edge[e]; here.is_settled == is_settled) {
+                    edge.push_back(static_cast<Index>(e));
+                    segment.push_back({graph.vertex[here.first], graph.vertex[here.second]});
+                }
+            if (!is_settled)
+                unsettled = static_cast<Index>(edge.size());
+        }
+        if (edge.size() < 2 * static_cast<std::size_t>(unsettled))
+            return; // hardly any would be left out
+        const SegmentGrid grid(segment, unsettled);
+        auto count = static_cast<std::size_t>(unsettled);
+        for (std::size_t i = count; i < edge.size(); ++i)
+            if (grid.is_near_listed(segment[i])) {
+                edge[count] = edge[i];
+                segment[count++] = segment[i];
+            }
+        edge.resize(count);
+        segment.resize(count);
+    }
+};
+
+// Calls meet(a, b, box) for pairs of segments to compare that come close together: at least once for every
+// two that have a place in common, with a box that holds the place. Segments are sorted into the cells of a
+// grid, and crowded cells divided further.
 template <class Meet>
 class Neighbours
 {
 public:
-    Neighbours(const std::vector<Segment>& segments, const std::optional<Box>& window, Meet& meet)
-        : segments_(segments), meet_(meet), grid_(segments)
+    Neighbours(const ToCompare& these, const std::optional<Box>& window, Meet& meet)
+        : segments_(these.segment), unsettled_(these.unsettled), meet_(meet), grid_(these.segment)
     {
         // Twice what a place may be off by where segments are not nearly parallel (crosses_elsewhere).
         sure_ = 1e-9 * grid_.farthest() + grid_.margin();
@@ -69,7 +103,7 @@ private:
             }
         }
         const Box wide{box.low - Vector2d(sure_, sure_), box.high + Vector2d(sure_, sure_)};
-        for (std::size_t i = 0; i < near.size(); ++i)
+        for (std::size_t i = 0; i < near.size() && near[i] < unsettled_; ++i)
             for (std::size_t j = i + 1; j < near.size(); ++j)
                 meet_(near[i], near[j], wide);
     }
@@ -89,15 +123,16 @@ private:
     }
 
     const std::vector<Segment>& segments_;
+    const Index unsettled_;
     Meet& meet_;
     SegmentGrid grid_;
     double sure_ = 0;
 };
 
 template <class Meet>
-void for_neighbours(const std::vector<Segment>& segments, const std::optional<Box>& window, Meet meet)
+void for_neighbours(const ToCompare& these, const std::optional<Box>& window, Meet meet)
 {
-    Neighbours<Meet>(segments, window, meet);
+    Neighbours<Meet>(these, window, meet);
 }
 
 bool boxes_apart(const Segment& p, const Segment& q)
@@ -144,18 +179,9 @@ void intersect(const Segment& p, const Segment& q, Cross cross, Touch touch)
         touch(1, false);
 }
 
-std::vector<Segment> segments_of(const Graph& graph)
-{
-    std::vector<Segment> segments;
-    segments.reserve(graph.edge.size());
-    for (const Edge& e : graph.edge)
-        segments.push_back({graph.vertex[e.first], graph.vertex[e.second]});
-    return segments;
-}
-
-// A place on a segment; places are numbered.
+// A place on an edge; places are numbered.
 struct Stop {
-    Index segment, place;
+    Index edge, place;
 };
 
 // Replaces places by their numbers in lexicographic order, equal ones by one number.
@@ -222,10 +248,13 @@ void sort_and_unite(Graph& graph, Sources& sources)
             return std::tie(a.second, a.sources) < std::tie(b.second, b.sources);
         });
         for (Index i = start[v]; i < start[v + 1]; ++i) {
-            if (i > start[v] && graph.edge.back().second == sorted[i].second)
-                graph.edge.back().sources = sources.united(graph.edge.back().sources, sorted[i].sources);
-            else
+            if (i == start[v] || graph.edge.back().second != sorted[i].second) {
                 graph.edge.push_back(sorted[i]);
+                continue;
+            }
+            Edge& united = graph.edge.back();
+            united.sources = sources.united(united.sources, sorted[i].sources);
+            united.is_settled = united.is_settled && sorted[i].is_settled;
         }
     }
 }
@@ -234,56 +263,58 @@ void sort_and_unite(Graph& graph, Sources& sources)
 
 Graph arrange(const Graph& lines, Sources& sources, const std::optional<Box>& window)
 {
-    const std::vector<Segment> segments = segments_of(lines);
-    const auto count = static_cast<Index>(segments.size());
+    const auto count = static_cast<Index>(lines.edge.size());
+    const auto along = [&](Index e) -> Vector2d {
+        return lines.vertex[lines.edge[e].second] - lines.vertex[lines.edge[e].first];
+    };
 
-    // Where the segments stop: their ends, crossings, and ends of others. Places may come more than once.
+    // Where the edges stop: their ends, crossings, and ends of others. Places may come more than once.
     std::vector<Vector2d> place = lines.vertex;
     std::vector<Stop> stops;
-    stops.reserve(4 * segments.size());
-    std::size_t ends = 0;
-    for (Index s = 0; s < count; ++s)
-        if (segments[s].from != segments[s].to) {
-            stops.push_back({s, lines.edge[s].first});
-            stops.push_back({s, lines.edge[s].second});
-            ends += 2;
+    stops.reserve(4 * lines.edge.size());
+    for (Index e = 0; e < count; ++e)
+        if (along(e) != Vector2d(0, 0)) {
+            stops.push_back({e, lines.edge[e].first});
+            stops.push_back({e, lines.edge[e].second});
         }
-    for_neighbours(segments, window, [&](Index a, Index b, const Box& box) {
-        const Segment &p = segments[a], &q = segments[b];
+    const ToCompare these(lines);
+    for_neighbours(these, window, [&](Index a, Index b, const Box& box) {
+        const Segment &p = these.segment[a], &q = these.segment[b];
         if (boxes_apart(p, q) || crosses_elsewhere(p, q, box))
             return;
         intersect(
             p, q,
             [&] {
                 for (const Index s : {a, b})
-                    stops.push_back({s, static_cast<Index>(place.size())});
+                    stops.push_back({these.edge[s], static_cast<Index>(place.size())});
                 place.push_back(crossing(p.from, p.to, q.from, q.to));
             },
             [&](int touched, bool is_from) {
-                const Edge& other = lines.edge[touched == 0 ? b : a];
-                stops.push_back({touched == 0 ? a : b, is_from ? other.first : other.second});
+                const Edge& other = lines.edge[these.edge[touched == 0 ? b : a]];
+                stops.push_back({these.edge[touched == 0 ? a : b], is_from ? other.first : other.second});
             });
     });
 
     const std::vector<Index> vertex_of = number_in_order(place);
-    Graph planar{.vertex = std::move(place), .edge = {}, .had_crossings = stops.size() != ends};
+    Graph planar{.vertex = std::move(place), .edge = {}};
 
-    std::vector<Index> start(segments.size() + 1, 0);
+    std::vector<Index> start(lines.edge.size() + 1, 0);
     for (const Stop& stop : stops)
-        ++start[stop.segment + 1];
+        ++start[stop.edge + 1];
     std::partial_sum(start.begin(), start.end(), start.begin());
-    std::vector<Index> on_segment(stops.size());
+    std::vector<Index> on_edge(stops.size());
     {
         std::vector<Index> next(start.begin(), start.end() - 1);
         for (const Stop& stop : stops)
-            on_segment[next[stop.segment]++] = vertex_of[stop.place];
+            on_edge[next[stop.edge]++] = vertex_of[stop.place];
     }
     planar.edge.reserve(stops.size());
-    for (Index s = 0; s < count; ++s) {
-        const auto begin = on_segment.begin() + start[s], end = on_segment.begin() + start[s + 1];
+    for (Index e = 0; e < count; ++e) {
+        const auto begin = on_edge.begin() + start[e], end = on_edge.begin() + start[e + 1];
+        const bool is_whole = end - begin == 2; // not even touched: its own ends are all its stops
         std::sort(begin, end);
-        // The order of vertices is that along the segment, but for vertices of one x on a falling segment.
-        const Vector2d d = segments[s].to - segments[s].from;
+        // The order of vertices is that along the edge, but for vertices of one x on a falling edge.
+        const Vector2d d = along(e);
         if ((d.x() < 0) != (d.y() < 0))
             for (auto from = begin; from != end;) {
                 const auto to = std::find_if(
@@ -293,7 +324,8 @@ Graph arrange(const Graph& lines, Sources& sources, const std::optional<Box>& wi
             }
         for (auto i = begin; i + 1 < end; ++i)
             if (i[0] != i[1])
-                planar.edge.push_back({std::min(i[0], i[1]), std::max(i[0], i[1]), lines.edge[s].sources});
+                planar.edge.push_back(
+                    {std::min(i[0], i[1]), std::max(i[0], i[1]), lines.edge[e].sources, is_whole});
     }
     sort_and_unite(planar, sources);
     return planar;
@@ -301,10 +333,10 @@ Graph arrange(const Graph& lines, Sources& sources, const std::optional<Box>& wi
 
 bool crosses_nowhere(const Graph& graph)
 {
-    const std::vector<Segment> segments = segments_of(graph);
+    const ToCompare these(graph);
     bool is_clear = true;
-    for_neighbours(segments, {}, [&](Index a, Index b, const Box& box) {
-        const Segment &p = segments[a], &q = segments[b];
+    for_neighbours(these, {}, [&](Index a, Index b, const Box& box) {
+        const Segment &p = these.segment[a], &q = these.segment[b];
         if (is_clear && !boxes_apart(p, q) && !crosses_elsewhere(p, q, box))
             intersect(
                 p, q, [&] { is_clear = false; }, [&](int, bool) { is_clear = false; });

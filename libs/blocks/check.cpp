@@ -46,7 +46,7 @@ void check_faces(const Graph& graph, const Faces& faces, double section_area, st
         throw input_error("cutting: " + what + "; another shortest_edge_m may settle");
     };
     const auto near = [&](Index v) { return " near " + shown(graph.vertex[v]); };
-    if (graph.had_crossings && !crosses_nowhere(graph))
+    if (!crosses_nowhere(graph))
         refuse("edges cross after rounding");
     for (std::size_t e = 0; e < graph.edge.size(); ++e)
         if (const auto [left, right] = faces.sides[e]; left == right)

@@ -168,12 +168,11 @@ public:
             if (!merge_pass(graph_, sources_, outlines_, {reach_, scene_.cutting.smallest_angle}, report_))
                 break;
         }
+        prune_slits();
+        while (straighten())
+            ;
         Faces faces = trace_faces(graph_);
-        while (prune_slits(faces) || straighten())
-            faces = trace_faces(graph_);
         remove_holes(faces);
-        if (has_bent_)
-            graph_.had_crossings = true; // as far as anyone knows
         check_faces(graph_, faces, section_area(), scene_.holes.size());
         return finish(faces);
     }
@@ -353,22 +352,15 @@ private:
         remove_faces(faces, is_hole);
     }
 
-    // Edges with one face on both sides separate nothing.
-    bool prune_slits(const Faces& faces)
+    // Edges with one face on both sides separate nothing. They are those on no closed way, so that without
+    // them no further edge has one face on both sides or ends at nothing.
+    void prune_slits()
     {
-        std::vector<char> gone(graph_.edge.size(), 0);
-        bool any = false;
-        for (std::size_t e = 0; e < graph_.edge.size(); ++e)
-            if (faces.sides[e][0] == faces.sides[e][1]) {
-                gone[e] = 1;
-                any = true;
+        const std::vector<char> gone = slits(graph_);
+        for (std::size_t e = 0; e < gone.size(); ++e)
+            if (gone[e])
                 record_pruned(graph_.edge[e]);
-            }
-        if (any) {
-            remove_edges(gone);
-            prune_ends();
-        }
-        return any;
+        remove_edges(gone);
     }
 
     // Removes vertices that only divide a straight edge, as pruning and merging leave behind.
@@ -395,7 +387,8 @@ private:
             kept.first = std::min(a, b);
             kept.second = std::max(a, b);
             std::ranges::replace(incidence.at(b), f, e);
-            has_bent_ = has_bent_ || turn(graph_.vertex[a], graph_.vertex[v], graph_.vertex[b]) != 0;
+            kept.is_settled = kept.is_settled && dropped.is_settled &&
+                              turn(graph_.vertex[a], graph_.vertex[v], graph_.vertex[b]) == 0;
         }
         if (any)
             remove_edges(gone);
@@ -592,7 +585,6 @@ private:
     FateRecord fates_;
     Graph graph_;
     CuttingReport report_;
-    bool has_bent_ = false; // by straightening what was straight but for rounding
 };
 
 } // namespace

@@ -80,27 +80,11 @@ struct Rings {
         vertex.insert(vertex.end(), ring.begin(), ring.end());
         start.push_back(static_cast<Index>(vertex.size()));
     }
-};
-
-// Which component of a graph a vertex is in, named by one of its vertices.
-class Components
-{
-public:
-    explicit Components(const Graph& graph) : parent_(graph.vertex.size())
+    void clear()
     {
-        std::iota(parent_.begin(), parent_.end(), 0);
-        for (const Edge& e : graph.edge)
-            parent_[root(e.first)] = root(e.second);
+        start.resize(1);
+        vertex.clear();
     }
-    Index root(Index v)
-    {
-        while (parent_[v] != v)
-            v = parent_[v] = parent_[parent_[v]];
-        return v;
-    }
-
-private:
-    std::vector<Index> parent_;
 };
 
 // Finds the half-edge that a leftward ray from a vertex meets first, just above the vertex's y so that it
@@ -205,9 +189,11 @@ bool is_rim(const std::vector<Vector2d>& vertex, std::span<const Index> ring)
 }
 
 // Rings that visit no vertex twice: where one does, what lies between the visits is a ring of its own.
-void split_at_pinches(std::span<const Index> ring, std::vector<Index>& visited_at, Rings& simple)
+// `visited_at`, -1 for every vertex, and `way` are room to work in.
+void split_at_pinches(std::span<const Index> ring, std::vector<Index>& visited_at, std::vector<Index>& way,
+                      Rings& simple)
 {
-    std::vector<Index> way;
+    way.clear();
     for (const Index v : ring) {
         if (visited_at[v] >= 0) {
             const auto from = static_cast<std::size_t>(visited_at[v]);
@@ -259,6 +245,19 @@ bool is_inside(const Polygon& polygon, const Vector2d& place)
         inside ^= side > 0;
     }
     return inside;
+}
+
+std::vector<char> slits(const Graph& graph)
+{
+    HalfEdges half(graph);
+    std::vector<Index> ring_of(half.count(), -1);
+    for (Index first = 0; first < half.count(); ++first)
+        for (Index h = first; ring_of[h] < 0; h = half.next(h))
+            ring_of[h] = first;
+    std::vector<char> is_slit(graph.edge.size());
+    for (std::size_t e = 0; e < graph.edge.size(); ++e)
+        is_slit[e] = ring_of[2 * e] == ring_of[2 * e + 1];
+    return is_slit;
 }
 
 Faces trace_faces(const Graph& graph)
@@ -319,7 +318,7 @@ Faces trace_faces(const Graph& graph)
     faces.first_ring = {0};
     faces.ring_start = {0};
     faces.ring_vertex.reserve(rings.vertex.size());
-    std::vector<Index> visited_at(graph.vertex.size(), -1);
+    std::vector<Index> visited_at(graph.vertex.size(), -1), way;
     Rings simple;
     const auto add_ring = [&](std::span<const Index> ring) {
         faces.ring_vertex.insert(faces.ring_vertex.end(), ring.begin(), ring.end());
@@ -330,11 +329,11 @@ Faces trace_faces(const Graph& graph)
             continue;
         const Index face = face_of_ring[r];
         double area = ring_areas[r];
-        simple = {};
-        split_at_pinches(rings[r], visited_at, simple);
+        simple.clear();
+        split_at_pinches(rings[r], visited_at, way, simple);
         if (!holes.empty())
             for (const Index hole : holes[face]) {
-                split_at_pinches(rings[hole], visited_at, simple);
+                split_at_pinches(rings[hole], visited_at, way, simple);
                 area += ring_areas[hole];
             }
         // The outer ring first.

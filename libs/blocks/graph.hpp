@@ -57,32 +57,34 @@ private:
 };
 
 struct Edge {
-    Index first, second; // vertices
-    Index sources;       // a set of Sources
+    Index first, second;     // vertices
+    Index sources;           // a set of Sources
+    bool is_settled = false; // known to have nothing but ends in common with any other settled edge
 };
 
 struct Graph {
     std::vector<Eigen::Vector2d> vertex; // [m]
     std::vector<Edge> edge;
-    bool had_crossings = true; // false if arrange() found edges to meet at common ends only
 };
 
 // The planar arrangement of a graph's edges, which may cross, overlap and touch: every crossing becomes a
 // vertex, overlapping pieces become one edge with the sources of all. What crosses what is decided exactly;
 // each vertex is the exact one rounded to the nearest doubles, and vertices that round to one place are one.
 // Vertices come out in lexicographic order, edges by their ends, first < second, so the result depends on the
-// edges alone and not on their order.
+// edges alone and not on their order. An edge that comes out as it went in is settled; two that were settled
+// before are not compared again.
 //
 // Rounding moves a vertex by half a unit of its last place at most. Where other edges pass that near the
 // result may cross itself; crosses_nowhere() tells.
 //
-// What lies outside a window, if one is given, need not be arranged: crossings there may be left out.
+// What lies outside a window, if one is given, need not be arranged: crossings there may be left out, and what
+// is called settled is so inside only.
 struct Box {
     Eigen::Vector2d low, high;
 };
 Graph arrange(const Graph& lines, Sources& sources, const std::optional<Box>& window = {});
 
-// Whether edges meet at common ends only; exact.
+// Whether edges meet at common ends only; exact. Two settled ones are not compared again.
 bool crosses_nowhere(const Graph& graph);
 
 // What a graph's faces are made of. A ring runs with its face on the left: the first of a face is the outer
@@ -102,6 +104,9 @@ struct Faces {
         return {ring_vertex.data() + ring_start[r], ring_vertex.data() + ring_start[r + 1]};
     }
 };
+
+// Of each edge of a planar graph without crossings: whether it has one face on both sides.
+std::vector<char> slits(const Graph& graph);
 
 // Faces of a planar graph without crossings, in the order of their first edges.
 Faces trace_faces(const Graph& graph);

@@ -154,7 +154,9 @@ void unite(std::vector<Edge>& edges, const std::vector<Vector2d>& vertex, Source
     std::size_t count = 0;
     for (const Edge& e : edges) {
         if (count > 0 && edges[count - 1].first == e.first && edges[count - 1].second == e.second) {
-            edges[count - 1].sources = sources.united(edges[count - 1].sources, e.sources);
+            Edge& united = edges[count - 1];
+            united.sources = sources.united(united.sources, e.sources);
+            united.is_settled = united.is_settled && e.is_settled;
             report.merged_edge_length += (vertex[e.first] - vertex[e.second]).norm();
             continue;
         }
@@ -265,7 +267,8 @@ bool merge_pass(Graph& graph, Sources& sources, const std::vector<Polygon>& outl
         if (joined[e.first] == joined[e.second])
             report.merged_edge_length += (graph.vertex[e.first] - graph.vertex[e.second]).norm();
         else
-            edges.push_back({joined[e.first], joined[e.second], e.sources});
+            edges.push_back({joined[e.first], joined[e.second], e.sources,
+                             e.is_settled && joined[e.first] == e.first && joined[e.second] == e.second});
     }
     unite(edges, graph.vertex, sources, report);
 
@@ -285,7 +288,7 @@ bool merge_pass(Graph& graph, Sources& sources, const std::vector<Polygon>& outl
         const VertexGrid grid(graph.vertex, used, 2 * reach);
         const double margin = (0.5 + 1e-6) * reach, pieces_per_length = 0.5 / grid.cell();
         for (std::size_t e = 0; e < edges.size(); ++e) {
-            const auto [first, second, s] = edges[e];
+            const Index first = edges[e].first, second = edges[e].second;
             const Vector2d &p = graph.vertex[first], &q = graph.vertex[second], d = q - p;
             const double length = d.norm();
             // In pieces of about a cell each, so that a long slanting edge looks only along itself.
@@ -430,7 +433,7 @@ bool merge_pass(Graph& graph, Sources& sources, const std::vector<Polygon>& outl
     // with an edge that has changed need a look.
     std::vector<char> has_changed(graph.edge.size(), 0);
     for (std::size_t e = 0; e < graph.edge.size(); ++e) {
-        const auto [a, b, s] = graph.edge[e];
+        const Index a = graph.edge[e].first, b = graph.edge[e].second;
         has_changed[e] = joined[a] != a || joined[b] != b || has_moved[a] || has_moved[b] ||
                          (!bent.empty() && bent.contains(std::minmax(a, b)));
     }
@@ -456,6 +459,7 @@ bool merge_pass(Graph& graph, Sources& sources, const std::vector<Polygon>& outl
     Graph merged;
     std::vector<Index> index(n, -1);
     for (Edge& edge : edges) {
+        edge.is_settled = edge.is_settled && !has_moved[edge.first] && !has_moved[edge.second];
         for (Index* v : {&edge.first, &edge.second}) {
             if (index[*v] < 0) {
                 index[*v] = static_cast<Index>(merged.vertex.size());

@@ -23,7 +23,9 @@ struct Segment {
 class SegmentGrid
 {
 public:
-    explicit SegmentGrid(const std::vector<Segment>& segments);
+    // Lists the first `listed` of the segments; the grid suits them all.
+    SegmentGrid(const std::vector<Segment>& segments, std::size_t listed);
+    explicit SegmentGrid(const std::vector<Segment>& segments) : SegmentGrid(segments, segments.size()) {}
 
     double cell() const { return cell_; }         // side of a cell [m]
     double margin() const { return margin_; }     // [m]
@@ -34,7 +36,17 @@ public:
     template <class InColumn>
     void for_columns(const Segment& s, InColumn in_column) const;
 
-    // Calls visit(segments, low, high) for every cell, with its corners.
+    // Whether a segment runs through a cell that lists one; so does all that has a place in common with one.
+    bool is_near_listed(const Segment& s) const
+    {
+        bool is_near = false;
+        for_columns(s, [&](Index column, Index first, Index last) {
+            is_near = is_near || start_[number(column, first)] != start_[number(column, last) + 1];
+        });
+        return is_near;
+    }
+
+    // Calls visit(segments, low, high) for every cell, with its corners; segments in ascending order.
     template <class Visit>
     void for_cells(Visit visit) const
     {
@@ -68,7 +80,7 @@ private:
     std::vector<Index> entry_;
 };
 
-inline SegmentGrid::SegmentGrid(const std::vector<Segment>& segments)
+inline SegmentGrid::SegmentGrid(const std::vector<Segment>& segments, std::size_t listed)
 {
     if (segments.empty())
         return;
@@ -94,8 +106,8 @@ inline SegmentGrid::SegmentGrid(const std::vector<Segment>& segments)
     margin_ = 1e-7 * cell_ + 2e-15 * farthest_;
 
     start_.assign(static_cast<std::size_t>(columns_) * rows_ + 1, 0);
-    for (const Segment& s : segments)
-        for_columns(s, [&](Index column, Index first, Index last) {
+    for (std::size_t i = 0; i < listed; ++i)
+        for_columns(segments[i], [&](Index column, Index first, Index last) {
             for (Index row = first; row <= last; ++row)
                 ++start_[number(column, row)];
         });
@@ -103,7 +115,7 @@ inline SegmentGrid::SegmentGrid(const std::vector<Segment>& segments)
     for (std::size_t& n : start_)
         n = sum += n;
     entry_.resize(sum);
-    for (std::size_t i = segments.size(); i-- > 0;)
+    for (std::size_t i = listed; i-- > 0;)
         for_columns(segments[i], [&](Index column, Index first, Index last) {
             for (Index row = first; row <= last; ++row)
                 entry_[--start_[number(column, row)]] = static_cast<Index>(i);

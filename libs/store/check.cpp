@@ -145,11 +145,13 @@ Fault fault_in(const std::vector<Field>& fields, const std::vector<Invariant>& i
         if (Fault fault = std::visit([&](auto values) { return value_fault(field, dimensions, values); },
                                      flat(field.values)))
             return fault;
-    for (const Invariant& invariant : invariants)
-        for (std::size_t row = 0; row < dimensions.size(invariant.dimension); ++row)
+    for (const Invariant& invariant : invariants) {
+        const std::size_t count = dimensions.size(invariant.dimension);
+        for (std::size_t row = 0; row < count; ++row)
             if (!invariant.holds(row))
                 return invariant.path + ", row " + std::to_string(row) + ": it must hold that " +
                        invariant.sentence;
+    }
     return {};
 }
 
