@@ -131,3 +131,29 @@ TEST(settled, edges_need_no_second_look)
     EXPECT_GT(of_these_with_crossings, 50);
     EXPECT_GT(merged, 100);
 }
+
+// Where doubles are as coarse as the gaps between lines, pieces of them cross again.
+TEST(settled, pieces_with_a_rounded_end_get_a_second_look)
+{
+    std::mt19937 random(8);
+    std::uniform_real_distribution<double> unit(0, 1);
+    int crossed_again = 0;
+    for (int i = 0; i < 200; ++i) {
+        Graph graph;
+        std::vector<Source> lines(30, {Source::Kind::joint, 0});
+        for (Index j = 0; j < 30; ++j) {
+            graph.vertex.insert(graph.vertex.end(), {{1e5, 2e5 + 1e-9 * unit(random)},
+                                                     {1e5 + 1e-8 * unit(random), 2e5 + 1e-9 * unit(random)}});
+            graph.edge.push_back({2 * j, 2 * j + 1, j});
+        }
+        blocks::Sources sources(lines);
+        for (int pass = 0; pass < 3; ++pass) {
+            graph = blocks::arrange(graph, sources);
+            const bool cross = !blocks::crosses_nowhere(all_unsettled(graph));
+            ASSERT_EQ(!blocks::crosses_nowhere(graph), cross);
+            ASSERT_TRUE(blocks::crosses_nowhere(only_settled(graph)));
+            crossed_again += cross;
+        }
+    }
+    EXPECT_GT(crossed_again, 20);
+}
