@@ -121,7 +121,9 @@ std::string edges_csv(const Network& network, const EquivalentJoints* equivalent
                     quantity[0] == 's' ? "_Pa_per_m" : "_Pa_s_per_m");
     }
     if (equivalent)
-        table += ",normal_maxwell_viscosity_Pa_s_per_m,shear_maxwell_viscosity_Pa_s_per_m";
+        table += ",normal_maxwell_viscosity_Pa_s_per_m,shear_maxwell_viscosity_Pa_s_per_m,law,residual_"
+                 "cohesion_Pa,"
+                 "residual_friction_angle_rad";
     table += '\n';
     for (std::size_t edge = 0; edge < blocks.edge_vertex.size(); ++edge) {
         const auto [first, second] = blocks.edge_vertex[edge];
@@ -147,7 +149,9 @@ std::string edges_csv(const Network& network, const EquivalentJoints* equivalent
             }
             table.back() = ',';
             add_row(table, field(equivalent->normal_maxwell_viscosity[edge]),
-                    field(equivalent->shear_maxwell_viscosity[edge]));
+                    field(equivalent->shear_maxwell_viscosity[edge]), field(equivalent->law[edge]),
+                    field(equivalent->residual_cohesion[edge]),
+                    field(equivalent->residual_friction_angle[edge]));
         }
     }
     return table;

@@ -275,6 +275,9 @@ std::string joints_vtu(const Network& network, const EquivalentJoints* equivalen
         }
         grid.add("normal_maxwell_viscosity", picked(equivalent->normal_maxwell_viscosity, edges));
         grid.add("shear_maxwell_viscosity", picked(equivalent->shear_maxwell_viscosity, edges));
+        grid.add("law", picked(equivalent->law, edges));
+        grid.add("residual_cohesion", picked(equivalent->residual_cohesion, edges));
+        grid.add("residual_friction_angle", picked(equivalent->residual_friction_angle, edges));
     }
     grid.open("Points");
     grid.add("position", blocks.vertex);

@@ -53,10 +53,12 @@ void Engine::take_states(const Assembly& assembly, const State& start, bool firs
             now = contacts.traction[c].y() > 0 ? Active::slips_forward : Active::slips_backward;
         const bool turns_round = (now == Active::slips_forward && active_[c] == Active::slips_backward) ||
                                  (now == Active::slips_backward && active_[c] == Active::slips_forward);
-        if (!first && now == Active::open && active_[c] != Active::open && !start.joint[c].is_broken &&
-            !breaks_[c] && ++openings_[c] >= 2)
+        const bool breaks = contacts.law[c].weakens ? contacts.state[c].is_broken && !broken_[c]
+                                                    : now == Active::open && active_[c] != Active::open;
+        if (!first && breaks && !start.joint[c].is_broken && !breaks_[c] && ++openings_[c] >= 2)
             breaks_[c] = 1;
         active_[c] = turns_round && !first ? Active::stuck : now;
+        broken_[c] = contacts.state[c].is_broken;
     }
 }
 
@@ -78,12 +80,13 @@ std::vector<Tangent> Engine::tangents(const Assembly& assembly, double softness)
             break;
         default: {
             // The flow rule leaves k_n k_s / (k_s + k_n tan(phi) tan(psi)) of the normal stiffness.
-            const double dilatant = law.k_n * law.tan_phi * law.tan_psi;
+            const double tan_phi = law.tan_phi_of(contacts.state[c].is_broken);
+            const double dilatant = law.k_n * tan_phi * law.tan_psi;
             const double k = law.k_s > 0 && dilatant > 0 ? law.k_n * law.k_s / (law.k_s + dilatant) : law.k_n;
             const double sliding = (1 - softness) * (active_[c] == Active::slips_forward ? -k : k);
             const double tan_psi = law.k_s > 0 ? law.tan_psi : 0;
-            all[c] = {k + softness * (law.k_n - k), soft_shear + (1 - softness) * k * law.tan_phi * tan_psi,
-                      sliding * law.tan_phi, sliding * tan_psi};
+            all[c] = {k + softness * (law.k_n - k), soft_shear + (1 - softness) * k * tan_phi * tan_psi,
+                      sliding * tan_phi, sliding * tan_psi};
         }
         }
     }
@@ -171,16 +174,18 @@ Engine::Way Engine::go_along(Assembly& assembly, const State& start, const Vecto
     return at_best(share);
 }
 
-// Breaks the bonds of contacts that have opened, or closed, since states were taken: with cohesion coming and
-// going there may be no equilibrium between. True if there are any.
+// Breaks the bonds of contacts that have opened, or closed, or weakened, since states were taken: with
+// cohesion coming and going there may be no equilibrium between. True if there are any.
 bool Engine::break_bonds(const Assembly& assembly, const State& start)
 {
     bool breaks = false;
     for (std::size_t c = 0; c < breaks_.size(); ++c) {
+        const joint::Coulomb& law = assembly.contacts.law[c];
         const bool is_open = assembly.contacts.status[c] == ContactStatus::open;
-        if (assembly.contacts.status[c] != ContactStatus::removed &&
-            is_open != (active_[c] == Active::open) && !breaks_[c] && !start.joint[c].is_broken &&
-            assembly.contacts.law[c].cohesion > 0) {
+        const bool changes = law.weakens ? assembly.contacts.state[c].is_broken != (broken_[c] != 0)
+                                         : is_open != (active_[c] == Active::open) && law.cohesion > 0;
+        if (assembly.contacts.status[c] != ContactStatus::removed && changes && !breaks_[c] &&
+            !start.joint[c].is_broken) {
             breaks_[c] = 1;
             breaks = true;
         }
@@ -399,6 +404,7 @@ void Engine::prepare(const Assembly& assembly)
     const std::size_t n = assembly.contacts.state.size();
     active_.resize(n, Active::stuck);
     breaks_.assign(n, 0);
+    broken_.assign(n, 0);
     openings_.assign(n, 0);
     corrections_ = factorisations_ = solves_ = 0;
 }

@@ -10,8 +10,8 @@
 // The account of energy is that of backward Euler, too: a contact slips under the traction it ends with. What
 // neither is stored nor goes there counts as damped.
 //
-// Bonds that break do so for good, and at once; a contact that opened on the way and closes again without
-// having needed to is given its bond back.
+// Bonds that break do so for good, and at once; a contact that opened, or weakened, on the way without having
+// needed to is given its bond back.
 
 #pragma once
 
@@ -79,10 +79,11 @@ private:
     std::vector<Tangent> linear_;
     std::vector<Active> active_;
     std::vector<char> breaks_, openings_;
-    VectorXd scale_;      // of forces: the stiffness against which they act [Pa]
-    double stiffest_ = 0; // row sum [Pa]
-    double too_far_ = 0;  // to look for equilibrium [m]
-    VectorXd force_;      // out of balance, at the last evaluation
+    std::vector<char> broken_; // when states were taken
+    VectorXd scale_;           // of forces: the stiffness against which they act [Pa]
+    double stiffest_ = 0;      // row sum [Pa]
+    double too_far_ = 0;       // to look for equilibrium [m]
+    VectorXd force_;           // out of balance, at the last evaluation
     Index corrections_ = 0, factorisations_ = 0, solves_ = 0;
     std::string reason_;
 };

@@ -5,12 +5,14 @@
 //     tau     = tau_0   + k_s (u_s - slip)       with |tau| <= c - sigma_n tan(phi)
 //     d(dilation) = tan(psi) |d(slip)|           whichever way it slips
 //
-// with psi at most phi, or slip would give energy. That is the plastic flow of Coulomb's law with a potential of
-// its own, psi in place of phi. A joint that is open shears without dilating.
+// with psi at most phi, or slip would give energy. That is the plastic flow of Coulomb's law with a potential
+// of its own, psi in place of phi. A joint that is open shears without dilating.
 //
 // Opening breaks the joint's bonds: its cohesion and tensile strength are lost for good. (A cohesion that
-// came back on closing would let a contact flicker between open and closed.) Slip alone leaves them. Signs as
-// in model/signs.hpp: tension and opening positive.
+// came back on closing would let a contact flicker between open and closed.) Slip alone leaves them, but
+// where the joint `weakens`: then the first slip breaks them too, and what is left at once, by either way, is
+// the residual cohesion and friction, c_r <= c and tan(phi_r) <= tan(phi), with tan(psi) <= tan(phi_r). Signs
+// as in model/signs.hpp: tension and opening positive.
 
 #pragma once
 
@@ -28,6 +30,12 @@ struct Coulomb {
     double tan_phi;          // [-]
     double tensile_strength; // [Pa]
     double tan_psi = 0;      // of the dilation angle [-]
+    bool weakens = false;    // by slip; without it a broken joint has no cohesion, and the friction it had
+    double residual_cohesion = 0; // [Pa]
+    double residual_tan_phi = 0;  // [-]
+
+    double cohesion_of(bool is_broken) const { return is_broken ? residual_cohesion : cohesion; }
+    double tan_phi_of(bool is_broken) const { return is_broken && weakens ? residual_tan_phi : tan_phi; }
 };
 
 // What the joint remembers.
@@ -54,24 +62,25 @@ inline Response respond(const Coulomb& law, CoulombState& state, double sigma_0,
     // Slip presses a joint that dilates together, by this times itself, and its strength grows with that;
     // where it has none to begin with, under tension, it slips until no shear is left at most.
     const double pressing = law.k_s > 0 ? law.k_n * law.tan_psi : 0.0;
-    const auto slip_with = [&](double cohesion) {
-        const double excess = std::abs(tau_trial) - (cohesion - sigma_trial * law.tan_phi);
-        return std::clamp(excess / (law.k_s + pressing * law.tan_phi), 0.0, std::abs(tau_trial) * give);
+    double cohesion = law.cohesion_of(state.is_broken), tan_phi = law.tan_phi_of(state.is_broken);
+    const auto slipped = [&] {
+        const double excess = std::abs(tau_trial) - (cohesion - sigma_trial * tan_phi);
+        return std::clamp(excess / (law.k_s + pressing * tan_phi), 0.0, std::abs(tau_trial) * give);
     };
-    const auto pressed_with = [&](double cohesion) {
-        return pressing > 0 ? sigma_trial - pressing * slip_with(cohesion) : sigma_trial;
-    };
+    const auto pressed = [&] { return pressing > 0 ? sigma_trial - pressing * slipped() : sigma_trial; };
 
-    double cohesion = state.is_broken ? 0.0 : law.cohesion;
-    if (pressed_with(cohesion) > (state.is_broken ? 0.0 : law.tensile_strength)) {
+    const bool opens = pressed() > (state.is_broken ? 0.0 : law.tensile_strength);
+    const bool weakens = law.weakens && std::abs(tau_trial) > std::max(0.0, cohesion - sigma_trial * tan_phi);
+    if (opens || weakens) {
         state.is_broken = true;
-        cohesion = 0;
-        if (pressed_with(cohesion) > 0) {
+        cohesion = law.cohesion_of(true);
+        tan_phi = law.tan_phi_of(true);
+        if (pressed() > 0) {
             state.slip += tau_trial * give; // the joint closes again without shear
             return {0, 0, ContactStatus::open};
         }
     }
-    const double limit = std::max(0.0, cohesion - sigma_trial * law.tan_phi);
+    const double limit = std::max(0.0, cohesion - sigma_trial * tan_phi);
     // A joint at its limit counts as slipping, also while it stands still there.
     if (std::abs(tau_trial) < (1 - 1e-6) * limit || tau_trial == 0)
         return {sigma_trial, tau_trial, ContactStatus::stuck};
@@ -80,7 +89,7 @@ inline Response respond(const Coulomb& law, CoulombState& state, double sigma_0,
         state.slip += (tau_trial - tau) * give;
         return {sigma_trial, tau, ContactStatus::slipping};
     }
-    const double slip = slip_with(cohesion);
+    const double slip = slipped();
     state.slip += std::copysign(slip, tau_trial);
     state.dilation += slip * law.tan_psi;
     return {sigma_trial - pressing * slip, std::copysign(std::abs(tau_trial) - law.k_s * slip, tau_trial),

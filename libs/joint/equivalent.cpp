@@ -4,6 +4,7 @@
 #include "joint/pieces.hpp"
 #include "model/error.hpp"
 #include "model/polygon.hpp"
+#include "model/units.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -33,7 +34,8 @@ const Named& by_name(const std::vector<Named>& all, const std::string& name, con
 
 Strength strength_of(const JointMaterial& material)
 {
-    return {material.cohesion, material.friction_angle, material.tensile_strength, material.dilation_angle};
+    return {material.cohesion, material.friction_angle, material.tensile_strength, material.dilation_angle,
+            material.residual};
 }
 
 Strength weaker(const Strength& one, const Strength& other)
@@ -84,6 +86,19 @@ Strength bridge_strength(const Scene& scene, const Network& network, std::size_t
         weakest = weakest ? weaker(*weakest, strength) : strength;
     }
     return *weakest;
+}
+
+// With bridges that dilate the mean may be steeper than the joint's residual friction: slip would give
+// energy.
+void refuse_steep_dilation(const Network& network, std::size_t edge, const Strength& strength)
+{
+    if (strength.residual && strength.dilation_angle > strength.residual->friction_angle)
+        throw input_error("joint set \"" + set_name(network, edge) + "\" on " +
+                          place_of(network.blocks, edge) + " would dilate by " +
+                          shown(strength.dilation_angle / unit::deg) +
+                          " deg with its rock bridges; wanted at most the "
+                          "residual friction angle of its joint, " +
+                          shown(strength.residual->friction_angle / unit::deg) + " deg");
 }
 
 // What averages of an edge are taken with.
@@ -292,9 +307,18 @@ private:
 
 EquivalentJoints without_joints(std::size_t edges, std::size_t kelvin_units)
 {
-    const std::vector<double> none(edges, 0.0), no_units(edges * kelvin_units, 0.0);
-    return {none,     none,     none, none, none, none, no_units, no_units,
-            no_units, no_units, none, none, none, {},   {}};
+    EquivalentJoints joints;
+    for (std::vector<double>* const list :
+         {&joints.normal_stiffness, &joints.shear_stiffness, &joints.cohesion, &joints.friction_angle,
+          &joints.tensile_strength, &joints.dilation_angle, &joints.residual_cohesion,
+          &joints.residual_friction_angle, &joints.normal_maxwell_viscosity, &joints.shear_maxwell_viscosity,
+          &joints.persistence})
+        list->assign(edges, 0.0);
+    for (std::vector<double>* const list : {&joints.normal_kelvin_stiffness, &joints.shear_kelvin_stiffness,
+                                            &joints.normal_kelvin_viscosity, &joints.shear_kelvin_viscosity})
+        list->assign(edges * kelvin_units, 0.0);
+    joints.law.assign(edges, static_cast<Index>(JointLaw::coulomb));
+    return joints;
 }
 
 // Rock bridges make a Kelvin unit of a Maxwell dashpot.
@@ -318,6 +342,11 @@ void set_joint(EquivalentJoints& joints, std::size_t edge, const Stiffnesses::Fo
     joints.friction_angle[edge] = strength.friction_angle;
     joints.tensile_strength[edge] = strength.tensile_strength;
     joints.dilation_angle[edge] = strength.dilation_angle;
+    if (strength.residual) {
+        joints.law[edge] = static_cast<Index>(JointLaw::residual);
+        joints.residual_cohesion[edge] = strength.residual->cohesion;
+        joints.residual_friction_angle[edge] = strength.residual->friction_angle;
+    }
     joints.persistence[edge] = persistence;
     const std::size_t row = edge * joints.kelvin_units();
     for (std::size_t unit = 0; unit < normal.units.size(); ++unit) {
@@ -412,10 +441,14 @@ SetAverages averages_of(const Scene& scene, const Network& network, const Pieces
 Strength average(const Strength& joint, const Strength& rock, double persistence)
 {
     const double k = persistence;
-    return {k * joint.cohesion + (1 - k) * rock.cohesion,
-            std::atan(k * std::tan(joint.friction_angle) + (1 - k) * std::tan(rock.friction_angle)),
-            k * joint.tensile_strength + (1 - k) * rock.tensile_strength,
-            std::atan(k * std::tan(joint.dilation_angle) + (1 - k) * std::tan(rock.dilation_angle))};
+    Strength mean{k * joint.cohesion + (1 - k) * rock.cohesion,
+                  std::atan(k * std::tan(joint.friction_angle) + (1 - k) * std::tan(rock.friction_angle)),
+                  k * joint.tensile_strength + (1 - k) * rock.tensile_strength,
+                  std::atan(k * std::tan(joint.dilation_angle) + (1 - k) * std::tan(rock.dilation_angle))};
+    if (joint.residual)
+        mean.residual = {k * joint.residual->cohesion,
+                         std::min(joint.residual->friction_angle, mean.friction_angle)};
+    return mean;
 }
 
 EquivalentJoints average_strength(const Scene& scene, const Network& network)
@@ -441,6 +474,7 @@ EquivalentJoints average_strength(const Scene& scene, const Network& network)
                 const Strength rock = bridge_strength(scene, network, edge, share.persistence);
                 sum.bridge.add(length, rock);
                 strength = average(strength, rock, share.persistence);
+                refuse_steep_dilation(network, edge, strength);
             }
             sum.equivalent.add(length, strength);
             const Stiffnesses::Found found = stiffnesses.of(edge, material, share);

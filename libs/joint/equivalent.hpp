@@ -15,11 +15,15 @@ struct Strength {
     double friction_angle;   // [rad]
     double tensile_strength; // [Pa]
     double dilation_angle;   // [rad]
+    std::optional<ResidualStrength> residual{};
 };
 
 // Weighted by length, k = persistence, the fraction that is joint:
 //     c = k c_j + (1 - k) c_r,   tan(phi) = k tan(phi_j) + (1 - k) tan(phi_r),   T = k T_j + (1 - k) T_r
-// and tan(psi), of the dilation, as tan(phi).
+// and tan(psi), of the dilation, as tan(phi). Of residual strengths it is
+//     c_res = k c_j,res,   tan(phi_res) = tan(phi_j,res):
+// bridges break at the first slip, and lose their cohesion; the friction that is left is the joint's, or that
+// of the mean if it is less. Without a residual strength of the joint there is none of both.
 Strength average(const Strength& joint, const Strength& rock, double persistence);
 
 // The equivalent joint of every edge, with the joint fraction of that edge, or the persistence of its line or
@@ -37,8 +41,8 @@ Strength average(const Strength& joint, const Strength& rock, double persistence
 // A stiffness is at most ten times that of a zone beside the edge, E (1 - nu) / ((1 + nu) (1 - 2 nu)) over
 // the zone size, or the joint's own: rock bridges alone would be infinitely stiff. An edge that is all joint
 // has the joint's stiffness whatever the rule, and so has a boundary edge that rests on a joint, with its
-// strength too. Throws input_error where bridges run through rock without strength, or names are not in the
-// scene.
+// strength too. Throws input_error where bridges run through rock without strength, where they make a joint
+// dilate by more than its residual friction, or names are not in the scene.
 EquivalentJoints average_strength(const Scene& scene, const Network& network);
 
 } // namespace jointcreep

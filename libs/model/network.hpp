@@ -155,6 +155,12 @@ struct SetAverages {
     std::vector<double> limited_length; // of edges that are stiffer than zones can tell [m]
 };
 
+// What a joint does at once, creep apart (libs/joint/law.hpp).
+enum class JointLaw : Index {
+    coulomb = 0, // its bonds break by opening only
+    residual = 1 // by slip, too, and leave the residual strength
+};
+
 // The equivalent continuous joint of every joint edge, and of every boundary edge that rests on a joint;
 // rows are edges, and on all other edges every value is 0. Made by strength-averaging.
 struct EquivalentJoints {
@@ -168,6 +174,10 @@ struct EquivalentJoints {
     std::vector<double> normal_kelvin_viscosity, shear_kelvin_viscosity; // [Pa s/m]
     // Maxwell dashpot in series; 0 is none.
     std::vector<double> normal_maxwell_viscosity, shear_maxwell_viscosity; // [Pa s/m]
+
+    std::vector<Index> law{};                      // JointLaw
+    std::vector<double> residual_cohesion{};       // 0 where the law has none [Pa]
+    std::vector<double> residual_friction_angle{}; // 0 where the law has none [rad]
 
     // What was averaged, and with which persistence; 0 without joint [-].
     std::vector<double> persistence{};

@@ -59,6 +59,12 @@ struct Maxwell {
     double shear_viscosity;  // [Pa s/m]
 };
 
+// What a joint keeps of its strength after its first slip, or after opening.
+struct ResidualStrength {
+    double cohesion;       // [Pa]
+    double friction_angle; // [rad]
+};
+
 // The open part of a joint.
 struct JointMaterial {
     std::string name;
@@ -70,6 +76,7 @@ struct JointMaterial {
     std::vector<Kelvin> kelvin{};     // units in series with the springs; one and a Maxwell: Burgers
     std::optional<Maxwell> maxwell{}; // without either the joint does not creep
     double dilation_angle = 0;        // [rad]
+    std::optional<ResidualStrength> residual{}; // without it slip alone weakens nothing
 };
 
 // What the joints of a set are (libs/sampling/joint_sets.hpp).

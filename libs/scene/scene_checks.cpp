@@ -244,6 +244,17 @@ private:
             if (material.dilation_angle > 0 && material.shear_stiffness == 0)
                 given.refuse("dilation_angle_deg",
                              "wanted 0 of a smooth joint, which has no shear stiffness");
+            if (!material.residual)
+                continue;
+            if (material.residual->cohesion > material.cohesion)
+                given.refuse("residual_cohesion_MPa", "wanted at most cohesion_MPa");
+            if (material.residual->friction_angle > material.friction_angle)
+                given.refuse("residual_friction_angle_deg", "wanted at most friction_angle_deg");
+            if (material.residual->friction_angle < material.dilation_angle)
+                given.refuse("residual_friction_angle_deg", "wanted at least dilation_angle_deg");
+            if (material.shear_stiffness == 0)
+                given.refuse("residual_friction_angle_deg",
+                             "wanted none of a smooth joint, which bears no shear");
         }
     }
 

@@ -173,6 +173,18 @@ Table<JointMaterial> joint_material(const Table<Kelvin>& chain)
              "Dilation angle, at most the friction angle: a joint that slips opens by its tangent times the "
              "slip.")
              .or_else(std::int64_t{0}),
+         number<JointMaterial>(
+             "residual_cohesion_MPa", part<&JointMaterial::residual, &ResidualStrength::cohesion>, MPa,
+             strength,
+             "Cohesion once the joint has slipped or opened, at most its cohesion. Without this "
+             "and the next key opening takes the cohesion, and slip alone nothing.")
+             .together("residual strength"),
+         number<JointMaterial>("residual_friction_angle_deg",
+                               part<&JointMaterial::residual, &ResidualStrength::friction_angle>, degrees,
+                               friction,
+                               "Friction angle from then on, at most the friction angle and at least the "
+                               "dilation angle.")
+             .together("residual strength"),
          number<JointMaterial>("normal_kelvin_stiffness_MPa_per_m", unit_part<&Kelvin::normal_stiffness>,
                                MPa_per_m, stiffness, "Kelvin spring, normal.")
              .together("Kelvin"),

@@ -24,7 +24,7 @@ enum class Branch : char { removed, open, stuck, slips, slips_without_strength }
 
 // Pairs are {normal, shear}.
 struct ContactNow {
-    joint::Coulomb law;
+    joint::Coulomb law; // its friction that of now, also where its bonds are broken
     Branch branch;
     double sign;           // of the slip
     Vector2d spring;       // u_n, u_s: the jump less the offset [m]

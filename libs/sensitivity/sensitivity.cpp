@@ -104,7 +104,9 @@ ContactNow Sensitivity::contact(const Assembly& assembly, std::size_t c) const
 {
     const mechanics::Contacts& contacts = assembly.contacts;
     const double slipped = contacts.state[c].slip - start_slip_[c];
-    return {contacts.law[c],
+    joint::Coulomb law = contacts.law[c];
+    law.tan_phi = law.tan_phi_of(contacts.state[c].is_broken);
+    return {law,
             contacts.status[c] == ContactStatus::removed ? Branch::removed : branch_[c],
             slipped < 0 ? -1.0 : 1.0,
             contacts.jump[c] - contacts.offset[c],

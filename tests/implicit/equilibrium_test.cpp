@@ -388,6 +388,45 @@ TEST(implicit_equilibrium, a_bond_that_need_not_break_is_whole_afterwards)
     EXPECT_GT(n_broken, 50);
 }
 
+// Joints that weaken at their first slip: in most cases there is an equilibrium, and it keeps to the law. Straight
+// from the start of it, every contact that is broken has to be.
+TEST(implicit_equilibrium, joints_that_weaken)
+{
+    std::mt19937 random(12);
+    std::uniform_real_distribution<double> from_0_to_1(0, 1);
+    const auto between = [&](double least, double most) {
+        return least + (most - least) * from_0_to_1(random);
+    };
+    int n_broken = 0, n_whole = 0, n_found = 0;
+    for (int i = 0; i < 60; ++i) {
+        const Vector2d side(between(1e5, 8e5), between(-1e5, 1e5)), top(0, between(-3e5, 0));
+        Section s = plate(side, top, 30 * deg, 5e4, between(1e4, 5e4), i % 3 == 0 ? 0.1 : 0.0);
+        for (joint::Coulomb& law : s.assembly.contacts.law) {
+            law.weakens = true;
+            law.residual_cohesion = 5e3;
+            law.residual_tan_phi = 0.4;
+        }
+        implicit::Engine engine;
+        if (!engine.equilibrate(s.assembly, settings()))
+            continue;
+        ++n_found;
+        const mechanics::Contacts& contacts = s.assembly.contacts;
+        for (std::size_t c = 0; c < contacts.state.size(); ++c) {
+            const joint::Coulomb& law = contacts.law[c];
+            joint::CoulombState state;
+            const Vector2d sprung = contacts.jump[c] - contacts.offset[c];
+            const joint::Response r = respond(law, state, contacts.initial_traction[c].x(),
+                                              contacts.initial_traction[c].y(), sprung.x(), sprung.y());
+            EXPECT_EQ(state.is_broken, contacts.state[c].is_broken) << i << ' ' << c;
+            EXPECT_NEAR(r.tau, contacts.traction[c].y(), 1) << i << ' ' << c;
+            (state.is_broken ? n_broken : n_whole) += 1;
+        }
+    }
+    EXPECT_GT(n_found, 30);
+    EXPECT_GT(n_broken, 200);
+    EXPECT_GT(n_whole, 200);
+}
+
 TEST(implicit_equilibrium, energy_is_accounted_for)
 {
     // A bar pulled at once: half of the work is stored, half would have to be damped.

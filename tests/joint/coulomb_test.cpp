@@ -101,6 +101,69 @@ TEST(coulomb, dilates_the_same_in_one_step_and_in_many_one_way)
     EXPECT_NEAR(often.dilation, once.dilation, 1e-5 * once.dilation);
 }
 
+// Peak 1e5 + 0.5 1e6, residual 2e4 + 0.3 1e6 Pa: the peak holds up to 1.2 mm and is gone for good beyond.
+TEST(coulomb, weakens_by_slip)
+{
+    Coulomb brittle = law;
+    brittle.weakens = true;
+    brittle.residual_cohesion = 2e4;
+    brittle.residual_tan_phi = 0.3;
+    CoulombState state;
+    EXPECT_DOUBLE_EQ(respond(brittle, state, -1e6, 0, 0, 1.2e-3).tau, 6e5);
+    EXPECT_FALSE(state.is_broken);
+    for (int again = 0; again < 2; ++again) {
+        const Response r = respond(brittle, state, -1e6, 0, 0, 1.21e-3);
+        EXPECT_TRUE(state.is_broken);
+        EXPECT_EQ(r.status, ContactStatus::slipping);
+        EXPECT_DOUBLE_EQ(r.tau, 3.2e5);
+        EXPECT_NEAR(state.slip, 1.21e-3 - 3.2e5 / 5e8, 1e-15);
+    }
+    // Back, and on again: at the residual strength now, and so under another pressure.
+    EXPECT_NEAR(respond(brittle, state, -1e6, 0, 0, 1e-3).tau, 3.2e5 - 2.1e-4 * 5e8, 1e-6);
+    EXPECT_DOUBLE_EQ(respond(brittle, state, -1e6, 0, 0, 5e-3).tau, 3.2e5);
+    EXPECT_DOUBLE_EQ(respond(brittle, state, -1e6, 0, -1e-3, 9e-3).tau, 2e4 + 0.3 * 2e6);
+    // No tension is left, either.
+    EXPECT_EQ(respond(brittle, state, -1e6, 0, 1.01e-3, 9e-3).status, ContactStatus::open);
+}
+
+TEST(coulomb, weakens_by_opening)
+{
+    Coulomb brittle = law;
+    brittle.weakens = true;
+    brittle.residual_cohesion = 2e4;
+    brittle.residual_tan_phi = 0.3;
+    CoulombState state;
+    EXPECT_EQ(respond(brittle, state, 0, 0, 6e-5, 0).status, ContactStatus::open);
+    EXPECT_DOUBLE_EQ(respond(brittle, state, 0, 0, -1e-3, 1e-2).tau, 2e4 + 0.3 * 1e6);
+}
+
+// Pulled by less than its tensile strength it slips, breaks, and so opens.
+TEST(coulomb, opens_where_it_weakens_under_tension)
+{
+    Coulomb brittle = law;
+    brittle.weakens = true;
+    brittle.residual_tan_phi = 0.3;
+    CoulombState state;
+    EXPECT_EQ(respond(brittle, state, 0, 0, 4e-5, 1e-3).status, ContactStatus::open);
+    CoulombState tough;
+    EXPECT_EQ(respond(law, tough, 0, 0, 4e-5, 1e-3).status, ContactStatus::slipping);
+}
+
+// Held apart it is pressed together as it dilates, with the residual strength from the first slip on.
+TEST(coulomb, dilates_with_its_residual_strength)
+{
+    Coulomb brittle = law;
+    brittle.weakens = true;
+    brittle.residual_tan_phi = 0.3;
+    brittle.tan_psi = 0.1;
+    CoulombState state;
+    const double slip = 4e-3, sigma_n = -1e6 - 1e9 * 0.1 * slip, tau = -0.3 * sigma_n;
+    const Response r = respond(brittle, state, -1e6, 0, 0, slip + tau / 5e8);
+    EXPECT_NEAR(state.slip, slip, 1e-15);
+    EXPECT_NEAR(r.sigma_n, sigma_n, 1e-6);
+    EXPECT_NEAR(r.tau, tau, 1e-6);
+}
+
 // Traction follows displacement without jumps, also where a joint that dilates opens.
 TEST(coulomb, opens_without_a_jump)
 {

@@ -173,6 +173,24 @@ TEST(Average, IsWhatAHandFinds)
     EXPECT_NEAR(std::tan(quarter.dilation_angle), .176899, 1e-6);
 }
 
+// The bridges' cohesion goes, and friction is the joint's; but never more than before.
+TEST(Average, LeavesTheJointsResidualStrength)
+{
+    EXPECT_FALSE(average(joint, rock, .25).residual);
+    Strength brittle = joint;
+    brittle.residual = ResidualStrength{.04 * MPa, 20 * deg};
+    const Strength quarter = average(brittle, rock, .25);
+    ASSERT_TRUE(quarter.residual);
+    EXPECT_DOUBLE_EQ(quarter.residual->cohesion, .01 * MPa);
+    EXPECT_DOUBLE_EQ(quarter.residual->friction_angle, 20 * deg);
+    EXPECT_DOUBLE_EQ(quarter.cohesion, average(joint, rock, .25).cohesion);
+    Strength soft = rock;
+    soft.friction_angle = 5 * deg;
+    const Strength weaker = average(brittle, soft, .25);
+    EXPECT_LT(weaker.friction_angle, 20 * deg);
+    EXPECT_EQ(weaker.residual->friction_angle, weaker.friction_angle);
+}
+
 TEST(Average, FallsWithPersistenceUnderAWeakerJoint)
 {
     Strength last = average(joint, rock, 0);

@@ -11,7 +11,7 @@ from chain import ChainTest, datasets, main
 KINDS = ["boundary", "joint", "welded"]
 LINE, POLYGON, TRIANGLE, VERTEX = 3, 7, 5, 1  # cell types of VTK
 EQUIVALENT = {"normal_stiffness": "Pa_per_m", "shear_stiffness": "Pa_per_m", "cohesion": "Pa", "friction_angle": "rad",
-              "tensile_strength": "Pa", "dilation_angle": "rad", "normal_kelvin_stiffness": "Pa_per_m", "shear_kelvin_stiffness": "Pa_per_m",
+              "tensile_strength": "Pa", "dilation_angle": "rad", "law": "", "residual_cohesion": "Pa", "residual_friction_angle": "rad", "normal_kelvin_stiffness": "Pa_per_m", "shear_kelvin_stiffness": "Pa_per_m",
               "normal_kelvin_viscosity": "Pa_s_per_m", "shear_kelvin_viscosity": "Pa_s_per_m",
               "normal_maxwell_viscosity": "Pa_s_per_m", "shear_maxwell_viscosity": "Pa_s_per_m"}
 

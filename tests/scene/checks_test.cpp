@@ -247,6 +247,21 @@ TEST(checks, dilation)
                 "tensile_strength_MPa");
 }
 
+TEST(checks, residual_strength)
+{
+    const std::string gouge = "[[joint_material]] \"gouge\" ";
+    expect_refused("residual_cohesion_MPa = 0.05", "residual_cohesion_MPa = 0.11",
+                   gouge + "residual_cohesion_MPa = 0.11: wanted at most cohesion_MPa");
+    expect_refused("residual_friction_angle_deg = 20", "residual_friction_angle_deg = 25.5",
+                   gouge + "residual_friction_angle_deg = 25.5: wanted at most friction_angle_deg");
+    expect_refused("residual_friction_angle_deg = 20", "residual_friction_angle_deg = 4",
+                   gouge + "residual_friction_angle_deg = 4: wanted at least dilation_angle_deg");
+    expect_part(refusal(replaced(text, "residual_cohesion_MPa = 0.05\n", "")), "residual");
+    expect_part(refusal(replaced(replaced(text, "dilation_angle_deg = 5\n", ""),
+                                 "shear_stiffness_MPa_per_m = 400\n", "shear_stiffness_MPa_per_m = 0\n")),
+                gouge + "residual_friction_angle_deg = 20: wanted none of a smooth joint");
+}
+
 TEST(checks, fine_zones)
 {
     const auto by = [](const std::string& corners) {
