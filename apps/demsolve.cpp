@@ -189,6 +189,11 @@ void report(const Network& network, const Scene& scene, const Analysis& analysis
     for (const auto& [joint, n] : analysis.beyond_strength())
         summary.add("warning: beyond strength in situ",
                     std::to_string(n) + " contacts of joint \"" + joint + "\"");
+    for (const auto& [rock, n] : analysis.yielded_in_situ())
+        summary.add("warning: beyond strength in situ",
+                    std::to_string(n) + " zones of rock \"" + rock + "\"");
+    for (const auto& [rock, n] : analysis.yielded())
+        summary.add("zones yielded since", std::to_string(n) + " of rock \"" + rock + "\"");
     summary.print();
 }
 

@@ -70,6 +70,11 @@ Engine engine_for(const Scene& scene, const Recording& recording)
     if (scene.equilibrium.engine == Engine::implicit_engine && recording.trace_every > 0)
         throw input_error("--trace records motion, which the implicit engine has none of");
     if (!recording.parameters.empty()) { // masses make no difference at rest
+        for (const Rock& rock : scene.rocks)
+            if (rock.law != RockLaw::elastic)
+                throw input_error(
+                    "sensitivities are those of elastic rock; wanted law = \"elastic\" of [[rock]] \"" +
+                    rock.name + "\"");
         if (scene.equilibrium.engine == Engine::explicit_engine || recording.trace_every > 0)
             throw input_error(
                 "sensitivities are found by factorisation; wanted an equilibrium.engine other than "
@@ -159,8 +164,9 @@ void Analysis::run()
 void Analysis::settle_in_situ()
 {
     observe_(0, "in-situ equilibrium");
-    if (!settles_nearby({}))
+    if (!settles_nearby({}, 0))
         settle_by_motion(0);
+    yielded_in_situ_ = yielded();
     const mechanics::Contacts& contacts = rock_.contacts;
     for (std::size_t c = 0; c < contacts.status.size(); ++c)
         if (contacts.status[c] != ContactStatus::stuck)
@@ -235,7 +241,7 @@ bool Analysis::step_to(double target, bool is_loaded)
             move *= 0.9 * (end - now_) / last_step_;
         if (halvings == most_halvings) { // all the way then, by motion
             settle_by_motion(end);
-        } else if (!settles_nearby(guess)) {
+        } else if (!settles_nearby(guess, end)) {
             ++halvings;
             end = halvings < most_halvings ? now_ + (end - now_) / 2 : target;
             if (sensitivity_)
@@ -304,7 +310,7 @@ void Analysis::excavate(const Stage& stage, Index number)
         const double held = 1 - static_cast<double>(done + increment) / n;
         for (std::size_t g = 0; g < load.size(); ++g)
             rock_.load[g] = load[g] + held * released[g];
-        if (!settles_nearby({})) {
+        if (!settles_nearby({}, now_)) {
             if (increment > 1) {
                 increment /= 2;
                 continue;
@@ -332,29 +338,69 @@ void Analysis::start_afresh()
         sensitivity_->start_afresh();
 }
 
-// Equilibrium by factorisation, if the engine is not the explicit one; false if there is none nearby.
-bool Analysis::settles_nearby(const std::vector<Vector2d>& guess)
+// Equilibrium by factorisation, if the engine is not the explicit one; false if there is none nearby. All
+// rock is elastic in it. Where some is beyond its strength in the end, motion goes on from there.
+bool Analysis::settles_nearby(const std::vector<Vector2d>& guess, double time)
 {
     if (engine_ == Engine::explicit_engine)
         return false;
+    rock_.zones.holds_yield = true;
     const auto found = implicit_.equilibrate(rock_, scene_.equilibrium, guess);
     ++effort_.searches;
     effort_.factorisations += implicit_.factorisations();
     effort_.solves += implicit_.solves();
     effort_.steps += implicit_.corrections();
-    if (found)
+    if (found) {
         certificate_ = *found;
+        if (const Index zone = weakest_zone(rock_); zone >= 0)
+            yield_by_motion(time, zone);
+    }
+    rock_.zones.holds_yield = false;
     return found.has_value();
 }
 
+// From an elastic equilibrium in which this zone is beyond its strength.
+void Analysis::yield_by_motion(double time, Index zone)
+{
+    rock_.zones.holds_yield = false;
+    if (engine_ == Engine::implicit_engine) {
+        const auto& [a, b, c] = result_.mesh.zone_gridpoint[zone];
+        const std::vector<Vector2d>& at = result_.mesh.gridpoint;
+        throw equilibrium_error("no elastic equilibrium on day " + shown(time / unit::day) +
+                                ": the rock at " + shown(Vector2d((at[a] + at[b] + at[c]) / 3)) +
+                                " yields (--engine auto would go on by motion)");
+    }
+    mechanics::Certificate elastic = certificate_;
+    const double beyond_strength = stored_energy(rock_);
+    find_forces(rock_);
+    const double lost = beyond_strength - stored_energy(rock_); // nothing has moved
+    elastic.stored -= lost;
+    elastic.dissipated += lost;
+    settle_by_motion(time, "rock yields");
+    certificate_.work_of_loads += elastic.work_of_loads;
+    certificate_.stored += elastic.stored;
+    certificate_.dissipated += elastic.dissipated;
+    certificate_.damped += elastic.damped;
+}
+
+std::map<std::string, Index> Analysis::yielded() const
+{
+    std::map<std::string, Index> zones;
+    for (std::size_t z = 0; z < rock_.zones.yielding_number.size(); ++z)
+        if (const Index number = rock_.zones.yielding_number[z];
+            number >= 0 && rock_.zones.is_present[z] && !rock_.zones.yielding[number].plastic.isZero(0))
+            ++zones[scene_.rocks[network_.blocks.block_rock[result_.mesh.zone_block[z]]].name];
+    return zones;
+}
+
 // Equilibrium by motion, if the engine is not the implicit one.
-void Analysis::settle_by_motion(double time)
+void Analysis::settle_by_motion(double time, const std::string& reason)
 {
     if (engine_ == Engine::implicit_engine)
         throw equilibrium_error("no equilibrium nearby on day " + shown(time / unit::day) + ": " +
                                 implicit_.reason() + " (--engine auto would go on by motion)");
     if (engine_ == Engine::automatic)
-        ++given_up_[implicit_.reason()];
+        ++given_up_[reason.empty() ? implicit_.reason() : reason];
     ++effort_.searches;
     double last = 0;
     const auto observe = [&](double since_start) {

@@ -58,6 +58,9 @@ public:
     }                                                                    // of the published scheme
     std::optional<double> end_of_creep() const { return end_of_creep_; } // where the stop rate ended it [s]
     const std::map<std::string, Index>& beyond_strength() const { return beyond_strength_; }
+    // Zones by rock: where it had yielded in situ, and where it has since.
+    const std::map<std::string, Index>& yielded_in_situ() const { return yielded_in_situ_; }
+    std::map<std::string, Index> yielded() const;
     const std::map<std::string, Index>& given_up() const { return given_up_; }
 
 private:
@@ -66,8 +69,9 @@ private:
     bool step_to(double target, bool is_loaded);
     bool is_slower_than(double rate) const;
     void excavate(const Stage& stage, Index number);
-    bool settles_nearby(const std::vector<mechanics::Vector2d>& guess);
-    void settle_by_motion(double time);
+    bool settles_nearby(const std::vector<mechanics::Vector2d>& guess, double time);
+    void settle_by_motion(double time, const std::string& reason = {}); // without one the implicit engine's
+    void yield_by_motion(double time, Index zone);
     void take_down_equilibrium();
     void take_down(const std::string& event, bool with_state);
     void start_afresh();
@@ -99,7 +103,8 @@ private:
     std::optional<StableLimit> stable_limit_;
     std::optional<double> end_of_creep_;           // [s]
     std::map<std::string, Index> beyond_strength_; // contacts by joint: what the in-situ stress breaks
-    std::map<std::string, Index> given_up_;        // equilibria by the implicit engine's reason
+    std::map<std::string, Index> yielded_in_situ_;
+    std::map<std::string, Index> given_up_; // equilibria by the implicit engine's reason
 };
 
 } // namespace jointcreep

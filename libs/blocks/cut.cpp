@@ -212,11 +212,56 @@ private:
         }
         if (scene_.cutting.dead_ends == DeadEnds::extend)
             carry_on(first_joint);
+        divide_by_parts(first_joint);
         std::vector<Source> sources;
         sources.reserve(lines_.size());
         for (const Line& line : lines_)
             sources.push_back(line.source);
         sources_ = Sources(std::move(sources));
+    }
+
+    // A single joint may lie on an earlier one, a part of it. In doubles two slanting lines hardly ever
+    // agree, and one beside the other would end at nothing; so the longer one goes through the ends of the
+    // parts.
+    void divide_by_parts(std::size_t first_joint)
+    {
+        const double off = reach_ / 2; // as merging has it
+        for (std::size_t whole = 0; whole < joints_.set.size(); ++whole) {
+            if (!is_single(static_cast<Index>(whole)))
+                continue;
+            const Vector2d start = joints_.from[whole], along = joints_.to[whole] - start;
+            std::vector<std::pair<double, Vector2d>> places; // along it
+            for (std::size_t part = whole + 1; part < joints_.set.size(); ++part) {
+                const Vector2d &from = joints_.from[part], &to = joints_.to[part];
+                if (!is_single(static_cast<Index>(part)) || from == to ||
+                    distance_to(start, joints_.to[whole], from) > off ||
+                    distance_to(start, joints_.to[whole], to) > off)
+                    continue;
+                for (const Vector2d& end : {from, to})
+                    places.emplace_back((end - start).dot(along), end);
+                move_line(first_joint + part, from, to);
+            }
+            std::sort(places.begin(), places.end(),
+                      [](const auto& a, const auto& b) { return a.first < b.first; });
+            Line& line = lines_[first_joint + whole];
+            const Vector2d from = line.from, to = line.to;
+            const Source source = line.source;
+            for (std::size_t i = 0; i < places.size(); ++i) {
+                const Vector2d& next = i + 1 < places.size() ? places[i + 1].second : to;
+                if (i == 0)
+                    move_line(first_joint + whole, from, places[0].second);
+                if (places[i].second != next)
+                    add_line(places[i].second, next, source);
+            }
+        }
+    }
+
+    void move_line(std::size_t line, const Vector2d& from, const Vector2d& to)
+    {
+        lines_[line].from = from;
+        lines_[line].to = to;
+        graph_.vertex[graph_.edge[line].first] = from;
+        graph_.vertex[graph_.edge[line].second] = to;
     }
 
     // Joints that end inside the section go on to the line they meet next.
@@ -228,12 +273,10 @@ private:
         const std::vector<Extension> extensions = extensions_to_next(
             drawn, first_joint, reach_, [&](const Vector2d& place) { return is_in_section(place); });
         for (std::size_t j = 0; j < extensions.size(); ++j) {
-            Line& line = lines_[first_joint + j];
+            const Line& line = lines_[first_joint + j];
             const Vector2d along = (joints_.to[j] - joints_.from[j]).normalized();
-            line.from -= extensions[j].before * along;
-            line.to += extensions[j].beyond * along;
-            graph_.vertex[graph_.edge[first_joint + j].first] = line.from;
-            graph_.vertex[graph_.edge[first_joint + j].second] = line.to;
+            move_line(first_joint + j, line.from - extensions[j].before * along,
+                      line.to + extensions[j].beyond * along);
             if (extensions[j].before > 0 || extensions[j].beyond > 0)
                 fates_.carry_on(static_cast<Index>(j));
             traces_.end_before(static_cast<Index>(j), extensions[j].before > 0, extensions[j].beyond > 0);
@@ -407,6 +450,13 @@ private:
         return -1;
     }
 
+    // Whether the joint is one of the scene's [[joint]] tables: after the sets, in the file's order.
+    bool is_single(Index joint) const
+    {
+        const std::size_t set = joints_.set[joint], first = scene_.joint_sets.size();
+        return set >= first && set < first + scene_.joints.size();
+    }
+
     void describe_edge(Blocks& blocks, Edge edge, std::array<Index, 2> sides)
     {
         EdgeKind kind = EdgeKind::welded;
@@ -432,7 +482,9 @@ private:
                 const Index j = sources_[s].index;
                 const double k = traces_.fraction(j, graph_.vertex[edge.first], graph_.vertex[edge.second],
                                                   2 * MergeLimits::farthest_closing * reach_);
-                if (joint < 0 || k > fraction) {
+                const bool is_alike =
+                    joint >= 0 && is_single(j) && is_single(joint) && std::abs(k - fraction) < 1e-6;
+                if (joint < 0 || (is_alike ? j > joint : k > fraction)) {
                     joint = j;
                     fraction = k;
                     own = blocks.share_joint.size();

@@ -12,7 +12,7 @@ namespace
 // How far a contact is open beyond where it touches; below 0: how much it is closed, springs and all [m].
 double opening_of(const mechanics::Contacts& contacts, std::size_t c)
 {
-    return contacts.initial_traction[c].x() / contacts.law[c].k_n + contacts.jump[c].x() -
+    return joint::opening(contacts.law[c], contacts.initial_traction[c].x()) + contacts.jump[c].x() -
            contacts.offset[c].x() - contacts.state[c].dilation;
 }
 

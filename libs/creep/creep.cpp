@@ -125,8 +125,8 @@ Eigen::Vector3d Creep::deviatoric(double bulk_modulus, double shear_modulus, con
 
 void Creep::set(mechanics::Assembly& assembly, const Spring& spring, double stiffness, double offset)
 {
-    joint::Coulomb& law = assembly.contacts.law[spring.contact];
-    (spring.direction == 0 ? law.k_n : law.k_s) = stiffness;
+    joint::Law& law = assembly.contacts.law[spring.contact];
+    (spring.direction == 0 ? joint::k_n(law) : joint::k_s(law)) = stiffness;
     assembly.contacts.offset[spring.contact][spring.direction] = offset;
 }
 

@@ -278,6 +278,9 @@ std::string joints_vtu(const Network& network, const EquivalentJoints* equivalen
         grid.add("law", picked(equivalent->law, edges));
         grid.add("residual_cohesion", picked(equivalent->residual_cohesion, edges));
         grid.add("residual_friction_angle", picked(equivalent->residual_friction_angle, edges));
+        grid.add("roughness", picked(equivalent->roughness, edges));
+        grid.add("wall_strength", picked(equivalent->wall_strength, edges));
+        grid.add("largest_closure", picked(equivalent->largest_closure, edges));
     }
     grid.open("Points");
     grid.add("position", blocks.vertex);
@@ -329,6 +332,15 @@ std::string zones_vtu(const Network& network, const Result& result, std::size_t 
     grid.add("stress_xx", component(stress, 0));
     grid.add("stress_yy", component(stress, 1));
     grid.add("stress_xy", component(stress, 2));
+    if (const std::size_t n = states.yielding_zone.size(); n > 0) {
+        std::vector<Eigen::Vector3d> of_zone(zones, Eigen::Vector3d::Zero());
+        for (std::size_t i = 0; i < n; ++i)
+            of_zone[states.yielding_zone[i]] = states.plastic_strain[state * n + i];
+        const auto plastic = picked(of_zone, present);
+        grid.add("plastic_strain_xx", component(plastic, 0));
+        grid.add("plastic_strain_yy", component(plastic, 1));
+        grid.add("plastic_strain_xy", component(plastic, 2));
+    }
     grid.open("Points");
     grid.add("position", picked(mesh.gridpoint, gridpoints));
     grid.cells(connectivity, offsets_of(present.size(), 3), triangle);

@@ -53,8 +53,9 @@ void Engine::take_states(const Assembly& assembly, const State& start, bool firs
             now = contacts.traction[c].y() > 0 ? Active::slips_forward : Active::slips_backward;
         const bool turns_round = (now == Active::slips_forward && active_[c] == Active::slips_backward) ||
                                  (now == Active::slips_backward && active_[c] == Active::slips_forward);
-        const bool breaks = contacts.law[c].weakens ? contacts.state[c].is_broken && !broken_[c]
-                                                    : now == Active::open && active_[c] != Active::open;
+        const bool breaks = weakens_by_slip(contacts.law[c])
+                                ? contacts.state[c].is_broken && !broken_[c]
+                                : now == Active::open && active_[c] != Active::open;
         if (!first && breaks && !start.joint[c].is_broken && !breaks_[c] && ++openings_[c] >= 2)
             breaks_[c] = 1;
         active_[c] = turns_round && !first ? Active::stuck : now;
@@ -69,7 +70,7 @@ std::vector<Tangent> Engine::tangents(const Assembly& assembly, double softness)
     const mechanics::Contacts& contacts = assembly.contacts;
     std::vector<Tangent> all(active_.size());
     for (std::size_t c = 0; c < all.size(); ++c) {
-        const joint::Coulomb& law = contacts.law[c];
+        const joint::Slopes law = slopes(contacts.law[c], contacts.state[c], contacts.traction[c].x());
         const double soft_shear = softness * (law.k_s > 0 ? law.k_s : law.k_n);
         switch (active_[c]) {
         case Active::open:
@@ -80,13 +81,12 @@ std::vector<Tangent> Engine::tangents(const Assembly& assembly, double softness)
             break;
         default: {
             // The flow rule leaves k_n k_s / (k_s + k_n tan(phi) tan(psi)) of the normal stiffness.
-            const double tan_phi = law.tan_phi_of(contacts.state[c].is_broken);
-            const double dilatant = law.k_n * tan_phi * law.tan_psi;
+            const double dilatant = law.k_n * law.tan_phi * law.tan_psi;
             const double k = law.k_s > 0 && dilatant > 0 ? law.k_n * law.k_s / (law.k_s + dilatant) : law.k_n;
             const double sliding = (1 - softness) * (active_[c] == Active::slips_forward ? -k : k);
             const double tan_psi = law.k_s > 0 ? law.tan_psi : 0;
-            all[c] = {k + softness * (law.k_n - k), soft_shear + (1 - softness) * k * tan_phi * tan_psi,
-                      sliding * tan_phi, sliding * tan_psi};
+            all[c] = {k + softness * (law.k_n - k), soft_shear + (1 - softness) * k * law.tan_phi * tan_psi,
+                      sliding * law.tan_phi, sliding * tan_psi};
         }
         }
     }
@@ -180,10 +180,11 @@ bool Engine::break_bonds(const Assembly& assembly, const State& start)
 {
     bool breaks = false;
     for (std::size_t c = 0; c < breaks_.size(); ++c) {
-        const joint::Coulomb& law = assembly.contacts.law[c];
+        const joint::Law& law = assembly.contacts.law[c];
         const bool is_open = assembly.contacts.status[c] == ContactStatus::open;
-        const bool changes = law.weakens ? assembly.contacts.state[c].is_broken != (broken_[c] != 0)
-                                         : is_open != (active_[c] == Active::open) && law.cohesion > 0;
+        const bool changes = weakens_by_slip(law)
+                                 ? assembly.contacts.state[c].is_broken != (broken_[c] != 0)
+                                 : is_open != (active_[c] == Active::open) && cohesion(law) > 0;
         if (assembly.contacts.status[c] != ContactStatus::removed && changes && !breaks_[c] &&
             !start.joint[c].is_broken) {
             breaks_[c] = 1;

@@ -37,7 +37,7 @@ VectorXd Engine::solve_linear(const Assembly& assembly, const std::vector<Tangen
         return x;
     std::vector<Tangent> firm = tangents; // a Cholesky factor does not know slip
     for (std::size_t c = 0; c < firm.size(); ++c) {
-        const joint::Coulomb& law = assembly.contacts.law[c];
+        const auto& law = std::get<joint::Coulomb>(assembly.contacts.law[c]); // sensitivities know no other
         if (firm[c].normal == 0)
             firm[c].normal = soft * law.k_n;
         if (firm[c].shear == 0)

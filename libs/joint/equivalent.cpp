@@ -311,8 +311,8 @@ EquivalentJoints without_joints(std::size_t edges, std::size_t kelvin_units)
     for (std::vector<double>* const list :
          {&joints.normal_stiffness, &joints.shear_stiffness, &joints.cohesion, &joints.friction_angle,
           &joints.tensile_strength, &joints.dilation_angle, &joints.residual_cohesion,
-          &joints.residual_friction_angle, &joints.normal_maxwell_viscosity, &joints.shear_maxwell_viscosity,
-          &joints.persistence})
+          &joints.residual_friction_angle, &joints.roughness, &joints.wall_strength, &joints.largest_closure,
+          &joints.normal_maxwell_viscosity, &joints.shear_maxwell_viscosity, &joints.persistence})
         list->assign(edges, 0.0);
     for (std::vector<double>* const list : {&joints.normal_kelvin_stiffness, &joints.shear_kelvin_stiffness,
                                             &joints.normal_kelvin_viscosity, &joints.shear_kelvin_viscosity})
@@ -359,6 +359,16 @@ void set_joint(EquivalentJoints& joints, std::size_t edge, const Stiffnesses::Fo
     }
     joints.normal_maxwell_viscosity[edge] = normal.maxwell_viscosity;
     joints.shear_maxwell_viscosity[edge] = shear.maxwell_viscosity;
+}
+
+void set_walls(EquivalentJoints& joints, std::size_t edge, const JointMaterial& material)
+{
+    if (!material.walls)
+        return;
+    joints.law[edge] = static_cast<Index>(JointLaw::barton_bandis);
+    joints.roughness[edge] = material.walls->roughness;
+    joints.wall_strength[edge] = material.walls->strength;
+    joints.largest_closure[edge] = material.walls->largest_closure;
 }
 
 // Sums of strengths times lengths.
@@ -483,7 +493,14 @@ EquivalentJoints average_strength(const Scene& scene, const Network& network)
                 length * Eigen::Vector2d(material.normal_stiffness, material.shear_stiffness);
             sum.stiffness += length * Eigen::Vector2d(found.chain[0].spring, found.chain[1].spring);
             sum.limited += found.is_limited ? length : 0.0;
+            if (material.walls && share.persistence < 1 - rounding)
+                throw input_error("joint set \"" + set_name(network, edge) + "\" leaves rock bridges, " +
+                                  shown(1 - share.persistence) + " of " + place_of(network.blocks, edge) +
+                                  ", and its joint material \"" + material.name +
+                                  "\" is one of Barton-Bandis, which has no average with rock; wanted a "
+                                  "persistence of 1");
             set_joint(joints, edge, found, strength, share.persistence);
+            set_walls(joints, edge, material);
         } else if (blocks.edge_kind[edge] == static_cast<Index>(EdgeKind::boundary) &&
                    blocks.edge_boundary[edge] >= 0) {
             const std::string& name = scene.boundaries[blocks.edge_boundary[edge]].joint;
@@ -491,6 +508,7 @@ EquivalentJoints average_strength(const Scene& scene, const Network& network)
                 continue;
             const JointMaterial& material = by_name(scene.joint_materials, name, "joint material");
             set_joint(joints, edge, stiffnesses.of(edge, material, {1, 0, 0}), strength_of(material), 1);
+            set_walls(joints, edge, material);
         }
     }
     joints.sets = averages_of(scene, network, joints.pieces, lines, sums);

@@ -41,8 +41,9 @@ Strength average(const Strength& joint, const Strength& rock, double persistence
 // A stiffness is at most ten times that of a zone beside the edge, E (1 - nu) / ((1 + nu) (1 - 2 nu)) over
 // the zone size, or the joint's own: rock bridges alone would be infinitely stiff. An edge that is all joint
 // has the joint's stiffness whatever the rule, and so has a boundary edge that rests on a joint, with its
-// strength too. Throws input_error where bridges run through rock without strength, where they make a joint
-// dilate by more than its residual friction, or names are not in the scene.
+// strength too. Throws input_error where a joint with walls (Barton-Bandis) has bridges, where bridges run
+// through rock without strength, where they make a joint dilate by more than its residual friction, or names
+// are not in the scene.
 EquivalentJoints average_strength(const Scene& scene, const Network& network);
 
 } // namespace jointcreep

@@ -2,6 +2,7 @@
 
 #include "model/signs.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 
@@ -17,6 +18,8 @@ void add_zones(Assembly& assembly, const Scene& scene, const Network& network, c
     const std::size_t n = mesh.zone_gridpoint.size();
     zones.gridpoint = mesh.zone_gridpoint;
     zones.is_present.assign(n, 1);
+    const bool any_yields = std::any_of(scene.rocks.begin(), scene.rocks.end(),
+                                        [](const Rock& rock) { return rock.law == RockLaw::mohr_coulomb; });
     for (std::size_t z = 0; z < n; ++z) {
         std::array<Vector2d, 3> p;
         for (int i = 0; i < 3; ++i)
@@ -36,7 +39,17 @@ void add_zones(Assembly& assembly, const Scene& scene, const Network& network, c
         zones.mass.push_back(rock.density * twice_area / 2);
         zones.weight.push_back(rock.density * twice_area / 2 * scene.gravity);
         zones.stiffness.emplace_back(factor * (1 - nu), factor * nu, E / (2 * (1 + nu)));
-        zones.initial_stress.push_back(scene.in_situ_stress.at((p[0] + p[1] + p[2]) / 3));
+        const Vector3d initial = scene.in_situ_stress.at((p[0] + p[1] + p[2]) / 3);
+        zones.initial_stress.push_back(initial);
+        const bool yields = rock.law == RockLaw::mohr_coulomb;
+        if (any_yields)
+            zones.yielding_number.push_back(yields ? static_cast<Index>(zones.yielding.size()) : -1);
+        // No scene says what acts across the section: the mean is never the largest or the smallest.
+        if (yields)
+            zones.yielding.push_back(
+                {.law = MohrCoulomb::of(rock.strength->cohesion, rock.strength->friction_angle,
+                                        rock.strength->tensile_strength, rock.dilation_angle),
+                 .initial_zz = (initial[0] + initial[1]) / 2});
     }
     zones.stress = zones.initial_stress;
     assembly.zone_force.resize(n);
@@ -51,11 +64,16 @@ void add_contacts(Assembly& assembly, const Scene& scene, const EquivalentJoints
     contacts.length = mesh.contact_length;
     for (std::size_t c = 0; c < n; ++c) {
         const Index e = mesh.contact_edge[c];
-        contacts.law.push_back({joints.normal_stiffness[e], joints.shear_stiffness[e], joints.cohesion[e],
-                                std::tan(joints.friction_angle[e]), joints.tensile_strength[e],
-                                std::tan(joints.dilation_angle[e]),
-                                joints.law[e] == static_cast<Index>(JointLaw::residual),
-                                joints.residual_cohesion[e], std::tan(joints.residual_friction_angle[e])});
+        if (joints.law[e] == static_cast<Index>(JointLaw::barton_bandis))
+            contacts.law.push_back(joint::BartonBandis{joints.normal_stiffness[e], joints.shear_stiffness[e],
+                                                       joints.largest_closure[e], joints.friction_angle[e],
+                                                       joints.roughness[e], joints.wall_strength[e]});
+        else
+            contacts.law.push_back(joint::Coulomb{
+                joints.normal_stiffness[e], joints.shear_stiffness[e], joints.cohesion[e],
+                std::tan(joints.friction_angle[e]), joints.tensile_strength[e],
+                std::tan(joints.dilation_angle[e]), joints.law[e] == static_cast<Index>(JointLaw::residual),
+                joints.residual_cohesion[e], std::tan(joints.residual_friction_angle[e])});
         const Vector3d stress = scene.in_situ_stress.at(mesh.contact_centre[c]);
         const Vector2d normal = mesh.contact_normal[c], tangent = along(normal);
         const Vector2d pull(stress[0] * normal.x() + stress[2] * normal.y(),
@@ -71,11 +89,20 @@ void add_contacts(Assembly& assembly, const Scene& scene, const EquivalentJoints
     assembly.contact_force.resize(n);
 }
 
-// What a contact's springs hold at a traction [J/m].
-double stored_in(const joint::Coulomb& law, const Vector2d& traction, double length)
+Vector3d stress_of_yielding(Zones& zones, std::size_t z, const Vector3d& strain)
 {
-    const double shear = law.k_s > 0 ? traction.y() * traction.y() / law.k_s : 0.0;
-    return length / 2 * (traction.x() * traction.x() / law.k_n + shear);
+    YieldingZone& zone = zones.yielding[zones.yielding_number[z]];
+    if (!zones.holds_yield)
+        return yielded(zone, zones.stiffness[z], zones.initial_stress[z], zones.stress[z], strain);
+    const Eigen::Vector4d s = elastic_stress(zone, zones.stiffness[z], zones.initial_stress[z], strain);
+    zone.stress_zz = s[3];
+    return s.head<3>();
+}
+
+// What a contact's springs hold at a traction [J/m].
+double stored_in(const joint::Law& law, const Vector2d& traction, double length)
+{
+    return length * joint::stored(law, traction.x(), traction.y());
 }
 
 // Lists of (item, corner) per gridpoint, in the order of items.
@@ -157,6 +184,7 @@ void find_forces(Assembly& assembly)
     const Incidence& incidence = assembly.incidence;
     const std::vector<Vector2d>& u = assembly.displacement;
     const double damping = assembly.stiffness_damping_rate;
+    const bool any_yields = !zones.yielding.empty();
 
 #pragma omp parallel num_threads(assembly.threads) if (assembly.threads > 1)
     {
@@ -174,8 +202,10 @@ void find_forces(Assembly& assembly)
                 gxy += gradient[i].y() * ui.x() + gradient[i].x() * ui.y();
             }
             const Vector3d& c = zones.stiffness[z];
-            const Vector3d stress = zones.initial_stress[z] +
-                                    Vector3d(c[0] * exx + c[1] * eyy, c[1] * exx + c[0] * eyy, c[2] * gxy);
+            Vector3d stress = zones.initial_stress[z] +
+                              Vector3d(c[0] * exx + c[1] * eyy, c[1] * exx + c[0] * eyy, c[2] * gxy);
+            if (any_yields && zones.yielding_number[z] >= 0)
+                stress = stress_of_yielding(zones, z, {exx, eyy, gxy});
             zones.stress[z] = stress;
             Vector3d acting = stress;
             if (damping > 0) {
@@ -194,7 +224,7 @@ void find_forces(Assembly& assembly)
             const auto [a, b] = contacts.gridpoint[c];
             const Vector2d normal = contacts.normal[c], tangent = along(normal);
             const Vector2d jump = u[b] - u[a];
-            const joint::Coulomb& law = contacts.law[c];
+            const joint::Law& law = contacts.law[c];
             const Vector2d last_jump = contacts.jump[c], last = contacts.traction[c];
             contacts.jump[c] = {jump.dot(normal), jump.dot(tangent)};
             const Vector2d sprung = contacts.jump[c] - contacts.offset[c];
@@ -235,6 +265,43 @@ void find_forces(Assembly& assembly)
     }
 }
 
+Index weakest_zone(const Assembly& assembly)
+{
+    const Zones& zones = assembly.zones;
+    Index weakest = -1;
+    double most = 0;
+    for (std::size_t z = 0; z < zones.yielding_number.size(); ++z) {
+        if (zones.yielding_number[z] < 0 || !zones.is_present[z])
+            continue;
+        const YieldingZone& zone = zones.yielding[zones.yielding_number[z]];
+        const Vector3d& s = zones.stress[z];
+        if (const double beyond = excess(zone.law, {s[0], s[1], s[2], zone.stress_zz}); beyond > most) {
+            most = beyond;
+            weakest = static_cast<Index>(z);
+        }
+    }
+    return weakest;
+}
+
+double dissipated_energy(const Assembly& assembly)
+{
+    double sum = 0;
+    for (const double lost : assembly.contacts.dissipated)
+        sum += lost;
+    for (std::size_t z = 0; z < assembly.zones.yielding_number.size(); ++z)
+        if (assembly.zones.yielding_number[z] >= 0)
+            sum += assembly.zones.area[z] *
+                   assembly.zones.yielding[assembly.zones.yielding_number[z]].dissipated;
+    return sum;
+}
+
+void forget_dissipated_energy(Assembly& assembly)
+{
+    std::fill(assembly.contacts.dissipated.begin(), assembly.contacts.dissipated.end(), 0.0);
+    for (YieldingZone& zone : assembly.zones.yielding)
+        zone.dissipated = 0;
+}
+
 double stored_energy(const Assembly& assembly)
 {
     const Zones& zones = assembly.zones;
@@ -243,6 +310,11 @@ double stored_energy(const Assembly& assembly)
     for (std::size_t z = 0; z < zones.gridpoint.size(); ++z) {
         if (!zones.is_present[z])
             continue;
+        if (!zones.yielding.empty() && zones.yielding_number[z] >= 0) {
+            energy += zones.area[z] * stored(zones.stiffness[z], zones.stress[z],
+                                             zones.yielding[zones.yielding_number[z]].stress_zz);
+            continue;
+        }
         // s . C^-1 s / 2, plane strain.
         const Vector3d &s = zones.stress[z], &c = zones.stiffness[z];
         const double determinant = c[0] * c[0] - c[1] * c[1];
@@ -342,14 +414,18 @@ void start_from_here(Assembly& assembly)
     Contacts& contacts = assembly.contacts;
     for (std::size_t c = 0; c < contacts.gridpoint.size(); ++c) {
         // An open contact keeps its gap as the tension its spring would have.
-        const double normal = contacts.initial_traction[c].x() +
-                              contacts.law[c].k_n * (contacts.jump[c].x() - contacts.offset[c].x() -
-                                                     contacts.state[c].dilation);
+        const double normal = joint::normal_traction(contacts.law[c], contacts.initial_traction[c].x(),
+                                                     contacts.jump[c].x() - contacts.offset[c].x() -
+                                                         contacts.state[c].dilation);
         contacts.initial_traction[c] = {normal, contacts.traction[c].y()};
         contacts.state[c].slip = contacts.state[c].dilation = 0;
         contacts.offset[c].setZero();
     }
     assembly.zones.initial_stress = assembly.zones.stress;
+    for (YieldingZone& zone : assembly.zones.yielding) {
+        zone.initial_zz = zone.stress_zz;
+        zone.plastic.setZero();
+    }
     assembly.displacement.assign(assembly.displacement.size(), Vector2d::Zero());
     find_forces(assembly);
 }
@@ -357,8 +433,8 @@ void start_from_here(Assembly& assembly)
 State state_of(const Assembly& assembly)
 {
     const Contacts& contacts = assembly.contacts;
-    return {assembly.displacement, contacts.offset, contacts.traction,    contacts.jump,
-            contacts.state,        contacts.status, assembly.zones.stress};
+    return {assembly.displacement, contacts.offset, contacts.traction,     contacts.jump,
+            contacts.state,        contacts.status, assembly.zones.stress, assembly.zones.yielding};
 }
 
 void go_back(Assembly& assembly, const State& state)
@@ -371,6 +447,7 @@ void go_back(Assembly& assembly, const State& state)
     contacts.state = state.joint;
     contacts.status = state.status;
     assembly.zones.stress = state.stress;
+    assembly.zones.yielding = state.yielding;
 }
 
 std::vector<double> stiffness_row_sums(const Assembly& assembly)
@@ -390,9 +467,10 @@ std::vector<double> stiffness_row_sums(const Assembly& assembly)
         if (contacts.status[c] == ContactStatus::removed)
             continue;
         const Vector2d n = contacts.normal[c].cwiseAbs(), t(n.y(), n.x());
+        const joint::Slopes law = joint::slopes(contacts.law[c], contacts.state[c], contacts.traction[c].x());
+        const double k_n = (joint::is_linear(contacts.law[c]) ? 1 : room_to_stiffen) * law.k_n;
         const Vector2d row =
-            2 * contacts.length[c] *
-            (contacts.law[c].k_n * n * (n.x() + n.y()) + contacts.law[c].k_s * t * (t.x() + t.y()));
+            2 * contacts.length[c] * (k_n * n * (n.x() + n.y()) + law.k_s * t * (t.x() + t.y()));
         for (const Index g : contacts.gridpoint[c])
             sums[g] += row;
     }

@@ -3,7 +3,8 @@
 
 #pragma once
 
-#include "joint/coulomb.hpp"
+#include "joint/law.hpp"
+#include "mechanics/mohr_coulomb.hpp"
 #include "model/network.hpp"
 #include "model/result.hpp"
 #include "model/scene.hpp"
@@ -20,7 +21,7 @@ namespace jointcreep::mechanics
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-// Zones: constant-strain triangles, elastic, plane strain, small strain.
+// Zones: constant-strain triangles, elastic or yielding, plane strain, small strain.
 struct Zones {
     std::vector<std::array<Index, 3>> gridpoint;
     std::vector<std::array<Vector2d, 3>> gradient; // of each corner's shape function [1/m]
@@ -32,6 +33,11 @@ struct Zones {
     std::vector<Vector3d> stress;                  // now [Pa]
     std::vector<Vector3d> last_stress;             // before; kept only with stiffness damping [Pa]
     std::vector<char> is_present;
+
+    // Of rock that yields; empty where none does.
+    std::vector<Index> yielding_number; // into yielding, of every zone; -1 elastic
+    std::vector<YieldingZone> yielding;
+    bool holds_yield = false; // all rock is elastic for now, from the plastic strain it has
 };
 
 // Contacts: springs between two gridpoints that a joint has split. Pairs are {normal, shear}.
@@ -39,7 +45,7 @@ struct Contacts {
     std::vector<std::array<Index, 2>> gridpoint; // {on side a, on side b}
     std::vector<Vector2d> normal;                // unit, from a to b
     std::vector<double> length;                  // [m]
-    std::vector<joint::Coulomb> law;
+    std::vector<joint::Law> law;
     std::vector<joint::CoulombState> state;
     std::vector<Vector2d>
         initial_traction;              // at zero displacement; where open, the normal part is k_n x gap [Pa]
@@ -101,6 +107,13 @@ void part_ties(Assembly& assembly, Index stage);
 // their states: calling it again changes nothing more.
 void find_forces(Assembly& assembly);
 
+// The zone that is farthest beyond its strength, where yield is held; -1 if none is.
+Index weakest_zone(const Assembly& assembly);
+
+// What contacts and yielding zones have lost, summed up by find_forces since it was forgotten [J/m].
+double dissipated_energy(const Assembly& assembly);
+void forget_dissipated_energy(Assembly& assembly);
+
 // Energy that zones and contacts have stored [J/m]; only differences mean anything.
 double stored_energy(const Assembly& assembly);
 
@@ -143,12 +156,15 @@ struct State {
     std::vector<joint::CoulombState> joint;
     std::vector<ContactStatus> status;
     std::vector<Vector3d> stress;
+    std::vector<YieldingZone> yielding;
 };
 State state_of(const Assembly& assembly);
 void go_back(Assembly& assembly, const State& state);
 
 // Row sums of the stiffness matrix's magnitudes, the larger of x and y, of every gridpoint [Pa]: no
-// eigenvalue of stiffness over mass is above the largest row sum over its mass (Gershgorin).
+// eigenvalue of stiffness over mass is above the largest row sum over its mass (Gershgorin). Where joints
+// grow stiffer as they close the normal stiffness is taken as this many times that of now.
+inline constexpr double room_to_stiffen = 2;
 std::vector<double> stiffness_row_sums(const Assembly& assembly);
 
 // Mass of every gridpoint: a third of each present zone around it [kg/m].

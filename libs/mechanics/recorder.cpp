@@ -152,6 +152,13 @@ void Recorder::record_state(Result& result, double time, const std::string& even
     append(states.jump, assembly.contacts.jump);
     for (const ContactStatus status : assembly.contacts.status)
         states.contact_status.push_back(static_cast<Index>(status));
+    states.yielding_zone.clear();
+    for (std::size_t z = 0; z < assembly.zones.yielding_number.size(); ++z)
+        if (const Index number = assembly.zones.yielding_number[z]; number >= 0) {
+            const Eigen::Vector4d& plastic = assembly.zones.yielding[number].plastic;
+            states.yielding_zone.push_back(static_cast<Index>(z));
+            states.plastic_strain.emplace_back(plastic[0], plastic[1], plastic[3] / 2);
+        }
 }
 
 void Recorder::record_equilibrium(Result& result, double time, const Certificate& certificate,

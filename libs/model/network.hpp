@@ -157,8 +157,9 @@ struct SetAverages {
 
 // What a joint does at once, creep apart (libs/joint/law.hpp).
 enum class JointLaw : Index {
-    coulomb = 0, // its bonds break by opening only
-    residual = 1 // by slip, too, and leave the residual strength
+    coulomb = 0,  // its bonds break by opening only
+    residual = 1, // by slip, too, and leave the residual strength
+    barton_bandis = 2
 };
 
 // The equivalent continuous joint of every joint edge, and of every boundary edge that rests on a joint;
@@ -178,6 +179,11 @@ struct EquivalentJoints {
     std::vector<Index> law{};                      // JointLaw
     std::vector<double> residual_cohesion{};       // 0 where the law has none [Pa]
     std::vector<double> residual_friction_angle{}; // 0 where the law has none [rad]
+    // Of Barton and Bandis, 0 elsewhere; the normal stiffness is that without pressure, the friction angle
+    // phi_r.
+    std::vector<double> roughness{};       // [-]
+    std::vector<double> wall_strength{};   // [Pa]
+    std::vector<double> largest_closure{}; // [m]
 
     // What was averaged, and with which persistence; 0 without joint [-].
     std::vector<double> persistence{};

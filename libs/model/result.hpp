@@ -59,6 +59,9 @@ struct States {
     std::vector<Eigen::Vector2d>
         jump; // [state, contact] displacement of side b minus side a {normal, shear} [m]
     std::vector<Index> contact_status; // [state, contact] ContactStatus
+    std::vector<Index> yielding_zone;  // zones of rock that yields
+    std::vector<Eigen::Vector3d>
+        plastic_strain; // [state, yielding zone] {xx, yy, xy} since the in-situ equilibrium [-]
 };
 
 // How every equilibrium was reached, one row each.

@@ -32,8 +32,13 @@ struct ShearKelvin {
     double viscosity; // [Pa s]
 };
 
-// Intact rock: elastic, plane strain. Its strength is that of the rock bridges. It creeps in shear only: its
-// volume stays elastic.
+enum class RockLaw {
+    elastic,
+    mohr_coulomb // elastic up to its strength, then perfectly plastic (libs/mechanics/mohr_coulomb.hpp)
+};
+
+// Intact rock, in plane strain. Its strength is that of the rock bridges, and its own where it yields. It
+// creeps in shear only: its volume stays elastic.
 struct Rock {
     std::string name;
     double density;                       // [kg/m3]
@@ -42,7 +47,8 @@ struct Rock {
     std::optional<RockStrength> strength; // needed where a joint set leaves rock bridges
     std::optional<ShearKelvin> kelvin{};
     std::optional<double> maxwell_viscosity{}; // of a dashpot in series, in shear [Pa s]
-    double dilation_angle = 0;                 // of the rock bridges, beside their strength [rad]
+    double dilation_angle = 0;                 // beside the strength [rad]
+    RockLaw law = RockLaw::elastic;
 };
 
 // One Kelvin unit, spring beside dashpot, per direction.
@@ -65,6 +71,13 @@ struct ResidualStrength {
     double friction_angle; // [rad]
 };
 
+// What Barton and Bandis ask for (libs/joint/barton_bandis.hpp).
+struct JointWalls {
+    double roughness;       // JRC [-]
+    double strength;        // JCS [Pa]
+    double largest_closure; // V_m [m]
+};
+
 // The open part of a joint.
 struct JointMaterial {
     std::string name;
@@ -77,6 +90,7 @@ struct JointMaterial {
     std::optional<Maxwell> maxwell{}; // without either the joint does not creep
     double dilation_angle = 0;        // [rad]
     std::optional<ResidualStrength> residual{}; // without it slip alone weakens nothing
+    std::optional<JointWalls> walls{};          // with them the law is Barton and Bandis's
 };
 
 // What the joints of a set are (libs/sampling/joint_sets.hpp).

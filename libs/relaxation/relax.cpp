@@ -58,38 +58,22 @@ public:
         if (settings.damping == Damping::mass && settings.masses == Masses::scaled)
             throw input_error("equilibrium: damping \"mass\" needs masses = \"real\"; scaled masses have no "
                               "frequency of their own");
-        const double local = settings.damping == Damping::local ? 1 + settings.local_damping : 1.0;
-        if (settings.masses == Masses::real) {
-            mass_ = lumped_masses(assembly);
-            double highest = 0; // frequency squared
-            for (std::size_t g = 0; g < mass_.size(); ++g)
-                if (mass_[g] > 0)
-                    highest = std::max(highest, row_sums[g] / mass_[g]);
-            // Stiffness damping shortens the stable step: (2 / w) (sqrt(1 + xi^2) - xi), xi = beta w / 2.
-            const double xi = settings.stiffness_damping * std::sqrt(highest) / 2;
-            dt_ = safety * 2 / std::sqrt(highest * local) * (std::sqrt(1 + xi * xi) - xi);
-        } else {
-            dt_ = 1;
-            for (const double sum : row_sums)
-                mass_.push_back(sum * local / (4 * safety * safety));
-        }
-        for (double& m : mass_)
-            m = m > 0 ? 1 / m : 0.0; // from here on inverse; gridpoints without any rock do not move
+        take_stiffness(row_sums);
         too_far_ = size_of(assembly) / 10;
         const std::size_t n_chunks = (assembly.position.size() + chunk - 1) / chunk;
         energy_.resize(n_chunks);
         quotient_.resize(n_chunks);
         damped_.resize(n_chunks);
-        assembly.stiffness_damping_rate = settings.stiffness_damping / dt_;
         if (settings.stiffness_damping > 0)
             assembly.zones.last_stress = assembly.zones.stress;
-        std::fill(assembly.contacts.dissipated.begin(), assembly.contacts.dissipated.end(), 0.0);
+        forget_dissipated_energy(assembly);
         stored_at_start_ = stored_energy(assembly);
         if (settings.damping == Damping::adaptive)
             last_force_ = assembly.force;
     }
 
-    double dt() const { return dt_; }
+    // Of the solver, since this began [s].
+    double time() const { return time_before_ + steps_since_ * dt_; }
 
     void step()
     {
@@ -141,6 +125,9 @@ public:
         if (adaptive)
             alpha_ = energy > 0 && work > 0 ? std::min(2 * std::sqrt(work / (dt_ * energy)), 1.9 / dt_) : 0.0;
         find_forces(a_);
+        ++steps_since_;
+        if (!stiffening_.empty())
+            follow_stiffness();
     }
 
     // Throws if a piece of rock is on its way: far already, or steadily.
@@ -172,8 +159,7 @@ public:
         a_.stiffness_damping_rate = 0;
         find_forces(a_);
         certificate.stored = stored_energy(a_) - stored_at_start_;
-        for (const double lost : a_.contacts.dissipated)
-            certificate.dissipated += lost;
+        certificate.dissipated = dissipated_energy(a_);
         certificate.work_of_loads = work_of_loads(a_, start_);
         // Stiffness damping works inside zones and contacts, unseen by the gridpoints' motion: it takes what
         // is missing.
@@ -183,6 +169,64 @@ public:
     }
 
 private:
+    // Masses and step for these row sums.
+    void take_stiffness(const std::vector<double>& row_sums)
+    {
+        const double local = settings_.damping == Damping::local ? 1 + settings_.local_damping : 1.0;
+        time_before_ = time();
+        steps_since_ = 0;
+        if (settings_.masses == Masses::real) {
+            mass_ = lumped_masses(a_);
+            double highest = 0; // frequency squared
+            for (std::size_t g = 0; g < mass_.size(); ++g)
+                if (mass_[g] > 0)
+                    highest = std::max(highest, row_sums[g] / mass_[g]);
+            // Stiffness damping shortens the stable step: (2 / w) (sqrt(1 + xi^2) - xi), xi = beta w / 2.
+            const double xi = settings_.stiffness_damping * std::sqrt(highest) / 2;
+            dt_ = safety * 2 / std::sqrt(highest * local) * (std::sqrt(1 + xi * xi) - xi);
+        } else {
+            dt_ = 1;
+            mass_.clear();
+            for (const double sum : row_sums)
+                mass_.push_back(sum * local / (4 * safety * safety));
+        }
+        for (double& m : mass_)
+            m = m > 0 ? 1 / m : 0.0; // from here on inverse; gridpoints without any rock do not move
+        a_.stiffness_damping_rate = settings_.stiffness_damping / dt_;
+        const mechanics::Contacts& contacts = a_.contacts;
+        stiffening_.clear();
+        for (std::size_t c = 0; c < contacts.law.size(); ++c)
+            if (!is_linear(contacts.law[c]) && contacts.status[c] != ContactStatus::removed)
+                stiffening_.emplace_back(c, mechanics::room_to_stiffen * normal_stiffness(c));
+    }
+
+    double normal_stiffness(std::size_t contact) const
+    {
+        const mechanics::Contacts& contacts = a_.contacts;
+        return slopes(contacts.law[contact], contacts.state[contact], contacts.traction[contact].x()).k_n;
+    }
+
+    // Masses or the step follow joints that have grown stiffer than these are stable for. Velocities keep the
+    // kinetic energy, or the account would not close.
+    void follow_stiffness()
+    {
+        if (std::none_of(stiffening_.begin(), stiffening_.end(), [&](const auto& contact) {
+                return normal_stiffness(contact.first) > contact.second;
+            }))
+            return;
+        const std::vector<double> before = mass_;
+        const double last_dt = dt_;
+        take_stiffness(stiffness_row_sums(a_));
+        for (std::size_t g = 0; g < before.size(); ++g) {
+            if (!(before[g] > 0))
+                continue;
+            const Vector2d last = velocity_[g], force = a_.force[g].cwiseProduct(a_.is_free[g]);
+            velocity_[g] *= std::sqrt(mass_[g] / before[g]);
+            // The next step takes half of the last one's work to be that of this velocity.
+            total_damped_ += force.dot(last_dt * last - dt_ * velocity_[g]) / 2;
+        }
+    }
+
     static std::string shown_length(double length)
     {
         std::array<char, 32> text{};
@@ -197,6 +241,9 @@ private:
     std::vector<double> mass_; // inverse [m/kg]
     std::vector<double> energy_, quotient_, damped_;
     double total_damped_ = 0, stored_at_start_ = 0;
+    std::vector<std::pair<std::size_t, double>> stiffening_; // contacts, and how stiff they may be [Pa/m]
+    double time_before_ = 0;                                 // at the last change of the step [s]
+    Index steps_since_ = 0;
     double dt_ = 0, too_far_ = 0, alpha_ = 0;
     double moved_before_ = std::numeric_limits<double>::infinity(); // in the last window of `patience` steps
     int windows_without_slowing_ = 0;
@@ -229,7 +276,7 @@ Certificate relax(Assembly& assembly, const Equilibrium& settings, const StepObs
         relaxation.step();
         ++certificate.steps;
         if (observe)
-            observe(certificate.steps * relaxation.dt());
+            observe(relaxation.time());
         if (certificate.steps % check_every != 0)
             continue;
         relaxation.check_motion(certificate.steps);

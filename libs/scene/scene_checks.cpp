@@ -244,6 +244,21 @@ private:
             if (material.dilation_angle > 0 && material.shear_stiffness == 0)
                 given.refuse("dilation_angle_deg",
                              "wanted 0 of a smooth joint, which has no shear stiffness");
+            if (material.walls) {
+                for (const auto& [key, value] : {std::pair{"cohesion_MPa", material.cohesion},
+                                                 std::pair{"tensile_strength_MPa", material.tensile_strength},
+                                                 std::pair{"dilation_angle_deg", material.dilation_angle}})
+                    if (value != 0)
+                        given.refuse(key, "wanted 0 of a Barton-Bandis joint, which has none");
+                if (material.friction_angle >= 70 * unit::deg)
+                    given.refuse("friction_angle_deg", "wanted less than 70 of a Barton-Bandis joint");
+                for (const char* const key :
+                     {"residual_cohesion_MPa", "kelvin_chain", "normal_kelvin_stiffness_MPa_per_m",
+                      "normal_maxwell_viscosity_MPa_day_per_m"})
+                    if (given.find(key))
+                        given.refuse(key,
+                                     "a Barton-Bandis joint has no residual strength and does not creep");
+            }
             if (!material.residual)
                 continue;
             if (material.residual->cohesion > material.cohesion)
@@ -262,6 +277,11 @@ private:
     {
         for (std::size_t i = 0; i < scene_.rocks.size(); ++i) {
             const Rock& rock = scene_.rocks[i];
+            if (rock.law == RockLaw::mohr_coulomb && !rock.strength)
+                in_list("rock", i).refuse("law", "it needs cohesion_MPa, friction_angle_deg and "
+                                                 "tensile_strength_MPa beside it");
+            if (rock.law == RockLaw::mohr_coulomb && (rock.kelvin || rock.maxwell_viscosity))
+                in_list("rock", i).refuse("law", "wanted \"elastic\" of rock that creeps");
             if (rock.dilation_angle > 0 && !rock.strength)
                 in_list("rock", i).refuse("dilation_angle_deg",
                                           "it needs cohesion_MPa, friction_angle_deg and "

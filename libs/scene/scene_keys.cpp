@@ -71,8 +71,10 @@ Table<Rock> rock()
 {
     return {
         {"rock", in_list, required,
-         "Intact rock: elastic, plane strain. Its strength is that of the rock bridges, and is needed where "
-         "a joint set has a persistence below 1, and where dead ends are extended. With a Kelvin unit or a "
+         "Intact rock: plane strain, elastic or yielding. Its strength is that of the rock bridges, and is "
+         "needed where "
+         "a joint set has a persistence below 1, where dead ends are extended, and where the rock yields. "
+         "With a Kelvin unit or a "
          "Maxwell dashpot it creeps, in shear "
          "only: its volume stays elastic."},
         {text("name", &Rock::name, "Name, once among the rocks."),
@@ -89,8 +91,13 @@ Table<Rock> rock()
                       strength, "Tensile strength, a positive number.")
              .together("strength"),
          number("dilation_angle_deg", &Rock::dilation_angle, degrees, friction,
-                "Dilation angle of the rock bridges, at most their friction angle.")
+                "Dilation angle of rock bridges and of rock that yields, at most the friction angle.")
              .or_else(std::int64_t{0}),
+         choice("law", &Rock::law, {{"elastic", RockLaw::elastic}, {"Mohr-Coulomb", RockLaw::mohr_coulomb}},
+                "elastic; or Mohr-Coulomb: it yields where its strength is reached, in shear and in tension, "
+                "without "
+                "softening. That needs the strength, and does not go with creep of the rock.")
+             .or_else(std::string("elastic")),
          number<Rock>("kelvin_shear_modulus_GPa", part<&Rock::kelvin, &ShearKelvin::modulus>, GPa,
                       above(0).to(1e6), "Kelvin spring, in shear.")
              .together("Kelvin"),
@@ -185,6 +192,20 @@ Table<JointMaterial> joint_material(const Table<Kelvin>& chain)
                                "Friction angle from then on, at most the friction angle and at least the "
                                "dilation angle.")
              .together("residual strength"),
+         number<JointMaterial>(
+             "joint_roughness_coefficient", part<&JointMaterial::walls, &JointWalls::roughness>, none,
+             from(0).to(30),
+             "JRC. With it and the next two keys the joint has Barton and Bandis's law: "
+             "normal_stiffness is that without pressure, friction_angle the residual one, and "
+             "cohesion, tensile strength and dilation angle are 0.")
+             .together("Barton-Bandis"),
+         number<JointMaterial>("joint_wall_strength_MPa", part<&JointMaterial::walls, &JointWalls::strength>,
+                               MPa, above(0).to(1e4), "JCS, the compressive strength of its walls.")
+             .together("Barton-Bandis"),
+         number<JointMaterial>("largest_closure_mm",
+                               part<&JointMaterial::walls, &JointWalls::largest_closure>, millimetres,
+                               above(0).to(1000), "V_m, which it never closes beyond.")
+             .together("Barton-Bandis"),
          number<JointMaterial>("normal_kelvin_stiffness_MPa_per_m", unit_part<&Kelvin::normal_stiffness>,
                                MPa_per_m, stiffness, "Kelvin spring, normal.")
              .together("Kelvin"),
@@ -217,7 +238,9 @@ Table<JointMaterial> joint_material(const Table<Kelvin>& chain)
 Table<SingleJoint> joint()
 {
     return {{"joint", in_list, optional,
-             "One joint or fault given by its ends: all of it joint, no rock bridges."},
+             "One joint or fault given by its ends: all of it joint, no rock bridges. Where one lies on an "
+             "earlier one, "
+             "the later one counts: that gives a part of a joint its own material."},
             {text("name", &SingleJoint::name, "Name, once among the joints, joint sets and mapped sets."),
              text("material", &SingleJoint::material, "Name of its joint material."),
              point("from_m", &SingleJoint::from, "One end."),

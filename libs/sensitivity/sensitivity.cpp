@@ -12,6 +12,16 @@ namespace jointcreep::sensitivity
 
 using mechanics::Assembly;
 
+namespace
+{
+
+const joint::Coulomb& coulomb(const Assembly& assembly, std::size_t c)
+{
+    return std::get<joint::Coulomb>(assembly.contacts.law[c]);
+}
+
+} // namespace
+
 void scale(EquivalentJoints& joints, InSituStress& stress, Parameter parameter, double factor)
 {
     const auto times = [factor](auto&... lists) {
@@ -46,6 +56,10 @@ Sensitivity::Sensitivity(std::vector<Parameter> parameters, const Scene& scene, 
     : parameters_(std::move(parameters))
 {
     const mechanics::Contacts& contacts = assembly.contacts;
+    for (const joint::Law& law : contacts.law)
+        if (!std::holds_alternative<joint::Coulomb>(law))
+            throw input_error("sensitivities are those of joints with Coulomb's law; wanted a scene without "
+                              "Barton-Bandis joints");
     const std::size_t n = contacts.law.size(), zones = assembly.zones.area.size();
     branch_.assign(n, Branch::stuck);
     start_slip_.assign(n, 0.0);
@@ -76,7 +90,7 @@ Sensitivity::Sensitivity(std::vector<Parameter> parameters, const Scene& scene, 
                       .rate = std::vector<double>(n, 0.0)};
         if (parameter == Parameter::joint_stiffness)
             for (std::size_t c = 0; c < n; ++c)
-                change.stiffness[c] = {contacts.law[c].k_n, contacts.law[c].k_s};
+                change.stiffness[c] = {coulomb(assembly, c).k_n, coulomb(assembly, c).k_s};
         if (parameter == Parameter::horizontal_stress) {
             for (std::size_t z = 0; z < zones; ++z)
                 change.initial_stress[z].x() = assembly.zones.initial_stress[z].x();
@@ -104,7 +118,7 @@ ContactNow Sensitivity::contact(const Assembly& assembly, std::size_t c) const
 {
     const mechanics::Contacts& contacts = assembly.contacts;
     const double slipped = contacts.state[c].slip - start_slip_[c];
-    joint::Coulomb law = contacts.law[c];
+    joint::Coulomb law = coulomb(assembly, c);
     law.tan_phi = law.tan_phi_of(contacts.state[c].is_broken);
     return {law,
             contacts.status[c] == ContactStatus::removed ? Branch::removed : branch_[c],
@@ -195,7 +209,7 @@ void Sensitivity::settle(const Assembly& assembly, implicit::Engine& engine, dou
         // What counts as slipping may just stand still a little below its limit.
         constexpr double rounding = 1e-9;
         const double shear = std::abs(contacts.traction[c].y()),
-                     slipped = contacts.law[c].k_s * std::abs(contacts.state[c].slip - start_slip_[c]);
+                     slipped = coulomb(assembly, c).k_s * std::abs(contacts.state[c].slip - start_slip_[c]);
         branch_[c] = Branch::stuck;
         if (contacts.status[c] == ContactStatus::removed)
             branch_[c] = Branch::removed;
@@ -241,10 +255,11 @@ void Sensitivity::start_from_here(const Assembly& assembly)
         for (std::size_t c = 0; c < change.slip.size(); ++c) {
             const auto [a, b] = contacts.gridpoint[c];
             const Vector2d jump = change.displacement[b] - change.displacement[a];
-            const double normal = change.initial_traction[c].x() +
-                                  change.stiffness[c].x() * (contacts.jump[c].x() - contacts.offset[c].x() -
-                                                             contacts.state[c].dilation) +
-                                  contacts.law[c].k_n * (contacts.normal[c].dot(jump) - change.dilation[c]);
+            const double normal =
+                change.initial_traction[c].x() +
+                change.stiffness[c].x() *
+                    (contacts.jump[c].x() - contacts.offset[c].x() - contacts.state[c].dilation) +
+                coulomb(assembly, c).k_n * (contacts.normal[c].dot(jump) - change.dilation[c]);
             change.initial_traction[c] = {normal, change.traction[c].y()};
             change.slip[c] = change.dilation[c] = 0;
         }
@@ -413,7 +428,7 @@ void Sensitivity::creep_step(const creep::Creep& creep, double duration, const A
 double Sensitivity::opening(const Assembly& assembly, const Change& change, std::size_t c)
 {
     const auto [a, b] = assembly.contacts.gridpoint[c];
-    const double k_n = assembly.contacts.law[c].k_n;
+    const double k_n = coulomb(assembly, c).k_n;
     return (change.initial_traction[c].x() -
             assembly.contacts.initial_traction[c].x() / k_n * change.stiffness[c].x()) /
                k_n +

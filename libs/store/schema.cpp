@@ -279,6 +279,10 @@ std::vector<Field> fields_of(States& states)
          "Displacement of side b minus that of side a {normal, shear}, opening positive."},
         {"/states/contact_status", &states.contact_status, {"state", "contact"}, "1", between(0, 3),
          "0 removed (a side has been excavated), 1 stuck, 2 slipping, 3 open."},
+        {"/states/yielding_zone", &states.yielding_zone, {"yielding_zone"}, "1", index_of("zone"),
+         "Zones of rock that yields; none where all is elastic."},
+        {"/states/plastic_strain", &states.plastic_strain, {"state", "yielding_zone"}, "1", any(),
+         "Plastic strain {xx, yy, xy} since the in-situ equilibrium, extension positive."},
     };
     // clang-format on
 }
@@ -438,8 +442,13 @@ std::vector<Field> fields_of(EquivalentJoints& joints)
          "Tensile strength."},
         {"/equivalent/dilation_angle", &joints.dilation_angle, edge, "rad", between(0, std::numbers::pi / 2),
          "Dilation angle."},
-        {"/equivalent/law", &joints.law, edge, "1", between(0, 1),
-         "0 Coulomb, whose bonds break by opening; 1 Coulomb with residual strength: they break by slip, too."},
+        {"/equivalent/law", &joints.law, edge, "1", between(0, 2),
+         "0 Coulomb, whose bonds break by opening; 1 Coulomb with residual strength: they break by slip, too; 2 "
+         "Barton-Bandis, whose friction angle is phi_r and whose normal stiffness is that without pressure."},
+        {"/equivalent/roughness", &joints.roughness, edge, "1", at_least(0),
+         "JRC of Barton-Bandis; 0, as the next two, of other laws."},
+        {"/equivalent/wall_strength", &joints.wall_strength, edge, "Pa", at_least(0), "JCS."},
+        {"/equivalent/largest_closure", &joints.largest_closure, edge, "m", at_least(0), "V_m."},
         {"/equivalent/residual_cohesion", &joints.residual_cohesion, edge, "Pa", at_least(0),
          "Cohesion once its bonds are broken; 0 where the law has no residual strength."},
         {"/equivalent/residual_friction_angle", &joints.residual_friction_angle, edge, "rad",
@@ -573,6 +582,7 @@ const std::vector<Described>& dimensions()
         {"statistic", "a row of the report on the network"},
         {"gridpoint", "a corner of zones, split along joints"},
         {"zone", "a constant-strain triangle"},
+        {"yielding_zone", "a zone of rock that yields"},
         {"tie", "a pair of gridpoints that are one until a stage"},
         {"side", "a side of a zone that lies on a boundary condition"},
         {"contact", "a pair of gridpoints that face each other across a joint"},

@@ -45,7 +45,7 @@ struct Contact {
         contacts.gridpoint = {{0, 1}};
         contacts.normal = {{0, 1}};
         contacts.length = {1};
-        contacts.law = {{joints.normal_stiffness[0], joints.shear_stiffness[0], 0, .7, 0}};
+        contacts.law = {joint::Coulomb{joints.normal_stiffness[0], joints.shear_stiffness[0], 0, .7, 0}};
         contacts.state.resize(1);
         contacts.initial_traction = {traction};
         contacts.traction = {traction};
@@ -90,7 +90,8 @@ RC_GTEST_PROP(contact, ends_a_step_as_it_was_found, ())
         const Vector2d traction = contact.traction();
         const ContactStatus status = contact.status();
         RC_ASSERT(creep.end(contact.rock) >= 0);
-        RC_ASSERT(contact.rock.contacts.law[0].k_n == K_n && contact.rock.contacts.law[0].k_s == K_s);
+        RC_ASSERT(joint::k_n(contact.rock.contacts.law[0]) == K_n &&
+                  joint::k_s(contact.rock.contacts.law[0]) == K_s);
         find_forces(contact.rock);
         RC_ASSERT((contact.traction() - traction).cwiseAbs().maxCoeff() < 1e-8 * 1e6);
         RC_ASSERT(contact.status() == status);
@@ -120,7 +121,8 @@ RC_GTEST_PROP(contact, may_begin_again_with_another_duration, ())
     if (cancelled) {
         creep.cancel(contact.rock);
         RC_ASSERT(contact.rock.contacts.offset[0] == before.contacts.offset[0]);
-        RC_ASSERT(contact.rock.contacts.law[0].k_n == K_n && contact.rock.contacts.law[0].k_s == K_s);
+        RC_ASSERT(joint::k_n(contact.rock.contacts.law[0]) == K_n &&
+                  joint::k_s(contact.rock.contacts.law[0]) == K_s);
     }
     contact.rock.contacts.state = before.contacts.state;
     if (cancelled)
@@ -194,7 +196,7 @@ TEST(contact, a_smooth_joint_bears_no_shear_and_creeps_along_the_normal_alone)
     Contact contact(joints, {-1e6, 0});
     creep::Creep creep = contact.creep(joints, CreepScheme::fitted);
     creep.begin(10, contact.rock);
-    EXPECT_EQ(contact.rock.contacts.law[0].k_s, 0);
+    EXPECT_EQ(joint::k_s(contact.rock.contacts.law[0]), 0);
     contact.move(-1e-3, 1e-3);
     creep.end(contact.rock);
     EXPECT_EQ(contact.rock.contacts.offset[0].y(), 0);

@@ -41,8 +41,9 @@ inline EquivalentJoints joints_of(const std::vector<Chain>& chains)
         }
     }
     joints.shear_stiffness = joints.cohesion = joints.friction_angle = joints.tensile_strength =
-        joints.dilation_angle = joints.residual_cohesion = joints.residual_friction_angle =
-            joints.shear_maxwell_viscosity = std::vector<double>(chains.size(), 0.0);
+        joints.dilation_angle = joints.residual_cohesion = joints.residual_friction_angle = joints.roughness =
+            joints.wall_strength = joints.largest_closure = joints.shear_maxwell_viscosity =
+                std::vector<double>(chains.size(), 0.0);
     joints.law.assign(chains.size(), static_cast<Index>(JointLaw::coulomb));
     joints.shear_kelvin_stiffness = joints.shear_kelvin_viscosity =
         std::vector<double>(chains.size() * units, 0.0);
@@ -193,7 +194,7 @@ private:
     {
         mechanics::Assembly rock;
         for (const Chain& chain : joints.chains())
-            rock.contacts.law.push_back({chain.spring, 0, 0, 0, 0});
+            rock.contacts.law.push_back(joint::Coulomb{chain.spring, 0, 0, 0, 0});
         const std::size_t n = joints.chains().size();
         rock.contacts.initial_traction.assign(n, {0, 0});
         rock.contacts.traction.assign(n, {0, 0});
@@ -206,7 +207,7 @@ private:
         const auto n = static_cast<Eigen::Index>(mesh_.contact_edge.size());
         VectorXd k(n), offset(n);
         for (Eigen::Index c = 0; c < n; ++c) {
-            k[c] = rock_.contacts.law[c].k_n;
+            k[c] = joint::k_n(rock_.contacts.law[c]);
             offset[c] = rock_.contacts.offset[c].x();
         }
         const VectorXd tractions = joints_.tractions(k, offset);

@@ -78,7 +78,10 @@ inline EquivalentJoints small_equivalent()
             on_joints(0, 3e15),
             {0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0},
             on_joints(0, 2e4),
-            on_joints(0, 0.4)};
+            on_joints(0, 0.4),
+            on_joints(0, 8),
+            on_joints(0, 5e7),
+            on_joints(0, 2e-4)};
 }
 
 // Zones 0, 1 in block 0 (dug in state 1) and 2, 3 in block 1; contact 0 between the blocks, contact 1 under

@@ -114,7 +114,7 @@ void measure(const std::string& path, double zone_size)
     const Assembly assembly = mechanics::assemble(scene, file.network, file.equivalent, mesh);
     std::vector<implicit::Tangent> stuck(assembly.contacts.law.size());
     for (std::size_t c = 0; c < stuck.size(); ++c) {
-        const joint::Coulomb& law = assembly.contacts.law[c];
+        const auto& law = std::get<joint::Coulomb>(assembly.contacts.law[c]);
         stuck[c] = {law.k_n, law.k_s > 0 ? law.k_s : 1e-6 * law.k_n, 0, 0};
     }
 

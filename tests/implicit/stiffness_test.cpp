@@ -50,8 +50,9 @@ std::vector<Tangent> excite(Assembly& assembly)
     std::vector<Tangent> tangents;
     const double tan_phi = std::tan(friction);
     for (std::size_t c = 0; c < contacts.status.size(); ++c) {
-        const double k_n = contacts.law[c].k_n, k_s = contacts.law[c].k_s;
-        const double tan_psi = contacts.law[c].tan_psi = c % 8 < 4 ? 0.0 : 0.14;
+        auto& law = std::get<joint::Coulomb>(contacts.law[c]);
+        const double k_n = law.k_n, k_s = law.k_s;
+        const double tan_psi = law.tan_psi = c % 8 < 4 ? 0.0 : 0.14;
         const double k = k_n * k_s / (k_s + k_n * tan_phi * tan_psi); // k_n without dilation
         const std::array<Vector2d, 4> traction{Vector2d(1e6, 0), Vector2d(-1e6, 9e5), Vector2d(-1e6, -9e5),
                                                Vector2d(-1e6, 1e5)};
@@ -163,7 +164,7 @@ TEST(stiffness, follows_what_changes_and_keeps_its_factor_otherwise)
     K.follow(s.assembly);
     K.factorise(s.assembly, stuck);
     const Eigen::Index size = K.size();
-    s.assembly.contacts.law[0].k_n *= 2;
+    joint::k_n(s.assembly.contacts.law[0]) *= 2;
     s.assembly.displacement[5] = {1, 1};
     K.follow(s.assembly);
     EXPECT_TRUE(K.has_factor());

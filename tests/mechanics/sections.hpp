@@ -28,11 +28,21 @@ inline EquivalentJoints joints_everywhere(const Scene& scene, const Blocks& bloc
     }
     const std::vector<double> none(blocks.edge_vertex.size(), 0.0);
     joints.dilation_angle = joints.residual_cohesion = joints.residual_friction_angle = none;
+    joints.roughness = joints.wall_strength = joints.largest_closure = none;
     joints.law.assign(none.size(), static_cast<Index>(JointLaw::coulomb));
     joints.normal_kelvin_stiffness = joints.shear_kelvin_stiffness = none;
     joints.normal_kelvin_viscosity = joints.shear_kelvin_viscosity = none;
     joints.normal_maxwell_viscosity = joints.shear_maxwell_viscosity = none;
     return joints;
+}
+
+// Of contacts that all have Coulomb's law.
+inline std::vector<std::reference_wrapper<joint::Coulomb>> coulomb(std::vector<joint::Law>& laws)
+{
+    std::vector<std::reference_wrapper<joint::Coulomb>> all;
+    for (joint::Law& law : laws)
+        all.emplace_back(std::get<joint::Coulomb>(law));
+    return all;
 }
 
 struct Section {
