@@ -39,7 +39,7 @@ void add_zones(Assembly& assembly, const Scene& scene, const Network& network, c
         zones.initial_stress.push_back(scene.in_situ_stress.at((p[0] + p[1] + p[2]) / 3));
     }
     zones.stress = zones.initial_stress;
-    assembly.zone_force.resize(n);
+    assembly.zone_force.resize(3 * n);
 }
 
 void add_contacts(Assembly& assembly, const Scene& scene, const EquivalentJoints& joints, const Mesh& mesh)
@@ -65,7 +65,7 @@ void add_contacts(Assembly& assembly, const Scene& scene, const EquivalentJoints
     contacts.traction = contacts.initial_traction;
     contacts.jump.assign(n, Vector2d::Zero());
     contacts.status.assign(n, ContactStatus::stuck);
-    contacts.dissipated.assign(n, 0.0);
+    contacts.work.assign(n, 0.0);
     assembly.contact_force.resize(n);
 }
 
@@ -92,6 +92,129 @@ void list_by_gridpoint(const std::vector<std::array<Index, N>>& gridpoints, std:
     for (std::size_t i = 0; i < gridpoints.size(); ++i)
         for (std::size_t k = 0; k < N; ++k)
             entry[next[gridpoints[i][k]]++] = static_cast<Index>(N * i + k);
+}
+
+void pull_zones(Assembly& assembly, bool keeps_stress)
+{
+    Zones& zones = assembly.zones;
+    const auto n = static_cast<Index>(zones.gridpoint.size());
+    // Plain pointers and numbers: through the arrays themselves, what is written might always be what is read
+    // next.
+    const Vector2d* const displacement = assembly.displacement.data();
+    const std::array<Index, 3>* const gridpoint = zones.gridpoint.data();
+    const std::array<Vector2d, 3>* const gradient = zones.gradient.data();
+    const Vector3d *const stiffness = zones.stiffness.data(), *const initial = zones.initial_stress.data();
+    const double* const area = zones.area.data();
+    const char* const is_present = zones.is_present.data();
+    Vector3d* __restrict const stress = zones.stress.data(), * const last_stress = zones.last_stress.data();
+    Vector2d* __restrict const force = assembly.zone_force.data();
+    const double damping = assembly.stiffness_damping_rate;
+#pragma omp for schedule(static) nowait
+    for (Index z = 0; z < n; ++z) {
+        if (!is_present[z])
+            continue;
+        const Vector2d &u = displacement[gridpoint[z][0]], &v = displacement[gridpoint[z][1]],
+                       &w = displacement[gridpoint[z][2]];
+        const double ax = gradient[z][0].x(), ay = gradient[z][0].y(), bx = gradient[z][1].x(),
+                     by = gradient[z][1].y(), cx = gradient[z][2].x(), cy = gradient[z][2].y();
+        const double exx = ax * u.x() + bx * v.x() + cx * w.x();
+        const double eyy = ay * u.y() + by * v.y() + cy * w.y();
+        const double gxy = (ay * u.x() + ax * u.y()) + (by * v.x() + bx * v.y()) + (cy * w.x() + cx * w.y());
+        const double c11 = stiffness[z][0], c12 = stiffness[z][1], c33 = stiffness[z][2];
+        double xx = initial[z][0] + (c11 * exx + c12 * eyy), yy = initial[z][1] + (c12 * exx + c11 * eyy),
+               xy = initial[z][2] + c33 * gxy;
+        if (keeps_stress)
+            stress[z] = {xx, yy, xy};
+        if (damping > 0) {
+            const Vector3d now(xx, yy, xy), acting = now + damping * (now - last_stress[z]);
+            last_stress[z] = now;
+            xx = acting[0];
+            yy = acting[1];
+            xy = acting[2];
+        }
+        xx *= -area[z];
+        yy *= -area[z];
+        xy *= -area[z];
+        force[3 * z] = {xx * ax + xy * ay, xy * ax + yy * ay};
+        force[3 * z + 1] = {xx * bx + xy * by, xy * bx + yy * by};
+        force[3 * z + 2] = {xx * cx + xy * cy, xy * cx + yy * cy};
+    }
+}
+
+void pull_contacts(Assembly& assembly)
+{
+    Contacts& contacts = assembly.contacts;
+    const auto n = static_cast<Index>(contacts.gridpoint.size());
+    const Vector2d* u = assembly.displacement.data();
+    const double damping = assembly.stiffness_damping_rate;
+#pragma omp for schedule(static) nowait
+    for (Index c = 0; c < n; ++c) {
+        if (contacts.status[c] == ContactStatus::removed)
+            continue;
+        const auto [a, b] = contacts.gridpoint[c];
+        const Vector2d normal = contacts.normal[c], tangent = along(normal);
+        const Vector2d apart = u[b] - u[a], jump(apart.dot(normal), apart.dot(tangent));
+        const Vector2d sprung = jump - contacts.offset[c];
+        const joint::Response response =
+            joint::respond(contacts.law[c], contacts.state[c], contacts.initial_traction[c].x(),
+                           contacts.initial_traction[c].y(), sprung.x(), sprung.y());
+        const Vector2d traction(response.sigma_n, response.tau), last = contacts.traction[c];
+        const double length = contacts.length[c];
+        contacts.work[c] += length / 2 * (last + traction).dot(jump - contacts.jump[c]);
+        contacts.jump[c] = jump;
+        contacts.traction[c] = traction;
+        contacts.status[c] = response.status;
+        Vector2d acting = traction;
+        if (damping > 0 && response.status == ContactStatus::stuck)
+            acting += damping * (traction - last); // dashpots; none where it slips or is open
+        assembly.contact_force[c] = length * (acting.x() * normal + acting.y() * tangent);
+    }
+}
+
+void add_up_forces(Assembly& assembly)
+{
+    const Incidence& incidence = assembly.incidence;
+    const auto n = static_cast<Index>(assembly.position.size());
+    const Index n_chunks = chunks_of(assembly);
+    const Vector2d *of_zone = assembly.zone_force.data(), *of_contact = assembly.contact_force.data();
+#pragma omp for schedule(static) nowait
+    for (Index k = 0; k < n_chunks; ++k)
+        for (Index g = k * chunk; g < std::min(n, (k + 1) * chunk); ++g) {
+            Vector2d force = assembly.load[g] + assembly.applied[g];
+            for (Index i = incidence.zone_start[g]; i < incidence.zone_start[g + 1]; ++i)
+                force += of_zone[incidence.zone_corner[i]];
+            for (Index i = incidence.contact_start[g]; i < incidence.contact_start[g + 1]; ++i) {
+                const Index side = incidence.contact_side[i];
+                if (side % 2 == 0)
+                    force += of_contact[side / 2];
+                else
+                    force -= of_contact[side / 2];
+            }
+            assembly.force[g] = force;
+        }
+}
+
+// The loops are over flat arrays, each read and written once and in order, but for displacements and forces
+// of gridpoints.
+void find_all_in_team(Assembly& assembly, bool keeps_stress)
+{
+    if (!assembly.tied.empty()) {
+#pragma omp single
+        for (const auto& [follower, leader] : assembly.tied)
+            assembly.displacement[follower] = assembly.displacement[leader];
+    }
+    pull_zones(assembly, keeps_stress);
+    pull_contacts(assembly);
+#pragma omp barrier
+    add_up_forces(assembly);
+    if (!assembly.tied.empty()) {
+#pragma omp barrier
+#pragma omp single
+        for (const auto& [follower, leader] : assembly.tied) {
+            assembly.force[leader] += assembly.force[follower];
+            assembly.force[follower].setZero();
+        }
+    }
 }
 
 } // namespace
@@ -145,98 +268,23 @@ void part_ties(Assembly& assembly, Index stage)
 
 void find_forces(Assembly& assembly)
 {
-    for (const auto& [follower, leader] : assembly.tied)
-        assembly.displacement[follower] = assembly.displacement[leader];
-    Zones& zones = assembly.zones;
-    Contacts& contacts = assembly.contacts;
-    const auto n_zones = static_cast<Index>(zones.gridpoint.size());
-    const auto n_contacts = static_cast<Index>(contacts.gridpoint.size());
-    const auto n_gridpoints = static_cast<Index>(assembly.position.size());
-    const Incidence& incidence = assembly.incidence;
-    const std::vector<Vector2d>& u = assembly.displacement;
-    const double damping = assembly.stiffness_damping_rate;
-
 #pragma omp parallel num_threads(assembly.threads) if (assembly.threads > 1)
-    {
-#pragma omp for schedule(static) nowait
-        for (Index z = 0; z < n_zones; ++z) {
-            if (!zones.is_present[z])
-                continue;
-            const auto& g = zones.gridpoint[z];
-            const auto& gradient = zones.gradient[z];
-            double exx = 0, eyy = 0, gxy = 0;
-            for (int i = 0; i < 3; ++i) {
-                const Vector2d& ui = u[g[i]];
-                exx += gradient[i].x() * ui.x();
-                eyy += gradient[i].y() * ui.y();
-                gxy += gradient[i].y() * ui.x() + gradient[i].x() * ui.y();
-            }
-            const Vector3d& c = zones.stiffness[z];
-            const Vector3d stress = zones.initial_stress[z] +
-                                    Vector3d(c[0] * exx + c[1] * eyy, c[1] * exx + c[0] * eyy, c[2] * gxy);
-            zones.stress[z] = stress;
-            Vector3d acting = stress;
-            if (damping > 0) {
-                acting += damping * (stress - zones.last_stress[z]);
-                zones.last_stress[z] = stress;
-            }
-            for (int i = 0; i < 3; ++i)
-                assembly.zone_force[z][i] =
-                    -zones.area[z] * Vector2d(acting[0] * gradient[i].x() + acting[2] * gradient[i].y(),
-                                              acting[2] * gradient[i].x() + acting[1] * gradient[i].y());
-        }
-#pragma omp for schedule(static)
-        for (Index c = 0; c < n_contacts; ++c) {
-            if (contacts.status[c] == ContactStatus::removed)
-                continue;
-            const auto [a, b] = contacts.gridpoint[c];
-            const Vector2d normal = contacts.normal[c], tangent = along(normal);
-            const Vector2d jump = u[b] - u[a];
-            const joint::Coulomb& law = contacts.law[c];
-            const Vector2d last_jump = contacts.jump[c], last = contacts.traction[c];
-            contacts.jump[c] = {jump.dot(normal), jump.dot(tangent)};
-            const Vector2d sprung = contacts.jump[c] - contacts.offset[c];
-            const joint::Response response =
-                joint::respond(law, contacts.state[c], contacts.initial_traction[c].x(),
-                               contacts.initial_traction[c].y(), sprung.x(), sprung.y());
-            const Vector2d traction(response.sigma_n, response.tau);
-            contacts.traction[c] = traction;
-            contacts.status[c] = response.status;
-            const double length = contacts.length[c];
-            contacts.dissipated[c] += length * (last + traction).dot(contacts.jump[c] - last_jump) / 2 -
-                                      (stored_in(law, traction, length) - stored_in(law, last, length));
-            Vector2d acting = traction;
-            if (damping > 0 && response.status == ContactStatus::stuck)
-                acting += damping * (traction - last); // dashpots; none where it slips or is open
-            assembly.contact_force[c] = length * (acting.x() * normal + acting.y() * tangent);
-        }
-#pragma omp for schedule(static)
-        for (Index g = 0; g < n_gridpoints; ++g) {
-            Vector2d force = assembly.load[g] + assembly.applied[g];
-            for (Index k = incidence.zone_start[g]; k < incidence.zone_start[g + 1]; ++k) {
-                const Index corner = incidence.zone_corner[k];
-                force += assembly.zone_force[corner / 3][corner % 3];
-            }
-            for (Index k = incidence.contact_start[g]; k < incidence.contact_start[g + 1]; ++k) {
-                const Index side = incidence.contact_side[k];
-                if (side % 2 == 0)
-                    force += assembly.contact_force[side / 2];
-                else
-                    force -= assembly.contact_force[side / 2];
-            }
-            assembly.force[g] = force;
-        }
-    }
-    for (const auto& [follower, leader] : assembly.tied) {
-        assembly.force[leader] += assembly.force[follower];
-        assembly.force[follower].setZero();
-    }
+    find_all_in_team(assembly, true);
+}
+
+void find_forces_in_team(Assembly& assembly)
+{
+    find_all_in_team(assembly, false);
+}
+
+Index chunks_of(const Assembly& assembly)
+{
+    return (static_cast<Index>(assembly.position.size()) + chunk - 1) / chunk;
 }
 
 double stored_energy(const Assembly& assembly)
 {
     const Zones& zones = assembly.zones;
-    const Contacts& contacts = assembly.contacts;
     double energy = 0;
     for (std::size_t z = 0; z < zones.gridpoint.size(); ++z) {
         if (!zones.is_present[z])
@@ -248,40 +296,64 @@ double stored_energy(const Assembly& assembly)
                   ((c[0] * (s[0] * s[0] + s[1] * s[1]) - 2 * c[1] * s[0] * s[1]) / determinant +
                    s[2] * s[2] / c[2]);
     }
-    for (std::size_t k = 0; k < contacts.gridpoint.size(); ++k)
-        if (contacts.status[k] != ContactStatus::removed)
-            energy += stored_in(contacts.law[k], contacts.traction[k], contacts.length[k]);
+    return energy + energy_stored_in_contacts(assembly);
+}
+
+double energy_stored_in_contacts(const Assembly& assembly)
+{
+    const Contacts& contacts = assembly.contacts;
+    double energy = 0;
+    for (std::size_t c = 0; c < contacts.gridpoint.size(); ++c)
+        if (contacts.status[c] != ContactStatus::removed)
+            energy += stored_in(contacts.law[c], contacts.traction[c], contacts.length[c]);
     return energy;
 }
 
 Balance balance_of(const Assembly& assembly)
 {
     const Incidence& incidence = assembly.incidence;
-    Balance balance{0, 0, 0};
-    double sum = 0;
-    Index n = 0;
-    for (std::size_t g = 0; g < assembly.position.size(); ++g) {
-        const double force = assembly.force[g].cwiseProduct(assembly.is_free[g]).norm();
-        if (!std::isfinite(force))
-            return {force, static_cast<Index>(g), 1};
-        if (force > balance.largest) {
-            balance.largest = force;
-            balance.worst = static_cast<Index>(g);
+    struct Part {
+        double largest = 0, sum = 0;
+        Index worst = 0, n = 0;
+    };
+    const auto n = static_cast<Index>(assembly.position.size());
+    const Index n_chunks = chunks_of(assembly);
+    std::vector<Part> parts(n_chunks);
+#pragma omp parallel for schedule(static) num_threads(assembly.threads) if (assembly.threads > 1)
+    for (Index k = 0; k < n_chunks; ++k) {
+        Part part;
+        for (Index g = k * chunk; g < std::min(n, (k + 1) * chunk); ++g) {
+            const double force = assembly.force[g].cwiseProduct(assembly.is_free[g]).norm();
+            if (!(force <= part.largest)) { // also what is no number, and stays so
+                part.largest = force;
+                part.worst = g;
+                if (!std::isfinite(force))
+                    break;
+            }
+            double magnitudes = assembly.load[g].norm() + assembly.applied[g].norm();
+            for (Index i = incidence.zone_start[g]; i < incidence.zone_start[g + 1]; ++i)
+                magnitudes += assembly.zone_force[incidence.zone_corner[i]].norm();
+            for (Index i = incidence.contact_start[g]; i < incidence.contact_start[g + 1]; ++i)
+                magnitudes += assembly.contact_force[incidence.contact_side[i] / 2].norm();
+            if (magnitudes > 0) {
+                part.sum += magnitudes;
+                ++part.n;
+            }
         }
-        double magnitudes = assembly.load[g].norm() + assembly.applied[g].norm();
-        for (Index k = incidence.zone_start[g]; k < incidence.zone_start[g + 1]; ++k) {
-            const Index corner = incidence.zone_corner[k];
-            magnitudes += assembly.zone_force[corner / 3][corner % 3].norm();
-        }
-        for (Index k = incidence.contact_start[g]; k < incidence.contact_start[g + 1]; ++k)
-            magnitudes += assembly.contact_force[incidence.contact_side[k] / 2].norm();
-        if (magnitudes > 0) {
-            sum += magnitudes;
-            ++n;
-        }
+        parts[k] = part;
     }
-    balance.mean = n > 0 ? sum / n : 0.0;
-    return balance;
+    Part all;
+    for (const Part& part : parts) {
+        if (!std::isfinite(part.largest))
+            return {part.largest, part.worst, 1};
+        if (part.largest > all.largest) {
+            all.largest = part.largest;
+            all.worst = part.worst;
+        }
+        all.sum += part.sum;
+        all.n += part.n;
+    }
+    return {all.largest, all.worst, all.n > 0 ? all.sum / all.n : 0.0};
 }
 
 Balance balance_of(const Assembly& assembly, double stiffest, double farthest, double tolerance)

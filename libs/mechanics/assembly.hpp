@@ -47,7 +47,7 @@ struct Contacts {
     std::vector<Vector2d> traction;    // now [Pa]
     std::vector<Vector2d> jump;        // displacement of b minus that of a, now [m]
     std::vector<ContactStatus> status; // now; removed once a side is gone
-    std::vector<double> dissipated;    // work done on it that it has not stored [J/m]
+    std::vector<double> work; // done on it since this was last set to 0, by the trapezoidal rule [J/m]
 };
 
 // What a gridpoint is part of, for gathering forces in a fixed order whatever the number of threads.
@@ -80,8 +80,9 @@ struct Assembly {
     std::vector<Tie> ties;
     std::vector<std::array<Index, 2>> tied; // from the ties still there: {follower, leader}
 
-    // Forces of zones on their corners and of contacts on their side a; filled by find_forces [N/m].
-    std::vector<std::array<Vector2d, 3>> zone_force;
+    // Forces of zones on their corners, [3 zones], and of contacts on their side a; filled by find_forces
+    // [N/m].
+    std::vector<Vector2d> zone_force;
     std::vector<Vector2d> contact_force;
 
     double stiffness_damping_rate =
@@ -101,8 +102,18 @@ void part_ties(Assembly& assembly, Index stage);
 // their states: calling it again changes nothing more.
 void find_forces(Assembly& assembly);
 
-// Energy that zones and contacts have stored [J/m]; only differences mean anything.
+// The same, but for the zones' stresses, by a team of threads that is at work already: each calls it, in an
+// OpenMP parallel region. When it returns, the forces are there of the gridpoints that this thread has in a
+// loop over chunks_of(assembly) with a static schedule; of the others, after a barrier.
+void find_forces_in_team(Assembly& assembly);
+
+// Gridpoints that are worked on, and summed over, together, whatever the number of threads.
+constexpr Index chunk = 512;
+Index chunks_of(const Assembly& assembly);
+
+// Energy that zones and contacts have stored, and contacts alone [J/m]; only differences mean anything.
 double stored_energy(const Assembly& assembly);
+double energy_stored_in_contacts(const Assembly& assembly);
 
 struct Balance {
     double largest; // out-of-balance force on a free gridpoint [N/m]

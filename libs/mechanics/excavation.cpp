@@ -15,7 +15,7 @@ std::vector<Vector2d> excavate(Assembly& assembly, const Blocks& blocks, const M
             continue;
         for (int i = 0; i < 3; ++i) {
             assembly.load[zones.gridpoint[z][i]].y() += zones.weight[z] / 3;
-            assembly.zone_force[z][i].setZero();
+            assembly.zone_force[3 * z + i].setZero();
         }
         zones.is_present[z] = 0;
         zones.stress[z].setZero();

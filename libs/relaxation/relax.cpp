@@ -15,6 +15,7 @@ using Eigen::Vector2d;
 using mechanics::Assembly;
 using mechanics::Balance;
 using mechanics::Certificate;
+using mechanics::chunk;
 
 namespace
 {
@@ -22,7 +23,6 @@ namespace
 constexpr Index check_every = 20, window = 100; // [steps]
 constexpr Index patience = 5000;                // between looks at what moves on [steps]
 constexpr double safety = 0.9;                  // of the largest stable step
-constexpr Index chunk = 512;                    // gridpoints summed together, whatever the number of threads
 
 // Contact forces at the last few checks.
 class ForceMemory
@@ -73,74 +73,55 @@ public:
             for (const double sum : row_sums)
                 mass_.push_back(sum * local / (4 * safety * safety));
         }
-        for (double& m : mass_)
-            m = m > 0 ? 1 / m : 0.0; // from here on inverse; gridpoints without any rock do not move
+        for (const double m : mass_)
+            inverse_mass_.push_back(m > 0 ? 1 / m : 0.0); // gridpoints without any rock do not move
         too_far_ = size_of(assembly) / 10;
-        const std::size_t n_chunks = (assembly.position.size() + chunk - 1) / chunk;
-        energy_.resize(n_chunks);
-        quotient_.resize(n_chunks);
-        damped_.resize(n_chunks);
+        sums_.resize(chunks_of(assembly));
         assembly.stiffness_damping_rate = settings.stiffness_damping / dt_;
         if (settings.stiffness_damping > 0)
             assembly.zones.last_stress = assembly.zones.stress;
-        std::fill(assembly.contacts.dissipated.begin(), assembly.contacts.dissipated.end(), 0.0);
+        std::fill(assembly.contacts.work.begin(), assembly.contacts.work.end(), 0.0);
         stored_at_start_ = stored_energy(assembly);
+        in_contacts_at_start_ = energy_stored_in_contacts(assembly);
         if (settings.damping == Damping::adaptive)
             last_force_ = assembly.force;
     }
 
     double dt() const { return dt_; }
 
-    void step()
+    // Moves by so many steps. The threads stay together for all of them, and wait for each other twice a
+    // step: when all gridpoints have moved, and when all zones and contacts have been pulled.
+    void move(Index steps)
     {
-        const auto n = static_cast<Index>(velocity_.size());
-        const auto n_chunks = static_cast<Index>(energy_.size());
-        const double alpha = settings_.damping == Damping::mass ? settings_.mass_damping : alpha_;
-        const double keep = (1 - alpha * dt_ / 2) / (1 + alpha * dt_ / 2);
-        // Velocities live half a step before displacements: from rest the first one gets half a step's gain.
-        // With a whole one the stiffest parts would overshoot, and stopping them again and again would blow
-        // them up.
-        const double interval = (starts_from_rest_ ? 0.5 : 1.0) * dt_;
-        const double gain = interval / (1 + alpha * dt_ / 2);
-        starts_from_rest_ = false;
-        const double local = settings_.damping == Damping::local ? settings_.local_damping : 0.0;
-        const bool adaptive = settings_.damping == Damping::adaptive;
-#pragma omp parallel for schedule(static) num_threads(a_.threads) if (a_.threads > 1)
-        for (Index k = 0; k < n_chunks; ++k) {
-            double energy = 0, work = 0, damped = 0;
-            for (Index g = k * chunk; g < std::min(n, (k + 1) * chunk); ++g) {
-                Vector2d force = a_.force[g].cwiseProduct(a_.is_free[g]);
-                const Vector2d free_force = force;
-                Vector2d& v = velocity_[g];
-                if (adaptive) { // how the force has answered to the last step's motion
-                    work -= v.dot(force - last_force_[g]);
-                    last_force_[g] = force;
-                    if (mass_[g] > 0)
-                        energy += v.squaredNorm() / mass_[g];
+#pragma omp parallel num_threads(a_.threads) if (a_.threads > 1)
+        {
+            double alpha = settings_.damping == Damping::mass ? settings_.mass_damping : alpha_;
+            double damped = total_damped_;
+            bool starts_from_rest = starts_from_rest_;
+            for (Index i = 0; i < steps; ++i) {
+                step_in_team(alpha, starts_from_rest);
+                starts_from_rest = false;
+                Sums sums; // every thread adds them up for itself, before the next step writes new ones
+                for (const Sums& some : sums_) {
+                    sums.energy += some.energy;
+                    sums.work += some.work;
+                    sums.damped += some.damped;
                 }
-                if (local > 0)
-                    force -= local * Vector2d(v.x() == 0 ? 0 : std::copysign(std::abs(force.x()), v.x()),
-                                              v.y() == 0 ? 0 : std::copysign(std::abs(force.y()), v.y()));
-                const Vector2d last = v;
-                v = keep * v + gain * mass_[g] * force;
-                if (mass_[g] > 0)
-                    damped += free_force.dot(v + last) / 2 * dt_ -
-                              (v.squaredNorm() - last.squaredNorm()) / (2 * mass_[g]);
-                a_.displacement[g] += dt_ * v;
+                damped += sums.damped;
+                if (settings_.damping == Damping::adaptive)
+                    alpha = sums.energy > 0 && sums.work > 0
+                                ? std::min(2 * std::sqrt(sums.work / (dt_ * sums.energy)), 1.9 / dt_)
+                                : 0.0;
+                find_forces_in_team(a_);
             }
-            energy_[k] = energy;
-            quotient_[k] = work;
-            damped_[k] = damped;
+#pragma omp barrier
+#pragma omp single
+            {
+                alpha_ = alpha;
+                total_damped_ = damped;
+                starts_from_rest_ = starts_from_rest;
+            }
         }
-        double energy = 0, work = 0;
-        for (Index k = 0; k < n_chunks; ++k) {
-            energy += energy_[k];
-            work += quotient_[k];
-            total_damped_ += damped_[k];
-        }
-        if (adaptive)
-            alpha_ = energy > 0 && work > 0 ? std::min(2 * std::sqrt(work / (dt_ * energy)), 1.9 / dt_) : 0.0;
-        find_forces(a_);
     }
 
     // Throws if a piece of rock is on its way: far already, or steadily.
@@ -172,8 +153,9 @@ public:
         a_.stiffness_damping_rate = 0;
         find_forces(a_);
         certificate.stored = stored_energy(a_) - stored_at_start_;
-        for (const double lost : a_.contacts.dissipated)
-            certificate.dissipated += lost;
+        certificate.dissipated = in_contacts_at_start_ - energy_stored_in_contacts(a_);
+        for (const double work : a_.contacts.work)
+            certificate.dissipated += work;
         certificate.work_of_loads = work_of_loads(a_, start_);
         // Stiffness damping works inside zones and contacts, unseen by the gridpoints' motion: it takes what
         // is missing.
@@ -183,6 +165,49 @@ public:
     }
 
 private:
+    // Over gridpoints, in one step.
+    struct Sums {
+        double energy = 0, work = 0; // of the Rayleigh quotient: of motion, and of the forces' answer to it
+        double damped = 0;           // [J/m]
+    };
+
+    void step_in_team(double alpha, bool starts_from_rest)
+    {
+        const auto n = static_cast<Index>(velocity_.size());
+        const auto n_chunks = static_cast<Index>(sums_.size());
+        const double keep = (1 - alpha * dt_ / 2) / (1 + alpha * dt_ / 2);
+        // Velocities live half a step before displacements: from rest the first one gets half a step's gain.
+        // With a whole one the stiffest parts would overshoot, and stopping them again and again would blow
+        // them up.
+        const double interval = (starts_from_rest ? 0.5 : 1.0) * dt_;
+        const double gain = interval / (1 + alpha * dt_ / 2);
+        const double local = settings_.damping == Damping::local ? settings_.local_damping : 0.0;
+        const bool adaptive = settings_.damping == Damping::adaptive;
+#pragma omp for schedule(static)
+        for (Index k = 0; k < n_chunks; ++k) {
+            Sums sums;
+            for (Index g = k * chunk; g < std::min(n, (k + 1) * chunk); ++g) {
+                const Vector2d free_force = a_.force[g].cwiseProduct(a_.is_free[g]), last = velocity_[g];
+                Vector2d force = free_force;
+                if (adaptive) { // how the force has answered to the last step's motion
+                    sums.work -= last.dot(force - last_force_[g]);
+                    last_force_[g] = force;
+                    sums.energy += last.squaredNorm() * mass_[g];
+                }
+                if (local > 0)
+                    force -=
+                        local * Vector2d(last.x() == 0 ? 0 : std::copysign(std::abs(force.x()), last.x()),
+                                         last.y() == 0 ? 0 : std::copysign(std::abs(force.y()), last.y()));
+                const Vector2d v = keep * last + gain * inverse_mass_[g] * force;
+                sums.damped += free_force.dot(v + last) / 2 * dt_ -
+                               (v.squaredNorm() - last.squaredNorm()) * mass_[g] / 2;
+                velocity_[g] = v;
+                a_.displacement[g] += dt_ * v;
+            }
+            sums_[k] = sums;
+        }
+    }
+
     static std::string shown_length(double length)
     {
         std::array<char, 32> text{};
@@ -194,9 +219,9 @@ private:
     const Equilibrium& settings_;
     std::vector<Vector2d> velocity_;
     std::vector<Vector2d> start_, patience_ago_, last_force_;
-    std::vector<double> mass_; // inverse [m/kg]
-    std::vector<double> energy_, quotient_, damped_;
-    double total_damped_ = 0, stored_at_start_ = 0;
+    std::vector<double> mass_, inverse_mass_; // [kg/m], [m/kg]
+    std::vector<Sums> sums_;                  // of each chunk
+    double total_damped_ = 0, stored_at_start_ = 0, in_contacts_at_start_ = 0;
     double dt_ = 0, too_far_ = 0, alpha_ = 0;
     double moved_before_ = std::numeric_limits<double>::infinity(); // in the last window of `patience` steps
     int windows_without_slowing_ = 0;
@@ -226,8 +251,11 @@ Certificate relax(Assembly& assembly, const Equilibrium& settings, const StepObs
     memory.change_since_window(assembly);
     Index steps_in_balance = 0;
     while (certificate.steps < settings.most_steps) {
-        relaxation.step();
-        ++certificate.steps;
+        const Index steps = observe ? 1
+                                    : std::min(check_every - certificate.steps % check_every,
+                                               settings.most_steps - certificate.steps);
+        relaxation.move(steps);
+        certificate.steps += steps;
         if (observe)
             observe(certificate.steps * relaxation.dt());
         if (certificate.steps % check_every != 0)

@@ -51,7 +51,7 @@ struct Contact {
         contacts.traction = {traction};
         contacts.offset = contacts.jump = {{0, 0}};
         contacts.status = {ContactStatus::stuck};
-        contacts.dissipated = {0};
+        contacts.work = {0};
         rock.displacement[1].y() = gap;
         start_from_here(rock);
     }

@@ -37,7 +37,7 @@ struct Zone {
         rock.displacement.assign(3, {0, 0});
         rock.load = rock.applied = rock.force = rock.displacement;
         rock.is_free.assign(3, {1, 1});
-        rock.zone_force.resize(1);
+        rock.zone_force.resize(3);
         rock.incidence.zone_start = {0, 1, 2, 3};
         rock.incidence.zone_corner = {0, 1, 2};
         rock.incidence.contact_start = {0, 0, 0, 0};
