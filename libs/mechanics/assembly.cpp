@@ -11,6 +11,8 @@ namespace jointcreep::mechanics
 namespace
 {
 
+constexpr Index zones_of_part = 1024; // some hundred gridpoints are in two parts then, of thousands
+
 void add_zones(Assembly& assembly, const Scene& scene, const Network& network, const Mesh& mesh)
 {
     Zones& zones = assembly.zones;
@@ -39,7 +41,6 @@ void add_zones(Assembly& assembly, const Scene& scene, const Network& network, c
         zones.initial_stress.push_back(scene.in_situ_stress.at((p[0] + p[1] + p[2]) / 3));
     }
     zones.stress = zones.initial_stress;
-    assembly.zone_force.resize(3 * n);
 }
 
 void add_contacts(Assembly& assembly, const Scene& scene, const EquivalentJoints& joints, const Mesh& mesh)
@@ -66,7 +67,6 @@ void add_contacts(Assembly& assembly, const Scene& scene, const EquivalentJoints
     contacts.jump.assign(n, Vector2d::Zero());
     contacts.status.assign(n, ContactStatus::stuck);
     contacts.work.assign(n, 0.0);
-    assembly.contact_force.resize(n);
 }
 
 // What a contact's springs hold at a traction [J/m].
@@ -94,50 +94,65 @@ void list_by_gridpoint(const std::vector<std::array<Index, N>>& gridpoints, std:
             entry[next[gridpoints[i][k]]++] = static_cast<Index>(N * i + k);
 }
 
-void pull_zones(Assembly& assembly, bool keeps_stress)
+void pull_zones(Assembly& assembly, bool forces_alone)
 {
     Zones& zones = assembly.zones;
+    const Incidence& incidence = assembly.incidence;
     const auto n = static_cast<Index>(zones.gridpoint.size());
-    // Plain pointers and numbers: through the arrays themselves, what is written might always be what is read
-    // next.
+    const auto n_parts = static_cast<Index>(incidence.part_start.size()) - 1;
+    // Plain pointers: through the arrays themselves, what is written might always be what is read next.
     const Vector2d* const displacement = assembly.displacement.data();
-    const std::array<Index, 3>* const gridpoint = zones.gridpoint.data();
+    const std::array<Index, 3>*const gridpoint = zones.gridpoint.data(), *const slot =
+                                                                             incidence.zone_slot.data();
     const std::array<Vector2d, 3>* const gradient = zones.gradient.data();
     const Vector3d *const stiffness = zones.stiffness.data(), *const initial = zones.initial_stress.data();
     const double* const area = zones.area.data();
     const char* const is_present = zones.is_present.data();
-    Vector3d* __restrict const stress = zones.stress.data(), * const last_stress = zones.last_stress.data();
-    Vector2d* __restrict const force = assembly.zone_force.data();
+    Vector3d *const stress = zones.stress.data(), *const last_stress = zones.last_stress.data();
+    Vector2d* __restrict const force = assembly.slot_force.data();
+    double* const magnitudes = assembly.slot_magnitudes.data();
     const double damping = assembly.stiffness_damping_rate;
 #pragma omp for schedule(static) nowait
-    for (Index z = 0; z < n; ++z) {
-        if (!is_present[z])
-            continue;
-        const Vector2d &u = displacement[gridpoint[z][0]], &v = displacement[gridpoint[z][1]],
-                       &w = displacement[gridpoint[z][2]];
-        const double ax = gradient[z][0].x(), ay = gradient[z][0].y(), bx = gradient[z][1].x(),
-                     by = gradient[z][1].y(), cx = gradient[z][2].x(), cy = gradient[z][2].y();
-        const double exx = ax * u.x() + bx * v.x() + cx * w.x();
-        const double eyy = ay * u.y() + by * v.y() + cy * w.y();
-        const double gxy = (ay * u.x() + ax * u.y()) + (by * v.x() + bx * v.y()) + (cy * w.x() + cx * w.y());
-        const double c11 = stiffness[z][0], c12 = stiffness[z][1], c33 = stiffness[z][2];
-        double xx = initial[z][0] + (c11 * exx + c12 * eyy), yy = initial[z][1] + (c12 * exx + c11 * eyy),
-               xy = initial[z][2] + c33 * gxy;
-        if (keeps_stress)
-            stress[z] = {xx, yy, xy};
-        if (damping > 0) {
-            const Vector3d now(xx, yy, xy), acting = now + damping * (now - last_stress[z]);
-            last_stress[z] = now;
-            xx = acting[0];
-            yy = acting[1];
-            xy = acting[2];
+    for (Index part = 0; part < n_parts; ++part) {
+        std::fill(force + incidence.part_start[part], force + incidence.part_start[part + 1], Vector2d(0, 0));
+        if (!forces_alone)
+            std::fill(magnitudes + incidence.part_start[part], magnitudes + incidence.part_start[part + 1],
+                      0.0);
+        for (Index z = part * zones_of_part; z < std::min(n, (part + 1) * zones_of_part); ++z) {
+            if (!is_present[z])
+                continue;
+            const Vector2d &u = displacement[gridpoint[z][0]], &v = displacement[gridpoint[z][1]],
+                           &w = displacement[gridpoint[z][2]];
+            const Vector2d &a = gradient[z][0], &b = gradient[z][1], &c = gradient[z][2];
+            const double exx = a.x() * u.x() + b.x() * v.x() + c.x() * w.x();
+            const double eyy = a.y() * u.y() + b.y() * v.y() + c.y() * w.y();
+            const double gxy = (a.y() * u.x() + a.x() * u.y()) + (b.y() * v.x() + b.x() * v.y()) +
+                               (c.y() * w.x() + c.x() * w.y());
+            const double c11 = stiffness[z][0], c12 = stiffness[z][1], c33 = stiffness[z][2];
+            double xx = initial[z][0] + (c11 * exx + c12 * eyy), yy = initial[z][1] + (c12 * exx + c11 * eyy),
+                   xy = initial[z][2] + c33 * gxy;
+            if (!forces_alone)
+                stress[z] = {xx, yy, xy};
+            if (damping > 0) {
+                const Vector3d now(xx, yy, xy), acting = now + damping * (now - last_stress[z]);
+                last_stress[z] = now;
+                xx = acting[0];
+                yy = acting[1];
+                xy = acting[2];
+            }
+            xx *= -area[z];
+            yy *= -area[z];
+            xy *= -area[z];
+            // Numbers, not vectors: a vector made of two numbers goes through memory, and waits for it.
+            for (int i = 0; i < 3; ++i) {
+                const double x = xx * gradient[z][i].x() + xy * gradient[z][i].y(),
+                             y = xy * gradient[z][i].x() + yy * gradient[z][i].y();
+                force[slot[z][i]].x() += x;
+                force[slot[z][i]].y() += y;
+                if (!forces_alone)
+                    magnitudes[slot[z][i]] += std::sqrt(x * x + y * y);
+            }
         }
-        xx *= -area[z];
-        yy *= -area[z];
-        xy *= -area[z];
-        force[3 * z] = {xx * ax + xy * ay, xy * ax + yy * ay};
-        force[3 * z + 1] = {xx * bx + xy * by, xy * bx + yy * by};
-        force[3 * z + 2] = {xx * cx + xy * cy, xy * cx + yy * cy};
     }
 }
 
@@ -176,45 +191,19 @@ void add_up_forces(Assembly& assembly)
     const Incidence& incidence = assembly.incidence;
     const auto n = static_cast<Index>(assembly.position.size());
     const Index n_chunks = chunks_of(assembly);
-    const Vector2d *of_zone = assembly.zone_force.data(), *of_contact = assembly.contact_force.data();
+    const Vector2d *in_slot = assembly.slot_force.data(), *of_contact = assembly.contact_force.data();
 #pragma omp for schedule(static) nowait
     for (Index k = 0; k < n_chunks; ++k)
         for (Index g = k * chunk; g < std::min(n, (k + 1) * chunk); ++g) {
             Vector2d force = assembly.load[g] + assembly.applied[g];
-            for (Index i = incidence.zone_start[g]; i < incidence.zone_start[g + 1]; ++i)
-                force += of_zone[incidence.zone_corner[i]];
+            for (Index i = incidence.slot_start[g]; i < incidence.slot_start[g + 1]; ++i)
+                force += in_slot[incidence.slot[i]];
             for (Index i = incidence.contact_start[g]; i < incidence.contact_start[g + 1]; ++i) {
                 const Index side = incidence.contact_side[i];
-                if (side % 2 == 0)
-                    force += of_contact[side / 2];
-                else
-                    force -= of_contact[side / 2];
+                force += (1 - 2 * (side & 1)) * of_contact[side >> 1]; // a product is quicker than a branch
             }
             assembly.force[g] = force;
         }
-}
-
-// The loops are over flat arrays, each read and written once and in order, but for displacements and forces
-// of gridpoints.
-void find_all_in_team(Assembly& assembly, bool keeps_stress)
-{
-    if (!assembly.tied.empty()) {
-#pragma omp single
-        for (const auto& [follower, leader] : assembly.tied)
-            assembly.displacement[follower] = assembly.displacement[leader];
-    }
-    pull_zones(assembly, keeps_stress);
-    pull_contacts(assembly);
-#pragma omp barrier
-    add_up_forces(assembly);
-    if (!assembly.tied.empty()) {
-#pragma omp barrier
-#pragma omp single
-        for (const auto& [follower, leader] : assembly.tied) {
-            assembly.force[leader] += assembly.force[follower];
-            assembly.force[follower].setZero();
-        }
-    }
 }
 
 } // namespace
@@ -233,10 +222,7 @@ Assembly assemble(const Scene& scene, const Network& network, const EquivalentJo
         assembly.is_free.emplace_back((held & 1) != 0 ? 0.0 : 1.0, (held & 2) != 0 ? 0.0 : 1.0);
     add_zones(assembly, scene, network, mesh);
     add_contacts(assembly, scene, equivalent, mesh);
-    list_by_gridpoint(assembly.zones.gridpoint, n, assembly.incidence.zone_start,
-                      assembly.incidence.zone_corner);
-    list_by_gridpoint(assembly.contacts.gridpoint, n, assembly.incidence.contact_start,
-                      assembly.incidence.contact_side);
+    find_incidence(assembly);
     for (std::size_t z = 0; z < assembly.zones.gridpoint.size(); ++z)
         for (const Index g : assembly.zones.gridpoint[z])
             assembly.load[g].y() -= assembly.zones.weight[z] / 3;
@@ -244,6 +230,37 @@ Assembly assemble(const Scene& scene, const Network& network, const EquivalentJo
         assembly.ties.push_back({mesh.tie_gridpoint[t], mesh.tie_stage[t]});
     part_ties(assembly, -1);
     return assembly;
+}
+
+void find_incidence(Assembly& assembly)
+{
+    const std::size_t n = assembly.position.size();
+    Incidence& incidence = assembly.incidence;
+    const auto& zones = assembly.zones.gridpoint;
+    list_by_gridpoint(zones, n, incidence.zone_start, incidence.zone_corner);
+    list_by_gridpoint(assembly.contacts.gridpoint, n, incidence.contact_start, incidence.contact_side);
+
+    std::vector<std::array<Index, 1>> gridpoint_of_slot;
+    std::vector<Index> slot_of(n, -1); // in this part; less than its first one where it has none yet
+    incidence.part_start.assign(1, 0);
+    incidence.zone_slot.resize(zones.size());
+    for (std::size_t z = 0; z < zones.size(); ++z) {
+        if (z > 0 && z % zones_of_part == 0)
+            incidence.part_start.push_back(static_cast<Index>(gridpoint_of_slot.size()));
+        for (int i = 0; i < 3; ++i) {
+            Index& slot = slot_of[zones[z][i]];
+            if (slot < incidence.part_start.back()) {
+                slot = static_cast<Index>(gridpoint_of_slot.size());
+                gridpoint_of_slot.push_back({zones[z][i]});
+            }
+            incidence.zone_slot[z][i] = slot;
+        }
+    }
+    incidence.part_start.push_back(static_cast<Index>(gridpoint_of_slot.size()));
+    list_by_gridpoint(gridpoint_of_slot, n, incidence.slot_start, incidence.slot);
+    assembly.slot_force.assign(gridpoint_of_slot.size(), Vector2d::Zero());
+    assembly.slot_magnitudes.assign(gridpoint_of_slot.size(), 0.0);
+    assembly.contact_force.assign(assembly.contacts.gridpoint.size(), Vector2d::Zero());
 }
 
 void part_ties(Assembly& assembly, Index stage)
@@ -269,12 +286,28 @@ void part_ties(Assembly& assembly, Index stage)
 void find_forces(Assembly& assembly)
 {
 #pragma omp parallel num_threads(assembly.threads) if (assembly.threads > 1)
-    find_all_in_team(assembly, true);
+    find_forces_in_team(assembly, false);
 }
 
-void find_forces_in_team(Assembly& assembly)
+void find_forces_in_team(Assembly& assembly, bool forces_alone)
 {
-    find_all_in_team(assembly, false);
+    if (!assembly.tied.empty()) {
+#pragma omp single
+        for (const auto& [follower, leader] : assembly.tied)
+            assembly.displacement[follower] = assembly.displacement[leader];
+    }
+    pull_zones(assembly, forces_alone);
+    pull_contacts(assembly);
+#pragma omp barrier
+    add_up_forces(assembly);
+    if (!assembly.tied.empty()) {
+#pragma omp barrier
+#pragma omp single
+        for (const auto& [follower, leader] : assembly.tied) {
+            assembly.force[leader] += assembly.force[follower];
+            assembly.force[follower].setZero();
+        }
+    }
 }
 
 Index chunks_of(const Assembly& assembly)
@@ -331,8 +364,8 @@ Balance balance_of(const Assembly& assembly)
                     break;
             }
             double magnitudes = assembly.load[g].norm() + assembly.applied[g].norm();
-            for (Index i = incidence.zone_start[g]; i < incidence.zone_start[g + 1]; ++i)
-                magnitudes += assembly.zone_force[incidence.zone_corner[i]].norm();
+            for (Index i = incidence.slot_start[g]; i < incidence.slot_start[g + 1]; ++i)
+                magnitudes += assembly.slot_magnitudes[incidence.slot[i]];
             for (Index i = incidence.contact_start[g]; i < incidence.contact_start[g + 1]; ++i)
                 magnitudes += assembly.contact_force[incidence.contact_side[i] / 2].norm();
             if (magnitudes > 0) {

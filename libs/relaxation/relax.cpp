@@ -96,7 +96,7 @@ public:
 #pragma omp parallel num_threads(a_.threads) if (a_.threads > 1)
         {
             double alpha = settings_.damping == Damping::mass ? settings_.mass_damping : alpha_;
-            double damped = total_damped_;
+            double work = work_;
             bool starts_from_rest = starts_from_rest_;
             for (Index i = 0; i < steps; ++i) {
                 step_in_team(alpha, starts_from_rest);
@@ -104,21 +104,21 @@ public:
                 Sums sums; // every thread adds them up for itself, before the next step writes new ones
                 for (const Sums& some : sums_) {
                     sums.energy += some.energy;
+                    sums.answer += some.answer;
                     sums.work += some.work;
-                    sums.damped += some.damped;
                 }
-                damped += sums.damped;
+                work += sums.work;
                 if (settings_.damping == Damping::adaptive)
-                    alpha = sums.energy > 0 && sums.work > 0
-                                ? std::min(2 * std::sqrt(sums.work / (dt_ * sums.energy)), 1.9 / dt_)
+                    alpha = sums.energy > 0 && sums.answer > 0
+                                ? std::min(2 * std::sqrt(sums.answer / (dt_ * sums.energy)), 1.9 / dt_)
                                 : 0.0;
-                find_forces_in_team(a_);
+                find_forces_in_team(a_, i + 1 < steps);
             }
 #pragma omp barrier
 #pragma omp single
             {
                 alpha_ = alpha;
-                total_damped_ = damped;
+                work_ = work;
                 starts_from_rest_ = starts_from_rest;
             }
         }
@@ -161,14 +161,14 @@ public:
         // is missing.
         certificate.damped = settings_.stiffness_damping > 0
                                  ? certificate.work_of_loads - certificate.stored - certificate.dissipated
-                                 : total_damped_;
+                                 : work_ - energy_of_motion();
     }
 
 private:
     // Over gridpoints, in one step.
     struct Sums {
-        double energy = 0, work = 0; // of the Rayleigh quotient: of motion, and of the forces' answer to it
-        double damped = 0;           // [J/m]
+        double energy = 0, answer = 0; // of the Rayleigh quotient: of motion, and how forces answer to it
+        double work = 0;               // of the forces out of balance [J/m]
     };
 
     void step_in_team(double alpha, bool starts_from_rest)
@@ -190,7 +190,7 @@ private:
                 const Vector2d free_force = a_.force[g].cwiseProduct(a_.is_free[g]), last = velocity_[g];
                 Vector2d force = free_force;
                 if (adaptive) { // how the force has answered to the last step's motion
-                    sums.work -= last.dot(force - last_force_[g]);
+                    sums.answer -= last.dot(force - last_force_[g]);
                     last_force_[g] = force;
                     sums.energy += last.squaredNorm() * mass_[g];
                 }
@@ -199,13 +199,20 @@ private:
                         local * Vector2d(last.x() == 0 ? 0 : std::copysign(std::abs(force.x()), last.x()),
                                          last.y() == 0 ? 0 : std::copysign(std::abs(force.y()), last.y()));
                 const Vector2d v = keep * last + gain * inverse_mass_[g] * force;
-                sums.damped += free_force.dot(v + last) / 2 * dt_ -
-                               (v.squaredNorm() - last.squaredNorm()) * mass_[g] / 2;
+                sums.work += free_force.dot(v + last) / 2 * dt_;
                 velocity_[g] = v;
                 a_.displacement[g] += dt_ * v;
             }
             sums_[k] = sums;
         }
+    }
+
+    double energy_of_motion() const
+    {
+        double energy = 0;
+        for (std::size_t g = 0; g < velocity_.size(); ++g)
+            energy += mass_[g] / 2 * velocity_[g].squaredNorm();
+        return energy;
     }
 
     static std::string shown_length(double length)
@@ -221,7 +228,7 @@ private:
     std::vector<Vector2d> start_, patience_ago_, last_force_;
     std::vector<double> mass_, inverse_mass_; // [kg/m], [m/kg]
     std::vector<Sums> sums_;                  // of each chunk
-    double total_damped_ = 0, stored_at_start_ = 0, in_contacts_at_start_ = 0;
+    double work_ = 0, stored_at_start_ = 0, in_contacts_at_start_ = 0;
     double dt_ = 0, too_far_ = 0, alpha_ = 0;
     double moved_before_ = std::numeric_limits<double>::infinity(); // in the last window of `patience` steps
     int windows_without_slowing_ = 0;
