@@ -100,6 +100,25 @@ std::optional<StableLimit> limit_of_published(const Scene& scene, const Network&
     return StableLimit{limit.step, of};
 }
 
+std::vector<char> rigid_zones(const Scene& scene, const Network& network, const Mesh& mesh)
+{
+    const std::vector<std::string>& rigid = scene.motion->rigid_rocks;
+    std::vector<char> is_rigid;
+    for (const Index block : mesh.zone_block) {
+        const std::string& rock = scene.rocks[network.blocks.block_rock[block]].name;
+        is_rigid.push_back(std::find(rigid.begin(), rigid.end(), rock) != rigid.end() ? 1 : 0);
+    }
+    return is_rigid;
+}
+
+// Of contacts that come about in motion: friction alone.
+joint::Coulomb law_of_new_contacts(const Scene& scene)
+{
+    const auto material = std::find_if(scene.joint_materials.begin(), scene.joint_materials.end(),
+                                       [&](const auto& m) { return m.name == scene.motion->new_contacts; });
+    return {material->normal_stiffness, material->shear_stiffness, 0, std::tan(material->friction_angle), 0};
+}
+
 } // namespace
 
 // 1. Divide the blocks into zones and load them with the in-situ stress.
@@ -110,7 +129,8 @@ Analysis::Analysis(const Scene& scene, const Network& network, const EquivalentJ
                                                      .history = {},
                                                      .states = {},
                                                      .equilibria = {},
-                                                     .trace = {}},
+                                                     .trace = {},
+                                                     .motions = {}},
       rock_(mechanics::assemble(scene, network, joints, result_.mesh)), loading_(scene, result_.mesh),
       recorder_(scene, network.blocks, result_.mesh)
 {
@@ -122,6 +142,11 @@ Analysis::Analysis(const Scene& scene, const Network& network, const EquivalentJ
         sensitivity_.emplace(recording.parameters, scene, result_.mesh, rock_);
     sensitivities_.resize(recording.parameters.size());
     settle_in_situ();
+    if (scene.motion)
+        motion_.emplace(rock_, result_.mesh, rigid_zones(scene, network, result_.mesh),
+                        law_of_new_contacts(scene),
+                        motion::Settings{scene.motion->stiffness_damping, scene.motion->mass_damping,
+                                         scene.motion->release, scene.equilibrium.tolerance});
     if (scene.creep) {
         creep_.emplace(scene, network, joints, result_.mesh, rock_);
         if (sensitivity_)
@@ -144,7 +169,10 @@ void Analysis::run()
     for (const double date : dates_of(scene_, loading_)) {
         if (end_of_creep_)
             break;
-        creep_until(date, now_ >= last_event);
+        if (motion_)
+            rest_until(date);
+        else
+            creep_until(date, now_ >= last_event);
         for (std::size_t s = 0; s < scene_.stages.size(); ++s)
             if (scene_.stages[s].time == date)
                 excavate(scene_.stages[s], static_cast<Index>(s));
@@ -207,6 +235,15 @@ void Analysis::creep_until(double date, bool may_stop)
         }
     }
     recorder_.record_state(result_, now_, "", rock_);
+}
+
+// 3, where rock may move far: between stages it is at rest.
+void Analysis::rest_until(double date)
+{
+    if (date == now_)
+        return;
+    now_ = date;
+    take_down("", true);
 }
 
 // One step of creep and loading, to the target or to where an open contact closes before. False if its error
@@ -296,6 +333,11 @@ void Analysis::excavate(const Stage& stage, Index number)
     const auto released = mechanics::excavate(rock_, network_.blocks, result_.mesh, loading_, number);
     if (sensitivity_)
         sensitivity_->after_excavation(rock_);
+    if (motion_) {
+        motion_->start(released);
+        move(stage);
+        return;
+    }
     const std::vector<Vector2d> load = rock_.load;
     // In the scene's increments; in smaller ones where factorisation finds nothing nearby.
     const int finest = engine_ == Engine::explicit_engine ? 1 : 1 << most_halvings;
@@ -318,6 +360,59 @@ void Analysis::excavate(const Stage& stage, Index number)
     }
     start_afresh();
     take_down(stage.name, true);
+}
+
+// 4, where rock may move far: follow it until it is at rest.
+void Analysis::move(const Stage& stage)
+{
+    double due = 0;
+    for (;;) {
+        if (motion_->time() >= due) {
+            observe_(now_ / scene_.end, stage.name + ", " + shown(due) + " s");
+            due += scene_.motion->record_every;
+            motion_->put_back();
+            recorder_.record_state(result_, now_, "", rock_);
+            take_down_motion();
+        }
+        motion_->step();
+        ++effort_.steps;
+        if (effort_.steps % motion::Motion::check_every == 0 && motion_->is_at_rest())
+            break;
+        if (motion_->time() > scene_.motion->longest)
+            throw equilibrium_error("no rest within " + shown(scene_.motion->longest) + " s of stage \"" +
+                                    stage.name + "\": the rock that was at " +
+                                    shown(rock_.position[motion_->fastest_gridpoint()]) + " moves at " +
+                                    shown(motion_->fastest()) + " m/s");
+    }
+    motion_->put_back();
+    const motion::Energy& energy = motion_->energy();
+    certificate_ = {.steps = effort_.steps,
+                    .out_of_balance_ratio = motion_->out_of_balance_ratio(),
+                    .contact_force_change = motion_->contact_force_change(),
+                    .work_of_loads = energy.work,
+                    .stored = energy.stored,
+                    .dissipated = energy.friction,
+                    .damped = energy.damped};
+    effort_.searches = 1;
+    take_down_equilibrium();
+    take_down(stage.name, true);
+    take_down_motion();
+}
+
+void Analysis::take_down_motion()
+{
+    Motions& motions = result_.motions;
+    const motion::Energy& energy = motion_->energy();
+    motions.time.push_back(now_ / unit::day);
+    motions.motion_time.push_back(motion_->time());
+    motions.state.push_back(static_cast<Index>(result_.states.time.size()) - 1);
+    motions.work_of_loads.push_back(energy.work);
+    motions.kinetic_energy.push_back(energy.kinetic);
+    motions.stored_energy.push_back(energy.stored);
+    motions.friction_energy.push_back(energy.friction);
+    motions.damped_energy.push_back(energy.damped);
+    motions.fastest.push_back(motion_->fastest());
+    motions.out_of_balance_ratio.push_back(motion_->out_of_balance_ratio());
 }
 
 // After a jump of loads: what was learnt from the steps before no longer holds.

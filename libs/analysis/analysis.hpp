@@ -9,6 +9,7 @@
 #include "mechanics/assembly.hpp"
 #include "mechanics/loading.hpp"
 #include "mechanics/recorder.hpp"
+#include "motion/motion.hpp"
 #include "sensitivity/sensitivity.hpp"
 
 #include <functional>
@@ -63,9 +64,12 @@ public:
 private:
     void settle_in_situ();
     void creep_until(double date, bool may_stop);
+    void rest_until(double date);
     bool step_to(double target, bool is_loaded);
     bool is_slower_than(double rate) const;
     void excavate(const Stage& stage, Index number);
+    void move(const Stage& stage);
+    void take_down_motion();
     bool settles_nearby(const std::vector<mechanics::Vector2d>& guess);
     void settle_by_motion(double time);
     void take_down_equilibrium();
@@ -82,6 +86,7 @@ private:
     mechanics::Loading loading_;
     mechanics::Recorder recorder_;
     implicit::Engine implicit_;
+    std::optional<motion::Motion> motion_;
     std::optional<creep::Creep> creep_;
     std::optional<creep::StepLength> step_;
     std::optional<creep::Closing> closing_;

@@ -86,12 +86,24 @@ struct Trace {
     std::vector<Eigen::Vector2d> traction;     // [row, gauge] {normal, shear} [Pa]
 };
 
+// Motions on the way, a row whenever a state is recorded during one; large displacements only. Energies since
+// the motion's start: work_of_loads = kinetic + stored + friction + damped, but for the error of time steps.
+struct Motions {
+    std::vector<double> time;        // of the stage, since start [day]
+    std::vector<double> motion_time; // since the motion's start [s]
+    std::vector<Index> state;        // into States
+    std::vector<double> work_of_loads, kinetic_energy, stored_energy, friction_energy, damped_energy; // [J/m]
+    std::vector<double> fastest;              // gridpoint's speed [m/s]
+    std::vector<double> out_of_balance_ratio; // [-]
+};
+
 struct Result {
     Mesh mesh;
     History history;
     States states;
     Equilibria equilibria;
     Trace trace;
+    Motions motions;
 };
 
 } // namespace jointcreep

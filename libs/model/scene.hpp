@@ -264,6 +264,17 @@ struct Equilibrium {
     std::int32_t most_steps = 0; // without equilibrium after so many, the program gives up
 };
 
+// Rock that may move far: Newton's law with real masses, in place of the search for equilibrium nearby.
+struct Motion {
+    std::string new_contacts;               // name of the JointMaterial of contacts that come about
+    std::vector<std::string> rigid_rocks{}; // names of Rocks whose blocks do not deform then
+    double stiffness_damping = 0;           // dashpots of zones and closed joints over their springs [s]
+    double mass_damping = 0;                // [1/s]
+    double release = 0;                     // time in which the forces of a stage's rock fade away [s]
+    double longest = 0;                     // of one motion [s]
+    double record_every = 0;                // [s]
+};
+
 // Over what the joint fraction is taken that strengths and stiffnesses are averaged with.
 enum class AverageOver { edge, line, set };
 
@@ -319,6 +330,7 @@ struct Scene {
     Cutting cutting;
     Averaging averaging;
     Equilibrium equilibrium;
+    std::optional<Motion> motion;
 };
 
 } // namespace jointcreep

@@ -962,6 +962,36 @@ Table<Equilibrium> equilibrium()
              .or_else(std::int64_t{1000000})}};
 }
 
+Table<Motion> motion()
+{
+    return {
+        {"motion", once, optional,
+         "Lets rock move far after each stage: with real masses and large displacements, contacts found "
+         "anew, until "
+         "it is at rest. Without this table displacements are small. Not with [creep]."},
+        {text("new_contacts", &Motion::new_contacts,
+              "Joint material of contacts that come about, which have no cohesion and no tensile strength."),
+         names("rigid_rocks", &Motion::rigid_rocks,
+               "Rocks whose blocks do not deform in motion; they do before it.")
+             .optional("none"),
+         number("stiffness_damping_s", &Motion::stiffness_damping, seconds, from(0).to(10),
+                "Dashpots of zones and closed joints, over their springs. Takes the energy of impacts and of "
+                "vibration; shortens the time step.")
+             .or_else(1e-4),
+         number("mass_damping_per_s", &Motion::mass_damping, per_s, from(0).to(1e6),
+                "Force over mass and velocity. It also brakes rock that slides or falls.")
+             .or_else(0.0),
+         number("release_s", &Motion::release, seconds, from(0).to(1e6),
+                "Time in which the forces of a stage's rock fade away.")
+             .or_else(0.0),
+         number("longest_s", &Motion::longest, seconds, above(0).to(1e6),
+                "A motion that has not come to rest by then is given up.")
+             .or_else(60.0),
+         number("record_every_s", &Motion::record_every, seconds, above(0).to(1e6),
+                "The section and the balance of energy are recorded that often on the way.")
+             .or_else(1.0)}};
+}
+
 Table<Scene> random_numbers()
 {
     return {{"random", once, optional, "Needed by joint sets."},
@@ -1004,6 +1034,7 @@ SceneTables all_tables()
     all.cutting = cutting();
     all.averaging = averaging();
     all.equilibrium = equilibrium();
+    all.motion = motion();
     all.random = random_numbers();
     all.file = held_file();
     return all;

@@ -52,12 +52,14 @@ struct Contents {
         append(fields, fields_of(reading(equivalent)));
         append(invariants, invariants_of(equivalent));
     }
-    void add(const Result& result, bool with_trace)
+    void add(const Result& result, bool with_trace, bool with_motions)
     {
         append(fields, fields_of(reading(result)));
         append(invariants, invariants_of(result.mesh));
         if (with_trace)
             append(fields, fields_of(reading(result.trace)));
+        if (with_motions)
+            append(fields, fields_of(reading(result.motions)));
     }
 };
 
@@ -160,7 +162,7 @@ ResultFile read_result(const std::string& path)
         ResultFile file;
         Contents contents(file.provenance, file.network);
         contents.add(file.equivalent);
-        contents.add(file.result, source.has_group("/trace"));
+        contents.add(file.result, source.has_group("/trace"), source.has_group("/motions"));
         fill(source, file.provenance, contents);
         return file;
     });
@@ -184,7 +186,7 @@ void write_result(const std::string& path, const Provenance& provenance, const N
 {
     Contents contents(provenance, network);
     contents.add(equivalent);
-    contents.add(result, !result.trace.time.empty());
+    contents.add(result, !result.trace.time.empty(), !result.motions.time.empty());
     write(path, FileKind::result, provenance, contents);
 }
 

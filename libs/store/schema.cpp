@@ -486,6 +486,30 @@ std::vector<Field> fields_of(Trace& trace)
     // clang-format on
 }
 
+std::vector<Field> fields_of(Motions& motions)
+{
+    // clang-format off
+    return {
+        {"/motions/time", &motions.time, {"moment"}, "day", ascending(), "Time of the stage since the start."},
+        {"/motions/motion_time", &motions.motion_time, {"moment"}, "s", at_least(0), "Time since the motion began."},
+        {"/motions/state", &motions.state, {"moment"}, "1", index_of("state"), "The section's state then."},
+        {"/motions/work_of_loads", &motions.work_of_loads, {"moment"}, "J/m", any(),
+         "Work of weight, held rock and tractions since then; but for the error of time steps the sum of the next "
+         "four."},
+        {"/motions/kinetic_energy", &motions.kinetic_energy, {"moment"}, "J/m", at_least(0), "Kinetic energy."},
+        {"/motions/stored_energy", &motions.stored_energy, {"moment"}, "J/m", any(),
+         "Energy that zones and contacts took up."},
+        {"/motions/friction_energy", &motions.friction_energy, {"moment"}, "J/m", at_least(0),
+         "Energy lost to slip."},
+        {"/motions/damped_energy", &motions.damped_energy, {"moment"}, "J/m", any(),
+         "Energy taken by dashpots, and where slow motion was stopped."},
+        {"/motions/fastest", &motions.fastest, {"moment"}, "m/s", at_least(0), "Speed of the fastest gridpoint."},
+        {"/motions/out_of_balance_ratio", &motions.out_of_balance_ratio, {"moment"}, "1", at_least(0),
+         "Out-of-balance ratio."},
+    };
+    // clang-format on
+}
+
 std::vector<Invariant> invariants_of(const Network& network)
 {
     const Blocks& blocks = network.blocks;
@@ -574,6 +598,7 @@ const std::vector<Described>& dimensions()
         {"state", "a recorded state of the whole section"},
         {"equilibrium", "an equilibrium that was found"},
         {"row", "a recorded step of the solver"},
+        {"moment", "a recorded moment of a motion"},
         {"gauge", "a gauge of the scene"},
     };
     return all;
