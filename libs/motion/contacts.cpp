@@ -223,6 +223,7 @@ void Contacts::update(const std::vector<Vector2d>& place, const std::vector<Vect
         pair.friction = pair.damped = 0;
         const auto a = ends_of(faces_.gridpoint[pair.a], place), b = ends_of(faces_.gridpoint[pair.b], place);
         // What the springs still hold when a contact ends, where rock slides off an edge, say, is lost.
+        const Vector2d last_normal = pair.normal;
         const double last_length = pair.length, last_tau = pair.tau, last_stored = pair.stored;
         pair.stored = 0;
         const auto open = [&] {
@@ -303,9 +304,14 @@ void Contacts::update(const std::vector<Vector2d>& place, const std::vector<Vect
 
         const double limit =
             std::max(0.0, (pair.is_broken ? 0.0 : law.cohesion) * pair.length + pressed * law.tan_phi);
+        // Two points a gap apart that turn together move along each other, too; that is no slip.
+        const double gap = fraction(found->gap, (part[0] + part[1]) / 2);
+        const double turned =
+            pair.is_new || last_length == 0 ? 0.0 : gap * (pair.normal - last_normal).dot(tangent);
         const double slid =
             (at(move_b, (pair.on_b[0] + pair.on_b[1]) / 2) - at(move_a, (pair.on_a[0] + pair.on_a[1]) / 2))
-                .dot(tangent);
+                .dot(tangent) -
+            turned;
         // A part that opens takes along the shear that it has; one that closes has none yet.
         const double kept = pair.is_new ? pair.length : std::min(last_length, pair.length);
         const double trial = last_tau * kept + law.k_s * slid * pair.length;
