@@ -98,7 +98,7 @@ class Blocks(ChainTest):
 
     def test_a_block_slides_with_the_acceleration_that_friction_leaves(self):
         dip, friction = 30, 25
-        for more, close in ((RIGID, 1e-3), ("stiffness_damping_s = 3e-5", 2e-3))  # its vibration has kinetic energy, too:
+        for more, close in ((RIGID, 1e-3), ("stiffness_damping_s = 3e-5", 2e-3)):  # vibration has energy, too
             length = 20 if more == RIGID else 7
             data = datasets(self.chain.result(incline(dip, friction, length=length, more=more)))
             acceleration = GRAVITY * (math.sin(math.radians(dip))
