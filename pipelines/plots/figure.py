@@ -124,6 +124,13 @@ def scene_of(file):
     return tomllib.loads(texts(file, "/scene")[0])
 
 
+def ending_of(file):
+    """What a title says of a run that found no equilibrium; nothing of others."""
+    if "/failure" not in file:
+        return ""
+    return f"no equilibrium on day {array(file, '/failure/time')[0]:.5g}"
+
+
 def name_index(names, wanted, what):
     """Row of a name, the first one if none is wanted."""
     if not names:
