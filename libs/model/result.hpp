@@ -103,7 +103,7 @@ struct Failure {
     std::vector<Eigen::Vector2d> motion{}; // in these steps [m]
 };
 
-// Runs by which a factor of safety was found.
+// Runs by which a factor of safety was found, beside the result of the last one that stood.
 struct Safety {
     std::vector<double> factor{}; // that strengths were divided by [-]
     std::vector<Index>
@@ -117,7 +117,6 @@ struct Result {
     Equilibria equilibria;
     Trace trace;
     Failure failure{};
-    Safety safety{};
 };
 
 } // namespace jointcreep

@@ -202,5 +202,5 @@ def mark_stages(axes, places, names, with_names=True):
 
 def time_label(file):
     """What the axis of days is called: with the date that they count from, if the scene has one."""
-    start = scene_of(file)["schedule"]["start"]
+    start = scene_of(file)["schedule"].get("start", 0)
     return f"time since {'the start' if isinstance(start, (int, float)) else start} (days)"

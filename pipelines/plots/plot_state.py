@@ -32,7 +32,7 @@ figure.plt.rcParams["savefig.pad_inches"] = 0.03
 def name_of(file, state):
     """ "16 July 1994, after bench 1", "16 July 1994, before bench 1" or "day 548" of a scene that counts days."""
     time, event = figure.array(file, "/states/time"), figure.texts(file, "/states/event")
-    start = figure.scene_of(file)["schedule"]["start"]
+    start = figure.scene_of(file)["schedule"].get("start", 0)
     if isinstance(start, datetime.date):
         date = start + datetime.timedelta(float(time[state]))
         name = f"{date.day} {date:%B %Y}"

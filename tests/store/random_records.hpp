@@ -72,6 +72,7 @@ public:
         if (with_trace) {
             fill(schema::fields_of(file.result.trace));
             fill(schema::fields_of(file.result.failure));
+            file.result.failure.reason += '!'; // without one it is none
             fill(schema::fields_of(file.safety));
         }
         keep_invariants(file);
