@@ -1,6 +1,7 @@
 #include "analysis/analysis.hpp"
 
 #include "mechanics/excavation.hpp"
+#include "mechanics/failure.hpp"
 #include "model/error.hpp"
 #include "model/units.hpp"
 #include "relaxation/relax.hpp"
@@ -124,7 +125,7 @@ joint::Coulomb law_of_new_contacts(const Scene& scene)
 // 1. Divide the blocks into zones and load them with the in-situ stress.
 Analysis::Analysis(const Scene& scene, const Network& network, const EquivalentJoints& joints, int threads,
                    const Recording& recording, const Observer& observe)
-    : scene_(scene), network_(network), recording_(recording), observe_(observe),
+    : scene_(scene), network_(network), joints_(joints), recording_(recording), observe_(observe),
       engine_(engine_for(scene, recording)), result_{.mesh = zoning::zone(scene, network.blocks),
                                                      .history = {},
                                                      .states = {},
@@ -141,27 +142,27 @@ Analysis::Analysis(const Scene& scene, const Network& network, const EquivalentJ
     if (!recording.parameters.empty())
         sensitivity_.emplace(recording.parameters, scene, result_.mesh, rock_);
     sensitivities_.resize(recording.parameters.size());
-    settle_in_situ();
-    if (scene.motion)
-        motion_.emplace(rock_, result_.mesh, rigid_zones(scene, network, result_.mesh),
-                        law_of_new_contacts(scene),
-                        motion::Settings{scene.motion->stiffness_damping, scene.motion->mass_damping,
-                                         scene.motion->release, scene.equilibrium.tolerance});
-    if (scene.creep) {
-        creep_.emplace(scene, network, joints, result_.mesh, rock_);
-        if (sensitivity_)
-            sensitivity_->start_creep(*creep_);
-        if (creep_->anything_creeps()) {
-            step_.emplace(*scene.creep, creep_->fastest_rate(),
-                          stable_limit_ ? stable_limit_->step : std::numeric_limits<double>::infinity());
-            if (creep::is_second_order(scene.creep->scheme))
-                closing_.emplace(step_->closing_tolerance()); // the others are of first order anyway
-        }
-    }
 }
 
 void Analysis::run()
 {
+    settle_in_situ();
+    if (scene_.motion)
+        motion_.emplace(rock_, result_.mesh, rigid_zones(scene_, network_, result_.mesh),
+                        law_of_new_contacts(scene_),
+                        motion::Settings{scene_.motion->stiffness_damping, scene_.motion->mass_damping,
+                                         scene_.motion->release, scene_.equilibrium.tolerance});
+    if (scene_.creep) {
+        creep_.emplace(scene_, network_, joints_, result_.mesh, rock_);
+        if (sensitivity_)
+            sensitivity_->start_creep(*creep_);
+        if (creep_->anything_creeps()) {
+            step_.emplace(*scene_.creep, creep_->fastest_rate(),
+                          stable_limit_ ? stable_limit_->step : std::numeric_limits<double>::infinity());
+            if (creep::is_second_order(scene_.creep->scheme))
+                closing_.emplace(step_->closing_tolerance()); // the others are of first order anyway
+        }
+    }
     // After this nothing happens but creep.
     const std::set<double> corners = loading_.corners();
     const double last_event = std::max(scene_.stages.empty() ? 0.0 : scene_.stages.back().time,
@@ -187,8 +188,16 @@ void Analysis::run()
 void Analysis::settle_in_situ()
 {
     observe_(0, "in-situ equilibrium");
-    if (!settles_nearby({}))
-        settle_by_motion(0);
+    const mechanics::State given = state_of(rock_);
+    try {
+        check_held();
+        if (!settles_nearby({}))
+            settle_by_motion(0);
+    } catch (const equilibrium_error&) {
+        go_back(rock_, given);
+        take_down("", true);
+        throw;
+    }
     const mechanics::Contacts& contacts = rock_.contacts;
     for (std::size_t c = 0; c < contacts.status.size(); ++c)
         if (contacts.status[c] != ContactStatus::stuck)
@@ -271,7 +280,13 @@ bool Analysis::step_to(double target, bool is_loaded)
         for (Vector2d& move : guess)
             move *= 0.9 * (end - now_) / last_step_;
         if (halvings == most_halvings) { // all the way then, by motion
-            settle_by_motion(end);
+            try {
+                settle_by_motion(end);
+            } catch (const equilibrium_error&) {
+                go_back(rock_, start);
+                recorder_.record_state(result_, now_, "", rock_);
+                throw;
+            }
         } else if (!settles_nearby(guess)) {
             ++halvings;
             end = halvings < most_halvings ? now_ + (end - now_) / 2 : target;
@@ -328,6 +343,7 @@ bool Analysis::is_slower_than(double rate) const
 void Analysis::excavate(const Stage& stage, Index number)
 {
     observe_(now_ / scene_.end, stage.name);
+    stage_ = stage.name;
     if (sensitivity_)
         sensitivity_->before_excavation(rock_);
     const auto released = mechanics::excavate(rock_, network_.blocks, result_.mesh, loading_, number);
@@ -336,8 +352,10 @@ void Analysis::excavate(const Stage& stage, Index number)
     if (motion_) {
         motion_->start(released);
         move(stage);
+        stage_.clear();
         return;
     }
+    check_held();
     const std::vector<Vector2d> load = rock_.load;
     // In the scene's increments; in smaller ones where factorisation finds nothing nearby.
     const int finest = engine_ == Engine::explicit_engine ? 1 : 1 << most_halvings;
@@ -360,6 +378,9 @@ void Analysis::excavate(const Stage& stage, Index number)
     }
     start_afresh();
     take_down(stage.name, true);
+    if (stage.reset_displacements)
+        mechanics::Recorder::reset(result_);
+    stage_.clear();
 }
 
 // 4, where rock may move far: follow it until it is at rest.
@@ -374,15 +395,16 @@ void Analysis::move(const Stage& stage)
             recorder_.record_state(result_, now_, "", rock_);
             take_down_motion();
         }
-        motion_->step();
+        try {
+            motion_->step();
+        } catch (const equilibrium_error& error) {
+            fail({.reason = error.what()}, now_);
+        }
         ++effort_.steps;
         if (effort_.steps % motion::Motion::check_every == 0 && motion_->is_at_rest())
             break;
         if (motion_->time() > scene_.motion->longest)
-            throw equilibrium_error("no rest within " + shown(scene_.motion->longest) + " s of stage \"" +
-                                    stage.name + "\": the rock that was at " +
-                                    shown(rock_.position[motion_->fastest_gridpoint()]) + " moves at " +
-                                    shown(motion_->fastest()) + " m/s");
+            give_up_motion();
     }
     motion_->put_back();
     const motion::Energy& energy = motion_->energy();
@@ -397,6 +419,23 @@ void Analysis::move(const Stage& stage)
     take_down_equilibrium();
     take_down(stage.name, true);
     take_down_motion();
+    if (stage.reset_displacements)
+        mechanics::Recorder::reset(result_);
+}
+
+// Keeps the state that a motion has come to, and says what moves.
+void Analysis::give_up_motion()
+{
+    motion_->put_back();
+    take_down("", true);
+    take_down_motion();
+    mechanics::no_equilibrium error("no rest within " + shown(scene_.motion->longest) + " s");
+    error.moves_on = true;
+    error.steps = motion::Motion::check_every;
+    error.seconds = error.steps * motion_->dt();
+    for (const Vector2d& velocity : motion_->velocity())
+        error.motion.emplace_back(error.seconds * velocity);
+    fail(failure_of(error, result_.mesh, rock_), now_);
 }
 
 void Analysis::take_down_motion()
@@ -446,8 +485,10 @@ bool Analysis::settles_nearby(const std::vector<Vector2d>& guess)
 void Analysis::settle_by_motion(double time)
 {
     if (engine_ == Engine::implicit_engine)
-        throw equilibrium_error("no equilibrium nearby on day " + shown(time / unit::day) + ": " +
-                                implicit_.reason() + " (--engine auto would go on by motion)");
+        fail(failure_of(mechanics::no_equilibrium("none nearby: " + implicit_.reason() +
+                                                  " (--engine auto would go on by motion)"),
+                        result_.mesh, rock_),
+             time);
     if (engine_ == Engine::automatic)
         ++given_up_[implicit_.reason()];
     ++effort_.searches;
@@ -457,10 +498,43 @@ void Analysis::settle_by_motion(double time)
         if (recording_.trace_every > 0 && ++solver_steps_ % recording_.trace_every == 0)
             recorder_.record_trace(result_, time, solver_time_ + since_start, rock_);
     };
-    certificate_ = relaxation::relax(rock_, scene_.equilibrium,
-                                     recording_.trace_every > 0 ? observe : relaxation::StepObserver{});
+    try {
+        certificate_ = relaxation::relax(rock_, scene_.equilibrium,
+                                         recording_.trace_every > 0 ? observe : relaxation::StepObserver{});
+    } catch (const mechanics::no_equilibrium& error) {
+        fail(failure_of(error, result_.mesh, rock_), time);
+    }
     effort_.steps += certificate_.steps;
     solver_time_ += last;
+}
+
+// Rock that nothing holds falls without end: it is named, and no step is taken.
+void Analysis::check_held()
+{
+    Failure failure = failure_of_unheld(result_.mesh, rock_);
+    if (failure.block.empty())
+        return;
+    failure.moves_on = 1;
+    failure.reason = "no equilibrium: no boundary and no contact holds some of the rock";
+    fail(std::move(failure), now_);
+}
+
+void Analysis::fail(Failure failure, double time)
+{
+    failure.time = time / unit::day;
+    failure.stage = stage_;
+    std::string message = failure.reason + "\non day " + shown(failure.time);
+    if (!stage_.empty())
+        message += ", stage \"" + stage_ + "\"";
+    if (!failure.block.empty())
+        message +=
+            (failure.moves_on ? "; what moves: " : "; what moved most: ") + mechanics::shown_blocks(failure);
+    if (failure.steps > 0)
+        message += ", in the last " + std::to_string(failure.steps) + " steps";
+    if (failure.seconds > 0)
+        message += ", " + shown(failure.seconds) + " s";
+    result_.failure = std::move(failure);
+    throw equilibrium_error(message);
 }
 
 void Analysis::take_down_equilibrium()

@@ -1,5 +1,6 @@
 #include "relaxation/relax.hpp"
 
+#include "mechanics/failure.hpp"
 #include "model/error.hpp"
 
 #include <algorithm>
@@ -16,6 +17,7 @@ using mechanics::Assembly;
 using mechanics::Balance;
 using mechanics::Certificate;
 using mechanics::chunk;
+using mechanics::no_equilibrium;
 
 namespace
 {
@@ -58,7 +60,7 @@ public:
         if (settings.damping == Damping::mass && settings.masses == Masses::scaled)
             throw input_error("equilibrium: damping \"mass\" needs masses = \"real\"; scaled masses have no "
                               "frequency of their own");
-        const double local = settings.damping == Damping::local ? 1 + settings.local_damping : 1.0;
+        const double local = 1 + local_damping();
         if (settings.masses == Masses::real) {
             mass_ = lumped_masses(assembly);
             double highest = 0; // frequency squared
@@ -83,7 +85,7 @@ public:
         std::fill(assembly.contacts.work.begin(), assembly.contacts.work.end(), 0.0);
         stored_at_start_ = stored_energy(assembly);
         in_contacts_at_start_ = energy_stored_in_contacts(assembly);
-        if (settings.damping == Damping::adaptive)
+        if (settings.damping == Damping::adaptive || settings.damping == Damping::combined)
             last_force_ = assembly.force;
     }
 
@@ -97,10 +99,10 @@ public:
         {
             double alpha = settings_.damping == Damping::mass ? settings_.mass_damping : alpha_;
             double work = work_;
+            double last_energy = last_energy_;
             bool starts_from_rest = starts_from_rest_;
             for (Index i = 0; i < steps; ++i) {
                 step_in_team(alpha, starts_from_rest);
-                starts_from_rest = false;
                 Sums sums; // every thread adds them up for itself, before the next step writes new ones
                 for (const Sums& some : sums_) {
                     sums.energy += some.energy;
@@ -112,6 +114,8 @@ public:
                     alpha = sums.energy > 0 && sums.answer > 0
                                 ? std::min(2 * std::sqrt(sums.answer / (dt_ * sums.energy)), 1.9 / dt_)
                                 : 0.0;
+                starts_from_rest = settings_.damping == Damping::kinetic && sums.energy < last_energy;
+                last_energy = starts_from_rest ? 0.0 : sums.energy;
                 find_forces_in_team(a_, i + 1 < steps);
             }
 #pragma omp barrier
@@ -120,6 +124,7 @@ public:
                 alpha_ = alpha;
                 work_ = work;
                 starts_from_rest_ = starts_from_rest;
+                last_energy_ = last_energy;
             }
         }
     }
@@ -128,23 +133,37 @@ public:
     void check_motion(Index steps)
     {
         const auto [moved, g] = mechanics::farthest_move(start_, a_.displacement);
-        if (!(moved <= too_far_))
-            throw equilibrium_error(
-                "no equilibrium: the rock at " + shown(a_.position[g]) + " has moved " +
-                (std::isfinite(moved) ? shown_length(moved) : std::string("without bound")) +
-                " and is still moving; is it held by anything?");
+        if (!std::isfinite(moved))
+            throw no_equilibrium("the rock at " + shown(a_.position[g]) +
+                                 " has moved without bound; is it held by anything?");
+        if (moved > too_far_)
+            give_up("the rock at " + shown(a_.position[g]) + " has moved " + shown_length(moved) +
+                        " and is still moving; is it held by anything?",
+                    true, steps);
         if (steps % patience != 0)
             return;
         // What comes to rest slows down. What slides or falls does not: damping only lends it a steady speed.
         const auto [lately, h] = mechanics::farthest_move(patience_ago_, a_.displacement);
         windows_without_slowing_ = lately > 0.95 * moved_before_ ? windows_without_slowing_ + 1 : 0;
         if (windows_without_slowing_ == 4)
-            throw equilibrium_error("no equilibrium: the rock at " + shown(a_.position[h]) +
-                                    " moves on without slowing down, " + shown_length(lately) +
-                                    " over the last " + std::to_string(patience) +
-                                    " steps; it slides or falls, and nothing stops it");
+            give_up("the rock at " + shown(a_.position[h]) + " moves on without slowing down, " +
+                        shown_length(lately) + " over the last " + std::to_string(patience) +
+                        " steps; it slides or falls, and nothing stops it",
+                    true, steps);
         moved_before_ = lately;
         patience_ago_ = a_.displacement;
+    }
+
+    // Throws, with the motion since the last look at what moves on.
+    [[noreturn]] void give_up(const std::string& why, bool moves_on, Index steps) const
+    {
+        no_equilibrium error(why);
+        error.moves_on = moves_on;
+        error.steps = (steps - 1) % patience + 1;
+        error.seconds = settings_.masses == Masses::real ? error.steps * dt_ : 0.0;
+        for (std::size_t g = 0; g < a_.displacement.size(); ++g)
+            error.motion.emplace_back(a_.displacement[g] - patience_ago_[g]);
+        throw error;
     }
 
     // Ends the motion and settles the account of energy.
@@ -181,24 +200,32 @@ private:
         // them up.
         const double interval = (starts_from_rest ? 0.5 : 1.0) * dt_;
         const double gain = interval / (1 + alpha * dt_ / 2);
-        const double local = settings_.damping == Damping::local ? settings_.local_damping : 0.0;
+        const double local = local_damping();
         const bool adaptive = settings_.damping == Damping::adaptive;
+        const bool combined = settings_.damping == Damping::combined;
+        const bool kinetic = settings_.damping == Damping::kinetic;
 #pragma omp for schedule(static)
         for (Index k = 0; k < n_chunks; ++k) {
             Sums sums;
             for (Index g = k * chunk; g < std::min(n, (k + 1) * chunk); ++g) {
                 const Vector2d free_force = a_.force[g].cwiseProduct(a_.is_free[g]), last = velocity_[g];
-                Vector2d force = free_force;
-                if (adaptive) { // how the force has answered to the last step's motion
-                    sums.answer -= last.dot(force - last_force_[g]);
+                Vector2d force = free_force, change = Vector2d::Zero(); // with the last step's motion
+                if (adaptive || combined) {
+                    change = force - last_force_[g];
                     last_force_[g] = force;
+                }
+                if (adaptive) {
+                    sums.answer -= last.dot(change);
                     sums.energy += last.squaredNorm() * mass_[g];
                 }
-                if (local > 0)
-                    force -=
-                        local * Vector2d(last.x() == 0 ? 0 : std::copysign(std::abs(force.x()), last.x()),
-                                         last.y() == 0 ? 0 : std::copysign(std::abs(force.y()), last.y()));
-                const Vector2d v = keep * last + gain * inverse_mass_[g] * force;
+                const Vector2d before = starts_from_rest ? Vector2d(Vector2d::Zero()) : last;
+                if (combined)
+                    force += local / 2 * force.cwiseAbs().cwiseProduct(signs_of(change) - signs_of(before));
+                else if (local > 0)
+                    force -= local * force.cwiseAbs().cwiseProduct(signs_of(before));
+                const Vector2d v = keep * before + gain * inverse_mass_[g] * force;
+                if (kinetic)
+                    sums.energy += v.squaredNorm() * mass_[g];
                 sums.work += free_force.dot(v + last) / 2 * dt_;
                 velocity_[g] = v;
                 a_.displacement[g] += dt_ * v;
@@ -213,6 +240,19 @@ private:
         for (std::size_t g = 0; g < velocity_.size(); ++g)
             energy += mass_[g] / 2 * velocity_[g].squaredNorm();
         return energy;
+    }
+
+    double local_damping() const
+    {
+        return settings_.damping == Damping::local || settings_.damping == Damping::combined
+                   ? settings_.local_damping
+                   : 0.0;
+    }
+
+    // -1, 0 or 1 in x and y.
+    static Vector2d signs_of(const Vector2d& v)
+    {
+        return v.array().sign();
     }
 
     static std::string shown_length(double length)
@@ -232,6 +272,7 @@ private:
     double dt_ = 0, too_far_ = 0, alpha_ = 0;
     double moved_before_ = std::numeric_limits<double>::infinity(); // in the last window of `patience` steps
     int windows_without_slowing_ = 0;
+    double last_energy_ = 0; // of motion, with kinetic damping: twice it [J/m]
     bool starts_from_rest_ = true;
 };
 
@@ -272,8 +313,8 @@ Certificate relax(Assembly& assembly, const Equilibrium& settings, const StepObs
         certificate.out_of_balance_ratio = balance.ratio();
         certificate.contact_force_change = memory.change_since_window(assembly) / balance.mean;
         if (!std::isfinite(certificate.out_of_balance_ratio))
-            throw equilibrium_error("no equilibrium: forces are no longer finite numbers after " +
-                                    std::to_string(certificate.steps) + " steps");
+            throw no_equilibrium("forces are no longer finite numbers after " +
+                                 std::to_string(certificate.steps) + " steps");
         steps_in_balance =
             certificate.out_of_balance_ratio <= settings.tolerance ? steps_in_balance + check_every : 0;
         if (steps_in_balance >= window && certificate.contact_force_change <= settings.tolerance) {
@@ -282,10 +323,11 @@ Certificate relax(Assembly& assembly, const Equilibrium& settings, const StepObs
         }
     }
     const Balance balance = balance_of(assembly);
-    throw equilibrium_error(
-        "no equilibrium after " + std::to_string(certificate.steps) + " steps: the out-of-balance ratio is " +
-        shown(certificate.out_of_balance_ratio) + ", wanted " + shown(settings.tolerance) +
-        "; farthest from balance is the rock at " + shown(assembly.position[balance.worst]));
+    relaxation.give_up("after " + std::to_string(certificate.steps) + " steps the out-of-balance ratio is " +
+                           shown(certificate.out_of_balance_ratio) + ", wanted " + shown(settings.tolerance) +
+                           "; farthest from balance is the rock at " +
+                           shown(assembly.position[balance.worst]),
+                       false, certificate.steps);
 }
 
 } // namespace jointcreep::relaxation

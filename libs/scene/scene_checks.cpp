@@ -568,8 +568,8 @@ private:
             equilibrium.refuse("stiffness_damping_s", "wanted damping = \"mass\" beside it");
         if ((damping == Damping::mass) != (equilibrium.find("mass_damping_per_s") != nullptr))
             equilibrium.refuse("mass_damping_per_s", "damping = \"mass\" needs it, and nothing else does");
-        if (damping != Damping::local && equilibrium.find("local_damping"))
-            equilibrium.refuse("local_damping", "only damping = \"local\" uses it");
+        if (damping != Damping::local && damping != Damping::combined && equilibrium.find("local_damping"))
+            equilibrium.refuse("local_damping", "only damping = \"local\" and \"combined\" use it");
     }
 
     void check_creep() const

@@ -814,10 +814,16 @@ Table<Schedule> schedule()
 
 Table<Stage> stage()
 {
-    return {{"stage", in_list, optional, "One excavation step, later than the one before it."},
-            {text("name", &Stage::name, "Name, once among the stages."),
-             date("date", &Stage::time, "When: after the start, not after the end."),
-             polygons("remove_m", &Stage::remove, "The rock inside these leaves.")}};
+    return {
+        {"stage", in_list, optional, "One excavation step, later than the one before it."},
+        {text("name", &Stage::name, "Name, once among the stages."),
+         date("date", &Stage::time, "When: after the start, not after the end."),
+         polygons("remove_m", &Stage::remove, "The rock inside these leaves."),
+         choice(
+             "displacements", &Stage::reset_displacements, {{"go on", false}, {"reset", true}},
+             "Reset: displacements are also counted from the equilibrium after this stage, until another one "
+             "resets them.")
+             .or_else(std::string("go on"))}};
 }
 
 Table<MeasuringPoint> measuring_point()
@@ -941,7 +947,11 @@ Table<Equilibrium> equilibrium()
                 "Nodal masses: scaled for a fast way to the same equilibrium, or the real ones.")
              .or_else(std::string("scaled")),
          choice("damping", &E::damping,
-                {{"adaptive", Damping::adaptive}, {"local", Damping::local}, {"mass", Damping::mass}},
+                {{"adaptive", Damping::adaptive},
+                 {"kinetic", Damping::kinetic},
+                 {"local", Damping::local},
+                 {"combined", Damping::combined},
+                 {"mass", Damping::mass}},
                 "How motion is damped.")
              .or_else(std::string("adaptive")),
          number("mass_damping_per_s", &E::mass_damping, per_s, above(0).to(1e12),
@@ -952,7 +962,7 @@ Table<Equilibrium> equilibrium()
                 "open; with damping = \"mass\".")
              .optional(),
          number("local_damping", &E::local_damping, none, above(0).below(1),
-                "Fraction of the out-of-balance force; with damping = \"local\" only.")
+                "Fraction of the out-of-balance force; with damping = \"local\" or \"combined\" only.")
              .optional("0.8"),
          integer("unloading_increments", &E::unloading_increments, from(1).to(1000),
                  "In which the rock of a stage is taken away, and in which loads change between dates.")

@@ -68,6 +68,7 @@ std::string schema_markdown()
     Network network;
     EquivalentJoints equivalent;
     Result result;
+    Safety safety;
     std::ostringstream page;
     page << R"(# File format
 
@@ -123,6 +124,12 @@ with h5py.File("result.h5") as file:
     page << "\nThe group `/trace` is there only if a trace was asked for.\n";
     list(page, "Motions", schema::fields_of(result.motions));
     page << "\nThe group `/motions` is there only if the scene has [motion] and a stage.\n";
+    list(page, "Failure", schema::fields_of(result.failure));
+    page << "\nThe group `/failure` is there only in `NAME.failed.h5`, of a run that found no equilibrium. "
+            "All else in "
+            "such a file goes up to the last one.\n";
+    list(page, "Factor of safety", schema::fields_of(safety));
+    page << "\nThe group `/safety` is there only if a factor of safety was asked for.\n";
     return page.str();
 }
 

@@ -256,6 +256,8 @@ std::vector<Field> fields_of(History& history)
          "removed."},
         {"/history/present", &history.present, {"time", "point"}, "1", between(0, 1),
          "1 while the point is there, 0 once it is removed."},
+        {"/history/reset_row", &history.reset_row, {"time"}, "1", index_of("time"),
+         "Row from which displacements are to count since the last stage that resets them; 0 before one."},
     };
     // clang-format on
 }
@@ -279,6 +281,8 @@ std::vector<Field> fields_of(States& states)
          "Displacement of side b minus that of side a {normal, shear}, opening positive."},
         {"/states/contact_status", &states.contact_status, {"state", "contact"}, "1", between(0, 3),
          "0 removed (a side has been excavated), 1 stuck, 2 slipping, 3 open."},
+        {"/states/reset_state", &states.reset_state, {"state"}, "1", index_of("state"),
+         "State from which displacements are to count since the last stage that resets them; 0 before one."},
     };
     // clang-format on
 }
@@ -510,6 +514,41 @@ std::vector<Field> fields_of(Motions& motions)
     // clang-format on
 }
 
+std::vector<Field> fields_of(Failure& failure)
+{
+    // clang-format off
+    return {
+        {"/failure/reason", &failure.reason, {}, "1", any(), "Why there is no equilibrium."},
+        {"/failure/stage", &failure.stage, {}, "1", any(),
+         "Stage whose rock had just been taken away, or an empty text."},
+        {"/failure/time", &failure.time, {}, "day", at_least(0), "Time since the start."},
+        {"/failure/moves_on", &failure.moves_on, {}, "1", between(0, 1),
+         "1 blocks were seen to slide or fall, 0 the search for equilibrium ended without an answer."},
+        {"/failure/steps", &failure.steps, {}, "1", at_least(0), "Steps of motion, the last ones."},
+        {"/failure/seconds", &failure.seconds, {}, "s", at_least(0),
+         "Time that these steps stand for with real masses; otherwise 0."},
+        {"/failure/block", &failure.block, {"moving_block"}, "1", index_of("block"),
+         "Blocks that moved by more than a tenth of what the fastest one did, the fastest first; or that nothing "
+         "holds."},
+        {"/failure/place", &failure.place, {"moving_block"}, "m", any(), "Centroid of the block {x, y}."},
+        {"/failure/motion", &failure.motion, {"moving_block"}, "m", any(),
+         "Displacement {x, y} of the block in these steps, a mean over its zones."},
+    };
+    // clang-format on
+}
+
+std::vector<Field> fields_of(Safety& safety)
+{
+    // clang-format off
+    return {
+        {"/safety/factor", &safety.factor, {"trial"}, "1", positive(),
+         "Factor that all strengths of joints were divided by."},
+        {"/safety/stands", &safety.stands, {"trial"}, "1", between(-1, 1),
+         "1 every equilibrium was found, 0 rock was seen to slide or fall, -1 the search ended without an answer."},
+    };
+    // clang-format on
+}
+
 std::vector<Invariant> invariants_of(const Network& network)
 {
     const Blocks& blocks = network.blocks;
@@ -600,6 +639,8 @@ const std::vector<Described>& dimensions()
         {"row", "a recorded step of the solver"},
         {"moment", "a recorded moment of a motion"},
         {"gauge", "a gauge of the scene"},
+        {"moving_block", "a block that had no equilibrium"},
+        {"trial", "a run by which a factor of safety was found"},
     };
     return all;
 }

@@ -65,6 +65,10 @@ std::vector<Field> fields_of(EquivalentJoints& equivalent);
 std::vector<Field> fields_of(Result& result); // without its trace and motions
 std::vector<Field> fields_of(Trace& trace);
 std::vector<Field> fields_of(Motions& motions);
+std::vector<Field> fields_of(Result& result); // without its trace and failure
+std::vector<Field> fields_of(Trace& trace);
+std::vector<Field> fields_of(Failure& failure);
+std::vector<Field> fields_of(Safety& safety);
 
 // To be asked only once the fields are within their limits. They refer to the record.
 std::vector<Invariant> invariants_of(const Network& network);

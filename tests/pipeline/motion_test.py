@@ -149,7 +149,16 @@ class Blocks(ChainTest):
         output = joints.with_name("result.h5")
         done = self.chain.answer("demsolve", joints, "-o", output)
         self.assertEqual(done.returncode, 3)
-        self.assertRegex(done.stderr, r'no rest within 1 s of stage "stop removed": the rock that was at .* moves at 0\.9')
+        self.assertRegex(done.stderr, r'no rest within 1 s\n?.*stage "stop removed"; what moves: block \d+ at .* m by ')
+        self.assertFalse(output.exists())
+        failed = datasets(output.with_name("result.failed.h5"))
+        self.assertAlmostEqual(failed["/motions/motion_time"][-1], 1, delta=0.01)
+        moved = np.linalg.norm(failed["/failure/motion"][0])
+        speed = GRAVITY * (math.sin(math.radians(30)) - math.cos(math.radians(30)) * math.tan(math.radians(25)))
+        self.assertAlmostEqual(moved / failed["/failure/seconds"][()].item(), speed, delta=0.02)
+        done = self.chain.answer("demsolve", joints, "-o", output, "--factor-of-safety")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("the scene has [motion]", done.stderr)
 
     def test_what_does_not_go_together_is_refused(self):
         text = incline(30, 25)
