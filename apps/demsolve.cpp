@@ -5,11 +5,15 @@
 // Reads   joints.h5   blocks, equivalent joints, the scene             (from strength-averaging)
 // Writes  result.h5   the same, zones, histories, states of all stages (docs/file-format.md)
 //
+//         result.failed.h5   where there is no equilibrium: the run up to there, and what moves
+//
 // The method is in libs/analysis.
 
 #include "program.hpp"
 
 #include "analysis/analysis.hpp"
+#include "analysis/safety.hpp"
+#include "joint/strength_factor.hpp"
 #include "model/error.hpp"
 #include "model/units.hpp"
 #include "model/version.hpp"
@@ -19,6 +23,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <memory>
 #include <numeric>
 #include <optional>
 #include <vector>
@@ -44,6 +50,13 @@ const Program program{
                 {"creep-tolerance", "M",
                  "error of a creep step, by which its length is chosen [m] (default: the scene's)"},
                 {"no-creep", "", "excavate only"},
+                {"strength-factor", "F",
+                 "divide all strengths of joints by F: cohesion, tensile strength, tan(friction angle) and "
+                 "tan(dilation angle) (default 1)"},
+                {"factor-of-safety", "",
+                 "bracket the largest F with which every equilibrium is found, by runs with different F; "
+                 "result.h5 is of that F, result.failed.h5 of the next one"},
+                {"safety-width", "W", "width of that bracket, over F (default 0.01)"},
                 {"states", "N", "record the whole section every N creep steps too (default: at dates only)"},
                 {"trace", "N", "record points and gauges every N solver steps"}},
     .example = "demsolve joints.h5 --threads 2 -o result.h5",
@@ -138,7 +151,7 @@ std::string choose(const Arguments& arguments, Scene& scene)
     return chosen;
 }
 
-void report(const Network& network, const Scene& scene, const Analysis& analysis)
+void report(const Network& network, const Scene& scene, const Analysis& analysis, Summary summary)
 {
     const Result& result = analysis.result();
     const zoning::MeshQuality quality = zoning::quality_of(result.mesh);
@@ -151,7 +164,6 @@ void report(const Network& network, const Scene& scene, const Analysis& analysis
     for (const ContactStatus status : analysis.rock().contacts.status)
         ++contacts[static_cast<std::size_t>(status)];
 
-    Summary summary;
     summary.add("blocks", network.blocks.block_area.size());
     summary.add("zones", result.mesh.zone_gridpoint.size());
     summary.add("gridpoints", result.mesh.gridpoint.size());
@@ -197,31 +209,210 @@ void report(const Network& network, const Scene& scene, const Analysis& analysis
     summary.print();
 }
 
+// A run with strengths divided by a factor.
+struct Run {
+    Run(const Scene& scene, const JointsFile& file, double divisor, int threads, const Recording& recording,
+        const Observer& observe)
+        : factor(divisor), joints(joint::with_strength_divided(file.equivalent, divisor)),
+          analysis(scene, file.network, divisor == 1 ? file.equivalent : joints, threads, recording, observe)
+    {
+        try {
+            analysis.run();
+        } catch (const equilibrium_error& error) {
+            message = error.what();
+        }
+    }
+
+    Ending ending() const
+    {
+        if (message.empty())
+            return Ending::stands;
+        return analysis.result().failure.moves_on ? Ending::falls : Ending::undecided;
+    }
+
+    double factor;
+    EquivalentJoints joints;
+    Analysis analysis;
+    std::string message{}; // why there is no equilibrium; empty: every one was found
+};
+
+// "result.failed.h5" for "result.h5": what a run that did not come to its end leaves.
+std::string failed_name(const std::string& output)
+{
+    const std::filesystem::path path(output);
+    return (path.parent_path() / (path.stem().string() + ".failed" + path.extension().string())).string();
+}
+
+class Writer
+{
+public:
+    Writer(const Arguments& arguments, const JointsFile& file, std::string options)
+        : output_(arguments.output()), failed_(failed_name(output_)), file_(file),
+          provenance_(file.provenance), options_(std::move(options))
+    {
+        check_writable(output_);
+        if (std::error_code absent; std::filesystem::equivalent(arguments.input(), failed_, absent))
+            throw input_error(arguments.input() + ": a run without equilibrium would be written there; " +
+                              "wanted another name than " + output_);
+        provenance_.program.push_back(program.name);
+        provenance_.version.emplace_back(version());
+        provenance_.input_sha256.push_back(sha256_of(arguments.input()));
+    }
+
+    void write(const Run& run, const Safety& safety = {}) const { write(run, safety, output_); }
+
+    // Returns what to say of it.
+    std::string write_failed(const Run& run, const Safety& safety = {}) const
+    {
+        if (std::error_code none;
+            std::filesystem::exists(output_, none) && !std::filesystem::is_regular_file(output_, none))
+            return ""; // a device, say: it has no neighbours
+        try {
+            write(run, safety, failed_);
+            return "the run up to there is in " + failed_;
+        } catch (const file_error& error) {
+            return std::string("the run up to there is lost: ") + error.what();
+        }
+    }
+
+private:
+    void write(const Run& run, const Safety& safety, const std::string& path) const
+    {
+        Provenance provenance = provenance_;
+        std::string factor = run.factor == 1 ? "" : "--strength-factor " + shown(run.factor);
+        if (!factor.empty() && !options_.empty())
+            factor += ' ';
+        provenance.options.push_back(factor + options_);
+        write_result(path, provenance, file_.network, file_.equivalent, run.analysis.result(), safety);
+    }
+
+    std::string output_, failed_;
+    const JointsFile& file_;
+    Provenance provenance_;
+    std::string options_;
+};
+
+double wanted_factor(const Arguments& arguments)
+{
+    const double factor = arguments.number("strength-factor").value_or(1);
+    require(factor >= 1e-3 && factor <= 1e3, "--strength-factor", factor, "(ratio)",
+            "must be between 0.001 and 1000");
+    if (arguments.has("strength-factor") && arguments.has("factor-of-safety"))
+        throw input_error("--strength-factor and --factor-of-safety do not go together");
+    return factor;
+}
+
+// Factors divide the strengths of joints alone: with rock that yields they would say what they do not mean.
+void check_divided(const Arguments& arguments, const Scene& scene, const EquivalentJoints& joints)
+{
+    const std::string option = arguments.has("strength-factor") ? "--strength-factor" : "--factor-of-safety";
+    if (!arguments.has(option.substr(2)))
+        return;
+    for (const Rock& rock : scene.rocks)
+        if (rock.law == RockLaw::mohr_coulomb)
+            throw input_error(option + ": it divides the strengths of joints, and rock \"" + rock.name +
+                              "\" yields; wanted law = \"elastic\" of all rock");
+    for (const Index law : joints.law)
+        if (law == static_cast<Index>(JointLaw::barton_bandis))
+            throw input_error(option + ": a joint has Barton and Bandis's law, whose friction falls with "
+                                       "pressure; wanted Coulomb's law of all joints");
+}
+
+double wanted_width(const Arguments& arguments, const Scene& scene)
+{
+    const double width = arguments.number("safety-width").value_or(0.01);
+    require(width >= 1e-4 && width <= 1, "--safety-width", width, "(ratio)", "must be between 0.0001 and 1");
+    if (!arguments.has("factor-of-safety")) {
+        if (arguments.has("safety-width"))
+            throw input_error("--safety-width goes with --factor-of-safety only");
+        return width;
+    }
+    require(width >= 100 * scene.equilibrium.tolerance, "--safety-width", width, "(ratio)",
+            "must be at least 100 times the tolerance of equilibria, " + shown(scene.equilibrium.tolerance) +
+                ", which tells rest from motion");
+    if (scene.equilibrium.engine == Engine::implicit_engine)
+        throw input_error("--factor-of-safety: the implicit engine cannot tell rock that moves on from an "
+                          "equilibrium it does not find; wanted --engine auto or explicit");
+    return width;
+}
+
+// What a bracket is, and what moves at its upper end.
+void add_safety(Summary& summary, const Bracket& bracket, const std::string& why)
+{
+    summary.add("factor of safety, at least", shown(*bracket.stands));
+    const Safety& trials = bracket.trials;
+    summary.add("runs", trials.factor.size());
+    if (!bracket.not_above) {
+        summary.add("factor of safety, below", std::string("none found: strength decides nothing"));
+        return;
+    }
+    const auto upper =
+        std::find(trials.factor.begin(), trials.factor.end(), *bracket.not_above) - trials.factor.begin();
+    summary.add(trials.stands[upper] == 0 ? "factor of safety, below" : "warning: no answer at",
+                shown(*bracket.not_above));
+    std::size_t from = 0;
+    for (std::size_t end = 0; end != std::string::npos; from = end + 1) {
+        end = why.find('\n', from);
+        summary.add("  there", why.substr(from, end == std::string::npos ? end : end - from));
+    }
+}
+
 void solve_and_write(const Arguments& arguments)
 {
     const std::string& input = arguments.input();
     check_writable(arguments.output());
     const JointsFile file = read_joints(input);
     Scene scene = parse_scene(file.provenance.scene, input + ": /scene");
-    const std::string options = choose(arguments, scene);
+    const Writer writer(arguments, file, choose(arguments, scene));
+    check_divided(arguments, scene, file.equivalent);
+    const double factor = wanted_factor(arguments), width = wanted_width(arguments, scene);
+    if (scene.motion && arguments.has("factor-of-safety"))
+        throw input_error("--factor-of-safety: the scene has [motion], where what fails comes to rest again; "
+                          "wanted one without");
+    if (scene.motion) // contacts that come about are as strong as their material
+        for (JointMaterial& material : scene.joint_materials)
+            material.friction_angle = std::atan(std::tan(material.friction_angle) / factor);
     const auto threads = static_cast<int>(arguments.whole_number("threads", 1, 1024).value_or(1));
     const Recording recording{arguments.whole_number("states", 1, 1000000000).value_or(0),
                               arguments.whole_number("trace", 1, 1000000000).value_or(0)};
 
     std::optional<Progress> progress(arguments.quiet());
-    Analysis analysis(scene, file.network, file.equivalent, threads, recording,
-                      [&](double fraction, const std::string& what) { progress->show(fraction, what); });
-    analysis.run();
-    progress.reset(); // wiped out before the closing screen
-
-    Provenance provenance = file.provenance;
-    provenance.program.push_back(program.name);
-    provenance.version.emplace_back(version());
-    provenance.input_sha256.push_back(sha256_of(input));
-    provenance.options.push_back(options);
-    write_result(arguments.output(), provenance, file.network, file.equivalent, analysis.result());
+    const auto run_with = [&](double divisor) {
+        const std::string which =
+            arguments.has("factor-of-safety") ? "strengths / " + shown(divisor) + ", " : "";
+        return std::make_unique<Run>(
+            scene, file, divisor, threads, recording,
+            [&](double fraction, const std::string& what) { progress->show(fraction, which + what); });
+    };
+    Summary summary;
+    std::unique_ptr<Run> run, failed; // the one with the largest factor that stands, and the one above
+    if (arguments.has("factor-of-safety")) {
+        const Bracket bracket = bracket_of(
+            [&](double divisor) {
+                std::unique_ptr<Run> made = run_with(divisor);
+                const Ending ending = made->ending();
+                (ending == Ending::stands ? run : failed) = std::move(made);
+                return ending;
+            },
+            width);
+        progress.reset(); // wiped out before the closing screen
+        if (!run)
+            throw equilibrium_error("with strengths " + shown(1 / failed->factor) +
+                                    " times as large there is still " + failed->message + '\n' +
+                                    writer.write_failed(*failed, bracket.trials));
+        add_safety(summary, bracket, failed ? failed->message : "");
+        writer.write(*run, bracket.trials);
+        if (failed)
+            summary.add("  there", writer.write_failed(*failed, bracket.trials));
+    } else {
+        run = run_with(factor);
+        progress.reset();
+        if (!run->message.empty())
+            throw equilibrium_error(run->message + '\n' + writer.write_failed(*run));
+        writer.write(*run);
+    }
     if (!arguments.quiet())
-        report(file.network, scene, analysis);
+        report(file.network, scene, run->analysis, summary);
 }
 
 } // namespace

@@ -186,6 +186,8 @@ void export_file(const Arguments& arguments)
     if (!arguments.quiet()) {
         Summary summary;
         summary.add(what, output);
+        if (const std::string reason = reason_of_failure(input); !reason.empty())
+            summary.add("warning: ended early", reason);
         summary.print();
     }
 }

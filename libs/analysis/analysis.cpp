@@ -1,6 +1,7 @@
 #include "analysis/analysis.hpp"
 
 #include "mechanics/excavation.hpp"
+#include "mechanics/failure.hpp"
 #include "model/error.hpp"
 #include "model/units.hpp"
 #include "relaxation/relax.hpp"
@@ -105,17 +106,37 @@ std::optional<StableLimit> limit_of_published(const Scene& scene, const Network&
     return StableLimit{limit.step, of};
 }
 
+std::vector<char> rigid_zones(const Scene& scene, const Network& network, const Mesh& mesh)
+{
+    const std::vector<std::string>& rigid = scene.motion->rigid_rocks;
+    std::vector<char> is_rigid;
+    for (const Index block : mesh.zone_block) {
+        const std::string& rock = scene.rocks[network.blocks.block_rock[block]].name;
+        is_rigid.push_back(std::find(rigid.begin(), rigid.end(), rock) != rigid.end() ? 1 : 0);
+    }
+    return is_rigid;
+}
+
+// Of contacts that come about in motion: friction alone.
+joint::Coulomb law_of_new_contacts(const Scene& scene)
+{
+    const auto material = std::find_if(scene.joint_materials.begin(), scene.joint_materials.end(),
+                                       [&](const auto& m) { return m.name == scene.motion->new_contacts; });
+    return {material->normal_stiffness, material->shear_stiffness, 0, std::tan(material->friction_angle), 0};
+}
+
 } // namespace
 
 // 1. Divide the blocks into zones and load them with the in-situ stress.
 Analysis::Analysis(const Scene& scene, const Network& network, const EquivalentJoints& joints, int threads,
                    const Recording& recording, const Observer& observe)
-    : scene_(scene), network_(network), recording_(recording), observe_(observe),
+    : scene_(scene), network_(network), joints_(joints), recording_(recording), observe_(observe),
       engine_(engine_for(scene, recording)), result_{.mesh = zoning::zone(scene, network.blocks),
                                                      .history = {},
                                                      .states = {},
                                                      .equilibria = {},
-                                                     .trace = {}},
+                                                     .trace = {},
+                                                     .motions = {}},
       rock_(mechanics::assemble(scene, network, joints, result_.mesh)), loading_(scene, result_.mesh),
       recorder_(scene, network.blocks, result_.mesh)
 {
@@ -126,22 +147,27 @@ Analysis::Analysis(const Scene& scene, const Network& network, const EquivalentJ
     if (!recording.parameters.empty())
         sensitivity_.emplace(recording.parameters, scene, result_.mesh, rock_);
     sensitivities_.resize(recording.parameters.size());
-    settle_in_situ();
-    if (scene.creep) {
-        creep_.emplace(scene, network, joints, result_.mesh, rock_);
-        if (sensitivity_)
-            sensitivity_->start_creep(*creep_);
-        if (creep_->anything_creeps()) {
-            step_.emplace(*scene.creep, creep_->fastest_rate(),
-                          stable_limit_ ? stable_limit_->step : std::numeric_limits<double>::infinity());
-            if (creep::is_second_order(scene.creep->scheme))
-                closing_.emplace(step_->closing_tolerance()); // the others are of first order anyway
-        }
-    }
 }
 
 void Analysis::run()
 {
+    settle_in_situ();
+    if (scene_.motion)
+        motion_.emplace(rock_, result_.mesh, rigid_zones(scene_, network_, result_.mesh),
+                        law_of_new_contacts(scene_),
+                        motion::Settings{scene_.motion->stiffness_damping, scene_.motion->mass_damping,
+                                         scene_.motion->release, scene_.equilibrium.tolerance});
+    if (scene_.creep) {
+        creep_.emplace(scene_, network_, joints_, result_.mesh, rock_);
+        if (sensitivity_)
+            sensitivity_->start_creep(*creep_);
+        if (creep_->anything_creeps()) {
+            step_.emplace(*scene_.creep, creep_->fastest_rate(),
+                          stable_limit_ ? stable_limit_->step : std::numeric_limits<double>::infinity());
+            if (creep::is_second_order(scene_.creep->scheme))
+                closing_.emplace(step_->closing_tolerance()); // the others are of first order anyway
+        }
+    }
     // After this nothing happens but creep.
     const std::set<double> corners = loading_.corners();
     const double last_event = std::max(scene_.stages.empty() ? 0.0 : scene_.stages.back().time,
@@ -149,7 +175,10 @@ void Analysis::run()
     for (const double date : dates_of(scene_, loading_)) {
         if (end_of_creep_)
             break;
-        creep_until(date, now_ >= last_event);
+        if (motion_)
+            rest_until(date);
+        else
+            creep_until(date, now_ >= last_event);
         for (std::size_t s = 0; s < scene_.stages.size(); ++s)
             if (scene_.stages[s].time == date)
                 excavate(scene_.stages[s], static_cast<Index>(s));
@@ -164,8 +193,16 @@ void Analysis::run()
 void Analysis::settle_in_situ()
 {
     observe_(0, "in-situ equilibrium");
-    if (!settles_nearby({}, 0))
-        settle_by_motion(0);
+    const mechanics::State given = state_of(rock_);
+    try {
+        check_held();
+        if (!settles_nearby({}, 0))
+            settle_by_motion(0);
+    } catch (const equilibrium_error&) {
+        go_back(rock_, given);
+        take_down("", true);
+        throw;
+    }
     yielded_in_situ_ = yielded();
     const mechanics::Contacts& contacts = rock_.contacts;
     for (std::size_t c = 0; c < contacts.status.size(); ++c)
@@ -215,6 +252,15 @@ void Analysis::creep_until(double date, bool may_stop)
     recorder_.record_state(result_, now_, "", rock_);
 }
 
+// 3, where rock may move far: between stages it is at rest.
+void Analysis::rest_until(double date)
+{
+    if (date == now_)
+        return;
+    now_ = date;
+    take_down("", true);
+}
+
 // One step of creep and loading, to the target or to where an open contact closes before. False if its error
 // is too large: then nothing has happened but that the next step will be shorter.
 bool Analysis::step_to(double target, bool is_loaded)
@@ -239,9 +285,18 @@ bool Analysis::step_to(double target, bool is_loaded)
         std::vector<Vector2d> guess = last_move_; // creep slows down
         for (Vector2d& move : guess)
             move *= 0.9 * (end - now_) / last_step_;
-        if (halvings == most_halvings) { // all the way then, by motion
-            settle_by_motion(end);
-        } else if (!settles_nearby(guess, end)) {
+        bool is_found = true;
+        try {
+            if (halvings == most_halvings) // all the way then, by motion
+                settle_by_motion(end);
+            else
+                is_found = settles_nearby(guess, end);
+        } catch (const equilibrium_error&) {
+            go_back(rock_, start);
+            recorder_.record_state(result_, now_, "", rock_);
+            throw;
+        }
+        if (!is_found) {
             ++halvings;
             end = halvings < most_halvings ? now_ + (end - now_) / 2 : target;
             if (sensitivity_)
@@ -297,11 +352,19 @@ bool Analysis::is_slower_than(double rate) const
 void Analysis::excavate(const Stage& stage, Index number)
 {
     observe_(now_ / scene_.end, stage.name);
+    stage_ = stage.name;
     if (sensitivity_)
         sensitivity_->before_excavation(rock_);
     const auto released = mechanics::excavate(rock_, network_.blocks, result_.mesh, loading_, number);
     if (sensitivity_)
         sensitivity_->after_excavation(rock_);
+    if (motion_) {
+        motion_->start(released);
+        move(stage);
+        stage_.clear();
+        return;
+    }
+    check_held();
     const std::vector<Vector2d> load = rock_.load;
     // In the scene's increments; in smaller ones where factorisation finds nothing nearby.
     const int finest = engine_ == Engine::explicit_engine ? 1 : 1 << most_halvings;
@@ -324,6 +387,80 @@ void Analysis::excavate(const Stage& stage, Index number)
     }
     start_afresh();
     take_down(stage.name, true);
+    if (stage.reset_displacements)
+        mechanics::Recorder::reset(result_);
+    stage_.clear();
+}
+
+// 4, where rock may move far: follow it until it is at rest.
+void Analysis::move(const Stage& stage)
+{
+    double due = 0;
+    for (;;) {
+        if (motion_->time() >= due) {
+            observe_(now_ / scene_.end, stage.name + ", " + shown(due) + " s");
+            due += scene_.motion->record_every;
+            motion_->put_back();
+            recorder_.record_state(result_, now_, "", rock_);
+            take_down_motion();
+        }
+        try {
+            motion_->step();
+        } catch (const equilibrium_error& error) {
+            fail({.reason = error.what()}, now_);
+        }
+        ++effort_.steps;
+        if (effort_.steps % motion::Motion::check_every == 0 && motion_->is_at_rest())
+            break;
+        if (motion_->time() > scene_.motion->longest)
+            give_up_motion();
+    }
+    motion_->put_back();
+    const motion::Energy& energy = motion_->energy();
+    certificate_ = {.steps = effort_.steps,
+                    .out_of_balance_ratio = motion_->out_of_balance_ratio(),
+                    .contact_force_change = motion_->contact_force_change(),
+                    .work_of_loads = energy.work,
+                    .stored = energy.stored,
+                    .dissipated = energy.friction,
+                    .damped = energy.damped};
+    effort_.searches = 1;
+    take_down_equilibrium();
+    take_down(stage.name, true);
+    take_down_motion();
+    if (stage.reset_displacements)
+        mechanics::Recorder::reset(result_);
+}
+
+// Keeps the state that a motion has come to, and says what moves.
+void Analysis::give_up_motion()
+{
+    motion_->put_back();
+    take_down("", true);
+    take_down_motion();
+    mechanics::no_equilibrium error("no rest within " + shown(scene_.motion->longest) + " s");
+    error.moves_on = true;
+    error.steps = motion::Motion::check_every;
+    error.seconds = error.steps * motion_->dt();
+    for (const Vector2d& velocity : motion_->velocity())
+        error.motion.emplace_back(error.seconds * velocity);
+    fail(failure_of(error, result_.mesh, rock_), now_);
+}
+
+void Analysis::take_down_motion()
+{
+    Motions& motions = result_.motions;
+    const motion::Energy& energy = motion_->energy();
+    motions.time.push_back(now_ / unit::day);
+    motions.motion_time.push_back(motion_->time());
+    motions.state.push_back(static_cast<Index>(result_.states.time.size()) - 1);
+    motions.work_of_loads.push_back(energy.work);
+    motions.kinetic_energy.push_back(energy.kinetic);
+    motions.stored_energy.push_back(energy.stored);
+    motions.friction_energy.push_back(energy.friction);
+    motions.damped_energy.push_back(energy.damped);
+    motions.fastest.push_back(motion_->fastest());
+    motions.out_of_balance_ratio.push_back(motion_->out_of_balance_ratio());
 }
 
 // After a jump of loads: what was learnt from the steps before no longer holds.
@@ -366,9 +503,11 @@ void Analysis::yield_by_motion(double time, Index zone)
     if (engine_ == Engine::implicit_engine) {
         const auto& [a, b, c] = result_.mesh.zone_gridpoint[zone];
         const std::vector<Vector2d>& at = result_.mesh.gridpoint;
-        throw equilibrium_error("no elastic equilibrium on day " + shown(time / unit::day) +
-                                ": the rock at " + shown(Vector2d((at[a] + at[b] + at[c]) / 3)) +
-                                " yields (--engine auto would go on by motion)");
+        fail(failure_of(mechanics::no_equilibrium("the rock at " +
+                                                  shown(Vector2d((at[a] + at[b] + at[c]) / 3)) +
+                                                  " yields (--engine auto would go on by motion)"),
+                        result_.mesh, rock_),
+             time);
     }
     mechanics::Certificate elastic = certificate_;
     const double beyond_strength = stored_energy(rock_);
@@ -397,8 +536,10 @@ std::map<std::string, Index> Analysis::yielded() const
 void Analysis::settle_by_motion(double time, const std::string& reason)
 {
     if (engine_ == Engine::implicit_engine)
-        throw equilibrium_error("no equilibrium nearby on day " + shown(time / unit::day) + ": " +
-                                implicit_.reason() + " (--engine auto would go on by motion)");
+        fail(failure_of(mechanics::no_equilibrium("none nearby: " + implicit_.reason() +
+                                                  " (--engine auto would go on by motion)"),
+                        result_.mesh, rock_),
+             time);
     if (engine_ == Engine::automatic)
         ++given_up_[reason.empty() ? implicit_.reason() : reason];
     ++effort_.searches;
@@ -408,10 +549,43 @@ void Analysis::settle_by_motion(double time, const std::string& reason)
         if (recording_.trace_every > 0 && ++solver_steps_ % recording_.trace_every == 0)
             recorder_.record_trace(result_, time, solver_time_ + since_start, rock_);
     };
-    certificate_ = relaxation::relax(rock_, scene_.equilibrium,
-                                     recording_.trace_every > 0 ? observe : relaxation::StepObserver{});
+    try {
+        certificate_ = relaxation::relax(rock_, scene_.equilibrium,
+                                         recording_.trace_every > 0 ? observe : relaxation::StepObserver{});
+    } catch (const mechanics::no_equilibrium& error) {
+        fail(failure_of(error, result_.mesh, rock_), time);
+    }
     effort_.steps += certificate_.steps;
     solver_time_ += last;
+}
+
+// Rock that nothing holds falls without end: it is named, and no step is taken.
+void Analysis::check_held()
+{
+    Failure failure = failure_of_unheld(result_.mesh, rock_);
+    if (failure.block.empty())
+        return;
+    failure.moves_on = 1;
+    failure.reason = "no equilibrium: no boundary and no contact holds some of the rock";
+    fail(std::move(failure), now_);
+}
+
+void Analysis::fail(Failure failure, double time)
+{
+    failure.time = time / unit::day;
+    failure.stage = stage_;
+    std::string message = failure.reason + "\non day " + shown(failure.time);
+    if (!stage_.empty())
+        message += ", stage \"" + stage_ + "\"";
+    if (!failure.block.empty())
+        message +=
+            (failure.moves_on ? "; what moves: " : "; what moved most: ") + mechanics::shown_blocks(failure);
+    if (failure.steps > 0)
+        message += ", in the last " + std::to_string(failure.steps) + " steps";
+    if (failure.seconds > 0)
+        message += ", " + shown(failure.seconds) + " s";
+    result_.failure = std::move(failure);
+    throw equilibrium_error(message);
 }
 
 void Analysis::take_down_equilibrium()

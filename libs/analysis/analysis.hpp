@@ -9,6 +9,7 @@
 #include "mechanics/assembly.hpp"
 #include "mechanics/loading.hpp"
 #include "mechanics/recorder.hpp"
+#include "motion/motion.hpp"
 #include "sensitivity/sensitivity.hpp"
 
 #include <functional>
@@ -43,7 +44,9 @@ public:
     Analysis(const Scene& scene, const Network& network, const EquivalentJoints& joints, int threads,
              const Recording& recording, const Observer& observe);
 
-    // From the in-situ state to the scene's end, by the steps numbered below.
+    // From the in-situ state to the scene's end, by the steps numbered below; once. Throws equilibrium_error
+    // where there is no equilibrium: result() then goes up to the last one, and says in `failure` what moves.
+    // (If it is the in-situ one that is missing, its row and state are those given.)
     void run();
 
     const Result& result() const { return result_; }
@@ -66,18 +69,25 @@ public:
 private:
     void settle_in_situ();
     void creep_until(double date, bool may_stop);
+    void rest_until(double date);
     bool step_to(double target, bool is_loaded);
     bool is_slower_than(double rate) const;
     void excavate(const Stage& stage, Index number);
+    void move(const Stage& stage);
+    [[noreturn]] void give_up_motion();
+    void take_down_motion();
     bool settles_nearby(const std::vector<mechanics::Vector2d>& guess, double time);
     void settle_by_motion(double time, const std::string& reason = {}); // without one the implicit engine's
     void yield_by_motion(double time, Index zone);
+    void check_held();
+    [[noreturn]] void fail(Failure failure, double time);
     void take_down_equilibrium();
     void take_down(const std::string& event, bool with_state);
     void start_afresh();
 
     const Scene& scene_;
     const Network& network_;
+    const EquivalentJoints& joints_;
     const Recording& recording_;
     Observer observe_;
     Engine engine_;
@@ -86,6 +96,7 @@ private:
     mechanics::Loading loading_;
     mechanics::Recorder recorder_;
     implicit::Engine implicit_;
+    std::optional<motion::Motion> motion_;
     std::optional<creep::Creep> creep_;
     std::optional<creep::StepLength> step_;
     std::optional<creep::Closing> closing_;
@@ -93,6 +104,7 @@ private:
     std::vector<std::vector<mechanics::Vector2d>> sensitivities_;
 
     double now_ = 0;         // since start [s]
+    std::string stage_;      // being excavated, or ""
     double solver_time_ = 0; // of motion, over all equilibria [s]
     std::uint64_t solver_steps_ = 0, creep_steps_ = 0;
     mechanics::Certificate certificate_;         // of the last equilibrium

@@ -161,10 +161,15 @@ std::string edges_csv(const Network& network, const EquivalentJoints* equivalent
 std::string histories_csv(const History& history)
 {
     const std::size_t points = history.point.size();
+    const bool is_reset = !history.reset_row.empty() && history.reset_row.back() > 0;
     std::string table = "time_day,event";
     for (const std::string& point : history.point)
         for (const char* column : {"_x_m", "_y_m", "_present"})
             table.append(",").append(field(point + column));
+    if (is_reset)
+        for (const std::string& point : history.point)
+            for (const char* column : {"_since_reset_x_m", "_since_reset_y_m"})
+                table.append(",").append(field(point + column));
     table += '\n';
     for (std::size_t row = 0; row < history.time.size(); ++row) {
         table.append(field(history.time[row])).append(",").append(field(history.event[row]));
@@ -173,6 +178,10 @@ std::string histories_csv(const History& history)
                 .append(field(history.displacement[at]))
                 .append(",")
                 .append(field(history.present[at]));
+        for (std::size_t p = 0; is_reset && p < points; ++p)
+            table.append(",").append(
+                field(Eigen::Vector2d(history.displacement[row * points + p] -
+                                      history.displacement[history.reset_row[row] * points + p])));
         table += '\n';
     }
     return table;

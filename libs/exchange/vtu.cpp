@@ -323,7 +323,17 @@ std::string zones_vtu(const Network& network, const Result& result, std::size_t 
     grid.add_names("stage_names", network.names.stage);
     grid.open("PointData");
     grid.add("gridpoint", gridpoints);
-    grid.add("displacement", picked(states.displacement, gridpoints, state * mesh.gridpoint.size()));
+    const auto displacement_in = [&](std::size_t of) {
+        return picked(states.displacement, gridpoints, of * mesh.gridpoint.size());
+    };
+    std::vector<Eigen::Vector2d> displacement = displacement_in(state);
+    grid.add("displacement", displacement);
+    if (const Index reset = states.reset_state[state]; reset > 0) {
+        const std::vector<Eigen::Vector2d> then = displacement_in(static_cast<std::size_t>(reset));
+        for (std::size_t g = 0; g < displacement.size(); ++g)
+            displacement[g] -= then[g];
+        grid.add("displacement_since_reset", displacement);
+    }
     grid.open("CellData");
     grid.add("zone", present);
     grid.add("block", block);

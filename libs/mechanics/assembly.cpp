@@ -5,12 +5,15 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 
 namespace jointcreep::mechanics
 {
 
 namespace
 {
+
+constexpr Index zones_of_part = 1024; // some hundred gridpoints are in two parts then, of thousands
 
 void add_zones(Assembly& assembly, const Scene& scene, const Network& network, const Mesh& mesh)
 {
@@ -52,7 +55,6 @@ void add_zones(Assembly& assembly, const Scene& scene, const Network& network, c
                  .initial_zz = (initial[0] + initial[1]) / 2});
     }
     zones.stress = zones.initial_stress;
-    assembly.zone_force.resize(n);
 }
 
 void add_contacts(Assembly& assembly, const Scene& scene, const EquivalentJoints& joints, const Mesh& mesh)
@@ -85,8 +87,7 @@ void add_contacts(Assembly& assembly, const Scene& scene, const EquivalentJoints
     contacts.traction = contacts.initial_traction;
     contacts.jump.assign(n, Vector2d::Zero());
     contacts.status.assign(n, ContactStatus::stuck);
-    contacts.dissipated.assign(n, 0.0);
-    assembly.contact_force.resize(n);
+    contacts.work.assign(n, 0.0);
 }
 
 Vector3d stress_of_yielding(Zones& zones, std::size_t z, const Vector3d& strain)
@@ -123,6 +124,125 @@ void list_by_gridpoint(const std::vector<std::array<Index, N>>& gridpoints, std:
             entry[next[gridpoints[i][k]]++] = static_cast<Index>(N * i + k);
 }
 
+void pull_zones(Assembly& assembly, bool forces_alone)
+{
+    Zones& zones = assembly.zones;
+    const Incidence& incidence = assembly.incidence;
+    const auto n = static_cast<Index>(zones.gridpoint.size());
+    const auto n_parts = static_cast<Index>(incidence.part_start.size()) - 1;
+    // Plain pointers: through the arrays themselves, what is written might always be what is read next.
+    const Vector2d* const displacement = assembly.displacement.data();
+    const std::array<Index, 3>*const gridpoint = zones.gridpoint.data(), *const slot =
+                                                                             incidence.zone_slot.data();
+    const std::array<Vector2d, 3>* const gradient = zones.gradient.data();
+    const Vector3d *const stiffness = zones.stiffness.data(), *const initial = zones.initial_stress.data();
+    const double* const area = zones.area.data();
+    const char* const is_present = zones.is_present.data();
+    const Index* const yielding = zones.yielding.empty() ? nullptr : zones.yielding_number.data();
+    Vector3d *const stress = zones.stress.data(), *const last_stress = zones.last_stress.data();
+    Vector2d* __restrict const force = assembly.slot_force.data();
+    double* const magnitudes = assembly.slot_magnitudes.data();
+    const double damping = assembly.stiffness_damping_rate;
+#pragma omp for schedule(static) nowait
+    for (Index part = 0; part < n_parts; ++part) {
+        std::fill(force + incidence.part_start[part], force + incidence.part_start[part + 1], Vector2d(0, 0));
+        if (!forces_alone)
+            std::fill(magnitudes + incidence.part_start[part], magnitudes + incidence.part_start[part + 1],
+                      0.0);
+        for (Index z = part * zones_of_part; z < std::min(n, (part + 1) * zones_of_part); ++z) {
+            if (!is_present[z])
+                continue;
+            const Vector2d &u = displacement[gridpoint[z][0]], &v = displacement[gridpoint[z][1]],
+                           &w = displacement[gridpoint[z][2]];
+            const Vector2d &a = gradient[z][0], &b = gradient[z][1], &c = gradient[z][2];
+            const double exx = a.x() * u.x() + b.x() * v.x() + c.x() * w.x();
+            const double eyy = a.y() * u.y() + b.y() * v.y() + c.y() * w.y();
+            const double gxy = (a.y() * u.x() + a.x() * u.y()) + (b.y() * v.x() + b.x() * v.y()) +
+                               (c.y() * w.x() + c.x() * w.y());
+            const double c11 = stiffness[z][0], c12 = stiffness[z][1], c33 = stiffness[z][2];
+            double xx = initial[z][0] + (c11 * exx + c12 * eyy), yy = initial[z][1] + (c12 * exx + c11 * eyy),
+                   xy = initial[z][2] + c33 * gxy;
+            if (yielding != nullptr && yielding[z] >= 0) {
+                const Vector3d now = stress_of_yielding(zones, z, {exx, eyy, gxy});
+                xx = now[0];
+                yy = now[1];
+                xy = now[2];
+            }
+            if (!forces_alone || yielding != nullptr) // from which yielding goes on
+                stress[z] = {xx, yy, xy};
+            if (damping > 0) {
+                const Vector3d now(xx, yy, xy), acting = now + damping * (now - last_stress[z]);
+                last_stress[z] = now;
+                xx = acting[0];
+                yy = acting[1];
+                xy = acting[2];
+            }
+            xx *= -area[z];
+            yy *= -area[z];
+            xy *= -area[z];
+            // Numbers, not vectors: a vector made of two numbers goes through memory, and waits for it.
+            for (int i = 0; i < 3; ++i) {
+                const double x = xx * gradient[z][i].x() + xy * gradient[z][i].y(),
+                             y = xy * gradient[z][i].x() + yy * gradient[z][i].y();
+                force[slot[z][i]].x() += x;
+                force[slot[z][i]].y() += y;
+                if (!forces_alone)
+                    magnitudes[slot[z][i]] += std::sqrt(x * x + y * y);
+            }
+        }
+    }
+}
+
+void pull_contacts(Assembly& assembly)
+{
+    Contacts& contacts = assembly.contacts;
+    const auto n = static_cast<Index>(contacts.gridpoint.size());
+    const Vector2d* u = assembly.displacement.data();
+    const double damping = assembly.stiffness_damping_rate;
+#pragma omp for schedule(static) nowait
+    for (Index c = 0; c < n; ++c) {
+        if (contacts.status[c] == ContactStatus::removed)
+            continue;
+        const auto [a, b] = contacts.gridpoint[c];
+        const Vector2d normal = contacts.normal[c], tangent = along(normal);
+        const Vector2d apart = u[b] - u[a], jump(apart.dot(normal), apart.dot(tangent));
+        const Vector2d sprung = jump - contacts.offset[c];
+        const joint::Response response =
+            joint::respond(contacts.law[c], contacts.state[c], contacts.initial_traction[c].x(),
+                           contacts.initial_traction[c].y(), sprung.x(), sprung.y());
+        const Vector2d traction(response.sigma_n, response.tau), last = contacts.traction[c];
+        const double length = contacts.length[c];
+        contacts.work[c] += length / 2 * (last + traction).dot(jump - contacts.jump[c]);
+        contacts.jump[c] = jump;
+        contacts.traction[c] = traction;
+        contacts.status[c] = response.status;
+        Vector2d acting = traction;
+        if (damping > 0 && response.status == ContactStatus::stuck)
+            acting += damping * (traction - last); // dashpots; none where it slips or is open
+        assembly.contact_force[c] = length * (acting.x() * normal + acting.y() * tangent);
+    }
+}
+
+void add_up_forces(Assembly& assembly)
+{
+    const Incidence& incidence = assembly.incidence;
+    const auto n = static_cast<Index>(assembly.position.size());
+    const Index n_chunks = chunks_of(assembly);
+    const Vector2d *in_slot = assembly.slot_force.data(), *of_contact = assembly.contact_force.data();
+#pragma omp for schedule(static) nowait
+    for (Index k = 0; k < n_chunks; ++k)
+        for (Index g = k * chunk; g < std::min(n, (k + 1) * chunk); ++g) {
+            Vector2d force = assembly.load[g] + assembly.applied[g];
+            for (Index i = incidence.slot_start[g]; i < incidence.slot_start[g + 1]; ++i)
+                force += in_slot[incidence.slot[i]];
+            for (Index i = incidence.contact_start[g]; i < incidence.contact_start[g + 1]; ++i) {
+                const Index side = incidence.contact_side[i];
+                force += (1 - 2 * (side & 1)) * of_contact[side >> 1]; // a product is quicker than a branch
+            }
+            assembly.force[g] = force;
+        }
+}
+
 } // namespace
 
 Assembly assemble(const Scene& scene, const Network& network, const EquivalentJoints& equivalent,
@@ -139,10 +259,7 @@ Assembly assemble(const Scene& scene, const Network& network, const EquivalentJo
         assembly.is_free.emplace_back((held & 1) != 0 ? 0.0 : 1.0, (held & 2) != 0 ? 0.0 : 1.0);
     add_zones(assembly, scene, network, mesh);
     add_contacts(assembly, scene, equivalent, mesh);
-    list_by_gridpoint(assembly.zones.gridpoint, n, assembly.incidence.zone_start,
-                      assembly.incidence.zone_corner);
-    list_by_gridpoint(assembly.contacts.gridpoint, n, assembly.incidence.contact_start,
-                      assembly.incidence.contact_side);
+    find_incidence(assembly);
     for (std::size_t z = 0; z < assembly.zones.gridpoint.size(); ++z)
         for (const Index g : assembly.zones.gridpoint[z])
             assembly.load[g].y() -= assembly.zones.weight[z] / 3;
@@ -150,6 +267,37 @@ Assembly assemble(const Scene& scene, const Network& network, const EquivalentJo
         assembly.ties.push_back({mesh.tie_gridpoint[t], mesh.tie_stage[t]});
     part_ties(assembly, -1);
     return assembly;
+}
+
+void find_incidence(Assembly& assembly)
+{
+    const std::size_t n = assembly.position.size();
+    Incidence& incidence = assembly.incidence;
+    const auto& zones = assembly.zones.gridpoint;
+    list_by_gridpoint(zones, n, incidence.zone_start, incidence.zone_corner);
+    list_by_gridpoint(assembly.contacts.gridpoint, n, incidence.contact_start, incidence.contact_side);
+
+    std::vector<std::array<Index, 1>> gridpoint_of_slot;
+    std::vector<Index> slot_of(n, -1); // in this part; less than its first one where it has none yet
+    incidence.part_start.assign(1, 0);
+    incidence.zone_slot.resize(zones.size());
+    for (std::size_t z = 0; z < zones.size(); ++z) {
+        if (z > 0 && z % zones_of_part == 0)
+            incidence.part_start.push_back(static_cast<Index>(gridpoint_of_slot.size()));
+        for (int i = 0; i < 3; ++i) {
+            Index& slot = slot_of[zones[z][i]];
+            if (slot < incidence.part_start.back()) {
+                slot = static_cast<Index>(gridpoint_of_slot.size());
+                gridpoint_of_slot.push_back({zones[z][i]});
+            }
+            incidence.zone_slot[z][i] = slot;
+        }
+    }
+    incidence.part_start.push_back(static_cast<Index>(gridpoint_of_slot.size()));
+    list_by_gridpoint(gridpoint_of_slot, n, incidence.slot_start, incidence.slot);
+    assembly.slot_force.assign(gridpoint_of_slot.size(), Vector2d::Zero());
+    assembly.slot_magnitudes.assign(gridpoint_of_slot.size(), 0.0);
+    assembly.contact_force.assign(assembly.contacts.gridpoint.size(), Vector2d::Zero());
 }
 
 void part_ties(Assembly& assembly, Index stage)
@@ -174,95 +322,34 @@ void part_ties(Assembly& assembly, Index stage)
 
 void find_forces(Assembly& assembly)
 {
-    for (const auto& [follower, leader] : assembly.tied)
-        assembly.displacement[follower] = assembly.displacement[leader];
-    Zones& zones = assembly.zones;
-    Contacts& contacts = assembly.contacts;
-    const auto n_zones = static_cast<Index>(zones.gridpoint.size());
-    const auto n_contacts = static_cast<Index>(contacts.gridpoint.size());
-    const auto n_gridpoints = static_cast<Index>(assembly.position.size());
-    const Incidence& incidence = assembly.incidence;
-    const std::vector<Vector2d>& u = assembly.displacement;
-    const double damping = assembly.stiffness_damping_rate;
-    const bool any_yields = !zones.yielding.empty();
-
 #pragma omp parallel num_threads(assembly.threads) if (assembly.threads > 1)
-    {
-#pragma omp for schedule(static) nowait
-        for (Index z = 0; z < n_zones; ++z) {
-            if (!zones.is_present[z])
-                continue;
-            const auto& g = zones.gridpoint[z];
-            const auto& gradient = zones.gradient[z];
-            double exx = 0, eyy = 0, gxy = 0;
-            for (int i = 0; i < 3; ++i) {
-                const Vector2d& ui = u[g[i]];
-                exx += gradient[i].x() * ui.x();
-                eyy += gradient[i].y() * ui.y();
-                gxy += gradient[i].y() * ui.x() + gradient[i].x() * ui.y();
-            }
-            const Vector3d& c = zones.stiffness[z];
-            Vector3d stress = zones.initial_stress[z] +
-                              Vector3d(c[0] * exx + c[1] * eyy, c[1] * exx + c[0] * eyy, c[2] * gxy);
-            if (any_yields && zones.yielding_number[z] >= 0)
-                stress = stress_of_yielding(zones, z, {exx, eyy, gxy});
-            zones.stress[z] = stress;
-            Vector3d acting = stress;
-            if (damping > 0) {
-                acting += damping * (stress - zones.last_stress[z]);
-                zones.last_stress[z] = stress;
-            }
-            for (int i = 0; i < 3; ++i)
-                assembly.zone_force[z][i] =
-                    -zones.area[z] * Vector2d(acting[0] * gradient[i].x() + acting[2] * gradient[i].y(),
-                                              acting[2] * gradient[i].x() + acting[1] * gradient[i].y());
-        }
-#pragma omp for schedule(static)
-        for (Index c = 0; c < n_contacts; ++c) {
-            if (contacts.status[c] == ContactStatus::removed)
-                continue;
-            const auto [a, b] = contacts.gridpoint[c];
-            const Vector2d normal = contacts.normal[c], tangent = along(normal);
-            const Vector2d jump = u[b] - u[a];
-            const joint::Law& law = contacts.law[c];
-            const Vector2d last_jump = contacts.jump[c], last = contacts.traction[c];
-            contacts.jump[c] = {jump.dot(normal), jump.dot(tangent)};
-            const Vector2d sprung = contacts.jump[c] - contacts.offset[c];
-            const joint::Response response =
-                joint::respond(law, contacts.state[c], contacts.initial_traction[c].x(),
-                               contacts.initial_traction[c].y(), sprung.x(), sprung.y());
-            const Vector2d traction(response.sigma_n, response.tau);
-            contacts.traction[c] = traction;
-            contacts.status[c] = response.status;
-            const double length = contacts.length[c];
-            contacts.dissipated[c] += length * (last + traction).dot(contacts.jump[c] - last_jump) / 2 -
-                                      (stored_in(law, traction, length) - stored_in(law, last, length));
-            Vector2d acting = traction;
-            if (damping > 0 && response.status == ContactStatus::stuck)
-                acting += damping * (traction - last); // dashpots; none where it slips or is open
-            assembly.contact_force[c] = length * (acting.x() * normal + acting.y() * tangent);
-        }
-#pragma omp for schedule(static)
-        for (Index g = 0; g < n_gridpoints; ++g) {
-            Vector2d force = assembly.load[g] + assembly.applied[g];
-            for (Index k = incidence.zone_start[g]; k < incidence.zone_start[g + 1]; ++k) {
-                const Index corner = incidence.zone_corner[k];
-                force += assembly.zone_force[corner / 3][corner % 3];
-            }
-            for (Index k = incidence.contact_start[g]; k < incidence.contact_start[g + 1]; ++k) {
-                const Index side = incidence.contact_side[k];
-                if (side % 2 == 0)
-                    force += assembly.contact_force[side / 2];
-                else
-                    force -= assembly.contact_force[side / 2];
-            }
-            assembly.force[g] = force;
+    find_forces_in_team(assembly, false);
+}
+
+void find_forces_in_team(Assembly& assembly, bool forces_alone)
+{
+    if (!assembly.tied.empty()) {
+#pragma omp single
+        for (const auto& [follower, leader] : assembly.tied)
+            assembly.displacement[follower] = assembly.displacement[leader];
+    }
+    pull_zones(assembly, forces_alone);
+    pull_contacts(assembly);
+#pragma omp barrier
+    add_up_forces(assembly);
+    if (!assembly.tied.empty()) {
+#pragma omp barrier
+#pragma omp single
+        for (const auto& [follower, leader] : assembly.tied) {
+            assembly.force[leader] += assembly.force[follower];
+            assembly.force[follower].setZero();
         }
     }
-    for (const auto& [follower, leader] : assembly.tied) {
-        assembly.force[leader] += assembly.force[follower];
-        assembly.force[follower].setZero();
-    }
+}
+
+Index chunks_of(const Assembly& assembly)
+{
+    return (static_cast<Index>(assembly.position.size()) + chunk - 1) / chunk;
 }
 
 Index weakest_zone(const Assembly& assembly)
@@ -283,29 +370,30 @@ Index weakest_zone(const Assembly& assembly)
     return weakest;
 }
 
-double dissipated_energy(const Assembly& assembly)
+void forget_work(Assembly& assembly)
 {
-    double sum = 0;
-    for (const double lost : assembly.contacts.dissipated)
-        sum += lost;
-    for (std::size_t z = 0; z < assembly.zones.yielding_number.size(); ++z)
-        if (assembly.zones.yielding_number[z] >= 0)
-            sum += assembly.zones.area[z] *
-                   assembly.zones.yielding[assembly.zones.yielding_number[z]].dissipated;
-    return sum;
-}
-
-void forget_dissipated_energy(Assembly& assembly)
-{
-    std::fill(assembly.contacts.dissipated.begin(), assembly.contacts.dissipated.end(), 0.0);
+    std::fill(assembly.contacts.work.begin(), assembly.contacts.work.end(), 0.0);
     for (YieldingZone& zone : assembly.zones.yielding)
         zone.dissipated = 0;
+}
+
+double work_on_contacts(const Assembly& assembly)
+{
+    return std::accumulate(assembly.contacts.work.begin(), assembly.contacts.work.end(), 0.0);
+}
+
+double dissipated_in_zones(const Assembly& assembly)
+{
+    double sum = 0;
+    for (std::size_t z = 0; z < assembly.zones.yielding_number.size(); ++z)
+        if (const Index number = assembly.zones.yielding_number[z]; number >= 0)
+            sum += assembly.zones.area[z] * assembly.zones.yielding[number].dissipated;
+    return sum;
 }
 
 double stored_energy(const Assembly& assembly)
 {
     const Zones& zones = assembly.zones;
-    const Contacts& contacts = assembly.contacts;
     double energy = 0;
     for (std::size_t z = 0; z < zones.gridpoint.size(); ++z) {
         if (!zones.is_present[z])
@@ -322,40 +410,64 @@ double stored_energy(const Assembly& assembly)
                   ((c[0] * (s[0] * s[0] + s[1] * s[1]) - 2 * c[1] * s[0] * s[1]) / determinant +
                    s[2] * s[2] / c[2]);
     }
-    for (std::size_t k = 0; k < contacts.gridpoint.size(); ++k)
-        if (contacts.status[k] != ContactStatus::removed)
-            energy += stored_in(contacts.law[k], contacts.traction[k], contacts.length[k]);
+    return energy + energy_stored_in_contacts(assembly);
+}
+
+double energy_stored_in_contacts(const Assembly& assembly)
+{
+    const Contacts& contacts = assembly.contacts;
+    double energy = 0;
+    for (std::size_t c = 0; c < contacts.gridpoint.size(); ++c)
+        if (contacts.status[c] != ContactStatus::removed)
+            energy += stored_in(contacts.law[c], contacts.traction[c], contacts.length[c]);
     return energy;
 }
 
 Balance balance_of(const Assembly& assembly)
 {
     const Incidence& incidence = assembly.incidence;
-    Balance balance{0, 0, 0};
-    double sum = 0;
-    Index n = 0;
-    for (std::size_t g = 0; g < assembly.position.size(); ++g) {
-        const double force = assembly.force[g].cwiseProduct(assembly.is_free[g]).norm();
-        if (!std::isfinite(force))
-            return {force, static_cast<Index>(g), 1};
-        if (force > balance.largest) {
-            balance.largest = force;
-            balance.worst = static_cast<Index>(g);
+    struct Part {
+        double largest = 0, sum = 0;
+        Index worst = 0, n = 0;
+    };
+    const auto n = static_cast<Index>(assembly.position.size());
+    const Index n_chunks = chunks_of(assembly);
+    std::vector<Part> parts(n_chunks);
+#pragma omp parallel for schedule(static) num_threads(assembly.threads) if (assembly.threads > 1)
+    for (Index k = 0; k < n_chunks; ++k) {
+        Part part;
+        for (Index g = k * chunk; g < std::min(n, (k + 1) * chunk); ++g) {
+            const double force = assembly.force[g].cwiseProduct(assembly.is_free[g]).norm();
+            if (!(force <= part.largest)) { // also what is no number, and stays so
+                part.largest = force;
+                part.worst = g;
+                if (!std::isfinite(force))
+                    break;
+            }
+            double magnitudes = assembly.load[g].norm() + assembly.applied[g].norm();
+            for (Index i = incidence.slot_start[g]; i < incidence.slot_start[g + 1]; ++i)
+                magnitudes += assembly.slot_magnitudes[incidence.slot[i]];
+            for (Index i = incidence.contact_start[g]; i < incidence.contact_start[g + 1]; ++i)
+                magnitudes += assembly.contact_force[incidence.contact_side[i] / 2].norm();
+            if (magnitudes > 0) {
+                part.sum += magnitudes;
+                ++part.n;
+            }
         }
-        double magnitudes = assembly.load[g].norm() + assembly.applied[g].norm();
-        for (Index k = incidence.zone_start[g]; k < incidence.zone_start[g + 1]; ++k) {
-            const Index corner = incidence.zone_corner[k];
-            magnitudes += assembly.zone_force[corner / 3][corner % 3].norm();
-        }
-        for (Index k = incidence.contact_start[g]; k < incidence.contact_start[g + 1]; ++k)
-            magnitudes += assembly.contact_force[incidence.contact_side[k] / 2].norm();
-        if (magnitudes > 0) {
-            sum += magnitudes;
-            ++n;
-        }
+        parts[k] = part;
     }
-    balance.mean = n > 0 ? sum / n : 0.0;
-    return balance;
+    Part all;
+    for (const Part& part : parts) {
+        if (!std::isfinite(part.largest))
+            return {part.largest, part.worst, 1};
+        if (part.largest > all.largest) {
+            all.largest = part.largest;
+            all.worst = part.worst;
+        }
+        all.sum += part.sum;
+        all.n += part.n;
+    }
+    return {all.largest, all.worst, all.n > 0 ? all.sum / all.n : 0.0};
 }
 
 Balance balance_of(const Assembly& assembly, double stiffest, double farthest, double tolerance)

@@ -53,15 +53,21 @@ struct Contacts {
     std::vector<Vector2d> traction;    // now [Pa]
     std::vector<Vector2d> jump;        // displacement of b minus that of a, now [m]
     std::vector<ContactStatus> status; // now; removed once a side is gone
-    std::vector<double> dissipated;    // work done on it that it has not stored [J/m]
+    std::vector<double> work; // done on it since this was last set to 0, by the trapezoidal rule [J/m]
 };
 
-// What a gridpoint is part of, for gathering forces in a fixed order whatever the number of threads.
+// What a gridpoint is part of, and in which order forces are added up, whatever the number of threads: zones
+// that follow each other make a part, and add their forces into slots, one for each gridpoint of the part. A
+// gridpoint adds up its slots, then its contacts.
 struct Incidence {
     std::vector<Index> zone_start;    // [gridpoints + 1]
     std::vector<Index> zone_corner;   // 3 zone + corner
     std::vector<Index> contact_start; // [gridpoints + 1]
     std::vector<Index> contact_side;  // 2 contact + side (0 a, 1 b)
+    std::vector<Index> part_start;    // [parts + 1] the slots of each part
+    std::vector<std::array<Index, 3>> zone_slot;
+    std::vector<Index> slot_start; // [gridpoints + 1]
+    std::vector<Index> slot;       // those of each gridpoint
 };
 
 struct Assembly {
@@ -86,9 +92,11 @@ struct Assembly {
     std::vector<Tie> ties;
     std::vector<std::array<Index, 2>> tied; // from the ties still there: {follower, leader}
 
-    // Forces of zones on their corners and of contacts on their side a; filled by find_forces [N/m].
-    std::vector<std::array<Vector2d, 3>> zone_force;
+    // Forces of zones by slots and of contacts on their side a, and the sums of the magnitudes of what zones
+    // add to a slot; filled by find_forces [N/m].
+    std::vector<Vector2d> slot_force;
     std::vector<Vector2d> contact_force;
+    std::vector<double> slot_magnitudes;
 
     double stiffness_damping_rate =
         0; // beta / dt: forces grow by this times their change since the last step [-]
@@ -100,6 +108,9 @@ struct Assembly {
 Assembly assemble(const Scene& scene, const Network& network, const EquivalentJoints& equivalent,
                   const Mesh& mesh);
 
+// Finds which zones, contacts and gridpoints belong together; part of assemble.
+void find_incidence(Assembly& assembly);
+
 // Ends the ties that a stage parts.
 void part_ties(Assembly& assembly, Index stage);
 
@@ -107,15 +118,28 @@ void part_ties(Assembly& assembly, Index stage);
 // their states: calling it again changes nothing more.
 void find_forces(Assembly& assembly);
 
+// The same by a team of threads that is at work already: each calls it, in an OpenMP parallel region. When it
+// returns, the forces are there of the gridpoints that this thread has in a loop over chunks_of(assembly)
+// with a static schedule; of the others, after a barrier. Forces alone leave out the zones' stresses and what
+// balance_of needs.
+void find_forces_in_team(Assembly& assembly, bool forces_alone);
+
+// Gridpoints that are worked on, and summed over, together, whatever the number of threads.
+constexpr Index chunk = 512;
+Index chunks_of(const Assembly& assembly);
+
 // The zone that is farthest beyond its strength, where yield is held; -1 if none is.
 Index weakest_zone(const Assembly& assembly);
 
-// What contacts and yielding zones have lost, summed up by find_forces since it was forgotten [J/m].
-double dissipated_energy(const Assembly& assembly);
-void forget_dissipated_energy(Assembly& assembly);
+// What find_forces has summed up since this was forgotten: work on contacts, and what yielding zones have
+// lost [J/m].
+void forget_work(Assembly& assembly);
+double work_on_contacts(const Assembly& assembly);
+double dissipated_in_zones(const Assembly& assembly);
 
-// Energy that zones and contacts have stored [J/m]; only differences mean anything.
+// Energy that zones and contacts have stored, and contacts alone [J/m]; only differences mean anything.
 double stored_energy(const Assembly& assembly);
+double energy_stored_in_contacts(const Assembly& assembly);
 
 struct Balance {
     double largest; // out-of-balance force on a free gridpoint [N/m]

@@ -13,10 +13,8 @@ std::vector<Vector2d> excavate(Assembly& assembly, const Blocks& blocks, const M
     for (std::size_t z = 0; z < zones.gridpoint.size(); ++z) {
         if (!zones.is_present[z] || blocks.block_stage[mesh.zone_block[z]] != stage)
             continue;
-        for (int i = 0; i < 3; ++i) {
-            assembly.load[zones.gridpoint[z][i]].y() += zones.weight[z] / 3;
-            assembly.zone_force[z][i].setZero();
-        }
+        for (const Index g : zones.gridpoint[z])
+            assembly.load[g].y() += zones.weight[z] / 3;
         zones.is_present[z] = 0;
         zones.stress[z].setZero();
     }

@@ -129,6 +129,13 @@ void Recorder::record_history(Result& result, double time, const std::string& ev
     append(history.displacement, history.displacement, assembly.displacement, assembly);
     history.time.push_back(time / unit::day);
     history.event.push_back(event);
+    history.reset_row.push_back(history.reset_row.empty() ? 0 : history.reset_row.back());
+}
+
+void Recorder::reset(Result& result)
+{
+    result.history.reset_row.back() = static_cast<Index>(result.history.time.size()) - 1;
+    result.states.reset_state.back() = static_cast<Index>(result.states.time.size()) - 1;
 }
 
 void Recorder::start_readings(Result& result, double time) const
@@ -159,6 +166,7 @@ void Recorder::record_state(Result& result, double time, const std::string& even
             states.yielding_zone.push_back(static_cast<Index>(z));
             states.plastic_strain.emplace_back(plastic[0], plastic[1], plastic[3] / 2);
         }
+    states.reset_state.push_back(states.reset_state.empty() ? 0 : states.reset_state.back());
 }
 
 void Recorder::record_equilibrium(Result& result, double time, const Certificate& certificate,

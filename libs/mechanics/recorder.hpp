@@ -26,6 +26,9 @@ public:
     // Counts the readings of the points whose date of first reading is `time` from the last recorded row.
     void start_readings(Result& result, double time) const;
 
+    // Counts displacements from the last recorded row and state on.
+    static void reset(Result& result);
+
     // Appends a row of what the measuring points are given by the values of gridpoints; a removed point has
     // what it had in the row before.
     void append_at_points(std::vector<Vector2d>& rows, const std::vector<Vector2d>& of_gridpoints,

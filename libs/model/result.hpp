@@ -46,6 +46,8 @@ struct History {
     std::vector<Index> first_reading_row;        // [point] the row a point's own readings count from
     std::vector<Eigen::Vector2d> displacement;   // [time, point] since the in-situ equilibrium [m]
     std::vector<Index> present; // [time, point] 0 once removed; the last displacement is held
+    std::vector<Index>
+        reset_row; // [time] the row displacements are to count from since the last reset, 0 before one
 };
 
 // The whole section at chosen times: the in-situ equilibrium, after every stage, before the next, the end.
@@ -61,7 +63,8 @@ struct States {
     std::vector<Index> contact_status; // [state, contact] ContactStatus
     std::vector<Index> yielding_zone;  // zones of rock that yields
     std::vector<Eigen::Vector3d>
-        plastic_strain; // [state, yielding zone] {xx, yy, xy} since the in-situ equilibrium [-]
+        plastic_strain;             // [state, yielding zone] {xx, yy, xy} since the in-situ equilibrium [-]
+    std::vector<Index> reset_state; // [state] the state displacements are to count from, as in History
 };
 
 // How every equilibrium was reached, one row each.
@@ -89,12 +92,46 @@ struct Trace {
     std::vector<Eigen::Vector2d> traction;     // [row, gauge] {normal, shear} [Pa]
 };
 
+// Motions on the way, a row whenever a state is recorded during one; large displacements only. Energies since
+// the motion's start: work_of_loads = kinetic + stored + friction + damped, but for the error of time steps.
+struct Motions {
+    std::vector<double> time;        // of the stage, since start [day]
+    std::vector<double> motion_time; // since the motion's start [s]
+    std::vector<Index> state;        // into States
+    std::vector<double> work_of_loads, kinetic_energy, stored_energy, friction_energy, damped_energy; // [J/m]
+    std::vector<double> fastest;              // gridpoint's speed [m/s]
+    std::vector<double> out_of_balance_ratio; // [-]
+};
+
+// Where a run ended because the section has no equilibrium. Blocks are those that moved on, or that nothing
+// holds.
+struct Failure {
+    std::string reason{};                  // the message; empty: the run has gone to its end
+    std::string stage{};                   // whose rock had just gone, or ""
+    double time = 0;                       // since start [day]
+    Index moves_on = 0;                    // 1 blocks slide or fall, 0 the search ended without an answer
+    double seconds = 0;                    // that the next stand for with real masses, or 0 [s]
+    Index steps = 0;                       // of motion, the last ones
+    std::vector<Index> block{};            // the fastest first
+    std::vector<Eigen::Vector2d> place{};  // centroid, at the start [m]
+    std::vector<Eigen::Vector2d> motion{}; // in these steps [m]
+};
+
+// Runs by which a factor of safety was found, beside the result of the last one that stood.
+struct Safety {
+    std::vector<double> factor{}; // that strengths were divided by [-]
+    std::vector<Index>
+        stands{}; // 1 every equilibrium was found, 0 none, -1 the search ended without an answer
+};
+
 struct Result {
     Mesh mesh;
     History history;
     States states;
     Equilibria equilibria;
     Trace trace;
+    Motions motions;
+    Failure failure{};
 };
 
 } // namespace jointcreep

@@ -236,8 +236,9 @@ struct Boundary {
 // One excavation step.
 struct Stage {
     std::string name;
-    double time = 0;             // since start [s]
-    std::vector<Polygon> remove; // the rock inside these leaves
+    double time = 0;                  // since start [s]
+    std::vector<Polygon> remove;      // the rock inside these leaves
+    bool reset_displacements = false; // from its equilibrium on, displacements are to count from there
 };
 
 // A place whose displacement is recorded.
@@ -267,7 +268,7 @@ struct Creep {
     std::optional<double> stop_rate; // ends creep after the last stage once no point moves faster [m/s]
 };
 
-enum class Damping { adaptive, local, mass };
+enum class Damping { adaptive, kinetic, local, combined, mass };
 enum class Masses { scaled, real };
 enum class Engine { automatic, explicit_engine, implicit_engine };
 
@@ -279,10 +280,21 @@ struct Equilibrium {
     Damping damping = Damping::adaptive;
     double mass_damping = 0;      // alpha of the paper's Eq. 1, with damping "mass" [1/s]
     double stiffness_damping = 0; // beta of zones and of the joints' dashpots, with damping "mass" [s]
-    double local_damping = 0;     // with damping "local" [-]
+    double local_damping = 0;     // with damping "local" or "combined" [-]
     std::int32_t unloading_increments =
         1;                       // in which a stage's rock is taken away, and loads change between dates
     std::int32_t most_steps = 0; // without equilibrium after so many, the program gives up
+};
+
+// Rock that may move far: Newton's law with real masses, in place of the search for equilibrium nearby.
+struct Motion {
+    std::string new_contacts;               // name of the JointMaterial of contacts that come about
+    std::vector<std::string> rigid_rocks{}; // names of Rocks whose blocks do not deform then
+    double stiffness_damping = 0;           // dashpots of zones and closed joints over their springs [s]
+    double mass_damping = 0;                // [1/s]
+    double release = 0;                     // time in which the forces of a stage's rock fade away [s]
+    double longest = 0;                     // of one motion [s]
+    double record_every = 0;                // [s]
 };
 
 // Over what the joint fraction is taken that strengths and stiffnesses are averaged with.
@@ -340,6 +352,7 @@ struct Scene {
     Cutting cutting;
     Averaging averaging;
     Equilibrium equilibrium;
+    std::optional<Motion> motion;
 };
 
 } // namespace jointcreep

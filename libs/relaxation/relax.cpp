@@ -1,5 +1,6 @@
 #include "relaxation/relax.hpp"
 
+#include "mechanics/failure.hpp"
 #include "model/error.hpp"
 
 #include <algorithm>
@@ -15,6 +16,8 @@ using Eigen::Vector2d;
 using mechanics::Assembly;
 using mechanics::Balance;
 using mechanics::Certificate;
+using mechanics::chunk;
+using mechanics::no_equilibrium;
 
 namespace
 {
@@ -22,7 +25,6 @@ namespace
 constexpr Index check_every = 20, window = 100; // [steps]
 constexpr Index patience = 5000;                // between looks at what moves on [steps]
 constexpr double safety = 0.9;                  // of the largest stable step
-constexpr Index chunk = 512;                    // gridpoints summed together, whatever the number of threads
 
 // Contact forces at the last few checks.
 class ForceMemory
@@ -60,97 +62,99 @@ public:
                               "frequency of their own");
         take_stiffness(row_sums);
         too_far_ = size_of(assembly) / 10;
-        const std::size_t n_chunks = (assembly.position.size() + chunk - 1) / chunk;
-        energy_.resize(n_chunks);
-        quotient_.resize(n_chunks);
-        damped_.resize(n_chunks);
+        sums_.resize(chunks_of(assembly));
         if (settings.stiffness_damping > 0)
             assembly.zones.last_stress = assembly.zones.stress;
-        forget_dissipated_energy(assembly);
+        forget_work(assembly);
         stored_at_start_ = stored_energy(assembly);
-        if (settings.damping == Damping::adaptive)
+        in_contacts_at_start_ = energy_stored_in_contacts(assembly);
+        if (settings.damping == Damping::adaptive || settings.damping == Damping::combined)
             last_force_ = assembly.force;
     }
 
     // Of the solver, since this began [s].
     double time() const { return time_before_ + steps_since_ * dt_; }
 
-    void step()
+    // Moves by so many steps. The threads stay together for all of them, and wait for each other twice a
+    // step: when all gridpoints have moved, and when all zones and contacts have been pulled.
+    void move(Index steps)
     {
-        const auto n = static_cast<Index>(velocity_.size());
-        const auto n_chunks = static_cast<Index>(energy_.size());
-        const double alpha = settings_.damping == Damping::mass ? settings_.mass_damping : alpha_;
-        const double keep = (1 - alpha * dt_ / 2) / (1 + alpha * dt_ / 2);
-        // Velocities live half a step before displacements: from rest the first one gets half a step's gain.
-        // With a whole one the stiffest parts would overshoot, and stopping them again and again would blow
-        // them up.
-        const double interval = (starts_from_rest_ ? 0.5 : 1.0) * dt_;
-        const double gain = interval / (1 + alpha * dt_ / 2);
-        starts_from_rest_ = false;
-        const double local = settings_.damping == Damping::local ? settings_.local_damping : 0.0;
-        const bool adaptive = settings_.damping == Damping::adaptive;
-#pragma omp parallel for schedule(static) num_threads(a_.threads) if (a_.threads > 1)
-        for (Index k = 0; k < n_chunks; ++k) {
-            double energy = 0, work = 0, damped = 0;
-            for (Index g = k * chunk; g < std::min(n, (k + 1) * chunk); ++g) {
-                Vector2d force = a_.force[g].cwiseProduct(a_.is_free[g]);
-                const Vector2d free_force = force;
-                Vector2d& v = velocity_[g];
-                if (adaptive) { // how the force has answered to the last step's motion
-                    work -= v.dot(force - last_force_[g]);
-                    last_force_[g] = force;
-                    if (mass_[g] > 0)
-                        energy += v.squaredNorm() / mass_[g];
+#pragma omp parallel num_threads(a_.threads) if (a_.threads > 1)
+        {
+            double alpha = settings_.damping == Damping::mass ? settings_.mass_damping : alpha_;
+            double work = work_;
+            double last_energy = last_energy_;
+            bool starts_from_rest = starts_from_rest_;
+            for (Index i = 0; i < steps; ++i) {
+                step_in_team(alpha, starts_from_rest);
+#pragma omp master
+                ++steps_since_;
+                Sums sums; // every thread adds them up for itself, before the next step writes new ones
+                for (const Sums& some : sums_) {
+                    sums.energy += some.energy;
+                    sums.answer += some.answer;
+                    sums.work += some.work;
                 }
-                if (local > 0)
-                    force -= local * Vector2d(v.x() == 0 ? 0 : std::copysign(std::abs(force.x()), v.x()),
-                                              v.y() == 0 ? 0 : std::copysign(std::abs(force.y()), v.y()));
-                const Vector2d last = v;
-                v = keep * v + gain * mass_[g] * force;
-                if (mass_[g] > 0)
-                    damped += free_force.dot(v + last) / 2 * dt_ -
-                              (v.squaredNorm() - last.squaredNorm()) / (2 * mass_[g]);
-                a_.displacement[g] += dt_ * v;
+                work += sums.work;
+                if (settings_.damping == Damping::adaptive)
+                    alpha = sums.energy > 0 && sums.answer > 0
+                                ? std::min(2 * std::sqrt(sums.answer / (dt_ * sums.energy)), 1.9 / dt_)
+                                : 0.0;
+                starts_from_rest = settings_.damping == Damping::kinetic && sums.energy < last_energy;
+                last_energy = starts_from_rest ? 0.0 : sums.energy;
+                find_forces_in_team(a_, i + 1 < steps);
+                if (!stiffening_.empty()) {
+#pragma omp barrier
+#pragma omp single
+                    follow_stiffness();
+                }
             }
-            energy_[k] = energy;
-            quotient_[k] = work;
-            damped_[k] = damped;
+#pragma omp barrier
+#pragma omp single
+            {
+                alpha_ = alpha;
+                work_ = work;
+                starts_from_rest_ = starts_from_rest;
+                last_energy_ = last_energy;
+            }
         }
-        double energy = 0, work = 0;
-        for (Index k = 0; k < n_chunks; ++k) {
-            energy += energy_[k];
-            work += quotient_[k];
-            total_damped_ += damped_[k];
-        }
-        if (adaptive)
-            alpha_ = energy > 0 && work > 0 ? std::min(2 * std::sqrt(work / (dt_ * energy)), 1.9 / dt_) : 0.0;
-        find_forces(a_);
-        ++steps_since_;
-        if (!stiffening_.empty())
-            follow_stiffness();
     }
 
     // Throws if a piece of rock is on its way: far already, or steadily.
     void check_motion(Index steps)
     {
         const auto [moved, g] = mechanics::farthest_move(start_, a_.displacement);
-        if (!(moved <= too_far_))
-            throw equilibrium_error(
-                "no equilibrium: the rock at " + shown(a_.position[g]) + " has moved " +
-                (std::isfinite(moved) ? shown_length(moved) : std::string("without bound")) +
-                " and is still moving; is it held by anything?");
+        if (!std::isfinite(moved))
+            throw no_equilibrium("the rock at " + shown(a_.position[g]) +
+                                 " has moved without bound; is it held by anything?");
+        if (moved > too_far_)
+            give_up("the rock at " + shown(a_.position[g]) + " has moved " + shown_length(moved) +
+                        " and is still moving; is it held by anything?",
+                    true, steps);
         if (steps % patience != 0)
             return;
         // What comes to rest slows down. What slides or falls does not: damping only lends it a steady speed.
         const auto [lately, h] = mechanics::farthest_move(patience_ago_, a_.displacement);
         windows_without_slowing_ = lately > 0.95 * moved_before_ ? windows_without_slowing_ + 1 : 0;
         if (windows_without_slowing_ == 4)
-            throw equilibrium_error("no equilibrium: the rock at " + shown(a_.position[h]) +
-                                    " moves on without slowing down, " + shown_length(lately) +
-                                    " over the last " + std::to_string(patience) +
-                                    " steps; it slides or falls, and nothing stops it");
+            give_up("the rock at " + shown(a_.position[h]) + " moves on without slowing down, " +
+                        shown_length(lately) + " over the last " + std::to_string(patience) +
+                        " steps; it slides or falls, and nothing stops it",
+                    true, steps);
         moved_before_ = lately;
         patience_ago_ = a_.displacement;
+    }
+
+    // Throws, with the motion since the last look at what moves on.
+    [[noreturn]] void give_up(const std::string& why, bool moves_on, Index steps) const
+    {
+        no_equilibrium error(why);
+        error.moves_on = moves_on;
+        error.steps = (steps - 1) % patience + 1;
+        error.seconds = settings_.masses == Masses::real ? error.steps * dt_ : 0.0;
+        for (std::size_t g = 0; g < a_.displacement.size(); ++g)
+            error.motion.emplace_back(a_.displacement[g] - patience_ago_[g]);
+        throw error;
     }
 
     // Ends the motion and settles the account of energy.
@@ -159,20 +163,21 @@ public:
         a_.stiffness_damping_rate = 0;
         find_forces(a_);
         certificate.stored = stored_energy(a_) - stored_at_start_;
-        certificate.dissipated = dissipated_energy(a_);
+        certificate.dissipated = in_contacts_at_start_ + work_on_contacts(a_) -
+                                 energy_stored_in_contacts(a_) + dissipated_in_zones(a_);
         certificate.work_of_loads = work_of_loads(a_, start_);
         // Stiffness damping works inside zones and contacts, unseen by the gridpoints' motion: it takes what
         // is missing.
         certificate.damped = settings_.stiffness_damping > 0
                                  ? certificate.work_of_loads - certificate.stored - certificate.dissipated
-                                 : total_damped_;
+                                 : work_ - energy_of_motion();
     }
 
 private:
     // Masses and step for these row sums.
     void take_stiffness(const std::vector<double>& row_sums)
     {
-        const double local = settings_.damping == Damping::local ? 1 + settings_.local_damping : 1.0;
+        const double local = 1 + local_damping();
         time_before_ = time();
         steps_since_ = 0;
         if (settings_.masses == Masses::real) {
@@ -190,8 +195,9 @@ private:
             for (const double sum : row_sums)
                 mass_.push_back(sum * local / (4 * safety * safety));
         }
-        for (double& m : mass_)
-            m = m > 0 ? 1 / m : 0.0; // from here on inverse; gridpoints without any rock do not move
+        inverse_mass_.clear();
+        for (const double m : mass_)
+            inverse_mass_.push_back(m > 0 ? 1 / m : 0.0); // gridpoints without any rock do not move
         a_.stiffness_damping_rate = settings_.stiffness_damping / dt_;
         const mechanics::Contacts& contacts = a_.contacts;
         stiffening_.clear();
@@ -221,10 +227,81 @@ private:
             if (!(before[g] > 0))
                 continue;
             const Vector2d last = velocity_[g], force = a_.force[g].cwiseProduct(a_.is_free[g]);
-            velocity_[g] *= std::sqrt(mass_[g] / before[g]);
+            velocity_[g] *= std::sqrt(before[g] / mass_[g]);
             // The next step takes half of the last one's work to be that of this velocity.
-            total_damped_ += force.dot(last_dt * last - dt_ * velocity_[g]) / 2;
+            work_ += force.dot(last_dt * last - dt_ * velocity_[g]) / 2;
         }
+    }
+
+    // Over gridpoints, in one step.
+    struct Sums {
+        double energy = 0, answer = 0; // of the Rayleigh quotient: of motion, and how forces answer to it
+        double work = 0;               // of the forces out of balance [J/m]
+    };
+
+    void step_in_team(double alpha, bool starts_from_rest)
+    {
+        const auto n = static_cast<Index>(velocity_.size());
+        const auto n_chunks = static_cast<Index>(sums_.size());
+        const double keep = (1 - alpha * dt_ / 2) / (1 + alpha * dt_ / 2);
+        // Velocities live half a step before displacements: from rest the first one gets half a step's gain.
+        // With a whole one the stiffest parts would overshoot, and stopping them again and again would blow
+        // them up.
+        const double interval = (starts_from_rest ? 0.5 : 1.0) * dt_;
+        const double gain = interval / (1 + alpha * dt_ / 2);
+        const double local = local_damping();
+        const bool adaptive = settings_.damping == Damping::adaptive;
+        const bool combined = settings_.damping == Damping::combined;
+        const bool kinetic = settings_.damping == Damping::kinetic;
+#pragma omp for schedule(static)
+        for (Index k = 0; k < n_chunks; ++k) {
+            Sums sums;
+            for (Index g = k * chunk; g < std::min(n, (k + 1) * chunk); ++g) {
+                const Vector2d free_force = a_.force[g].cwiseProduct(a_.is_free[g]), last = velocity_[g];
+                Vector2d force = free_force, change = Vector2d::Zero(); // with the last step's motion
+                if (adaptive || combined) {
+                    change = force - last_force_[g];
+                    last_force_[g] = force;
+                }
+                if (adaptive) {
+                    sums.answer -= last.dot(change);
+                    sums.energy += last.squaredNorm() * mass_[g];
+                }
+                const Vector2d before = starts_from_rest ? Vector2d(Vector2d::Zero()) : last;
+                if (combined)
+                    force += local / 2 * force.cwiseAbs().cwiseProduct(signs_of(change) - signs_of(before));
+                else if (local > 0)
+                    force -= local * force.cwiseAbs().cwiseProduct(signs_of(before));
+                const Vector2d v = keep * before + gain * inverse_mass_[g] * force;
+                if (kinetic)
+                    sums.energy += v.squaredNorm() * mass_[g];
+                sums.work += free_force.dot(v + last) / 2 * dt_;
+                velocity_[g] = v;
+                a_.displacement[g] += dt_ * v;
+            }
+            sums_[k] = sums;
+        }
+    }
+
+    double energy_of_motion() const
+    {
+        double energy = 0;
+        for (std::size_t g = 0; g < velocity_.size(); ++g)
+            energy += mass_[g] / 2 * velocity_[g].squaredNorm();
+        return energy;
+    }
+
+    double local_damping() const
+    {
+        return settings_.damping == Damping::local || settings_.damping == Damping::combined
+                   ? settings_.local_damping
+                   : 0.0;
+    }
+
+    // -1, 0 or 1 in x and y.
+    static Vector2d signs_of(const Vector2d& v)
+    {
+        return v.array().sign();
     }
 
     static std::string shown_length(double length)
@@ -238,15 +315,16 @@ private:
     const Equilibrium& settings_;
     std::vector<Vector2d> velocity_;
     std::vector<Vector2d> start_, patience_ago_, last_force_;
-    std::vector<double> mass_; // inverse [m/kg]
-    std::vector<double> energy_, quotient_, damped_;
-    double total_damped_ = 0, stored_at_start_ = 0;
+    std::vector<double> mass_, inverse_mass_; // [kg/m], [m/kg]
+    std::vector<Sums> sums_;                  // of each chunk
+    double work_ = 0, stored_at_start_ = 0, in_contacts_at_start_ = 0;
     std::vector<std::pair<std::size_t, double>> stiffening_; // contacts, and how stiff they may be [Pa/m]
     double time_before_ = 0;                                 // at the last change of the step [s]
     Index steps_since_ = 0;
     double dt_ = 0, too_far_ = 0, alpha_ = 0;
     double moved_before_ = std::numeric_limits<double>::infinity(); // in the last window of `patience` steps
     int windows_without_slowing_ = 0;
+    double last_energy_ = 0; // of motion, with kinetic damping: twice it [J/m]
     bool starts_from_rest_ = true;
 };
 
@@ -273,8 +351,11 @@ Certificate relax(Assembly& assembly, const Equilibrium& settings, const StepObs
     memory.change_since_window(assembly);
     Index steps_in_balance = 0;
     while (certificate.steps < settings.most_steps) {
-        relaxation.step();
-        ++certificate.steps;
+        const Index steps = observe ? 1
+                                    : std::min(check_every - certificate.steps % check_every,
+                                               settings.most_steps - certificate.steps);
+        relaxation.move(steps);
+        certificate.steps += steps;
         if (observe)
             observe(relaxation.time());
         if (certificate.steps % check_every != 0)
@@ -284,8 +365,8 @@ Certificate relax(Assembly& assembly, const Equilibrium& settings, const StepObs
         certificate.out_of_balance_ratio = balance.ratio();
         certificate.contact_force_change = memory.change_since_window(assembly) / balance.mean;
         if (!std::isfinite(certificate.out_of_balance_ratio))
-            throw equilibrium_error("no equilibrium: forces are no longer finite numbers after " +
-                                    std::to_string(certificate.steps) + " steps");
+            throw no_equilibrium("forces are no longer finite numbers after " +
+                                 std::to_string(certificate.steps) + " steps");
         steps_in_balance =
             certificate.out_of_balance_ratio <= settings.tolerance ? steps_in_balance + check_every : 0;
         if (steps_in_balance >= window && certificate.contact_force_change <= settings.tolerance) {
@@ -294,10 +375,11 @@ Certificate relax(Assembly& assembly, const Equilibrium& settings, const StepObs
         }
     }
     const Balance balance = balance_of(assembly);
-    throw equilibrium_error(
-        "no equilibrium after " + std::to_string(certificate.steps) + " steps: the out-of-balance ratio is " +
-        shown(certificate.out_of_balance_ratio) + ", wanted " + shown(settings.tolerance) +
-        "; farthest from balance is the rock at " + shown(assembly.position[balance.worst]));
+    relaxation.give_up("after " + std::to_string(certificate.steps) + " steps the out-of-balance ratio is " +
+                           shown(certificate.out_of_balance_ratio) + ", wanted " + shown(settings.tolerance) +
+                           "; farthest from balance is the rock at " +
+                           shown(assembly.position[balance.worst]),
+                       false, certificate.steps);
 }
 
 } // namespace jointcreep::relaxation

@@ -6,8 +6,12 @@
 // Masses are the real ones or scaled: for a state of rest only the forces matter, so every gridpoint may have
 // the mass that just allows the common step (dt = 1 s then; solver time means nothing). Damping is one of
 //   adaptive  alpha = 2 w, critical for the lowest frequency w that the present motion shows (Rayleigh
-//   quotient); local     a fraction of the out-of-balance force, against the velocity (Cundall 1987); mass
-//   alpha as given: the paper's way.
+//   quotient) kinetic   none, but everything is stopped whenever the kinetic energy has passed a peak
+//   (Cundall 1976) local     a fraction of the out-of-balance force, against the velocity (Cundall 1987)
+//   combined  half of that against the velocity, half along the change of force: it also damps what swings
+//   about a
+//             steady motion
+//   mass      alpha as given: the paper's way
 
 #pragma once
 
@@ -24,7 +28,7 @@ using StepObserver = std::function<void(double solver_time)>;
 // Moves the assembly to equilibrium: every 20 steps in 100 the out-of-balance ratio was at most the
 // tolerance, and over these 100 steps no contact force changed by more than the tolerance times the mean
 // force on a gridpoint. Starts from rest; a state that is in balance already is left as it is, after 0 steps.
-// Throws equilibrium_error when a gridpoint has moved by a tenth of the section's size, when forces are no
+// Throws no_equilibrium when a gridpoint has moved by a tenth of the section's size, when forces are no
 // longer numbers, and after settings.most_steps.
 mechanics::Certificate relax(mechanics::Assembly& assembly, const Equilibrium& settings,
                              const StepObserver& observe = {});

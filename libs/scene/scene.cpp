@@ -231,6 +231,8 @@ Scene parse_scene(std::string_view text, const std::string& name)
 
     if (Creep creep; read_once(tables.creep, root, reading, creep))
         scene.creep = creep;
+    if (Motion motion; read_once(tables.motion, root, reading, motion))
+        scene.motion = motion;
     read_once(tables.zones, root, reading, scene);
     scene.cutting.shortest_edge = usual_shortest_edge * scene.zone_size;
     read_once(tables.cutting, root, reading, scene.cutting);

@@ -61,6 +61,7 @@ public:
         check_places();
         check_numbers();
         check_creep();
+        check_motion();
     }
 
 private:
@@ -167,6 +168,12 @@ private:
             if (!scene_.boundaries[i].joint.empty())
                 check_reference(in_list("boundary", i), "joint", scene_.boundaries[i].joint, materials,
                                 "[[joint_material]]");
+        if (scene_.motion)
+            check_reference(once("motion"), "new_contacts", scene_.motion->new_contacts, materials,
+                            "[[joint_material]]");
+        if (scene_.motion)
+            for (const std::string& rock : scene_.motion->rigid_rocks)
+                check_reference(once("motion"), "rigid_rocks", rock, rocks, "[[rock]]");
     }
 
     // --- Geometry
@@ -592,8 +599,8 @@ private:
             equilibrium.refuse("stiffness_damping_s", "wanted damping = \"mass\" beside it");
         if ((damping == Damping::mass) != (equilibrium.find("mass_damping_per_s") != nullptr))
             equilibrium.refuse("mass_damping_per_s", "damping = \"mass\" needs it, and nothing else does");
-        if (damping != Damping::local && equilibrium.find("local_damping"))
-            equilibrium.refuse("local_damping", "only damping = \"local\" uses it");
+        if (damping != Damping::local && damping != Damping::combined && equilibrium.find("local_damping"))
+            equilibrium.refuse("local_damping", "only damping = \"local\" and \"combined\" use it");
     }
 
     void check_creep() const
@@ -616,6 +623,26 @@ private:
             given.refuse("first_step_days", "wanted at least shortest_step_days");
         if (creep.first_step && creep.longest_step && *creep.first_step > *creep.longest_step)
             given.refuse("first_step_days", "wanted at most longest_step_days");
+    }
+
+    void check_motion() const
+    {
+        if (!scene_.motion)
+            return;
+        if (scene_.creep)
+            once("motion").refuse("new_contacts", "a scene with [motion] has no [creep]");
+        for (std::size_t i = 0; i < scene_.joint_materials.size(); ++i)
+            for (const char* key : {"residual_cohesion_MPa", "joint_roughness_coefficient"})
+                if (const Given material = in_list("joint_material", i); material.find(key))
+                    material.refuse(key, "with [motion], joints have neither a residual strength nor "
+                                         "Barton and Bandis's law");
+        for (std::size_t i = 0; i < scene_.rocks.size(); ++i)
+            if (scene_.rocks[i].law == RockLaw::mohr_coulomb)
+                in_list("rock", i).refuse("law", "wanted \"elastic\" of all rock in a scene with [motion]");
+        for (std::size_t i = 0; i < scene_.boundaries.size(); ++i)
+            for (const char* key : {"displacement_mm", "course"})
+                if (const Given boundary = in_list("boundary", i); boundary.find(key))
+                    boundary.refuse(key, "with [motion], boundaries neither move nor change their traction");
     }
 };
 

@@ -849,10 +849,16 @@ Table<Schedule> schedule()
 
 Table<Stage> stage()
 {
-    return {{"stage", in_list, optional, "One excavation step, later than the one before it."},
-            {text("name", &Stage::name, "Name, once among the stages."),
-             date("date", &Stage::time, "When: after the start, not after the end."),
-             polygons("remove_m", &Stage::remove, "The rock inside these leaves.")}};
+    return {
+        {"stage", in_list, optional, "One excavation step, later than the one before it."},
+        {text("name", &Stage::name, "Name, once among the stages."),
+         date("date", &Stage::time, "When: after the start, not after the end."),
+         polygons("remove_m", &Stage::remove, "The rock inside these leaves."),
+         choice(
+             "displacements", &Stage::reset_displacements, {{"go on", false}, {"reset", true}},
+             "Reset: displacements are also counted from the equilibrium after this stage, until another one "
+             "resets them.")
+             .or_else(std::string("go on"))}};
 }
 
 Table<MeasuringPoint> measuring_point()
@@ -976,7 +982,11 @@ Table<Equilibrium> equilibrium()
                 "Nodal masses: scaled for a fast way to the same equilibrium, or the real ones.")
              .or_else(std::string("scaled")),
          choice("damping", &E::damping,
-                {{"adaptive", Damping::adaptive}, {"local", Damping::local}, {"mass", Damping::mass}},
+                {{"adaptive", Damping::adaptive},
+                 {"kinetic", Damping::kinetic},
+                 {"local", Damping::local},
+                 {"combined", Damping::combined},
+                 {"mass", Damping::mass}},
                 "How motion is damped.")
              .or_else(std::string("adaptive")),
          number("mass_damping_per_s", &E::mass_damping, per_s, above(0).to(1e12),
@@ -987,7 +997,7 @@ Table<Equilibrium> equilibrium()
                 "open; with damping = \"mass\".")
              .optional(),
          number("local_damping", &E::local_damping, none, above(0).below(1),
-                "Fraction of the out-of-balance force; with damping = \"local\" only.")
+                "Fraction of the out-of-balance force; with damping = \"local\" or \"combined\" only.")
              .optional("0.8"),
          integer("unloading_increments", &E::unloading_increments, from(1).to(1000),
                  "In which the rock of a stage is taken away, and in which loads change between dates.")
@@ -995,6 +1005,37 @@ Table<Equilibrium> equilibrium()
          integer("most_steps", &E::most_steps, from(1).to(2147483647),
                  "Without equilibrium after so many steps the program gives up.")
              .or_else(std::int64_t{1000000})}};
+}
+
+Table<Motion> motion()
+{
+    return {
+        {"motion", once, optional,
+         "Lets rock move far after each stage: with real masses and large displacements, contacts found "
+         "anew, until "
+         "it is at rest. Without this table displacements are small. Not with [creep], "
+         "residual strengths, Barton-Bandis joints or rock that yields."},
+        {text("new_contacts", &Motion::new_contacts,
+              "Joint material of contacts that come about, which have no cohesion and no tensile strength."),
+         names("rigid_rocks", &Motion::rigid_rocks,
+               "Rocks whose blocks do not deform in motion; they do before it.")
+             .optional("none"),
+         number("stiffness_damping_s", &Motion::stiffness_damping, seconds, from(0).to(10),
+                "Dashpots of zones and closed joints, over their springs. Takes the energy of impacts and of "
+                "vibration; shortens the time step.")
+             .or_else(1e-4),
+         number("mass_damping_per_s", &Motion::mass_damping, per_s, from(0).to(1e6),
+                "Force over mass and velocity. It also brakes rock that slides or falls.")
+             .or_else(0.0),
+         number("release_s", &Motion::release, seconds, from(0).to(1e6),
+                "Time in which the forces of a stage's rock fade away.")
+             .or_else(0.0),
+         number("longest_s", &Motion::longest, seconds, above(0).to(1e6),
+                "A motion that has not come to rest by then is given up.")
+             .or_else(60.0),
+         number("record_every_s", &Motion::record_every, seconds, above(0).to(1e6),
+                "The section and the balance of energy are recorded that often on the way.")
+             .or_else(1.0)}};
 }
 
 Table<Scene> random_numbers()
@@ -1039,6 +1080,7 @@ SceneTables all_tables()
     all.cutting = cutting();
     all.averaging = averaging();
     all.equilibrium = equilibrium();
+    all.motion = motion();
     all.random = random_numbers();
     all.file = held_file();
     return all;

@@ -69,6 +69,7 @@ struct SceneTables {
     Table<MeasuringPoint> point;
     Table<Gauge> gauge;
     Table<Creep> creep;
+    Table<Motion> motion;
     Table<Scene> zones;
     Table<Cutting> cutting;
     Table<Averaging> averaging;
@@ -86,7 +87,7 @@ struct SceneTables {
             visit(density), visit(mapped);
         visit(in_situ_stress), visit(profile), visit(boundary), visit(schedule), visit(stage), visit(point),
             visit(gauge);
-        visit(creep), visit(zones), visit(cutting), visit(averaging), visit(equilibrium), visit(random),
+        visit(creep), visit(zones), visit(cutting), visit(averaging), visit(equilibrium), visit(motion), visit(random),
             visit(file);
     }
 };

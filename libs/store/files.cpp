@@ -52,13 +52,18 @@ struct Contents {
         append(fields, fields_of(reading(equivalent)));
         append(invariants, invariants_of(equivalent));
     }
-    void add(const Result& result, bool with_trace)
+    void add(const Result& result, bool with_trace, bool with_motions, bool with_failure)
     {
         append(fields, fields_of(reading(result)));
         append(invariants, invariants_of(result.mesh));
         if (with_trace)
             append(fields, fields_of(reading(result.trace)));
+        if (with_motions)
+            append(fields, fields_of(reading(result.motions)));
+        if (with_failure)
+            append(fields, fields_of(reading(result.failure)));
     }
+    void add(const Safety& safety) { append(fields, fields_of(reading(safety))); }
 };
 
 void write(const std::string& path, FileKind kind, const Provenance& provenance, const Contents& contents)
@@ -131,6 +136,19 @@ FileKind kind_of(const std::string& path)
     return naming(path, [&] { return checked_kind(hdf5::Source(path)); });
 }
 
+std::string reason_of_failure(const std::string& path)
+{
+    return naming(path, [&] {
+        const hdf5::Source source = open(path, FileKind::network);
+        Failure failure;
+        Dimensions dimensions;
+        if (source.has_group("/failure"))
+            for (const Field& field : fields_of(failure))
+                source.read(field, dimensions);
+        return failure.reason;
+    });
+}
+
 NetworkFile read_network(const std::string& path)
 {
     return naming(path, [&] {
@@ -160,7 +178,10 @@ ResultFile read_result(const std::string& path)
         ResultFile file;
         Contents contents(file.provenance, file.network);
         contents.add(file.equivalent);
-        contents.add(file.result, source.has_group("/trace"));
+        contents.add(file.result, source.has_group("/trace"), source.has_group("/motions"),
+                     source.has_group("/failure"));
+        if (source.has_group("/safety"))
+            contents.add(file.safety);
         fill(source, file.provenance, contents);
         return file;
     });
@@ -180,11 +201,14 @@ void write_joints(const std::string& path, const Provenance& provenance, const N
 }
 
 void write_result(const std::string& path, const Provenance& provenance, const Network& network,
-                  const EquivalentJoints& equivalent, const Result& result)
+                  const EquivalentJoints& equivalent, const Result& result, const Safety& safety)
 {
     Contents contents(provenance, network);
     contents.add(equivalent);
-    contents.add(result, !result.trace.time.empty());
+    contents.add(result, !result.trace.time.empty(), !result.motions.time.empty(),
+                 !result.failure.reason.empty());
+    if (!safety.factor.empty())
+        contents.add(safety);
     write(path, FileKind::result, provenance, contents);
 }
 

@@ -31,23 +31,27 @@ struct JointsFile : NetworkFile {
 
 struct ResultFile : JointsFile {
     Result result;
+    Safety safety;
 };
 
 // What the file says it is, after checking that this program understands its version and that it is complete.
 FileKind kind_of(const std::string& path);
+
+// Why the run that made the file ended early; empty if it did not.
+std::string reason_of_failure(const std::string& path);
 
 // Each reads its own kind of file, and what it needs from the kinds that hold more.
 NetworkFile read_network(const std::string& path);
 JointsFile read_joints(const std::string& path);
 ResultFile read_result(const std::string& path);
 
-// The records must keep to the schema too. What was under `path` stays if writing fails. The trace is written
-// only if it has rows.
+// The records must keep to the schema too. What was under `path` stays if writing fails. The trace,
+// the failure and the runs of a factor of safety are written only if there are any.
 void write_network(const std::string& path, const Provenance& provenance, const Network& network);
 void write_joints(const std::string& path, const Provenance& provenance, const Network& network,
                   const EquivalentJoints& equivalent);
 void write_result(const std::string& path, const Provenance& provenance, const Network& network,
-                  const EquivalentJoints& equivalent, const Result& result);
+                  const EquivalentJoints& equivalent, const Result& result, const Safety& safety = {});
 
 // Throws file_error if a file could not be written there later; for the start of a long run.
 void check_writable(const std::string& path);

@@ -68,6 +68,7 @@ std::string schema_markdown()
     Network network;
     EquivalentJoints equivalent;
     Result result;
+    Safety safety;
     std::ostringstream page;
     page << R"(# File format
 
@@ -79,7 +80,7 @@ The programs hand each other HDF5 files. A file holds all that later programs ne
 |---|---|---|
 | `jointcreep network` | jointgen | provenance, network |
 | `jointcreep joints` | strength-averaging | the same, and equivalent joints |
-| `jointcreep result` | demsolve | the same, and mesh, history, states, equilibria; a trace if asked for |
+| `jointcreep result` | demsolve | the same, and mesh, history, states, equilibria; a trace if asked for; motions of scenes with [motion] |
 
 This is format version )"
          << schema::major_version << "." << schema::minor_version << R"(.
@@ -121,6 +122,14 @@ with h5py.File("result.h5") as file:
     list(page, "Result", schema::fields_of(result), schema::invariants_of(result.mesh));
     list(page, "Trace", schema::fields_of(result.trace));
     page << "\nThe group `/trace` is there only if a trace was asked for.\n";
+    list(page, "Motions", schema::fields_of(result.motions));
+    page << "\nThe group `/motions` is there only if the scene has [motion] and a stage.\n";
+    list(page, "Failure", schema::fields_of(result.failure));
+    page << "\nThe group `/failure` is there only in `NAME.failed.h5`, of a run that found no equilibrium. "
+            "All else in "
+            "such a file goes up to the last one.\n";
+    list(page, "Factor of safety", schema::fields_of(safety));
+    page << "\nThe group `/safety` is there only if a factor of safety was asked for.\n";
     return page.str();
 }
 

@@ -256,6 +256,8 @@ std::vector<Field> fields_of(History& history)
          "removed."},
         {"/history/present", &history.present, {"time", "point"}, "1", between(0, 1),
          "1 while the point is there, 0 once it is removed."},
+        {"/history/reset_row", &history.reset_row, {"time"}, "1", index_of("time"),
+         "Row from which displacements are to count since the last stage that resets them; 0 before one."},
     };
     // clang-format on
 }
@@ -283,6 +285,8 @@ std::vector<Field> fields_of(States& states)
          "Zones of rock that yields; none where all is elastic."},
         {"/states/plastic_strain", &states.plastic_strain, {"state", "yielding_zone"}, "1", any(),
          "Plastic strain {xx, yy, xy} since the in-situ equilibrium, extension positive."},
+        {"/states/reset_state", &states.reset_state, {"state"}, "1", index_of("state"),
+         "State from which displacements are to count since the last stage that resets them; 0 before one."},
     };
     // clang-format on
 }
@@ -502,6 +506,65 @@ std::vector<Field> fields_of(Trace& trace)
     // clang-format on
 }
 
+std::vector<Field> fields_of(Motions& motions)
+{
+    // clang-format off
+    return {
+        {"/motions/time", &motions.time, {"moment"}, "day", ascending(), "Time of the stage since the start."},
+        {"/motions/motion_time", &motions.motion_time, {"moment"}, "s", at_least(0), "Time since the motion began."},
+        {"/motions/state", &motions.state, {"moment"}, "1", index_of("state"), "The section's state then."},
+        {"/motions/work_of_loads", &motions.work_of_loads, {"moment"}, "J/m", any(),
+         "Work of weight, held rock and tractions since then; but for the error of time steps the sum of the next "
+         "four."},
+        {"/motions/kinetic_energy", &motions.kinetic_energy, {"moment"}, "J/m", at_least(0), "Kinetic energy."},
+        {"/motions/stored_energy", &motions.stored_energy, {"moment"}, "J/m", any(),
+         "Energy that zones and contacts took up."},
+        {"/motions/friction_energy", &motions.friction_energy, {"moment"}, "J/m", at_least(0),
+         "Energy lost to slip."},
+        {"/motions/damped_energy", &motions.damped_energy, {"moment"}, "J/m", any(),
+         "Energy taken by dashpots, and where slow motion was stopped."},
+        {"/motions/fastest", &motions.fastest, {"moment"}, "m/s", at_least(0), "Speed of the fastest gridpoint."},
+        {"/motions/out_of_balance_ratio", &motions.out_of_balance_ratio, {"moment"}, "1", at_least(0),
+         "Out-of-balance ratio."},
+    };
+    // clang-format on
+}
+
+std::vector<Field> fields_of(Failure& failure)
+{
+    // clang-format off
+    return {
+        {"/failure/reason", &failure.reason, {}, "1", any(), "Why there is no equilibrium."},
+        {"/failure/stage", &failure.stage, {}, "1", any(),
+         "Stage whose rock had just been taken away, or an empty text."},
+        {"/failure/time", &failure.time, {}, "day", at_least(0), "Time since the start."},
+        {"/failure/moves_on", &failure.moves_on, {}, "1", between(0, 1),
+         "1 blocks were seen to slide or fall, 0 the search for equilibrium ended without an answer."},
+        {"/failure/steps", &failure.steps, {}, "1", at_least(0), "Steps of motion, the last ones."},
+        {"/failure/seconds", &failure.seconds, {}, "s", at_least(0),
+         "Time that these steps stand for with real masses; otherwise 0."},
+        {"/failure/block", &failure.block, {"moving_block"}, "1", index_of("block"),
+         "Blocks that moved by more than a tenth of what the fastest one did, the fastest first; or that nothing "
+         "holds."},
+        {"/failure/place", &failure.place, {"moving_block"}, "m", any(), "Centroid of the block {x, y}."},
+        {"/failure/motion", &failure.motion, {"moving_block"}, "m", any(),
+         "Displacement {x, y} of the block in these steps, a mean over its zones."},
+    };
+    // clang-format on
+}
+
+std::vector<Field> fields_of(Safety& safety)
+{
+    // clang-format off
+    return {
+        {"/safety/factor", &safety.factor, {"trial"}, "1", positive(),
+         "Factor that all strengths of joints were divided by."},
+        {"/safety/stands", &safety.stands, {"trial"}, "1", between(-1, 1),
+         "1 every equilibrium was found, 0 rock was seen to slide or fall, -1 the search ended without an answer."},
+    };
+    // clang-format on
+}
+
 std::vector<Invariant> invariants_of(const Network& network)
 {
     const Blocks& blocks = network.blocks;
@@ -591,7 +654,10 @@ const std::vector<Described>& dimensions()
         {"state", "a recorded state of the whole section"},
         {"equilibrium", "an equilibrium that was found"},
         {"row", "a recorded step of the solver"},
+        {"moment", "a recorded moment of a motion"},
         {"gauge", "a gauge of the scene"},
+        {"moving_block", "a block that had no equilibrium"},
+        {"trial", "a run by which a factor of safety was found"},
     };
     return all;
 }

@@ -62,8 +62,13 @@ struct Described {
 std::vector<Field> fields_of(Provenance& provenance);
 std::vector<Field> fields_of(Network& network);
 std::vector<Field> fields_of(EquivalentJoints& equivalent);
-std::vector<Field> fields_of(Result& result); // without its trace
+std::vector<Field> fields_of(Result& result); // without its trace and motions
 std::vector<Field> fields_of(Trace& trace);
+std::vector<Field> fields_of(Motions& motions);
+std::vector<Field> fields_of(Result& result); // without its trace and failure
+std::vector<Field> fields_of(Trace& trace);
+std::vector<Field> fields_of(Failure& failure);
+std::vector<Field> fields_of(Safety& safety);
 
 // To be asked only once the fields are within their limits. They refer to the record.
 std::vector<Invariant> invariants_of(const Network& network);

@@ -124,6 +124,13 @@ def scene_of(file):
     return tomllib.loads(texts(file, "/scene")[0])
 
 
+def ending_of(file):
+    """What a title says of a run that found no equilibrium; nothing of others."""
+    if "/failure" not in file:
+        return ""
+    return f"no equilibrium on day {array(file, '/failure/time')[0]:.5g}"
+
+
 def name_index(names, wanted, what):
     """Row of a name, the first one if none is wanted."""
     if not names:
@@ -195,5 +202,5 @@ def mark_stages(axes, places, names, with_names=True):
 
 def time_label(file):
     """What the axis of days is called: with the date that they count from, if the scene has one."""
-    start = scene_of(file)["schedule"]["start"]
+    start = scene_of(file)["schedule"].get("start", 0)
     return f"time since {'the start' if isinstance(start, (int, float)) else start} (days)"

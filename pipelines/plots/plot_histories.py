@@ -34,6 +34,8 @@ class Histories:
         values = component_of(file, figure.array(file, "/history/displacement"), arguments.component)
         if arguments.readings:
             values = values - values[first, np.arange(len(names))]
+        if arguments.since_reset:
+            values = values - values[figure.array(file, "/history/reset_row")]
         self.values = 1e3 * values[:, chosen]  # [mm]
         self.shown = figure.array(file, "/history/present")[:, chosen] == 1
         if arguments.readings:
@@ -87,7 +89,7 @@ def draw(file, arguments):
               "linestyle": "-" if arguments.without else figure.LINES[i % 6]} for i in range(len(names))]
     exact, title = arguments.closed_form == "column", "measuring point"
     if exact:
-        if arguments.component != "y" or arguments.readings or arguments.without:
+        if arguments.component != "y" or arguments.readings or arguments.since_reset or arguments.without:
             raise figure.NotWanted("the column's closed form is vertical, with creep and since the in-situ "
                                    "equilibrium: --component y, and neither --readings nor --without")
         draw_exact(file, axes, names, looks)
@@ -113,8 +115,12 @@ def draw(file, arguments):
     axes.margins(x=0.02, y=0.05)
     stages = [row for row, name in enumerate(histories.event) if name]
     figure.mark_stages(axes, histories.time[stages], [histories.event[row] for row in stages])
-    since = "since each point's first reading" if arguments.readings else "since the in-situ equilibrium"
-    axes.set_xlabel(figure.time_label(file))
+    since = "since the in-situ equilibrium"
+    if arguments.readings or arguments.since_reset:
+        since = "since each point's first reading" if arguments.readings else "since the last reset"
+    if arguments.readings and arguments.since_reset:
+        raise figure.NotWanted("wanted either --readings or --since-reset, not both")
+    axes.set_xlabel("\n".join(filter(None, (figure.time_label(file), figure.ending_of(file)))))
     axes.set_ylabel(f"{LABELS[arguments.component]},\n{since} (mm)")
     place = {"loc": "best"}
     if len(entries) > 4:  # too many to find room among the curves
@@ -130,6 +136,7 @@ if __name__ == "__main__":
         (["--component"], {"choices": list(LABELS), "default": "y", "help": "default: y"}),
         (["--point"], {"action": "append", "default": [], "help": "only this point; may be given several times"}),
         (["--readings"], {"action": "store_true", "help": "displacements since each point's own first reading"}),
+        (["--since-reset"], {"action": "store_true", "help": "displacements since the last stage that resets them"}),
         (["--without"], {"metavar": "RESULT.h5", "help": "the same scene without creep, drawn thin and dashed"}),
         (["--closed-form"], {"choices": ["column"], "help": "draw the exact answer beside"}),
     ))

@@ -32,7 +32,7 @@ figure.plt.rcParams["savefig.pad_inches"] = 0.03
 def name_of(file, state):
     """ "16 July 1994, after bench 1", "16 July 1994, before bench 1" or "day 548" of a scene that counts days."""
     time, event = figure.array(file, "/states/time"), figure.texts(file, "/states/event")
-    start = figure.scene_of(file)["schedule"]["start"]
+    start = figure.scene_of(file)["schedule"].get("start", 0)
     if isinstance(start, datetime.date):
         date = start + datetime.timedelta(float(time[state]))
         name = f"{date.day} {date:%B %Y}"
@@ -65,10 +65,13 @@ def state_index(file, wanted):
 class Section:
     """The zones that are there in a state, with their gridpoints where the picture has them."""
 
-    def __init__(self, file, state, magnify, window=None):
+    def __init__(self, file, state, magnify, window=None, since_reset=False):
         self.window = window
         self.start = figure.array(file, "/mesh/gridpoint_position")
         self.displacement = figure.array(file, "/states/displacement")[state]
+        if since_reset:
+            self.displacement = self.displacement - figure.array(file, "/states/displacement")[
+                figure.array(file, "/states/reset_state")[state]]
         self.position = self.start + magnify * self.displacement
         self.there = figure.array(file, "/states/zone_present")[state] == 1
         if not np.any(self.there):
@@ -124,7 +127,8 @@ def draw_displacement(file, state, section, axes, arguments):
     low, high = arguments.range or (0, size[np.unique(section.zones)].max() or 1)
     colored = axes.tripcolor(section.triangles, size, shading="gouraud", cmap=figure.SHADES, vmin=low, vmax=high,
                              rasterized=True)
-    add_scale(axes, colored, "displacement since the in-situ equilibrium (mm)", low, high,
+    since = "reset" if arguments.since_reset else "the in-situ equilibrium"
+    add_scale(axes, colored, f"displacement since {since} (mm)", low, high,
               size[np.unique(section.zones)])
     draw_borders(section, axes)
 
@@ -263,7 +267,7 @@ def draw(file, arguments):
     if figure.file_type(file) != "jointcreep result":
         raise figure.NotWanted("there are no states in this file; demsolve makes one that has them")
     state = state_index(file, arguments.state)
-    section = Section(file, state, arguments.magnify, arguments.window)
+    section = Section(file, state, arguments.magnify, arguments.window, arguments.since_reset)
     plot, axes = figure.section_axes(section.start, arguments.window)
     plot.set_figheight(plot.get_figheight() + 0.2)  # for the title
     field = {"displacement": draw_displacement, "stress": draw_stress, "contacts": draw_contacts}[arguments.field]
@@ -271,6 +275,8 @@ def draw(file, arguments):
     title = name_of(file, state)
     if arguments.magnify:
         title += f"; positions displaced {arguments.magnify:g} times"
+    if figure.ending_of(file):
+        title += f"; {figure.ending_of(file)}"
     axes.set_title(title, loc="left")
     if entries:
         figure.legend_below(axes, entries)
@@ -286,6 +292,7 @@ if __name__ == "__main__":
         (["--component"], {"choices": list(COMPONENTS), "default": "major",
                            "help": "of the stress; major and minor come with crosses along their directions; "
                                    "default: major"}),
+        (["--since-reset"], {"action": "store_true", "help": "displacements since the last stage that resets them"}),
         figure.WINDOW,
         (["--magnify"], {"type": float, "default": 0, "metavar": "TIMES",
                          "help": "draw the rock displaced so many times; default: 0"}),

@@ -37,12 +37,9 @@ struct Contact {
         rock.is_free = {{0, 0}, {1, 1}};
         rock.load.assign(2, {0, 0});
         rock.applied = rock.force = rock.load;
-        rock.incidence.zone_start = {0, 0, 0};
-        rock.incidence.contact_start = {0, 1, 2};
-        rock.incidence.contact_side = {0, 1};
-        rock.contact_force.resize(1);
         mechanics::Contacts& contacts = rock.contacts;
         contacts.gridpoint = {{0, 1}};
+        find_incidence(rock);
         contacts.normal = {{0, 1}};
         contacts.length = {1};
         contacts.law = {joint::Coulomb{joints.normal_stiffness[0], joints.shear_stiffness[0], 0, .7, 0}};
@@ -51,7 +48,7 @@ struct Contact {
         contacts.traction = {traction};
         contacts.offset = contacts.jump = {{0, 0}};
         contacts.status = {ContactStatus::stuck};
-        contacts.dissipated = {0};
+        contacts.work = {0};
         rock.displacement[1].y() = gap;
         start_from_here(rock);
     }

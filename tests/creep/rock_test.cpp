@@ -37,11 +37,8 @@ struct Zone {
         rock.displacement.assign(3, {0, 0});
         rock.load = rock.applied = rock.force = rock.displacement;
         rock.is_free.assign(3, {1, 1});
-        rock.zone_force.resize(1);
-        rock.incidence.zone_start = {0, 1, 2, 3};
-        rock.incidence.zone_corner = {0, 1, 2};
-        rock.incidence.contact_start = {0, 0, 0, 0};
         rock.zones.gridpoint = {{0, 1, 2}};
+        find_incidence(rock);
         rock.zones.gradient = {{Vector2d(-1, -1), Vector2d(1, 0), Vector2d(0, 1)}};
         rock.zones.area = {.5};
         rock.zones.stiffness = {{B + G * 4 / 3, B - G * 2 / 3, G}};

@@ -133,5 +133,20 @@ TEST(histories_csv, has_a_row_a_time_and_three_columns_a_point)
     EXPECT_EQ(rows[3][7], "1");
 }
 
+TEST(histories_csv, counts_anew_from_a_stage_that_resets)
+{
+    History history = small_result().history;
+    history.reset_row = {0, 1, 1};
+    const auto rows = rows_of(histories_csv(history));
+    EXPECT_EQ(rows[0][8], "A_since_reset_x_m");
+    EXPECT_EQ(rows[0][11], "B, deep_since_reset_y_m");
+    for (std::size_t column = 8; column < 12; ++column) {
+        const std::size_t of = column < 10 ? column - 6 : column - 5; // A_x_m is column 2, B_x_m column 5
+        EXPECT_EQ(number(rows[1][column]), number(rows[1][of]));
+        EXPECT_EQ(number(rows[2][column]), 0);
+        EXPECT_EQ(number(rows[3][column]), number(rows[3][of]) - number(rows[2][of]));
+    }
+}
+
 } // namespace
 } // namespace jointcreep

@@ -117,6 +117,8 @@ inline Result small_result()
     result.states.traction = {{-1e6, 2e5}, {-2e6, 0}, {0, 0}, {-1e6, 3e5}};
     result.states.jump = {{-1e-3, 2e-4}, {-3e-3, 0}, {0, 0}, {-1e-3, 5e-4}};
     result.states.contact_status = {1, 1, 0, 2};
+    result.history.reset_row = {0, 0, 0};
+    result.states.reset_state = {0, 0};
     return result;
 }
 

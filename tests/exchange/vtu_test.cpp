@@ -162,6 +162,30 @@ TEST(zones_vtu, takes_displacement_and_stress_of_that_state)
     EXPECT_THROW(zones_vtu(small_network(), result, 2), input_error);
 }
 
+TEST(zones_vtu, counts_displacements_anew_from_a_state_that_resets)
+{
+    Result result = small_result();
+    EXPECT_EQ(zones_vtu(small_network(), result, 1).find("since_reset"), std::string::npos);
+    for (std::size_t g = 0; g < 9; ++g) // a third state, moved on by [1, 2] m since the second
+        result.states.displacement.push_back(result.states.displacement[9 + g] + Eigen::Vector2d(1, 2));
+    const auto again = [](auto& values, std::size_t n) {
+        const auto last = std::vector(values.end() - static_cast<std::ptrdiff_t>(n), values.end());
+        values.insert(values.end(), last.begin(), last.end());
+    };
+    again(result.states.time, 1);
+    again(result.states.event, 1);
+    again(result.states.stress, 4);
+    again(result.states.zone_present, 4);
+    result.states.reset_state = {0, 1, 1};
+    EXPECT_EQ(array_of(zones_vtu(small_network(), result, 1), "displacement_since_reset"), Numbers(12, 0.0));
+    const Numbers since = array_of(zones_vtu(small_network(), result, 2), "displacement_since_reset");
+    ASSERT_EQ(since.size(), 12u);
+    for (std::size_t point = 0; point < 4; ++point) {
+        EXPECT_NEAR(since[3 * point], 1, 1e-12);
+        EXPECT_NEAR(since[3 * point + 1], 2, 1e-12);
+    }
+}
+
 TEST(contacts_vtu, leaves_out_removed_contacts)
 {
     const Result result = small_result();

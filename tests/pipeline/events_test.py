@@ -109,6 +109,19 @@ class Events(ChainTest):
         self.assertGreater(last[1], 1e-3)
         self.assertEqual(values["/trace/displacement"][-1, 1].tolist(), last.tolist())
 
+    def test_displacements_count_anew_from_a_stage_that_resets_them(self):
+        text = self.column((r'^name = "block 2 removed"', 'name = "block 2 removed"\ndisplacements = "reset"'))
+        plain, path = self.chain.result(self.column()), self.chain.result(text)
+        values, without = datasets(path), datasets(plain)
+        row = values["/history/event"].tolist().index("block 2 removed")
+        state = values["/states/event"].tolist().index("block 2 removed")
+        reset_row, reset_state = values.pop("/history/reset_row"), values.pop("/states/reset_state")
+        self.assertEqual(reset_row.tolist(), [0] * row + [row] * (len(reset_row) - row))
+        self.assertEqual(reset_state.tolist(), [0] * state + [state] * (len(reset_state) - state))
+        # Nothing else changes.
+        for name in values.keys() - {"/scene", "/provenance/input_sha256"}:
+            self.assertEqual(values[name].tolist(), without[name].tolist(), name)
+
     def test_too_many_creep_steps_are_refused(self):
         code, message = self.refusal(self.column(), "--creep-step", "1e-12")
         self.assertEqual(code, 2)

@@ -43,6 +43,16 @@ class Plots(ChainTest):
                     self.assertEqual([path.name for path in picture.parent.iterdir()], ["picture.png"])
                     self.assertEqual(picture.read_bytes()[:8], PNG)
 
+    def test_picture_of_a_motion(self):
+        result = self.chain.result(self.chain.text("data/collapse/toppling.toml"))
+        picture = result.with_name("picture.png")
+        done = self.plot("motion", result, picture)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertEqual(picture.read_bytes()[:8], PNG)
+        done = self.plot("motion", self.column(), result.with_name("none.png"))
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("its scene has no [motion]", done.stderr)
+
     def test_pictures_of_joint_sets(self):
         scenes = {"data/slope/scene.toml": ["stereonet", "rose", "distributions"],
                   "tests/pipeline/random_slope.toml": ["rose", "distributions"]}

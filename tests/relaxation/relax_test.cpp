@@ -2,6 +2,7 @@
 
 #include "../mechanics/sections.hpp"
 
+#include "mechanics/failure.hpp"
 #include "mechanics/loading.hpp"
 #include "mechanics/recorder.hpp"
 #include "model/error.hpp"
@@ -94,9 +95,9 @@ TEST_P(relax_with, a_block_on_an_incline_rests_below_the_friction_angle)
     EXPECT_NEAR(length, 10, 1e-9);
     EXPECT_NEAR(std::abs(shear), weight * std::sin(dip), 1e-5 * weight);
     EXPECT_NEAR(normal, -weight * std::cos(dip), 1e-5 * weight);
-    // The middle of the joint slides by tau / K_s. (Mass damping lets the weight, put on at once, overshoot
-    // and slip.)
-    if (GetParam().first == Damping::mass)
+    // The middle of the joint slides by tau / K_s. (Mass and combined damping let the weight, put on at once,
+    // overshoot and slip.)
+    if (GetParam().first == Damping::mass || GetParam().first == Damping::combined)
         return;
     for (std::size_t c = 0; c < s.mesh.contact_edge.size(); ++c)
         if ((s.mesh.contact_centre[c] - 5 * Vector2d(std::cos(dip), -std::sin(dip))).norm() < 0.3) {
@@ -105,11 +106,12 @@ TEST_P(relax_with, a_block_on_an_incline_rests_below_the_friction_angle)
         }
 }
 
-INSTANTIATE_TEST_SUITE_P(every_damping, relax_with,
-                         testing::Values(std::pair(Damping::adaptive, Masses::scaled),
-                                         std::pair(Damping::adaptive, Masses::real),
-                                         std::pair(Damping::local, Masses::scaled),
-                                         std::pair(Damping::mass, Masses::real)));
+INSTANTIATE_TEST_SUITE_P(
+    every_damping, relax_with,
+    testing::Values(std::pair(Damping::adaptive, Masses::scaled), std::pair(Damping::adaptive, Masses::real),
+                    std::pair(Damping::kinetic, Masses::scaled), std::pair(Damping::kinetic, Masses::real),
+                    std::pair(Damping::local, Masses::scaled), std::pair(Damping::combined, Masses::scaled),
+                    std::pair(Damping::mass, Masses::real)));
 
 // Two blocks on a joint between platens that close by u0: the traction is u0 over the sum of the compliances,
 // through a whole cycle of loading; what the joint gives back when it opens is nothing.
@@ -220,10 +222,103 @@ TEST(relax, the_dashpots_of_contacts)
     }
 }
 
-TEST(relax, a_block_on_an_incline_slides_above_the_friction_angle)
+// The same block without dashpots: moving away from rest it is held back by (1 + b) K u, towards it driven by
+// (1 - b) K u. So with damping "local" its amplitude falls by sqrt((1 - b) / (1 + b)) every half cycle; with
+// "combined" by the same, as its force changes against its velocity. With "kinetic" it stops at rest at once.
+TEST(relax, a_block_that_swings_on_its_joint)
+{
+    for (const Damping damping : {Damping::local, Damping::combined, Damping::kinetic}) {
+        const double K = 1e8, mass = 2700;
+        Scene scene = section({{0, 0}, {1, 0}, {1, 1}, {0, 1}}, 0.01);
+        scene.rocks = {{"rock", mass, 1e12, 0, std::nullopt}};
+        scene.zone_size = 2;
+        scene.gravity = 9.81;
+        scene.boundaries = {{.from = {0, 0}, .to = {1, 0}, .joint = "joint"},
+                            {.from = {0, 0}, .to = {0, 1}, .fix_x = true},
+                            {.from = {1, 0}, .to = {1, 1}, .fix_x = true}};
+        Section s = assembled(std::move(scene), {}, K, 0);
+        Equilibrium how = settings(damping, Masses::real);
+        how.local_damping = 0.5;
+        how.tolerance = 1e-2;
+        const double rest = -mass * 9.81 / K;
+        std::vector<double> turns; // over the first amplitude, from rest
+        double last = 0, before = 0;
+        relaxation::relax(s.assembly, how, [&](double) {
+            double now = 0, n = 0; // the ground's gridpoints do not move
+            for (std::size_t g = 0; g < s.assembly.displacement.size(); ++g)
+                if (s.assembly.is_free[g].y() > 0) {
+                    now += s.assembly.displacement[g].y();
+                    ++n;
+                }
+            now /= n;
+            if ((now - last) * (last - before) < 0)
+                turns.push_back(last / rest - 1);
+            before = last;
+            last = now;
+        });
+        ASSERT_GE(turns.size(), 1U);
+        if (damping == Damping::kinetic) {
+            EXPECT_NEAR(turns[0], 0, 0.02);
+            continue;
+        }
+        ASSERT_GE(turns.size(), 2U);
+        const double share = std::sqrt(0.5 / 1.5), least = std::sqrt(0.75 / 1.25);
+        if (damping == Damping::local) {
+            EXPECT_NEAR(turns[0], share, 0.02);
+            EXPECT_NEAR(turns[1], -share * share, 0.02);
+        } else { // The stiff rock trembles, and the sign of its forces' change with it: half of the damping
+                 // is left.
+            EXPECT_NEAR(turns[0], least, 0.02);
+        }
+    }
+}
+
+// A block in free fall, all numbers powers of two and thirds of them, so that its force does not change at
+// all: local damping leaves 1 - b of its acceleration, combined damping 1 - b / 2, and kinetic damping never
+// finds a peak.
+TEST(relax, a_block_that_falls)
+{
+    const double b = 0.5;
+    for (const auto& [damping, left] :
+         {std::pair(Damping::local, 1 - b), std::pair(Damping::combined, 1 - b / 2),
+          std::pair(Damping::kinetic, 1.0)}) {
+        Scene scene = section({{0, 0}, {1, 0}, {1, 1}, {0, 1}}, 0.01);
+        scene.rocks = {{"rock", 2048, 1 << 30, 0, std::nullopt}};
+        scene.zone_size = 2;
+        scene.gravity = 8;
+        Section s = assembled(std::move(scene), {}, 1e9, 1e9);
+        Equilibrium how = settings(damping, Masses::real);
+        how.local_damping = b;
+        double time = 0;
+        try {
+            relaxation::relax(s.assembly, how, [&](double t) { time = t; });
+            FAIL();
+        } catch (const mechanics::no_equilibrium& error) {
+            EXPECT_TRUE(error.moves_on);
+            EXPECT_NEAR(s.assembly.displacement[0].y(), -left * 8 * time * time / 2,
+                        0.02 * 8 * time * time / 2);
+            EXPECT_NEAR(error.seconds, time, 1e-12); // since the start: it was not long ago
+            EXPECT_EQ(error.motion[0], s.assembly.displacement[0]);
+        }
+    }
+}
+
+TEST_P(relax_with, a_block_on_an_incline_slides_above_the_friction_angle)
 {
     Section s = incline(35 * deg, 30 * deg);
-    EXPECT_THROW(relaxation::relax(s.assembly, settings(Damping::adaptive)), equilibrium_error);
+    try {
+        relaxation::relax(s.assembly, settings(GetParam().first, GetParam().second));
+        FAIL();
+    } catch (const mechanics::no_equilibrium& error) {
+        EXPECT_TRUE(error.moves_on);
+        EXPECT_EQ(error.seconds > 0, GetParam().second == Masses::real);
+        // It alone moves, down the dip.
+        const Failure failure = failure_of(error, s.mesh, s.assembly);
+        ASSERT_EQ(failure.block.size(), 1U);
+        EXPECT_GT(failure.place[0].y(), -5 * std::sin(35 * deg)); // the upper one of the two
+        const Vector2d along(std::cos(35 * deg), -std::sin(35 * deg));
+        EXPECT_NEAR(failure.motion[0].dot(along), failure.motion[0].norm(), 1e-2 * failure.motion[0].norm());
+    }
 }
 
 TEST(relax, a_block_held_by_nothing_has_no_equilibrium)

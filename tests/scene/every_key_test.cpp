@@ -160,6 +160,8 @@ TEST(every_key, all_else)
     EXPECT_EQ(scene.equilibrium.tolerance, 1e-5);
     EXPECT_EQ(scene.equilibrium.unloading_increments, 2);
     EXPECT_EQ(scene.equilibrium.most_steps, 100000);
+    EXPECT_FALSE(scene.stages.at(0).reset_displacements);
+    EXPECT_TRUE(scene.stages.at(1).reset_displacements);
 }
 
 TEST(every_key, creep_by_tolerance)

@@ -69,8 +69,12 @@ public:
         fill(schema::fields_of(file.network));
         fill(schema::fields_of(file.equivalent));
         fill(schema::fields_of(file.result));
-        if (with_trace)
+        if (with_trace) {
             fill(schema::fields_of(file.result.trace));
+            fill(schema::fields_of(file.result.failure));
+            file.result.failure.reason += '!'; // without one it is none
+            fill(schema::fields_of(file.safety));
+        }
         keep_invariants(file);
         return file;
     }
@@ -218,12 +222,13 @@ inline bool same(const JointsFile& left, const JointsFile& right)
 inline bool same(const ResultFile& left, const ResultFile& right)
 {
     return same(static_cast<const JointsFile&>(left), static_cast<const JointsFile&>(right)) &&
-           same(left.result, right.result) && same(left.result.trace, right.result.trace);
+           same(left.result, right.result) && same(left.result.trace, right.result.trace) &&
+           same(left.result.failure, right.result.failure) && same(left.safety, right.safety);
 }
 
 inline void write(const std::string& path, const ResultFile& file)
 {
-    write_result(path, file.provenance, file.network, file.equivalent, file.result);
+    write_result(path, file.provenance, file.network, file.equivalent, file.result, file.safety);
 }
 
 } // namespace jointcreep

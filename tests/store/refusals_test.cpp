@@ -146,7 +146,8 @@ TEST_F(Refusal, OfMissingDatasets)
     const std::string good = bytes_of(path);
     for (const auto& fields : {schema::fields_of(empty.provenance), schema::fields_of(empty.network),
                                schema::fields_of(empty.equivalent), schema::fields_of(empty.result),
-                               schema::fields_of(empty.result.trace)})
+                               schema::fields_of(empty.result.trace), schema::fields_of(empty.result.failure),
+                               schema::fields_of(empty.safety)})
         for (const schema::Field& field : fields) {
             EXPECT_SAYS(after([&](hid_t opened) {
                             EXPECT_GE(H5Ldelete(opened, field.path.c_str(), H5P_DEFAULT), 0);

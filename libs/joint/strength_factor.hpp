@@ -1,0 +1,20 @@
+// Strength reduction: how far joints are from failing is asked by dividing all their strengths by one factor
+// F (Zienkiewicz, Humpheson and Lewis 1975), until the rock finds no equilibrium.
+//
+//     c / F,   tan(phi) / F,   T / F,   tan(psi) / F,   and residual strengths alike
+//
+// The dilation angle is no strength. It goes along so that psi stays at most phi, and where the two were
+// equal they stay so.
+
+#pragma once
+
+#include "model/network.hpp"
+
+namespace jointcreep::joint
+{
+
+// The equivalent joints with strengths divided by `factor` [-], which is positive; below 1 they grow.
+// Stiffness, creep and what was averaged stay. No joint has Barton and Bandis's law.
+EquivalentJoints with_strength_divided(EquivalentJoints joints, double factor);
+
+} // namespace jointcreep::joint

@@ -1,0 +1,146 @@
+#include "mechanics/failure.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <numeric>
+
+namespace jointcreep::mechanics
+{
+
+namespace
+{
+
+constexpr double is_moving = 0.1; // of the fastest block's motion
+constexpr std::size_t most_shown = 5;
+
+// The blocks' present rock.
+struct Rock {
+    std::vector<double> area;     // 0 once a block is gone [m2]
+    std::vector<Vector2d> centre; // at the start [m]
+    std::vector<Vector2d> motion; // mean [m]
+};
+
+Rock rock_of(const Mesh& mesh, const Assembly& assembly, const std::vector<Vector2d>& motion)
+{
+    const auto n =
+        static_cast<std::size_t>(1 + *std::max_element(mesh.zone_block.begin(), mesh.zone_block.end()));
+    Rock rock{std::vector<double>(n, 0), std::vector<Vector2d>(n, Vector2d::Zero()),
+              std::vector<Vector2d>(n, Vector2d::Zero())};
+    for (std::size_t z = 0; z < mesh.zone_block.size(); ++z) {
+        if (!assembly.zones.is_present[z])
+            continue;
+        const auto b = static_cast<std::size_t>(mesh.zone_block[z]);
+        const double third = assembly.zones.area[z] / 3;
+        rock.area[b] += 3 * third;
+        for (const Index g : mesh.zone_gridpoint[z]) {
+            rock.centre[b] += third * assembly.position[g];
+            if (!motion.empty())
+                rock.motion[b] += third * motion[g];
+        }
+    }
+    for (std::size_t b = 0; b < n; ++b)
+        if (rock.area[b] > 0) {
+            rock.centre[b] /= rock.area[b];
+            rock.motion[b] /= rock.area[b];
+        }
+    return rock;
+}
+
+void add(Failure& failure, const Rock& rock, std::size_t block)
+{
+    failure.block.push_back(static_cast<Index>(block));
+    failure.place.push_back(rock.centre[block]);
+    failure.motion.push_back(rock.motion[block]);
+}
+
+} // namespace
+
+Failure failure_of(const no_equilibrium& error, const Mesh& mesh, const Assembly& assembly)
+{
+    Failure failure;
+    failure.reason = error.what();
+    failure.moves_on = error.moves_on ? 1 : 0;
+    failure.steps = error.steps;
+    failure.seconds = error.seconds;
+    if (error.motion.empty())
+        return failure;
+    const Rock rock = rock_of(mesh, assembly, error.motion);
+    std::vector<std::size_t> blocks(rock.area.size());
+    std::iota(blocks.begin(), blocks.end(), 0);
+    std::stable_sort(blocks.begin(), blocks.end(), [&](std::size_t a, std::size_t b) {
+        return rock.motion[a].norm() > rock.motion[b].norm();
+    });
+    for (const std::size_t b : blocks)
+        if (rock.motion[b].norm() > is_moving * rock.motion[blocks[0]].norm())
+            add(failure, rock, b);
+    return failure;
+}
+
+Failure failure_of_unheld(const Mesh& mesh, const Assembly& assembly)
+{
+    // Pieces of rock: gridpoints joined by zones, ties and contacts that are not removed (union-find).
+    std::vector<Index> leader(assembly.position.size());
+    std::iota(leader.begin(), leader.end(), 0);
+    const auto root = [&](Index g) {
+        while (leader[g] != g)
+            g = leader[g] = leader[leader[g]];
+        return g;
+    };
+    const auto join = [&](Index a, Index b) { leader[root(a)] = root(b); };
+    for (std::size_t z = 0; z < mesh.zone_gridpoint.size(); ++z)
+        if (assembly.zones.is_present[z])
+            for (const Index g : mesh.zone_gridpoint[z])
+                join(g, mesh.zone_gridpoint[z][0]);
+    for (const auto& [a, b] : assembly.tied)
+        join(a, b);
+    for (std::size_t c = 0; c < assembly.contacts.gridpoint.size(); ++c)
+        if (assembly.contacts.status[c] != ContactStatus::removed)
+            join(assembly.contacts.gridpoint[c][0], assembly.contacts.gridpoint[c][1]);
+
+    struct Piece {
+        Vector2d resultant = Vector2d::Zero(), free = Vector2d::Ones(); // [N/m], 1 or 0
+        double magnitudes = 0;                                          // [N/m]
+    };
+    std::vector<Piece> pieces(leader.size());
+    for (std::size_t g = 0; g < leader.size(); ++g) {
+        Piece& piece = pieces[root(static_cast<Index>(g))];
+        piece.resultant += assembly.load[g] + assembly.applied[g];
+        piece.magnitudes += assembly.load[g].norm() + assembly.applied[g].norm();
+        piece.free = piece.free.cwiseMin(assembly.is_free[g]);
+    }
+
+    const Rock rock = rock_of(mesh, assembly, {});
+    std::vector<char> is_unheld(rock.area.size(), 0);
+    for (std::size_t z = 0; z < mesh.zone_gridpoint.size(); ++z) {
+        const Piece& piece = pieces[root(mesh.zone_gridpoint[z][0])];
+        const Vector2d push = piece.resultant.cwiseProduct(piece.free);
+        if (assembly.zones.is_present[z] && push.lpNorm<Eigen::Infinity>() > 1e-9 * piece.magnitudes)
+            is_unheld[mesh.zone_block[z]] = 1;
+    }
+    Failure failure;
+    for (std::size_t b = 0; b < is_unheld.size(); ++b)
+        if (is_unheld[b])
+            add(failure, rock, b);
+    return failure;
+}
+
+std::string shown_blocks(const Failure& failure)
+{
+    std::string text;
+    for (std::size_t i = 0; i < std::min(most_shown, failure.block.size()); ++i) {
+        text += (i == 0 ? "block " : "; block ") + std::to_string(failure.block[i]) + " at " +
+                shown(failure.place[i]);
+        if (failure.steps > 0) {
+            std::array<char, 64> by{};
+            std::snprintf(by.data(), by.size(), " by [%.3g, %.3g] m", failure.motion[i].x(),
+                          failure.motion[i].y());
+            text += by.data();
+        }
+    }
+    if (failure.block.size() > most_shown)
+        text += "; and " + std::to_string(failure.block.size() - most_shown) + " more";
+    return text;
+}
+
+} // namespace jointcreep::mechanics

@@ -1,0 +1,371 @@
+#include "motion/contacts.hpp"
+
+#include "model/error.hpp"
+#include "model/signs.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <unordered_map>
+
+namespace jointcreep::motion
+{
+
+namespace
+{
+
+constexpr double rounding = 0.01; // of the shorter face: where two corners meet
+constexpr double deepest = 0.5;   // overlap over the depth of the thinner zone, at most
+constexpr double deepest_new =
+    0.1; // the same where two faces come to touch; farther in, one lies behind the other
+constexpr double least_facing = 0.02; // cosine between a face's normal and the other's, turned round
+
+// The overlap of two faces, seen along one line.
+struct Overlap {
+    Vector2d tangent;            // along a
+    std::array<double, 2> on_a;  // ends of the overlap in order along the line, as fractions of a
+    std::array<double, 2> on_b;  // and of b
+    std::array<double, 2> gap;   // along the normal from a to b [m]
+    std::array<double, 2> inset; // at each end: how far the end of a is inside b; below 0: that of b in a [m]
+    double length;               // [m]
+
+    Vector2d normal() const { return {tangent.y(), -tangent.x()}; }
+};
+
+std::optional<Overlap> overlap_along(const Vector2d& tangent, const std::array<Vector2d, 2>& a,
+                                     const std::array<Vector2d, 2>& b)
+{
+    const std::array<double, 2> along_a{0, (a[1] - a[0]).dot(tangent)},
+        along_b{(b[0] - a[0]).dot(tangent), (b[1] - a[0]).dot(tangent)}; // runs the other way
+    if (along_a[1] <= 0 || along_b[0] <= along_b[1])
+        return {};
+    const std::array<double, 2> at{std::max(along_a[0], along_b[1]), std::min(along_a[1], along_b[0])};
+    if (at[1] <= at[0])
+        return {};
+    Overlap found{tangent, {}, {}, {}, {along_a[0] - along_b[1], along_b[0] - along_a[1]}, at[1] - at[0]};
+    const Vector2d normal = found.normal();
+    for (int i = 0; i < 2; ++i) {
+        found.on_a[i] = at[i] / along_a[1];
+        found.on_b[i] = (at[i] - along_b[0]) / (along_b[1] - along_b[0]);
+        found.gap[i] =
+            (b[0] + found.on_b[i] * (b[1] - b[0]) - a[0] - found.on_a[i] * (a[1] - a[0])).dot(normal);
+    }
+    return found;
+}
+
+// Seen in the plane of the contact; none where the faces do not look at each other or nothing overlaps.
+// Sharpnesses are those of the faces' ends.
+std::optional<Overlap> overlap_of(const std::array<Vector2d, 2>& a, const std::array<Vector2d, 2>& b,
+                                  const std::array<double, 2>& sharp_a, const std::array<double, 2>& sharp_b)
+{
+    const double length_a = (a[1] - a[0]).norm(), length_b = (b[1] - b[0]).norm();
+    const Vector2d along_a = (a[1] - a[0]) / length_a, along_b = (b[0] - b[1]) / length_b;
+    if (along_a.dot(along_b) < least_facing)
+        return {};
+    const auto between = overlap_along((along_a + along_b).normalized(), a, b);
+    if (!between)
+        return {};
+    // Which of the two ends that meet at the deeper side lies inside the other face, and whether it is a
+    // corner: an end where the outline runs on straight belongs to a face that something sinks into farther
+    // on.
+    const int deep = between->gap[1] < between->gap[0] ? 1 : 0;
+    const double is_end_of_a =
+        std::clamp(0.5 + between->inset[deep] / (2 * rounding * std::min(length_a, length_b)), 0.0, 1.0);
+    const double of_b = is_end_of_a * sharp_a[deep] + (1 - is_end_of_a) * (1 - sharp_b[1 - deep]);
+    return overlap_along((of_b * along_b + (1 - of_b) * along_a).normalized(), a, b);
+}
+
+std::array<Vector2d, 2> ends_of(const std::array<Index, 2>& face, const std::vector<Vector2d>& place)
+{
+    return {place[face[0]], place[face[1]]};
+}
+
+Vector2d at(const std::array<Vector2d, 2>& ends, double fraction)
+{
+    return ends[0] + fraction * (ends[1] - ends[0]);
+}
+
+} // namespace
+
+void Contacts::set_faces(Faces faces, std::vector<Pair> known, const std::vector<Vector2d>& place)
+{
+    faces_ = std::move(faces);
+    std::sort(known.begin(), known.end(),
+              [](const Pair& p, const Pair& q) { return std::pair(p.a, p.b) < std::pair(q.a, q.b); });
+    pairs_ = std::move(known);
+    std::vector<double> lengths;
+    for (const auto& [from, to] : faces_.gridpoint)
+        lengths.push_back((place[to] - place[from]).norm());
+    skin_ = 0;
+    if (!lengths.empty()) {
+        const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
+        std::nth_element(lengths.begin(), middle, lengths.end());
+        skin_ = *middle / 4;
+    }
+    seek(place);
+}
+
+void Contacts::find_corners(const std::vector<Vector2d>& place)
+{
+    constexpr double corner = 0.35;            // a turn by that much, 20 degrees, and more is a corner [rad]
+    std::unordered_map<Index, Index> starting; // faces, by their first gridpoint
+    for (std::size_t f = 0; f < faces_.gridpoint.size(); ++f)
+        starting[faces_.gridpoint[f][0]] = static_cast<Index>(f);
+    sharpness_.assign(faces_.gridpoint.size(), {1, 1}); // also where the outline of a ground ends
+    for (std::size_t f = 0; f < faces_.gridpoint.size(); ++f) {
+        const auto next = starting.find(faces_.gridpoint[f][1]);
+        if (next == starting.end())
+            continue;
+        const auto p = ends_of(faces_.gridpoint[f], place),
+                   q = ends_of(faces_.gridpoint[next->second], place);
+        const Vector2d one = p[1] - p[0], two = q[1] - q[0];
+        const double turn = std::atan2(one.x() * two.y() - one.y() * two.x(), one.dot(two));
+        sharpness_[f][1] = sharpness_[next->second][0] = std::clamp(turn / corner, 0.0, 1.0);
+    }
+}
+
+// All pairs of faces whose boxes come within the skin of each other, by a grid of cells; what pairs of before
+// remember stays.
+void Contacts::seek(const std::vector<Vector2d>& place)
+{
+    ++searches_;
+    sought_at_ = place;
+    find_corners(place);
+    const double cell = 8 * skin_;
+    struct Entry {
+        std::int64_t x, y;
+        Index face;
+        auto operator<=>(const Entry&) const = default;
+    };
+    std::vector<Entry> entries;
+    std::vector<std::array<Vector2d, 2>> box;
+    const auto cell_of = [&](double at) { return static_cast<std::int64_t>(std::floor(at / cell)); };
+    for (std::size_t f = 0; f < faces_.gridpoint.size(); ++f) {
+        const auto ends = ends_of(faces_.gridpoint[f], place);
+        const Vector2d half = Vector2d::Constant(skin_ / 2);
+        box.push_back({ends[0].cwiseMin(ends[1]) - half, ends[0].cwiseMax(ends[1]) + half});
+        for (std::int64_t x = cell_of(box[f][0].x()); x <= cell_of(box[f][1].x()); ++x)
+            for (std::int64_t y = cell_of(box[f][0].y()); y <= cell_of(box[f][1].y()); ++y)
+                entries.push_back({x, y, static_cast<Index>(f)});
+    }
+    std::sort(entries.begin(), entries.end());
+    std::vector<std::pair<Index, Index>> near;
+    for (std::size_t i = 0; i < entries.size(); ++i)
+        for (std::size_t j = i + 1;
+             j < entries.size() && entries[j].x == entries[i].x && entries[j].y == entries[i].y; ++j) {
+            const auto a = entries[i].face, b = entries[j].face;
+            if ((box[a][0].array() <= box[b][1].array()).all() &&
+                (box[b][0].array() <= box[a][1].array()).all())
+                near.emplace_back(a, b);
+        }
+    std::sort(near.begin(), near.end());
+    near.erase(std::unique(near.begin(), near.end()), near.end());
+
+    std::vector<Pair> pairs;
+    auto old = pairs_.begin();
+    for (const auto& [a, b] : near) {
+        while (old != pairs_.end() && std::pair(old->a, old->b) < std::pair(a, b))
+            ++old;
+        if (old != pairs_.end() && old->a == a && old->b == b)
+            pairs.push_back(*old);
+        else
+            pairs.push_back({.a = a, .b = b, .law = laws_.size() - 1});
+    }
+    pairs_ = std::move(pairs);
+    of_face_.assign(faces_.gridpoint.size(), {});
+    for (std::size_t p = 0; p < pairs_.size(); ++p)
+        for (const Index f : {pairs_[p].a, pairs_[p].b})
+            of_face_[f].push_back(static_cast<Index>(p));
+}
+
+// A face that slides on from one face to the next takes along what its joint is and remembers.
+void Contacts::inherit(Pair& pair, const std::vector<Vector2d>& place) const
+{
+    const auto is_next_to = [&](Index f, Index g) {
+        const auto p = ends_of(faces_.gridpoint[f], place), q = ends_of(faces_.gridpoint[g], place);
+        const double reach = 1e-3 * std::min((p[1] - p[0]).norm(), (q[1] - q[0]).norm());
+        return (p[1] - q[0]).norm() <= reach || (p[0] - q[1]).norm() <= reach;
+    };
+    const Pair* from = nullptr;
+    for (const Index own : {pair.a, pair.b})
+        for (const Index p : of_face_[own]) {
+            const Pair& other = pairs_[p];
+            if (&other == &pair || !other.is_closed)
+                continue;
+            const Index partner = other.a == own ? other.b : other.a, next = own == pair.a ? pair.b : pair.a;
+            if (is_next_to(partner, next) && (from == nullptr || other.length > from->length))
+                from = &other;
+        }
+    if (from == nullptr)
+        return;
+    // A pair's sides may change places: a's first end looks at b's second one, and `along` turns round with
+    // the normal twice over, so that the shear traction keeps its sign.
+    pair.law = from->law;
+    pair.tau = from->tau;
+    const double lead = (from->lead[0] + from->lead[1]) / 2;
+    pair.lead = {lead, lead};
+}
+
+void Contacts::update(const std::vector<Vector2d>& place, const std::vector<Vector2d>& move, double dt,
+                      double viscosity, int threads)
+{
+    double farthest = 0;
+    for (std::size_t g = 0; g < place.size(); ++g)
+        farthest = std::max(farthest, (place[g] - sought_at_[g]).squaredNorm());
+    if (4 * farthest > skin_ * skin_)
+        seek(place);
+
+    const auto n = static_cast<Index>(pairs_.size());
+    std::vector<char> touches(pairs_.size(), 0); // for the first time
+    Index too_deep = n;
+    const auto evaluate = [&](Pair& pair, Index index) {
+        pair.is_slipping = false;
+        pair.friction = pair.damped = 0;
+        const auto a = ends_of(faces_.gridpoint[pair.a], place), b = ends_of(faces_.gridpoint[pair.b], place);
+        // What the springs still hold when a contact ends, where rock slides off an edge, say, is lost.
+        const Vector2d last_normal = pair.normal;
+        const double last_length = pair.length, last_tau = pair.tau, last_stored = pair.stored;
+        pair.stored = 0;
+        const auto open = [&] {
+            pair.friction = last_stored;
+            pair.is_closed = false;
+            if (pair.is_known)
+                pair.is_broken = true;
+            pair.tau = pair.length = pair.sigma = 0;
+        };
+        const auto found = overlap_of(a, b, sharpness_[pair.a], sharpness_[pair.b]);
+        if (!found) {
+            open();
+            return;
+        }
+        const joint::Coulomb& law = laws_[pair.law];
+        std::array<double, 2> closing{};
+        for (int i = 0; i < 2; ++i)
+            closing[i] = pair.lead[0] + found->on_a[i] * (pair.lead[1] - pair.lead[0]) - found->gap[i];
+        const double depth = std::min(faces_.depth[pair.a], faces_.depth[pair.b]);
+        const double sunk = -std::min(found->gap[0], found->gap[1]);
+        if (!pair.is_closed && (std::max(closing[0], closing[1]) <= 0 || sunk > deepest_new * depth)) {
+            open();
+            return;
+        }
+        if (sunk > deepest * depth) {
+#pragma omp critical
+            too_deep = std::min(too_deep, index);
+            return;
+        }
+        if (!pair.is_known) {
+            touches[index] = 1;
+            return;
+        }
+        if (!pair.is_broken && -law.k_n * std::min(closing[0], closing[1]) > law.tensile_strength)
+            pair.is_broken = true;
+        const auto pressed_in = [&](double length) {
+            return law.k_n * length *
+                   (closing[0] * closing[0] + closing[0] * closing[1] + closing[1] * closing[1]) / 6;
+        };
+        std::array<double, 2> part{0, 1}; // of the overlap that is closed
+        if (pair.is_broken) {
+            if (std::max(closing[0], closing[1]) <= 0) {
+                open();
+                return;
+            }
+            const double zero = closing[0] / (closing[0] - closing[1]);
+            if (closing[0] < 0)
+                part[0] = zero;
+            else if (closing[1] < 0)
+                part[1] = zero;
+            closing = {std::max(closing[0], 0.0), std::max(closing[1], 0.0)};
+        }
+        pair.is_closed = true;
+        pair.length = (part[1] - part[0]) * found->length;
+        pair.normal = found->normal();
+        const auto fraction = [&](const std::array<double, 2>& ends, double at) {
+            return ends[0] + at * (ends[1] - ends[0]);
+        };
+        for (int i = 0; i < 2; ++i) {
+            pair.on_a[i] = fraction(found->on_a, part[i]);
+            pair.on_b[i] = fraction(found->on_b, part[i]);
+        }
+        const auto move_a = ends_of(faces_.gridpoint[pair.a], move),
+                   move_b = ends_of(faces_.gridpoint[pair.b], move);
+        const Vector2d tangent = along(pair.normal);
+
+        // Forces on the ends that are as the linear traction between them.
+        std::array<double, 2> normal_force{}, opening{};
+        for (int i = 0; i < 2; ++i) {
+            const double pressed = law.k_n * pair.length * (2 * closing[i] + closing[1 - i]) / 6;
+            opening[i] = (at(move_b, pair.on_b[i]) - at(move_a, pair.on_a[i])).dot(pair.normal);
+            const double held = viscosity / dt * law.k_n * pair.length / 2 * opening[i];
+            normal_force[i] = pair.is_broken ? std::min(0.0, held - pressed) : held - pressed;
+            pair.damped += (normal_force[i] + pressed) * opening[i];
+        }
+        const double pressed = law.k_n * pair.length * (closing[0] + closing[1]) / 2;
+        pair.sigma = pair.length > 0 ? -pressed / pair.length : 0.0;
+
+        const double limit =
+            std::max(0.0, (pair.is_broken ? 0.0 : law.cohesion) * pair.length + pressed * law.tan_phi);
+        // Two points a gap apart that turn together move along each other, too; that is no slip.
+        const double gap = fraction(found->gap, (part[0] + part[1]) / 2);
+        const double turned =
+            pair.is_new || last_length == 0 ? 0.0 : gap * (pair.normal - last_normal).dot(tangent);
+        const double slid =
+            (at(move_b, (pair.on_b[0] + pair.on_b[1]) / 2) - at(move_a, (pair.on_a[0] + pair.on_a[1]) / 2))
+                .dot(tangent) -
+            turned;
+        // A part that opens takes along the shear that it has; one that closes has none yet.
+        const double kept = pair.is_new ? pair.length : std::min(last_length, pair.length);
+        const double trial = last_tau * kept + law.k_s * slid * pair.length;
+        const double shear = std::clamp(trial, -limit, limit);
+        pair.is_slipping = shear != trial;
+        const auto sheared_in = [&](double force, double length) {
+            return law.k_s > 0 && length > 0 ? force * force / (2 * law.k_s * length) : 0.0;
+        };
+        if (!pair.is_new)
+            pair.friction =
+                sheared_in(last_tau * last_length, last_length) - sheared_in(last_tau * kept, pair.length);
+        if (pair.is_slipping && law.k_s > 0 && pair.length > 0)
+            pair.friction += std::abs(shear) * std::abs(trial - shear) / (law.k_s * pair.length);
+        pair.is_new = false;
+        pair.tau = pair.length > 0 ? shear / pair.length : 0.0;
+        double shear_force = shear;
+        if (!pair.is_slipping) {
+            const double held = viscosity / dt * law.k_s * pair.length * slid;
+            shear_force = std::clamp(shear + held, -limit, limit);
+            pair.damped += (shear_force - shear) * slid;
+        }
+        for (int i = 0; i < 2; ++i)
+            pair.force[i] = normal_force[i] * pair.normal + shear_force / 2 * tangent;
+        pair.stored = pressed_in(pair.length) + sheared_in(shear, pair.length);
+    };
+#pragma omp parallel for schedule(static) num_threads(threads) if (threads > 1)
+    for (Index p = 0; p < n; ++p)
+        evaluate(pairs_[p], p);
+    if (too_deep < n)
+        throw equilibrium_error(
+            "two pieces of rock overlap at " + shown(place[faces_.gridpoint[pairs_[too_deep].a][0]]) +
+            " by more than half the depth of a zone; the joint's normal stiffness is too small "
+            "for what presses on it");
+    for (Index p = 0; p < n; ++p)
+        if (touches[p]) {
+            inherit(pairs_[p], place);
+            pairs_[p].is_known = true;
+            evaluate(pairs_[p], p);
+        }
+}
+
+void Contacts::add_forces(std::vector<Vector2d>& force) const
+{
+    for (const Pair& pair : pairs_) {
+        if (!pair.is_closed)
+            continue;
+        const auto &a = faces_.gridpoint[pair.a], &b = faces_.gridpoint[pair.b];
+        for (int i = 0; i < 2; ++i) {
+            force[a[0]] += (1 - pair.on_a[i]) * pair.force[i];
+            force[a[1]] += pair.on_a[i] * pair.force[i];
+            force[b[0]] -= (1 - pair.on_b[i]) * pair.force[i];
+            force[b[1]] -= pair.on_b[i] * pair.force[i];
+        }
+    }
+}
+
+} // namespace jointcreep::motion

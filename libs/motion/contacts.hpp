@@ -1,0 +1,98 @@
+// Contacts between faces of rock that move: what touches what is found anew as blocks slide, turn and fall.
+//
+// A face is one side of a zone with no rock before it. A contact is a pair of faces that look at each other:
+// on the length that they overlap, the joint closes linearly, and its springs (stiffness per area) are
+// integrated exactly over the part that is closed. So gridpoints of the two faces need not match: a uniform
+// traction stays uniform however far they have slid. A corner that presses into a face is the same with a
+// short closed part.
+//
+// The plane of a contact is that of the face into which a corner of the other one sinks. Within a hundredth
+// of the shorter face about two ends that meet, it turns smoothly from one face to the other (corner to
+// corner).
+//
+// Closing is counted from the closing of the in-situ joint, `lead`, which stays with a pair of faces, and
+// goes on to the next face when one slides along. The shear traction is kept as a stress along the contact
+// and so turns with it.
+
+#pragma once
+
+#include "mechanics/assembly.hpp"
+
+#include <array>
+#include <utility>
+#include <vector>
+
+namespace jointcreep::motion
+{
+
+using mechanics::Vector2d;
+
+// Faces run with their rock on the left.
+struct Faces {
+    std::vector<std::array<Index, 2>> gridpoint;
+    std::vector<double> depth; // of the zone behind it [m]
+};
+
+// What two faces that may touch remember.
+struct Pair {
+    Index a, b; // faces, a < b
+    std::size_t law = 0;
+    std::array<double, 2> lead{0, 0}; // closing without a gap, at the first and the second end of a [m]
+    double tau = 0;                   // along(normal from a to b), on a [Pa]
+    bool is_known = false;            // has touched since the two came near
+    bool is_new = true;               // has not borne a force yet
+    bool is_closed = false;           // over some of its length
+    bool is_broken = true;            // has no cohesion and no tensile strength (any more)
+    bool is_slipping = false;
+
+    // Now, if closed: the ends of the closed part, as fractions of a and of b, the force on a there, and the
+    // mean normal traction.
+    std::array<double, 2> on_a{}, on_b{};
+    std::array<Vector2d, 2> force{};
+    Vector2d normal{0, 0};           // from a to b
+    double length = 0, sigma = 0;    // [m], [Pa]
+    double stored = 0;               // [J/m]
+    double friction = 0, damped = 0; // in the last step [J/m]
+};
+
+class Contacts
+{
+public:
+    // `laws`: those of the pairs; new contacts have the last one.
+    explicit Contacts(std::vector<joint::Coulomb> laws) : laws_(std::move(laws)) {}
+
+    // Takes these faces instead; pairs of before are forgotten but for `known`, in any order.
+    void set_faces(Faces faces, std::vector<Pair> known, const std::vector<Vector2d>& place);
+
+    // Tractions and forces of all pairs after gridpoints have moved by `move` to `place` [m] within `dt` [s]:
+    // springs, and dashpots of `viscosity` times the springs [s]. Throws equilibrium_error where two faces
+    // overlap too much for this to have a meaning.
+    void update(const std::vector<Vector2d>& place, const std::vector<Vector2d>& move, double dt,
+                double viscosity, int threads);
+
+    // Adds the forces of the last update to those on gridpoints [N/m].
+    void add_forces(std::vector<Vector2d>& force) const;
+
+    const Faces& faces() const { return faces_; }
+    const std::vector<Pair>& pairs() const { return pairs_; }
+    const std::vector<joint::Coulomb>& laws() const { return laws_; }
+    // How often what may touch was sought.
+    Index searches() const { return searches_; }
+
+private:
+    void seek(const std::vector<Vector2d>& place);
+    void find_corners(const std::vector<Vector2d>& place);
+    void inherit(Pair& pair, const std::vector<Vector2d>& place) const;
+
+    std::vector<joint::Coulomb> laws_;
+    Faces faces_;
+    std::vector<Pair> pairs_;                 // in order of {a, b}
+    std::vector<std::vector<Index>> of_face_; // pairs of each face
+    std::vector<std::array<double, 2>>
+        sharpness_;                   // of each face's ends: 0 where the outline runs on straight, 1 a corner
+    std::vector<Vector2d> sought_at_; // places when pairs were sought last
+    double skin_ = 0;                 // faces come within this of each other are pairs [m]
+    Index searches_ = 0;
+};
+
+} // namespace jointcreep::motion

@@ -1,0 +1,621 @@
+#include "motion/motion.hpp"
+
+#include "model/error.hpp"
+#include "model/signs.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+
+namespace jointcreep::motion
+{
+
+using Eigen::Matrix2d;
+using Eigen::Vector3d;
+
+namespace
+{
+
+constexpr double safety = 0.9; // of the largest stable step
+constexpr double impacts = 4;  // steps are so much shorter for rigid bodies: what one step misses of an
+                               // impact's beginning is energy that is lost or gained
+constexpr double slow = 0.01;  // below this speed everywhere, motion is stopped at its peaks [m/s]
+
+Vector3d stress_of(const Vector3d& stiffness, const Vector3d& strain)
+{
+    return {stiffness[0] * strain[0] + stiffness[1] * strain[1],
+            stiffness[1] * strain[0] + stiffness[0] * strain[1], stiffness[2] * strain[2]};
+}
+
+Matrix2d tensor(const Vector3d& stress)
+{
+    return (Matrix2d() << stress[0], stress[2], stress[2], stress[1]).finished();
+}
+
+// The stretch from the shape without stress in which Cauchy's stress is as given. In principal axes Biot's
+// stress is Cauchy's times the other stretch.
+Matrix2d stretch_for(const Vector3d& stiffness, const Vector3d& stress)
+{
+    const Eigen::SelfAdjointEigenSolver<Matrix2d> principal(tensor(stress));
+    const Vector2d cauchy = principal.eigenvalues();
+    const Matrix2d elastic =
+        (Matrix2d() << stiffness[0], stiffness[1], stiffness[1], stiffness[0]).finished();
+    Vector2d stretch = Vector2d::Ones();
+    for (int i = 0; i < 30; ++i)
+        stretch =
+            Vector2d::Ones() + elastic.inverse() * Vector2d(cauchy[0] * stretch[1], cauchy[1] * stretch[0]);
+    return principal.eigenvectors() * stretch.asDiagonal() * principal.eigenvectors().transpose();
+}
+
+// F = rotation * stretch.
+struct Polar {
+    Matrix2d rotation, stretch;
+};
+Polar polar_of(const Matrix2d& f)
+{
+    const double c = f(0, 0) + f(1, 1), s = f(1, 0) - f(0, 1), r = std::hypot(c, s);
+    const Matrix2d rotation = (Matrix2d() << c / r, -s / r, s / r, c / r).finished();
+    return {rotation, rotation.transpose() * f};
+}
+
+Matrix2d edges_of(const std::array<Index, 3>& g, const std::vector<Vector2d>& place)
+{
+    Matrix2d edges;
+    edges << place[g[1]] - place[g[0]], place[g[2]] - place[g[0]];
+    return edges;
+}
+
+} // namespace
+
+Motion::Motion(mechanics::Assembly& rock, const Mesh& mesh, std::vector<char> is_rigid,
+               const joint::Coulomb& found, const Settings& settings)
+    : rock_(rock), mesh_(mesh), settings_(settings), contacts_({}), is_rigid_(std::move(is_rigid))
+{
+    // One law for every edge with contacts.
+    std::vector<joint::Coulomb> laws;
+    law_of_edge_.assign(mesh.contact_edge.empty()
+                            ? 0
+                            : *std::max_element(mesh.contact_edge.begin(), mesh.contact_edge.end()) + 1,
+                        0);
+    std::vector<char> has_law(law_of_edge_.size(), 0);
+    for (std::size_t c = 0; c < mesh.contact_edge.size(); ++c) {
+        const Index e = mesh.contact_edge[c];
+        if (!has_law[e]) {
+            has_law[e] = 1;
+            law_of_edge_[e] = laws.size();
+            laws.push_back(std::get<joint::Coulomb>(rock.contacts.law[c])); // the scene has no other
+        }
+    }
+    laws.push_back(found);
+    contacts_ = Contacts(std::move(laws));
+
+    place_ = rock.position;
+    for (std::size_t g = 0; g < place_.size(); ++g)
+        place_[g] += rock.displacement[g];
+    velocity_.assign(place_.size(), Vector2d::Zero());
+    for (std::size_t z = 0; z < rock.zones.gridpoint.size(); ++z) {
+        const Vector3d& stiffness = rock.zones.stiffness[z];
+        const Matrix2d stretch = stretch_for(stiffness, rock.zones.stress[z]);
+        Zone zone;
+        zone.gridpoint = rock.zones.gridpoint[z];
+        zone.inverse = edges_of(zone.gridpoint, place_).inverse() * stretch;
+        zone.area = rock.zones.area[z] / stretch.determinant();
+        zone.stiffness = stiffness;
+        zone.strain = {stretch(0, 0) - 1, stretch(1, 1) - 1, 2 * stretch(0, 1)};
+        zones_.push_back(zone);
+    }
+    start(std::vector<Vector2d>(place_.size(), Vector2d::Zero()));
+}
+
+void Motion::start(const std::vector<Vector2d>& released)
+{
+    released_ = released;
+    time_ = 0;
+    energy_ = {};
+    starts_from_rest_ = true;
+    last_kinetic_ = 0;
+    checks_in_balance_ = 0;
+    last_contact_force_.clear();
+    velocity_.assign(place_.size(), Vector2d::Zero());
+    find_faces();
+    find_bodies();
+    find_time_step();
+    find_forces(velocity_);
+    stored_at_start_ = stored();
+}
+
+// The faces of what rock there is, and of the ground below boundaries that rest on a joint. The first time,
+// contacts of the mesh become pairs; later, pairs stay what they are.
+void Motion::find_faces()
+{
+    std::vector<Index> leader(place_.size());
+    for (std::size_t g = 0; g < leader.size(); ++g)
+        leader[g] = static_cast<Index>(g);
+    for (const auto& [follower, first] : rock_.tied)
+        leader[follower] = first;
+
+    std::map<std::array<Index, 2>, int> sides; // by leaders
+    const auto key = [&](Index from, Index to) { return std::array<Index, 2>{leader[from], leader[to]}; };
+    for (std::size_t z = 0; z < zones_.size(); ++z)
+        if (rock_.zones.is_present[z])
+            for (int i = 0; i < 3; ++i)
+                ++sides[key(zones_[z].gridpoint[i], zones_[z].gridpoint[(i + 1) % 3])];
+    Faces faces;
+    std::map<std::array<Index, 2>, Index> face_of; // by gridpoints
+    const auto add = [&](Index from, Index to, double depth) {
+        face_of[{from, to}] = static_cast<Index>(faces.gridpoint.size());
+        faces.gridpoint.push_back({from, to});
+        faces.depth.push_back(depth);
+    };
+    for (std::size_t z = 0; z < zones_.size(); ++z)
+        if (rock_.zones.is_present[z])
+            for (int i = 0; i < 3; ++i) {
+                const Index from = zones_[z].gridpoint[i], to = zones_[z].gridpoint[(i + 1) % 3];
+                if (!sides.contains(key(to, from)))
+                    add(from, to,
+                        2 * rock_.zones.area[z] / (rock_.position[to] - rock_.position[from]).norm());
+            }
+
+    // Contacts of the mesh between two gridpoints, the ground's apart.
+    const mechanics::Contacts& contacts = rock_.contacts;
+    const auto is_ground = [&](Index g) {
+        return rock_.incidence.zone_start[g] == rock_.incidence.zone_start[g + 1];
+    };
+    std::map<std::array<Index, 2>, std::vector<std::size_t>> between; // {lower, higher}
+    std::map<Index, std::vector<std::size_t>> on_ground;
+    for (std::size_t c = 0; c < contacts.gridpoint.size(); ++c) {
+        if (contacts.status[c] == ContactStatus::removed)
+            continue;
+        const auto [a, b] = contacts.gridpoint[c];
+        between[{std::min(a, b), std::max(a, b)}].push_back(c);
+        if (is_ground(a))
+            on_ground[b].push_back(c);
+    }
+    const std::size_t n_rock = faces.gridpoint.size();
+    for (std::size_t f = 0; f < n_rock; ++f) {
+        const auto [from, to] = faces.gridpoint[f];
+        if (!on_ground.contains(from) || !on_ground.contains(to))
+            continue;
+        for (const std::size_t c : on_ground[from])
+            for (const std::size_t d : on_ground[to])
+                if (mesh_.contact_edge[c] == mesh_.contact_edge[d])
+                    add(contacts.gridpoint[d][0], contacts.gridpoint[c][0],
+                        (rock_.position[to] - rock_.position[from]).norm());
+    }
+
+    std::vector<Pair> known;
+    if (contacts_.faces().gridpoint.empty()) {
+        std::map<std::array<double, 4>, Index> by_place; // {from, to}
+        for (std::size_t f = 0; f < faces.gridpoint.size(); ++f) {
+            const Vector2d &from = rock_.position[faces.gridpoint[f][0]],
+                           &to = rock_.position[faces.gridpoint[f][1]];
+            by_place[{from.x(), from.y(), to.x(), to.y()}] = static_cast<Index>(f);
+        }
+        for (std::size_t f = 0; f < faces.gridpoint.size(); ++f) {
+            const auto [from, to] = faces.gridpoint[f];
+            const Vector2d &p = rock_.position[from], &q = rock_.position[to];
+            const auto found = by_place.find({q.x(), q.y(), p.x(), p.y()});
+            if (found == by_place.end() || found->second < static_cast<Index>(f))
+                continue;
+            Pair pair{.a = static_cast<Index>(f), .b = found->second, .is_known = true};
+            const Vector2d normal = -normal_of(tangent_of(p, q));
+            int n = 0;
+            std::array<bool, 2> has_lead{};
+            for (int end = 0; end < 2; ++end) {
+                const Index a = faces.gridpoint[pair.a][end], b = faces.gridpoint[pair.b][1 - end];
+                const auto there = between.find({std::min(a, b), std::max(a, b)});
+                if (there == between.end())
+                    continue; // the tip of a joint
+                const std::size_t c = *std::max_element(there->second.begin(), there->second.end(),
+                                                        [&](std::size_t i, std::size_t j) {
+                                                            return std::abs(contacts.normal[i].dot(normal)) <
+                                                                   std::abs(contacts.normal[j].dot(normal));
+                                                        });
+                pair.law = law_of_edge_[mesh_.contact_edge[c]];
+                pair.lead[end] = contacts.offset[c].x() + contacts.state[c].dilation -
+                                 joint::opening(contacts.law[c], contacts.initial_traction[c].x());
+                has_lead[end] = true;
+                pair.tau += contacts.traction[c].y();
+                pair.is_broken =
+                    n == 0 ? contacts.state[c].is_broken : pair.is_broken || contacts.state[c].is_broken;
+                ++n;
+            }
+            if (n == 0)
+                continue;
+            pair.tau /= n;
+            for (int end = 0; end < 2; ++end)
+                if (!has_lead[end])
+                    pair.lead[end] = pair.lead[1 - end];
+            known.push_back(pair);
+        }
+    } else {
+        const Faces& before = contacts_.faces();
+        for (const Pair& pair : contacts_.pairs()) {
+            const auto a = face_of.find(before.gridpoint[pair.a]), b = face_of.find(before.gridpoint[pair.b]);
+            if (!pair.is_known || a == face_of.end() || b == face_of.end())
+                continue;
+            Pair kept = pair;
+            kept.a = a->second;
+            kept.b = b->second;
+            if (kept.a > kept.b) {
+                std::swap(kept.a, kept.b);
+                std::swap(kept.lead[0], kept.lead[1]);
+            }
+            known.push_back(kept);
+        }
+    }
+    contacts_.set_faces(std::move(faces), std::move(known), place_);
+}
+
+void Motion::find_bodies()
+{
+    const std::vector<double> masses = lumped_masses(rock_);
+    std::vector<Index> parent(place_.size());
+    std::iota(parent.begin(), parent.end(), 0);
+    const auto root_of = [&](Index g) {
+        while (parent[g] != g)
+            g = parent[g] = parent[parent[g]];
+        return g;
+    };
+    const auto join = [&](Index g, Index h) {
+        const auto [low, high] = std::minmax({root_of(g), root_of(h)});
+        parent[high] = low;
+    };
+    std::vector<char> is_of_body(place_.size(), 0);
+    for (std::size_t z = 0; z < zones_.size(); ++z)
+        if (is_rigid_[z] && rock_.zones.is_present[z])
+            for (const Index g : zones_[z].gridpoint) {
+                is_of_body[g] = 1;
+                join(g, zones_[z].gridpoint[0]);
+            }
+    for (const auto& [follower, leader] : rock_.tied)
+        if (is_of_body[follower] || is_of_body[leader]) {
+            join(follower, leader);
+            is_of_body[follower] = 0; // goes with its leader
+            is_of_body[leader] = 1;
+        }
+
+    bodies_.clear();
+    body_of_.assign(place_.size(), -1);
+    std::map<Index, Index> number; // by root
+    for (std::size_t g = 0; g < place_.size(); ++g) {
+        if (!is_of_body[g])
+            continue;
+        const auto [found, is_new] =
+            number.try_emplace(root_of(static_cast<Index>(g)), static_cast<Index>(bodies_.size()));
+        if (is_new)
+            bodies_.emplace_back();
+        Body& body = bodies_[found->second];
+        body_of_[g] = found->second;
+        body.gridpoint.push_back(static_cast<Index>(g));
+        body.mass += masses[g];
+        body.centre += masses[g] * place_[g];
+        body.is_held |= rock_.is_free[g].minCoeff() == 0;
+    }
+    for (Body& body : bodies_) {
+        body.centre /= body.mass;
+        for (const Index g : body.gridpoint)
+            body.arm.emplace_back(place_[g] - body.centre);
+    }
+    for (std::size_t z = 0; z < zones_.size(); ++z) {
+        if (!is_rigid_[z] || !rock_.zones.is_present[z])
+            continue;
+        Body& body = bodies_[number.at(root_of(zones_[z].gridpoint[0]))];
+        Vector2d sum(0, 0);
+        for (const Index g : zones_[z].gridpoint) {
+            const Vector2d arm = place_[g] - body.centre;
+            body.inertia += rock_.zones.mass[z] / 12 * arm.squaredNorm();
+            sum += arm;
+        }
+        body.inertia += rock_.zones.mass[z] / 12 * sum.squaredNorm();
+    }
+}
+
+// Force and moment about the centre [N/m], [N].
+std::pair<Vector2d, double> Motion::load_on(const Body& body) const
+{
+    Vector2d force(0, 0);
+    double moment = 0;
+    for (const Index g : body.gridpoint) {
+        const Vector2d arm = place_[g] - body.centre;
+        force += force_[g];
+        moment += arm.x() * force_[g].y() - arm.y() * force_[g].x();
+    }
+    return {force, moment};
+}
+
+// One step; returns the kinetic energy before it [J/m].
+double Motion::move(Body& body, double keep, double gain)
+{
+    if (body.is_held)
+        return 0;
+    const auto [force, moment] = load_on(body);
+    const Vector2d last = body.velocity;
+    const double last_spin = body.spin;
+    body.velocity = keep * body.velocity + gain / body.mass * force;
+    body.spin = keep * body.spin + gain / body.inertia * moment;
+    body.centre += dt_ * body.velocity;
+    body.angle += dt_ * body.spin;
+    const Eigen::Rotation2Dd turn(body.angle);
+    for (std::size_t k = 0; k < body.gridpoint.size(); ++k) {
+        const Index g = body.gridpoint[k];
+        const Vector2d to = body.centre + turn * body.arm[k];
+        move_[g] = to - place_[g];
+        velocity_[g] = move_[g] / dt_;
+        place_[g] = to;
+    }
+    const Vector2d now = starts_from_rest_ ? last : Vector2d((last + body.velocity) / 2);
+    const double spin = starts_from_rest_ ? last_spin : (last_spin + body.spin) / 2;
+    return (body.mass * now.squaredNorm() + body.inertia * spin * spin) / 2;
+}
+
+// From the sums of the magnitudes of all blocks of the stiffness in a gridpoint's rows (Gershgorin), which
+// turning does not change.
+void Motion::find_time_step()
+{
+    std::vector<double> sums(place_.size(), 0.0);
+    for (std::size_t z = 0; z < zones_.size(); ++z)
+        if (rock_.zones.is_present[z] && !is_rigid_[z])
+            for (int i = 0; i < 3; ++i)
+                for (int j = 0; j < 3; ++j)
+                    sums[zones_[z].gridpoint[i]] +=
+                        rock_.zones.area[z] * stiffness_between(rock_.zones, z, i, j).norm();
+    double stiffest_joint = 0;
+    for (const joint::Coulomb& law : contacts_.laws())
+        stiffest_joint = std::max({stiffest_joint, law.k_n, law.k_s});
+    for (const auto& [from, to] : contacts_.faces().gridpoint)
+        for (const Index g : {from, to})
+            sums[g] += stiffest_joint * (place_[to] - place_[from]).norm();
+    for (const auto& [follower, leader] : rock_.tied)
+        sums[leader] += sums[follower];
+    stiffest_ = *std::max_element(sums.begin(), sums.end());
+
+    inverse_mass_ = lumped_masses(rock_);
+    double highest = 0; // frequency squared
+    for (const Body& body : bodies_) {
+        double sum = 0;
+        for (std::size_t k = 0; k < body.gridpoint.size(); ++k) {
+            sum += sums[body.gridpoint[k]] * (1 / body.mass + body.arm[k].squaredNorm() / body.inertia);
+            inverse_mass_[body.gridpoint[k]] = 0; // moves with the body
+        }
+        if (!body.is_held)
+            highest = std::max(highest, impacts * impacts * sum);
+    }
+    for (std::size_t g = 0; g < sums.size(); ++g)
+        if (double& mass = inverse_mass_[g]; mass > 0) {
+            highest = std::max(highest, sums[g] / mass);
+            mass = 1 / mass;
+        }
+    // Stiffness damping shortens the stable step: (2 / w) (sqrt(1 + xi^2) - xi), xi = beta w / 2.
+    const double xi = settings_.stiffness_damping * std::sqrt(highest) / 2;
+    dt_ = safety * 2 / std::sqrt(highest) * (std::sqrt(1 + xi * xi) - xi);
+}
+
+double Motion::release_factor() const
+{
+    return settings_.release > 0 ? std::max(0.0, 1 - time_ / settings_.release) : 0.0;
+}
+
+void Motion::find_forces(const std::vector<Vector2d>& move)
+{
+    for (const auto& [follower, leader] : rock_.tied)
+        place_[follower] = place_[leader];
+    const auto n_zones = static_cast<Index>(zones_.size());
+    const auto n = static_cast<Index>(place_.size());
+    const double viscosity = settings_.stiffness_damping / dt_;
+#pragma omp parallel for schedule(static) num_threads(rock_.threads) if (rock_.threads > 1)
+    for (Index z = 0; z < n_zones; ++z) {
+        if (!rock_.zones.is_present[z] || is_rigid_[z])
+            continue;
+        Zone& zone = zones_[z];
+        const Polar polar = polar_of(edges_of(zone.gridpoint, place_) * zone.inverse);
+        const Vector3d strain(polar.stretch(0, 0) - 1, polar.stretch(1, 1) - 1, 2 * polar.stretch(0, 1));
+        const Vector3d stress = stress_of(zone.stiffness, strain);
+        const Vector3d held = viscosity * stress_of(zone.stiffness, strain - zone.strain);
+        zone.stored = zone.area / 2 * stress.dot(strain);
+        zone.damped = zone.area * held.dot(strain - zone.strain);
+        zone.strain = strain;
+        const Matrix2d forces = zone.area * polar.rotation * tensor(stress + held) * zone.inverse.transpose();
+        zone.force = {forces.col(0) + forces.col(1), -forces.col(0), -forces.col(1)};
+    }
+    contacts_.update(place_, move, dt_, settings_.stiffness_damping, rock_.threads);
+    const double held = release_factor();
+    force_.resize(place_.size());
+    const mechanics::Incidence& incidence = rock_.incidence;
+#pragma omp parallel for schedule(static) num_threads(rock_.threads) if (rock_.threads > 1)
+    for (Index g = 0; g < n; ++g) {
+        Vector2d force = rock_.load[g] + rock_.applied[g] + held * released_[g];
+        for (Index k = incidence.zone_start[g]; k < incidence.zone_start[g + 1]; ++k) {
+            const Index corner = incidence.zone_corner[k];
+            if (rock_.zones.is_present[corner / 3])
+                force += zones_[corner / 3].force[corner % 3];
+        }
+        force_[g] = force;
+    }
+    contacts_.add_forces(force_);
+    for (const auto& [follower, leader] : rock_.tied) {
+        force_[leader] += force_[follower];
+        force_[follower].setZero();
+    }
+}
+
+double Motion::stored() const
+{
+    double energy = 0;
+    for (std::size_t z = 0; z < zones_.size(); ++z)
+        if (rock_.zones.is_present[z] && !is_rigid_[z])
+            energy += zones_[z].stored;
+    for (const Pair& pair : contacts_.pairs())
+        energy += pair.stored;
+    return energy;
+}
+
+void Motion::step()
+{
+    const auto n = place_.size();
+    const double alpha = settings_.mass_damping;
+    const double keep = (1 - alpha * dt_ / 2) / (1 + alpha * dt_ / 2);
+    const double gain = (starts_from_rest_ ? 0.5 : 1.0) * dt_ / (1 + alpha * dt_ / 2);
+    const double held = release_factor();
+    double kinetic = 0, fastest = 0;
+    move_.assign(n, Vector2d::Zero());
+    for (std::size_t g = 0; g < n; ++g) {
+        if (inverse_mass_[g] == 0)
+            continue;
+        Vector2d& v = velocity_[g];
+        const Vector2d last = v;
+        v = keep * v + gain * inverse_mass_[g] * force_[g].cwiseProduct(rock_.is_free[g]);
+        const Vector2d now = starts_from_rest_ ? last : Vector2d((last + v) / 2);
+        kinetic += now.squaredNorm() / (2 * inverse_mass_[g]);
+        energy_.damped += alpha * dt_ * now.squaredNorm() / inverse_mass_[g];
+        if (v.squaredNorm() > fastest) {
+            fastest = v.squaredNorm();
+            fastest_gridpoint_ = static_cast<Index>(g);
+        }
+        move_[g] = dt_ * v;
+        place_[g] += move_[g];
+        energy_.work += (rock_.load[g] + rock_.applied[g] + held * released_[g]).dot(move_[g]);
+    }
+    for (Body& body : bodies_) {
+        const double before = move(body, keep, gain);
+        kinetic += before;
+        energy_.damped += 2 * alpha * dt_ * before;
+        for (const Index g : body.gridpoint) {
+            energy_.work += (rock_.load[g] + rock_.applied[g] + held * released_[g]).dot(move_[g]);
+            if (velocity_[g].squaredNorm() > fastest) {
+                fastest = velocity_[g].squaredNorm();
+                fastest_gridpoint_ = g;
+            }
+        }
+    }
+    starts_from_rest_ = false;
+    for (const auto& [follower, leader] : rock_.tied) {
+        move_[follower] = move_[leader];
+        energy_.work +=
+            (rock_.load[follower] + rock_.applied[follower] + held * released_[follower]).dot(move_[leader]);
+    }
+    fastest_ = std::sqrt(fastest);
+    if (!std::isfinite(fastest_) || !std::isfinite(kinetic))
+        throw equilibrium_error("motion: velocities are no longer finite numbers at " +
+                                shown(rock_.position[fastest_gridpoint_]));
+    time_ += dt_;
+    find_forces(move_);
+    energy_.kinetic = kinetic;
+    energy_.stored = stored() - stored_at_start_;
+    for (std::size_t z = 0; z < zones_.size(); ++z)
+        if (rock_.zones.is_present[z] && !is_rigid_[z])
+            energy_.damped += zones_[z].damped;
+    for (const Pair& pair : contacts_.pairs()) {
+        energy_.friction += pair.friction;
+        energy_.damped += pair.damped;
+    }
+    // What is nearly at rest swings about it. Stopped where its kinetic energy is largest, it comes to rest;
+    // what slides or falls has no such peak until it is no longer slow.
+    if (fastest_ < slow && kinetic < last_kinetic_) {
+        double now = 0;
+        for (std::size_t g = 0; g < n; ++g)
+            if (inverse_mass_[g] > 0)
+                now += velocity_[g].squaredNorm() / (2 * inverse_mass_[g]);
+        for (Body& body : bodies_) {
+            now += (body.mass * body.velocity.squaredNorm() + body.inertia * body.spin * body.spin) / 2;
+            body.velocity.setZero();
+            body.spin = 0;
+        }
+        energy_.damped += now;
+        energy_.kinetic = last_kinetic_ = 0;
+        velocity_.assign(n, Vector2d::Zero());
+        starts_from_rest_ = true;
+    } else
+        last_kinetic_ = kinetic;
+}
+
+bool Motion::is_at_rest()
+{
+    std::vector<double> magnitude(place_.size());
+    std::vector<Vector2d> contact_force(place_.size(), Vector2d::Zero());
+    contacts_.add_forces(contact_force);
+    double largest = 0, sum = 0, farthest = 0, change = 0;
+    Index n = 0;
+    const mechanics::Incidence& incidence = rock_.incidence;
+    for (std::size_t g = 0; g < place_.size(); ++g) {
+        if (body_of_[g] < 0)
+            largest = std::max(largest, force_[g].cwiseProduct(rock_.is_free[g]).norm());
+        farthest = std::max(farthest, place_[g].norm());
+        double all = rock_.load[g].norm() + rock_.applied[g].norm() + contact_force[g].norm();
+        for (Index k = incidence.zone_start[g]; k < incidence.zone_start[g + 1]; ++k)
+            if (const Index corner = incidence.zone_corner[k]; rock_.zones.is_present[corner / 3])
+                all += zones_[corner / 3].force[corner % 3].norm();
+        if (all > 0) {
+            sum += all;
+            ++n;
+        }
+        if (!last_contact_force_.empty())
+            change = std::max(change, (contact_force[g] - last_contact_force_[g]).norm());
+    }
+    for (const Body& body : bodies_)
+        if (!body.is_held) {
+            const auto [force, moment] = load_on(body);
+            largest =
+                std::max({largest, force.norm(), std::abs(moment) / std::sqrt(body.inertia / body.mass)});
+        }
+    // Where forces are almost none, they are rounding errors of stiffness times place.
+    const double mean = n > 0
+                            ? std::max(sum / n, 1e-15 * stiffest_ * (1 + settings_.stiffness_damping / dt_) *
+                                                    farthest / settings_.tolerance)
+                            : 1.0;
+    ratio_ = largest / mean;
+    const bool has_last = !last_contact_force_.empty();
+    force_change_ = change / mean;
+    last_contact_force_ = std::move(contact_force);
+    const bool is_balanced = ratio_ <= settings_.tolerance && has_last &&
+                             force_change_ <= settings_.tolerance && release_factor() == 0;
+    checks_in_balance_ = is_balanced ? checks_in_balance_ + 1 : 0;
+    return checks_in_balance_ >= 2;
+}
+
+void Motion::put_back()
+{
+    for (std::size_t g = 0; g < place_.size(); ++g)
+        rock_.displacement[g] = place_[g] - rock_.position[g];
+    for (std::size_t z = 0; z < zones_.size(); ++z) {
+        if (!rock_.zones.is_present[z])
+            continue;
+        if (is_rigid_[z]) {
+            rock_.zones.stress[z].setZero(); // unknown
+            continue;
+        }
+        const Zone& zone = zones_[z];
+        const Polar polar = polar_of(edges_of(zone.gridpoint, place_) * zone.inverse);
+        const Matrix2d stress = polar.rotation * tensor(stress_of(zone.stiffness, zone.strain)) *
+                                polar.stretch * polar.rotation.transpose() / polar.stretch.determinant();
+        rock_.zones.stress[z] = {stress(0, 0), stress(1, 1), (stress(0, 1) + stress(1, 0)) / 2};
+    }
+    mechanics::Contacts& contacts = rock_.contacts;
+    std::map<std::array<Index, 2>, const Pair*> closed; // by gridpoints {lower, higher}
+    for (const Pair& pair : contacts_.pairs())
+        if (pair.is_closed)
+            for (const Index a : contacts_.faces().gridpoint[pair.a])
+                for (const Index b : contacts_.faces().gridpoint[pair.b])
+                    closed[{std::min(a, b), std::max(a, b)}] = &pair;
+    for (std::size_t c = 0; c < contacts.gridpoint.size(); ++c) {
+        if (contacts.status[c] == ContactStatus::removed)
+            continue;
+        const auto [a, b] = contacts.gridpoint[c];
+        const Vector2d jump = rock_.displacement[b] - rock_.displacement[a];
+        contacts.jump[c] = {jump.dot(contacts.normal[c]), jump.dot(along(contacts.normal[c]))};
+        const auto found = closed.find({std::min(a, b), std::max(a, b)});
+        if (found == closed.end()) {
+            contacts.traction[c].setZero();
+            contacts.status[c] = ContactStatus::open;
+            continue;
+        }
+        contacts.traction[c] = {found->second->sigma, found->second->tau};
+        contacts.status[c] = found->second->is_slipping ? ContactStatus::slipping : ContactStatus::stuck;
+    }
+}
+
+} // namespace jointcreep::motion

@@ -1,0 +1,122 @@
+// Rock in motion: Newton's law for gridpoints, large displacements and rotations, on to rest.
+//
+// Zones are elastic in the frame that turns with them (Biot's stress over Biot's strain, from a shape without
+// stress that has the in-situ stress in the shape they start from), so turning costs nothing and the forces
+// have a potential. Joints are libs/motion/contacts. Real masses; velocities are half a step behind
+// displacements.
+
+#pragma once
+
+#include "model/network.hpp"
+#include "motion/contacts.hpp"
+
+namespace jointcreep::motion
+{
+
+// Since the start of a motion [J/m]: work = kinetic + stored + friction + damped, but for the error of steps.
+struct Energy {
+    double work = 0; // of weight, tractions on the outline and what excavation still holds
+    double kinetic = 0;
+    double stored = 0;   // by zones and contacts, less that at the start
+    double friction = 0; // lost to slip
+    double damped = 0;   // by dashpots, and where motion is stopped (see `settle`)
+
+    double error() const { return work - kinetic - stored - friction - damped; }
+};
+
+struct Settings {
+    double stiffness_damping = 0; // dashpots of zones and closed contacts over their springs [s]
+    double mass_damping = 0;      // force over mass and velocity [1/s]
+    double release = 0;           // time in which excavation's forces fade away [s]
+    double tolerance = 1e-5;      // of the out-of-balance ratio at rest [-]
+};
+
+// A section that moves. Works on an assembly whose displacements count from the start; takes its zones' and
+// contacts' state from there, and puts displacements, stresses and contacts back.
+class Motion
+{
+public:
+    // `found` are the laws of contacts that come about.
+    // Zones of rigid rock form bodies that do not deform.
+    Motion(mechanics::Assembly& rock, const Mesh& mesh, std::vector<char> is_rigid,
+           const joint::Coulomb& found, const Settings& settings);
+
+    // Begins anew after the assembly has lost rock, or gained loads; `released` [N/m] fades away.
+    void start(const std::vector<Vector2d>& released);
+
+    // One step of time. Throws equilibrium_error where faces overlap too much, and where places are no
+    // numbers.
+    void step();
+
+    // Whether nothing moves any more: forces are in balance to the tolerance, and have been. To be asked
+    // every `check_every` steps.
+    static constexpr Index check_every = 50;
+    bool is_at_rest();
+
+    double time() const { return time_; } // since the start of this motion [s]
+    double dt() const { return dt_; }     // [s]
+    const Energy& energy() const { return energy_; }
+    double out_of_balance_ratio() const { return ratio_; }
+    double contact_force_change() const { return force_change_; }
+    double fastest() const { return fastest_; } // [m/s], and where: a gridpoint
+    Index fastest_gridpoint() const { return fastest_gridpoint_; }
+    const Contacts& contacts() const { return contacts_; }
+    const std::vector<Vector2d>& velocity() const { return velocity_; }
+
+    // Puts displacements, stresses and contacts of the mesh into the assembly. A contact of the mesh whose
+    // two faces no longer touch is open.
+    void put_back();
+
+private:
+    struct Zone {
+        std::array<Index, 3> gridpoint;
+        Eigen::Matrix2d inverse;   // of the edges {1 - 0, 2 - 0} in the shape without stress [1/m]
+        double area = 0;           // of that shape [m2]
+        Eigen::Vector3d stiffness; // {C11, C12, C33} [Pa]
+        Eigen::Vector3d strain;    // Biot's {xx, yy, 2 xy} in the last step
+        std::array<Vector2d, 3> force{Vector2d::Zero(), Vector2d::Zero(),
+                                      Vector2d::Zero()}; // on its corners [N/m]
+        double stored = 0, damped = 0;                   // now; in the last step [J/m]
+    };
+
+    // Rock that does not deform: gridpoints that zones of rigid rock connect.
+    struct Body {
+        std::vector<Index> gridpoint; // leaders of ties
+        std::vector<Vector2d> arm;    // of each from the centre, before the body has turned [m]
+        double mass = 0, inertia = 0; // [kg/m], [kg m]
+        Vector2d centre{0, 0}, velocity{0, 0};
+        double angle = 0, spin = 0; // [rad], [rad/s]
+        bool is_held = false;       // if any of its gridpoints is
+    };
+
+    void find_faces();
+    void find_bodies();
+    void find_time_step();
+    double move(Body& body, double keep, double gain);
+    std::pair<Vector2d, double> load_on(const Body& body) const;
+    void find_forces(const std::vector<Vector2d>& move);
+    double release_factor() const;
+    double stored() const;
+
+    mechanics::Assembly& rock_;
+    const Mesh& mesh_;
+    Settings settings_;
+    Contacts contacts_;
+    std::vector<Body> bodies_;
+    std::vector<char> is_rigid_; // zones
+    std::vector<Index> body_of_; // of gridpoints; -1 none
+    std::vector<Zone> zones_;    // of the assembly
+    std::vector<Vector2d> place_, velocity_, move_, force_, released_;
+    std::vector<double> inverse_mass_; // 0 where held by nothing but rock that is gone [m/kg]
+    std::vector<std::size_t> law_of_edge_;
+
+    double dt_ = 0, time_ = 0;
+    bool starts_from_rest_ = true;
+    Energy energy_;
+    double stored_at_start_ = 0, last_kinetic_ = 0, stiffest_ = 0;
+    double ratio_ = 0, force_change_ = 0, fastest_ = 0;
+    Index fastest_gridpoint_ = 0, checks_in_balance_ = 0;
+    std::vector<Vector2d> last_contact_force_;
+};
+
+} // namespace jointcreep::motion

@@ -1,0 +1,217 @@
+// Contacts between two rows of faces, against closed forms.
+
+#include "motion/contacts.hpp"
+
+#include <Eigen/Geometry>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+using namespace jointcreep;
+using Eigen::Vector2d;
+using motion::Contacts;
+using motion::Faces;
+
+namespace
+{
+
+constexpr double k_n = 2e9, k_s = 5e8, friction = 0.5;
+
+// Two polylines, each with its rock on the left; gridpoints are numbered one line after the other.
+struct TwoLines {
+    std::vector<Vector2d> place;
+    Faces faces;
+
+    TwoLines(const std::vector<Vector2d>& one, const std::vector<Vector2d>& other)
+    {
+        for (const auto* line : {&one, &other}) {
+            const auto first = static_cast<Index>(place.size());
+            place.insert(place.end(), line->begin(), line->end());
+            for (Index i = 0; i + 1 < static_cast<Index>(line->size()); ++i) {
+                faces.gridpoint.push_back({first + i, first + i + 1});
+                faces.depth.push_back(1);
+            }
+        }
+    }
+
+    void turn(double angle)
+    {
+        for (Vector2d& p : place)
+            p = Eigen::Rotation2Dd(angle) * p;
+    }
+};
+
+Contacts contacts_of(const TwoLines& lines)
+{
+    Contacts contacts({joint::Coulomb{k_n, k_s, 0, friction, 0}});
+    contacts.set_faces(lines.faces, {}, lines.place);
+    return contacts;
+}
+
+std::vector<Vector2d> forces_of(const Contacts& contacts, std::size_t n)
+{
+    std::vector<Vector2d> force(n, Vector2d::Zero());
+    contacts.add_forces(force);
+    return force;
+}
+
+// A lower row whose top runs from right to left, and an upper one whose bottom runs from left to right and
+// lies `sunk` below it.
+TwoLines rows(double sunk)
+{
+    return {{{4, 0}, {2.7, 0}, {1.9, 0}, {0.4, 0}, {0, 0}},
+            {{0.25, -sunk}, {1, -sunk}, {2.2, -sunk}, {3.5, -sunk}}};
+}
+
+} // namespace
+
+// Uniform closing gives uniform traction: every gridpoint has half of the loaded sides beside it, although
+// none has a partner.
+TEST(contacts, a_uniform_traction_passes_between_faces_that_do_not_match)
+{
+    for (const double angle : {0.0, 0.7, 2.5}) {
+        const double sunk = 1e-4;
+        TwoLines lines = rows(sunk);
+        lines.turn(angle);
+        Contacts contacts = contacts_of(lines);
+        const std::vector<Vector2d> still(lines.place.size(), Vector2d::Zero());
+        contacts.update(lines.place, still, 1, 0, 1);
+        const std::vector<Vector2d> force = forces_of(contacts, lines.place.size());
+        const double sigma = k_n * sunk;
+        const Vector2d up = Eigen::Rotation2Dd(angle) * Vector2d(0, 1);
+        // Of the upper row, from 0.25 to 3.5, wholly on the lower one.
+        const double upper[] = {0.375, 0.975, 1.25, 0.65};
+        for (int i = 0; i < 4; ++i)
+            EXPECT_LT((force[5 + i] - sigma * upper[i] * up).norm(), 1e-9 * sigma) << i << " at " << angle;
+        // Of the lower one: 4 to 2.7 is loaded up to 3.5, 0.4 to 0 down to 0.25, linearly shared.
+        const double right = 0.8 * 0.4 / 1.3, left = 0.15 * 0.075 / 0.4;
+        const double lower[] = {right, 0.8 - right + 0.4, 0.4 + 0.75, 0.75 + 0.15 - left, left};
+        for (int i = 0; i < 5; ++i)
+            EXPECT_LT((force[i] + sigma * lower[i] * up).norm(), 1e-9 * sigma) << i << " at " << angle;
+    }
+}
+
+TEST(contacts, forces_and_moments_balance)
+{
+    TwoLines lines = rows(1e-4);
+    for (std::size_t g = 5; g < lines.place.size(); ++g) // tilted, so that a part is open
+        lines.place[g].y() += 2e-4 * (lines.place[g].x() - 1.5);
+    Contacts contacts = contacts_of(lines);
+    std::vector<Vector2d> move(lines.place.size(), Vector2d::Zero());
+    contacts.update(lines.place, move, 1, 0, 1);
+    for (std::size_t g = 5; g < lines.place.size(); ++g)
+        lines.place[g] += move[g] = {3e-5, 0};
+    contacts.update(lines.place, move, 1, 0, 1);
+    const std::vector<Vector2d> force = forces_of(contacts, lines.place.size());
+    Vector2d sum(0, 0);
+    double moment = 0, largest = 0;
+    for (std::size_t g = 0; g < force.size(); ++g) {
+        sum += force[g];
+        moment += lines.place[g].x() * force[g].y() - lines.place[g].y() * force[g].x();
+        largest = std::max(largest, force[g].norm());
+    }
+    EXPECT_GT(largest, 1e4);
+    EXPECT_LT(sum.norm(), 1e-12 * largest);
+    EXPECT_LT(std::abs(moment), 1e-3 * largest); // the shear acts across the overlap, 3e-4 m
+}
+
+// Shear turns with the rock, and slips at its limit.
+TEST(contacts, shear_goes_along_and_is_limited)
+{
+    for (const double angle : {0.0, 1.2}) {
+        TwoLines lines = rows(1e-4);
+        Contacts contacts = contacts_of(lines);
+        std::vector<Vector2d> move(lines.place.size(), Vector2d::Zero());
+        contacts.update(lines.place, move, 1, 0, 1);
+        const auto total = [&] {
+            Vector2d sum(0, 0);
+            const std::vector<Vector2d> force = forces_of(contacts, lines.place.size());
+            for (std::size_t g = 5; g < force.size(); ++g)
+                sum += force[g];
+            return sum;
+        };
+        const double pressed = k_n * 1e-4 * 3.25, slid = 5e-5;
+        for (std::size_t g = 5; g < lines.place.size(); ++g)
+            lines.place[g] += move[g] = {slid, 0};
+        contacts.update(lines.place, move, 1, 0, 1);
+        EXPECT_NEAR(total().x(), -k_s * slid * 3.25, 1e-4 * k_s * slid * 3.25);
+        // Turned as a whole, in small steps as in a motion: the forces turn.
+        for (int step = 0; step < 100; ++step) {
+            const std::vector<Vector2d> before = lines.place;
+            lines.turn(angle / 100);
+            for (std::size_t g = 0; g < move.size(); ++g)
+                move[g] = lines.place[g] - before[g];
+            contacts.update(lines.place, move, 1, 0, 1);
+        }
+        const Vector2d turned = Eigen::Rotation2Dd(-angle) * total();
+        EXPECT_NEAR(turned.x(), -k_s * slid * 3.25, 1e-3 * k_s * slid * 3.25) << angle;
+        EXPECT_NEAR(turned.y(), pressed, 1e-9 * pressed) << angle;
+        for (std::size_t g = 0; g < move.size(); ++g)
+            move[g] = g < 5 ? Vector2d(0, 0) : Vector2d(Eigen::Rotation2Dd(angle) * Vector2d(1e-3, 0));
+        for (std::size_t g = 0; g < move.size(); ++g)
+            lines.place[g] += move[g];
+        contacts.update(lines.place, move, 1, 0, 1);
+        EXPECT_NEAR((Eigen::Rotation2Dd(-angle) * total()).x(), -friction * pressed, 1e-9 * pressed) << angle;
+    }
+}
+
+// A corner of 90 degrees, d deep in a face, closes d cot t of one of its faces and d tan t of the other: the
+// force is k d^2 (cot t + tan t) / 2 along the face's normal, wherever gridpoints of the face are.
+TEST(contacts, a_corner_presses_along_the_normal_of_the_face)
+{
+    const double sunk = 1e-3;
+    for (const double turn : {0.1, 0.7, 1.3})
+        for (const double at : {0.3, 1.9, 1.9004, 2.0}) {
+            const Vector2d corner(at, -sunk), one(std::cos(turn), std::sin(turn)), other(-one.y(), one.x());
+            const TwoLines lines({{4, 0}, {2.7, 0}, {1.9, 0}, {-1, 0}},
+                                 {corner + other, corner, corner + one});
+            Contacts contacts = contacts_of(lines);
+            const std::vector<Vector2d> still(lines.place.size(), Vector2d::Zero());
+            contacts.update(lines.place, still, 1, 0, 1);
+            const std::vector<Vector2d> force = forces_of(contacts, lines.place.size());
+            const Vector2d sum = force[4] + force[5] + force[6];
+            const double expected = k_n * sunk * sunk / 2 * (1 / std::tan(turn) + std::tan(turn));
+            EXPECT_NEAR(sum.y(), expected, 1e-6 * expected) << turn << " at " << at;
+            EXPECT_NEAR(sum.x(), 0, 1e-6 * expected) << turn << " at " << at;
+        }
+}
+
+// What slides on keeps its shear and its closing on the next face.
+TEST(contacts, history_goes_on_to_the_next_face)
+{
+    TwoLines lines({{4, 0}, {3, 0}, {2, 0}, {1, 0}, {0, 0}}, {{0.2, -1e-4}, {0.8, -1e-4}});
+    Contacts contacts = contacts_of(lines);
+    std::vector<Vector2d> move(lines.place.size(), Vector2d::Zero());
+    contacts.update(lines.place, move, 1, 0, 1);
+    for (int step = 0; step < 300; ++step) {
+        for (std::size_t g = 5; g < lines.place.size(); ++g)
+            lines.place[g] += move[g] = {0.01, 0};
+        contacts.update(lines.place, move, 1, 0, 1);
+        const std::vector<Vector2d> force = forces_of(contacts, lines.place.size());
+        const Vector2d sum = force[5] + force[6];
+        const double pressed = k_n * 1e-4 * 0.6;
+        EXPECT_NEAR(sum.y(), pressed, 1e-9 * pressed) << step;
+        EXPECT_NEAR(sum.x(), -friction * pressed, 1e-9 * pressed) << step;
+        double lost = 0;
+        for (const motion::Pair& pair : contacts.pairs())
+            lost += pair.friction;
+        if (step > 0) {
+            EXPECT_NEAR(lost, friction * pressed * 0.01, 2e-2 * friction * pressed * 0.01) << step;
+        }
+    }
+    EXPECT_GT(contacts.searches(), 5);
+}
+
+TEST(contacts, faces_far_apart_are_not_sought_again_while_nothing_moves_far)
+{
+    TwoLines lines = rows(1e-4);
+    Contacts contacts = contacts_of(lines);
+    std::vector<Vector2d> move(lines.place.size(), Vector2d(1e-5, 0));
+    for (int step = 0; step < 100; ++step) {
+        for (std::size_t g = 0; g < move.size(); ++g)
+            lines.place[g] += move[g];
+        contacts.update(lines.place, move, 1, 0, 1);
+    }
+    EXPECT_EQ(contacts.searches(), 1);
+}

@@ -1,0 +1,269 @@
+"""Factors of safety against closed forms, and what is left of a run that finds no equilibrium."""
+
+import math
+
+import h5py
+import numpy as np
+from chain import ChainTest, changed, datasets, main
+from events_test import WEDGE
+
+DIP = math.radians(25)  # of data/verification/incline: a block of 10 m x 1 m, loaded by 1 MPa straight down
+SMOOTH = """
+[[joint_material]]
+name = "smooth"
+normal_stiffness_MPa_per_m = 100
+shear_stiffness_MPa_per_m = 1
+cohesion_MPa = 0
+friction_angle_deg = 0
+tensile_strength_MPa = 0
+
+[[joint]]
+name = "between"
+from_m = [4.531538935183, 2.113091308703]
+to_m = [4.10892067344, 3.01939909574]
+material = "smooth"
+"""
+FIRM = """
+[[joint_material]]
+name = "firm"
+normal_stiffness_MPa_per_m = 100
+shear_stiffness_MPa_per_m = 40
+cohesion_MPa = 0
+friction_angle_deg = 45
+tensile_strength_MPa = 0
+"""
+# A stage that takes the support away from under a block; the next stage would have taken the block, too.
+HANGING = """
+[section]
+outline_m = [[0, 0], [10, 0], [10, 30], [0, 30]]
+rock = "rock"
+gravity_m_per_s2 = 9.81
+[[rock]]
+name = "rock"
+density_kg_per_m3 = 2700
+youngs_modulus_GPa = 20
+poissons_ratio = 0.25
+[[joint_material]]
+name = "joint"
+normal_stiffness_MPa_per_m = 5000
+shear_stiffness_MPa_per_m = 2000
+cohesion_MPa = 0
+friction_angle_deg = 35
+tensile_strength_MPa = 0
+[[joint]]
+name = "low"
+from_m = [0, 10]
+to_m = [10, 10]
+material = "joint"
+[[joint]]
+name = "high"
+from_m = [0, 20]
+to_m = [10, 20]
+material = "joint"
+[in_situ_stress]
+elevation_m = 30
+compression_xx_MPa = 0
+compression_yy_MPa = 0
+shear_xy_MPa = 0
+compression_xx_gradient_MPa_per_m = 0
+compression_yy_gradient_MPa_per_m = 0.026487
+shear_xy_gradient_MPa_per_m = 0
+[[boundary]]
+from_m = [0, 0]
+to_m = [10, 0]
+fix = "xy"
+[schedule]
+end = 3
+[[stage]]
+name = "the middle one"
+date = 1
+remove_m = [[[0, 10], [10, 10], [10, 20], [0, 20]]]
+[[stage]]
+name = "the upper one"
+date = 2
+remove_m = [[[0, 20], [10, 20], [10, 30], [0, 30]]]
+[[point]]
+name = "floor"
+at_m = [5, 5]
+[zones]
+size_m = 4
+"""
+
+
+class Safety(ChainTest):
+    def bracket(self, text, *options):
+        """Lower and upper end of the factor of safety, and the names of the files at these."""
+        joints = self.chain.joints(text)
+        output = joints.with_name("result.h5")
+        done = self.chain.answer("demsolve", joints, "--no-creep", "--factor-of-safety", "-o", output, *options)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        factor, stands = (datasets(output)[f"/safety/{name}"] for name in ("factor", "stands"))
+        low, high = factor[stands == 1].max(), factor[stands != 1].min()
+        self.assertTrue((stands >= 0).all())
+        self.assertRegex(done.stdout, f"factor of safety, at least +{low:.15g}\n")
+        self.assertRegex(done.stdout, f"factor of safety, below +{high:.15g}\n")
+        return low, high, output, output.with_name("result.failed.h5")
+
+    def assert_factor(self, wanted, text, *options, width=0.01):
+        low, high, *files = self.bracket(text, *options)
+        self.assertLessEqual(low, wanted)
+        self.assertLess(wanted, high)
+        self.assertLessEqual(high - low, width * low)
+        return files
+
+    def incline(self, *changes):
+        text = self.chain.text("data/verification/incline/scene.toml")
+        for pattern, replacement in changes:
+            text = changed(text, pattern, replacement)
+        return text
+
+    def test_a_block_on_an_incline(self):
+        """F = (c + q cos(b) tan(phi)) / (q sin(b)), q = 1 MPa"""
+        for cohesion in 0, 0.1:
+            wanted = (cohesion + math.cos(DIP) * math.tan(math.radians(35))) / math.sin(DIP)
+            text = self.incline(*[("^cohesion_MPa = 0", f"cohesion_MPa = {cohesion}")] * (cohesion > 0))
+            stands, failed = self.assert_factor(wanted, text, "--safety-width", "0.001", width=0.001)
+        # Each file is what a run with its factor alone would have been.
+        with h5py.File(stands) as file:
+            options = file["/provenance/options"].asstr()[-1]
+        self.assertRegex(options, "--strength-factor [0-9.]+ --no-creep")
+        alone = stands.with_name("alone.h5")
+        self.chain.run("demsolve", stands.with_name("joints.h5"), alone, *options.split())
+        alone, found = datasets(alone), datasets(stands)
+        for name in found.keys() - {"/safety/factor", "/safety/stands"}:
+            np.testing.assert_array_equal(found[name], alone[name], name)
+        self.assertNotIn("/failure/reason", found)
+        self.assertEqual(datasets(failed)["/failure/block"].tolist(), [0])
+
+    def test_two_blocks_on_an_incline(self):
+        """The upper one pushes the lower one where it is the weaker of the two; it cannot pull it."""
+        for upper, lower in ("joint", "firm"), ("firm", "joint"):
+            text = self.incline(
+                (r'^to_m = \[9.063077870367, 4.226182617407\]\njoint = "joint"',
+                 f'to_m = [4.531538935183, 2.113091308703]\njoint = "{lower}"\n\n[[boundary]]\n'
+                 f'from_m = [4.531538935183, 2.113091308703]\nto_m = [9.063077870367, 4.226182617407]\njoint = "{upper}"'))
+            weak, firm = math.tan(math.radians(35)), math.tan(math.radians(45))
+            wanted = ((weak + firm) / 2 if upper == "joint" else weak) / math.tan(DIP)
+            with self.subTest(upper=upper):
+                _, failed = self.assert_factor(wanted, text + SMOOTH + FIRM)
+                place = datasets(failed)["/failure/place"]
+                self.assertEqual(len(place), 2 if upper == "joint" else 1)
+                self.assertTrue((place[-1] if upper != "joint" else place.min(axis=0))[0] < 4.3)
+
+    def test_a_wedge_with_a_tension_crack(self):
+        """Plane failure: the crack 2 m behind the joint's outcrop bears no tension, what is before it goes by itself."""
+        steep = math.atan2(10, 7)
+        text = changed(WEDGE.format(end="[21, 14]"), "^friction_angle_deg = 35", "friction_angle_deg = 60")
+        self.assert_factor(math.tan(math.radians(60)) / math.tan(steep), text, "--zone-size", "4")
+        crack = '[[joint]]\nname = "crack"\nfrom_m = [16, 24]\nto_m = [16, 21.142857]\nmaterial = "clay"\n'
+        text = changed(text, r"^\[in_situ_stress\]", crack + "[in_situ_stress]")
+        self.assert_factor(math.tan(math.radians(60)) / math.tan(steep), text, "--zone-size", "4")
+
+    def test_strength_that_decides_nothing(self):
+        done = self.chain.answer("demsolve", self.chain.joints(HANGING), "--factor-of-safety", "-o",
+                                 self.chain.new_folder() / "result.h5")
+        self.assertEqual(done.returncode, 3)
+        self.assertIn("with strengths 64 times as large there is still no equilibrium", done.stderr)
+        stack = HANGING[:HANGING.index("[[stage]]")] + HANGING[HANGING.index("[[point]]"):]
+        output = self.chain.new_folder() / "result.h5"
+        done = self.chain.answer("demsolve", self.chain.joints(stack), "--factor-of-safety", "-o", output)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertRegex(done.stdout, "factor of safety, at least +64\nruns +7\nfactor of safety, below +none found")
+        self.assertFalse(output.with_name("result.failed.h5").exists())
+
+    def test_refusals(self):
+        joints = self.chain.joints(HANGING)
+        for options, said in ((("--strength-factor", "0"), "must be between"),
+                              (("--strength-factor", "2", "--factor-of-safety"), "do not go together"),
+                              (("--safety-width", "0.1"), "goes with --factor-of-safety only"),
+                              (("--factor-of-safety", "--safety-width", "1e-4", "--tolerance", "1e-5"), "100 times"),
+                              (("--factor-of-safety", "--engine", "implicit"), "cannot tell")):
+            done = self.chain.answer("demsolve", joints, "-o", joints.with_name("result.h5"), *options)
+            self.assertEqual(done.returncode, 2, options)
+            self.assertIn(said, done.stderr)
+
+    def test_strength_that_is_not_divided_is_refused(self):
+        for table, keys, said in (("[[joint_material]]", "joint_roughness_coefficient = 5\njoint_wall_strength_MPa = 50\n"
+                                                         "largest_closure_mm = 1", "Barton and Bandis's law"),
+                                  ("[[rock]]", 'law = "Mohr-Coulomb"\ncohesion_MPa = 9\nfriction_angle_deg = 40\n'
+                                               "tensile_strength_MPa = 9", 'rock "rock" yields')):
+            joints = self.chain.joints(HANGING.replace(table, f"{table}\n{keys}"))
+            for options in (("--strength-factor", "2"), ("--factor-of-safety",)):
+                done = self.chain.answer("demsolve", joints, "-o", joints.with_name("result.h5"), *options)
+                self.assertEqual(done.returncode, 2, options)
+                self.assertIn(f"{options[0]}: ", done.stderr)
+                self.assertIn(said, done.stderr)
+
+
+class NoEquilibrium(ChainTest):
+    def failed(self, text, *options, code=3):
+        """The message, and what is left."""
+        joints = self.chain.joints(text)
+        output = joints.with_name("result.h5")
+        output.write_text("what was here before")
+        done = self.chain.answer("demsolve", joints, "-o", output, *options)
+        self.assertEqual(done.returncode, code, done.stderr)
+        self.assertEqual(output.read_text(), "what was here before")
+        return done.stderr, output.with_name("result.failed.h5")
+
+    def test_a_wedge_that_slides_is_named_with_its_motion(self):
+        for engine in "auto", "explicit":
+            message, path = self.failed(WEDGE.format(end="[21, 14]") + '[[point]]\nname = "A"\nat_m = [20, 22]\n',
+                                        "--engine", engine)
+            left = datasets(path)
+            self.assertEqual(left["/failure/block"].size, 1)
+            block = left["/failure/block"][0]
+            np.testing.assert_allclose(left["/failure/place"][0], [56 / 3, 62 / 3], atol=0.02)
+            motion = left["/failure/motion"][0]
+            self.assertAlmostEqual(motion[1] / motion[0], -10 / 7, delta=0.05)
+            self.assertEqual((left["/failure/stage"][0], left["/failure/time"][0], left["/failure/moves_on"][0]),
+                             ("cut", 1, 1))
+            self.assertIn(f'stage "cut"; what moves: block {block} at [18.6', message)
+            self.assertIn(str(path), message)
+            # Up to the last equilibrium: the state before the stage, at rest.
+            self.assertEqual(left["/states/time"].tolist(), [0, 1])
+            self.assertEqual(set(left["/states/event"]), {""})
+            self.assertEqual(left["/history/displacement"].shape[0], 2)
+            self.assertLess(abs(left["/states/displacement"]).max(), 1e-3)
+
+    def test_with_real_masses_it_says_how_fast(self):
+        _, path = self.failed(WEDGE.format(end="[21, 14]") + '[equilibrium]\nmasses = "real"\ndamping = "mass"\n'
+                              "mass_damping_per_s = 0.01\nstiffness_damping_s = 1e-4\ntolerance = 1e-3\n", "--zone-size", "4")
+        left = datasets(path)
+        # From rest it slides with g (sin b - cos b tan(phi)) along the joint, until it has moved by a tenth of the
+        # section; the mean speed of the last steps is that in the middle of their time.
+        steep, far, seconds = math.atan2(10, 7), math.hypot(40, 24) / 10, left["/failure/seconds"][0]
+        acceleration = 9.81 * (math.sin(steep) - math.cos(steep) * math.tan(math.radians(35)))
+        wanted = math.sqrt(2 * acceleration * far) - acceleration * seconds / 2
+        self.assertGreater(seconds, 0)
+        self.assertAlmostEqual(np.linalg.norm(left["/failure/motion"][0]) / seconds / wanted, 1, delta=0.03)
+
+    def test_rock_that_nothing_holds_is_named_before_any_step(self):
+        message, path = self.failed(HANGING)
+        left = datasets(path)
+        self.assertEqual(left["/failure/steps"].tolist(), [0])
+        np.testing.assert_allclose(left["/failure/place"], [[5, 25]], atol=1e-9)
+        self.assertIn("no boundary and no contact holds", message)
+        self.assertIn('on day 1, stage "the middle one"', message)
+        # Nothing was sought after the stage: only the in-situ equilibrium is there.
+        self.assertEqual(left["/equilibria/time"].tolist(), [0])
+
+    def test_without_an_in_situ_equilibrium_there_is_the_state_given(self):
+        text = changed(HANGING, 'fix = "xy"', 'fix = "x"')
+        _, path = self.failed(text)
+        left = datasets(path)
+        self.assertEqual(left["/failure/block"].size, 3)
+        self.assertEqual((left["/equilibria/time"].size, left["/states/time"].tolist()), (0, [0]))
+        self.assertEqual(abs(left["/states/displacement"]).max(), 0)
+        exported = path.with_name("zones.vtu")
+        done = self.chain.answer("jointexport", path, "-o", exported)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertRegex(done.stdout, "warning: ended early +no equilibrium")
+
+    def test_what_ends_without_an_answer_says_so(self):
+        _, path = self.failed(WEDGE.format(end="[21, 14]") + '[equilibrium]\nengine = "explicit"\nmost_steps = 3000\n')
+        self.assertEqual(datasets(path)["/failure/moves_on"].tolist(), [0])
+
+
+if __name__ == "__main__":
+    main()
