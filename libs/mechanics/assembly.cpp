@@ -124,6 +124,7 @@ void list_by_gridpoint(const std::vector<std::array<Index, N>>& gridpoints, std:
             entry[next[gridpoints[i][k]]++] = static_cast<Index>(N * i + k);
 }
 
+template <bool any_yields> // a branch less for each zone where none does
 void pull_zones(Assembly& assembly, bool forces_alone)
 {
     Zones& zones = assembly.zones;
@@ -138,7 +139,6 @@ void pull_zones(Assembly& assembly, bool forces_alone)
     const Vector3d *const stiffness = zones.stiffness.data(), *const initial = zones.initial_stress.data();
     const double* const area = zones.area.data();
     const char* const is_present = zones.is_present.data();
-    const Index* const yielding = zones.yielding.empty() ? nullptr : zones.yielding_number.data();
     Vector3d *const stress = zones.stress.data(), *const last_stress = zones.last_stress.data();
     Vector2d* __restrict const force = assembly.slot_force.data();
     double* const magnitudes = assembly.slot_magnitudes.data();
@@ -162,13 +162,14 @@ void pull_zones(Assembly& assembly, bool forces_alone)
             const double c11 = stiffness[z][0], c12 = stiffness[z][1], c33 = stiffness[z][2];
             double xx = initial[z][0] + (c11 * exx + c12 * eyy), yy = initial[z][1] + (c12 * exx + c11 * eyy),
                    xy = initial[z][2] + c33 * gxy;
-            if (yielding != nullptr && yielding[z] >= 0) {
-                const Vector3d now = stress_of_yielding(zones, z, {exx, eyy, gxy});
-                xx = now[0];
-                yy = now[1];
-                xy = now[2];
-            }
-            if (!forces_alone || yielding != nullptr) // from which yielding goes on
+            if constexpr (any_yields)
+                if (zones.yielding_number[z] >= 0) {
+                    const Vector3d now = stress_of_yielding(zones, z, {exx, eyy, gxy});
+                    xx = now[0];
+                    yy = now[1];
+                    xy = now[2];
+                }
+            if (any_yields || !forces_alone) // the account of what yielding takes wants the last stress
                 stress[z] = {xx, yy, xy};
             if (damping > 0) {
                 const Vector3d now(xx, yy, xy), acting = now + damping * (now - last_stress[z]);
@@ -333,7 +334,10 @@ void find_forces_in_team(Assembly& assembly, bool forces_alone)
         for (const auto& [follower, leader] : assembly.tied)
             assembly.displacement[follower] = assembly.displacement[leader];
     }
-    pull_zones(assembly, forces_alone);
+    if (assembly.zones.yielding.empty())
+        pull_zones<false>(assembly, forces_alone);
+    else
+        pull_zones<true>(assembly, forces_alone);
     pull_contacts(assembly);
 #pragma omp barrier
     add_up_forces(assembly);

@@ -57,7 +57,7 @@ const Vector2d weight(-12e3, -26e3);
 
 void bond(Assembly& rock)
 {
-    for (joint::Coulomb& law : rock.contacts.law)
+    for (joint::Coulomb& law : coulomb(rock.contacts.law))
         law.cohesion = law.tensile_strength = 1e12;
 }
 
@@ -186,7 +186,7 @@ TEST(invariance, other_units)
             normal /= 4;
         for (double& length : rock.contacts.length)
             length *= 4;
-        for (joint::Coulomb& law : rock.contacts.law) {
+        for (joint::Coulomb& law : coulomb(rock.contacts.law)) {
             law.k_n /= 4;
             law.k_s /= 4;
         }
@@ -194,7 +194,7 @@ TEST(invariance, other_units)
     const Assembly smaller = at_rest(plate().mesh, 1024 * weight, [](Assembly& rock) {
         for (mechanics::Vector3d& moduli : rock.zones.stiffness)
             moduli *= 1024;
-        for (joint::Coulomb& law : rock.contacts.law) {
+        for (joint::Coulomb& law : coulomb(rock.contacts.law)) {
             law.k_n *= 1024;
             law.k_s *= 1024;
         }
