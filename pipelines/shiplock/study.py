@@ -68,6 +68,7 @@ def run(program, *arguments):
     done = subprocess.run([program, *map(str, arguments)], capture_output=True, text=True)
     if done.returncode != 0:
         raise Failed(f"{pathlib.Path(program).name}, exit code {done.returncode}: {done.stderr.strip()}")
+    return done.stdout
 
 
 def computed(programs, scene, options, number):
@@ -165,8 +166,9 @@ def markdown(own, rows, networks, points):
         cells.append(misfit_of(found))
         lines.append("| " + " | ".join(cells) + " |")
     lines += ["", f"Horizontal, toward the lock, at the end of 1999: the mean over {points} of the medians over "
-                  f"{own['networks']} network{'s' if own['networks'] > 1 else ''}."
-                  + (f" Rows of the network: {networks} networks." if networks > 1 else "")]
+                  f"{own['networks']} network{'s' if own['networks'] > 1 else ''}."]
+    if networks > 1:
+        lines.append(f"Rows of the network: {networks} networks.")
     return "\n".join(lines) + "\n"
 
 
