@@ -1,6 +1,7 @@
-# From a scene to its results, and the pictures that any scene has: rules that pipelines/slope and pipelines/shiplock share.
+# From a scene to its results, and pictures that any scene has: what pipelines/slope and pipelines/shiplock share.
 # The including Makefile says PYTHON, PLOTS, BIN, OUT, SCENE, STATES and FIELDS before; and if it wants them
-#   WINDOW   the part of the section in pictures, as an option of plots     STRESSES   the range of the stresses' colours
+#   WINDOW     the part of the section in pictures, as an option of plots
+#   STRESSES   the range of the stresses' colours [MPa]
 
 # A program that was built anew makes its file anew.
 $(OUT)/network.h5: $(SCENE) $(BIN)/jointgen | $(OUT)

@@ -1,4 +1,4 @@
-"""What the scripts share that write a variant of a scene: the scene is read, its text changed, the new one written whole."""
+"""What scripts that write a variant of a scene share: it is read, its text changed, the new one written whole."""
 
 import os
 import sys
@@ -10,7 +10,7 @@ class NotWanted(Exception):
 
 
 def write_variant(parser, change):
-    """Writes change(text, arguments) of the scene's text by the command line of `parser`, which gets its scene and -o here.
+    """Writes change(text, arguments) of the scene's text, by the command line of `parser`, which gets scene and -o here.
     Ends with exit code 2 and a message if the scene cannot be read, changed or written."""
     parser.add_argument("scene", metavar="SCENE.toml")
     parser.add_argument("-o", "--output", metavar="NAME.toml", required=True)

@@ -4,9 +4,9 @@
     back_analysis.py PROGRAMS SCENE.toml joints.h5 -o OUT
 
 The readings are those of a run of the same network whose joints have K times 1.2, and E and eta over K times 0.7:
-horizontal, about every 28 days from each point's first reading to the end, less the first one, with normal noise of 1 mm
-(standard deviation) in each. joints.h5 is of the scene. In OUT: readings.csv, factors.csv, fitted.csv (for plot_fit.py),
-creepfit.txt and creepfit.md.
+horizontal, about every 28 days from each point's first reading to the end, less the first one, with normal noise of
+1 mm (standard deviation) in each. joints.h5 is of the scene. In OUT: readings.csv, factors.csv, fitted.csv (for
+plot_fit.py), creepfit.txt and creepfit.md.
 """
 
 import argparse
@@ -43,7 +43,8 @@ def markdown(factors, number):
     lines = ["| factor | made with | found | 95 percent |", "|---|---|---|---|"]
     for row in factors:
         low, high = float(row["low_95"]), float(row["high_95"])
-        lines.append(f"| {WORDS[row['factor']]} | {MADE[row['factor']]} | {float(row['value']):.3f} | {low:.3f} to {high:.3f} |")
+        lines.append(f"| {WORDS[row['factor']]} | {MADE[row['factor']]} | {float(row['value']):.3f} "
+                     f"| {low:.3f} to {high:.3f} |")
     return "\n".join([*lines, "", f"{number} readings with noise of {SIGMA:g} mm."]) + "\n"
 
 

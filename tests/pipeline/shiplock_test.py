@@ -165,10 +165,11 @@ class Shiplock(ChainTest):
             self.assertAlmostEqual(found["recorded"], 30 + recorded)
 
     def test_readings_of_the_back_analysis(self):
-        """They count from the row after the stage of the first reading's day, leave out days of stages, and share its error."""
+        """They count from the row after the first reading's day's stage, share its error, and leave out days of stages."""
         import back_analysis
         days = [0.0, 10.0, 10.0, 20.0, 30.0, 30.0, 40.0]
-        result = {"names": ["N1", "S1"], "days": days, "first": [10, 20], "total": [[row, 2 * row * row] for row in range(7)]}
+        result = {"names": ["N1", "S1"], "days": days, "first": [10, 20],
+                  "total": [[row, 2 * row * row] for row in range(7)]}
         position = {"N1": 100, "S1": -100}
         with unittest.mock.patch.object(back_analysis, "SIGMA", 0):
             exact = list(back_analysis.readings(result, position))
