@@ -3,6 +3,8 @@
 #   WINDOW     the part of the section in pictures, as an option of plots
 #   STRESSES   the range of the stresses' colours [MPa]
 
+CHAIN := $(addprefix $(BIN)/,jointgen strength-averaging demsolve)
+
 # A program that was built anew makes its file anew.
 $(OUT)/network.h5: $(SCENE) $(BIN)/jointgen | $(OUT)
 	$(BIN)/jointgen $< -o $@
@@ -44,5 +46,5 @@ $(foreach state,$(STATES),$(foreach field,$(FIELDS),$(eval $(call state_picture,
 $(OUT):
 	mkdir -p $@
 
-$(addprefix $(BIN)/,jointgen strength-averaging demsolve jointexport creepfit):
+$(CHAIN) $(BIN)/jointexport $(BIN)/creepfit:
 	$(error $@ is not built; first run: sh pipelines/setup.sh)

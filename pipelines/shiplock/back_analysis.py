@@ -1,12 +1,12 @@
 #!/usr/bin/python3
 """Finds constants of the lock's joints back by creepfit, from noisy readings of the lock itself with other constants.
 
-    back_analysis.py PROGRAMS SCENE.toml joints.h5 -o OUT
+    back_analysis.py PROGRAMS SCENE.toml -o OUT
 
 The readings are those of a run of the same network whose joints have K times 1.2, and E and eta over K times 0.7:
 horizontal, about every 28 days from each point's first reading to the end, less the first one, with normal noise of
-1 mm (standard deviation) in each. joints.h5 is of the scene. In OUT: readings.csv, factors.csv, fitted.csv (for
-plot_fit.py), creepfit.txt and creepfit.md.
+1 mm (standard deviation) in each. Joints neither slip nor open, there and in the fit. In OUT: readings.csv,
+factors.csv, fitted.csv (for plot_fit.py), creepfit.txt and creepfit.md.
 """
 
 import argparse
@@ -48,14 +48,16 @@ def markdown(factors, number):
     return "\n".join([*lines, "", f"{number} readings with noise of {SIGMA:g} mm."]) + "\n"
 
 
-def analyse(programs, scene, joints, out):
-    result = study.computed(programs, scene, ["--stiffness-times", MADE["joint-stiffness"],
+def analyse(programs, scene, out):
+    result = study.computed(programs, scene, ["--linear", "--stiffness-times", MADE["joint-stiffness"],
                                               "--kelvin-times", MADE["kelvin-stiffness"]], 0)
     with open(scene, "rb") as file:
         position = {point["name"]: point["at_m"][0] for point in tomllib.load(file)["point"]}
     rows = list(readings(result, position))
     with tempfile.TemporaryDirectory(dir=out, prefix="creepfit.partial-") as folder:
         folder = pathlib.Path(folder)
+        (folder / "chain").mkdir()
+        joints = study.joints_of(programs, scene, ["--linear"], 0, folder / "chain")
         with open(folder / "readings.csv", "w", encoding="utf-8") as file:
             print("time_day,point,component,displacement_mm,sigma_mm", file=file)
             for day, name, value in rows:
@@ -66,7 +68,7 @@ def analyse(programs, scene, joints, out):
         with open(folder / "factors.csv", newline="", encoding="utf-8") as file:
             (folder / "creepfit.md").write_text(markdown(list(csv.DictReader(file)), len(rows)))
         (folder / "creepfit.txt").write_text(said)
-        for path in folder.iterdir():
+        for path in filter(pathlib.Path.is_file, folder.iterdir()):
             os.replace(path, out / path.name)
     print(said, end="")
 
@@ -75,11 +77,10 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("programs", type=pathlib.Path)
     parser.add_argument("scene", type=pathlib.Path)
-    parser.add_argument("joints", type=pathlib.Path)
     parser.add_argument("-o", "--output", type=pathlib.Path, required=True)
     arguments = parser.parse_args()
     try:
-        analyse(arguments.programs, arguments.scene, arguments.joints, arguments.output)
+        analyse(arguments.programs, arguments.scene, arguments.output)
     except study.Failed as error:
         sys.exit(f"back_analysis.py: {error}")
 

@@ -71,14 +71,19 @@ def run(program, *arguments):
     return done.stdout
 
 
+def joints_of(programs, scene, options, number, folder):
+    """The joints file of one network of a variant, made in the folder."""
+    run(sys.executable, HERE / "variant.py", scene, *options, "-o", folder / "scene.toml")
+    run(programs / "jointgen", folder / "scene.toml", "--realization", number, "--quiet", "-o", folder / "n.h5")
+    run(programs / "strength-averaging", folder / "n.h5", "--quiet", "-o", folder / "j.h5")
+    return folder / "j.h5"
+
+
 def computed(programs, scene, options, number):
     """Days and curves of one network, as JSON takes them."""
     with tempfile.TemporaryDirectory(prefix="jointcreep-") as folder:
         folder = pathlib.Path(folder)
-        run(sys.executable, HERE / "variant.py", scene, *options, "-o", folder / "scene.toml")
-        run(programs / "jointgen", folder / "scene.toml", "--realization", number, "--quiet", "-o", folder / "n.h5")
-        run(programs / "strength-averaging", folder / "n.h5", "--quiet", "-o", folder / "j.h5")
-        run(programs / "demsolve", folder / "j.h5", "--quiet", "-o", folder / "r.h5")
+        run(programs / "demsolve", joints_of(programs, scene, options, number, folder), "--quiet", "-o", folder / "r.h5")
         return read(folder / "r.h5")
 
 
