@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""What each way of damping costs: steps of motion to equilibrium on the bench slope, with 2e4 zones.
+"""What each way of damping costs: steps of motion to equilibrium on the bench slope, with 9e3 zones.
 
     damping.py BIN DATA OUT
 
@@ -23,8 +23,8 @@ import figure
 from scaling import measured_once
 from speed_against_error import number, table
 
-ZONES = 1.6  # [m]
-MOST_STEPS = 100000
+ZONES = 3  # [m]
+MOST_STEPS = 50000
 WAYS = [(damping, masses) for masses in ("scaled", "real") for damping in ("adaptive", "kinetic", "local", "combined")]
 
 

@@ -39,8 +39,11 @@ def draw_section(scene):
             wide = np.ptp(corners[:, 0]) > 60
             middle = corners[:, 0].min() / 2 + corners[:, 0].max() / 2
             date = stage["date"]
-            text = f"to {low:g} m, {date:%B %Y}" if wide else f"{low:g}, {date:%m/%Y}"
+            text = f"to {low:.0f} m, {date:%B %Y}" if wide else f"{low:.0f}, {date:%m/%Y}"
             axes.annotate(text, (middle, (low + high) / 2), ha="center", va="center", fontsize=6 if wide else 5, zorder=4)
+    depths = [y for stage in scene["stage"] for polygon in stage["remove_m"] if np.ptp(np.array(polygon)[:, 0]) <= 60
+              for _, y in polygon]  # of the chambers
+    axes.annotate("pier", (0, (min(depths) + max(depths)) / 2), ha="center", va="center", fontsize=7)
     for point in scene["point"]:
         x, y = point["at_m"]
         axes.plot(x, y, "o", color="k", markersize=3, zorder=5)
@@ -50,7 +53,6 @@ def draw_section(scene):
                                            label="measuring point"))
     entries.append(matplotlib.lines.Line2D([], [], color="0.25", linewidth=0.6, linestyle=(0, (5, 2)),
                                            label="excavation stage"))
-    axes.annotate("pier", (0, 135), ha="center", fontsize=7)
     axes.annotate("south", (WINDOW[0], WINDOW[1]), xytext=(5, 5), textcoords="offset points", fontsize=7)
     axes.annotate("north", (WINDOW[2], WINDOW[1]), xytext=(-5, 5), textcoords="offset points", fontsize=7, ha="right")
     axes.set_xlabel("across the lock (m)")

@@ -68,16 +68,22 @@ def run(program, *arguments):
     done = subprocess.run([program, *map(str, arguments)], capture_output=True, text=True)
     if done.returncode != 0:
         raise Failed(f"{pathlib.Path(program).name}, exit code {done.returncode}: {done.stderr.strip()}")
+    return done.stdout
+
+
+def joints_of(programs, scene, options, number, folder):
+    """The joints file of one network of a variant, made in the folder."""
+    run(sys.executable, HERE / "variant.py", scene, *options, "-o", folder / "scene.toml")
+    run(programs / "jointgen", folder / "scene.toml", "--realization", number, "--quiet", "-o", folder / "n.h5")
+    run(programs / "strength-averaging", folder / "n.h5", "--quiet", "-o", folder / "j.h5")
+    return folder / "j.h5"
 
 
 def computed(programs, scene, options, number):
     """Days and curves of one network, as JSON takes them."""
     with tempfile.TemporaryDirectory(prefix="jointcreep-") as folder:
         folder = pathlib.Path(folder)
-        run(sys.executable, HERE / "variant.py", scene, *options, "-o", folder / "scene.toml")
-        run(programs / "jointgen", folder / "scene.toml", "--realization", number, "--quiet", "-o", folder / "n.h5")
-        run(programs / "strength-averaging", folder / "n.h5", "--quiet", "-o", folder / "j.h5")
-        run(programs / "demsolve", folder / "j.h5", "--quiet", "-o", folder / "r.h5")
+        run(programs / "demsolve", joints_of(programs, scene, options, number, folder), "--quiet", "-o", folder / "r.h5")
         return read(folder / "r.h5")
 
 
@@ -165,8 +171,9 @@ def markdown(own, rows, networks, points):
         cells.append(misfit_of(found))
         lines.append("| " + " | ".join(cells) + " |")
     lines += ["", f"Horizontal, toward the lock, at the end of 1999: the mean over {points} of the medians over "
-                  f"{own['networks']} network{'s' if own['networks'] > 1 else ''}."
-                  + (f" Rows of the network: {networks} networks." if networks > 1 else "")]
+                  f"{own['networks']} network{'s' if own['networks'] > 1 else ''}."]
+    if networks > 1:
+        lines.append(f"Rows of the network: {networks} networks.")
     return "\n".join(lines) + "\n"
 
 

@@ -10,10 +10,13 @@ import argparse
 import datetime
 import json
 import math
-import os
+import pathlib
 import re
 import sys
 import tomllib
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent))
+from scene_text import NotWanted, write_variant  # noqa: E402
 
 WIDTH = 118  # of a line of the scene, in characters
 DECAY = 20  # of the tectonic stress towards the surface [m]
@@ -26,10 +29,6 @@ KELVIN = ("normal_kelvin_stiffness_MPa_per_m", "normal_kelvin_viscosity_MPa_day_
 PLACES = ("outline_m", "region_m", "ground_m", "from_m", "to_m", "remove_m", "at_m", "fine_m")
 # Chamber 3, the candidate for section B-B, by the elevations of chamber 2: floor, wall top, and 20 m less above.
 CHAMBER_3 = ((112, 92.2), (160, 139), (170, 150), (1000, 980))
-
-
-class NotWanted(Exception):
-    """The scene cannot be changed as asked."""
 
 
 # --- A scene's text, with some values changed -----------------------------------------------------------------------------
@@ -203,8 +202,6 @@ def box(scene, half, bottom):
     def change(table, record, key, _):
         if (table, key) == ("joint_set", "region_m"):
             return regions[record["name"].split()[1]]
-        if (table, key) == ("zones", "fine_m"):  # zones grow from the box outwards, as before
-            return [[-half - 10, bottom - 10], [half + 10, bottom - 10], [half + 10, 300], [-half - 10, 300]]
 
     return change
 
@@ -306,9 +303,8 @@ def variant(text, arguments):
     return text
 
 
-def parser_of(description):
-    parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("scene", metavar="SCENE.toml")
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--section-b", action="store_true", help="chamber 3, the candidate for section B-B")
     parser.add_argument("--stress", metavar="NAME", help="low, mid, high; or A,B,DECAY in MPa, MPa/m and m")
     parser.add_argument("--spacing-times", type=float, metavar="FACTOR", help="of all sets")
@@ -322,25 +318,7 @@ def parser_of(description):
     parser.add_argument("--first-reading-days", type=int, metavar="DAYS", help="later than in the scene")
     parser.add_argument("--linear", action="store_true", help="joints that neither slip nor open")
     parser.add_argument("--no-creep", action="store_true", help="without the table [creep]")
-    return parser
-
-
-def main():
-    parser = parser_of(__doc__)
-    parser.add_argument("-o", "--output", metavar="NAME.toml", required=True)
-    arguments = parser.parse_args()
-    try:
-        with open(arguments.scene, encoding="utf-8") as file:
-            text = file.read()
-        new = variant(text, arguments)
-        tomllib.loads(new)
-        partial = f"{arguments.output}.partial-{os.getpid()}"
-        with open(partial, "w", encoding="utf-8") as file:
-            file.write(new)
-        os.replace(partial, arguments.output)
-    except (OSError, NotWanted, tomllib.TOMLDecodeError) as error:
-        print(f"variant.py: {arguments.scene}: {error}", file=sys.stderr)
-        sys.exit(2)
+    write_variant(parser, variant)
 
 
 if __name__ == "__main__":

@@ -9,16 +9,15 @@ Only numbers inside the laws change, so that comments, order and every other val
 
 import argparse
 import copy
-import os
+import pathlib
 import re
 import sys
 import tomllib
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent))
+from scene_text import NotWanted, write_variant  # noqa: E402
+
 LAW = r"^(?P<before>{law} = {{[^}}]*\b{key} = )(?P<number>[-+.\w]+)(?P<after>[^}}]*}}.*)$"
-
-
-class NotWanted(Exception):
-    """The scene cannot be changed as asked."""
 
 
 def with_number(text, law, key, change):
@@ -50,29 +49,18 @@ def variant(text, law, keys, change):
     return text
 
 
+def changed_text(text, arguments):
+    if arguments.dip_deviation is not None:
+        return variant(text, "dip", ["deviation_deg"], lambda _: arguments.dip_deviation)
+    return variant(text, "spacing", ["mean_m", "deviation_m"], lambda number: number * arguments.spacing_times)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("scene", metavar="SCENE.toml")
-    parser.add_argument("-o", "--output", metavar="NAME.toml", required=True)
     what = parser.add_mutually_exclusive_group(required=True)
     what.add_argument("--dip-deviation", type=float, metavar="DEGREES", help="of the normal law of every set's dip")
     what.add_argument("--spacing-times", type=float, metavar="FACTOR", help="applied to mean and deviation")
-    arguments = parser.parse_args()
-
-    try:
-        with open(arguments.scene, encoding="utf-8") as file:
-            text = file.read()
-        if arguments.dip_deviation is not None:
-            text = variant(text, "dip", ["deviation_deg"], lambda _: arguments.dip_deviation)
-        else:
-            text = variant(text, "spacing", ["mean_m", "deviation_m"], lambda number: number * arguments.spacing_times)
-        partial = f"{arguments.output}.partial-{os.getpid()}"
-        with open(partial, "w", encoding="utf-8") as file:
-            file.write(text)
-        os.replace(partial, arguments.output)
-    except (OSError, NotWanted, tomllib.TOMLDecodeError) as error:
-        print(f"variant.py: {arguments.scene}: {error}", file=sys.stderr)
-        sys.exit(2)
+    write_variant(parser, changed_text)
 
 
 if __name__ == "__main__":

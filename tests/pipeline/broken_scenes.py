@@ -37,7 +37,20 @@ WITH_PROFILE = (LINEAR_STRESS, """elevation_m = 20
 profile = [{ depth_m = 0, compression_xx_MPa = 1, compression_yy_MPa = 0, shear_xy_MPa = 0 }, \
 { depth_m = 20, compression_xx_MPa = 1.3, compression_yy_MPa = 0.5, shear_xy_MPa = 0.1 }]
 """)
-OTHERWISE = {"ground_m": WITH_GROUND, "profile": WITH_PROFILE,
+WITH_MOTION = ("""[creep]
+step_days = 5
+scheme = "published"
+stop_rate_mm_per_day = 0.001
+""", """[motion]
+new_contacts = "gouge"
+rigid_rocks = ["hard"]
+stiffness_damping_s = 1e-3
+mass_damping_per_s = 0.1
+release_s = 0.5
+longest_s = 20
+record_every_s = 0.5
+""")
+OTHERWISE = {"motion": WITH_MOTION, "ground_m": WITH_GROUND, "profile": WITH_PROFILE,
              "in_situ_stress.profile": WITH_PROFILE,
              "local_damping": WITH_LOCAL_DAMPING, "tolerance_m": WITH_TOLERANCE, "first_step_days": WITH_TOLERANCE,
              "shortest_step_days": WITH_TOLERANCE, "longest_step_days": WITH_TOLERANCE}  # keys not in every_key.toml
@@ -167,6 +180,11 @@ def fault(jointgen, folder, number, text, line, name):
     return None
 
 
+def at_rest(text):
+    """Without boundaries that move, which do not go together with [motion]."""
+    return text.replace("displacement_mm = [-0.1, 0]\ncourse = [[1, 0], [4, 1]]\n", "")
+
+
 def main():
     jointgen = str(pathlib.Path(sys.argv[1]).resolve())
     text = (HERE / "every_key.toml").read_text()
@@ -174,6 +192,8 @@ def main():
     for key in keys_of(jointgen):
         otherwise = OTHERWISE.get(key["table"]) or OTHERWISE.get(key["key"])
         base = text.replace(*otherwise) if otherwise else text
+        if otherwise is WITH_MOTION:
+            base = at_rest(base)
         where = f"{key['table']} {key['key']}"
         broken += [(f"{where}, {what}", *rest) for what, *rest in variants(key, base)]
     broken += [(f"{name}, {what}", changed, 1 + changed.split("\n").index(line), name)
@@ -184,6 +204,7 @@ def main():
         for name, valid in (("every_key.toml", text), ("local.toml", text.replace(*WITH_LOCAL_DAMPING)),
                             ("tolerance.toml", text.replace(*WITH_TOLERANCE)),
                             ("ground.toml", text.replace(*WITH_GROUND)),
+                            ("motion.toml", at_rest(text).replace(*WITH_MOTION)),
                             ("profile.toml", text.replace(*WITH_PROFILE))):
             scene = pathlib.Path(folder) / name
             scene.write_text(valid)

@@ -188,6 +188,23 @@ class Blocks(ChainTest):
             self.assertRegex(done.stderr, message)
 
 
+class SmallDisplacements(ChainTest):
+    """The paper's column: what is left rises by dF z (1 - nu^2) / E_r + m dF / K with each block that goes."""
+
+    def test_the_column_rises(self):
+        text = self.chain.text("data/column/scene.toml")
+        text = changed(text, r"^\[creep\]\n(.+\n)+", '[motion]\nnew_contacts = "joint"\nmass_damping_per_s = 20\n')
+        text = changed(text, r"^\[equilibrium\](.|\n)*", "[equilibrium]\ntolerance = 1e-8\n")
+        data = datasets(self.chain.result(text))
+        after = [row for row, event in enumerate(data["/history/event"]) if event]
+        load = 2750 * GRAVITY * 10
+        for removed, row in enumerate(after, 1):
+            for point, (joints, height) in enumerate(((3, 25), (2, 15), (1, 5))):
+                times = min(removed, point + 1)  # it goes with the next one
+                rise = times * load * (height * (1 - 0.22**2) / 40e9 + joints / 690e6)
+                self.assertAlmostEqual(data["/history/displacement"][row, point, 1] / rise, 1, delta=1e-5)
+
+
 class Collapse(ChainTest):
     """Both slopes fall and come to rest; at every moment the energies add up to 1 percent of the work so far."""
 

@@ -16,7 +16,6 @@ class Pace(ChainTest):
         self.assertEqual([way["threads"] for way in ways], ["1"] * 3 + ["2"] * 3)
         for way in ways:
             self.assertGreater(int(way["zones"]), 5000)
-            self.assertGreater(float(way["zone_steps_per_s"]), 0)
 
 
 if __name__ == "__main__":

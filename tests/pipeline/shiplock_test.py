@@ -5,6 +5,7 @@ import re
 import subprocess
 import sys
 import tomllib
+import unittest.mock
 
 import numpy
 
@@ -162,6 +163,22 @@ class Shiplock(ChainTest):
                                                   (-root / 2, root / 2, -root / 2, root / 2)):
             self.assertAlmostEqual(found["total"], 50 + total)
             self.assertAlmostEqual(found["recorded"], 30 + recorded)
+
+    def test_readings_of_the_back_analysis(self):
+        """They count from the row after the first reading's day's stage, share its error, and leave out days of stages."""
+        import back_analysis
+        days = [0.0, 10.0, 10.0, 20.0, 30.0, 30.0, 40.0]
+        result = {"names": ["N1", "S1"], "days": days, "first": [10, 20],
+                  "total": [[row, 2 * row * row] for row in range(7)]}
+        position = {"N1": 100, "S1": -100}
+        with unittest.mock.patch.object(back_analysis, "SIGMA", 0):
+            exact = list(back_analysis.readings(result, position))
+        self.assertEqual(exact, [(20, "N1", -1), (40, "N1", -4), (40, "S1", 54)])
+        many = {"names": ["N1"], "days": [float(day) for day in range(2001)], "first": [0], "total": [[0.0]] * 2001}
+        errors = [[value for _, _, value in back_analysis.readings(many, position, seed)] for seed in range(50)]
+        for one in errors:
+            self.assertAlmostEqual(numpy.std(one), 1, delta=0.08)  # five standard errors
+        self.assertTrue(0.6 < numpy.std([numpy.mean(one) for one in errors]) < 1.4)  # of the first reading; four of them
 
     def test_tables_of_the_page(self):
         """The page's tables have the columns that the scripts write, and a row for every point and choice."""

@@ -17,6 +17,7 @@ std::vector<schema::Field> all_fields(ResultFile& file)
     for (const auto& fields : {schema::fields_of(file.provenance), schema::fields_of(file.network),
                                schema::fields_of(file.equivalent), schema::fields_of(file.result),
                                schema::fields_of(file.result.trace), schema::fields_of(file.result.failure),
+                               schema::fields_of(file.result.motions),
                                schema::fields_of(file.safety)})
         all.insert(all.end(), fields.begin(), fields.end());
     return all;
@@ -59,7 +60,7 @@ TEST(Schema, NamesEveryDatasetOnce)
 // Days only for times since the start, text without a unit.
 TEST(Schema, UsesSiUnits)
 {
-    const std::set<std::string> si = {"1", "m", "m2", "rad", "s", "Pa", "Pa/m", "Pa s/m", "J/m"};
+    const std::set<std::string> si = {"1", "m", "m2", "rad", "s", "Pa", "Pa/m", "Pa s/m", "J/m", "m/s"};
     ResultFile file;
     for (const schema::Field& field : all_fields(file)) {
         EXPECT_TRUE(si.contains(field.units) || (field.units == "day" && field.path.ends_with("/time")))

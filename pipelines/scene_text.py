@@ -1,0 +1,28 @@
+"""What scripts that write a variant of a scene share: it is read, its text changed, the new one written whole."""
+
+import os
+import sys
+import tomllib
+
+
+class NotWanted(Exception):
+    """The scene cannot be changed as asked."""
+
+
+def write_variant(parser, change):
+    """Writes change(text, arguments) of the scene's text, by the command line of `parser`, which gets scene and -o here.
+    Ends with exit code 2 and a message if the scene cannot be read, changed or written."""
+    parser.add_argument("scene", metavar="SCENE.toml")
+    parser.add_argument("-o", "--output", metavar="NAME.toml", required=True)
+    arguments = parser.parse_args()
+    try:
+        with open(arguments.scene, encoding="utf-8") as file:
+            text = change(file.read(), arguments)
+        tomllib.loads(text)
+        partial = f"{arguments.output}.partial-{os.getpid()}"
+        with open(partial, "w", encoding="utf-8") as file:
+            file.write(text)
+        os.replace(partial, arguments.output)
+    except (OSError, NotWanted, tomllib.TOMLDecodeError) as error:
+        print(f"{parser.prog}: {arguments.scene}: {error}", file=sys.stderr)
+        sys.exit(2)

@@ -1,0 +1,89 @@
+#!/usr/bin/python3
+"""Finds constants of the lock's joints back by creepfit, from noisy readings of the lock itself with other constants.
+
+    back_analysis.py PROGRAMS SCENE.toml -o OUT
+
+The readings are those of a run of the same network whose joints have K times 1.2, and E and eta over K times 0.7:
+horizontal, about every 28 days from each point's first reading to the end, less the first one, with normal noise of
+1 mm (standard deviation) in each. Joints neither slip nor open, there and in the fit. In OUT: readings.csv,
+factors.csv, fitted.csv (for plot_fit.py), creepfit.txt and creepfit.md.
+"""
+
+import argparse
+import csv
+import os
+import pathlib
+import random
+import sys
+import tempfile
+import tomllib
+
+import study
+
+MADE = {"joint-stiffness": 1.2, "kelvin-stiffness": 0.7, "kelvin-viscosity": 0.7}  # as creepfit's factors
+WORDS = {"joint-stiffness": "on K, with E and eta", "kelvin-stiffness": "on E", "kelvin-viscosity": "on eta"}
+SIGMA = 1.0  # of a reading [mm]
+
+
+def readings(result, position, seed=1):
+    """(day, point, x [mm]) of every reading, since the point's first one; none on the days of stages."""
+    noise = random.Random(seed)
+    days = result["days"]
+    for i, name in enumerate(result["names"]):
+        first, away = result["first"][i], -1 if position[name] > 0 else 1  # x points north, total toward the lock
+        start = max(row for row, day in enumerate(days) if day == first)  # after the stage of that day
+        error = noise.gauss(0, SIGMA)
+        for row, day in enumerate(days):
+            if day > first and days.count(day) == 1:
+                moved = away * (result["total"][row][i] - result["total"][start][i])
+                yield day, name, moved + noise.gauss(0, SIGMA) - error
+
+
+def markdown(factors, number):
+    lines = ["| factor | made with | found | 95 percent |", "|---|---|---|---|"]
+    for row in factors:
+        low, high = float(row["low_95"]), float(row["high_95"])
+        lines.append(f"| {WORDS[row['factor']]} | {MADE[row['factor']]} | {float(row['value']):.3f} "
+                     f"| {low:.3f} to {high:.3f} |")
+    return "\n".join([*lines, "", f"{number} readings with noise of {SIGMA:g} mm."]) + "\n"
+
+
+def analyse(programs, scene, out):
+    result = study.computed(programs, scene, ["--linear", "--stiffness-times", MADE["joint-stiffness"],
+                                              "--kelvin-times", MADE["kelvin-stiffness"]], 0)
+    with open(scene, "rb") as file:
+        position = {point["name"]: point["at_m"][0] for point in tomllib.load(file)["point"]}
+    rows = list(readings(result, position))
+    with tempfile.TemporaryDirectory(dir=out, prefix="creepfit.partial-") as folder:
+        folder = pathlib.Path(folder)
+        (folder / "chain").mkdir()
+        joints = study.joints_of(programs, scene, ["--linear"], 0, folder / "chain")
+        with open(folder / "readings.csv", "w", encoding="utf-8") as file:
+            print("time_day,point,component,displacement_mm,sigma_mm", file=file)
+            for day, name, value in rows:
+                print(f"{day:.12g},{name},x,{value:.4f},{SIGMA:g}", file=file)
+        said = study.run(programs / "creepfit", joints, "--measurements", folder / "readings.csv",
+                         "--since-first-reading", "--fit", ",".join(MADE), "--readings", folder / "fitted.csv",
+                         "-o", folder / "factors.csv")
+        with open(folder / "factors.csv", newline="", encoding="utf-8") as file:
+            (folder / "creepfit.md").write_text(markdown(list(csv.DictReader(file)), len(rows)))
+        (folder / "creepfit.txt").write_text(said)
+        for path in filter(pathlib.Path.is_file, folder.iterdir()):
+            os.replace(path, out / path.name)
+    print(said, end="")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("programs", type=pathlib.Path)
+    parser.add_argument("scene", type=pathlib.Path)
+    parser.add_argument("-o", "--output", type=pathlib.Path, required=True)
+    arguments = parser.parse_args()
+    try:
+        analyse(arguments.programs, arguments.scene, arguments.output)
+    except study.Failed as error:
+        sys.exit(f"back_analysis.py: {error}")
+
+
+if __name__ == "__main__":
+    main()
