@@ -170,7 +170,7 @@ public:
         // is missing.
         certificate.damped = settings_.stiffness_damping > 0
                                  ? certificate.work_of_loads - certificate.stored - certificate.dissipated
-                                 : work_ - energy_of_motion();
+                                 : work_ + work_of_changes_ - energy_of_motion();
     }
 
 private:
@@ -229,7 +229,7 @@ private:
             const Vector2d last = velocity_[g], force = a_.force[g].cwiseProduct(a_.is_free[g]);
             velocity_[g] *= std::sqrt(before[g] / mass_[g]);
             // The next step takes half of the last one's work to be that of this velocity.
-            work_ += force.dot(last_dt * last - dt_ * velocity_[g]) / 2;
+            work_of_changes_ += force.dot(last_dt * last - dt_ * velocity_[g]) / 2;
         }
     }
 
@@ -317,6 +317,7 @@ private:
     std::vector<Vector2d> start_, patience_ago_, last_force_;
     std::vector<double> mass_, inverse_mass_; // [kg/m], [m/kg]
     std::vector<Sums> sums_;                  // of each chunk
+    double work_of_changes_ = 0;              // of the step, apart as every thread adds up work_ for itself
     double work_ = 0, stored_at_start_ = 0, in_contacts_at_start_ = 0;
     std::vector<std::pair<std::size_t, double>> stiffening_; // contacts, and how stiff they may be [Pa/m]
     double time_before_ = 0;                                 // at the last change of the step [s]
