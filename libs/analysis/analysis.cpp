@@ -71,6 +71,8 @@ Engine engine_for(const Scene& scene, const Recording& recording)
     if (scene.equilibrium.engine == Engine::implicit_engine && recording.trace_every > 0)
         throw input_error("--trace records motion, which the implicit engine has none of");
     if (!recording.parameters.empty()) { // masses make no difference at rest
+        if (scene.motion)
+            throw input_error("sensitivities are of small displacements; wanted a scene without [motion]");
         for (const Rock& rock : scene.rocks)
             if (rock.law != RockLaw::elastic)
                 throw input_error(
@@ -153,10 +155,7 @@ void Analysis::run()
 {
     settle_in_situ();
     if (scene_.motion)
-        motion_.emplace(rock_, result_.mesh, rigid_zones(scene_, network_, result_.mesh),
-                        law_of_new_contacts(scene_),
-                        motion::Settings{scene_.motion->stiffness_damping, scene_.motion->mass_damping,
-                                         scene_.motion->release, scene_.equilibrium.tolerance});
+        start_motion();
     if (scene_.creep) {
         creep_.emplace(scene_, network_, joints_, result_.mesh, rock_);
         if (sensitivity_)
@@ -359,7 +358,7 @@ void Analysis::excavate(const Stage& stage, Index number)
     if (sensitivity_)
         sensitivity_->after_excavation(rock_);
     if (motion_) {
-        motion_->start(released);
+        motion_->start();
         move(stage);
         stage_.clear();
         return;
@@ -392,18 +391,23 @@ void Analysis::excavate(const Stage& stage, Index number)
     stage_.clear();
 }
 
-// 4, where rock may move far: follow it until it is at rest.
-void Analysis::move(const Stage& stage)
+// 2, where rock may move far: contacts between faces are a little other than those between gridpoints, and
+// find their equilibrium first.
+void Analysis::start_motion()
 {
-    double due = 0;
-    for (;;) {
-        if (motion_->time() >= due) {
-            observe_(now_ / scene_.end, stage.name + ", " + shown(due) + " s");
-            due += scene_.motion->record_every;
-            motion_->put_back();
-            recorder_.record_state(result_, now_, "", rock_);
-            take_down_motion();
-        }
+    motion_.emplace(rock_, result_.mesh, rigid_zones(scene_, network_, result_.mesh),
+                    law_of_new_contacts(scene_),
+                    motion::Settings{scene_.motion->stiffness_damping, scene_.motion->mass_damping,
+                                     scene_.motion->release, scene_.equilibrium.tolerance});
+    follow_motion(std::numeric_limits<double>::infinity());
+    effort_ = {};
+    motion_->count_from_here();
+}
+
+// Steps until rock is at rest, or a time has come [s].
+bool Analysis::follow_motion(double until)
+{
+    while (motion_->time() < until) {
         try {
             motion_->step();
         } catch (const equilibrium_error& error) {
@@ -411,10 +415,24 @@ void Analysis::move(const Stage& stage)
         }
         ++effort_.steps;
         if (effort_.steps % motion::Motion::check_every == 0 && motion_->is_at_rest())
-            break;
+            return true;
         if (motion_->time() > scene_.motion->longest)
             give_up_motion();
     }
+    return false;
+}
+
+// 4, where rock may move far: follow it until it is at rest.
+void Analysis::move(const Stage& stage)
+{
+    double due = 0;
+    do {
+        observe_(now_ / scene_.end, stage.name + ", " + shown(due) + " s");
+        due += scene_.motion->record_every;
+        motion_->put_back();
+        recorder_.record_state(result_, now_, "", rock_);
+        take_down_motion();
+    } while (!follow_motion(due));
     motion_->put_back();
     const motion::Energy& energy = motion_->energy();
     certificate_ = {.steps = effort_.steps,

@@ -73,6 +73,8 @@ private:
     bool step_to(double target, bool is_loaded);
     bool is_slower_than(double rate) const;
     void excavate(const Stage& stage, Index number);
+    void start_motion();
+    bool follow_motion(double until);
     void move(const Stage& stage);
     [[noreturn]] void give_up_motion();
     void take_down_motion();

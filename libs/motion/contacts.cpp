@@ -179,7 +179,7 @@ void Contacts::seek(const std::vector<Vector2d>& place)
 }
 
 // A face that slides on from one face to the next takes along what its joint is and remembers.
-void Contacts::inherit(Pair& pair, const std::vector<Vector2d>& place) const
+bool Contacts::inherit(Pair& pair, const std::vector<Vector2d>& place) const
 {
     const auto is_next_to = [&](Index f, Index g) {
         const auto p = ends_of(faces_.gridpoint[f], place), q = ends_of(faces_.gridpoint[g], place);
@@ -197,13 +197,14 @@ void Contacts::inherit(Pair& pair, const std::vector<Vector2d>& place) const
                 from = &other;
         }
     if (from == nullptr)
-        return;
+        return false;
     // A pair's sides may change places: a's first end looks at b's second one, and `along` turns round with
     // the normal twice over, so that the shear traction keeps its sign.
     pair.law = from->law;
     pair.tau = from->tau;
     const double lead = (from->lead[0] + from->lead[1]) / 2;
     pair.lead = {lead, lead};
+    return true;
 }
 
 void Contacts::update(const std::vector<Vector2d>& place, const std::vector<Vector2d>& move, double dt,
@@ -218,6 +219,16 @@ void Contacts::update(const std::vector<Vector2d>& place, const std::vector<Vect
     const auto n = static_cast<Index>(pairs_.size());
     std::vector<char> touches(pairs_.size(), 0); // for the first time
     Index too_deep = n;
+    double most_lead = 0;
+    for (const Pair& pair : pairs_)
+        if (pair.is_closed)
+            most_lead = std::max({most_lead, pair.lead[0], pair.lead[1]});
+    const auto overlaps = [&](const Pair& pair) {
+        const auto found =
+            overlap_of(ends_of(faces_.gridpoint[pair.a], place), ends_of(faces_.gridpoint[pair.b], place),
+                       sharpness_[pair.a], sharpness_[pair.b]);
+        return found && std::min(found->gap[0], found->gap[1]) < 0;
+    };
     const auto evaluate = [&](Pair& pair, Index index) {
         pair.is_slipping = false;
         pair.friction = pair.damped = 0;
@@ -244,7 +255,10 @@ void Contacts::update(const std::vector<Vector2d>& place, const std::vector<Vect
             closing[i] = pair.lead[0] + found->on_a[i] * (pair.lead[1] - pair.lead[0]) - found->gap[i];
         const double depth = std::min(faces_.depth[pair.a], faces_.depth[pair.b]);
         const double sunk = -std::min(found->gap[0], found->gap[1]);
-        if (!pair.is_closed && (std::max(closing[0], closing[1]) <= 0 || sunk > deepest_new * depth)) {
+        const bool is_bonded = pair.is_known && !pair.is_broken;
+        // One that is not known yet may have a lead to inherit.
+        const double most = std::max(closing[0], closing[1]) + (pair.is_known ? 0.0 : most_lead);
+        if (!pair.is_closed && !is_bonded && (most <= 0 || sunk > deepest_new * depth)) {
             open();
             return;
         }
@@ -347,9 +361,13 @@ void Contacts::update(const std::vector<Vector2d>& place, const std::vector<Vect
             "for what presses on it");
     for (Index p = 0; p < n; ++p)
         if (touches[p]) {
-            inherit(pairs_[p], place);
             pairs_[p].is_known = true;
-            evaluate(pairs_[p], p);
+            if (inherit(pairs_[p], place))
+                evaluate(pairs_[p], p);
+            else if (most_lead > 0 && !overlaps(pairs_[p]))
+                pairs_[p].is_known = false;
+            else
+                evaluate(pairs_[p], p);
         }
 }
 

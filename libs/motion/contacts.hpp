@@ -82,7 +82,8 @@ public:
 private:
     void seek(const std::vector<Vector2d>& place);
     void find_corners(const std::vector<Vector2d>& place);
-    void inherit(Pair& pair, const std::vector<Vector2d>& place) const;
+    bool inherit(Pair& pair,
+                 const std::vector<Vector2d>& place) const; // false if there is none to inherit from
 
     std::vector<joint::Coulomb> laws_;
     Faces faces_;

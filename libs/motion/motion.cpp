@@ -20,10 +20,12 @@ using Eigen::Vector3d;
 namespace
 {
 
-constexpr double safety = 0.9; // of the largest stable step
-constexpr double impacts = 4;  // steps are so much shorter for rigid bodies: what one step misses of an
-                               // impact's beginning is energy that is lost or gained
-constexpr double slow = 0.01;  // below this speed everywhere, motion is stopped at its peaks [m/s]
+constexpr double safety = 0.9;   // of the largest stable step
+constexpr double impacts = 4;    // steps are so much shorter for rigid bodies: what one step misses of an
+                                 // impact's beginning is energy that is lost or gained
+constexpr double at_rest = 1e-4; // [m/s]
+constexpr double farthest_place = 1e8; // from the origin: what goes there, goes for ever [m]
+constexpr double slow = 0.01;          // below this speed everywhere, motion is stopped at its peaks [m/s]
 
 Vector3d stress_of(const Vector3d& stiffness, const Vector3d& strain)
 {
@@ -108,12 +110,12 @@ Motion::Motion(mechanics::Assembly& rock, const Mesh& mesh, std::vector<char> is
         zone.strain = {stretch(0, 0) - 1, stretch(1, 1) - 1, 2 * stretch(0, 1)};
         zones_.push_back(zone);
     }
-    start(std::vector<Vector2d>(place_.size(), Vector2d::Zero()));
+    start();
 }
 
-void Motion::start(const std::vector<Vector2d>& released)
+void Motion::start()
 {
-    released_ = released;
+    released_.assign(place_.size(), Vector2d::Zero());
     time_ = 0;
     energy_ = {};
     starts_from_rest_ = true;
@@ -124,6 +126,10 @@ void Motion::start(const std::vector<Vector2d>& released)
     find_faces();
     find_bodies();
     find_time_step();
+    find_forces(velocity_);
+    if (settings_.release > 0) // what is out of balance now, the rock that has gone has held
+        for (std::size_t g = 0; g < place_.size(); ++g)
+            released_[g] = -force_[g];
     find_forces(velocity_);
     stored_at_start_ = stored();
 }
@@ -253,6 +259,13 @@ void Motion::find_faces()
 
 void Motion::find_bodies()
 {
+    std::map<Index, Index> leaders;
+    for (const auto& [follower, leader] : rock_.tied)
+        leaders[follower] = leader;
+    const auto leader_of = [&](Index g) {
+        const auto found = leaders.find(g);
+        return found == leaders.end() ? g : found->second;
+    };
     const std::vector<double> masses = lumped_masses(rock_);
     std::vector<Index> parent(place_.size());
     std::iota(parent.begin(), parent.end(), 0);
@@ -294,13 +307,15 @@ void Motion::find_bodies()
         body.gridpoint.push_back(static_cast<Index>(g));
         body.mass += masses[g];
         body.centre += masses[g] * place_[g];
-        body.is_held |= rock_.is_free[g].minCoeff() == 0;
+        body.is_free = body.is_free.cwiseMin(rock_.is_free[g]);
     }
     for (Body& body : bodies_) {
         body.centre /= body.mass;
         for (const Index g : body.gridpoint)
             body.arm.emplace_back(place_[g] - body.centre);
     }
+    // Deformable rock that is welded to a body is lumped into gridpoints that the two share.
+    std::vector<double> lumped = masses;
     for (std::size_t z = 0; z < zones_.size(); ++z) {
         if (!is_rigid_[z] || !rock_.zones.is_present[z])
             continue;
@@ -310,9 +325,13 @@ void Motion::find_bodies()
             const Vector2d arm = place_[g] - body.centre;
             body.inertia += rock_.zones.mass[z] / 12 * arm.squaredNorm();
             sum += arm;
+            lumped[leader_of(g)] -= rock_.zones.mass[z] / 3;
         }
         body.inertia += rock_.zones.mass[z] / 12 * sum.squaredNorm();
     }
+    for (Body& body : bodies_)
+        for (std::size_t k = 0; k < body.gridpoint.size(); ++k)
+            body.inertia += std::max(0.0, lumped[body.gridpoint[k]]) * body.arm[k].squaredNorm();
 }
 
 // Force and moment about the centre [N/m], [N].
@@ -325,13 +344,15 @@ std::pair<Vector2d, double> Motion::load_on(const Body& body) const
         force += force_[g];
         moment += arm.x() * force_[g].y() - arm.y() * force_[g].x();
     }
-    return {force, moment};
+    if (!body.turns())
+        moment = 0;
+    return {force.cwiseProduct(body.is_free), moment};
 }
 
 // One step; returns the kinetic energy before it [J/m].
 double Motion::move(Body& body, double keep, double gain)
 {
-    if (body.is_held)
+    if (body.is_held())
         return 0;
     const auto [force, moment] = load_on(body);
     const Vector2d last = body.velocity;
@@ -382,7 +403,7 @@ void Motion::find_time_step()
             sum += sums[body.gridpoint[k]] * (1 / body.mass + body.arm[k].squaredNorm() / body.inertia);
             inverse_mass_[body.gridpoint[k]] = 0; // moves with the body
         }
-        if (!body.is_held)
+        if (!body.is_held())
             highest = std::max(highest, impacts * impacts * sum);
     }
     for (std::size_t g = 0; g < sums.size(); ++g)
@@ -392,6 +413,10 @@ void Motion::find_time_step()
         }
     // Stiffness damping shortens the stable step: (2 / w) (sqrt(1 + xi^2) - xi), xi = beta w / 2.
     const double xi = settings_.stiffness_damping * std::sqrt(highest) / 2;
+    if (highest == 0) { // all rock is held
+        dt_ = 1e-3;
+        return;
+    }
     dt_ = safety * 2 / std::sqrt(highest) * (std::sqrt(1 + xi * xi) - xi);
 }
 
@@ -495,12 +520,16 @@ void Motion::step()
     starts_from_rest_ = false;
     for (const auto& [follower, leader] : rock_.tied) {
         move_[follower] = move_[leader];
+        velocity_[follower] = velocity_[leader];
         energy_.work +=
             (rock_.load[follower] + rock_.applied[follower] + held * released_[follower]).dot(move_[leader]);
     }
     fastest_ = std::sqrt(fastest);
-    if (!std::isfinite(fastest_) || !std::isfinite(kinetic))
-        throw equilibrium_error("motion: velocities are no longer finite numbers at " +
+    bool is_far = false;
+    for (const Vector2d& place : place_)
+        is_far |= !(place.squaredNorm() < farthest_place * farthest_place);
+    if (is_far || !std::isfinite(fastest_) || !std::isfinite(kinetic))
+        throw equilibrium_error("motion: rock flies away, or its velocity is no number; it was at " +
                                 shown(rock_.position[fastest_gridpoint_]));
     time_ += dt_;
     find_forces(move_);
@@ -533,6 +562,12 @@ void Motion::step()
         last_kinetic_ = kinetic;
 }
 
+void Motion::count_from_here()
+{
+    rock_.position = place_;
+    put_back();
+}
+
 bool Motion::is_at_rest()
 {
     std::vector<double> magnitude(place_.size());
@@ -557,7 +592,7 @@ bool Motion::is_at_rest()
             change = std::max(change, (contact_force[g] - last_contact_force_[g]).norm());
     }
     for (const Body& body : bodies_)
-        if (!body.is_held) {
+        if (!body.is_held()) {
             const auto [force, moment] = load_on(body);
             largest =
                 std::max({largest, force.norm(), std::abs(moment) / std::sqrt(body.inertia / body.mass)});
@@ -571,7 +606,7 @@ bool Motion::is_at_rest()
     const bool has_last = !last_contact_force_.empty();
     force_change_ = change / mean;
     last_contact_force_ = std::move(contact_force);
-    const bool is_balanced = ratio_ <= settings_.tolerance && has_last &&
+    const bool is_balanced = fastest_ <= at_rest && ratio_ <= settings_.tolerance && has_last &&
                              force_change_ <= settings_.tolerance && release_factor() == 0;
     checks_in_balance_ = is_balanced ? checks_in_balance_ + 1 : 0;
     return checks_in_balance_ >= 2;

@@ -41,8 +41,12 @@ public:
     Motion(mechanics::Assembly& rock, const Mesh& mesh, std::vector<char> is_rigid,
            const joint::Coulomb& found, const Settings& settings);
 
-    // Begins anew after the assembly has lost rock, or gained loads; `released` [N/m] fades away.
-    void start(const std::vector<Vector2d>& released);
+    // Begins anew after the assembly has lost rock, or gained loads. What is out of balance then fades away
+    // within the time of release.
+    void start();
+
+    // Makes the present places those that displacements count from.
+    void count_from_here();
 
     // One step of time. Throws equilibrium_error where faces overlap too much, and where places are no
     // numbers.
@@ -86,7 +90,10 @@ private:
         double mass = 0, inertia = 0; // [kg/m], [kg m]
         Vector2d centre{0, 0}, velocity{0, 0};
         double angle = 0, spin = 0; // [rad], [rad/s]
-        bool is_held = false;       // if any of its gridpoints is
+        Vector2d is_free{1, 1};     // in {x, y}, 0 where any of its gridpoints is held
+        // One that is held somewhere does not turn.
+        bool turns() const { return is_free.minCoeff() > 0; }
+        bool is_held() const { return is_free.maxCoeff() == 0; }
     };
 
     void find_faces();

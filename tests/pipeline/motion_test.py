@@ -136,13 +136,14 @@ class Blocks(ChainTest):
             self.assertEqual(moved > 0.5, topples, f"{height}: {moved}")
 
     def test_threads_do_not_change_a_byte(self):
-        joints = self.chain.joints(changed(incline(30, 35), "^size_m = 1$", "size_m = 0.3"))
-        files = [self.chain.run("demsolve", joints, self.chain.new_folder() / "result.h5", "--threads", n)
-                 for n in (1, 2)]
-        one, two = map(datasets, files)
-        self.assertGreater(len(one["/mesh/zone_block"]), 4000)
-        for name, values in one.items():
-            self.assertTrue(np.array_equal(values, two[name]), name)
+        for text in (incline(30, 35), incline(30, 25, more=RIGID)):  # zones that deform; contacts found anew
+            joints = self.chain.joints(changed(text, "^size_m = 1$", "size_m = 0.3"))
+            files = [self.chain.run("demsolve", joints, self.chain.new_folder() / "result.h5", "--threads", n)
+                     for n in (1, 2)]
+            one, two = map(datasets, files)
+            self.assertGreater(len(one["/mesh/zone_block"]), 4000)
+            for name, values in one.items():
+                self.assertTrue(np.array_equal(values, two[name]), name)
 
     def test_what_goes_on_moving_is_named(self):
         joints = self.chain.joints(incline(30, 25, more=RIGID + "\nlongest_s = 1"))
@@ -203,6 +204,63 @@ class SmallDisplacements(ChainTest):
                 times = min(removed, point + 1)  # it goes with the next one
                 rise = times * load * (height * (1 - 0.22**2) / 40e9 + joints / 690e6)
                 self.assertAlmostEqual(data["/history/displacement"][row, point, 1] / rise, 1, delta=1e-5)
+
+
+    def test_a_bond_holds_a_block_that_hangs(self):
+        text = """
+[section]
+outline_m = [[0, 0], [2, 0], [2, 3], [0, 3]]
+rock = "rock"
+gravity_m_per_s2 = 9.81
+[[rock]]
+name = "rock"
+density_kg_per_m3 = 2700
+youngs_modulus_GPa = 5
+poissons_ratio = 0
+[[joint_material]]
+name = "bonded"
+normal_stiffness_MPa_per_m = 1000
+shear_stiffness_MPa_per_m = 500
+cohesion_MPa = 1
+friction_angle_deg = 30
+tensile_strength_MPa = 1
+[[joint]]
+name = "roof"
+from_m = [0, 2]
+to_m = [2, 2]
+material = "bonded"
+[in_situ_stress]
+elevation_m = 3
+compression_xx_MPa = 0
+compression_yy_MPa = 0
+shear_xy_MPa = 0
+compression_xx_gradient_MPa_per_m = 0
+compression_yy_gradient_MPa_per_m = 0
+shear_xy_gradient_MPa_per_m = 0
+[[boundary]]
+from_m = [0, 3]
+to_m = [2, 3]
+fix = "xy"
+[schedule]
+start = 0
+end = 2
+[[stage]]
+name = "half of it cut off"
+date = 1
+remove_m = [[[0, 0], [2, 0], [2, 1], [0, 1]]]
+[[point]]
+name = "lower end"
+at_m = [1, 1]
+[zones]
+size_m = 0.5
+[motion]
+new_contacts = "bonded"
+"""
+        weight = 2700 * GRAVITY  # per metre of height and width
+        for more in ("", "release_s = 0.2\n"):
+            data = datasets(self.chain.result(text + more))
+            rise = weight * (1 / 1e9 + 2 / 5e9)  # a metre less hangs on the joint and on 2 m of rock
+            self.assertAlmostEqual(data["/history/displacement"][-1, 0, 1] / rise, 1, delta=1e-3)
 
 
 class Collapse(ChainTest):
