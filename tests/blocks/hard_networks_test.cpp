@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+#include <algorithm>
 #include <random>
 
 using namespace jointcreep;
@@ -75,6 +76,41 @@ TEST(hard_networks, a_joint_along_a_slanting_side_of_the_outline_but_for_roundin
     add_joint(joints, {40, 5}, {40, 90});
     add_joint(joints, {0, 83.3}, {52.7, 80.9});
     expect_sound(scene, joints, "along the top");
+}
+
+// Joints along both sides of a sharp notch cross these at its tip, where rounding lets the two sides share a
+// piece. The corner must stay: merging would then close the notch.
+TEST(hard_networks, joints_along_both_sides_of_a_sharp_notch)
+{
+    std::mt19937 random(11);
+    std::uniform_real_distribution<double> unit(0, 1);
+    for (const double wide : {0.1, 1.0, 10.0, 30.0})
+        for (const double shortest_edge : {1e-6, 0.02, 0.1, 0.5, 1.5})
+            for (int i = 0; i < 40; ++i) {
+                const Vector2d tip = i % 4 == 0 ? Vector2d(50, 30)
+                                                : Vector2d(45 + unit(random), 30 + unit(random)),
+                               left(tip.x() - wide, 100), right(tip.x() + wide, 100);
+                Scene scene =
+                    section({{0, 0}, {100, 0}, {100, 100}, right, tip, left, {0, 100}}, shortest_edge);
+                scene.cutting.dead_ends = i % 2 == 0 ? DeadEnds::prune : DeadEnds::extend;
+                Joints joints;
+                add_joint(joints, tip, left);
+                add_joint(joints, right, tip);
+                for (int j = 0; j < i % 8; ++j) {
+                    const Vector2d side = j % 2 == 0 ? left : right, from = tip + unit(random) * (side - tip);
+                    if (j % 4 < 2)
+                        add_joint(joints, from, side);
+                    else
+                        add_joint(joints, from, {100 * unit(random), 100 * unit(random)});
+                }
+                const std::string what = std::to_string(wide) + " m, limit " + std::to_string(shortest_edge) +
+                                         " m, " + std::to_string(i);
+                const Blocks blocks = blocks::cut(scene, joints);
+                EXPECT_EQ(faults(scene, blocks), "") << what;
+                EXPECT_EQ(lost_length(joints, blocks), "") << what;
+                for (const Vector2d& corner : scene.outline)
+                    EXPECT_EQ(std::ranges::count(blocks.vertex, corner), 1) << what;
+            }
 }
 
 TEST(hard_networks, gaps_of_a_nanometre)
