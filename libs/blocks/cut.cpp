@@ -357,8 +357,9 @@ private:
             if (degree[v] == 0)
                 continue; // the other end of the last edge
             const Index e = mixed[v];
-            if (is_on_outline(graph_.edge[e]))
-                continue; // two sides that rounding makes one at a sharp corner, which must stay
+            // Two sides that rounding makes one at a sharp corner: merging takes them back to the corner.
+            if (is_on_outline(graph_.edge[e]) && length(graph_.edge[e]) < reach_)
+                continue;
             gone[e] = 1;
             record_pruned(graph_.edge[e]);
             for (const Index w : {graph_.edge[e].first, graph_.edge[e].second}) {
