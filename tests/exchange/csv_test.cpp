@@ -87,7 +87,7 @@ TEST(edges_csv, adds_the_equivalent_joints)
 {
     const EquivalentJoints equivalent = small_equivalent();
     const auto rows = rows_of(edges_csv(small_network(), &equivalent));
-    ASSERT_EQ(rows[0].size(), 23u);
+    ASSERT_EQ(rows[0].size(), 29u);
     EXPECT_EQ(rows[0][11], "normal_stiffness_Pa_per_m");
     EXPECT_EQ(number(rows[3][11]), 1e9 / 3);
     EXPECT_EQ(rows[0][14], "friction_angle_rad");
@@ -98,6 +98,14 @@ TEST(edges_csv, adds_the_equivalent_joints)
     EXPECT_EQ(number(rows[3][20]), 8e13);
     EXPECT_EQ(rows[0][22], "shear_maxwell_viscosity_Pa_s_per_m");
     EXPECT_EQ(number(rows[3][22]), 3e15);
+    EXPECT_EQ(rows[0][23], "law");
+    EXPECT_EQ(rows[0][24], "residual_cohesion_Pa");
+    EXPECT_EQ(rows[0][26], "roughness");
+    EXPECT_EQ(rows[0][28], "largest_closure_m");
+    EXPECT_EQ(rows[3][23], "1");
+    const double values[] = {2e4, 0.4, 8, 5e7, 2e-4};
+    for (int i = 0; i < 5; ++i)
+        EXPECT_EQ(number(rows[3][24 + i]), values[i]);
     EXPECT_EQ(number(rows[2][11]), 0);
 }
 
@@ -111,7 +119,7 @@ TEST(edges_csv, numbers_kelvin_units_where_there_are_several)
     equivalent.normal_kelvin_viscosity.assign(2 * edges, 0);
     equivalent.shear_kelvin_viscosity.assign(2 * edges, 0);
     const auto rows = rows_of(edges_csv(small_network(), &equivalent));
-    ASSERT_EQ(rows[0].size(), 27u);
+    ASSERT_EQ(rows[0].size(), 33u);
     EXPECT_EQ(rows[0][17], "normal_kelvin_stiffness_1_Pa_per_m");
     EXPECT_EQ(rows[0][21], "normal_kelvin_stiffness_2_Pa_per_m");
     EXPECT_EQ(number(rows[3][17]), 0);
