@@ -77,8 +77,8 @@ struct Graph {
 // Rounding moves a vertex by half a unit of its last place at most. Where other edges pass that near the
 // result may cross itself; crosses_nowhere() tells.
 //
-// What lies outside a window, if one is given, need not be arranged: crossings there may be left out, and what
-// is called settled is so inside only.
+// What lies outside a window, if one is given, need not be arranged: crossings there may be left out, and
+// what is called settled is so inside only.
 struct Box {
     Eigen::Vector2d low, high;
 };

@@ -1,5 +1,7 @@
 #include "mechanics/failure.hpp"
 
+#include "model/disjoint_sets.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cstdio>
@@ -79,32 +81,25 @@ Failure failure_of(const no_equilibrium& error, const Mesh& mesh, const Assembly
 
 Failure failure_of_unheld(const Mesh& mesh, const Assembly& assembly)
 {
-    // Pieces of rock: gridpoints joined by zones, ties and contacts that are not removed (union-find).
-    std::vector<Index> leader(assembly.position.size());
-    std::iota(leader.begin(), leader.end(), 0);
-    const auto root = [&](Index g) {
-        while (leader[g] != g)
-            g = leader[g] = leader[leader[g]];
-        return g;
-    };
-    const auto join = [&](Index a, Index b) { leader[root(a)] = root(b); };
+    // Pieces of rock: gridpoints joined by zones, ties and contacts that are not removed.
+    DisjointSets sets(assembly.position.size());
     for (std::size_t z = 0; z < mesh.zone_gridpoint.size(); ++z)
         if (assembly.zones.is_present[z])
             for (const Index g : mesh.zone_gridpoint[z])
-                join(g, mesh.zone_gridpoint[z][0]);
+                sets.join(g, mesh.zone_gridpoint[z][0]);
     for (const auto& [a, b] : assembly.tied)
-        join(a, b);
+        sets.join(a, b);
     for (std::size_t c = 0; c < assembly.contacts.gridpoint.size(); ++c)
         if (assembly.contacts.status[c] != ContactStatus::removed)
-            join(assembly.contacts.gridpoint[c][0], assembly.contacts.gridpoint[c][1]);
+            sets.join(assembly.contacts.gridpoint[c][0], assembly.contacts.gridpoint[c][1]);
 
     struct Piece {
         Vector2d resultant = Vector2d::Zero(), free = Vector2d::Ones(); // [N/m], 1 or 0
         double magnitudes = 0;                                          // [N/m]
     };
-    std::vector<Piece> pieces(leader.size());
-    for (std::size_t g = 0; g < leader.size(); ++g) {
-        Piece& piece = pieces[root(static_cast<Index>(g))];
+    std::vector<Piece> pieces(assembly.position.size());
+    for (std::size_t g = 0; g < pieces.size(); ++g) {
+        Piece& piece = pieces[sets.root(static_cast<Index>(g))];
         piece.resultant += assembly.load[g] + assembly.applied[g];
         piece.magnitudes += assembly.load[g].norm() + assembly.applied[g].norm();
         piece.free = piece.free.cwiseMin(assembly.is_free[g]);
@@ -113,7 +108,7 @@ Failure failure_of_unheld(const Mesh& mesh, const Assembly& assembly)
     const Rock rock = rock_of(mesh, assembly, {});
     std::vector<char> is_unheld(rock.area.size(), 0);
     for (std::size_t z = 0; z < mesh.zone_gridpoint.size(); ++z) {
-        const Piece& piece = pieces[root(mesh.zone_gridpoint[z][0])];
+        const Piece& piece = pieces[sets.root(mesh.zone_gridpoint[z][0])];
         const Vector2d push = piece.resultant.cwiseProduct(piece.free);
         if (assembly.zones.is_present[z] && push.lpNorm<Eigen::Infinity>() > 1e-9 * piece.magnitudes)
             is_unheld[mesh.zone_block[z]] = 1;

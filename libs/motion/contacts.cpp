@@ -360,14 +360,9 @@ void Contacts::update(const std::vector<Vector2d>& place, const std::vector<Vect
             " by more than half the depth of a zone; the joint's normal stiffness is too small "
             "for what presses on it");
     for (Index p = 0; p < n; ++p)
-        if (touches[p]) {
-            pairs_[p].is_known = true;
-            if (inherit(pairs_[p], place))
-                evaluate(pairs_[p], p);
-            else if (most_lead > 0 && !overlaps(pairs_[p]))
-                pairs_[p].is_known = false;
-            else
-                evaluate(pairs_[p], p);
+        if (Pair& pair = pairs_[p]; touches[p] && (inherit(pair, place) || overlaps(pair))) {
+            pair.is_known = true;
+            evaluate(pair, p);
         }
 }
 

@@ -1,5 +1,6 @@
 #include "motion/motion.hpp"
 
+#include "model/disjoint_sets.hpp"
 #include "model/error.hpp"
 #include "model/signs.hpp"
 
@@ -134,15 +135,21 @@ void Motion::start()
     stored_at_start_ = stored();
 }
 
+// The gridpoint that each one moves with: itself, but for those that are tied.
+std::vector<Index> Motion::leaders() const
+{
+    std::vector<Index> leader(place_.size());
+    std::iota(leader.begin(), leader.end(), 0);
+    for (const auto& [follower, first] : rock_.tied)
+        leader[follower] = first;
+    return leader;
+}
+
 // The faces of what rock there is, and of the ground below boundaries that rest on a joint. The first time,
 // contacts of the mesh become pairs; later, pairs stay what they are.
 void Motion::find_faces()
 {
-    std::vector<Index> leader(place_.size());
-    for (std::size_t g = 0; g < leader.size(); ++g)
-        leader[g] = static_cast<Index>(g);
-    for (const auto& [follower, first] : rock_.tied)
-        leader[follower] = first;
+    const std::vector<Index> leader = leaders();
 
     std::map<std::array<Index, 2>, int> sides; // by leaders
     const auto key = [&](Index from, Index to) { return std::array<Index, 2>{leader[from], leader[to]}; };
@@ -259,37 +266,21 @@ void Motion::find_faces()
 
 void Motion::find_bodies()
 {
-    std::map<Index, Index> leaders;
-    for (const auto& [follower, leader] : rock_.tied)
-        leaders[follower] = leader;
-    const auto leader_of = [&](Index g) {
-        const auto found = leaders.find(g);
-        return found == leaders.end() ? g : found->second;
-    };
+    const std::vector<Index> leader = leaders();
     const std::vector<double> masses = lumped_masses(rock_);
-    std::vector<Index> parent(place_.size());
-    std::iota(parent.begin(), parent.end(), 0);
-    const auto root_of = [&](Index g) {
-        while (parent[g] != g)
-            g = parent[g] = parent[parent[g]];
-        return g;
-    };
-    const auto join = [&](Index g, Index h) {
-        const auto [low, high] = std::minmax({root_of(g), root_of(h)});
-        parent[high] = low;
-    };
+    DisjointSets sets(place_.size());
     std::vector<char> is_of_body(place_.size(), 0);
     for (std::size_t z = 0; z < zones_.size(); ++z)
         if (is_rigid_[z] && rock_.zones.is_present[z])
             for (const Index g : zones_[z].gridpoint) {
                 is_of_body[g] = 1;
-                join(g, zones_[z].gridpoint[0]);
+                sets.join(g, zones_[z].gridpoint[0]);
             }
-    for (const auto& [follower, leader] : rock_.tied)
-        if (is_of_body[follower] || is_of_body[leader]) {
-            join(follower, leader);
+    for (const auto& [follower, first] : rock_.tied)
+        if (is_of_body[follower] || is_of_body[first]) {
+            sets.join(follower, first);
             is_of_body[follower] = 0; // goes with its leader
-            is_of_body[leader] = 1;
+            is_of_body[first] = 1;
         }
 
     bodies_.clear();
@@ -299,7 +290,7 @@ void Motion::find_bodies()
         if (!is_of_body[g])
             continue;
         const auto [found, is_new] =
-            number.try_emplace(root_of(static_cast<Index>(g)), static_cast<Index>(bodies_.size()));
+            number.try_emplace(sets.root(static_cast<Index>(g)), static_cast<Index>(bodies_.size()));
         if (is_new)
             bodies_.emplace_back();
         Body& body = bodies_[found->second];
@@ -319,13 +310,13 @@ void Motion::find_bodies()
     for (std::size_t z = 0; z < zones_.size(); ++z) {
         if (!is_rigid_[z] || !rock_.zones.is_present[z])
             continue;
-        Body& body = bodies_[number.at(root_of(zones_[z].gridpoint[0]))];
+        Body& body = bodies_[number.at(sets.root(zones_[z].gridpoint[0]))];
         Vector2d sum(0, 0);
         for (const Index g : zones_[z].gridpoint) {
             const Vector2d arm = place_[g] - body.centre;
             body.inertia += rock_.zones.mass[z] / 12 * arm.squaredNorm();
             sum += arm;
-            lumped[leader_of(g)] -= rock_.zones.mass[z] / 3;
+            lumped[leader[g]] -= rock_.zones.mass[z] / 3;
         }
         body.inertia += rock_.zones.mass[z] / 12 * sum.squaredNorm();
     }
@@ -380,7 +371,7 @@ void Motion::find_time_step()
 {
     std::vector<double> sums(place_.size(), 0.0);
     for (std::size_t z = 0; z < zones_.size(); ++z)
-        if (rock_.zones.is_present[z] && !is_rigid_[z])
+        if (deforms(z))
             for (int i = 0; i < 3; ++i)
                 for (int j = 0; j < 3; ++j)
                     sums[zones_[z].gridpoint[i]] +=
@@ -434,7 +425,7 @@ void Motion::find_forces(const std::vector<Vector2d>& move)
     const double viscosity = settings_.stiffness_damping / dt_;
 #pragma omp parallel for schedule(static) num_threads(rock_.threads) if (rock_.threads > 1)
     for (Index z = 0; z < n_zones; ++z) {
-        if (!rock_.zones.is_present[z] || is_rigid_[z])
+        if (!deforms(z))
             continue;
         Zone& zone = zones_[z];
         const Polar polar = polar_of(edges_of(zone.gridpoint, place_) * zone.inverse);
@@ -472,7 +463,7 @@ double Motion::stored() const
 {
     double energy = 0;
     for (std::size_t z = 0; z < zones_.size(); ++z)
-        if (rock_.zones.is_present[z] && !is_rigid_[z])
+        if (deforms(z))
             energy += zones_[z].stored;
     for (const Pair& pair : contacts_.pairs())
         energy += pair.stored;
@@ -503,31 +494,28 @@ void Motion::step()
         }
         move_[g] = dt_ * v;
         place_[g] += move_[g];
-        energy_.work += (rock_.load[g] + rock_.applied[g] + held * released_[g]).dot(move_[g]);
     }
     for (Body& body : bodies_) {
         const double before = move(body, keep, gain);
         kinetic += before;
         energy_.damped += 2 * alpha * dt_ * before;
-        for (const Index g : body.gridpoint) {
-            energy_.work += (rock_.load[g] + rock_.applied[g] + held * released_[g]).dot(move_[g]);
+        for (const Index g : body.gridpoint)
             if (velocity_[g].squaredNorm() > fastest) {
                 fastest = velocity_[g].squaredNorm();
                 fastest_gridpoint_ = g;
             }
-        }
     }
     starts_from_rest_ = false;
     for (const auto& [follower, leader] : rock_.tied) {
         move_[follower] = move_[leader];
         velocity_[follower] = velocity_[leader];
-        energy_.work +=
-            (rock_.load[follower] + rock_.applied[follower] + held * released_[follower]).dot(move_[leader]);
     }
     fastest_ = std::sqrt(fastest);
     bool is_far = false;
-    for (const Vector2d& place : place_)
-        is_far |= !(place.squaredNorm() < farthest_place * farthest_place);
+    for (std::size_t g = 0; g < n; ++g) {
+        energy_.work += (rock_.load[g] + rock_.applied[g] + held * released_[g]).dot(move_[g]);
+        is_far |= !(place_[g].squaredNorm() < farthest_place * farthest_place);
+    }
     if (is_far || !std::isfinite(fastest_) || !std::isfinite(kinetic))
         throw equilibrium_error("motion: rock flies away, or its velocity is no number; it was at " +
                                 shown(rock_.position[fastest_gridpoint_]));
@@ -536,7 +524,7 @@ void Motion::step()
     energy_.kinetic = kinetic;
     energy_.stored = stored() - stored_at_start_;
     for (std::size_t z = 0; z < zones_.size(); ++z)
-        if (rock_.zones.is_present[z] && !is_rigid_[z])
+        if (deforms(z))
             energy_.damped += zones_[z].damped;
     for (const Pair& pair : contacts_.pairs()) {
         energy_.friction += pair.friction;
@@ -570,7 +558,6 @@ void Motion::count_from_here()
 
 bool Motion::is_at_rest()
 {
-    std::vector<double> magnitude(place_.size());
     std::vector<Vector2d> contact_force(place_.size(), Vector2d::Zero());
     contacts_.add_forces(contact_force);
     double largest = 0, sum = 0, farthest = 0, change = 0;

@@ -96,6 +96,8 @@ private:
         bool is_held() const { return is_free.maxCoeff() == 0; }
     };
 
+    bool deforms(std::size_t z) const { return rock_.zones.is_present[z] && !is_rigid_[z]; }
+    std::vector<Index> leaders() const;
     void find_faces();
     void find_bodies();
     void find_time_step();

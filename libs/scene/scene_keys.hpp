@@ -87,8 +87,8 @@ struct SceneTables {
             visit(density), visit(mapped);
         visit(in_situ_stress), visit(profile), visit(boundary), visit(schedule), visit(stage), visit(point),
             visit(gauge);
-        visit(creep), visit(zones), visit(cutting), visit(averaging), visit(equilibrium), visit(motion), visit(random),
-            visit(file);
+        visit(creep), visit(zones), visit(cutting), visit(averaging), visit(equilibrium), visit(motion),
+            visit(random), visit(file);
     }
 };
 

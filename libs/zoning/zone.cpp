@@ -1,5 +1,6 @@
 #include "zoning/zone.hpp"
 
+#include "model/disjoint_sets.hpp"
 #include "model/polygon.hpp"
 #include "model/signs.hpp"
 #include "zoning/triangulation.hpp"
@@ -7,7 +8,6 @@
 #include <algorithm>
 #include <limits>
 #include <map>
-#include <numeric>
 
 namespace jointcreep::zoning
 {
@@ -34,10 +34,9 @@ public:
         Index stage;
     };
 
-    Corners(const Triangulation& t, const Blocks& blocks) : same_(3 * t.triangle.size())
+    Corners(const Triangulation& t, const Blocks& blocks)
+        : same_(3 * t.triangle.size()), held_(3 * t.triangle.size())
     {
-        std::iota(same_.begin(), same_.end(), 0);
-        held_ = same_;
         const Index for_good = std::numeric_limits<Index>::max();
         const auto life_of = [&](Index z) {
             const Index stage = blocks.block_stage[t.block[z]];
@@ -68,41 +67,29 @@ public:
                          [](const Link& p, const Link& q) { return p.life > q.life; });
 
         for (const Link& l : links) {
-            const Index a = root(same_, l.a), b = root(same_, l.b);
-            if (a == b || root(held_, l.a) == root(held_, l.b))
+            const Index a = same_.root(l.a), b = same_.root(l.b);
+            if (a == b || held_.root(l.a) == held_.root(l.b))
                 continue;
-            join(held_, l.a, l.b);
+            held_.join(l.a, l.b);
             if (life_[a] > l.life && life_[b] > l.life) {
                 ties_.push_back({l.a, l.b, l.life});
                 continue;
             }
             const Index life = std::max(life_[a], life_[b]);
-            join(same_, a, b);
-            life_[root(same_, a)] = life;
+            same_.join(a, b);
+            life_[same_.root(a)] = life;
         }
     }
 
     Index gridpoint(Index corner) const
     {
-        return root(same_, corner);
+        return same_.root(corner);
     } // the same number for corners that are one
     const std::vector<Tie>& ties() const { return ties_; }
 
 private:
-    static Index root(const std::vector<Index>& parent, Index c)
-    {
-        while (parent[c] != c)
-            c = parent[c];
-        return c;
-    }
-    static void join(std::vector<Index>& parent, Index a, Index b)
-    {
-        const Index p = root(parent, a), q = root(parent, b);
-        parent[std::max(p, q)] = std::min(p, q);
-    }
-
-    std::vector<Index> same_, held_; // union-find: one gridpoint; held together by links so far
-    std::vector<Index> life_;        // stage that ends the longest-lived corner of a part; at its root
+    DisjointSets same_, held_; // one gridpoint; held together by links so far
+    std::vector<Index> life_;  // stage that ends the longest-lived corner of a part; at its root
     std::vector<Tie> ties_;
 };
 

@@ -17,8 +17,7 @@ std::vector<schema::Field> all_fields(ResultFile& file)
     for (const auto& fields : {schema::fields_of(file.provenance), schema::fields_of(file.network),
                                schema::fields_of(file.equivalent), schema::fields_of(file.result),
                                schema::fields_of(file.result.trace), schema::fields_of(file.result.failure),
-                               schema::fields_of(file.result.motions),
-                               schema::fields_of(file.safety)})
+                               schema::fields_of(file.result.motions), schema::fields_of(file.safety)})
         all.insert(all.end(), fields.begin(), fields.end());
     return all;
 }
