@@ -202,12 +202,13 @@ private:
         for (const Stage& stage : scene_.stages)
             for (const Polygon& polygon : stage.remove)
                 add_polygon(polygon, Source::Kind::welded);
-        const std::size_t first_joint = lines_.size();
+        const std::size_t first_joint = lines_.size(), corners = graph_.vertex.size();
         for (std::size_t j = 0; j < joints_.set.size(); ++j) {
             // An end on a slanting line is, in doubles, a little off it: a bit of overlap makes it reach.
             // What overlaps in vain is pruned.
             const Vector2d overlap = reach_ * (joints_.to[j] - joints_.from[j]).normalized();
-            add_line(joints_.from[j] - overlap, joints_.to[j] + overlap,
+            add_line(given_end(joints_.from[j], -overlap, j, corners),
+                     given_end(joints_.to[j], overlap, j, corners),
                      {Source::Kind::joint, static_cast<Index>(j)});
         }
         if (scene_.cutting.dead_ends == DeadEnds::extend)
@@ -218,6 +219,19 @@ private:
         for (const Line& line : lines_)
             sources.push_back(line.source);
         sources_ = Sources(std::move(sources));
+    }
+
+    // Where a line drawn for a joint ends. One that a scene's author, or a map, lets end at a corner of a
+    // polygon ends just there: carried past it, along a side of the polygon, it would run beside that side
+    // and meet nothing.
+    Vector2d given_end(const Vector2d& end, const Vector2d& overlap, std::size_t joint,
+                       std::size_t corners) const
+    {
+        if (static_cast<std::size_t>(joints_.set[joint]) >= scene_.joint_sets.size())
+            for (std::size_t c = 0; c < corners; ++c)
+                if ((graph_.vertex[c] - end).norm() <= reach_ / 100) // rounded coordinates
+                    return graph_.vertex[c];
+        return end + overlap;
     }
 
     // A single joint may lie on an earlier one, a part of it. In doubles two slanting lines hardly ever

@@ -73,6 +73,29 @@ TEST(cut, a_joint_that_ends_inside_a_block_is_cut_back_and_reported)
     EXPECT_NEAR(blocks.report.pruned_length, 3 + std::sqrt(8.0), 3 * 0.1 + 1e-9); // their overlaps with it
 }
 
+// Two columns with a step between their feet and one between their heads: what divides them ends at corners
+// of the outline, whose sides go on where it ends. In doubles these hardly ever lie on one line.
+TEST(cut, a_joint_that_ends_at_corners_in_line_with_their_sides_divides_the_rock)
+{
+    for (int degrees = 1; degrees < 360; degrees += 7) {
+        const double angle = degrees * std::numbers::pi / 180;
+        const auto turned = [&](double x, double y) {
+            const double exact[] = {x * std::cos(angle) - y * std::sin(angle),
+                                    x * std::sin(angle) + y * std::cos(angle)};
+            return Vector2d(std::round(exact[0] * 1e9) / 1e9, std::round(exact[1] * 1e9) / 1e9);
+        };
+        const Scene scene = section({turned(0, 0), turned(10, 0), turned(10, 1), turned(20, 1),
+                                     turned(20, 36), turned(10, 36), turned(10, 31), turned(0, 31)},
+                                    0.1);
+        Joints joints;
+        add_joint(joints, turned(10, 1), turned(10, 31));
+        const Blocks blocks = blocks::cut(scene, joints);
+        EXPECT_EQ(faults(scene, blocks), "");
+        EXPECT_EQ(blocks.block_area.size(), 2u) << degrees;
+        EXPECT_EQ(blocks.report.pruned_length, 0) << degrees;
+    }
+}
+
 TEST(cut, an_edge_knows_how_much_of_it_is_joint)
 {
     const Scene scene = section(square, 0.1);
