@@ -391,3 +391,157 @@ def single_contact(scene, contacts, first_traction, days, step=1e-3):
         now = day
         found.append(last)
     return np.array(found)
+
+
+# Problems of the literature. Compression and pressures are positive here, angles in radians, all else in SI.
+
+
+def kirsch_displacement(place, pressure, young, nu, radius=1.0):
+    """Displacements {x, y} at places [n, 2] by which the rock about a circular hole at the origin moves when it is dug.
+
+    In plane strain, under the pressures {along x, along y} from afar (Kirsch 1898; Jaeger and Cook, Fundamentals of
+    Rock Mechanics).
+    """
+    r, angle = np.hypot(*place.T), np.arctan2(*place.T[::-1])
+    both, apart = pressure[0] + pressure[1], pressure[0] - pressure[1]
+    reach, near = (1 + nu) / (2 * young) * radius**2 / r, (radius / r) ** 2
+    inward = reach * (both + apart * (4 * (1 - nu) - near) * np.cos(2 * angle))
+    around = reach * apart * (2 * (1 - 2 * nu) + near) * np.sin(2 * angle)
+    c, s = np.cos(angle), np.sin(angle)
+    return np.stack([-inward * c - around * s, -inward * s + around * c], axis=1)
+
+
+def kirsch_hoop(place, pressure, radius=1.0):
+    """Compression around the hole at places [n, 2], as in kirsch_displacement()."""
+    near, angle = (radius / np.hypot(*place.T)) ** 2, np.arctan2(*place.T[::-1])
+    both, apart = pressure[0] + pressure[1], pressure[0] - pressure[1]
+    return both / 2 * (1 + near) - apart / 2 * (1 + 3 * near**2) * np.cos(2 * angle)
+
+
+def cantilever_deflection(length, depth, force, young, nu):
+    """Of the tip, in plane strain, by bending and shear: F L^3 / (3 E' I) + 1.2 F L / (G A) (Timoshenko)."""
+    bending = force * length**3 / (3 * young / (1 - nu**2) * depth**3 / 12)
+    return bending + 1.2 * force * length / (young / (2 * (1 + nu)) * depth)
+
+
+def plane_of_weakness(dip, confining, joint, rock):
+    """The axial stress at failure, and what fails; joint and rock are {cohesion, friction angle} (Jaeger 1960)."""
+    (c, phi), (rock_c, rock_phi) = joint, rock
+    n = (1 + math.sin(rock_phi)) / (1 - math.sin(rock_phi))
+    strength = n * confining + 2 * rock_c * math.sqrt(n)
+    if dip <= phi:
+        return strength, "rock"
+    slips = confining + (c + confining * math.tan(phi)) / (
+        math.cos(dip) * (math.sin(dip) - math.cos(dip) * math.tan(phi)))
+    return min((strength, "rock"), (slips, "joint"))
+
+
+def roof_wedge(down, horizontal, height, half_angle, normal_stiffness, shear_stiffness, phi):
+    """The force that moves a rigid symmetric wedge down by so much, against a horizontal stress.
+
+    Each of its two faces, of the length h / cos(a), bears H = stress x h at the start. With N = H cos(a) - K_n u sin(a)
+    and S = H sin(a) + K_s u cos(a), at most N tan(phi), the force is 2 (S cos(a) - N sin(a)). It is largest where slip
+    begins: 2 H (K_s cos^2 a + K_n sin^2 a) sin(phi - a) / (K_s cos a cos phi + K_n sin a sin phi)
+    (Crawford and Bray 1983).
+    """
+    s, c = math.sin(half_angle), math.cos(half_angle)
+    face, thrust = height / c, horizontal * height
+    normal = max(0.0, thrust * c - normal_stiffness * face * down * s)
+    shear = min(thrust * s + shear_stiffness * face * down * c, normal * math.tan(phi))
+    return 2 * (shear * c - normal * s)
+
+
+def roof_wedge_limit(horizontal, height, half_angle, normal_stiffness, shear_stiffness, phi):
+    """The largest force of roof_wedge(), and the way down at which it is reached."""
+    s, c = math.sin(half_angle), math.cos(half_angle)
+    down = horizontal * c * math.sin(phi - half_angle) / (
+        shear_stiffness * c * math.cos(phi) + normal_stiffness * s * math.sin(phi))
+    given = (horizontal, height, half_angle, normal_stiffness, shear_stiffness, phi)
+    return roof_wedge(down, *given), down
+
+
+def slipping_crack(dip, length, slipping, normal_stiffness, shear_stiffness, phi):
+    """Axial compliances [m per N/m] of two rigid halves on a crack of which a part slips: {slips, holds, slips back}.
+
+    Under the force P the crack closes by P cos(b) / (K_n L). Of the shear P sin(b) the slipping part, a share x of the
+    length, takes +-x P cos(b) tan(phi) as it slips, and the rest goes to K_s (1 - x) L; without slip all goes to K_s L.
+    (Olsson's crack, 1982, with the springs of Brady, Cramer and Hart, 1985. Their slopes take the friction of the whole
+    crack in place of that of its slipping part, and add both compliances in shear, so they are others.)
+    """
+    s, c, x = math.sin(dip), math.cos(dip), slipping / length
+    closes = c**2 / (normal_stiffness * length)
+
+    def slips(sign):
+        return closes + s * (s - sign * x * c * math.tan(phi)) / (shear_stiffness * (1 - x) * length)
+
+    return slips(1), closes + s**2 / (shear_stiffness * length), slips(-1)
+
+
+def brady_slopes(dip, length, slipping, normal_stiffness, shear_stiffness, phi, specimen):
+    """Axial compliances by Brady, Cramer and Hart (1985), those of slipping_crack(); the specimen is {H, W, E}."""
+    s, c = math.sin(dip), math.cos(dip)
+    height, width, young = specimen
+    holds = height / (width * young) + (c**2 / normal_stiffness + s**2 / shear_stiffness) / length
+
+    def slips(sign):
+        return holds + s * math.sin(dip - sign * phi) / (shear_stiffness * (length - slipping) * math.cos(phi))
+
+    return slips(1), holds, slips(-1)
+
+
+def cyclic_force(displacements, compliances):
+    """Forces on a slipping_crack() that is taken from 0 through these displacements, one after the other."""
+    up, hold, down = (1 / compliance for compliance in compliances)
+    force, at, found = 0.0, 0.0, []
+    for u in displacements:
+        force += hold * (u - at)  # then slip, one way or the other, keeps it between the two lines through 0
+        force, at = min(max(force, down * u), up * u), u
+        found.append(force)
+    return found
+
+
+def toppling_columns(heights, width, head_step, crest, unit_weight, dip, tan_phi):
+    """Forces between columns on a stepped base, [i] onto column i from the one above it, and the force on a smooth toe.
+
+    Columns count from the toe; up to `crest` they rise by `head_step` from head to head, those behind fall by it. The
+    last ones stand; from there on each column topples about its lower edge, pushed at the top of its side and holding
+    against the top of the next one's, with friction on both sides; or, from some column on, all slide as one body
+    (Goodman and Bray 1976; Wyllie and Mah, Rock Slope Engineering). The toe is smooth: no friction holds there. Also
+    the column from which on they slide, -1 if none does.
+    """
+    s, c = math.sin(dip), math.cos(dip)
+    force, forces = 0.0, [0.0] * len(heights)
+    for i in reversed(range(len(heights))):
+        forces[i] = force
+        y = heights[i]
+        pushed, holding = (y - head_step if i >= crest else y), (y - head_step if i <= crest else y)
+        weight = unit_weight * width * y
+        topples = (force * (pushed - width * tan_phi) + weight / 2 * (y * s - width * c)) / holding
+        slides = force - weight * (c * tan_phi - s) / (1 - tan_phi**2)
+        if slides > max(topples, 0):
+            below = unit_weight * width * sum(heights[:i + 1])
+            return forces, force * (1 - tan_phi**2) + below * (s - c * tan_phi), i
+        force = max(topples, 0.0)
+    return forces, force, -1
+
+
+def layers_shear_modulus(shear_modulus, shear_stiffness, spacing):
+    """Of rock with one set of joints, along them: 1 / (1/G + 1/(K_s S)) (Amadei and Goodman 1981)."""
+    return 1 / (1 / shear_modulus + 1 / (shear_stiffness * spacing))
+
+
+def p_wave(young, nu, density):
+    """Speed of a plane P-wave and impedance, density times speed."""
+    speed = math.sqrt(young * (1 - nu) / ((1 + nu) * (1 - 2 * nu)) / density)
+    return speed, density * speed
+
+
+def step_through_a_joint(times, pressure, impedance, stiffness):
+    """Displacement behind a joint after the arrival of a step of stress, at times since then [s].
+
+    A jump of stress goes on as p (1 - exp(-t / T)), T = z / (2 K_n): the transmitted share of a harmonic wave is
+    1 / (1 + i w T) (Schoenberg 1980). Rock moves with the stress over z.
+    """
+    lag = impedance / (2 * stiffness)
+    t = np.maximum(times, 0)
+    return pressure / impedance * (t + lag * np.expm1(-t / lag))

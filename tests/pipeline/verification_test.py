@@ -128,7 +128,7 @@ class Verification(ChainTest):
         self.in_every_way(text, check)
 
     def test_incline_slides_where_it_is_steeper_than_its_friction_angle(self):
-        for above in 0.01, -0.01:
+        for above in 0.001, -0.001:
             text = cases.edited(self.scene("incline"), {("", "friction_angle_deg"): 25 + above})
             joints = self.chain.joints(text)
             for engine in self.offer.engines:
