@@ -6,6 +6,7 @@
 // Writes  result.h5   the same, zones, histories, states of all stages (docs/file-format.md)
 //
 //         result.failed.h5   where there is no equilibrium: the run up to there, and what moves
+//         checkpoint.h5      if asked for: the run up to a stage, to go on from
 //
 // The method is in libs/analysis.
 
@@ -57,6 +58,9 @@ const Program program{
                  "bracket the largest F with which every equilibrium is found, by runs with different F; "
                  "result.h5 is of that F, result.failed.h5 of the next one"},
                 {"safety-width", "W", "width of that bracket, over F (default 0.01)"},
+                {"until", "DAY", "end there instead of at the scene's end, before or after it [day]"},
+                {"checkpoint", "FILE",
+                 "before every stage, keep there what it begins with; if FILE exists, go on from it"},
                 {"states", "N", "record the whole section every N creep steps too (default: at dates only)"},
                 {"trace", "N", "record points and gauges every N solver steps"}},
     .example = "demsolve joints.h5 --threads 2 -o result.h5",
@@ -145,6 +149,8 @@ std::string choose(const Arguments& arguments, Scene& scene)
         scene.creep.reset();
         note("no-creep", "");
     }
+    if (arguments.has("checkpoint") && arguments.has("factor-of-safety"))
+        throw input_error("--checkpoint and --factor-of-safety do not go together");
     for (const char* option : {"states", "trace"})
         if (const auto every = arguments.whole_number(option, 1, 1000000000))
             note(option, std::to_string(*every));
@@ -212,12 +218,15 @@ void report(const Network& network, const Scene& scene, const Analysis& analysis
 // A run with strengths divided by a factor.
 struct Run {
     Run(const Scene& scene, const JointsFile& file, double divisor, int threads, const Recording& recording,
-        const Observer& observe)
+        const Observer& observe, std::optional<CheckpointFile> from = {})
         : factor(divisor), joints(joint::with_strength_divided(file.equivalent, divisor)),
           analysis(scene, file.network, divisor == 1 ? file.equivalent : joints, threads, recording, observe)
     {
         try {
-            analysis.run();
+            if (from)
+                analysis.go_on(std::move(from->result), std::move(from->checkpoint));
+            else
+                analysis.run();
         } catch (const equilibrium_error& error) {
             message = error.what();
         }
@@ -246,9 +255,10 @@ std::string failed_name(const std::string& output)
 class Writer
 {
 public:
-    Writer(const Arguments& arguments, const JointsFile& file, std::string options)
-        : output_(arguments.output()), failed_(failed_name(output_)), file_(file),
-          provenance_(file.provenance), options_(std::move(options))
+    // A run that ends on another day may go on from the same checkpoint: `end` is no part of `options`.
+    Writer(const Arguments& arguments, const JointsFile& file, std::string options, std::string end)
+        : input_(arguments.input()), output_(arguments.output()), failed_(failed_name(output_)), file_(file),
+          provenance_(file.provenance), options_(std::move(options)), end_(std::move(end))
     {
         check_writable(output_);
         if (std::error_code absent; std::filesystem::equivalent(arguments.input(), failed_, absent))
@@ -260,6 +270,31 @@ public:
     }
 
     void write(const Run& run, const Safety& safety = {}) const { write(run, safety, output_); }
+
+    void write_checkpoint(const std::string& path, double factor, const Result& so_far,
+                          const Checkpoint& checkpoint) const
+    {
+        jointcreep::write_checkpoint(path, provenance(options_of(factor)), file_.network, file_.equivalent,
+                                     so_far, checkpoint);
+    }
+
+    // Throws if this run would not have come by where the checkpoint is, bit by bit.
+    void check_same_run(const std::string& path, double factor, const CheckpointFile& kept) const
+    {
+        const Provenance here = provenance(options_of(factor));
+        const auto check = [&](const char* dataset, const std::vector<std::string>& of_kept,
+                               const std::vector<std::string>& of_here, const std::string& wanted) {
+            if (of_kept != of_here)
+                throw input_error(path + ": " + dataset + " is \"" + (of_kept.empty() ? "" : of_kept.back()) +
+                                  "\"; wanted " + wanted + ". Delete the checkpoint to begin anew");
+        };
+        check("/provenance/input_sha256", kept.provenance.input_sha256, here.input_sha256,
+              "that of " + input_ + ", \"" + here.input_sha256.back() + '"');
+        check("/provenance/version", kept.provenance.version, here.version,
+              "\"" + here.version.back() + "\", this program's, as another one may compute otherwise");
+        check("/provenance/options", kept.provenance.options, here.options,
+              "the same options, \"" + here.options.back() + '"');
+    }
 
     // Returns what to say of it.
     std::string write_failed(const Run& run, const Safety& safety = {}) const
@@ -278,18 +313,32 @@ public:
 private:
     void write(const Run& run, const Safety& safety, const std::string& path) const
     {
-        Provenance provenance = provenance_;
-        std::string factor = run.factor == 1 ? "" : "--strength-factor " + shown(run.factor);
-        if (!factor.empty() && !options_.empty())
-            factor += ' ';
-        provenance.options.push_back(factor + options_);
-        write_result(path, provenance, file_.network, file_.equivalent, run.analysis.result(), safety);
+        std::string options = options_of(run.factor);
+        if (!end_.empty())
+            options += (options.empty() ? "" : " ") + end_;
+        write_result(path, provenance(options), file_.network, file_.equivalent, run.analysis.result(),
+                     safety);
     }
 
-    std::string output_, failed_;
+    std::string options_of(double factor) const
+    {
+        std::string options = factor == 1 ? "" : "--strength-factor " + shown(factor);
+        if (!options.empty() && !options_.empty())
+            options += ' ';
+        return options + options_;
+    }
+
+    Provenance provenance(const std::string& options) const
+    {
+        Provenance provenance = provenance_;
+        provenance.options.push_back(options);
+        return provenance;
+    }
+
+    std::string input_, output_, failed_;
     const JointsFile& file_;
     Provenance provenance_;
-    std::string options_;
+    std::string options_, end_;
 };
 
 double wanted_factor(const Arguments& arguments)
@@ -357,13 +406,49 @@ void add_safety(Summary& summary, const Bracket& bracket, const std::string& why
     }
 }
 
+// Lets the scene end on the day of --until, if given; returns that option as the result file records it.
+std::string end_scene(const Arguments& arguments, Scene& scene)
+{
+    const auto day = arguments.number("until");
+    if (!day)
+        return "";
+    require(*day > 0 && *day <= 1e6, "--until", *day, "day", "must be above 0 and at most 1e6");
+    scene.end = *day * unit::day;
+    std::erase_if(scene.stages, [&](const Stage& stage) { return stage.time > scene.end; });
+    for (MeasuringPoint& point : scene.points)
+        point.first_reading = std::min(point.first_reading, scene.end);
+    return "--until " + shown(*day);
+}
+
+// What --checkpoint has kept before, if anything.
+std::optional<CheckpointFile> kept_before(const Arguments& arguments, const Scene& scene,
+                                          const Writer& writer, double factor)
+{
+    const auto path = arguments.text("checkpoint");
+    if (!path)
+        return {};
+    check_writable(*path);
+    for (const std::string& other : {arguments.input(), arguments.output(), failed_name(arguments.output())})
+        if (std::filesystem::weakly_canonical(*path) == std::filesystem::weakly_canonical(other))
+            throw input_error("--checkpoint " + *path + " is " + other + ", too; give it another name");
+    if (!std::filesystem::exists(*path))
+        return {};
+    CheckpointFile kept = read_checkpoint(*path);
+    writer.check_same_run(*path, factor, kept);
+    if (kept.checkpoint.time > scene.end)
+        throw input_error(*path + ": /checkpoint/time is day " + shown(kept.checkpoint.time / unit::day) +
+                          "; wanted not after --until " + shown(scene.end / unit::day));
+    return kept;
+}
+
 void solve_and_write(const Arguments& arguments)
 {
     const std::string& input = arguments.input();
     check_writable(arguments.output());
     const JointsFile file = read_joints(input);
     Scene scene = parse_scene(file.provenance.scene, input + ": /scene");
-    const Writer writer(arguments, file, choose(arguments, scene));
+    const std::string end = end_scene(arguments, scene);
+    const Writer writer(arguments, file, choose(arguments, scene), end);
     check_divided(arguments, scene, file.equivalent);
     const double factor = wanted_factor(arguments), width = wanted_width(arguments, scene);
     if (scene.motion && arguments.has("factor-of-safety"))
@@ -373,8 +458,13 @@ void solve_and_write(const Arguments& arguments)
         for (JointMaterial& material : scene.joint_materials)
             material.friction_angle = std::atan(std::tan(material.friction_angle) / factor);
     const auto threads = static_cast<int>(arguments.whole_number("threads", 1, 1024).value_or(1));
-    const Recording recording{arguments.whole_number("states", 1, 1000000000).value_or(0),
-                              arguments.whole_number("trace", 1, 1000000000).value_or(0)};
+    Recording recording{arguments.whole_number("states", 1, 1000000000).value_or(0),
+                        arguments.whole_number("trace", 1, 1000000000).value_or(0)};
+    std::optional<CheckpointFile> kept = kept_before(arguments, scene, writer, factor);
+    if (const auto path = arguments.text("checkpoint"))
+        recording.keep = [&writer, path, factor](const Result& so_far, const Checkpoint& checkpoint) {
+            writer.write_checkpoint(*path, factor, so_far, checkpoint);
+        };
 
     std::optional<Progress> progress(arguments.quiet());
     const auto run_with = [&](double divisor) {
@@ -382,9 +472,13 @@ void solve_and_write(const Arguments& arguments)
             arguments.has("factor-of-safety") ? "strengths / " + shown(divisor) + ", " : "";
         return std::make_unique<Run>(
             scene, file, divisor, threads, recording,
-            [&](double fraction, const std::string& what) { progress->show(fraction, which + what); });
+            [&](double fraction, const std::string& what) { progress->show(fraction, which + what); },
+            std::exchange(kept, std::nullopt));
     };
     Summary summary;
+    if (kept)
+        summary.add("went on from", "stage \"" + scene.stages.at(kept->checkpoint.stage).name + "\", day " +
+                                        shown(kept->checkpoint.time / unit::day));
     std::unique_ptr<Run> run, failed; // the one with the largest factor that stands, and the one above
     if (arguments.has("factor-of-safety")) {
         const Bracket bracket = bracket_of(

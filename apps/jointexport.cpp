@@ -49,13 +49,13 @@ constexpr std::array<View, 6> views = {{
 bool is_offered(const View& view, FileKind kind, const std::string& format)
 {
     return view.formats.find(format) != std::string_view::npos &&
-           (!view.of_result || kind == FileKind::result);
+           (!view.of_result || kind >= FileKind::result);
 }
 
 // What is meant when --what is not given.
 std::string_view usual(FileKind kind, const std::string& format)
 {
-    if (kind == FileKind::result)
+    if (kind >= FileKind::result)
         return format == ".csv" ? "histories" : "zones";
     return format == ".csv" ? "joints" : "blocks";
 }

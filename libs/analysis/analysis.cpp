@@ -156,6 +156,23 @@ void Analysis::run()
     settle_in_situ();
     if (scene_.motion)
         start_motion();
+    prepare_creep();
+    follow_schedule(false);
+}
+
+void Analysis::go_on(Result so_far, Checkpoint kept)
+{
+    so_far.mesh = std::move(result_.mesh);
+    result_ = std::move(so_far);
+    if (scene_.motion)
+        prepare_motion();
+    prepare_creep();
+    transfer(Transfer(Transfer::Way::restore), kept);
+    follow_schedule(true);
+}
+
+void Analysis::prepare_creep()
+{
     if (scene_.creep) {
         creep_.emplace(scene_, network_, joints_, result_.mesh, rock_);
         if (sensitivity_)
@@ -167,6 +184,11 @@ void Analysis::run()
                 closing_.emplace(step_->closing_tolerance()); // the others are of first order anyway
         }
     }
+}
+
+// From the start, or from the stage that a checkpoint stands before.
+void Analysis::follow_schedule(bool is_at_stage)
+{
     // After this nothing happens but creep.
     const std::set<double> corners = loading_.corners();
     const double last_event = std::max(scene_.stages.empty() ? 0.0 : scene_.stages.back().time,
@@ -174,18 +196,69 @@ void Analysis::run()
     for (const double date : dates_of(scene_, loading_)) {
         if (end_of_creep_)
             break;
-        if (motion_)
+        if (date < now_)
+            continue;
+        if (is_at_stage) {
+            // creep has come here before
+        } else if (motion_)
             rest_until(date);
         else
             creep_until(date, now_ >= last_event);
-        for (std::size_t s = 0; s < scene_.stages.size(); ++s)
-            if (scene_.stages[s].time == date)
-                excavate(scene_.stages[s], static_cast<Index>(s));
+        const auto n_stages = static_cast<Index>(scene_.stages.size());
+        for (; next_stage_ < n_stages && scene_.stages[next_stage_].time == date; ++next_stage_) {
+            if (recording_.keep && !is_at_stage) {
+                Checkpoint kept;
+                transfer(Transfer(Transfer::Way::keep), kept);
+                recording_.keep(result_, kept);
+            }
+            is_at_stage = false;
+            excavate(scene_.stages[next_stage_], next_stage_);
+        }
         recorder_.start_readings(result_, now_);
     }
     for (const MeasuringPoint& point : scene_.points)
         if (point.first_reading > now_) // creep has ended before: nothing moves until then
             recorder_.start_readings(result_, point.first_reading);
+}
+
+void Analysis::transfer(const Transfer& to, Checkpoint& kept)
+{
+    // All members, lest a new one is forgotten. What is not passed on is made from the scene, or found anew
+    // in a stage.
+    auto& [scene, network, joints, recording, observe, engine, result, rock, loading, recorder, implicit,
+           motion, creep, step, closing, sensitivity, sensitivities, now, next_stage, stage, solver_time,
+           solver_steps, creep_steps, certificate, effort, last_move, cuts_left, last_step, stable_limit,
+           end_of_creep, beyond_strength, yielded_in_situ, given_up] = *this;
+    to.value(next_stage, kept.stage);
+    to.value(now, kept.time);
+    if (to.restores())
+        loading.apply(rock, now);
+    mechanics::transfer(to, rock, kept);
+    if (motion)
+        motion->transfer(to, kept.moved);
+    if (creep)
+        creep->transfer(to, kept);
+    if (step)
+        step->transfer(to, kept);
+    to.value(solver_time, kept.solver_time);
+    // Only what is left over from the last that was recorded counts.
+    std::uint64_t since_trace = solver_steps % std::max<std::uint64_t>(recording.trace_every, 1),
+                  since_state = creep_steps % std::max<std::uint64_t>(recording.state_every, 1);
+    to.value(since_trace, kept.steps_since_trace);
+    to.value(since_state, kept.steps_since_state);
+    solver_steps = since_trace;
+    creep_steps = since_state;
+    const std::array<std::map<std::string, Index>*, 3> remarks{&beyond_strength, &yielded_in_situ, &given_up};
+    if (to.restores())
+        for (std::size_t r = 0; r < kept.remark.size(); ++r)
+            (*remarks.at(kept.remark_kind[r]))[kept.remark[r]] = kept.remark_count[r];
+    else
+        for (std::size_t kind = 0; kind < remarks.size(); ++kind)
+            for (const auto& [remark, n] : *remarks[kind]) {
+                kept.remark_kind.push_back(static_cast<Index>(kind));
+                kept.remark.push_back(remark);
+                kept.remark_count.push_back(n);
+            }
 }
 
 // 2. The in-situ equilibrium. Everything is counted from here.
@@ -391,14 +464,19 @@ void Analysis::excavate(const Stage& stage, Index number)
     stage_.clear();
 }
 
-// 2, where rock may move far: contacts between faces are a little other than those between gridpoints, and
-// find their equilibrium first.
-void Analysis::start_motion()
+void Analysis::prepare_motion()
 {
     motion_.emplace(rock_, result_.mesh, rigid_zones(scene_, network_, result_.mesh),
                     law_of_new_contacts(scene_),
                     motion::Settings{scene_.motion->stiffness_damping, scene_.motion->mass_damping,
                                      scene_.motion->release, scene_.equilibrium.tolerance});
+}
+
+// 2, where rock may move far: contacts between faces are a little other than those between gridpoints, and
+// find their equilibrium first.
+void Analysis::start_motion()
+{
+    prepare_motion();
     follow_motion(std::numeric_limits<double>::infinity());
     effort_ = {};
     motion_->count_from_here();

@@ -9,6 +9,7 @@
 #include "mechanics/assembly.hpp"
 #include "mechanics/loading.hpp"
 #include "mechanics/recorder.hpp"
+#include "model/checkpoint.hpp"
 #include "motion/motion.hpp"
 #include "sensitivity/sensitivity.hpp"
 
@@ -26,6 +27,8 @@ struct Recording {
     std::uint64_t trace_every = 0; // solver steps
     // Whose sensitivities are found along with the histories: by the implicit engine alone.
     std::vector<sensitivity::Parameter> parameters{};
+    // Told before every stage what it begins with, and the result so far.
+    std::function<void(const Result&, const Checkpoint&)> keep{};
 };
 
 // The longest stable creep step, and what sets it: a joint or rock, by name.
@@ -49,6 +52,10 @@ public:
     // (If it is the in-situ one that is missing, its row and state are those given.)
     void run();
 
+    // The same from a checkpoint on, with the result up to there: as if the run that was kept had gone on.
+    // What was kept is moved from. Throws input_error where the sizes are not those of this section.
+    void go_on(Result so_far, Checkpoint kept);
+
     const Result& result() const { return result_; }
     // Of the histories' displacements, [parameter][time, point]: per unit of the parameter's logarithm [m].
     const std::vector<std::vector<mechanics::Vector2d>>& sensitivities() const { return sensitivities_; }
@@ -67,12 +74,16 @@ public:
     const std::map<std::string, Index>& given_up() const { return given_up_; }
 
 private:
+    void prepare_creep();
+    void follow_schedule(bool is_at_stage);
+    void transfer(const Transfer& to, Checkpoint& kept);
     void settle_in_situ();
     void creep_until(double date, bool may_stop);
     void rest_until(double date);
     bool step_to(double target, bool is_loaded);
     bool is_slower_than(double rate) const;
     void excavate(const Stage& stage, Index number);
+    void prepare_motion();
     void start_motion();
     bool follow_motion(double until);
     void move(const Stage& stage);
@@ -106,6 +117,7 @@ private:
     std::vector<std::vector<mechanics::Vector2d>> sensitivities_;
 
     double now_ = 0;         // since start [s]
+    Index next_stage_ = 0;   // to be excavated
     std::string stage_;      // being excavated, or ""
     double solver_time_ = 0; // of motion, over all equilibria [s]
     std::uint64_t solver_steps_ = 0, creep_steps_ = 0;

@@ -44,6 +44,9 @@ public:
     // Gives them back without a step.
     void cancel(mechanics::Assembly& assembly);
 
+    // What differs from a new Creep of the same section between steps.
+    void transfer(const Transfer& to, Checkpoint& kept);
+
     using Vector3d = Eigen::Vector3d;
 
     // One direction of a contact.

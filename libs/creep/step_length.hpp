@@ -24,6 +24,8 @@ public:
     // After a jump of loads or a change of contacts: begins with the first step again.
     void start_afresh();
 
+    void transfer(const Transfer& to, Checkpoint& kept) { to.value(wanted_, kept.creep_step); }
+
     // The error that a re-closing contact may be left with [m] (creep/closing.hpp).
     double closing_tolerance() const;
 

@@ -566,6 +566,44 @@ void go_back(Assembly& assembly, const State& state)
     assembly.zones.yielding = state.yielding;
 }
 
+void transfer(const Transfer& to, Assembly& assembly, Checkpoint& kept)
+{
+    // All members have a name here: a new one does not compile until someone has thought whether it is state.
+    // What is not passed on is as in a new assembly, or found anew before it is used.
+    auto& [zones, contacts, incidence, position, displacement, is_free, load, applied, force, ties, tied,
+           slot_force, contact_force, slot_magnitudes, stiffness_damping_rate, threads] = assembly;
+    to.values(displacement, kept.displacement);
+    to.values(is_free, kept.is_free);
+    to.values(load, kept.load);
+    if (to.restores())
+        part_ties(assembly, kept.stage - 1);
+
+    auto& [zone_gridpoint, gradient, area, weight, mass, stiffness, initial_stress, stress, last_stress,
+           is_present, yielding_number, yielding, holds_yield] = zones;
+    to.values(is_present, kept.zone_present);
+    to.values(stress, kept.stress);
+    to.values(initial_stress, kept.initial_stress);
+    to.values(stiffness, kept.stiffness);
+    for (YieldingZone& zone : yielding)
+        [[maybe_unused]] auto& [of_law, initial_zz, plastic, stress_zz, dissipated] = zone;
+    to.values(yielding, kept.plastic_strain, &YieldingZone::plastic);
+    to.values(yielding, kept.stress_zz, &YieldingZone::stress_zz);
+    to.values(yielding, kept.initial_zz, &YieldingZone::initial_zz);
+
+    auto& [contact_gridpoint, normal, length, law, state, initial_traction, offset, traction, jump, status,
+           work] = contacts;
+    to.values(status, kept.contact_status);
+    to.values(traction, kept.traction);
+    to.values(initial_traction, kept.initial_traction);
+    to.values(jump, kept.jump);
+    to.values(offset, kept.offset);
+    for (joint::CoulombState& one : state)
+        [[maybe_unused]] auto& [slip, dilation, is_broken] = one;
+    to.values(state, kept.slip, &joint::CoulombState::slip);
+    to.values(state, kept.dilation, &joint::CoulombState::dilation);
+    to.values(state, kept.is_broken, &joint::CoulombState::is_broken);
+}
+
 std::vector<double> stiffness_row_sums(const Assembly& assembly)
 {
     const Zones& zones = assembly.zones;

@@ -5,6 +5,7 @@
 
 #include "joint/law.hpp"
 #include "mechanics/mohr_coulomb.hpp"
+#include "model/checkpoint.hpp"
 #include "model/network.hpp"
 #include "model/result.hpp"
 #include "model/scene.hpp"
@@ -184,6 +185,9 @@ struct State {
 };
 State state_of(const Assembly& assembly);
 void go_back(Assembly& assembly, const State& state);
+
+// What differs from a new assembly of the same section when a stage begins.
+void transfer(const Transfer& to, Assembly& assembly, Checkpoint& kept);
 
 // Row sums of the stiffness matrix's magnitudes, the larger of x and y, of every gridpoint [Pa]: no
 // eigenvalue of stiffness over mass is above the largest row sum over its mass (Gershgorin). Where joints

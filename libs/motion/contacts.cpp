@@ -366,6 +366,36 @@ void Contacts::update(const std::vector<Vector2d>& place, const std::vector<Vect
         }
 }
 
+void Contacts::transfer(const Transfer& to, MovedRock& kept)
+{
+    to.size(faces_.gridpoint, kept.face);
+    to.values(faces_.gridpoint, kept.face);
+    to.size(pairs_, kept.pair);
+    for (Pair& pair :
+         pairs_) // all members, lest a new one is forgotten; those not passed on are of one update alone
+        [[maybe_unused]] auto& [a, b, law, lead, tau, is_known, is_new, is_closed, is_broken, is_slipping,
+                                on_a, on_b, force, normal, length, sigma, stored, friction, damped] = pair;
+    std::vector<std::array<Index, 2>> faces;
+    for (const Pair& pair : pairs_)
+        faces.push_back({pair.a, pair.b});
+    to.values(faces, kept.pair);
+    for (std::size_t p = 0; p < pairs_.size(); ++p) {
+        pairs_[p].a = faces[p][0];
+        pairs_[p].b = faces[p][1];
+    }
+    to.values(pairs_, kept.law, &Pair::law);
+    to.values(pairs_, kept.first_lead, [](Pair& pair) -> double& { return pair.lead[0]; });
+    to.values(pairs_, kept.second_lead, [](Pair& pair) -> double& { return pair.lead[1]; });
+    to.values(pairs_, kept.tau, &Pair::tau);
+    to.values(pairs_, kept.is_known, &Pair::is_known);
+    to.values(pairs_, kept.is_new, &Pair::is_new);
+    to.values(pairs_, kept.is_closed, &Pair::is_closed);
+    to.values(pairs_, kept.is_broken, &Pair::is_broken);
+    to.values(pairs_, kept.normal, &Pair::normal);
+    to.values(pairs_, kept.length, &Pair::length);
+    to.values(pairs_, kept.stored, &Pair::stored);
+}
+
 void Contacts::add_forces(std::vector<Vector2d>& force) const
 {
     for (const Pair& pair : pairs_) {

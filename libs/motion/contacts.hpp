@@ -73,6 +73,9 @@ public:
     // Adds the forces of the last update to those on gridpoints [N/m].
     void add_forces(std::vector<Vector2d>& force) const;
 
+    // What set_faces(), with what is known of before, and update() need.
+    void transfer(const Transfer& to, MovedRock& kept);
+
     const Faces& faces() const { return faces_; }
     const std::vector<Pair>& pairs() const { return pairs_; }
     const std::vector<joint::Coulomb>& laws() const { return laws_; }

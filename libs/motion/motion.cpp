@@ -550,6 +550,30 @@ void Motion::step()
         last_kinetic_ = kinetic;
 }
 
+void Motion::transfer(const Transfer& to, MovedRock& kept)
+{
+    // All members, lest a new one is forgotten.
+    auto& [rock, mesh, settings, contacts, bodies, is_rigid, body_of, zones, place, velocity, move, force,
+           released, inverse_mass, law_of_edge, dt, time, starts_from_rest, energy, stored_at_start,
+           last_kinetic, stiffest, ratio, force_change, fastest, fastest_gridpoint, checks_in_balance,
+           last_contact_force] = *this;
+    to.values(rock.position, kept.origin);
+    to.values(place, kept.place);
+    std::vector<Eigen::Vector4d> inverse;
+    for (const Zone& zone : zones)
+        inverse.emplace_back(zone.inverse.reshaped());
+    to.values(inverse, kept.inverse);
+    for (std::size_t z = 0; z < zones.size(); ++z)
+        zones[z].inverse = inverse[z].reshaped(2, 2);
+    for (Zone& zone : zones)
+        [[maybe_unused]] auto& [gridpoint, of_edges, area, stiffness, strain, forces, stored, damped] = zone;
+    to.values(zones, kept.area, &Zone::area);
+    to.values(zones, kept.strain, &Zone::strain);
+    contacts.transfer(to, kept);
+    to.value(fastest, kept.fastest);
+    to.value(ratio, kept.out_of_balance_ratio);
+}
+
 void Motion::count_from_here()
 {
     rock_.position = place_;

@@ -45,6 +45,9 @@ public:
     // within the time of release.
     void start();
 
+    // What differs from a new motion of the same section, to be asked between motions: start() does the rest.
+    void transfer(const Transfer& to, MovedRock& kept);
+
     // Makes the present places those that displacements count from.
     void count_from_here();
 

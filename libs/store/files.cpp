@@ -63,6 +63,12 @@ struct Contents {
         if (with_failure)
             append(fields, fields_of(reading(result.failure)));
     }
+    void add(const Checkpoint& checkpoint, bool with_motion)
+    {
+        append(fields, fields_of(reading(checkpoint)));
+        if (with_motion)
+            append(fields, fields_of(reading(checkpoint.moved)));
+    }
     void add(const Safety& safety) { append(fields, fields_of(reading(safety))); }
 };
 
@@ -98,7 +104,7 @@ FileKind checked_kind(const hdf5::Source& source)
     if (major > schema::major_version || major < 1)
         throw input_error("the file has format version " + std::to_string(major) +
                           "; this program reads version " + std::to_string(schema::major_version));
-    for (const FileKind kind : {FileKind::network, FileKind::joints, FileKind::result})
+    for (const FileKind kind : {FileKind::network, FileKind::joints, FileKind::result, FileKind::checkpoint})
         if (type == schema::file_type(kind)) {
             if (source.integers("complete", 1)[0] != 1)
                 throw input_error("the file is not complete");
@@ -116,6 +122,18 @@ hdf5::Source open(const std::string& path, FileKind kind)
         throw input_error("this is a \"" + schema::file_type(actual) + "\" file; wanted a \"" +
                           schema::file_type(kind) + "\" file, which " + schema::maker(kind) + " makes");
     return source;
+}
+
+// What a result file has.
+Contents contents_of(const ResultFile& file, const hdf5::Source& source)
+{
+    Contents contents(file.provenance, file.network);
+    contents.add(file.equivalent);
+    contents.add(file.result, source.has_group("/trace"), source.has_group("/motions"),
+                 source.has_group("/failure"));
+    if (source.has_group("/safety"))
+        contents.add(file.safety);
+    return contents;
 }
 
 void fill(const hdf5::Source& source, Provenance& provenance, const Contents& contents)
@@ -176,12 +194,18 @@ ResultFile read_result(const std::string& path)
     return naming(path, [&] {
         const hdf5::Source source = open(path, FileKind::result);
         ResultFile file;
-        Contents contents(file.provenance, file.network);
-        contents.add(file.equivalent);
-        contents.add(file.result, source.has_group("/trace"), source.has_group("/motions"),
-                     source.has_group("/failure"));
-        if (source.has_group("/safety"))
-            contents.add(file.safety);
+        fill(source, file.provenance, contents_of(file, source));
+        return file;
+    });
+}
+
+CheckpointFile read_checkpoint(const std::string& path)
+{
+    return naming(path, [&] {
+        const hdf5::Source source = open(path, FileKind::checkpoint);
+        CheckpointFile file;
+        Contents contents = contents_of(file, source);
+        contents.add(file.checkpoint, source.has_group("/moved"));
         fill(source, file.provenance, contents);
         return file;
     });
@@ -210,6 +234,16 @@ void write_result(const std::string& path, const Provenance& provenance, const N
     if (!safety.factor.empty())
         contents.add(safety);
     write(path, FileKind::result, provenance, contents);
+}
+
+void write_checkpoint(const std::string& path, const Provenance& provenance, const Network& network,
+                      const EquivalentJoints& equivalent, const Result& so_far, const Checkpoint& checkpoint)
+{
+    Contents contents(provenance, network);
+    contents.add(equivalent);
+    contents.add(so_far, !so_far.trace.time.empty(), !so_far.motions.time.empty(), false);
+    contents.add(checkpoint, !checkpoint.moved.place.empty());
+    write(path, FileKind::checkpoint, provenance, contents);
 }
 
 } // namespace jointcreep

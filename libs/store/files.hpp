@@ -9,6 +9,7 @@
 
 #pragma once
 
+#include "model/checkpoint.hpp"
 #include "model/network.hpp"
 #include "model/provenance.hpp"
 #include "model/result.hpp"
@@ -18,7 +19,7 @@
 namespace jointcreep
 {
 
-enum class FileKind { network, joints, result };
+enum class FileKind { network, joints, result, checkpoint }; // each holds all of the one before
 
 struct NetworkFile {
     Provenance provenance;
@@ -34,6 +35,10 @@ struct ResultFile : JointsFile {
     Safety safety;
 };
 
+struct CheckpointFile : ResultFile {
+    Checkpoint checkpoint;
+};
+
 // What the file says it is, after checking that this program understands its version and that it is complete.
 FileKind kind_of(const std::string& path);
 
@@ -44,6 +49,7 @@ std::string reason_of_failure(const std::string& path);
 NetworkFile read_network(const std::string& path);
 JointsFile read_joints(const std::string& path);
 ResultFile read_result(const std::string& path);
+CheckpointFile read_checkpoint(const std::string& path);
 
 // The records must keep to the schema too. What was under `path` stays if writing fails. The trace,
 // the failure and the runs of a factor of safety are written only if there are any.
@@ -52,6 +58,8 @@ void write_joints(const std::string& path, const Provenance& provenance, const N
                   const EquivalentJoints& equivalent);
 void write_result(const std::string& path, const Provenance& provenance, const Network& network,
                   const EquivalentJoints& equivalent, const Result& result, const Safety& safety = {});
+void write_checkpoint(const std::string& path, const Provenance& provenance, const Network& network,
+                      const EquivalentJoints& equivalent, const Result& so_far, const Checkpoint& checkpoint);
 
 // Throws file_error if a file could not be written there later; for the start of a long run.
 void check_writable(const std::string& path);

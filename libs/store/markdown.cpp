@@ -69,6 +69,7 @@ std::string schema_markdown()
     EquivalentJoints equivalent;
     Result result;
     Safety safety;
+    Checkpoint checkpoint;
     std::ostringstream page;
     page << R"(# File format
 
@@ -81,6 +82,7 @@ The programs hand each other HDF5 files. A file holds all that later programs ne
 | `jointcreep network` | jointgen | provenance, network |
 | `jointcreep joints` | strength-averaging | the same, and equivalent joints |
 | `jointcreep result` | demsolve | the same, and mesh, history, states, equilibria; a trace if asked for; motions of scenes with [motion] |
+| `jointcreep checkpoint` | demsolve | the same up to a stage, and what the stage begins with |
 
 This is format version )"
          << schema::major_version << "." << schema::minor_version << R"(.
@@ -130,6 +132,10 @@ with h5py.File("result.h5") as file:
             "such a file goes up to the last one.\n";
     list(page, "Factor of safety", schema::fields_of(safety));
     page << "\nThe group `/safety` is there only if a factor of safety was asked for.\n";
+    list(page, "Checkpoint", schema::fields_of(checkpoint));
+    page << "\nOnly in files of `--checkpoint`, for a run to go on from.\n";
+    list(page, "Moved rock", schema::fields_of(checkpoint.moved));
+    page << "\nBeside it, in scenes with [motion].\n";
     return page.str();
 }
 

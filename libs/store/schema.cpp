@@ -565,6 +565,95 @@ std::vector<Field> fields_of(Safety& safety)
     // clang-format on
 }
 
+std::vector<Field> fields_of(Checkpoint& checkpoint)
+{
+    const std::vector<std::string> gridpoint = {"gridpoint"}, zone = {"zone"}, yields = {"yielding_zone"},
+                                   contact = {"contact"}, remark = {"remark"};
+    // clang-format off
+    return {
+        {"/checkpoint/stage", &checkpoint.stage, {}, "1", index_of("stage"), "Stage that is about to be excavated."},
+        {"/checkpoint/time", &checkpoint.time, {}, "s", at_least(0), "Its time since the start."},
+        {"/checkpoint/displacement", &checkpoint.displacement, gridpoint, "m", any(),
+         "Displacement {x, y} since the in-situ equilibrium."},
+        {"/checkpoint/is_free", &checkpoint.is_free, gridpoint, "1", between(0, 1),
+         "1 or 0 in {x, y}: free, or held or without rock."},
+        {"/checkpoint/load", &checkpoint.load, gridpoint, "N/m", any(), "Weight {x, y} that the gridpoint has."},
+        {"/checkpoint/zone_present", &checkpoint.zone_present, zone, "1", between(0, 1),
+         "1 while the zone is there, 0 once it is removed."},
+        {"/checkpoint/stress", &checkpoint.stress, zone, "Pa", any(), "Stress {xx, yy, xy}, tension positive."},
+        {"/checkpoint/initial_stress", &checkpoint.initial_stress, zone, "Pa", any(),
+         "The same at zero displacement, less what has crept since."},
+        {"/checkpoint/stiffness", &checkpoint.stiffness, zone, "Pa", at_least(0),
+         "C11, C12 and C33 of the rock, rounded as creep leaves them."},
+        {"/checkpoint/plastic_strain", &checkpoint.plastic_strain, yields, "1", any(),
+         "Plastic strain {xx, yy, zz, 2 xy} since the in-situ equilibrium, extension positive."},
+        {"/checkpoint/stress_zz", &checkpoint.stress_zz, yields, "Pa", any(), "Stress across the section."},
+        {"/checkpoint/initial_zz", &checkpoint.initial_zz, yields, "Pa", any(), "The same at zero displacement."},
+        {"/checkpoint/contact_status", &checkpoint.contact_status, contact, "1", between(0, 3),
+         "0 removed, 1 stuck, 2 slipping, 3 open."},
+        {"/checkpoint/traction", &checkpoint.traction, contact, "Pa", any(), "Traction {normal, shear}, tension positive."},
+        {"/checkpoint/initial_traction", &checkpoint.initial_traction, contact, "Pa", any(),
+         "The same at zero displacement; where open, what its springs would bear."},
+        {"/checkpoint/jump", &checkpoint.jump, contact, "m", any(),
+         "Displacement of side b minus that of side a {normal, shear}."},
+        {"/checkpoint/offset", &checkpoint.offset, contact, "m", any(), "What of it has crept {normal, shear}."},
+        {"/checkpoint/slip", &checkpoint.slip, contact, "m", any(), "Slip since the in-situ equilibrium."},
+        {"/checkpoint/dilation", &checkpoint.dilation, contact, "m", any(), "Opening by slip since then."},
+        {"/checkpoint/is_broken", &checkpoint.is_broken, contact, "1", between(0, 1),
+         "1 once the bonds of the contact are broken."},
+        {"/checkpoint/reference", &checkpoint.reference, {"direction"}, "Pa", any(), "Traction from which creep counts."},
+        {"/checkpoint/crept", &checkpoint.crept, {"direction_unit"}, "m", any(), "Displacement that has crept."},
+        {"/checkpoint/rock_reference", &checkpoint.rock_reference, {"creeping_zone"}, "Pa", any(),
+         "Stress {xx, yy, xy} from which creep counts."},
+        {"/checkpoint/rock_crept", &checkpoint.rock_crept, {"zone_unit"}, "1", any(),
+         "Deviatoric strain {xx, yy, xy} that has crept."},
+        {"/checkpoint/creep_step", &checkpoint.creep_step, {}, "s", at_least(0),
+         "Creep step to be tried next; 0 where nothing creeps."},
+        {"/checkpoint/solver_time", &checkpoint.solver_time, {}, "s", at_least(0),
+         "Time of the solver, accumulated over all equilibria."},
+        {"/checkpoint/steps_since_trace", &checkpoint.steps_since_trace, {}, "1", at_least(0),
+         "Solver steps since a row of the trace."},
+        {"/checkpoint/steps_since_state", &checkpoint.steps_since_state, {}, "1", at_least(0),
+         "Creep steps since a state by their number."},
+        {"/checkpoint/remark", &checkpoint.remark, remark, "1", any(), "A joint, a rock or a reason, by name."},
+        {"/checkpoint/remark_kind", &checkpoint.remark_kind, remark, "1", between(0, 2),
+         "0 contacts of the joint beyond strength in situ, 1 zones of the rock, 2 why factorisation gave up."},
+        {"/checkpoint/remark_count", &checkpoint.remark_count, remark, "1", at_least(0), "How often."},
+    };
+    // clang-format on
+}
+
+std::vector<Field> fields_of(MovedRock& moved)
+{
+    const std::vector<std::string> gridpoint = {"gridpoint"}, zone = {"zone"}, pair = {"pair"};
+    // clang-format off
+    return {
+        {"/moved/origin", &moved.origin, gridpoint, "m", any(), "Place {x, y} that displacements count from."},
+        {"/moved/place", &moved.place, gridpoint, "m", any(), "Place {x, y} now."},
+        {"/moved/inverse", &moved.inverse, zone, "1/m", any(),
+         "Inverse of the matrix of the zone's edges without stress, by columns."},
+        {"/moved/area", &moved.area, zone, "m2", positive(), "Area of the zone without stress."},
+        {"/moved/strain", &moved.strain, zone, "1", any(), "Biot's strain {xx, yy, 2 xy} of the zone."},
+        {"/moved/face", &moved.face, {"face"}, "1", index_of("gridpoint"), "First and second gridpoint of the face."},
+        {"/moved/pair", &moved.pair, pair, "1", index_of("face"), "The two faces."},
+        {"/moved/law", &moved.law, pair, "1", at_least(0), "Number of the joint law between them."},
+        {"/moved/first_lead", &moved.first_lead, pair, "m", any(),
+         "Closing without a gap at the first end of the first face."},
+        {"/moved/second_lead", &moved.second_lead, pair, "m", any(), "The same at its second end."},
+        {"/moved/tau", &moved.tau, pair, "Pa", any(), "Shear traction."},
+        {"/moved/is_known", &moved.is_known, pair, "1", between(0, 1), "1 if they have touched since they came near."},
+        {"/moved/is_new", &moved.is_new, pair, "1", between(0, 1), "1 if they have not borne a force yet."},
+        {"/moved/is_closed", &moved.is_closed, pair, "1", between(0, 1), "1 if they touch."},
+        {"/moved/is_broken", &moved.is_broken, pair, "1", between(0, 1), "1 if there are no bonds between them."},
+        {"/moved/normal", &moved.normal, pair, "1", any(), "Unit normal {x, y} from the first to the second, or 0."},
+        {"/moved/length", &moved.length, pair, "m", at_least(0), "Length on which they touch."},
+        {"/moved/stored", &moved.stored, pair, "J/m", at_least(0), "Energy of the springs between them."},
+        {"/moved/fastest", &moved.fastest, {}, "m/s", at_least(0), "Speed of the fastest gridpoint at the last motion's end."},
+        {"/moved/out_of_balance_ratio", &moved.out_of_balance_ratio, {}, "1", at_least(0), "Out-of-balance ratio then."},
+    };
+    // clang-format on
+}
+
 std::vector<Invariant> invariants_of(const Network& network)
 {
     const Blocks& blocks = network.blocks;
@@ -658,6 +747,13 @@ const std::vector<Described>& dimensions()
         {"gauge", "a gauge of the scene"},
         {"moving_block", "a block that had no equilibrium"},
         {"trial", "a run by which a factor of safety was found"},
+        {"direction", "the normal or the shear of a contact that creeps"},
+        {"direction_unit", "a Kelvin unit or dashpot of one of these"},
+        {"creeping_zone", "a zone of rock that creeps"},
+        {"zone_unit", "a Kelvin unit or dashpot of one of these"},
+        {"remark", "a line of the closing screen so far"},
+        {"face", "a side of a zone with no rock before it, or of the ground"},
+        {"pair", "two faces that may touch"},
     };
     return all;
 }
@@ -665,7 +761,8 @@ const std::vector<Described>& dimensions()
 const std::vector<Described>& root_attributes()
 {
     static const std::vector<Described> all = {
-        {"filetype", "text: `jointcreep network`, `jointcreep joints` or `jointcreep result`"},
+        {"filetype",
+         "text: `jointcreep network`, `jointcreep joints`, `jointcreep result` or `jointcreep checkpoint`"},
         {"format_version",
          "two int32 {major, minor}; readers refuse a higher major and accept a higher minor"},
         {"program", "text: the program that wrote the file"},
@@ -686,6 +783,8 @@ std::string file_type(FileKind kind)
         return "jointcreep joints";
     case FileKind::result:
         return "jointcreep result";
+    case FileKind::checkpoint:
+        return "jointcreep checkpoint";
     }
     return {};
 }
@@ -698,6 +797,7 @@ std::string maker(FileKind kind)
     case FileKind::joints:
         return "strength-averaging";
     case FileKind::result:
+    case FileKind::checkpoint:
         return "demsolve";
     }
     return {};
@@ -762,10 +862,8 @@ void resize_array(Value&, std::size_t)
 
 template <class Value>
 inline constexpr std::size_t components_in = 1;
-template <>
-inline constexpr std::size_t components_in<std::vector<Eigen::Vector2d>> = 2;
-template <>
-inline constexpr std::size_t components_in<std::vector<Eigen::Vector3d>> = 3;
+template <int rows>
+inline constexpr std::size_t components_in<std::vector<Eigen::Matrix<double, rows, 1>>> = rows;
 template <std::size_t size>
 inline constexpr std::size_t components_in<std::vector<std::array<Index, size>>> = size;
 

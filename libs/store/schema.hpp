@@ -31,9 +31,9 @@ struct Limits {
 
 // Where the values are in memory.
 using Values = std::variant<std::vector<double>*, std::vector<Index>*, std::vector<Eigen::Vector2d>*,
-                            std::vector<Eigen::Vector3d>*, std::vector<std::array<Index, 2>>*,
-                            std::vector<std::array<Index, 3>>*, std::vector<std::string>*, double*, Index*,
-                            std::string*>;
+                            std::vector<Eigen::Vector3d>*, std::vector<Eigen::Vector4d>*,
+                            std::vector<std::array<Index, 2>>*, std::vector<std::array<Index, 3>>*,
+                            std::vector<std::string>*, double*, Index*, std::string*>;
 
 struct Field {
     std::string path; // of the dataset
@@ -62,13 +62,13 @@ struct Described {
 std::vector<Field> fields_of(Provenance& provenance);
 std::vector<Field> fields_of(Network& network);
 std::vector<Field> fields_of(EquivalentJoints& equivalent);
-std::vector<Field> fields_of(Result& result); // without its trace and motions
+std::vector<Field> fields_of(Result& result); // without its trace, motions and failure
 std::vector<Field> fields_of(Trace& trace);
 std::vector<Field> fields_of(Motions& motions);
-std::vector<Field> fields_of(Result& result); // without its trace and failure
-std::vector<Field> fields_of(Trace& trace);
 std::vector<Field> fields_of(Failure& failure);
 std::vector<Field> fields_of(Safety& safety);
+std::vector<Field> fields_of(Checkpoint& checkpoint); // without moved rock
+std::vector<Field> fields_of(MovedRock& moved);
 
 // To be asked only once the fields are within their limits. They refer to the record.
 std::vector<Invariant> invariants_of(const Network& network);
@@ -98,7 +98,7 @@ std::string wanted(const Limits& limits);
 // The values as one flat array, vectors spread into their components.
 using Flat = std::variant<std::span<double>, std::span<Index>, std::span<std::string>>;
 Flat flat(const Values& values);
-std::size_t components(const Values& values); // of one row: 1, 2 or 3
+std::size_t components(const Values& values); // of one row: 1 to 4
 std::size_t rows(const Values& values);
 void resize(const Values& values, std::size_t rows); // of an array
 

@@ -103,7 +103,7 @@ def text_of(value):
 
 
 def file_type(file):
-    """"jointcreep network", "jointcreep joints" or "jointcreep result"."""
+    """"jointcreep network", "jointcreep joints", "jointcreep result" or "jointcreep checkpoint"."""
     return text_of(file.attrs.get("filetype", ""))
 
 

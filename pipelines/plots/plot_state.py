@@ -264,7 +264,7 @@ def draw_contacts(file, state, section, axes, _):
 
 
 def draw(file, arguments):
-    if figure.file_type(file) != "jointcreep result":
+    if figure.file_type(file) not in ("jointcreep result", "jointcreep checkpoint"):
         raise figure.NotWanted("there are no states in this file; demsolve makes one that has them")
     state = state_index(file, arguments.state)
     section = Section(file, state, arguments.magnify, arguments.window, arguments.since_reset)

@@ -42,6 +42,19 @@ RC_GTEST_PROP(Files, ReadBackWhatWasWritten, ())
     RC_ASSERT(same(read_result(folder / "result.h5"), file));
 }
 
+RC_GTEST_PROP(Files, ReadBackACheckpoint, ())
+{
+    const TemporaryFolder folder;
+    const auto seed = *rc::gen::arbitrary<std::uint64_t>();
+    const auto largest = *rc::gen::inRange<std::size_t>(2, 60);
+    const CheckpointFile file = RandomRecords(seed, largest).checkpoint(*rc::gen::arbitrary<bool>());
+    write_checkpoint(folder / "kept.h5", file.provenance, file.network, file.equivalent, file.result,
+                     file.checkpoint);
+    RC_ASSERT(kind_of(folder / "kept.h5") == FileKind::checkpoint);
+    RC_ASSERT(same(read_checkpoint(folder / "kept.h5"), file));
+    RC_ASSERT(same(read_result(folder / "kept.h5"), static_cast<const ResultFile&>(file))); // the run so far
+}
+
 TEST(Files, HoldJointsThatDoNotCreep)
 {
     const TemporaryFolder folder;

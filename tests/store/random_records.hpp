@@ -79,6 +79,17 @@ public:
         return file;
     }
 
+    CheckpointFile checkpoint(bool with_motion)
+    {
+        CheckpointFile file;
+        static_cast<ResultFile&>(file) = result(false);
+        file.safety = {};
+        fill(schema::fields_of(file.checkpoint));
+        if (with_motion)
+            fill(schema::fields_of(file.checkpoint.moved));
+        return file;
+    }
+
 private:
     // At least 2 rows of everything, so that there is something to index, and a second one that differs.
     std::size_t size(const std::string& dimension)
@@ -224,6 +235,12 @@ inline bool same(const ResultFile& left, const ResultFile& right)
     return same(static_cast<const JointsFile&>(left), static_cast<const JointsFile&>(right)) &&
            same(left.result, right.result) && same(left.result.trace, right.result.trace) &&
            same(left.result.failure, right.result.failure) && same(left.safety, right.safety);
+}
+
+inline bool same(const CheckpointFile& left, const CheckpointFile& right)
+{
+    return same(static_cast<const ResultFile&>(left), static_cast<const ResultFile&>(right)) &&
+           same(left.checkpoint, right.checkpoint) && same(left.checkpoint.moved, right.checkpoint.moved);
 }
 
 inline void write(const std::string& path, const ResultFile& file)

@@ -11,13 +11,14 @@ namespace jointcreep
 namespace
 {
 
-std::vector<schema::Field> all_fields(ResultFile& file)
+std::vector<schema::Field> all_fields(CheckpointFile& file)
 {
     std::vector<schema::Field> all;
     for (const auto& fields : {schema::fields_of(file.provenance), schema::fields_of(file.network),
                                schema::fields_of(file.equivalent), schema::fields_of(file.result),
                                schema::fields_of(file.result.trace), schema::fields_of(file.result.failure),
-                               schema::fields_of(file.result.motions), schema::fields_of(file.safety)})
+                               schema::fields_of(file.result.motions), schema::fields_of(file.safety),
+                               schema::fields_of(file.checkpoint), schema::fields_of(file.checkpoint.moved)})
         all.insert(all.end(), fields.begin(), fields.end());
     return all;
 }
@@ -32,7 +33,7 @@ std::string without_one(const std::string& dimension)
 // Bytes that no field covers would be a member that files forget. Small members fill 8 bytes each.
 TEST(Schema, CoversEveryMember)
 {
-    ResultFile file;
+    CheckpointFile file;
     std::size_t covered = sizeof file.provenance.seed + 8; // these two and the realization are attributes
     std::set<const void*> places;
     for (const schema::Field& field : all_fields(file))
@@ -42,12 +43,12 @@ TEST(Schema, CoversEveryMember)
                 EXPECT_TRUE(places.insert(place).second) << field.path << " has the place of another field";
             },
             field.values);
-    EXPECT_EQ(covered, sizeof(ResultFile));
+    EXPECT_EQ(covered, sizeof(CheckpointFile));
 }
 
 TEST(Schema, NamesEveryDatasetOnce)
 {
-    ResultFile file;
+    CheckpointFile file;
     std::set<std::string> paths;
     for (const schema::Field& field : all_fields(file)) {
         EXPECT_TRUE(paths.insert(field.path).second) << field.path;
@@ -59,8 +60,9 @@ TEST(Schema, NamesEveryDatasetOnce)
 // Days only for times since the start, text without a unit.
 TEST(Schema, UsesSiUnits)
 {
-    const std::set<std::string> si = {"1", "m", "m2", "rad", "s", "Pa", "Pa/m", "Pa s/m", "J/m", "m/s"};
-    ResultFile file;
+    const std::set<std::string> si = {"1",    "m",      "m2",  "rad", "s",   "Pa",
+                                      "Pa/m", "Pa s/m", "J/m", "m/s", "N/m", "1/m"};
+    CheckpointFile file;
     for (const schema::Field& field : all_fields(file)) {
         EXPECT_TRUE(si.contains(field.units) || (field.units == "day" && field.path.ends_with("/time")))
             << field.path;
@@ -75,7 +77,7 @@ TEST(Schema, KnowsItsDimensions)
     std::set<std::string> described, sized;
     for (const schema::Described& dimension : schema::dimensions())
         described.insert(dimension.name);
-    ResultFile file;
+    CheckpointFile file;
     for (const schema::Field& field : all_fields(file)) {
         if (field.dimensions.size() == 1)
             sized.insert(without_one(field.dimensions[0]));
@@ -92,7 +94,7 @@ TEST(Schema, KnowsItsDimensions)
 
 TEST(Schema, KeepsThePathsThatScriptsRelyOn)
 {
-    ResultFile file;
+    CheckpointFile file;
     std::map<std::string, schema::Field> fields;
     for (const schema::Field& field : all_fields(file))
         fields.emplace(field.path, field);

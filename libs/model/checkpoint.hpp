@@ -1,0 +1,119 @@
+// What a run's stage begins with, so that another run can go on from there as if it were the same one.
+//
+// Everything else starts afresh at a stage: factorisations, what was learnt from earlier steps.
+
+#pragma once
+
+#include "model/error.hpp"
+#include "model/result.hpp"
+
+#include <functional>
+#include <type_traits>
+#include <vector>
+
+namespace jointcreep
+{
+
+// Rock that may move far, beside the rest; pairs of faces that may touch.
+struct MovedRock {
+    std::vector<Eigen::Vector2d> origin, place;  // of gridpoints: that displacements count from; now [m]
+    std::vector<Eigen::Vector4d> inverse;        // of zones: of their edges without stress [1/m]
+    std::vector<double> area;                    // of zones, without stress [m2]
+    std::vector<Eigen::Vector3d> strain;         // of zones, Biot's {xx, yy, 2 xy} [-]
+    std::vector<std::array<Index, 2>> face;      // gridpoints
+    std::vector<std::array<Index, 2>> pair;      // faces
+    std::vector<Index> law;                      // of the pair
+    std::vector<double> first_lead, second_lead; // [m]
+    std::vector<double> tau;                     // [Pa]
+    std::vector<Index> is_known, is_new, is_closed, is_broken; // 0 or 1
+    std::vector<Eigen::Vector2d> normal;                       // [-]
+    std::vector<double> length;                                // [m]
+    std::vector<double> stored;                                // [J/m]
+    double fastest = 0;                                        // in the last motion [m/s]
+    double out_of_balance_ratio = 0;                           // at its end [-]
+};
+
+struct Checkpoint {
+    Index stage = 0; // about to be excavated
+    double time = 0; // since start [s]
+
+    // Gridpoints.
+    std::vector<Eigen::Vector2d> displacement; // [m]
+    std::vector<Eigen::Vector2d> is_free;      // 1 or 0 in {x, y}
+    std::vector<Eigen::Vector2d> load;         // [N/m]
+
+    // Zones.
+    std::vector<Index> zone_present;
+    std::vector<Eigen::Vector3d> stress, initial_stress; // [Pa]
+    std::vector<Eigen::Vector3d>
+        stiffness; // {C11, C12, C33}: creep leaves it as it was, but for rounding [Pa]
+    std::vector<Eigen::Vector4d> plastic_strain; // of zones that yield {xx, yy, zz, 2 xy} [-]
+    std::vector<double> stress_zz, initial_zz;   // of these [Pa]
+
+    // Contacts; {normal, shear}.
+    std::vector<Index> contact_status;
+    std::vector<Eigen::Vector2d> traction, initial_traction; // [Pa]
+    std::vector<Eigen::Vector2d> jump, offset;               // [m]
+    std::vector<double> slip, dilation;                      // [m]
+    std::vector<Index> is_broken;
+
+    // Creep: a direction of a contact, and its units; a zone, and its units.
+    std::vector<double> reference;               // [Pa]
+    std::vector<double> crept;                   // [m]
+    std::vector<Eigen::Vector3d> rock_reference; // [Pa]
+    std::vector<Eigen::Vector3d> rock_crept;     // [-]
+    double creep_step = 0;                       // wanted next, 0 without creep [s]
+
+    // What has been counted.
+    Index steps_since_trace = 0;    // solver steps
+    double solver_time = 0;         // of motion [s]
+    Index steps_since_state = 0;    // creep steps
+    std::vector<Index> remark_kind; // as in Analysis: beyond strength, yielded in situ, given up
+    std::vector<std::string> remark;
+    std::vector<Index> remark_count;
+
+    MovedRock moved;
+};
+
+// Takes state into a checkpoint, or gives it back. So a list of what is state is written once, for both.
+class Transfer
+{
+public:
+    enum class Way { keep, restore };
+    explicit Transfer(Way way) : restores_(way == Way::restore) {}
+    bool restores() const { return restores_; }
+
+    template <class Live, class Kept>
+    void value(Live& live, Kept& kept) const
+    {
+        if (restores_)
+            live = static_cast<Live>(kept);
+        else
+            kept = static_cast<Kept>(live);
+    }
+
+    // Of every item, or of a part of it.
+    template <class Live, class Kept, class Part = std::identity>
+    void values(std::vector<Live>& live, std::vector<Kept>& kept, Part part = {}) const
+    {
+        if (!restores_)
+            kept.resize(live.size());
+        else if (kept.size() != live.size())
+            throw input_error("the state kept is that of another section");
+        for (std::size_t i = 0; i < live.size(); ++i)
+            value(std::invoke(part, live[i]), kept[i]);
+    }
+
+    // For lists that are not as long in every run.
+    template <class Live, class Kept>
+    void size(std::vector<Live>& live, const std::vector<Kept>& kept) const
+    {
+        if (restores_)
+            live.resize(kept.size());
+    }
+
+private:
+    bool restores_;
+};
+
+} // namespace jointcreep

@@ -1,0 +1,356 @@
+"""A run that goes on from a checkpoint gives the bytes of the run that was never interrupted."""
+
+import json
+import math
+import re
+import resource
+import shutil
+import subprocess
+import time
+
+import h5py
+import numpy as np
+
+from chain import ChainTest, changed, datasets, main
+from motion_test import incline
+
+# A face that is dug in three benches: joints that weaken, dilate, close by Barton and Bandis and creep by chains; rock
+# that creeps below rock that yields; loads and displacements on the outline that change between stages.
+SCENE = """
+[section]
+outline_m = [[0, 0], [40, 0], [40, 24], [0, 24]]
+rock = "creeping"
+gravity_m_per_s2 = 9.81
+
+[[rock]]
+name = "creeping"
+density_kg_per_m3 = 2600
+youngs_modulus_GPa = 4
+poissons_ratio = 0.25
+kelvin_shear_modulus_GPa = 5
+kelvin_shear_viscosity_GPa_day = 100
+maxwell_shear_viscosity_GPa_day = 1e4
+
+[[rock]]
+name = "yielding"
+density_kg_per_m3 = 2400
+youngs_modulus_GPa = 2
+poissons_ratio = 0.3
+cohesion_MPa = 0.05
+friction_angle_deg = 28
+tensile_strength_MPa = 0.01
+dilation_angle_deg = 5
+law = "Mohr-Coulomb"
+
+[[region]]
+rock = "yielding"
+outline_m = [[0, 11], [28, 11], [28, 24], [0, 24]]
+
+[[joint_material]]
+name = "bonded"
+normal_stiffness_MPa_per_m = 1000
+shear_stiffness_MPa_per_m = 400
+cohesion_MPa = 0.01
+residual_cohesion_MPa = 0.003
+residual_friction_angle_deg = 20
+friction_angle_deg = 24
+tensile_strength_MPa = 0.01
+dilation_angle_deg = 6
+kelvin_chain = [{ normal_stiffness_MPa_per_m = 900, normal_viscosity_MPa_day_per_m = 3e3, shear_stiffness_MPa_per_m = 300, shear_viscosity_MPa_day_per_m = 1e3 }, { normal_stiffness_MPa_per_m = 2000, normal_viscosity_MPa_day_per_m = 3e4, shear_stiffness_MPa_per_m = 700, shear_viscosity_MPa_day_per_m = 1e4 }]
+normal_maxwell_viscosity_MPa_day_per_m = 1e6
+shear_maxwell_viscosity_MPa_day_per_m = 5e5
+
+[[joint_material]]
+name = "brittle"
+normal_stiffness_MPa_per_m = 2000
+shear_stiffness_MPa_per_m = 800
+cohesion_MPa = 0.05
+friction_angle_deg = 30
+tensile_strength_MPa = 0.02
+
+[[joint_material]]
+name = "rough"
+normal_stiffness_MPa_per_m = 2000
+shear_stiffness_MPa_per_m = 900
+cohesion_MPa = 0
+friction_angle_deg = 30
+tensile_strength_MPa = 0
+joint_roughness_coefficient = 8
+joint_wall_strength_MPa = 60
+largest_closure_mm = 1
+
+[[joint]]
+name = "dips out"
+material = "bonded"
+from_m = [8, 24]
+to_m = [33, 13.85]
+
+[[joint]]
+name = "steep"
+material = "brittle"
+from_m = [16, 24]
+to_m = [22, 0]
+
+[[joint]]
+name = "in rock that goes"
+material = "brittle"
+from_m = [34, 24]
+to_m = [35, 0]
+
+[[joint]]
+name = "flat"
+material = "rough"
+from_m = [0, 9]
+to_m = [40, 10]
+
+[in_situ_stress]
+elevation_m = 24
+compression_xx_MPa = 0.1
+compression_yy_MPa = 0
+shear_xy_MPa = 0
+compression_xx_gradient_MPa_per_m = 0.015
+compression_yy_gradient_MPa_per_m = 0.025
+shear_xy_gradient_MPa_per_m = 0
+
+[[boundary]]
+from_m = [0, 0]
+to_m = [40, 0]
+fix = "xy"
+
+[[boundary]]
+from_m = [0, 0]
+to_m = [0, 24]
+fix = "x"
+displacement_mm = [1, 0]
+course = [[4, 0], [40, 1]]
+
+[[boundary]]
+from_m = [40, 0]
+to_m = [40, 24]
+fix = "x"
+
+[[boundary]]
+from_m = [0, 24]
+to_m = [14, 24]
+traction_MPa = [0, -0.08]
+course = [[2, 0], [12, 1], [24, 0.5]]
+
+[schedule]
+end = 40
+
+[[stage]]
+name = "upper"
+date = 6
+remove_m = [[[28, 17], [40, 17], [40, 24], [28, 24]]]
+
+[[stage]]
+name = "middle"
+date = 16
+remove_m = [[[28, 11], [40, 11], [40, 17], [28, 17]]]
+displacements = "reset"
+
+[[stage]]
+name = "lower"
+date = 25
+remove_m = [[[30, 8], [40, 8], [40, 11], [30, 11]]]
+
+[[point]]
+name = "crest"
+at_m = [26, 23.5]
+
+[[point]]
+name = "face"
+at_m = [27.5, 14]
+first_reading = 20
+
+[[gauge]]
+name = "behind the face"
+at_m = [20, 13]
+
+[creep]
+tolerance_m = 1e-5
+scheme = "fitted"
+
+[zones]
+size_m = 2
+
+[equilibrium]
+tolerance = 1e-4
+"""
+
+
+def sliding_block(more):
+    """A block slides down to a ledge, rests there, and slides on to a wall when the ledge goes."""
+    text = incline(30, 25, length=9, more=more)
+    outline = re.search(r"^outline_m = (.*)$", text, re.MULTILINE).group(1)
+    corners = json.loads(outline)
+
+    def place(down, off):
+        c, s = math.cos(math.radians(30)), math.sin(math.radians(30))
+        return [round(down * c + off * s, 9), round((9 - down) * s + off * c, 9)]
+
+    ledge = [place(7, 0), place(7, 1), place(6, 1), place(6, 0)]
+    foot = corners.index(place(8, 0)) + 1
+    text = text.replace(outline, str(corners[:foot] + ledge + corners[foot:]))
+    stage = f'[[stage]]\nname = "ledge removed"\ndate = 1.5\nremove_m = [{ledge}]\n[[point]]'
+    return changed(text, r"^\[\[point\]\]", stage)
+
+
+class Restart(ChainTest):
+    def run_all(self, text, days, *arguments, threads=()):
+        """Bytes of the result, of the last checkpoint, and the closing screen: in one go, and in runs that end on these
+        days and a last one, each of which goes on from where the one before had its last stage."""
+        joints = self.chain.joints(text)
+
+        def run(output, *more):
+            done = self.chain.answer("demsolve", joints, "-o", output, "--checkpoint", output.with_name("kept.h5"),
+                                     *arguments, *more)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            return done.stdout
+
+        whole, parts = self.chain.new_folder() / "result.h5", self.chain.new_folder() / "result.h5"
+        told = [run(whole)]
+        for day in days:
+            run(parts, "--until", day)
+            self.assertNotEqual(parts.read_bytes(), whole.read_bytes())
+        went_on, told_after = run(parts, *threads).split("\n", 1)
+        self.assertRegex(went_on, r'^went on from +stage ".*", day ')
+        told.append(told_after)
+        return [(path.read_bytes(), path.with_name("kept.h5").read_bytes(), screen.split())
+                for path, screen in zip((whole, parts), told)]
+
+    def assert_same(self, text, days, *arguments, threads=()):
+        whole, parts = self.run_all(text, days, *arguments, threads=threads)
+        for what, one, other in zip(("result", "checkpoint", "closing screen"), whole, parts):
+            self.assertTrue(one == other, f"{what} of a run in parts differs, {arguments}")
+        return whole
+
+    def test_small_displacements(self):
+        """The run stops after each stage. Steps of creep are cut at first and grow, are fixed, are recorded."""
+        slow_start = changed(SCENE, "^tolerance_m = 1e-5", "tolerance_m = 2e-6\nfirst_step_days = 3")
+        for text, *arguments in ((SCENE, "--states", 3),
+                                 (SCENE, "--engine", "explicit", "--creep-scheme", "linear-force", "--trace", 300),
+                                 (slow_start, "--creep-scheme", "backward"),
+                                 (SCENE, "--creep-scheme", "published", "--creep-step", 1)):
+            with self.subTest(arguments=arguments):
+                self.assert_same(text, (6, 17, 30), *arguments)
+
+    def test_the_scene_has_it_all(self):
+        """Otherwise the test above would say little: what a stage begins with is not what a section begins with."""
+        joints = self.chain.joints(SCENE)
+        kept = joints.with_name("kept.h5")
+        self.chain.run("demsolve", joints, joints.with_name("result.h5"), "--checkpoint", kept)
+        values = datasets(kept)
+        for name in ("slip", "dilation", "is_broken", "offset", "crept", "rock_crept", "plastic_strain", "remark_count"):
+            self.assertTrue(np.any(values["/checkpoint/" + name]), name)
+        self.assertEqual(set(values["/checkpoint/contact_status"]), {0, 1, 2, 3})
+        self.assertGreater(len(values["/mesh/tie_stage"]), 0)
+        self.assertGreater(values["/states/reset_state"].max(), 0)
+
+    def test_threads(self):
+        text = changed(SCENE, "^size_m = 2$", "size_m = 1.4")
+        text = changed(text, '^law = "Mohr-Coulomb"$', 'law = "elastic"')
+        result = self.assert_same(text, (17,), "--creep-step", 5, threads=("--threads", 2))[0]
+        path = self.chain.new_folder() / "result.h5"
+        path.write_bytes(result)
+        self.assertGreater(len(datasets(path)["/mesh/zone_block"]), 2000)  # fewer are one thread's
+
+    def test_motion(self):
+        for more in 'rigid_rocks = ["rock"]', "stiffness_damping_s = 3e-5\nrelease_s = 0.05":
+            with self.subTest(more=more):
+                result = self.assert_same(sliding_block(more), (1, 1.5))[0]
+                path = self.chain.new_folder() / "result.h5"
+                path.write_bytes(result)
+                moved = np.linalg.norm(datasets(path)["/history/displacement"][:, 0], axis=1)
+                self.assertAlmostEqual(moved.max(), 4, delta=0.05)
+                self.assertLess(abs(moved - 2).min(), 0.05)  # at rest on the ledge
+
+    def test_a_run_that_is_killed_goes_on(self):
+        joints = self.chain.joints(SCENE)
+        whole = self.chain.run("demsolve", joints, joints.with_name("whole.h5"), "--engine", "explicit")
+        kept, result = joints.with_name("kept.h5"), joints.with_name("result.h5")
+        command = [self.chain.programs / "demsolve", joints, "-o", result, "--checkpoint", kept, "--engine", "explicit"]
+        running = subprocess.Popen(command, stdout=subprocess.DEVNULL)
+        while not kept.exists() and running.poll() is None:
+            time.sleep(0.01)
+        running.kill()
+        running.wait()
+        self.assertFalse(result.exists(), "it was not killed in time")
+        done = subprocess.run(command, capture_output=True, text=True, timeout=300)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("went on from", done.stdout)
+        self.assertTrue(result.read_bytes() == whole.read_bytes())
+
+    def test_a_checkpoint_stays_if_the_next_cannot_be_written(self):
+        joints = self.chain.joints(SCENE)
+        kept = joints.with_name("kept.h5")
+        arguments = [joints, "-o", joints.with_name("result.h5"), "--checkpoint", kept, "--no-creep"]
+        self.assertEqual(self.chain.answer("demsolve", *arguments, "--until", 6).returncode, 0)
+        before, names = kept.read_bytes(), sorted(path.name for path in joints.parent.iterdir())
+        limit = len(before) + 1000  # bytes that a file may have
+        command = [self.chain.programs / "demsolve", *map(str, arguments)]
+        done = subprocess.run(command, capture_output=True, text=True, timeout=300,
+                              preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit)))
+        self.assertEqual(done.returncode, 4)
+        self.assertIn(f"{kept}: cannot write", done.stderr)
+        self.assertTrue(kept.read_bytes() == before)
+        self.assertEqual(sorted(path.name for path in joints.parent.iterdir()), names)
+
+    def refusal(self, joints, kept, *arguments, code=2):
+        """The message; nothing is written, and what was kept stays."""
+        output, before = self.chain.new_folder() / "result.h5", kept.read_bytes()
+        done = self.chain.answer("demsolve", joints, "-o", output, "--checkpoint", kept, *arguments)
+        self.assertEqual(done.returncode, code, done.stderr)
+        self.assertEqual(list(output.parent.iterdir()), [])
+        self.assertTrue(kept.read_bytes() == before)
+        return done.stderr
+
+    def test_what_is_not_this_runs_checkpoint_is_refused(self):
+        joints = self.chain.joints(SCENE)
+        kept, result = joints.with_name("kept.h5"), joints.with_name("result.h5")
+        self.chain.run("demsolve", joints, result, "--checkpoint", kept, "--no-creep", "--until", 17)
+        other = self.chain.joints(changed(SCENE, "^date = 25", "date = 26"))
+        self.assertRegex(self.refusal(other, kept, "--no-creep"), r"kept.h5: /provenance/input_sha256 is .*; wanted that of ")
+        self.assertRegex(self.refusal(joints, kept), r'kept.h5: /provenance/options is "--no-creep"; wanted the same')
+        self.assertRegex(self.refusal(joints, kept, "--no-creep", "--until", 15.5),
+                         r"kept.h5: /checkpoint/time is day 16; wanted not after --until 15.5")
+        self.assertIn('this is a "jointcreep result" file; wanted a "jointcreep checkpoint" file',
+                      self.refusal(joints, result, "--no-creep", "--until", 17))
+        self.assertIn("do not go together", self.refusal(joints, kept, "--factor-of-safety"))
+        self.assertIn("--until is 0 day", self.refusal(joints, kept, "--until", 0))
+        same = self.chain.answer("demsolve", joints, "-o", result, "--checkpoint", joints)
+        self.assertEqual(same.returncode, 2)
+        self.assertIn("give it another name", same.stderr)
+        with h5py.File(kept, "r+", libver=("v110", "v110")) as file:
+            version = file["/provenance/version"]
+            version[-1] = b"0.0.1"
+        self.assertRegex(self.refusal(joints, kept, "--no-creep"), r"/provenance/version is .*0.0.1.*; wanted .*this program's")
+
+    def test_a_damaged_checkpoint_is_refused(self):
+        joints = self.chain.joints(SCENE)
+        kept = joints.with_name("kept.h5")
+        self.chain.run("demsolve", joints, joints.with_name("result.h5"), "--checkpoint", kept, "--no-creep")
+        copy = kept.with_name("copy.h5")
+        with h5py.File(kept) as file:
+            offset = {name: file[name].id.get_chunk_info(0).byte_offset
+                      for name in ("checkpoint/displacement", "checkpoint/slip", "checkpoint/is_broken")}
+        for name, place in offset.items():
+            content = bytearray(kept.read_bytes())
+            content[place] ^= 1
+            copy.write_bytes(content)
+            self.assertRegex(self.refusal(joints, copy, "--no-creep", code=4), f"copy.h5: .*/{name}")
+        copy.write_bytes(kept.read_bytes()[:-1000])
+        self.assertIn("copy.h5", self.refusal(joints, copy, "--no-creep", code=4))
+        for name in "checkpoint/slip", "checkpoint/crept":
+            shutil.copyfile(kept, copy)
+            with h5py.File(copy, "r+", libver=("v110", "v110")) as file:
+                del file[name]
+            self.assertRegex(self.refusal(joints, copy, "--no-creep"), f"copy.h5: .*/{name}")
+        shutil.copyfile(kept, copy)
+        with h5py.File(copy, "r+", libver=("v110", "v110")) as file:
+            file["checkpoint/slip"][3] = np.nan
+        self.assertRegex(self.refusal(joints, copy, "--no-creep"), r"copy.h5: /checkpoint/slip\[3\] is nan; wanted finite")
+
+
+if __name__ == "__main__":
+    main()
