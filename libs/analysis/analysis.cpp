@@ -488,12 +488,12 @@ bool Analysis::follow_motion(double until)
     while (motion_->time() < until) {
         try {
             motion_->step();
+            ++effort_.steps;
+            if (effort_.steps % motion::Motion::check_every == 0 && motion_->is_at_rest())
+                return true;
         } catch (const equilibrium_error& error) {
             fail({.reason = error.what()}, now_);
         }
-        ++effort_.steps;
-        if (effort_.steps % motion::Motion::check_every == 0 && motion_->is_at_rest())
-            return true;
         if (motion_->time() > scene_.motion->longest)
             give_up_motion();
     }

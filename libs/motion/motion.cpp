@@ -26,6 +26,7 @@ constexpr double impacts = 4;    // steps are so much shorter for rigid bodies: 
                                  // impact's beginning is energy that is lost or gained
 constexpr double at_rest = 1e-4; // [m/s]
 constexpr double farthest_place = 1e8; // from the origin: what goes there, goes for ever [m]
+constexpr double most_rounding = 1e-3; // of the mean force on a gridpoint
 constexpr double slow = 0.01;          // below this speed everywhere, motion is stopped at its peaks [m/s]
 
 Vector3d stress_of(const Vector3d& stiffness, const Vector3d& strain)
@@ -384,7 +385,9 @@ void Motion::find_time_step()
             sums[g] += stiffest_joint * (place_[to] - place_[from]).norm();
     for (const auto& [follower, leader] : rock_.tied)
         sums[leader] += sums[follower];
-    stiffest_ = *std::max_element(sums.begin(), sums.end());
+    const auto stiffest = std::max_element(sums.begin(), sums.end());
+    stiffest_ = *stiffest;
+    stiffest_gridpoint_ = static_cast<Index>(stiffest - sums.begin());
 
     inverse_mass_ = lumped_masses(rock_);
     double highest = 0; // frequency squared
@@ -608,11 +611,18 @@ bool Motion::is_at_rest()
             largest =
                 std::max({largest, force.norm(), std::abs(moment) / std::sqrt(body.inertia / body.mass)});
         }
-    // Where forces are almost none, they are rounding errors of stiffness times place.
-    const double mean = n > 0
-                            ? std::max(sum / n, 1e-15 * stiffest_ * (1 + settings_.stiffness_damping / dt_) *
-                                                    farthest / settings_.tolerance)
-                            : 1.0;
+    // Where forces are almost none, they are rounding errors of stiffness times place. Dashpots multiply
+    // these by their time over that of a step: too much for zones that are tiny, whose forces then say
+    // nothing.
+    const double rounding = 1e-15 * stiffest_ * (1 + settings_.stiffness_damping / dt_) * farthest;
+    largest_mean_ = std::max(largest_mean_, n > 0 ? sum / n : 0.0);
+    if (rounding > most_rounding * largest_mean_ && largest_mean_ > 0)
+        throw equilibrium_error(
+            "motion: a step takes " + shown(dt_) + " s, and what " + shown(settings_.stiffness_damping) +
+            " s of stiffness damping makes of rounding errors is no longer small beside the forces; what is "
+            "stiffest is at " +
+            shown(rock_.position[stiffest_gridpoint_]) + ": wanted less damping there, or no zones so small");
+    const double mean = n > 0 ? std::max(sum / n, rounding / settings_.tolerance) : 1.0;
     ratio_ = largest / mean;
     const bool has_last = !last_contact_force_.empty();
     force_change_ = change / mean;
@@ -641,26 +651,37 @@ void Motion::put_back()
         rock_.zones.stress[z] = {stress(0, 0), stress(1, 1), (stress(0, 1) + stress(1, 0)) / 2};
     }
     mechanics::Contacts& contacts = rock_.contacts;
-    std::map<std::array<Index, 2>, const Pair*> closed; // by gridpoints {lower, higher}
+    // What all pairs of faces that meet at two gridpoints bear, over their length: next to the pair that
+    // faces each other there are others that overlap by what the joint has sheared.
+    struct Borne {
+        Vector2d force{0, 0};            // {normal, shear} [N/m]
+        double length = 0, slipping = 0; // of all, and of what slips [m]
+    };
+    std::map<std::array<Index, 2>, Borne> borne; // by gridpoints {lower, higher}
     for (const Pair& pair : contacts_.pairs())
-        if (pair.is_closed)
+        if (pair.is_closed && pair.length > 0)
             for (const Index a : contacts_.faces().gridpoint[pair.a])
-                for (const Index b : contacts_.faces().gridpoint[pair.b])
-                    closed[{std::min(a, b), std::max(a, b)}] = &pair;
+                for (const Index b : contacts_.faces().gridpoint[pair.b]) {
+                    Borne& there = borne[{std::min(a, b), std::max(a, b)}];
+                    there.force += pair.length * Vector2d(pair.sigma, pair.tau);
+                    there.length += pair.length;
+                    there.slipping += pair.is_slipping ? pair.length : 0.0;
+                }
     for (std::size_t c = 0; c < contacts.gridpoint.size(); ++c) {
         if (contacts.status[c] == ContactStatus::removed)
             continue;
         const auto [a, b] = contacts.gridpoint[c];
         const Vector2d jump = rock_.displacement[b] - rock_.displacement[a];
         contacts.jump[c] = {jump.dot(contacts.normal[c]), jump.dot(along(contacts.normal[c]))};
-        const auto found = closed.find({std::min(a, b), std::max(a, b)});
-        if (found == closed.end()) {
+        const auto found = borne.find({std::min(a, b), std::max(a, b)});
+        if (found == borne.end()) {
             contacts.traction[c].setZero();
             contacts.status[c] = ContactStatus::open;
             continue;
         }
-        contacts.traction[c] = {found->second->sigma, found->second->tau};
-        contacts.status[c] = found->second->is_slipping ? ContactStatus::slipping : ContactStatus::stuck;
+        contacts.traction[c] = found->second.force / found->second.length;
+        contacts.status[c] = 2 * found->second.slipping > found->second.length ? ContactStatus::slipping
+                                                                               : ContactStatus::stuck;
     }
 }
 

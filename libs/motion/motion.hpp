@@ -56,7 +56,7 @@ public:
     void step();
 
     // Whether nothing moves any more: forces are in balance to the tolerance, and have been. To be asked
-    // every `check_every` steps.
+    // every `check_every` steps. Throws equilibrium_error where forces are mostly rounding.
     static constexpr Index check_every = 50;
     bool is_at_rest();
 
@@ -125,9 +125,9 @@ private:
     double dt_ = 0, time_ = 0;
     bool starts_from_rest_ = true;
     Energy energy_;
-    double stored_at_start_ = 0, last_kinetic_ = 0, stiffest_ = 0;
+    double stored_at_start_ = 0, last_kinetic_ = 0, stiffest_ = 0, largest_mean_ = 0;
     double ratio_ = 0, force_change_ = 0, fastest_ = 0;
-    Index fastest_gridpoint_ = 0, checks_in_balance_ = 0;
+    Index fastest_gridpoint_ = 0, stiffest_gridpoint_ = 0, checks_in_balance_ = 0;
     std::vector<Vector2d> last_contact_force_;
 };
 
