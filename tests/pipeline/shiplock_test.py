@@ -147,6 +147,9 @@ class Shiplock(ChainTest):
         for name, misfit in (("N215", "misfit 5.00."), ("N195", "no misfit")):  # squares of -1 and 3
             text = points.markdown([{**row, "name": name}], {"point": own, **ranges}, 2)
             self.assertIn(misfit, text)
+            self.assertNotIn("Not among them", text)
+        text = points.markdown([{**row, "name": "N215"}], {"point": own, **ranges}, 2, {8: "it slides"})
+        self.assertIn("\nNot among them, network 8: it slides\n", text)
         start = study.datetime.date(1994, 6, 15)
         result = {"names": ["N215"], "days": [0.0, 2025.0], "total": [[0.0], [60.0]], "first": [0], "there": [True],
                   "start": start.isoformat()}
