@@ -66,10 +66,12 @@ def words_for(below, rows):
 
 
 def failures(file):
-    """{number: reason} of the networks of an ensemble that have no result."""
+    """{number: reason} of the networks of an ensemble that have no result; of what demsolve says, why and when."""
     if "failed" not in file:
         return {}
-    return dict(zip(figure.array(file, "/failed/number").tolist(), figure.texts(file, "/failed/reason")))
+    reasons = ("; ".join(part.strip() for part in reason.split("demsolve: ")[1:3]) or reason
+               for reason in figure.texts(file, "/failed/reason"))
+    return dict(zip(figure.array(file, "/failed/number").tolist(), reasons))
 
 
 def markdown(rows, targets, number, failed=None):
