@@ -71,6 +71,27 @@ std::vector<const Rock*> rocks_beside(const Scene& scene, const Network& network
     return rocks;
 }
 
+// What an edge's joint is made of there; between two rocks the softer of both in normal direction.
+const JointMaterial& material_of(const Scene& scene, const Network& network, std::size_t edge)
+{
+    const Index joint = network.blocks.edge_joint[edge];
+    const auto material = [&](const std::string& name) -> const JointMaterial& {
+        return by_name(scene.joint_materials, name, "joint material");
+    };
+    const JointMaterial& usual = material(network.names.joint_material[network.joints.material[joint]]);
+    const auto set = std::ranges::find(scene.joint_sets, set_name(network, edge), &JointSet::name);
+    if (set == scene.joint_sets.end() || set->material_in.empty())
+        return usual;
+    const JointMaterial* softest = nullptr;
+    for (const Rock* const rock : rocks_beside(scene, network, edge)) {
+        const auto in = std::ranges::find(set->material_in, rock->name, &MaterialInRock::rock);
+        const JointMaterial& here = in == set->material_in.end() ? usual : material(in->material);
+        if (!softest || here.normal_stiffness < softest->normal_stiffness)
+            softest = &here;
+    }
+    return *softest;
+}
+
 Strength bridge_strength(const Scene& scene, const Network& network, std::size_t edge, double persistence)
 {
     std::optional<Strength> weakest;
@@ -472,9 +493,7 @@ EquivalentJoints average_strength(const Scene& scene, const Network& network)
     for (std::size_t edge = 0; edge < blocks.edge_kind.size(); ++edge) {
         if (blocks.edge_kind[edge] == static_cast<Index>(EdgeKind::joint)) {
             const Index joint = blocks.edge_joint[edge];
-            const JointMaterial& material =
-                by_name(scene.joint_materials, network.names.joint_material[network.joints.material[joint]],
-                        "joint material");
+            const JointMaterial& material = material_of(scene, network, edge);
             const Share share = lines.share(edge);
             const double length = edge_length(blocks, edge);
             SetSum& sum = sums[network.joints.set[joint]];

@@ -128,10 +128,17 @@ struct Density {
     Scanline scanline{}; // of p10
 };
 
+// What joints of a set are made of where they run through one of the rocks.
+struct MaterialInRock {
+    std::string rock;     // name of a Rock
+    std::string material; // name of a JointMaterial
+};
+
 // Joints sharing their statistics.
 struct JointSet {
     std::string name;
-    std::string material; // name of a JointMaterial
+    std::string material;                      // name of a JointMaterial: in all rocks but
+    std::vector<MaterialInRock> material_in{}; // these
     SetKind kind = SetKind::lines;
     // One of four:
     std::optional<Law> trace_angle{};   // of the trace in the section, counter-clockwise from +x [rad]

@@ -141,8 +141,10 @@ private:
         if (known.size() > most_names_shown)
             all += ", ...";
         const auto meant = nearest(name, {known.begin(), known.end()});
-        given.refuse(key, "wanted the name of a " + what + ": " + all +
-                              (meant.empty() ? "" : "; did you mean \"" + meant + "\"?"));
+        const TomlValue* const value = given.find(key);
+        const bool is_in_list = value && std::holds_alternative<TomlValue::List>(value->content);
+        given.refuse(key, (is_in_list ? "has \"" + name + "\"; " : "") + "wanted the name of a " + what +
+                              ": " + all + (meant.empty() ? "" : "; did you mean \"" + meant + "\"?"));
     }
 
     void check_references() const
@@ -158,6 +160,18 @@ private:
         for (std::size_t i = 0; i < scene_.joint_sets.size(); ++i)
             check_reference(in_list("joint_set", i), "material", scene_.joint_sets[i].material, materials,
                             "[[joint_material]]");
+        for (std::size_t i = 0; i < scene_.joint_sets.size(); ++i) {
+            std::set<std::string> known;
+            for (const MaterialInRock& in : scene_.joint_sets[i].material_in) {
+                check_reference(in_list("joint_set", i), "material_in", in.rock, rocks, "[[rock]]");
+                check_reference(in_list("joint_set", i), "material_in", in.material, materials,
+                                "[[joint_material]]");
+                if (!known.insert(in.rock).second)
+                    in_list("joint_set", i)
+                        .refuse("material_in",
+                                "wanted each rock once, and \"" + in.rock + "\" is there twice");
+            }
+        }
         for (std::size_t i = 0; i < scene_.mapped.size(); ++i)
             check_reference(in_list("mapped", i), "material", scene_.mapped[i].material, materials,
                             "[[joint_material]]");

@@ -139,25 +139,28 @@ Table<Kelvin> kelvin_chain()
                     "Its dashpot, shear.")}};
 }
 
-std::vector<Kelvin> read_kelvin_chain(const Table<Kelvin>& table, const KeyInfo& key, const TomlValue& value,
-                                      const Place& outer)
+// A list of inline tables, at least `least` and at most `most` of them.
+template <class Row>
+std::vector<Row> read_rows(const Table<Row>& table, std::size_t least, std::size_t most, const KeyInfo& key,
+                           const TomlValue& value, const Place& outer)
 {
-    constexpr std::size_t most_units = 20;
     const auto* const list = std::get_if<TomlValue::List>(&value.content);
-    if (!list || list->empty() || list->size() > most_units)
-        outer.refuse(key, value, "at most " + std::to_string(most_units));
+    if (!list || list->size() < least || list->size() > most)
+        outer.refuse(key, value,
+                     (least > 1 ? std::to_string(least) + " of them at least, and " : "") + "at most " +
+                         std::to_string(most));
     const Place place{outer.reading, table.info.shown()};
-    std::vector<Kelvin> units(list->size());
+    std::vector<Row> rows(list->size());
     for (std::size_t i = 0; i < list->size(); ++i)
-        read_table(table, (*list)[i], place, units[i]);
-    return units;
+        read_table(table, (*list)[i], place, rows[i]);
+    return rows;
 }
 
 Table<JointMaterial> joint_material(const Table<Kelvin>& chain)
 {
     constexpr auto maxwell = &JointMaterial::maxwell;
     const auto read_chain = [chain](const KeyInfo& key, const TomlValue& value, const Place& place) {
-        return read_kelvin_chain(chain, key, value, place);
+        return read_rows(chain, 1, 20, key, value, place);
     };
     return {
         {"joint_material", in_list, optional,
@@ -637,8 +640,20 @@ Density read_density(const Table<WrittenDensity>& table, const TomlValue& value,
     return *density;
 }
 
+Table<MaterialInRock> material_in()
+{
+    return {
+        {"joint_set.material_in", inside, optional, "What the set's joints are made of in one of the rocks."},
+        {text("rock", &MaterialInRock::rock, "Name of the rock."),
+         text("material", &MaterialInRock::material, "Name of the joint material.")}};
+}
+
 Table<JointSet> joint_set(const SceneTables& laws)
 {
+    const auto read_materials = [table = laws.material_in](const KeyInfo& key, const TomlValue& value,
+                                                           const Place& place) {
+        return read_rows(table, 1, 100, key, value, place);
+    };
     const auto read_amount = [table = laws.density](const KeyInfo&, const TomlValue& value,
                                                     const Place& place) {
         return read_density(table, value, place);
@@ -650,6 +665,15 @@ Table<JointSet> joint_set(const SceneTables& laws)
          "dip_direction."},
         {text("name", &JointSet::name, "Name, once among the joints, joint sets and mapped sets."),
          text("material", &JointSet::material, "Name of the joint material of its traces."),
+         key_of<JointSet>(
+             {"material_in",
+              "rocks and materials",
+              {},
+              {},
+              "Joint materials in some of the rocks, in place of that one, so that joints may run from "
+              "one rock into another. Along a border the softer one in normal direction counts."},
+             &JointSet::material_in, read_materials)
+             .optional(),
          choice(
              "kind", &JointSet::kind,
              {{"lines", SetKind::lines}, {"segments", SetKind::segments}, {"discs", SetKind::discs}},
@@ -746,17 +770,10 @@ Table<InSituStress::Level> stress_profile()
 std::vector<InSituStress::Level> read_profile(const Table<InSituStress::Level>& table, const KeyInfo& key,
                                               const TomlValue& value, const Place& outer)
 {
-    constexpr std::size_t most_levels = 1000;
-    const auto* const list = std::get_if<TomlValue::List>(&value.content);
-    if (!list || list->size() < 2 || list->size() > most_levels)
-        outer.refuse(key, value, "2 of them at least, and at most " + std::to_string(most_levels));
-    const Place place{outer.reading, table.info.shown()};
-    std::vector<InSituStress::Level> levels(list->size());
-    for (std::size_t i = 0; i < list->size(); ++i) {
-        read_table(table, (*list)[i], place, levels[i]);
-        if (i > 0 && !(levels[i].depth > levels[i - 1].depth))
+    std::vector<InSituStress::Level> levels = read_rows(table, 2, 1000, key, value, outer);
+    for (std::size_t i = 1; i < levels.size(); ++i)
+        if (!(levels[i].depth > levels[i - 1].depth))
             outer.refuse(key, value, "depth_m increasing from level to level");
-    }
     return levels;
 }
 
@@ -1066,6 +1083,7 @@ SceneTables all_tables()
     all.length = length_law("length", optional, "Length of the joint traces.");
     all.diameter = length_law("diameter", optional, "Diameter of the discs.");
     all.density = density_table();
+    all.material_in = material_in();
     all.joint_set = joint_set(all);
     all.mapped = mapped();
     all.profile = stress_profile();

@@ -54,7 +54,8 @@ struct SceneTables {
     Table<Rock> rock;
     Table<Region> region;
     Table<JointMaterial> joint_material;
-    Table<Kelvin> kelvin_chain; // inside joint_material
+    Table<Kelvin> kelvin_chain;        // inside joint_material
+    Table<MaterialInRock> material_in; // inside joint_set
     Table<SingleJoint> joint;
     Table<JointSet> joint_set;
     Table<WrittenLaw> trace_angle, dip, dip_direction, spacing, length, diameter; // inside joint_set
@@ -82,9 +83,9 @@ struct SceneTables {
     void each(Visit visit) const
     {
         visit(top), visit(section), visit(rock), visit(region), visit(joint_material);
-        visit(kelvin_chain), visit(joint), visit(joint_set), visit(trace_angle), visit(dip),
-            visit(dip_direction), visit(orientation), visit(spacing), visit(length), visit(diameter),
-            visit(density), visit(mapped);
+        visit(kelvin_chain), visit(joint), visit(joint_set), visit(material_in), visit(trace_angle),
+            visit(dip), visit(dip_direction), visit(orientation), visit(spacing), visit(length),
+            visit(diameter), visit(density), visit(mapped);
         visit(in_situ_stress), visit(profile), visit(boundary), visit(schedule), visit(stage), visit(point),
             visit(gauge);
         visit(creep), visit(zones), visit(cutting), visit(averaging), visit(equilibrium), visit(motion),

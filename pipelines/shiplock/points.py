@@ -4,7 +4,8 @@
     points.py ENSEMBLE.h5 WITHOUT-CREEP.h5 TARGETS.toml -o points.md
 
 Both are ensemble.h5 of the same networks, or single results. Numbers are medians over the networks, and in brackets 5
-and 95 percent. The share of creep is of the median recorded displacement.
+and 95 percent. The share of creep is of the median recorded displacement. Networks without equilibrium are named, and
+count in nothing else.
 """
 
 import argparse
@@ -64,7 +65,17 @@ def words_for(below, rows):
     return "all points" if len(below) == len(rows) else "the points below the crest"
 
 
-def markdown(rows, targets, number):
+def failures(file):
+    """{number: reason} of the networks of an ensemble that have no result; of what demsolve says, why and when."""
+    if "failed" not in file:
+        return {}
+    reasons = ("; ".join(part.strip() for part in reason.split("demsolve: ")[1:3]) or reason
+               for reason in figure.texts(file, "/failed/reason"))
+    return dict(zip(figure.array(file, "/failed/number").tolist(), reasons))
+
+
+def markdown(rows, targets, number, failed=None):
+    failed = failed or {}
     lines = ["| point | total | its range | | recorded | its range | | before | total without creep | recorded without |"
              " creep in the record | year after the end | later |",
              "|---|---|---|---|---|---|---|---|---|---|---|---|---|"]
@@ -93,6 +104,7 @@ def markdown(rows, targets, number):
         lines.append(f"{words} {spread(values)};")
     found = misfit(rows, targets)
     lines.append("no misfit: these points have no ranges." if found is None else f"misfit {found:.2f}.")
+    lines += [f"Not among them, network {number}: {reason}" for number, reason in failed.items()]
     return "\n".join(lines) + "\n"
 
 
@@ -103,10 +115,10 @@ def main():
     parser.add_argument("-o", "--output", required=True)
     arguments = parser.parse_args()
     with figure.opened(arguments.file) as file, figure.opened(arguments.without) as other:
-        record, without = records.record_of(file), records.record_of(other)
+        record, without, failed = records.record_of(file), records.record_of(other), failures(file)
     targets = records.targets_of(arguments.targets)
     try:
-        text = markdown(rows_of(record, without, targets), targets, record.number)
+        text = markdown(rows_of(record, without, targets), targets, record.number, failed)
         with open(arguments.output, "w", encoding="utf-8") as file:
             file.write(text)
     except OSError as error:

@@ -187,21 +187,13 @@ def line_at(corners, x):
 
 
 def box(scene, half, bottom):
-    """Joints in |x| < half, y > bottom: in the weathered rock down to its base, and in the fresh rock below."""
+    """Joints in |x| < half, y > bottom, up to the ground."""
     ground = scene["in_situ_stress"]["ground_m"]
-    weak = next(region["outline_m"] for region in scene["region"] if region["rock"] == "weak")
-    base = sorted(corner for corner in weak if corner not in ground)
+    ends = {x: [x, round(line_at(ground, x), 3)] for x in (-half, half)}
+    top = [ends[half], *[corner for corner in reversed(ground) if -half < corner[0] < half], ends[-half]]
 
-    def part(line):
-        ends = [[x, round(line_at(line, x), 3)] for x in (-half, half)]
-        return [ends[0], *[corner for corner in line if -half < corner[0] < half], ends[1]]
-
-    regions = {"fresh": [[-half, bottom], [half, bottom], *reversed(part(base))],
-               "weathered": [*part(base), *reversed(part(ground))]}
-
-    def change(table, record, key, _):
-        if (table, key) == ("joint_set", "region_m"):
-            return regions[record["name"].split()[1]]
+    def change(table, _, key, __):
+        return [[-half, bottom], [half, bottom], *top] if (table, key) == ("joint_set", "region_m") else None
 
     return change
 

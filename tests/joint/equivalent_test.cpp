@@ -151,6 +151,27 @@ std::string refusal(const Section& section)
 
 } // namespace
 
+// By hand: an edge within each of two rocks, one on their border, on a set that has a softer material in one.
+TEST(equivalent, a_set_has_another_material_in_another_rock)
+{
+    Lines lines({{{{0, 10}}, {0, 4, 8, 10}}});
+    lines.scene.joint_materials = {{"rough", 6e8, 2e8, .1 * MPa, 30 * deg, 0, {Kelvin{1e9, 2e15, 3e8, 4e15}}},
+                                   {"clay", 1e8, 5e7, 0, 20 * deg, 0, {}}};
+    lines.network.names.joint_material = {"rough", "clay"};
+    lines.scene.joint_sets[0].material_in = {{"soft", "clay"}};
+    lines.network.blocks.block_rock = {0, 1};
+    lines.network.blocks.edge_block = {{0, 0}, {1, 1}, {0, 1}};
+    const EquivalentJoints joints = lines.averaged(AverageOver::edge);
+    expect_near(joints.normal_stiffness, {6e8, 1e8, 1e8});
+    expect_near(joints.shear_stiffness, {2e8, 5e7, 5e7});
+    expect_near(joints.cohesion, {.1 * MPa, 0, 0});
+    expect_near(joints.friction_angle, {30 * deg, 20 * deg, 20 * deg});
+    expect_near(joints.normal_kelvin_stiffness, {1e9, 0, 0});
+
+    lines.scene.joint_materials[1].normal_stiffness = 7e8;
+    expect_near(lines.averaged(AverageOver::edge).normal_stiffness, {6e8, 7e8, 6e8});
+}
+
 TEST(Average, IsTheJointAtPersistence1AndTheRockAt0)
 {
     const Strength whole = average(joint, rock, 1), none = average(joint, rock, 0);

@@ -59,8 +59,9 @@ class Shiplock(ChainTest):
                 self.assertAlmostEqual(material[key] * float(k) / value, 1, delta=1e-5, msg=f"{material['name']} {key}")
         sets = {one["name"]: one for one in scene["joint_set"]}
         for name, one in sets.items():
-            self.assertEqual(float(one["material"].split()[-1]), one["persistence"], name)
-            self.assertEqual(one["material"].split(",")[0], name.split()[1])
+            materials = {"fresh": one["material"], **{each["rock"]: each["material"] for each in one["material_in"]}}
+            self.assertEqual(materials, {rock: f"{of}, k {one['persistence']}" for rock, of in
+                                         (("fresh", "fresh"), ("weak", "weathered"), ("cover", "weathered"))}, name)
 
     def test_variants_are_scenes(self):
         """Each choice of the study changes the scene, and what it makes is one; section B-B too."""
@@ -146,6 +147,9 @@ class Shiplock(ChainTest):
         for name, misfit in (("N215", "misfit 5.00."), ("N195", "no misfit")):  # squares of -1 and 3
             text = points.markdown([{**row, "name": name}], {"point": own, **ranges}, 2)
             self.assertIn(misfit, text)
+            self.assertNotIn("Not among them", text)
+        text = points.markdown([{**row, "name": "N215"}], {"point": own, **ranges}, 2, {8: "it slides"})
+        self.assertIn("\nNot among them, network 8: it slides\n", text)
         start = study.datetime.date(1994, 6, 15)
         result = {"names": ["N215"], "days": [0.0, 2025.0], "total": [[0.0], [60.0]], "first": [0], "there": [True],
                   "start": start.isoformat()}

@@ -99,7 +99,16 @@ TEST(checks, references)
                    "wanted the name of a [[rock]]: \"hard\", \"soft\"");
     expect_refused("material = \"gouge\"\nfrom", "material = \"guoge\"\nfrom",
                    "[[joint]] \"fault\" material = \"guoge\"");
-    expect_refused("material = \"joint\"\ndip", "material = \"jiont\"\ndip", "did you mean \"joint\"?");
+    expect_refused("material = \"joint\"\nmaterial_in", "material = \"jiont\"\nmaterial_in",
+                   "did you mean \"joint\"?");
+    const std::string in_soft = "{ rock = \"soft\", material = \"gouge\" }";
+    expect_refused(
+        in_soft, "{ rock = \"sofft\", material = \"gouge\" }",
+        "[[joint_set]] \"steep\" material_in = a list of 1: has \"sofft\"; wanted the name of a [[rock]]");
+    expect_refused(in_soft, "{ rock = \"soft\", material = \"gauge\" }", "did you mean \"gouge\"?");
+    expect_refused(in_soft, in_soft + ", " + in_soft, "wanted each rock once, and \"soft\" is there twice");
+    expect_refused(in_soft, "{ rock = \"soft\" }", "material");
+    expect_refused("[" + in_soft + "]", "[]", "wanted rocks and materials; at most 100");
     expect_refused("joint = \"joint\"", "joint = \"jiont\"", "[[boundary]] joint = \"jiont\"");
 }
 

@@ -27,6 +27,10 @@ TEST(every_key, sets_and_laws)
     EXPECT_EQ(steep.spacing.deviation, 1);
     EXPECT_EQ(steep.persistence, 0.6);
     EXPECT_FALSE(steep.region);
+    ASSERT_EQ(steep.material_in.size(), 1u);
+    EXPECT_EQ(steep.material_in[0].rock, "soft");
+    EXPECT_EQ(steep.material_in[0].material, "gouge");
+    EXPECT_TRUE(flat.material_in.empty());
 
     ASSERT_TRUE(flat.trace_angle && flat.length && flat.region);
     EXPECT_EQ(flat.trace_angle->mean, 10 * deg);
