@@ -31,6 +31,7 @@ struct MovedRock {
     std::vector<double> stored;                                // [J/m]
     double fastest = 0;                                        // in the last motion [m/s]
     double out_of_balance_ratio = 0;                           // at its end [-]
+    double largest_mean_force = 0;                             // on a gridpoint, so far [N/m]
 };
 
 struct Checkpoint {

@@ -558,8 +558,8 @@ void Motion::transfer(const Transfer& to, MovedRock& kept)
     // All members, lest a new one is forgotten.
     auto& [rock, mesh, settings, contacts, bodies, is_rigid, body_of, zones, place, velocity, move, force,
            released, inverse_mass, law_of_edge, dt, time, starts_from_rest, energy, stored_at_start,
-           last_kinetic, stiffest, ratio, force_change, fastest, fastest_gridpoint, checks_in_balance,
-           last_contact_force] = *this;
+           last_kinetic, stiffest, largest_mean, ratio, force_change, fastest, fastest_gridpoint,
+           stiffest_gridpoint, checks_in_balance, last_contact_force] = *this;
     to.values(rock.position, kept.origin);
     to.values(place, kept.place);
     std::vector<Eigen::Vector4d> inverse;
@@ -575,6 +575,7 @@ void Motion::transfer(const Transfer& to, MovedRock& kept)
     contacts.transfer(to, kept);
     to.value(fastest, kept.fastest);
     to.value(ratio, kept.out_of_balance_ratio);
+    to.value(largest_mean, kept.largest_mean_force);
 }
 
 void Motion::count_from_here()

@@ -650,6 +650,7 @@ std::vector<Field> fields_of(MovedRock& moved)
         {"/moved/stored", &moved.stored, pair, "J/m", at_least(0), "Energy of the springs between them."},
         {"/moved/fastest", &moved.fastest, {}, "m/s", at_least(0), "Speed of the fastest gridpoint at the last motion's end."},
         {"/moved/out_of_balance_ratio", &moved.out_of_balance_ratio, {}, "1", at_least(0), "Out-of-balance ratio then."},
+        {"/moved/largest_mean_force", &moved.largest_mean_force, {}, "N/m", at_least(0), "Largest mean force on gridpoints so far."},
     };
     // clang-format on
 }
