@@ -255,7 +255,7 @@ private:
         const bool kinetic = settings_.damping == Damping::kinetic;
 #pragma omp for schedule(static)
         for (Index k = 0; k < n_chunks; ++k) {
-            Sums sums;
+            Vector2d energy(0, 0), answer(0, 0), work(0, 0); // in x and y apart: one sum a number is slower
             for (Index g = k * chunk; g < std::min(n, (k + 1) * chunk); ++g) {
                 const Vector2d free_force = a_.force[g].cwiseProduct(a_.is_free[g]), last = velocity_[g];
                 Vector2d force = free_force, change = Vector2d::Zero(); // with the last step's motion
@@ -264,8 +264,8 @@ private:
                     last_force_[g] = force;
                 }
                 if (adaptive) {
-                    sums.answer -= last.dot(change);
-                    sums.energy += last.squaredNorm() * mass_[g];
+                    answer -= last.cwiseProduct(change);
+                    energy += mass_[g] * last.cwiseAbs2();
                 }
                 const Vector2d before = starts_from_rest ? Vector2d(Vector2d::Zero()) : last;
                 if (combined)
@@ -274,12 +274,12 @@ private:
                     force -= local * force.cwiseAbs().cwiseProduct(signs_of(before));
                 const Vector2d v = keep * before + gain * inverse_mass_[g] * force;
                 if (kinetic)
-                    sums.energy += v.squaredNorm() * mass_[g];
-                sums.work += free_force.dot(v + last) / 2 * dt_;
+                    energy += mass_[g] * v.cwiseAbs2();
+                work += free_force.cwiseProduct(v + last);
                 velocity_[g] = v;
                 a_.displacement[g] += dt_ * v;
             }
-            sums_[k] = sums;
+            sums_[k] = {energy.sum(), answer.sum(), work.sum() / 2 * dt_};
         }
     }
 

@@ -1,35 +1,57 @@
 #!/usr/bin/python3
-"""What each way of damping costs: steps of motion to equilibrium on the bench slope, with 9e3 zones.
+"""What each way to equilibrium costs: steps of motion by each kind of damping, and the implicit engine.
 
-    damping.py BIN DATA OUT
+    damping.py BIN DATA OUT [--quick]
 
-runs demsolve of the folder BIN on the slope of the folder DATA, and writes OUT/damping.csv and OUT/tables/damping.md.
-Two loads are put on at once: the weight of rock without any stress in situ, on joints that hold whatever comes (all is
-linear then); and the first bench's rock taken away, with the scene's joints, which slip and open. There the
+runs demsolve of the folder BIN on the bench slope and the paper's column of the folder DATA, with 2e4 and 2e5 zones, and
+writes OUT/damping.csv, OUT/tables/damping.md and OUT/tables/damping-slip.md. Loads are put on at once: the weight of rock
+without any stress in situ, and rock taken away from the stress in situ (the first bench, the first block), both on joints
+that hold whatever comes, so that all is linear; and the bench with the scene's joints, which slip and open. There the
 displacements of the points by the bench are compared with those of the implicit engine.
+
+Seconds are processor time of one thread, less that of a run that differs by the load alone. With --quick there are only
+9e3 zones of the slope, and a thousand of the column.
 """
 
+import argparse
 import csv
 import re
 import subprocess
-import sys
 import tempfile
+from dataclasses import dataclass
 from pathlib import Path
-
-import numpy as np
 
 import cases
 import figure
-from scaling import measured_once
+from scaling import measured
 from speed_against_error import number, table
 
-ZONES = 3  # [m]
-MOST_STEPS = 50000
-WAYS = [(damping, masses) for masses in ("scaled", "real") for damping in ("adaptive", "kinetic", "local", "combined")]
+SIZES = {"slope": {"2e4": 1.6, "2e5": 0.45}, "column": {"2e4": 0.3, "2e5": 0.1}}  # of zones [m]
+QUICK = {"slope": {"2e4": 3}, "column": {"2e4": 1.25}}
+TOLERANCE = 1e-5
+MOST_STEPS = 30000
+IMPLICIT = ("implicit engine", "")
+BEST = [("adaptive", "scaled"), ("kinetic", "scaled"), ("kinetic", "real"), IMPLICIT]  # with 2e5 zones, too
+WAYS = [*((damping, masses) for masses in ("scaled", "real") for damping in ("adaptive", "kinetic", "local", "combined")),
+        ("mass", "real"), IMPLICIT]
+MASS_DAMPING = 140  # of the column, its scene's [1/s]
 
 
-def with_equilibrium(text, settings):
-    return re.sub(r"(?ms)^\[equilibrium\].*?(?=^\[|\Z)", "", text) + f"\n[equilibrium]\n{settings}\n"
+@dataclass
+class Load:
+    name: str
+    text: str  # the scene with it
+    without: str  # and without
+    is_all: bool  # there is no load at all without it
+
+
+def with_equilibrium(text, damping, masses):
+    settings = f'tolerance = {TOLERANCE}\nmost_steps = {MOST_STEPS}\n'
+    settings += (f'engine = "explicit"\ndamping = "{damping}"\nmasses = "{masses}"\n' if masses
+                 else 'engine = "implicit"\n')
+    if damping == "mass":
+        settings += f"mass_damping_per_s = {MASS_DAMPING}\n"
+    return f"{cases.with_default_equilibrium(text)}\n[equilibrium]\n{settings}"
 
 
 def without_stages(text, but=0):
@@ -40,61 +62,101 @@ def without_stages(text, but=0):
     return re.sub(r"(?ms)^\[creep\].*?(?=^\[|\Z)", "", text)
 
 
-def loads_of(text):
-    """The scenes, and the row of the equilibrium in question."""
-    stress = [f"{name}_{unit}" for name in ("compression_xx", "compression_yy", "shear_xy")
-              for unit in ("MPa", "gradient_MPa_per_m")]
-    strong = {(joint, f"{strength}_MPa"): 1000 for joint in ("joint", "fault") for strength in ("cohesion", "tensile_strength")}
-    yield "gravity", cases.edited(without_stages(text), {("", key): 0 for key in stress} | strong), 0
-    yield "bench 1 removed", without_stages(text, but=1), 1
+def loads_of(name, text):
+    stress = {("", f"{part}_{unit}"): 0 for part in ("compression_xx", "compression_yy", "shear_xy")
+              for unit in ("MPa", "gradient_MPa_per_m")}
+    materials = re.findall(r'(?m)^\[\[joint_material\]\]\nname = "([^"]*)"', text)
+    strong = cases.edited(text, {(material, f"{strength}_MPa"): 1000 for material in materials
+                                 for strength in ("cohesion", "tensile_strength")})
+    weight = cases.edited(without_stages(strong), stress)
+    yield Load("gravity", weight, cases.edited(weight, {("", "gravity_m_per_s2"): 0}), True)
+    yield Load("unloading", without_stages(strong, but=1), without_stages(strong), False)
+    if name == "slope":
+        yield Load("unloading with slip", without_stages(text, but=1), without_stages(text), False)
+
+
+def solve(text, way, size, programs, scratch):
+    """Seconds and the result's file; nothing where no equilibrium was found."""
+    scene, network, joints, result = (scratch / name for name in ("scene.toml", "network.h5", "joints.h5", "result.h5"))
+    scene.write_text(with_equilibrium(text, *way))
+    subprocess.run([programs / "jointgen", scene, "-q", "-o", network], check=True)
+    subprocess.run([programs / "strength-averaging", network, "-q", "-o", joints], check=True)
+    try:
+        return measured([programs / "demsolve", joints, "-q", "--zone-size", size, "-o", result])[0], result
+    except SystemExit as given_up:
+        if "exit code 3" not in str(given_up):
+            raise
+        return None, None
+
+
+def row_of(section, zones_about, load, way, size, programs, scratch):
+    row = {"section": section, "zones_about": zones_about, "load": load.name, "damping": way[0], "masses": way[1]}
+    seconds, result = solve(load.text, way, size, programs, scratch)
+    if not result:
+        return row
+    with figure.opened(result) as file:
+        row |= {name: int(figure.array(file, f"/equilibria/{name}")[-1])
+                for name in ("steps", "factorisations", "solves")}
+        row |= {"zones": len(figure.array(file, "/mesh/zone_block")),
+                "moved": figure.array(file, "/history/displacement")[-1]}
+    # Without any load the implicit engine factorises all the same, and motion does not begin.
+    without, _ = solve(load.without, BEST[0] if load.is_all else way, size, programs, scratch)
+    return row | {"seconds": seconds - without}
+
+
+def cell(row, found="steps"):
+    if "steps" not in row:
+        return f"more than {MOST_STEPS}"
+    return f"{row[found]} ({number(row['seconds'], '.2g')})"
+
+
+def write(rows, out):
+    found = {(row["section"], row["zones_about"], row["load"], row["damping"], row["masses"]): row for row in rows}
+    for row in rows:
+        exact = found[row["section"], row["zones_about"], row["load"], *IMPLICIT].get("moved")
+        if "moved" in row and exact is not None:
+            row["difference"] = abs(row["moved"] - exact).max() / abs(exact).max()
+    names = ["section", "zones_about", "load", "damping", "masses", "zones", "steps", "factorisations", "solves",
+             "seconds", "difference"]
+    with open(out / "damping.csv", "w", newline="") as file:
+        lines = csv.DictWriter(file, names, extrasaction="ignore")
+        lines.writeheader()
+        lines.writerows(rows)
+    columns = [key for key in dict.fromkeys((row["section"], row["zones_about"], row["load"]) for row in rows)
+               if "slip" not in key[2]]
+    lines = [[damping, masses, *(cell(found[*column, damping, masses], "solves" if not masses else "steps")
+                                 if (*column, damping, masses) in found else "" for column in columns)]
+             for damping, masses in WAYS]
+    head = ["damping", "masses", *(f"{section}, {zones}: {load}" for section, zones, load in columns)]
+    (out / "tables/damping.md").write_text("\n".join(table(head, lines)).rstrip() + "\n")
+    slip = [row for row in rows if "slip" in row["load"]]
+    (out / "tables/damping-slip.md").write_text("\n".join(table(
+        ["damping", "masses", "steps (seconds)", "difference to the implicit engine"],
+        [[row["damping"], row["masses"], cell(row, "solves" if not row["masses"] else "steps"),
+          number(row.get("difference"))] for row in slip])).rstrip() + "\n")
 
 
 def main():
-    if len(sys.argv) != 4:
-        sys.exit("usage: damping.py BIN DATA OUT")
-    programs, data, out = map(Path, sys.argv[1:])
-    (out / "tables").mkdir(parents=True, exist_ok=True)
+    parser = argparse.ArgumentParser(description="What each way to equilibrium costs.")
+    for name in "programs", "data", "out":
+        parser.add_argument(name, type=Path)
+    parser.add_argument("--quick", action="store_true", help="on few zones")
+    arguments = parser.parse_args()
+    (arguments.out / "tables").mkdir(parents=True, exist_ok=True)
     rows = []
     with tempfile.TemporaryDirectory() as folder:
-        scratch = Path(folder)
-        scene, network, joints, result = (scratch / name for name in ("scene.toml", "network.h5", "joints.h5",
-                                                                      "result.h5"))
-        for load, text, row in loads_of((data / "slope/scene.toml").read_text()):
-            exact = None
-            for damping, masses in [("", "scaled"), *WAYS]:
-                settings = f'masses = "{masses}"\nmost_steps = {MOST_STEPS}\n'
-                settings += f'engine = "explicit"\ndamping = "{damping}"' if damping else 'engine = "implicit"'
-                scene.write_text(with_equilibrium(text, settings))
-                subprocess.run([programs / "jointgen", scene, "-q", "-o", network], check=True)
-                subprocess.run([programs / "strength-averaging", network, "-q", "-o", joints], check=True)
-                try:
-                    seconds, _ = measured_once([programs / "demsolve", joints, "-q", "--zone-size", ZONES, "-o", result])
-                except SystemExit as given_up:
-                    if "exit code 3" not in str(given_up):
-                        raise
-                    rows.append([load, damping, masses, None, f"more than {MOST_STEPS}", None, None])
-                    continue
-                with figure.opened(result) as file:
-                    steps = int(figure.array(file, "/equilibria/steps")[row])
-                    zones = len(figure.array(file, "/mesh/zone_block"))
-                    moved = figure.array(file, "/history/displacement")[-1]
-                exact = moved if exact is None else exact
-                off = abs(moved - exact).max() / abs(exact).max() if row else None
-                rows.append([load, damping or "(implicit engine)", masses, zones, steps, seconds, off])
-    with open(out / "damping.csv", "w", newline="") as file:
-        lines = csv.writer(file)
-        lines.writerow(["load", "damping", "masses", "zones", "steps", "seconds", "difference"])
-        lines.writerows(rows)
-    by_way = {(load, damping, masses): rest for load, damping, masses, *rest in rows}
-    one = by_way["bench 1 removed", "adaptive", "scaled"][2]
-    lines = []
-    for damping, masses in WAYS:
-        gravity, bench = (by_way[load, damping, masses] for load in ("gravity", "bench 1 removed"))
-        lines.append([damping, masses, gravity[1], bench[1], number(bench[2] and bench[2] / one, ".2f"),
-                      number(bench[3])])
-    head = ["damping", "masses", "steps: gravity", "steps: bench 1 removed", "time of the latter run",
-            "difference to the implicit engine"]
-    (out / "tables/damping.md").write_text("\n".join(table(head, lines)[:-1]) + "\n")
+        for section, sizes in (QUICK if arguments.quick else SIZES).items():
+            text = (arguments.data / section / "scene.toml").read_text()
+            for zones_about, size in sizes.items():
+                for load in loads_of(section, text):
+                    if zones_about == "2e5" and "slip" in load.name:
+                        continue
+                    for way in WAYS if zones_about == "2e4" else BEST:
+                        if section == "slope" and (way[0] == "mass" or zones_about == "2e5" and way[1] == "real"):
+                            continue  # too slow by far
+                        rows.append(row_of(section, zones_about, load, way, size, arguments.programs, Path(folder)))
+                        print({key: value for key, value in rows[-1].items() if key != "moved"}, flush=True)
+    write(rows, arguments.out)
 
 
 if __name__ == "__main__":

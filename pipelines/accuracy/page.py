@@ -3,7 +3,8 @@
 
     page.py TABLES PAGE.md
 
-Between the lines  <!-- table NAME -->  and  <!-- end -->  of the page comes what is in TABLES/NAME.md.
+Between the lines  <!-- table NAME -->  and  <!-- end -->  of the page comes what is in TABLES/NAME.md. Where there is no
+such file the table stays, and is named.
 """
 
 import re
@@ -17,6 +18,9 @@ def main():
     tables, page = Path(sys.argv[1]), Path(sys.argv[2])
 
     def filled(found):
+        if not (tables / f"{found[2]}.md").exists():
+            print(f"page.py: there is no {found[2]}.md in {tables}: that table of {page.name} stays", file=sys.stderr)
+            return found[0]
         return f"{found[1]}{(tables / f'{found[2]}.md').read_text()}{found[3]}"
 
     page.write_text(re.sub(r"(?s)(<!-- table (\S+) -->\n).*?(<!-- end -->)", filled, page.read_text()))
