@@ -214,6 +214,7 @@ private:
         if (scene_.cutting.dead_ends == DeadEnds::extend)
             carry_on(first_joint);
         divide_by_parts(first_joint);
+        pass_through_corners(first_joint);
         std::vector<Source> sources;
         sources.reserve(lines_.size());
         for (const Line& line : lines_)
@@ -264,6 +265,33 @@ private:
                 const Vector2d& next = i + 1 < places.size() ? places[i + 1].second : to;
                 if (i == 0)
                     move_line(first_joint + whole, from, places[0].second);
+                if (places[i].second != next)
+                    add_line(places[i].second, next, source);
+            }
+        }
+    }
+
+    // A joint along a side of the outline goes on into the rock from its corner. In doubles it would pass
+    // beside that, and end at nothing in the rock below the side; so it is taken through the corner.
+    void pass_through_corners(std::size_t first_joint)
+    {
+        const double rounding = 1e-12 * size_;
+        for (std::size_t l = first_joint, n = lines_.size(); l < n; ++l) {
+            const Vector2d from = lines_[l].from, to = lines_[l].to;
+            std::vector<std::pair<double, Vector2d>> places; // along it
+            for (const Polygon& outline : outlines_)
+                for (const Vector2d& corner : outline)
+                    if (distance_to(from, to, corner) <= rounding && (corner - from).norm() > reach_ / 2 &&
+                        (corner - to).norm() > reach_ / 2)
+                        places.emplace_back((corner - from).dot(to - from), corner);
+            if (places.empty())
+                continue;
+            std::sort(places.begin(), places.end(),
+                      [](const auto& a, const auto& b) { return a.first < b.first; });
+            const Source source = lines_[l].source;
+            move_line(l, from, places[0].second);
+            for (std::size_t i = 0; i < places.size(); ++i) {
+                const Vector2d& next = i + 1 < places.size() ? places[i + 1].second : to;
                 if (places[i].second != next)
                     add_line(places[i].second, next, source);
             }

@@ -4,6 +4,7 @@
 
 #include "section.hpp"
 
+#include <Eigen/Geometry>
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
@@ -76,6 +77,27 @@ TEST(hard_networks, a_joint_along_a_slanting_side_of_the_outline_but_for_roundin
     add_joint(joints, {40, 5}, {40, 90});
     add_joint(joints, {0, 83.3}, {52.7, 80.9});
     expect_sound(scene, joints, "along the top");
+}
+
+// Turned by any angle the joint lies on the side but for rounding, and comes out of it at the corner, or
+// beside it.
+TEST(hard_networks, a_joint_along_a_side_goes_on_into_the_rock)
+{
+    for (int degrees = 0; degrees < 360; ++degrees) {
+        const Eigen::Rotation2Dd turn(degrees * std::numbers::pi / 180);
+        Polygon step;
+        for (const Vector2d& corner :
+             {Vector2d(0, 0), {14, 0}, {14, 2}, {4, 2}, {4, 4}, {1, 4}, {1, 2}, {0, 2}})
+            step.push_back(turn * corner);
+        const Scene scene = section(step, 0.04);
+        Joints joints;
+        add_joint(joints, turn * Vector2d(0.5, 2), turn * Vector2d(6, 2));
+        const std::string what = std::to_string(degrees) + " degrees";
+        expect_sound(scene, joints, what);
+        const Blocks blocks = blocks::cut(scene, joints);
+        EXPECT_EQ(blocks.block_area.size(), 2u) << what;
+        EXPECT_NEAR(blocks.fates.kept[0], 3, 1e-9) << what;
+    }
 }
 
 // Joints along both sides of a sharp notch cross these at its tip, where rounding lets the two sides share a
