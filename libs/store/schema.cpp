@@ -516,7 +516,8 @@ std::vector<Field> fields_of(Motions& motions)
         {"/motions/work_of_loads", &motions.work_of_loads, {"moment"}, "J/m", any(),
          "Work of weight, held rock and tractions since then; but for the error of time steps the sum of the next "
          "four."},
-        {"/motions/kinetic_energy", &motions.kinetic_energy, {"moment"}, "J/m", at_least(0), "Kinetic energy."},
+        {"/motions/kinetic_energy", &motions.kinetic_energy, {"moment"}, "J/m", any(),
+         "Kinetic energy; a little below 0 where all turns round at once."},
         {"/motions/stored_energy", &motions.stored_energy, {"moment"}, "J/m", any(),
          "Energy that zones and contacts took up."},
         {"/motions/friction_energy", &motions.friction_energy, {"moment"}, "J/m", at_least(0),
@@ -526,6 +527,20 @@ std::vector<Field> fields_of(Motions& motions)
         {"/motions/fastest", &motions.fastest, {"moment"}, "m/s", at_least(0), "Speed of the fastest gridpoint."},
         {"/motions/out_of_balance_ratio", &motions.out_of_balance_ratio, {"moment"}, "1", at_least(0),
          "Out-of-balance ratio."},
+        {"/motions/first_contact", &motions.first_contact, {"moment+1"}, "1", rows_in("moving_contact"),
+         "At moment i the moving contacts first_contact[i] up to, not including, first_contact[i + 1] touch."},
+        {"/motions/contact_block", &motions.contact_block, {"moving_contact"}, "1", index_or_none("block"),
+         "Its two blocks, on side a and on side b; -1 is the ground that a boundary rests on."},
+        {"/motions/contact_from", &motions.contact_from, {"moving_contact"}, "m", any(),
+         "One end of the part that touches {x, y}, where it is then."},
+        {"/motions/contact_to", &motions.contact_to, {"moving_contact"}, "m", any(), "The other end {x, y}."},
+        {"/motions/contact_normal", &motions.contact_normal, {"moving_contact"}, "1", any(),
+         "Unit normal {x, y} from side a to side b."},
+        {"/motions/contact_traction", &motions.contact_traction, {"moving_contact"}, "Pa", any(),
+         "Mean traction {normal, shear} that side b exerts on side a by the joint's springs, tension positive."},
+        {"/motions/contact_closing", &motions.contact_closing, {"moving_contact"}, "m", any(),
+         "By how much its springs are pressed together, the mean; below 0 where a bond is pulled."},
+        {"/motions/contact_slips", &motions.contact_slips, {"moving_contact"}, "1", between(0, 1), "1 while it slips."},
     };
     // clang-format on
 }
@@ -655,6 +670,7 @@ const std::vector<Described>& dimensions()
         {"equilibrium", "an equilibrium that was found"},
         {"row", "a recorded step of the solver"},
         {"moment", "a recorded moment of a motion"},
+        {"moving_contact", "two faces of blocks that touch at a recorded moment of a motion"},
         {"gauge", "a gauge of the scene"},
         {"moving_block", "a block that had no equilibrium"},
         {"trial", "a run by which a factor of safety was found"},
