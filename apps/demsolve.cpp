@@ -455,8 +455,12 @@ void solve_and_write(const Arguments& arguments)
         throw input_error("--factor-of-safety: the scene has [motion], where what fails comes to rest again; "
                           "wanted one without");
     if (scene.motion) // contacts that come about are as strong as their material
-        for (JointMaterial& material : scene.joint_materials)
-            material.friction_angle = std::atan(std::tan(material.friction_angle) / factor);
+        for (JointMaterial& material : scene.joint_materials) {
+            const auto divide = [&](double& angle) { angle = std::atan(std::tan(angle) / factor); };
+            divide(material.friction_angle);
+            if (material.residual)
+                divide(material.residual->friction_angle);
+        }
     const auto threads = static_cast<int>(arguments.whole_number("threads", 1, 1024).value_or(1));
     Recording recording{arguments.whole_number("states", 1, 1000000000).value_or(0),
                         arguments.whole_number("trace", 1, 1000000000).value_or(0)};

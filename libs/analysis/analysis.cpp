@@ -1,7 +1,6 @@
 #include "analysis/analysis.hpp"
 
 #include "mechanics/excavation.hpp"
-#include "mechanics/failure.hpp"
 #include "model/error.hpp"
 #include "model/units.hpp"
 #include "relaxation/relax.hpp"
@@ -119,12 +118,14 @@ std::vector<char> rigid_zones(const Scene& scene, const Network& network, const 
     return is_rigid;
 }
 
-// Of contacts that come about in motion: friction alone.
+// Of contacts that come about in motion: friction alone, the residual one where there is one.
 joint::Coulomb law_of_new_contacts(const Scene& scene)
 {
     const auto material = std::find_if(scene.joint_materials.begin(), scene.joint_materials.end(),
                                        [&](const auto& m) { return m.name == scene.motion->new_contacts; });
-    return {material->normal_stiffness, material->shear_stiffness, 0, std::tan(material->friction_angle), 0};
+    const double friction_angle =
+        material->residual ? material->residual->friction_angle : material->friction_angle;
+    return {material->normal_stiffness, material->shear_stiffness, 0, std::tan(friction_angle), 0};
 }
 
 } // namespace
@@ -491,11 +492,13 @@ bool Analysis::follow_motion(double until)
             ++effort_.steps;
             if (effort_.steps % motion::Motion::check_every == 0 && motion_->is_at_rest())
                 return true;
+        } catch (const mechanics::no_equilibrium& error) {
+            give_up_motion(error);
         } catch (const equilibrium_error& error) {
             fail({.reason = error.what()}, now_);
         }
         if (motion_->time() > scene_.motion->longest)
-            give_up_motion();
+            give_up_motion(motion_->moves_on("no rest within " + shown(scene_.motion->longest) + " s"));
     }
     return false;
 }
@@ -512,7 +515,7 @@ void Analysis::move(const Stage& stage)
         take_down_motion();
     } while (!follow_motion(due));
     motion_->put_back();
-    const motion::Energy& energy = motion_->energy();
+    const motion::Energy energy = motion_->energy();
     certificate_ = {.steps = effort_.steps,
                     .out_of_balance_ratio = motion_->out_of_balance_ratio(),
                     .contact_force_change = motion_->contact_force_change(),
@@ -529,24 +532,18 @@ void Analysis::move(const Stage& stage)
 }
 
 // Keeps the state that a motion has come to, and says what moves.
-void Analysis::give_up_motion()
+void Analysis::give_up_motion(const mechanics::no_equilibrium& error)
 {
     motion_->put_back();
     take_down("", true);
     take_down_motion();
-    mechanics::no_equilibrium error("no rest within " + shown(scene_.motion->longest) + " s");
-    error.moves_on = true;
-    error.steps = motion::Motion::check_every;
-    error.seconds = error.steps * motion_->dt();
-    for (const Vector2d& velocity : motion_->velocity())
-        error.motion.emplace_back(error.seconds * velocity);
     fail(failure_of(error, result_.mesh, rock_), now_);
 }
 
 void Analysis::take_down_motion()
 {
     Motions& motions = result_.motions;
-    const motion::Energy& energy = motion_->energy();
+    const motion::Energy energy = motion_->energy();
     motions.time.push_back(now_ / unit::day);
     motions.motion_time.push_back(motion_->time());
     motions.state.push_back(static_cast<Index>(result_.states.time.size()) - 1);
@@ -557,6 +554,17 @@ void Analysis::take_down_motion()
     motions.damped_energy.push_back(energy.damped);
     motions.fastest.push_back(motion_->fastest());
     motions.out_of_balance_ratio.push_back(motion_->out_of_balance_ratio());
+    const auto block_of = [&](Index zone) { return zone < 0 ? zone : result_.mesh.zone_block[zone]; };
+    for (const motion::Touching& contact : motion_->touching()) {
+        motions.contact_block.push_back({block_of(contact.zone[0]), block_of(contact.zone[1])});
+        motions.contact_from.push_back(contact.between[0]);
+        motions.contact_to.push_back(contact.between[1]);
+        motions.contact_normal.push_back(contact.normal);
+        motions.contact_traction.push_back(contact.traction);
+        motions.contact_closing.push_back(contact.closing);
+        motions.contact_slips.push_back(contact.is_slipping ? 1 : 0);
+    }
+    motions.first_contact.push_back(static_cast<Index>(motions.contact_block.size()));
 }
 
 // After a jump of loads: what was learnt from the steps before no longer holds.

@@ -7,6 +7,7 @@
 #include "creep/step_length.hpp"
 #include "implicit/equilibrium.hpp"
 #include "mechanics/assembly.hpp"
+#include "mechanics/failure.hpp"
 #include "mechanics/loading.hpp"
 #include "mechanics/recorder.hpp"
 #include "model/checkpoint.hpp"
@@ -87,7 +88,7 @@ private:
     void start_motion();
     bool follow_motion(double until);
     void move(const Stage& stage);
-    [[noreturn]] void give_up_motion();
+    [[noreturn]] void give_up_motion(const mechanics::no_equilibrium& error);
     void take_down_motion();
     bool settles_nearby(const std::vector<mechanics::Vector2d>& guess, double time);
     void settle_by_motion(double time, const std::string& reason = {}); // without one the implicit engine's

@@ -28,7 +28,7 @@ struct MovedRock {
     std::vector<Index> is_known, is_new, is_closed, is_broken; // 0 or 1
     std::vector<Eigen::Vector2d> normal;                       // [-]
     std::vector<double> length;                                // [m]
-    std::vector<double> stored;                                // [J/m]
+    std::vector<double> pressed_in, sheared_in;                // by springs [J/m]
     double fastest = 0;                                        // in the last motion [m/s]
     double out_of_balance_ratio = 0;                           // at its end [-]
     double largest_mean_force = 0;                             // on a gridpoint, so far [N/m]

@@ -101,6 +101,15 @@ struct Motions {
     std::vector<double> work_of_loads, kinetic_energy, stored_energy, friction_energy, damped_energy; // [J/m]
     std::vector<double> fastest;              // gridpoint's speed [m/s]
     std::vector<double> out_of_balance_ratio; // [-]
+
+    // What touches what at these moments, row m having the contacts from first_contact[m] on.
+    std::vector<Index> first_contact{0};                   // [moment + 1]
+    std::vector<std::array<Index, 2>> contact_block;       // {a, b}; -1 the ground
+    std::vector<Eigen::Vector2d> contact_from, contact_to; // ends of the part that touches [m]
+    std::vector<Eigen::Vector2d> contact_normal;           // from a to b
+    std::vector<Eigen::Vector2d> contact_traction;         // {normal, shear} of its springs [Pa]
+    std::vector<double> contact_closing;                   // mean [m]
+    std::vector<Index> contact_slips;                      // 0 or 1
 };
 
 // Where a run ended because the section has no equilibrium. Blocks are those that moved on, or that nothing

@@ -18,6 +18,7 @@ constexpr double rounding = 0.01; // of the shorter face: where two corners meet
 constexpr double deepest = 0.5;   // overlap over the depth of the thinner zone, at most
 constexpr double deepest_new =
     0.1; // the same where two faces come to touch; farther in, one lies behind the other
+constexpr double same_way = 0.7; // cosine between the normals of contacts of which one goes on as the other
 constexpr double least_facing = 0.02; // cosine between a face's normal and the other's, turned round
 
 // The overlap of two faces, seen along one line.
@@ -30,6 +31,8 @@ struct Overlap {
     double length;               // [m]
 
     Vector2d normal() const { return {tangent.y(), -tangent.x()}; }
+    // Everywhere deeper in each other than they overlap: it is other faces of the two corners that touch.
+    bool is_behind() const { return -std::max(gap[0], gap[1]) > length; }
 };
 
 std::optional<Overlap> overlap_along(const Vector2d& tangent, const std::array<Vector2d, 2>& a,
@@ -107,20 +110,29 @@ void Contacts::set_faces(Faces faces, std::vector<Pair> known, const std::vector
 
 void Contacts::find_corners(const std::vector<Vector2d>& place)
 {
-    constexpr double corner = 0.35;            // a turn by that much, 20 degrees, and more is a corner [rad]
-    std::unordered_map<Index, Index> starting; // faces, by their first gridpoint
+    constexpr double corner = 0.35; // a turn by that much, 20 degrees, and more is a corner [rad]
+    std::unordered_multimap<Index, Index> starting; // faces, by their first gridpoint
     for (std::size_t f = 0; f < faces_.gridpoint.size(); ++f)
-        starting[faces_.gridpoint[f][0]] = static_cast<Index>(f);
+        starting.emplace(faces_.gridpoint[f][0], static_cast<Index>(f));
     sharpness_.assign(faces_.gridpoint.size(), {1, 1}); // also where the outline of a ground ends
     for (std::size_t f = 0; f < faces_.gridpoint.size(); ++f) {
-        const auto next = starting.find(faces_.gridpoint[f][1]);
-        if (next == starting.end())
-            continue;
-        const auto p = ends_of(faces_.gridpoint[f], place),
-                   q = ends_of(faces_.gridpoint[next->second], place);
-        const Vector2d one = p[1] - p[0], two = q[1] - q[0];
-        const double turn = std::atan2(one.x() * two.y() - one.y() * two.x(), one.dot(two));
-        sharpness_[f][1] = sharpness_[next->second][0] = std::clamp(turn / corner, 0.0, 1.0);
+        const auto p = ends_of(faces_.gridpoint[f], place);
+        const Vector2d one = p[1] - p[0];
+        // Where outlines touch at a gridpoint, this one goes on by the sharpest turn to the left: that is
+        // where its rock is.
+        Index next = -1;
+        double most = 0;
+        for (auto [it, end] = starting.equal_range(faces_.gridpoint[f][1]); it != end; ++it) {
+            const auto q = ends_of(faces_.gridpoint[it->second], place);
+            const Vector2d two = q[1] - q[0];
+            const double turn = std::atan2(one.x() * two.y() - one.y() * two.x(), one.dot(two));
+            if (next < 0 || turn > most) {
+                next = it->second;
+                most = turn;
+            }
+        }
+        if (next >= 0)
+            sharpness_[f][1] = sharpness_[next][0] = std::clamp(most / corner, 0.0, 1.0);
     }
 }
 
@@ -178,8 +190,10 @@ void Contacts::seek(const std::vector<Vector2d>& place)
             of_face_[f].push_back(static_cast<Index>(p));
 }
 
-// A face that slides on from one face to the next takes along what its joint is and remembers.
-bool Contacts::inherit(Pair& pair, const std::vector<Vector2d>& place) const
+// The longest closed contact from which a face of this pair slides on to the next one, pressing in about the
+// same direction; none if there is none. The pair's normal is given.
+const Pair* Contacts::contact_before(const Pair& pair, const Vector2d& normal,
+                                     const std::vector<Vector2d>& place) const
 {
     const auto is_next_to = [&](Index f, Index g) {
         const auto p = ends_of(faces_.gridpoint[f], place), q = ends_of(faces_.gridpoint[g], place);
@@ -193,18 +207,13 @@ bool Contacts::inherit(Pair& pair, const std::vector<Vector2d>& place) const
             if (&other == &pair || !other.is_closed)
                 continue;
             const Index partner = other.a == own ? other.b : other.a, next = own == pair.a ? pair.b : pair.a;
-            if (is_next_to(partner, next) && (from == nullptr || other.length > from->length))
+            const double same =
+                (own == other.a ? 1 : -1) * (own == pair.a ? 1 : -1) * other.normal.dot(normal);
+            if (same > same_way && is_next_to(partner, next) &&
+                (from == nullptr || other.length > from->length))
                 from = &other;
         }
-    if (from == nullptr)
-        return false;
-    // A pair's sides may change places: a's first end looks at b's second one, and `along` turns round with
-    // the normal twice over, so that the shear traction keeps its sign.
-    pair.law = from->law;
-    pair.tau = from->tau;
-    const double lead = (from->lead[0] + from->lead[1]) / 2;
-    pair.lead = {lead, lead};
-    return true;
+    return from;
 }
 
 void Contacts::update(const std::vector<Vector2d>& place, const std::vector<Vector2d>& move, double dt,
@@ -217,28 +226,31 @@ void Contacts::update(const std::vector<Vector2d>& place, const std::vector<Vect
         seek(place);
 
     const auto n = static_cast<Index>(pairs_.size());
-    std::vector<char> touches(pairs_.size(), 0); // for the first time
+    std::vector<char> closes(pairs_.size(), 0); // if it may
     Index too_deep = n;
     double most_lead = 0;
     for (const Pair& pair : pairs_)
         if (pair.is_closed)
             most_lead = std::max({most_lead, pair.lead[0], pair.lead[1]});
-    const auto overlaps = [&](const Pair& pair) {
-        const auto found =
-            overlap_of(ends_of(faces_.gridpoint[pair.a], place), ends_of(faces_.gridpoint[pair.b], place),
-                       sharpness_[pair.a], sharpness_[pair.b]);
-        return found && std::min(found->gap[0], found->gap[1]) < 0;
-    };
-    const auto evaluate = [&](Pair& pair, Index index) {
+    const auto evaluate = [&](Pair& pair, Index index, bool may_close) {
         pair.is_slipping = false;
         pair.friction = pair.damped = 0;
         const auto a = ends_of(faces_.gridpoint[pair.a], place), b = ends_of(faces_.gridpoint[pair.b], place);
-        // What the springs still hold when a contact ends, where rock slides off an edge, say, is lost.
+        const auto move_a = ends_of(faces_.gridpoint[pair.a], move),
+                   move_b = ends_of(faces_.gridpoint[pair.b], move);
+        const auto parted_at = [&](int i) -> Vector2d {
+            return at(move_b, pair.on_b[i]) - at(move_a, pair.on_a[i]);
+        };
+        // Between two moments a force works as the mean of both: here with the first one's half.
+        for (int i = 0; i < 2; ++i)
+            pair.damped += pair.held[i].dot(parted_at(i)) / 2;
+        pair.held = {Vector2d::Zero(), Vector2d::Zero()};
         const Vector2d last_normal = pair.normal;
-        const double last_length = pair.length, last_tau = pair.tau, last_stored = pair.stored;
-        pair.stored = 0;
+        const double last_length = pair.length, last_tau = pair.tau, last_pressed_in = pair.pressed_in,
+                     last_sheared_in = pair.sheared_in;
+        pair.pressed_in = pair.sheared_in = 0;
         const auto open = [&] {
-            pair.friction = last_stored;
+            pair.friction = last_sheared_in;
             pair.is_closed = false;
             if (pair.is_known)
                 pair.is_broken = true;
@@ -247,6 +259,7 @@ void Contacts::update(const std::vector<Vector2d>& place, const std::vector<Vect
         const auto found = overlap_of(a, b, sharpness_[pair.a], sharpness_[pair.b]);
         if (!found) {
             open();
+            pair.friction += last_pressed_in; // where rock slides off an edge
             return;
         }
         const joint::Coulomb& law = laws_[pair.law];
@@ -267,29 +280,37 @@ void Contacts::update(const std::vector<Vector2d>& place, const std::vector<Vect
             too_deep = std::min(too_deep, index);
             return;
         }
-        if (!pair.is_known) {
-            touches[index] = 1;
+        if (!pair.is_closed && !is_bonded && !may_close) {
+            closes[index] = 1;
             return;
         }
-        if (!pair.is_broken && -law.k_n * std::min(closing[0], closing[1]) > law.tensile_strength)
-            pair.is_broken = true;
         const auto pressed_in = [&](double length) {
             return law.k_n * length *
                    (closing[0] * closing[0] + closing[0] * closing[1] + closing[1] * closing[1]) / 6;
         };
         std::array<double, 2> part{0, 1}; // of the overlap that is closed
-        if (pair.is_broken) {
-            if (std::max(closing[0], closing[1]) <= 0) {
-                open();
-                return;
-            }
+        double in_bonds = 0;              // what springs hold that is lost with the bonds, if they break now
+        const auto leave_bonds = [&] {
             const double zero = closing[0] / (closing[0] - closing[1]);
             if (closing[0] < 0)
                 part[0] = zero;
             else if (closing[1] < 0)
                 part[1] = zero;
             closing = {std::max(closing[0], 0.0), std::max(closing[1], 0.0)};
+        };
+        if (!pair.is_broken && -law.k_n * std::min(closing[0], closing[1]) > law.tensile_strength) {
+            pair.is_broken = true;
+            in_bonds = pressed_in(found->length);
         }
+        if (pair.is_broken) {
+            if (std::max(closing[0], closing[1]) <= 0) {
+                open();
+                pair.friction += in_bonds;
+                return;
+            }
+            leave_bonds();
+        }
+        const bool was_closed = pair.is_closed;
         pair.is_closed = true;
         pair.length = (part[1] - part[0]) * found->length;
         pair.normal = found->normal();
@@ -300,81 +321,123 @@ void Contacts::update(const std::vector<Vector2d>& place, const std::vector<Vect
             pair.on_a[i] = fraction(found->on_a, part[i]);
             pair.on_b[i] = fraction(found->on_b, part[i]);
         }
-        const auto move_a = ends_of(faces_.gridpoint[pair.a], move),
-                   move_b = ends_of(faces_.gridpoint[pair.b], move);
         const Vector2d tangent = along(pair.normal);
 
-        // Forces on the ends that are as the linear traction between them.
-        std::array<double, 2> normal_force{}, opening{};
-        for (int i = 0; i < 2; ++i) {
-            const double pressed = law.k_n * pair.length * (2 * closing[i] + closing[1 - i]) / 6;
-            opening[i] = (at(move_b, pair.on_b[i]) - at(move_a, pair.on_a[i])).dot(pair.normal);
-            const double held = viscosity / dt * law.k_n * pair.length / 2 * opening[i];
-            normal_force[i] = pair.is_broken ? std::min(0.0, held - pressed) : held - pressed;
-            pair.damped += (normal_force[i] + pressed) * opening[i];
+        // Forces on the ends that are as the linear traction between them. In the step in which it closes,
+        // and in the one before it opens, a contact is closed for a part of the time that its force acts.
+        const std::array<double, 2> opening{parted_at(0).dot(pair.normal), parted_at(1).dot(pair.normal)};
+        const double deep = (closing[0] + closing[1]) / 2, way = (opening[0] + opening[1]) / 2;
+        double acts = 1;
+        if (pair.is_broken && !was_closed && deep < -way)
+            acts = (1 - deep / way) / 2;
+        else if (pair.is_broken && was_closed && way > 0) {
+            const double next = way + (way - pair.way) * deep / (deep + way); // forces go with the closing
+            if (next > deep)
+                acts = (way + deep) / (way + next);
         }
-        const double pressed = law.k_n * pair.length * (closing[0] + closing[1]) / 2;
+        pair.way = way;
+        for (int i = 0; i < 2; ++i) {
+            const double pressed = acts * law.k_n * pair.length * (2 * closing[i] + closing[1 - i]) / 6;
+            double held = viscosity / dt * law.k_n * pair.length / 2 * opening[i];
+            if (pair.is_broken)
+                held = std::min(held, pressed);
+            pair.force[i] = (held - pressed) * pair.normal;
+            pair.held[i] = held * pair.normal;
+        }
+        const double pressed = law.k_n * pair.length * deep;
         pair.sigma = pair.length > 0 ? -pressed / pair.length : 0.0;
 
-        const double limit =
-            std::max(0.0, (pair.is_broken ? 0.0 : law.cohesion) * pair.length + pressed * law.tan_phi);
         // Two points a gap apart that turn together move along each other, too; that is no slip.
         const double gap = fraction(found->gap, (part[0] + part[1]) / 2);
         const double turned =
             pair.is_new || last_length == 0 ? 0.0 : gap * (pair.normal - last_normal).dot(tangent);
-        const double slid =
-            (at(move_b, (pair.on_b[0] + pair.on_b[1]) / 2) - at(move_a, (pair.on_a[0] + pair.on_a[1]) / 2))
-                .dot(tangent) -
-            turned;
+        const double slid = (parted_at(0) + parted_at(1)).dot(tangent) / 2 - turned;
         // A part that opens takes along the shear that it has; one that closes has none yet.
-        const double kept = pair.is_new ? pair.length : std::min(last_length, pair.length);
-        const double trial = last_tau * kept + law.k_s * slid * pair.length;
-        const double shear = std::clamp(trial, -limit, limit);
+        const double last_shear = pair.is_new ? 0.0 : last_tau * last_length;
+        const double kept = last_tau * (pair.is_new ? pair.length : std::min(last_length, pair.length));
+        const double trial = kept + law.k_s * slid * pair.length;
+        const auto strength = [&] {
+            return std::max(0.0, law.cohesion_of(pair.is_broken) * pair.length +
+                                     pressed * law.tan_phi_of(pair.is_broken));
+        };
+        const bool weakens = !pair.is_broken && law.weakens && std::abs(trial) > strength();
+        if (weakens) {
+            pair.is_broken = true;
+            in_bonds = pressed_in(found->length);
+        }
+        const double limit = strength(), shear = std::clamp(trial, -limit, limit);
         pair.is_slipping = shear != trial;
         const auto sheared_in = [&](double force, double length) {
             return law.k_s > 0 && length > 0 ? force * force / (2 * law.k_s * length) : 0.0;
         };
         if (!pair.is_new)
-            pair.friction =
-                sheared_in(last_tau * last_length, last_length) - sheared_in(last_tau * kept, pair.length);
+            pair.friction = last_sheared_in - sheared_in(kept, pair.length) + (last_shear - kept) / 2 * slid;
         if (pair.is_slipping && law.k_s > 0 && pair.length > 0)
-            pair.friction += std::abs(shear) * std::abs(trial - shear) / (law.k_s * pair.length);
+            pair.friction += (kept + shear) / 2 * (trial - shear) / (law.k_s * pair.length);
         pair.is_new = false;
         pair.tau = pair.length > 0 ? shear / pair.length : 0.0;
-        double shear_force = shear;
-        if (!pair.is_slipping) {
-            const double held = viscosity / dt * law.k_s * pair.length * slid;
-            shear_force = std::clamp(shear + held, -limit, limit);
-            pair.damped += (shear_force - shear) * slid;
+        double held = 0;
+        if (!pair.is_slipping)
+            held = std::clamp(shear + viscosity / dt * law.k_s * pair.length * slid, -limit, limit) - shear;
+        for (int i = 0; i < 2; ++i) {
+            pair.force[i] += (shear + held) / 2 * tangent;
+            pair.held[i] += held / 2 * tangent;
+            pair.damped += pair.held[i].dot(parted_at(i)) / 2;
         }
-        for (int i = 0; i < 2; ++i)
-            pair.force[i] = normal_force[i] * pair.normal + shear_force / 2 * tangent;
-        pair.stored = pressed_in(pair.length) + sheared_in(shear, pair.length);
+        if (weakens) {
+            leave_bonds();
+            pair.pressed_in = pressed_in((part[1] - part[0]) * found->length);
+        } else
+            pair.pressed_in = pressed_in(pair.length);
+        if (in_bonds > 0)
+            pair.friction += in_bonds - pair.pressed_in;
+        pair.sheared_in = sheared_in(shear, pair.length);
     };
 #pragma omp parallel for schedule(static) num_threads(threads) if (threads > 1)
     for (Index p = 0; p < n; ++p)
-        evaluate(pairs_[p], p);
+        evaluate(pairs_[p], p, false);
     if (too_deep < n)
         throw equilibrium_error(
             "two pieces of rock overlap at " + shown(place[faces_.gridpoint[pairs_[too_deep].a][0]]) +
             " by more than half the depth of a zone; the joint's normal stiffness is too small "
             "for what presses on it");
-    for (Index p = 0; p < n; ++p)
-        if (Pair& pair = pairs_[p]; touches[p] && (inherit(pair, place) || overlaps(pair))) {
+    // Those that lie behind come last: what they may have slid on from must have closed.
+    for (const bool is_behind : {false, true})
+        for (Index p = 0; p < n; ++p) {
+            if (!closes[p])
+                continue;
+            Pair& pair = pairs_[p];
+            const auto found =
+                overlap_of(ends_of(faces_.gridpoint[pair.a], place), ends_of(faces_.gridpoint[pair.b], place),
+                           sharpness_[pair.a], sharpness_[pair.b]);
+            if (found->is_behind() != is_behind)
+                continue;
+            const Pair* const before = contact_before(pair, found->normal(), place);
+            if (before == nullptr &&
+                (is_behind || (!pair.is_known && std::min(found->gap[0], found->gap[1]) >= 0)))
+                continue;
+            if (before != nullptr && !pair.is_known) {
+                // What slides on takes along what its joint is and remembers. A pair's sides may change
+                // places: a's first end looks at b's second one, and `along` turns round with the normal
+                // twice over, so that the shear traction keeps its sign.
+                const double lead = (before->lead[0] + before->lead[1]) / 2;
+                pair.law = before->law;
+                pair.tau = before->tau;
+                pair.lead = {lead, lead};
+            }
             pair.is_known = true;
-            evaluate(pair, p);
+            evaluate(pair, p, true);
         }
 }
 
 void Contacts::transfer(const Transfer& to, MovedRock& kept)
 {
-    to.size(faces_.gridpoint, kept.face);
-    to.values(faces_.gridpoint, kept.face);
     to.size(pairs_, kept.pair);
     for (Pair& pair :
          pairs_) // all members, lest a new one is forgotten; those not passed on are of one update alone
         [[maybe_unused]] auto& [a, b, law, lead, tau, is_known, is_new, is_closed, is_broken, is_slipping,
-                                on_a, on_b, force, normal, length, sigma, stored, friction, damped] = pair;
+                                on_a, on_b, force, normal, way, length, sigma, held, pressed_in, sheared_in,
+                                friction, damped] = pair;
     std::vector<std::array<Index, 2>> faces;
     for (const Pair& pair : pairs_)
         faces.push_back({pair.a, pair.b});
@@ -393,7 +456,8 @@ void Contacts::transfer(const Transfer& to, MovedRock& kept)
     to.values(pairs_, kept.is_broken, &Pair::is_broken);
     to.values(pairs_, kept.normal, &Pair::normal);
     to.values(pairs_, kept.length, &Pair::length);
-    to.values(pairs_, kept.stored, &Pair::stored);
+    to.values(pairs_, kept.pressed_in, &Pair::pressed_in);
+    to.values(pairs_, kept.sheared_in, &Pair::sheared_in);
 }
 
 void Contacts::add_forces(std::vector<Vector2d>& force) const

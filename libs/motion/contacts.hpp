@@ -27,7 +27,7 @@ namespace jointcreep::motion
 
 using mechanics::Vector2d;
 
-// Faces run with their rock on the left.
+// Faces run with their rock on the left. Faces that follow each other share a gridpoint.
 struct Faces {
     std::vector<std::array<Index, 2>> gridpoint;
     std::vector<double> depth; // of the zone behind it [m]
@@ -49,10 +49,14 @@ struct Pair {
     // mean normal traction.
     std::array<double, 2> on_a{}, on_b{};
     std::array<Vector2d, 2> force{};
-    Vector2d normal{0, 0};           // from a to b
-    double length = 0, sigma = 0;    // [m], [Pa]
-    double stored = 0;               // [J/m]
-    double friction = 0, damped = 0; // in the last step [J/m]
+    Vector2d normal{0, 0};                 // from a to b
+    double way = 0;                        // by which it opened in the last step [m]
+    double length = 0, sigma = 0;          // [m], [Pa]
+    std::array<Vector2d, 2> held{};        // of the force, what dashpots add [N/m]
+    double pressed_in = 0, sheared_in = 0; // what the springs hold [J/m]
+    double friction = 0, damped = 0;       // in the last step [J/m]
+
+    double stored() const { return pressed_in + sheared_in; }
 };
 
 class Contacts
@@ -85,8 +89,8 @@ public:
 private:
     void seek(const std::vector<Vector2d>& place);
     void find_corners(const std::vector<Vector2d>& place);
-    bool inherit(Pair& pair,
-                 const std::vector<Vector2d>& place) const; // false if there is none to inherit from
+    const Pair* contact_before(const Pair& pair, const Vector2d& normal,
+                               const std::vector<Vector2d>& place) const;
 
     std::vector<joint::Coulomb> laws_;
     Faces faces_;

@@ -25,7 +25,6 @@ constexpr double safety = 0.9;   // of the largest stable step
 constexpr double impacts = 4;    // steps are so much shorter for rigid bodies: what one step misses of an
                                  // impact's beginning is energy that is lost or gained
 constexpr double at_rest = 1e-4; // [m/s]
-constexpr double farthest_place = 1e8; // from the origin: what goes there, goes for ever [m]
 constexpr double most_rounding = 1e-3; // of the mean force on a gridpoint
 constexpr double slow = 0.01;          // below this speed everywhere, motion is stopped at its peaks [m/s]
 
@@ -112,6 +111,15 @@ Motion::Motion(mechanics::Assembly& rock, const Mesh& mesh, std::vector<char> is
         zone.strain = {stretch(0, 0) - 1, stretch(1, 1) - 1, 2 * stretch(0, 1)};
         zones_.push_back(zone);
     }
+    low_ = high_ = mesh.gridpoint[0];
+    for (const Vector2d& p : mesh.gridpoint) {
+        low_ = low_.cwiseMin(p);
+        high_ = high_.cwiseMax(p);
+    }
+    const Vector2d diagonal = Vector2d::Constant((high_ - low_).norm());
+    low_ -= diagonal;
+    high_ += diagonal;
+    find_ground();
     start();
 }
 
@@ -146,11 +154,41 @@ std::vector<Index> Motion::leaders() const
     return leader;
 }
 
-// The faces of what rock there is, and of the ground below boundaries that rest on a joint. The first time,
-// contacts of the mesh become pairs; later, pairs stay what they are.
+// The fixed ground that boundaries rest on through a joint, along all of them, whatever rock there is.
+void Motion::find_ground()
+{
+    const mechanics::Contacts& contacts = rock_.contacts;
+    std::map<Index, std::vector<std::size_t>> on_ground; // contacts of a gridpoint
+    for (std::size_t c = 0; c < contacts.gridpoint.size(); ++c) {
+        const auto [a, b] = contacts.gridpoint[c];
+        if (rock_.incidence.zone_start[a] == rock_.incidence.zone_start[a + 1])
+            on_ground[b].push_back(c);
+    }
+    for (std::size_t s = 0; s < mesh_.side_gridpoint.size(); ++s) {
+        auto [from, to] = mesh_.side_gridpoint[s];
+        const auto& corners = mesh_.zone_gridpoint[mesh_.side_zone[s]];
+        const auto first = std::find(corners.begin(), corners.end(), from) - corners.begin();
+        if (corners[(first + 1) % 3] != to)
+            std::swap(from, to);
+        if (!on_ground.contains(from) || !on_ground.contains(to))
+            continue;
+        for (const std::size_t c : on_ground[from])
+            for (const std::size_t d : on_ground[to])
+                if (mesh_.contact_edge[c] == mesh_.contact_edge[d])
+                    ground_.push_back({contacts.gridpoint[d][0], contacts.gridpoint[c][0]});
+    }
+}
+
+// The faces of what rock there is, and of the ground. Where both of two faces were not there before, a joint
+// of the mesh between them makes them a pair; other pairs stay what they are.
 void Motion::find_faces()
 {
-    const std::vector<Index> leader = leaders();
+    std::vector<Index> leader = leaders();
+    std::map<std::array<double, 2>, Index> ground_at; // every side has its own gridpoints there
+    for (const auto& side : ground_)
+        for (const Index g : side)
+            leader[g] =
+                ground_at.try_emplace({mesh_.gridpoint[g].x(), mesh_.gridpoint[g].y()}, g).first->second;
 
     std::map<std::array<Index, 2>, int> sides; // by leaders
     const auto key = [&](Index from, Index to) { return std::array<Index, 2>{leader[from], leader[to]}; };
@@ -159,10 +197,16 @@ void Motion::find_faces()
             for (int i = 0; i < 3; ++i)
                 ++sides[key(zones_[z].gridpoint[i], zones_[z].gridpoint[(i + 1) % 3])];
     Faces faces;
-    std::map<std::array<Index, 2>, Index> face_of; // by gridpoints
-    const auto add = [&](Index from, Index to, double depth) {
-        face_of[{from, to}] = static_cast<Index>(faces.gridpoint.size());
-        faces.gridpoint.push_back({from, to});
+    std::vector<std::array<Index, 2>> of_mesh;
+    std::map<std::array<Index, 2>, Index> face_of, face_before; // by gridpoints of the mesh
+    for (std::size_t f = 0; f < face_of_mesh_.size(); ++f)
+        face_before[face_of_mesh_[f]] = static_cast<Index>(f);
+    zone_of_face_.clear();
+    const auto add = [&](Index from, Index to, Index zone, double depth) {
+        zone_of_face_.push_back(zone);
+        face_of[{from, to}] = static_cast<Index>(of_mesh.size());
+        of_mesh.push_back({from, to});
+        faces.gridpoint.push_back(key(from, to));
         faces.depth.push_back(depth);
     };
     for (std::size_t z = 0; z < zones_.size(); ++z)
@@ -170,98 +214,76 @@ void Motion::find_faces()
             for (int i = 0; i < 3; ++i) {
                 const Index from = zones_[z].gridpoint[i], to = zones_[z].gridpoint[(i + 1) % 3];
                 if (!sides.contains(key(to, from)))
-                    add(from, to,
+                    add(from, to, static_cast<Index>(z),
                         2 * rock_.zones.area[z] / (rock_.position[to] - rock_.position[from]).norm());
             }
-
-    // Contacts of the mesh between two gridpoints, the ground's apart.
-    const mechanics::Contacts& contacts = rock_.contacts;
-    const auto is_ground = [&](Index g) {
-        return rock_.incidence.zone_start[g] == rock_.incidence.zone_start[g + 1];
-    };
-    std::map<std::array<Index, 2>, std::vector<std::size_t>> between; // {lower, higher}
-    std::map<Index, std::vector<std::size_t>> on_ground;
-    for (std::size_t c = 0; c < contacts.gridpoint.size(); ++c) {
-        if (contacts.status[c] == ContactStatus::removed)
-            continue;
-        const auto [a, b] = contacts.gridpoint[c];
-        between[{std::min(a, b), std::max(a, b)}].push_back(c);
-        if (is_ground(a))
-            on_ground[b].push_back(c);
-    }
-    const std::size_t n_rock = faces.gridpoint.size();
-    for (std::size_t f = 0; f < n_rock; ++f) {
-        const auto [from, to] = faces.gridpoint[f];
-        if (!on_ground.contains(from) || !on_ground.contains(to))
-            continue;
-        for (const std::size_t c : on_ground[from])
-            for (const std::size_t d : on_ground[to])
-                if (mesh_.contact_edge[c] == mesh_.contact_edge[d])
-                    add(contacts.gridpoint[d][0], contacts.gridpoint[c][0],
-                        (rock_.position[to] - rock_.position[from]).norm());
-    }
+    for (const auto& [from, to] : ground_)
+        add(from, to, -1, (mesh_.gridpoint[to] - mesh_.gridpoint[from]).norm());
 
     std::vector<Pair> known;
-    if (contacts_.faces().gridpoint.empty()) {
-        std::map<std::array<double, 4>, Index> by_place; // {from, to}
-        for (std::size_t f = 0; f < faces.gridpoint.size(); ++f) {
-            const Vector2d &from = rock_.position[faces.gridpoint[f][0]],
-                           &to = rock_.position[faces.gridpoint[f][1]];
-            by_place[{from.x(), from.y(), to.x(), to.y()}] = static_cast<Index>(f);
+    for (const Pair& pair : contacts_.pairs()) {
+        const auto a = face_of.find(face_of_mesh_[pair.a]), b = face_of.find(face_of_mesh_[pair.b]);
+        if (!pair.is_known || a == face_of.end() || b == face_of.end())
+            continue;
+        Pair kept = pair;
+        kept.a = a->second;
+        kept.b = b->second;
+        if (kept.a > kept.b) {
+            std::swap(kept.a, kept.b);
+            std::swap(kept.lead[0], kept.lead[1]);
         }
-        for (std::size_t f = 0; f < faces.gridpoint.size(); ++f) {
-            const auto [from, to] = faces.gridpoint[f];
-            const Vector2d &p = rock_.position[from], &q = rock_.position[to];
-            const auto found = by_place.find({q.x(), q.y(), p.x(), p.y()});
-            if (found == by_place.end() || found->second < static_cast<Index>(f))
-                continue;
-            Pair pair{.a = static_cast<Index>(f), .b = found->second, .is_known = true};
-            const Vector2d normal = -normal_of(tangent_of(p, q));
-            int n = 0;
-            std::array<bool, 2> has_lead{};
-            for (int end = 0; end < 2; ++end) {
-                const Index a = faces.gridpoint[pair.a][end], b = faces.gridpoint[pair.b][1 - end];
-                const auto there = between.find({std::min(a, b), std::max(a, b)});
-                if (there == between.end())
-                    continue; // the tip of a joint
-                const std::size_t c = *std::max_element(there->second.begin(), there->second.end(),
-                                                        [&](std::size_t i, std::size_t j) {
-                                                            return std::abs(contacts.normal[i].dot(normal)) <
-                                                                   std::abs(contacts.normal[j].dot(normal));
-                                                        });
-                pair.law = law_of_edge_[mesh_.contact_edge[c]];
-                pair.lead[end] = contacts.offset[c].x() + contacts.state[c].dilation -
-                                 joint::opening(contacts.law[c], contacts.initial_traction[c].x());
-                has_lead[end] = true;
-                pair.tau += contacts.traction[c].y();
-                pair.is_broken =
-                    n == 0 ? contacts.state[c].is_broken : pair.is_broken || contacts.state[c].is_broken;
-                ++n;
-            }
-            if (n == 0)
-                continue;
-            pair.tau /= n;
-            for (int end = 0; end < 2; ++end)
-                if (!has_lead[end])
-                    pair.lead[end] = pair.lead[1 - end];
-            known.push_back(pair);
-        }
-    } else {
-        const Faces& before = contacts_.faces();
-        for (const Pair& pair : contacts_.pairs()) {
-            const auto a = face_of.find(before.gridpoint[pair.a]), b = face_of.find(before.gridpoint[pair.b]);
-            if (!pair.is_known || a == face_of.end() || b == face_of.end())
-                continue;
-            Pair kept = pair;
-            kept.a = a->second;
-            kept.b = b->second;
-            if (kept.a > kept.b) {
-                std::swap(kept.a, kept.b);
-                std::swap(kept.lead[0], kept.lead[1]);
-            }
-            known.push_back(kept);
-        }
+        known.push_back(kept);
     }
+
+    const mechanics::Contacts& contacts = rock_.contacts;
+    std::map<std::array<Index, 2>, std::vector<std::size_t>> between; // gridpoints {lower, higher}
+    for (std::size_t c = 0; c < contacts.gridpoint.size(); ++c)
+        if (contacts.status[c] != ContactStatus::removed) {
+            const auto [a, b] = contacts.gridpoint[c];
+            between[{std::min(a, b), std::max(a, b)}].push_back(c);
+        }
+    std::map<std::array<double, 4>, Index> new_at; // {from, to}, at the start
+    for (std::size_t f = 0; f < of_mesh.size(); ++f) {
+        const auto [from, to] = of_mesh[f];
+        if (face_before.contains(of_mesh[f]))
+            continue;
+        const Vector2d &p = mesh_.gridpoint[from], &q = mesh_.gridpoint[to];
+        new_at[{p.x(), p.y(), q.x(), q.y()}] = static_cast<Index>(f);
+        const auto opposite = new_at.find({q.x(), q.y(), p.x(), p.y()});
+        if (opposite == new_at.end())
+            continue;
+        Pair pair{.a = opposite->second, .b = static_cast<Index>(f), .is_known = true};
+        const Vector2d normal = normal_of(tangent_of(p, q));
+        int n = 0;
+        std::array<bool, 2> has_lead{};
+        for (int end = 0; end < 2; ++end) {
+            const Index a = of_mesh[pair.a][end], b = of_mesh[pair.b][1 - end];
+            const auto there = between.find({std::min(a, b), std::max(a, b)});
+            if (there == between.end())
+                continue; // the tip of a joint
+            const std::size_t c = *std::max_element(there->second.begin(), there->second.end(),
+                                                    [&](std::size_t i, std::size_t j) {
+                                                        return std::abs(contacts.normal[i].dot(normal)) <
+                                                               std::abs(contacts.normal[j].dot(normal));
+                                                    });
+            pair.law = law_of_edge_[mesh_.contact_edge[c]];
+            pair.lead[end] = contacts.offset[c].x() + contacts.state[c].dilation -
+                             joint::opening(contacts.law[c], contacts.initial_traction[c].x());
+            has_lead[end] = true;
+            pair.tau += contacts.traction[c].y();
+            pair.is_broken =
+                n == 0 ? contacts.state[c].is_broken : pair.is_broken || contacts.state[c].is_broken;
+            ++n;
+        }
+        if (n == 0)
+            continue;
+        pair.tau /= n;
+        for (int end = 0; end < 2; ++end)
+            if (!has_lead[end])
+                pair.lead[end] = pair.lead[1 - end];
+        known.push_back(pair);
+    }
+    face_of_mesh_ = std::move(of_mesh);
     contacts_.set_faces(std::move(faces), std::move(known), place_);
 }
 
@@ -361,9 +383,7 @@ double Motion::move(Body& body, double keep, double gain)
         velocity_[g] = move_[g] / dt_;
         place_[g] = to;
     }
-    const Vector2d now = starts_from_rest_ ? last : Vector2d((last + body.velocity) / 2);
-    const double spin = starts_from_rest_ ? last_spin : (last_spin + body.spin) / 2;
-    return (body.mass * now.squaredNorm() + body.inertia * spin * spin) / 2;
+    return (body.mass * last.dot(body.velocity) + body.inertia * last_spin * body.spin) / 2;
 }
 
 // From the sums of the magnitudes of all blocks of the stiffness in a gridpoint's rows (Gershgorin), which
@@ -436,7 +456,8 @@ void Motion::find_forces(const std::vector<Vector2d>& move)
         const Vector3d stress = stress_of(zone.stiffness, strain);
         const Vector3d held = viscosity * stress_of(zone.stiffness, strain - zone.strain);
         zone.stored = zone.area / 2 * stress.dot(strain);
-        zone.damped = zone.area * held.dot(strain - zone.strain);
+        zone.damped = zone.area / 2 * (zone.held + held).dot(strain - zone.strain); // as of contacts
+        zone.held = held;
         zone.strain = strain;
         const Matrix2d forces = zone.area * polar.rotation * tensor(stress + held) * zone.inverse.transpose();
         zone.force = {forces.col(0) + forces.col(1), -forces.col(0), -forces.col(1)};
@@ -469,7 +490,7 @@ double Motion::stored() const
         if (deforms(z))
             energy += zones_[z].stored;
     for (const Pair& pair : contacts_.pairs())
-        energy += pair.stored;
+        energy += pair.stored();
     return energy;
 }
 
@@ -489,7 +510,7 @@ void Motion::step()
         const Vector2d last = v;
         v = keep * v + gain * inverse_mass_[g] * force_[g].cwiseProduct(rock_.is_free[g]);
         const Vector2d now = starts_from_rest_ ? last : Vector2d((last + v) / 2);
-        kinetic += now.squaredNorm() / (2 * inverse_mass_[g]);
+        kinetic += last.dot(v) / (2 * inverse_mass_[g]);
         energy_.damped += alpha * dt_ * now.squaredNorm() / inverse_mass_[g];
         if (v.squaredNorm() > fastest) {
             fastest = v.squaredNorm();
@@ -514,17 +535,19 @@ void Motion::step()
         velocity_[follower] = velocity_[leader];
     }
     fastest_ = std::sqrt(fastest);
-    bool is_far = false;
+    std::size_t gone = n; // outside
     for (std::size_t g = 0; g < n; ++g) {
         energy_.work += (rock_.load[g] + rock_.applied[g] + held * released_[g]).dot(move_[g]);
-        is_far |= !(place_[g].squaredNorm() < farthest_place * farthest_place);
+        if (!((place_[g].array() > low_.array()).all() && (place_[g].array() < high_.array()).all()))
+            gone = g;
     }
-    if (is_far || !std::isfinite(fastest_) || !std::isfinite(kinetic))
-        throw equilibrium_error("motion: rock flies away, or its velocity is no number; it was at " +
+    if (!std::isfinite(fastest_) || !std::isfinite(kinetic))
+        throw equilibrium_error("motion: the velocity of rock is no number; it was at " +
                                 shown(rock_.position[fastest_gridpoint_]));
+    if (gone < n)
+        throw moves_on("rock has left the section, and is as far from it as the section is large");
     time_ += dt_;
     find_forces(move_);
-    energy_.kinetic = kinetic;
     energy_.stored = stored() - stored_at_start_;
     for (std::size_t z = 0; z < zones_.size(); ++z)
         if (deforms(z))
@@ -546,7 +569,7 @@ void Motion::step()
             body.spin = 0;
         }
         energy_.damped += now;
-        energy_.kinetic = last_kinetic_ = 0;
+        last_kinetic_ = 0;
         velocity_.assign(n, Vector2d::Zero());
         starts_from_rest_ = true;
     } else
@@ -557,9 +580,10 @@ void Motion::transfer(const Transfer& to, MovedRock& kept)
 {
     // All members, lest a new one is forgotten.
     auto& [rock, mesh, settings, contacts, bodies, is_rigid, body_of, zones, place, velocity, move, force,
-           released, inverse_mass, law_of_edge, dt, time, starts_from_rest, energy, stored_at_start,
-           last_kinetic, stiffest, largest_mean, ratio, force_change, fastest, fastest_gridpoint,
-           stiffest_gridpoint, checks_in_balance, last_contact_force] = *this;
+           released, low, high, inverse_mass, law_of_edge, ground, face_of_mesh, zone_of_face, dt, time,
+           starts_from_rest, energy, stored_at_start, last_kinetic, stiffest, largest_mean, ratio,
+           force_change, fastest, fastest_gridpoint, stiffest_gridpoint, checks_in_balance,
+           last_contact_force] = *this;
     to.values(rock.position, kept.origin);
     to.values(place, kept.place);
     std::vector<Eigen::Vector4d> inverse;
@@ -569,13 +593,51 @@ void Motion::transfer(const Transfer& to, MovedRock& kept)
     for (std::size_t z = 0; z < zones.size(); ++z)
         zones[z].inverse = inverse[z].reshaped(2, 2);
     for (Zone& zone : zones)
-        [[maybe_unused]] auto& [gridpoint, of_edges, area, stiffness, strain, forces, stored, damped] = zone;
+        [[maybe_unused]] auto& [gridpoint, of_edges, area, stiffness, strain, forces, held, stored, damped] =
+            zone;
     to.values(zones, kept.area, &Zone::area);
     to.values(zones, kept.strain, &Zone::strain);
+    to.size(face_of_mesh, kept.face);
+    to.values(face_of_mesh, kept.face);
     contacts.transfer(to, kept);
     to.value(fastest, kept.fastest);
     to.value(ratio, kept.out_of_balance_ratio);
     to.value(largest_mean, kept.largest_mean_force);
+}
+
+// Velocities are known half a step before and after now; with their product as the square, work of forces is
+// kinetic energy to the last digit.
+Energy Motion::energy() const
+{
+    Energy energy = energy_;
+    const double alpha = settings_.mass_damping;
+    const double keep = (1 - alpha * dt_ / 2) / (1 + alpha * dt_ / 2), gain = dt_ / (1 + alpha * dt_ / 2);
+    for (std::size_t g = 0; g < place_.size(); ++g)
+        if (inverse_mass_[g] > 0) {
+            const Vector2d next =
+                keep * velocity_[g] + gain * inverse_mass_[g] * force_[g].cwiseProduct(rock_.is_free[g]);
+            energy.kinetic += velocity_[g].dot(next) / (2 * inverse_mass_[g]);
+        }
+    for (const Body& body : bodies_)
+        if (!body.is_held()) {
+            const auto [force, moment] = load_on(body);
+            energy.kinetic +=
+                (keep * body.mass * body.velocity.squaredNorm() + gain * body.velocity.dot(force) +
+                 keep * body.inertia * body.spin * body.spin + gain * body.spin * moment) /
+                2;
+        }
+    return energy;
+}
+
+mechanics::no_equilibrium Motion::moves_on(const std::string& why) const
+{
+    mechanics::no_equilibrium error(why);
+    error.moves_on = true;
+    error.steps = check_every;
+    error.seconds = check_every * dt_;
+    for (const Vector2d& velocity : velocity_)
+        error.motion.emplace_back(error.seconds * velocity);
+    return error;
 }
 
 void Motion::count_from_here()
@@ -634,6 +696,28 @@ bool Motion::is_at_rest()
     return checks_in_balance_ >= 2;
 }
 
+std::vector<Touching> Motion::touching() const
+{
+    std::vector<Touching> found;
+    for (const Pair& pair : contacts_.pairs()) {
+        if (!pair.is_closed)
+            continue;
+        const auto &a = contacts_.faces().gridpoint[pair.a], &b = contacts_.faces().gridpoint[pair.b];
+        std::array<Vector2d, 2> between;
+        for (int i = 0; i < 2; ++i)
+            between[i] = (place_[a[0]] + pair.on_a[i] * (place_[a[1]] - place_[a[0]]) + place_[b[0]] +
+                          pair.on_b[i] * (place_[b[1]] - place_[b[0]])) /
+                         2;
+        found.push_back({{zone_of_face_[pair.a], zone_of_face_[pair.b]},
+                         between,
+                         pair.normal,
+                         {pair.sigma, pair.tau},
+                         -pair.sigma / contacts_.laws()[pair.law].k_n,
+                         pair.is_slipping});
+    }
+    return found;
+}
+
 void Motion::put_back()
 {
     for (std::size_t g = 0; g < place_.size(); ++g)
@@ -651,6 +735,7 @@ void Motion::put_back()
                                 polar.stretch * polar.rotation.transpose() / polar.stretch.determinant();
         rock_.zones.stress[z] = {stress(0, 0), stress(1, 1), (stress(0, 1) + stress(1, 0)) / 2};
     }
+    const std::vector<Index> leader = leaders();
     mechanics::Contacts& contacts = rock_.contacts;
     // What all pairs of faces that meet at two gridpoints bear, over their length: next to the pair that
     // faces each other there are others that overlap by what the joint has sheared.
@@ -661,8 +746,8 @@ void Motion::put_back()
     std::map<std::array<Index, 2>, Borne> borne; // by gridpoints {lower, higher}
     for (const Pair& pair : contacts_.pairs())
         if (pair.is_closed && pair.length > 0)
-            for (const Index a : contacts_.faces().gridpoint[pair.a])
-                for (const Index b : contacts_.faces().gridpoint[pair.b]) {
+            for (const Index a : face_of_mesh_[pair.a])
+                for (const Index b : face_of_mesh_[pair.b]) {
                     Borne& there = borne[{std::min(a, b), std::max(a, b)}];
                     there.force += pair.length * Vector2d(pair.sigma, pair.tau);
                     there.length += pair.length;
@@ -676,6 +761,8 @@ void Motion::put_back()
         contacts.jump[c] = {jump.dot(contacts.normal[c]), jump.dot(along(contacts.normal[c]))};
         const auto found = borne.find({std::min(a, b), std::max(a, b)});
         if (found == borne.end()) {
+            if (leader[a] == leader[b]) // held together so far: as it was
+                continue;
             contacts.traction[c].setZero();
             contacts.status[c] = ContactStatus::open;
             continue;

@@ -7,6 +7,7 @@
 
 #pragma once
 
+#include "mechanics/failure.hpp"
 #include "model/network.hpp"
 #include "motion/contacts.hpp"
 
@@ -22,6 +23,16 @@ struct Energy {
     double damped = 0;   // by dashpots, and where motion is stopped (see `settle`)
 
     double error() const { return work - kinetic - stored - friction - damped; }
+};
+
+// Two zones whose faces touch now, or are bonded.
+struct Touching {
+    std::array<Index, 2> zone;       // a and b; -1 the ground
+    std::array<Vector2d, 2> between; // the ends of the closed part [m]
+    Vector2d normal;                 // from a to b
+    Vector2d traction;               // {normal, shear}, of the springs [Pa]
+    double closing;                  // mean [m]
+    bool is_slipping;
 };
 
 struct Settings {
@@ -51,9 +62,12 @@ public:
     // Makes the present places those that displacements count from.
     void count_from_here();
 
-    // One step of time. Throws equilibrium_error where faces overlap too much, and where places are no
-    // numbers.
+    // One step of time. Throws no_equilibrium where rock has left the section, farther than its diagonal;
+    // equilibrium_error where faces overlap too much, and where places are no numbers.
     void step();
+
+    // That it goes on moving as it does now.
+    mechanics::no_equilibrium moves_on(const std::string& why) const;
 
     // Whether nothing moves any more: forces are in balance to the tolerance, and have been. To be asked
     // every `check_every` steps. Throws equilibrium_error where forces are mostly rounding.
@@ -62,13 +76,11 @@ public:
 
     double time() const { return time_; } // since the start of this motion [s]
     double dt() const { return dt_; }     // [s]
-    const Energy& energy() const { return energy_; }
+    Energy energy() const;
     double out_of_balance_ratio() const { return ratio_; }
     double contact_force_change() const { return force_change_; }
-    double fastest() const { return fastest_; } // [m/s], and where: a gridpoint
-    Index fastest_gridpoint() const { return fastest_gridpoint_; }
-    const Contacts& contacts() const { return contacts_; }
-    const std::vector<Vector2d>& velocity() const { return velocity_; }
+    double fastest() const { return fastest_; } // [m/s]
+    std::vector<Touching> touching() const;
 
     // Puts displacements, stresses and contacts of the mesh into the assembly. A contact of the mesh whose
     // two faces no longer touch is open.
@@ -83,6 +95,7 @@ private:
         Eigen::Vector3d strain;    // Biot's {xx, yy, 2 xy} in the last step
         std::array<Vector2d, 3> force{Vector2d::Zero(), Vector2d::Zero(),
                                       Vector2d::Zero()}; // on its corners [N/m]
+        Eigen::Vector3d held{0, 0, 0};                   // stress of dashpots now [Pa]
         double stored = 0, damped = 0;                   // now; in the last step [J/m]
     };
 
@@ -101,6 +114,7 @@ private:
 
     bool deforms(std::size_t z) const { return rock_.zones.is_present[z] && !is_rigid_[z]; }
     std::vector<Index> leaders() const;
+    void find_ground();
     void find_faces();
     void find_bodies();
     void find_time_step();
@@ -119,8 +133,12 @@ private:
     std::vector<Index> body_of_; // of gridpoints; -1 none
     std::vector<Zone> zones_;    // of the assembly
     std::vector<Vector2d> place_, velocity_, move_, force_, released_;
+    Vector2d low_, high_;              // of the section and its diagonal all round [m]
     std::vector<double> inverse_mass_; // 0 where held by nothing but rock that is gone [m/kg]
     std::vector<std::size_t> law_of_edge_;
+    std::vector<std::array<Index, 2>> ground_;       // its faces, by gridpoints of the mesh
+    std::vector<std::array<Index, 2>> face_of_mesh_; // the contacts' faces, by gridpoints before leaders
+    std::vector<Index> zone_of_face_;                // -1 of the ground
 
     double dt_ = 0, time_ = 0;
     bool starts_from_rest_ = true;

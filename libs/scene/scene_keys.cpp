@@ -1031,9 +1031,11 @@ Table<Motion> motion()
          "Lets rock move far after each stage: with real masses and large displacements, contacts found "
          "anew, until "
          "it is at rest. Without this table displacements are small. Not with [creep], "
-         "residual strengths, Barton-Bandis joints or rock that yields."},
+         "joints that dilate, Barton-Bandis joints or rock that yields."},
         {text("new_contacts", &Motion::new_contacts,
-              "Joint material of contacts that come about, which have no cohesion and no tensile strength."),
+              "Joint material of contacts that come about: its stiffnesses and friction angle, the residual "
+              "one if "
+              "it has one, without cohesion and tensile strength."),
          names("rigid_rocks", &Motion::rigid_rocks,
                "Rocks whose blocks do not deform in motion; they do before it.")
              .optional("none"),

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""Rock in motion: the blocks at moments spread over a motion, and its energies over time. For results of scenes with
-[motion]; of several stages, the last one that moved."""
+"""Rock in motion: the blocks at moments spread over a motion, with dots where they touch, in colour where they slip, and
+its energies over time. For results of scenes with [motion]; of several stages, the last one that moved."""
 
 import matplotlib.tri
 import numpy as np
@@ -32,6 +32,11 @@ def draw_blocks(axes, file, row):
     both, count = np.unique(np.column_stack([sides, np.tile(block, 3)]), axis=0, return_counts=True)
     for from_, to in both[count == 1][:, :2]:
         axes.plot(*place[[from_, to]].T, color="black", linewidth=0.5)
+    of_moment = slice(*figure.array(file, "/motions/first_contact")[row:row + 2].astype(int))
+    middle = (figure.array(file, "/motions/contact_from") + figure.array(file, "/motions/contact_to"))[of_moment] / 2
+    slips = figure.array(file, "/motions/contact_slips")[of_moment] == 1
+    axes.scatter(*middle[~slips].T, s=3, color="black", zorder=3)
+    axes.scatter(*middle[slips].T, s=5, color=figure.COLORS[1], zorder=3)
     axes.set_aspect("equal")
     axes.set_title(f"{figure.array(file, '/motions/motion_time')[row]:.2f} s")
 

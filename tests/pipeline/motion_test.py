@@ -84,10 +84,20 @@ record_every_s = 0.1
 RIGID = 'rigid_rocks = ["rock"]'
 
 
+# Of the work so far. A step lasts at most 0.45 over the frequency of a rigid body on its joints, and what it misses of an
+# impact is of the order of its square over 12, 2 percent, of the energy of that impact's first step, which is a small part
+# of the work.
+ACCOUNT = 0.005
+
+
 def error_of_energy(data):
-    """What is missing from the balance, at every recorded moment [J/m]."""
+    """What is missing from the balance at any recorded moment, the largest, over the work up to then."""
     parts = ("kinetic", "stored", "friction", "damped")
-    return data["/motions/work_of_loads"] - sum(data[f"/motions/{part}_energy"] for part in parts)
+    missing = data["/motions/work_of_loads"] - sum(data[f"/motions/{part}_energy"] for part in parts)
+    first = np.flatnonzero(data["/motions/motion_time"] == 0)
+    work = np.concatenate([np.maximum.accumulate(abs(of_one))
+                           for of_one in np.split(data["/motions/work_of_loads"], first[1:])])
+    return abs(missing[work > 0] / work[work > 0]).max()
 
 
 class Blocks(ChainTest):
@@ -114,8 +124,27 @@ class Blocks(ChainTest):
             # It ends at the wall, at rest, and the account of its energy closes all the way.
             self.assertAlmostEqual(self.along(data, dip), way, delta=0.02)
             self.assertLessEqual(data["/equilibria/out_of_balance_ratio"].max(), 1e-6)
-            work = np.maximum.accumulate(data["/motions/work_of_loads"])
-            self.assertLess(abs(error_of_energy(data)[1:] / work[1:]).max(), 0.01, more)
+            self.assertLess(error_of_energy(data), ACCOUNT, more)
+
+    # The peak strength decides whether it goes, the residual one how.
+    def test_a_joint_that_has_slipped_is_as_weak_as_its_residual_strength(self):
+        dip, residual = 30, 20
+        for friction, cohesion, goes in ((60, 0, False), (29, 0, True), (29, 0.1, False)):
+            text = changed(incline(dip, friction, more=RIGID), "^cohesion_MPa = 0$",
+                           f"cohesion_MPa = {cohesion}\nresidual_cohesion_MPa = 0\n"
+                           f"residual_friction_angle_deg = {residual}")
+            data = datasets(self.chain.result(text))
+            moved = self.along(data, dip)
+            if not goes:
+                self.assertLess(abs(moved), 1e-3, (friction, cohesion))
+                continue
+            self.assertGreater(moved, 10)
+            acceleration = GRAVITY * (math.sin(math.radians(dip))
+                                      - math.cos(math.radians(dip)) * math.tan(math.radians(residual)))
+            time, speed = data["/motions/motion_time"], np.sqrt(2 * data["/motions/kinetic_energy"] / (2700 * 2.0))
+            sliding = (time > 0.3) & (time < 0.95 * math.sqrt(2 * 15 / acceleration))
+            self.assertAlmostEqual(np.polyfit(time[sliding], speed[sliding], 1)[0] / acceleration, 1, delta=1e-3)
+            self.assertLess(error_of_energy(data), ACCOUNT)
 
     def test_a_block_at_rest_stays_at_rest(self):
         for more in (RIGID, ""):
@@ -166,19 +195,21 @@ class Blocks(ChainTest):
         for more, message in (('[creep]\nstep_days = 1\n', r"a scene with \[motion\] has no \[creep\]"),
                               ("", r"rigid_rocks.*wanted the name of a \[\[rock\]\]"), ("", "new_contacts = .clay"),
                               ("", "wanted .elastic. of all rock"),
-                              ("", "residual_cohesion_MPa.*neither a residual strength"),
-                              ("", "joint_roughness_coefficient.*nor Barton and Bandis's law")):
+                              ("", "dilation_angle_deg = 5: wanted 0: with .motion., joints"),
+                              ("", "dilation_angle_deg = 5: wanted 0: with .motion., rock bridges"),
+                              ("", "joint_roughness_coefficient.*do not have Barton and Bandis's law")):
             scene = text + more
+            strength = 'cohesion_MPa = 1\nfriction_angle_deg = 40\ntensile_strength_MPa = 1'
             if "rigid" in message:
                 scene = scene.replace("record_every_s", 'rigid_rocks = ["granite"]\nrecord_every_s')
             if "clay" in message:
                 scene = scene.replace('new_contacts = "plane"', 'new_contacts = "clay"')
             if "elastic" in message:
-                scene = scene.replace("[[rock]]", '[[rock]]\nlaw = "Mohr-Coulomb"\ncohesion_MPa = 1\n'
-                                      'friction_angle_deg = 40\ntensile_strength_MPa = 1')
-            if "residual" in message:
-                scene = scene.replace("[[joint_material]]", "[[joint_material]]\nresidual_cohesion_MPa = 0\n"
-                                      "residual_friction_angle_deg = 20")
+                scene = scene.replace("[[rock]]", '[[rock]]\nlaw = "Mohr-Coulomb"\n' + strength)
+            if "bridges" in message:
+                scene = scene.replace("[[rock]]", "[[rock]]\ndilation_angle_deg = 5\n" + strength)
+            if "joints" in message and "dilation" in message:
+                scene = scene.replace("[[joint_material]]", "[[joint_material]]\ndilation_angle_deg = 5")
             if "Bandis" in message:
                 scene = scene.replace("[[joint_material]]", "[[joint_material]]\njoint_roughness_coefficient = 5\n"
                                       "joint_wall_strength_MPa = 50\nlargest_closure_mm = 1")
@@ -263,13 +294,125 @@ new_contacts = "bonded"
             self.assertAlmostEqual(data["/history/displacement"][-1, 0, 1] / rise, 1, delta=1e-3)
 
 
+NO_STRESS = "\n".join(["[in_situ_stress]", "elevation_m = 0"] + [
+    f"{part}_{unit} = 0" for unit in ("MPa", "gradient_MPa_per_m") for part in ("compression_xx", "compression_yy",
+                                                                                "shear_xy")])
+
+
+def scene(outline, joints, removed, boundary, motion, gravity=GRAVITY, stress=NO_STRESS, size=2, points=""):
+    """Blocks in a section that is cut by lines, of which every stage removes some polygons."""
+    lines = "\n".join(f'[[joint]]\nname = "{i}"\nfrom_m = {a}\nto_m = {b}\nmaterial = "joint"'
+                      for i, (a, b) in enumerate(joints))
+    stages = "\n".join(f'[[stage]]\nname = "{i}"\ndate = {i + 1}\nremove_m = {polygons}'
+                       for i, polygons in enumerate(removed))
+    return f"""
+[section]
+outline_m = {outline}
+rock = "rock"
+gravity_m_per_s2 = {gravity}
+[[rock]]
+name = "rock"
+density_kg_per_m3 = 2600
+youngs_modulus_GPa = 5
+poissons_ratio = 0.25
+[[joint_material]]
+name = "joint"
+normal_stiffness_MPa_per_m = 1000
+shear_stiffness_MPa_per_m = 500
+cohesion_MPa = 0
+friction_angle_deg = 30
+tensile_strength_MPa = 0
+{lines}
+{stress}
+{boundary}
+[schedule]
+start = 0
+end = {len(removed) + 1}
+{stages}
+{points}
+[zones]
+size_m = {size}
+[motion]
+new_contacts = "joint"
+{motion}
+"""
+
+
+def box(left, low, right, high):
+    return [[left, low], [right, low], [right, high], [left, high]]
+
+
+class Stacks(ChainTest):
+    # Of three blocks the middle one goes, then the lowest one: the upper one falls onto it, then onto the ground.
+    def test_two_stages_each_come_to_rest(self):
+        weight = 2600 * GRAVITY * 2
+        for more in (RIGID, "", RIGID + "\nrelease_s = 0.1", "release_s = 0.1"):
+            text = scene(box(0, 0, 2, 3), [([-1, 1], [3, 1]), ([-1, 2], [3, 2])],
+                         [[box(-1, 1, 3, 2)], [box(-1, 0, 3, 1)]],
+                         '[[boundary]]\nfrom_m = [0, 0]\nto_m = [2, 0]\njoint = "joint"',
+                         "stiffness_damping_s = 0.001\nrecord_every_s = 0.05\n" + more,
+                         points='[[point]]\nname = "top"\nat_m = [1, 3]')
+            data = datasets(self.chain.result(text))
+            self.assertLess(error_of_energy(data), ACCOUNT, more)
+            self.assertLessEqual(data["/equilibria/out_of_balance_ratio"].max(), 1e-6)
+            after = [row for row, event in enumerate(data["/history/event"]) if event]
+            pressed = weight / 2 / 1e9  # by which a joint closes under a block
+            for number, row in enumerate(after, 1):
+                x, y = data["/history/displacement"][row, 0]
+                self.assertAlmostEqual(y, -number, delta=10 * pressed, msg=more)
+                if "rigid" in more:  # zones that are not symmetric set a block rocking as it lands
+                    self.assertAlmostEqual(x, 0, delta=1e-6)
+                moment = np.flatnonzero(data["/motions/time"] == number)[-1]
+                first, end = data["/motions/first_contact"][moment:moment + 2]
+                carried = {}
+                for c in range(first, end):
+                    length = np.linalg.norm(data["/motions/contact_to"][c] - data["/motions/contact_from"][c])
+                    sigma, tau = data["/motions/contact_traction"][c]
+                    on_ground = min(data["/motions/contact_block"][c]) < 0
+                    carried[on_ground] = carried.get(on_ground, 0) - length * sigma
+                    self.assertAlmostEqual(abs(data["/motions/contact_normal"][c, 1]), 1, delta=1e-6)
+                    self.assertAlmostEqual(data["/motions/contact_closing"][c], -sigma / 1e9, delta=1e-12)
+                wanted = {True: 2 * weight, False: weight} if number == 1 else {True: weight}
+                self.assertEqual(carried.keys(), wanted.keys(), more)
+                for on_ground, force in wanted.items():
+                    self.assertAlmostEqual(carried[on_ground] / force, 1, delta=1e-4, msg=more)
+
+    def test_rock_that_leaves_the_section_is_named(self):
+        text = scene(box(0, 0, 3, 2), [([2, 1], [2, 3]), ([2, 1], [4, 1])], [[box(2, -1, 4, 1)]],
+                     '[[boundary]]\nfrom_m = [0, 0]\nto_m = [2, 0]\nfix = "xy"', RIGID)
+        joints = self.chain.joints(text)
+        output = joints.with_name("result.h5")
+        left = output.with_name("result.failed.h5")
+        left.write_text("of an earlier run")  # replaced, as the output itself would be
+        done = self.chain.answer("demsolve", joints, "-o", output)
+        self.assertEqual(done.returncode, 3)
+        self.assertRegex(done.stderr, r'rock has left the section(.|\n)*stage "0"; what moves: block \d+ at \[2\.5, 1\.5\] m')
+        failed = datasets(left)
+        self.assertLess(failed["/motions/motion_time"][-1], 2)  # it falls by 5 m
+        self.assertEqual(len(failed["/failure/block"]), 1)
+
+    # Above and below the joint rock goes that ties its gridpoints; the joint goes on bearing what it bore, and nothing
+    # moves: the rock that went bore none of it.
+    def test_a_joint_between_ties_bears_what_it_bore(self):
+        stress = NO_STRESS.replace("compression_xx_MPa = 0", "compression_xx_MPa = 1")
+        text = scene(box(-2, 0, 2, 3), [([0, 1], [0, 2])], [[box(-3, 2, 3, 4), box(-3, -1, 3, 1)]],
+                     "".join(f'[[boundary]]\nfrom_m = [{x}, 0]\nto_m = [{x}, 3]\nfix = "xy"\n' for x in (-2, 2)), "",
+                     gravity=0, stress=stress)
+        data = datasets(self.chain.result(text))
+        self.assertEqual(len(data["/mesh/tie_stage"]), 2)
+        self.assertEqual(len(data["/mesh/contact_edge"]), 2)
+        self.assertLess(abs(data["/states/displacement"]).max(), 1e-9)  # without the joint's pressure 1e-4 m
+        for traction in data["/states/traction"]:
+            np.testing.assert_allclose(traction, [[-1e6, 0]] * 2, rtol=1e-6, atol=1)
+        self.assertTrue((data["/states/contact_status"] == 1).all())
+
+
 class Collapse(ChainTest):
-    """Both slopes fall and come to rest; at every moment the energies add up to 1 percent of the work so far."""
+    """Both slopes fall and come to rest."""
 
     def collapse(self, name):
         data = datasets(self.chain.result(self.chain.text(f"data/collapse/{name}.toml")))
-        work = np.maximum.accumulate(data["/motions/work_of_loads"])
-        self.assertLess(abs(error_of_energy(data)[1:] / work[1:]).max(), 0.01)
+        self.assertLess(error_of_energy(data), ACCOUNT)
         self.assertLess(data["/motions/fastest"][-1], 1e-5)
         self.assertGreater(data["/motions/fastest"].max(), 5)
         self.assertLessEqual(data["/equilibria/out_of_balance_ratio"][-1], 1e-6)
@@ -285,6 +428,30 @@ class Collapse(ChainTest):
         moved = np.linalg.norm(data["/history/displacement"][-1], axis=1)
         self.assertGreater(moved[0], 5)  # the column at the toe falls
         self.assertGreater(moved[1:].min(), 0.5)  # the others lean on each other
+
+    # Impacts that give nearly all back, followed for some seconds: a block that falls flat and jumps up again, a tall
+    # column that falls on its corner, and a wall of 5 by 8 blocks without its foot.
+    def test_energy_where_little_is_damped(self):
+        fixed = '[[boundary]]\nfrom_m = [{}, -3]\nto_m = [{}, -3]\nfix = "xy"'.format
+        little = "\nstiffness_damping_s = 1e-5\nrecord_every_s = 0.002\nlongest_s = "
+        floor = [[-10, -3], [10, -3], [10, 0]]
+        flat = scene(floor + box(-1, 0, 1, 7)[1:] + [[-1, 0], [-10, 0]], [([-10, 0], [10, 0]), ([-10, 5], [10, 5])],
+                     [[box(-3, 0, 3, 5)]], fixed(-10, 10), RIGID + little + "3")
+        tall = scene(floor + [[0.5, 0], [0.5, 10], [-0.5, 10.4], [-0.5, 0], [-10, 0]],
+                     [([-10, 0], [10, 0]), ([-10, 2.24], [10, 1.76])],
+                     [[[[-3, 0], [3, 0], [3, 1.928], [-3, 2.072]]]], fixed(-10, 10), RIGID + little + "2")
+        side = 1.5
+        wall = scene([[-12, -3], [40, -3], [40, 0]] + box(0, 0, 5 * side, 8 * side)[1:] + [[0, 0], [-12, 0]],
+                     [([side * i, 0], [side * i, 8 * side]) for i in range(1, 5)]
+                     + [([-1, side * i], [5 * side + 1, side * i]) for i in range(8)],
+                     [[box(3 * side, 0, 5 * side, 2 * side)]], fixed(-12, 40), RIGID + little + "2", size=3)
+        for name, text, limit in (("flat", flat, ACCOUNT), ("tall", tall, ACCOUNT), ("wall", wall, 0.01)):
+            joints = self.chain.joints(text)
+            done = self.chain.answer("demsolve", joints, "-o", joints.with_name("result.h5"))
+            self.assertIn("no rest within", done.stderr, name)
+            data = datasets(joints.with_name("result.failed.h5"))
+            self.assertGreater(data["/motions/fastest"].max(), 5)
+            self.assertLess(error_of_energy(data), limit, name)
 
 
 if __name__ == "__main__":
