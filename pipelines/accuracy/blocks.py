@@ -1,19 +1,18 @@
 #!/usr/bin/python3
-"""What each program costs over the number of blocks, from 1e2 to 1e5.
+"""What each program costs over the number of blocks, from 1e2 to 9e4.
 
-    blocks.py BIN DATA OUT [--most BLOCKS]
+    blocks.py BIN DATA OUT
 
-The rock is that of the bench slope of the folder DATA, with its joint sets and without its fault, in sections of the same
-shape that grow. One bench is dug at the upper right, as high everywhere. Zones are as large as blocks let them be, so that
-a block has about as many everywhere. Writes OUT/blocks.csv, OUT/blocks.png and tables/blocks.md,
+The rock is that of the bench slope of the folder DATA, with its joint sets and without its fault, in sections of the
+same shape that grow. One bench is dug at the upper right, as high everywhere. Zones are as large as blocks let them be,
+so that a block has about as many everywhere. Writes OUT/blocks.csv, OUT/blocks.png and tables/blocks.md,
 tables/block-memory.md and tables/block-powers.md.
 
 Processor times of one thread, with reading and writing; each the least of three, or one where a run takes 3 s or more.
-The explicit engine and motion go up to MOST blocks. Motion, with rigid rock, makes STEPS steps from the stress given, less
-what a run of one step costs.
+The explicit engine and motion go up to MOST blocks. Motion, with rigid rock, makes STEPS steps from the stress given,
+less what a run of one step costs.
 """
 
-import argparse
 import csv
 import math
 import re
@@ -70,12 +69,12 @@ class Chain:
         return measured([self.programs / "demsolve", self.joints, "-q", "-o", self.result, *options])
 
     def motion(self, growth, seconds):
-        """Time and memory [s, MB] of so many seconds of motion, which end before there is rest; and a step of it [s]."""
+        """Time and memory [s, MB] of so many seconds of motion, which end before there is rest; and a step [s]."""
         self.scene.write_text(scene_of(self.slope, growth, motion_for(seconds)))
         subprocess.run([self.programs / "jointgen", self.scene, "-q", "-o", self.network], check=True)
         subprocess.run([self.programs / "strength-averaging", self.network, "-q", "-o", self.joints], check=True)
-        command = ["sh", "-c", '"$0" "$@"; [ $? = 3 ]', self.programs / "demsolve", self.joints, "-q", "-o", self.result]
-        taken = measured(command)
+        taken = measured(["sh", "-c", '"$0" "$@"; [ $? = 3 ]', self.programs / "demsolve", self.joints, "-q", "-o",
+                          self.result])
         with figure.opened(self.failed) as file:
             step = figure.array(file, "/failure/seconds")[0] / figure.array(file, "/failure/steps")[0]
         return *taken, step
@@ -108,7 +107,7 @@ def row_of(chain, growth):
 
 def per_block(row, program, unit):
     value = row.get(f"{program}_{unit}")
-    return number(value and value / row["blocks"] * 1000, ".2g")
+    return number(value and value / row["blocks"] * 1000, ".3g")
 
 
 def draw(rows, path):
@@ -126,7 +125,7 @@ def draw(rows, path):
         one.set_xlabel("blocks")
         one.set_ylabel(label)
         one.grid(color="0.9", linewidth=0.4)
-    axes[0].legend(fontsize=6.5)
+    axes[1].legend(fontsize=6.5)
     figure.save(plot, path)
 
 
@@ -158,21 +157,17 @@ def write(rows, out):
 
 
 def main():
-    parser = argparse.ArgumentParser(description="What each program costs over the number of blocks.")
-    parser.add_argument("programs", metavar="BIN", type=lambda path: Path(path).resolve())
-    parser.add_argument("data", metavar="DATA", type=Path)
-    parser.add_argument("out", metavar="OUT", type=Path)
-    parser.add_argument("--most", type=float, default=1e9, help="blocks, about")
-    arguments = parser.parse_args()
-    slope = (arguments.data / "slope/scene.toml").read_text()
+    if len(sys.argv) != 4:
+        sys.exit("usage: blocks.py BIN DATA OUT")
+    programs, data, out = map(Path, sys.argv[1:])
+    slope = (data / "slope/scene.toml").read_text()
     rows = []
     with tempfile.TemporaryDirectory() as folder:
-        chain = Chain(arguments.programs, slope, Path(folder))
+        chain = Chain(programs, slope, Path(folder))
         for growth in GROWTH:
-            if 372 * growth**2 <= arguments.most:
-                rows.append(row_of(chain, growth))
-                print(f"{rows[-1]['blocks']} blocks", flush=True)
-    write(rows, arguments.out)
+            rows.append(row_of(chain, growth))
+            print(f"{rows[-1]['blocks']} blocks", flush=True)
+    write(rows, out)
 
 
 if __name__ == "__main__":

@@ -3,8 +3,8 @@
 
     page.py TABLES PAGE.md
 
-Between the lines  <!-- table NAME -->  and  <!-- end -->  of the page comes what is in TABLES/NAME.md. Where there is no
-such file the table stays, and is named.
+Between the lines  <!-- table NAME -->  and  <!-- end -->  of the page comes what is in TABLES/NAME.md. Where there is
+no such file the table stays, and is named.
 """
 
 import re
