@@ -8,7 +8,7 @@ import numpy as np
 
 from chain import ChainTest, datasets, main
 from hard_cases_test import error_of_forces, line, moved, patch
-from motion_test import RIGID, error_of_energy
+from motion_test import RIGID, missing_energy
 from small_scene import OPEN, SLIPPING, held, joint, material, scene, solved
 
 IDENTITY = np.eye(2)
@@ -253,7 +253,7 @@ longest_s = 4
         # What it is measured by, places and times, have the rounding of 4e5 steps: 1e-16 of 5 m each, over half a metre.
         self.assertLess(np.abs(momentum[1] - momentum[0]).max() / np.abs(momentum[0]).max(), 1e-11)
         energy = data["/motions/kinetic_energy"]
-        self.assertLess(np.abs(error_of_energy(data)).max() / energy.max(), 0.01)
+        self.assertLess(np.abs(missing_energy(data)).max() / energy.max(), 0.01)
         return data, time, place, before, after
 
     def test_of_rigid_blocks(self):

@@ -90,10 +90,15 @@ RIGID = 'rigid_rocks = ["rock"]'
 ACCOUNT = 0.005
 
 
+def missing_energy(data):
+    """What is missing from the balance, at every recorded moment [J/m]."""
+    parts = ("kinetic", "stored", "friction", "damped")
+    return data["/motions/work_of_loads"] - sum(data[f"/motions/{part}_energy"] for part in parts)
+
+
 def error_of_energy(data):
     """What is missing from the balance at any recorded moment, the largest, over the work up to then."""
-    parts = ("kinetic", "stored", "friction", "damped")
-    missing = data["/motions/work_of_loads"] - sum(data[f"/motions/{part}_energy"] for part in parts)
+    missing = missing_energy(data)
     first = np.flatnonzero(data["/motions/motion_time"] == 0)
     work = np.concatenate([np.maximum.accumulate(abs(of_one))
                            for of_one in np.split(data["/motions/work_of_loads"], first[1:])])
