@@ -36,13 +36,14 @@ import records
 from records import figure
 
 HERE = pathlib.Path(__file__).resolve().parent
+TUNED = 2.15  # the scene's factor on the spacings of its sets
 CHOICES = {  # name: (what is changed, its value, options of variant.py)
     "scene": ("", "", []),
     "stress-low": ("horizontal stress", "2 MPa + 0.020 h", ["--stress", "low"]),
     "stress-high": ("horizontal stress", "5 MPa + 0.025 h", ["--stress", "high"]),
     "decay-none": ("decay of the stress to the surface", "none", ["--stress", "3,0.022,0.01"]),
-    "spacing-less": ("factor on the spacing (tuned)", "2.0", ["--spacing-times", f"{2.0 / 2.2}"]),
-    "spacing-more": ("factor on the spacing (tuned)", "2.4", ["--spacing-times", f"{2.4 / 2.2}"]),
+    "spacing-less": ("factor on the spacing (tuned)", f"{TUNED - 0.2:.2f}", ["--spacing-times", f"{1 - 0.2 / TUNED}"]),
+    "spacing-more": ("factor on the spacing (tuned)", f"{TUNED + 0.2:.2f}", ["--spacing-times", f"{1 + 0.2 / TUNED}"]),
     "stiffness-less": ("factor on K, E and eta", "1/2", ["--stiffness-times", "0.5"]),
     "stiffness-more": ("factor on K, E and eta", "2", ["--stiffness-times", "2"]),
     "rule-own": ("stiffness rule", "K itself", ["--rule", "K"]),
@@ -97,21 +98,32 @@ def read(path):
             "start": record.start.isoformat()}
 
 
-def result_of(programs, scene, out, choice, number):
+def result_of(programs, scene, out, name, options, number):
     """One run, from its file if that is newer than all that it hangs on."""
-    path = out / "runs" / f"{choice}-{number:02d}.json"
+    path = out / "runs" / f"{name}-{number:02d}.json"
     sources = [scene, HERE / "variant.py", *(programs / name for name in ("jointgen", "strength-averaging", "demsolve"))]
     if path.exists() and all(path.stat().st_mtime >= source.stat().st_mtime for source in sources):
         return json.loads(path.read_text())
     try:
-        result = computed(programs, scene, CHOICES[choice][2], number)
+        result = computed(programs, scene, options, number)
     except Failed as error:
         result = {"failed": str(error)}
-    print(f"{choice}, network {number}: {result.get('failed', 'equilibrium')}", flush=True)
+    print(f"{name}, network {number}: {result.get('failed', 'equilibrium')}", flush=True)
     partial = path.with_name(f"{path.name}.partial-{os.getpid()}")
     partial.write_text(json.dumps(result))
     os.replace(partial, path)
     return result
+
+
+def results_of(arguments, options):
+    """{name: results of all networks} of {name: options of variant.py}: network by network, so that what is stopped has
+    all of them on fewer networks."""
+    (arguments.output / "runs").mkdir(parents=True, exist_ok=True)
+    todo = [(name, number) for number in range(arguments.networks) for name in options]
+    with concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:
+        done = list(pool.map(lambda one: result_of(arguments.programs, arguments.scene, arguments.output, one[0],
+                                                   options[one[0]], one[1]), todo))
+    return {name: [result for (other, _), result in zip(todo, done) if other == name] for name in options}
 
 
 def values_of(result, targets, shift=0):
@@ -138,9 +150,14 @@ def summary(results, targets, below, shift=0):
              "recorded": float(medians[1].mean()), "each": (total, recorded)}
     if not all(name in targets["point"] for name in results[0]["names"]):
         return found
+    return {**found, "misfit": misfit(medians, targets)}
+
+
+def misfit(medians, targets):
+    """As in points.py, of medians {total, recorded} of the points below the crest [mm]."""
     terms = [((one - np.mean(targets[key])) / (np.ptp(targets[key]) / 2)) ** 2
              for one, key in zip(medians, ("total_mm", "recorded_mm"))]
-    return {**found, "misfit": float(np.mean(terms))}
+    return float(np.mean(terms))
 
 
 def spread(own, each):
@@ -223,31 +240,34 @@ def tornado(own, rows, targets, path):
     figure.save(plot, path)
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+def add_arguments(parser):
     parser.add_argument("programs", type=pathlib.Path)
     parser.add_argument("scene", type=pathlib.Path)
     parser.add_argument("targets", type=pathlib.Path)
     parser.add_argument("-n", "--networks", type=int, default=6)
     parser.add_argument("-j", "--jobs", type=int, default=1)
+    parser.add_argument("-o", "--output", type=pathlib.Path, required=True)
+
+
+def below_the_crest(scene, targets):
+    """Places, in the scene's list, of the points below the crest, and how many points there are."""
+    with open(scene, "rb") as file:
+        names = [point["name"] for point in tomllib.load(file)["point"]]
+    return [i for i, name in enumerate(names) if not targets["point"].get(name, {}).get("crest", False)], len(names)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    add_arguments(parser)
     parser.add_argument("--choice", action="append", choices=list(CHOICES), help="only these, beside the scene's own")
     parser.add_argument("--realizations", type=pathlib.Path, metavar="FOLDER",
                         help="results of more networks, for their spread")
-    parser.add_argument("-o", "--output", type=pathlib.Path, required=True)
     arguments = parser.parse_args()
     targets = records.targets_of(arguments.targets)
     choices = [name for name in CHOICES if not arguments.choice or name in ("scene", *arguments.choice)]
-    (arguments.output / "runs").mkdir(parents=True, exist_ok=True)
-    with open(arguments.scene, "rb") as file:
-        names = [point["name"] for point in tomllib.load(file)["point"]]
-    below = [i for i, name in enumerate(names) if not targets["point"].get(name, {}).get("crest", False)]
-    points = "all points" if len(below) == len(names) else "the points below the crest"
-
-    # Network by network, so that a study that is stopped has all choices on fewer networks.
-    todo = [(choice, number) for number in range(arguments.networks) for choice in choices]
-    with concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:
-        done = list(pool.map(lambda one: result_of(arguments.programs, arguments.scene, arguments.output, *one), todo))
-    results = {choice: [result for (name, _), result in zip(todo, done) if name == choice] for choice in choices}
+    below, number = below_the_crest(arguments.scene, targets)
+    points = "all points" if len(below) == number else "the points below the crest"
+    results = results_of(arguments, {choice: CHOICES[choice][2] for choice in choices})
 
     own = summary(results["scene"], targets, below)
     if own is None:
