@@ -57,8 +57,12 @@ CHOICES = {  # name: (what is changed, its value, options of variant.py)
     "domain-double": ("domain", "3600 m to each side, down to -2200 m", ["--domain", "3600", "-2200"]),
     "linear": ("contacts", "neither slip nor open", ["--linear"]),
     "no-creep": ("creep", "none", ["--no-creep"]),
+    "no-creep-soft": ("creep", "none, and K times 0.65", ["--no-creep", "--stiffness-times", "0.65"]),
 }
 SHIFTS = {"reading-earlier": -60, "reading-later": 60}  # of the first readings [days]
+
+
+STOPPED = (4, 129, 130, 137, 143)  # exit codes: could not read or write; hung up, interrupted, killed, terminated
 
 
 class Failed(Exception):
@@ -66,9 +70,13 @@ class Failed(Exception):
 
 
 def run(program, *arguments):
+    """Its output. Exits if it was stopped, which is no result and is to be run again."""
     done = subprocess.run([program, *map(str, arguments)], capture_output=True, text=True)
+    words = f"{pathlib.Path(program).name}, exit code {done.returncode}: {done.stderr.strip()}"
+    if done.returncode < 0 or done.returncode in STOPPED:
+        raise SystemExit(f"{words}; it was stopped, and is run again the next time")
     if done.returncode != 0:
-        raise Failed(f"{pathlib.Path(program).name}, exit code {done.returncode}: {done.stderr.strip()}")
+        raise Failed(words)
     return done.stdout
 
 
@@ -120,9 +128,12 @@ def results_of(arguments, options):
     all of them on fewer networks."""
     (arguments.output / "runs").mkdir(parents=True, exist_ok=True)
     todo = [(name, number) for number in range(arguments.networks) for name in options]
-    with concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:
+    pool = concurrent.futures.ThreadPoolExecutor(arguments.jobs)
+    try:
         done = list(pool.map(lambda one: result_of(arguments.programs, arguments.scene, arguments.output, one[0],
                                                    options[one[0]], one[1]), todo))
+    finally:
+        pool.shutdown(cancel_futures=True)
     return {name: [result for (other, _), result in zip(todo, done) if other == name] for name in options}
 
 
@@ -146,9 +157,11 @@ def summary(results, targets, below, shift=0):
         return None
     total, recorded = (np.array([one[i] for one in kept])[:, below] for i in (0, 1))
     medians = np.nanmedian(total, axis=0), np.nanmedian(recorded, axis=0)
+    every = next(result["names"] for result in results if "failed" not in result)
+    names = [every[i] for i in below]
     found = {"networks": len(kept), "failed": len(results) - len(kept), "total": float(medians[0].mean()),
-             "recorded": float(medians[1].mean()), "each": (total, recorded)}
-    if not all(name in targets["point"] for name in results[0]["names"]):
+             "recorded": float(medians[1].mean()), "each": (total, recorded), "points": dict(zip(names, medians[0]))}
+    if not all(name in targets["point"] for name in every):
         return found
     return {**found, "misfit": misfit(medians, targets)}
 
@@ -174,21 +187,30 @@ def misfit_of(found):
     return f"{found['misfit']:.2f}" if "misfit" in found else ""
 
 
+def largest_change(own, found):
+    """Of a point's total, in words; of a row without points nothing."""
+    changes = {name: value - own["points"][name] for name, value in found.get("points", {}).items()}
+    name = max(changes, key=lambda name: abs(changes[name]), default=None)
+    return f"{changes[name]:+.1f} ({name})" if name else ""
+
+
 def markdown(own, rows, networks, points):
-    lines = ["| what is changed | to | total (mm) | change | recorded (mm) | change | misfit |",
-             "|---|---|---|---|---|---|---|",
-             f"| nothing | | {own['total']:.1f} | | {own['recorded']:.1f} | | {misfit_of(own)} |"]
+    lines = ["| what is changed | to | total (mm) | change | largest at a point | recorded (mm) | change | misfit |",
+             "|---|---|---|---|---|---|---|---|",
+             f"| nothing | | {own['total']:.1f} | | | {own['recorded']:.1f} | | {misfit_of(own)} |"]
     for what, to, found in rows:
         if isinstance(found, str):
-            lines.append(f"| {what} | {to} | {found} | | | | |")
+            lines.append(f"| {what} | {to} | {found} | | | | | |")
             continue
-        cells = [what, to]
+        lost = found.get("failed", 0)
+        cells = [what, f"{to} ({found['networks']} networks)" if lost else to]
         for key in ("total", "recorded"):
             cells += [f"{found[key]:.1f}", f"{found[key] - own[key]:+.1f}"]
+        cells.insert(4, largest_change(own, found))
         cells.append(misfit_of(found))
         lines.append("| " + " | ".join(cells) + " |")
     lines += ["", f"Horizontal, toward the lock, at the end of 1999: the mean over {points} of the medians over "
-                  f"{own['networks']} network{'s' if own['networks'] > 1 else ''}."]
+                  f"{own['networks']} network{'s' if own['networks'] > 1 else ''}, or as many as are said to have equilibrium."]
     if networks > 1:
         lines.append(f"Rows of the network: {networks} networks.")
     return "\n".join(lines) + "\n"
