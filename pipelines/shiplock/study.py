@@ -36,13 +36,14 @@ import records
 from records import figure
 
 HERE = pathlib.Path(__file__).resolve().parent
+TUNED = 2.15  # the scene's factor on the spacings of its sets
 CHOICES = {  # name: (what is changed, its value, options of variant.py)
     "scene": ("", "", []),
     "stress-low": ("horizontal stress", "2 MPa + 0.020 h", ["--stress", "low"]),
     "stress-high": ("horizontal stress", "5 MPa + 0.025 h", ["--stress", "high"]),
     "decay-none": ("decay of the stress to the surface", "none", ["--stress", "3,0.022,0.01"]),
-    "spacing-less": ("factor on the spacing (tuned)", "2.0", ["--spacing-times", f"{2.0 / 2.2}"]),
-    "spacing-more": ("factor on the spacing (tuned)", "2.4", ["--spacing-times", f"{2.4 / 2.2}"]),
+    "spacing-less": ("factor on the spacing (tuned)", f"{TUNED - 0.2:.2f}", ["--spacing-times", f"{1 - 0.2 / TUNED}"]),
+    "spacing-more": ("factor on the spacing (tuned)", f"{TUNED + 0.2:.2f}", ["--spacing-times", f"{1 + 0.2 / TUNED}"]),
     "stiffness-less": ("factor on K, E and eta", "1/2", ["--stiffness-times", "0.5"]),
     "stiffness-more": ("factor on K, E and eta", "2", ["--stiffness-times", "2"]),
     "rule-own": ("stiffness rule", "K itself", ["--rule", "K"]),
@@ -56,8 +57,12 @@ CHOICES = {  # name: (what is changed, its value, options of variant.py)
     "domain-double": ("domain", "3600 m to each side, down to -2200 m", ["--domain", "3600", "-2200"]),
     "linear": ("contacts", "neither slip nor open", ["--linear"]),
     "no-creep": ("creep", "none", ["--no-creep"]),
+    "no-creep-soft": ("creep", "none, and K times 0.65", ["--no-creep", "--stiffness-times", "0.65"]),
 }
 SHIFTS = {"reading-earlier": -60, "reading-later": 60}  # of the first readings [days]
+
+
+STOPPED = (4, 129, 130, 137, 143)  # exit codes: could not read or write; hung up, interrupted, killed, terminated
 
 
 class Failed(Exception):
@@ -65,9 +70,13 @@ class Failed(Exception):
 
 
 def run(program, *arguments):
+    """Its output. Exits if it was stopped, which is no result and is to be run again."""
     done = subprocess.run([program, *map(str, arguments)], capture_output=True, text=True)
+    words = f"{pathlib.Path(program).name}, exit code {done.returncode}: {done.stderr.strip()}"
+    if done.returncode < 0 or done.returncode in STOPPED:
+        raise SystemExit(f"{words}; it was stopped, and is run again the next time")
     if done.returncode != 0:
-        raise Failed(f"{pathlib.Path(program).name}, exit code {done.returncode}: {done.stderr.strip()}")
+        raise Failed(words)
     return done.stdout
 
 
@@ -97,21 +106,35 @@ def read(path):
             "start": record.start.isoformat()}
 
 
-def result_of(programs, scene, out, choice, number):
+def result_of(programs, scene, out, name, options, number):
     """One run, from its file if that is newer than all that it hangs on."""
-    path = out / "runs" / f"{choice}-{number:02d}.json"
+    path = out / "runs" / f"{name}-{number:02d}.json"
     sources = [scene, HERE / "variant.py", *(programs / name for name in ("jointgen", "strength-averaging", "demsolve"))]
     if path.exists() and all(path.stat().st_mtime >= source.stat().st_mtime for source in sources):
         return json.loads(path.read_text())
     try:
-        result = computed(programs, scene, CHOICES[choice][2], number)
+        result = computed(programs, scene, options, number)
     except Failed as error:
         result = {"failed": str(error)}
-    print(f"{choice}, network {number}: {result.get('failed', 'equilibrium')}", flush=True)
+    print(f"{name}, network {number}: {result.get('failed', 'equilibrium')}", flush=True)
     partial = path.with_name(f"{path.name}.partial-{os.getpid()}")
     partial.write_text(json.dumps(result))
     os.replace(partial, path)
     return result
+
+
+def results_of(arguments, options):
+    """{name: results of all networks} of {name: options of variant.py}: network by network, so that what is stopped has
+    all of them on fewer networks."""
+    (arguments.output / "runs").mkdir(parents=True, exist_ok=True)
+    todo = [(name, number) for number in range(arguments.networks) for name in options]
+    pool = concurrent.futures.ThreadPoolExecutor(arguments.jobs)
+    try:
+        done = list(pool.map(lambda one: result_of(arguments.programs, arguments.scene, arguments.output, one[0],
+                                                   options[one[0]], one[1]), todo))
+    finally:
+        pool.shutdown(cancel_futures=True)
+    return {name: [result for (other, _), result in zip(todo, done) if other == name] for name in options}
 
 
 def values_of(result, targets, shift=0):
@@ -134,13 +157,20 @@ def summary(results, targets, below, shift=0):
         return None
     total, recorded = (np.array([one[i] for one in kept])[:, below] for i in (0, 1))
     medians = np.nanmedian(total, axis=0), np.nanmedian(recorded, axis=0)
+    every = next(result["names"] for result in results if "failed" not in result)
+    names = [every[i] for i in below]
     found = {"networks": len(kept), "failed": len(results) - len(kept), "total": float(medians[0].mean()),
-             "recorded": float(medians[1].mean()), "each": (total, recorded)}
-    if not all(name in targets["point"] for name in results[0]["names"]):
+             "recorded": float(medians[1].mean()), "each": (total, recorded), "points": dict(zip(names, medians[0]))}
+    if not all(name in targets["point"] for name in every):
         return found
+    return {**found, "misfit": misfit(medians, targets)}
+
+
+def misfit(medians, targets):
+    """As in points.py, of medians {total, recorded} of the points below the crest [mm]."""
     terms = [((one - np.mean(targets[key])) / (np.ptp(targets[key]) / 2)) ** 2
              for one, key in zip(medians, ("total_mm", "recorded_mm"))]
-    return {**found, "misfit": float(np.mean(terms))}
+    return float(np.mean(terms))
 
 
 def spread(own, each):
@@ -157,21 +187,30 @@ def misfit_of(found):
     return f"{found['misfit']:.2f}" if "misfit" in found else ""
 
 
+def largest_change(own, found):
+    """Of a point's total, in words; of a row without points nothing."""
+    changes = {name: value - own["points"][name] for name, value in found.get("points", {}).items()}
+    name = max(changes, key=lambda name: abs(changes[name]), default=None)
+    return f"{changes[name]:+.1f} ({name})" if name else ""
+
+
 def markdown(own, rows, networks, points):
-    lines = ["| what is changed | to | total (mm) | change | recorded (mm) | change | misfit |",
-             "|---|---|---|---|---|---|---|",
-             f"| nothing | | {own['total']:.1f} | | {own['recorded']:.1f} | | {misfit_of(own)} |"]
+    lines = ["| what is changed | to | total (mm) | change | largest at a point | recorded (mm) | change | misfit |",
+             "|---|---|---|---|---|---|---|---|",
+             f"| nothing | | {own['total']:.1f} | | | {own['recorded']:.1f} | | {misfit_of(own)} |"]
     for what, to, found in rows:
         if isinstance(found, str):
-            lines.append(f"| {what} | {to} | {found} | | | | |")
+            lines.append(f"| {what} | {to} | {found} | | | | | |")
             continue
-        cells = [what, to]
+        lost = found.get("failed", 0)
+        cells = [what, f"{to} ({found['networks']} networks)" if lost else to]
         for key in ("total", "recorded"):
             cells += [f"{found[key]:.1f}", f"{found[key] - own[key]:+.1f}"]
+        cells.insert(4, largest_change(own, found))
         cells.append(misfit_of(found))
         lines.append("| " + " | ".join(cells) + " |")
     lines += ["", f"Horizontal, toward the lock, at the end of 1999: the mean over {points} of the medians over "
-                  f"{own['networks']} network{'s' if own['networks'] > 1 else ''}."]
+                  f"{own['networks']} network{'s' if own['networks'] > 1 else ''}, or as many as are said to have equilibrium."]
     if networks > 1:
         lines.append(f"Rows of the network: {networks} networks.")
     return "\n".join(lines) + "\n"
@@ -223,31 +262,34 @@ def tornado(own, rows, targets, path):
     figure.save(plot, path)
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+def add_arguments(parser):
     parser.add_argument("programs", type=pathlib.Path)
     parser.add_argument("scene", type=pathlib.Path)
     parser.add_argument("targets", type=pathlib.Path)
     parser.add_argument("-n", "--networks", type=int, default=6)
     parser.add_argument("-j", "--jobs", type=int, default=1)
+    parser.add_argument("-o", "--output", type=pathlib.Path, required=True)
+
+
+def below_the_crest(scene, targets):
+    """Places, in the scene's list, of the points below the crest, and how many points there are."""
+    with open(scene, "rb") as file:
+        names = [point["name"] for point in tomllib.load(file)["point"]]
+    return [i for i, name in enumerate(names) if not targets["point"].get(name, {}).get("crest", False)], len(names)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    add_arguments(parser)
     parser.add_argument("--choice", action="append", choices=list(CHOICES), help="only these, beside the scene's own")
     parser.add_argument("--realizations", type=pathlib.Path, metavar="FOLDER",
                         help="results of more networks, for their spread")
-    parser.add_argument("-o", "--output", type=pathlib.Path, required=True)
     arguments = parser.parse_args()
     targets = records.targets_of(arguments.targets)
     choices = [name for name in CHOICES if not arguments.choice or name in ("scene", *arguments.choice)]
-    (arguments.output / "runs").mkdir(parents=True, exist_ok=True)
-    with open(arguments.scene, "rb") as file:
-        names = [point["name"] for point in tomllib.load(file)["point"]]
-    below = [i for i, name in enumerate(names) if not targets["point"].get(name, {}).get("crest", False)]
-    points = "all points" if len(below) == len(names) else "the points below the crest"
-
-    # Network by network, so that a study that is stopped has all choices on fewer networks.
-    todo = [(choice, number) for number in range(arguments.networks) for choice in choices]
-    with concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:
-        done = list(pool.map(lambda one: result_of(arguments.programs, arguments.scene, arguments.output, *one), todo))
-    results = {choice: [result for (name, _), result in zip(todo, done) if name == choice] for choice in choices}
+    below, number = below_the_crest(arguments.scene, targets)
+    points = "all points" if len(below) == number else "the points below the crest"
+    results = results_of(arguments, {choice: CHOICES[choice][2] for choice in choices})
 
     own = summary(results["scene"], targets, below)
     if own is None:

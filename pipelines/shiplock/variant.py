@@ -292,6 +292,9 @@ def variant(text, arguments):
         text = edited(text, change)
     if arguments.no_creep:
         text = re.sub(r"^\[creep\]\n(?:[a-z].*\n)*", "", text, flags=re.MULTILINE)
+    if arguments.section_b:
+        text = ("# Section B-B (chamber 3): the scene of section A-A, below, with its elevations moved. What comments say of places\n"
+                "# and sources is section A-A's.\n#\n" + text)
     return text
 
 
