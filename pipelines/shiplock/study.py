@@ -55,6 +55,7 @@ CHOICES = {  # name: (what is changed, its value, options of variant.py)
     "rock-stiff": ("Young's modulus of the rock", "40 and 17 GPa", ["--youngs-modulus", "high"]),
     "domain-half": ("domain", "900 m to each side, down to -400 m", ["--domain", "900", "-400"]),
     "domain-double": ("domain", "3600 m to each side, down to -2200 m", ["--domain", "3600", "-2200"]),
+    "zones-half": ("zone size", "2 m", ["--zone-size", "2"]),
     "linear": ("contacts", "neither slip nor open", ["--linear"]),
     "no-creep": ("creep", "none", ["--no-creep"]),
     "no-creep-soft": ("creep", "none, and K times 0.65", ["--no-creep", "--stiffness-times", "0.65"]),
@@ -155,13 +156,13 @@ def summary(results, targets, below, shift=0):
     kept = [values_of(result, targets, shift) for result in results if "failed" not in result]
     if not kept:
         return None
+    every = np.array([one[0] for one in kept])
     total, recorded = (np.array([one[i] for one in kept])[:, below] for i in (0, 1))
     medians = np.nanmedian(total, axis=0), np.nanmedian(recorded, axis=0)
-    every = next(result["names"] for result in results if "failed" not in result)
-    names = [every[i] for i in below]
+    names = next(result["names"] for result in results if "failed" not in result)
     found = {"networks": len(kept), "failed": len(results) - len(kept), "total": float(medians[0].mean()),
-             "recorded": float(medians[1].mean()), "each": (total, recorded), "points": dict(zip(names, medians[0]))}
-    if not all(name in targets["point"] for name in every):
+             "recorded": float(medians[1].mean()), "each": (total, recorded), "points": dict(zip(names, np.nanmedian(every, axis=0)))}
+    if not all(name in targets["point"] for name in names):
         return found
     return {**found, "misfit": misfit(medians, targets)}
 
@@ -188,10 +189,10 @@ def misfit_of(found):
 
 
 def largest_change(own, found):
-    """Of a point's total, in words; of a row without points nothing."""
-    changes = {name: value - own["points"][name] for name, value in found.get("points", {}).items()}
+    """Of the median total of a point, crests too, in words; of a row without points nothing."""
+    changes = {name: value / own["points"][name] - 1 for name, value in found.get("points", {}).items()}
     name = max(changes, key=lambda name: abs(changes[name]), default=None)
-    return f"{changes[name]:+.1f} ({name})" if name else ""
+    return f"{100 * changes[name]:+.2g} % ({name})" if name else ""
 
 
 def markdown(own, rows, networks, points):
