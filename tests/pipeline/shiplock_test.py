@@ -210,7 +210,7 @@ class Shiplock(ChainTest):
         own = study.summary([result, result], targets, [0])
         text = study.markdown(own, [("creep", "none", found)], 2, "the points")
         self.assertIn("| creep | none (1 networks) |", text)
-        self.assertIn("+0.0 (N215)", text)
+        self.assertIn("| +0 % (N215) |", text)
 
     def test_spread_of_networks(self):
         import study
@@ -222,6 +222,37 @@ class Shiplock(ChainTest):
                                                   (-root / 2, root / 2, -root / 2, root / 2)):
             self.assertAlmostEqual(found["total"], 50 + total)
             self.assertAlmostEqual(found["recorded"], 30 + recorded)
+
+    def test_tornado(self):
+        """Ordered by the larger of both changes over the widths of the ranges; a bar for every choice that has a result."""
+        import matplotlib.pyplot
+        import study
+        targets = {"total_mm": [60, 90], "recorded_mm": [20, 40]}
+        own = {"total": 70.0, "recorded": 40.0, "networks": 4, "misfit": 1.0}
+        row = lambda total, recorded, **more: {"total": total, "recorded": recorded, "networks": 4, "failed": 0, **more}
+        rows = [("box", "small", row(61.0, 40.0)), ("box", "large", row(75.0, 42.0)),  # 9 of 30
+                ("readings", "later", row(70.0, 48.0)),  # 8 of 20
+                ("stress", "none", "it slides"),
+                ("stress", "high", row(200.0, 41.0, networks=3, failed=1)),
+                ("network", "plus", {"total": 71.0, "recorded": 41.0})]
+        groups = study.ordered(own, rows, targets)
+        self.assertEqual([what for what, _ in groups], ["network", "box", "readings", "stress"])
+        lines = list(study.lines_of(groups))
+        self.assertEqual([text for text, *_ in lines], ["network: plus", "large", "small", "box", "readings: later",
+                                                        "stress: high (3 networks)"])
+        with unittest.mock.patch.object(study.figure, "save") as save:
+            study.tornado(own, rows, targets, "tornado.png")
+        plot, path = save.call_args.args
+        self.assertEqual(path, "tornado.png")
+        for axes, key, cut in zip(plot.axes, ("total", "recorded"), (135, 60)):
+            bars = [bar for container in axes.containers for bar in container]
+            wanted = [min(found[key], cut) for *_, found in lines if found]
+            for bar, value in zip(bars, wanted, strict=True):
+                self.assertAlmostEqual(bar.get_x(), own[key])
+                self.assertAlmostEqual(bar.get_x() + bar.get_width(), value)
+            self.assertEqual([text.get_text() for text in axes.texts], ["to 200"] if key == "total" else [])
+        self.assertIn("changed, 4 networks", [text.get_text() for text in plot.legends[0].texts])
+        matplotlib.pyplot.close(plot)
 
     def test_readings_of_the_back_analysis(self):
         """They count from the row after the first reading's day's stage, share its error, and leave out days of stages."""
