@@ -61,7 +61,7 @@ def markdown(factors, number, seconds):
             f"{fit['degrees_of_freedom']} degrees of freedom.", f"Correlation of the factors' logarithms: {pairs}."]
     if fit["weak_combination_times"]:
         together = " with ".join(f"{SHORT[row['factor']]} x {float(row['weak_combination_times']):.3f}" for row in factors)
-        told.append(f"`creepfit` warns of {together}, which changes the readings by no more than their noise.")
+        told.append(f"`creepfit` warns of {together}, which these readings hardly tell.")
     told.append(f"{fit['runs']} runs, {seconds:.0f} s of processor time.")
     return "\n".join([*lines, "", *told]) + "\n"
 
