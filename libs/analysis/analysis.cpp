@@ -119,13 +119,18 @@ std::vector<char> rigid_zones(const Scene& scene, const Network& network, const 
 }
 
 // Of contacts that come about in motion: friction alone, the residual one where there is one.
-joint::Coulomb law_of_new_contacts(const Scene& scene)
+joint::Law law_of_new_contacts(const Scene& scene)
 {
     const auto material = std::find_if(scene.joint_materials.begin(), scene.joint_materials.end(),
                                        [&](const auto& m) { return m.name == scene.motion->new_contacts; });
+    if (material->walls)
+        return joint::BartonBandis{material->normal_stiffness,       material->shear_stiffness,
+                                   material->walls->largest_closure, material->friction_angle,
+                                   material->walls->roughness,       material->walls->strength};
     const double friction_angle =
         material->residual ? material->residual->friction_angle : material->friction_angle;
-    return {material->normal_stiffness, material->shear_stiffness, 0, std::tan(friction_angle), 0};
+    return joint::Coulomb{material->normal_stiffness, material->shear_stiffness, 0, std::tan(friction_angle),
+                          0};
 }
 
 } // namespace
@@ -467,6 +472,13 @@ void Analysis::excavate(const Stage& stage, Index number)
 
 void Analysis::prepare_motion()
 {
+    const auto dilates = std::find_if(joints_.dilation_angle.begin(), joints_.dilation_angle.end(),
+                                      [](double angle) { return angle > 0; });
+    if (dilates != joints_.dilation_angle.end())
+        throw input_error(
+            "with [motion] joints do not dilate, but rock bridges of joint \"" +
+            joint_name(scene_, network_, static_cast<Index>(dilates - joints_.dilation_angle.begin())) +
+            "\" do: wanted dilation_angle_deg = 0 of their [[rock]], or no bridges");
     motion_.emplace(rock_, result_.mesh, rigid_zones(scene_, network_, result_.mesh),
                     law_of_new_contacts(scene_),
                     motion::Settings{scene_.motion->stiffness_damping, scene_.motion->mass_damping,
