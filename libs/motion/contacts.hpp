@@ -56,14 +56,18 @@ struct Pair {
     double pressed_in = 0, sheared_in = 0; // what the springs hold [J/m]
     double friction = 0, damped = 0;       // in the last step [J/m]
 
+    bool is_bonded() const { return is_known && !is_broken; }
     double stored() const { return pressed_in + sheared_in; }
 };
 
 class Contacts
 {
 public:
-    // `laws`: those of the pairs; new contacts have the last one.
-    explicit Contacts(std::vector<joint::Coulomb> laws) : laws_(std::move(laws)) {}
+    // `laws`: those of the pairs; new contacts have the last one. Places are counted from `origin` [m].
+    explicit Contacts(std::vector<joint::Coulomb> laws, const Vector2d& origin = Vector2d::Zero())
+        : laws_(std::move(laws)), origin_(origin)
+    {
+    }
 
     // Takes these faces instead; pairs of before are forgotten but for `known`, in any order.
     void set_faces(Faces faces, std::vector<Pair> known, const std::vector<Vector2d>& place);
@@ -87,12 +91,13 @@ public:
     Index searches() const { return searches_; }
 
 private:
-    void seek(const std::vector<Vector2d>& place);
+    void seek(const std::vector<Vector2d>& place, const std::vector<Vector2d>& move);
     void find_corners(const std::vector<Vector2d>& place);
     const Pair* contact_before(const Pair& pair, const Vector2d& normal,
                                const std::vector<Vector2d>& place) const;
 
     std::vector<joint::Coulomb> laws_;
+    Vector2d origin_;
     Faces faces_;
     std::vector<Pair> pairs_;                 // in order of {a, b}
     std::vector<std::vector<Index>> of_face_; // pairs of each face
