@@ -28,6 +28,9 @@ constexpr int most_halvings = 5;
 // Of one creep step where contacts close: in rock full of open joints some close all the time.
 constexpr int most_cuts = 6;
 
+// By how much of its largest part a motion's account of energy may be off.
+constexpr double energy_closes = 0.01;
+
 // What an edge's joint is called: its set, or the material of the joint that a boundary rests on.
 std::string joint_name(const Scene& scene, const Network& network, Index edge)
 {
@@ -234,7 +237,7 @@ void Analysis::transfer(const Transfer& to, Checkpoint& kept)
     auto& [scene, network, joints, recording, observe, engine, result, rock, loading, recorder, implicit,
            motion, creep, step, closing, sensitivity, sensitivities, now, next_stage, stage, solver_time,
            solver_steps, creep_steps, certificate, effort, last_move, cuts_left, last_step, stable_limit,
-           end_of_creep, beyond_strength, yielded_in_situ, given_up] = *this;
+           end_of_creep, beyond_strength, yielded_in_situ, given_up, energy_off, largest_energy] = *this;
     to.value(next_stage, kept.stage);
     to.value(now, kept.time);
     if (to.restores())
@@ -254,7 +257,8 @@ void Analysis::transfer(const Transfer& to, Checkpoint& kept)
     to.value(since_state, kept.steps_since_state);
     solver_steps = since_trace;
     creep_steps = since_state;
-    const std::array<std::map<std::string, Index>*, 3> remarks{&beyond_strength, &yielded_in_situ, &given_up};
+    const std::array<std::map<std::string, Index>*, 4> remarks{&beyond_strength, &yielded_in_situ, &given_up,
+                                                               &energy_off};
     if (to.restores())
         for (std::size_t r = 0; r < kept.remark.size(); ++r)
             (*remarks.at(kept.remark_kind[r]))[kept.remark[r]] = kept.remark_count[r];
@@ -519,9 +523,11 @@ bool Analysis::follow_motion(double until)
 void Analysis::move(const Stage& stage)
 {
     double due = 0;
+    largest_energy_ = 0;
     do {
         observe_(now_ / scene_.end, stage.name + ", " + shown(due) + " s");
-        due += scene_.motion->record_every;
+        due = std::max(due + scene_.motion->record_every, // once a step at most
+                       std::nextafter(motion_->time(), std::numeric_limits<double>::infinity()));
         motion_->put_back();
         recorder_.record_state(result_, now_, "", rock_);
         take_down_motion();
@@ -567,6 +573,7 @@ void Analysis::take_down_motion()
     motions.damped_energy.push_back(energy.damped);
     motions.fastest.push_back(motion_->fastest());
     motions.out_of_balance_ratio.push_back(motion_->out_of_balance_ratio());
+    check_energy(energy);
     const auto block_of = [&](Index zone) { return zone < 0 ? zone : result_.mesh.zone_block[zone]; };
     for (const motion::Touching& contact : motion_->touching()) {
         motions.contact_block.push_back({block_of(contact.zone[0]), block_of(contact.zone[1])});
@@ -578,6 +585,18 @@ void Analysis::take_down_motion()
         motions.contact_slips.push_back(contact.is_slipping ? 1 : 0);
     }
     motions.first_contact.push_back(static_cast<Index>(motions.contact_block.size()));
+}
+
+// Where nothing has moved to speak of, all parts are rounding errors.
+void Analysis::check_energy(const motion::Energy& energy)
+{
+    for (const double part : {energy.work, energy.kinetic, energy.stored, energy.friction, energy.damped})
+        largest_energy_ = std::max(largest_energy_, std::abs(part));
+    const double off = std::abs(energy.error()) / largest_energy_;
+    if (!motion_->has_moved() || off <= energy_closes)
+        return;
+    Index& percent = energy_off_[stage_];
+    percent = std::max(percent, static_cast<Index>(std::lround(100 * std::min(off, 1e6))));
 }
 
 // After a jump of loads: what was learnt from the steps before no longer holds.

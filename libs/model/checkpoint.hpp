@@ -72,7 +72,7 @@ struct Checkpoint {
     Index steps_since_trace = 0;    // solver steps
     double solver_time = 0;         // of motion [s]
     Index steps_since_state = 0;    // creep steps
-    std::vector<Index> remark_kind; // as in Analysis: beyond strength, yielded in situ, given up
+    std::vector<Index> remark_kind; // as in Analysis: beyond strength, yielded in situ, given up, energy off
     std::vector<std::string> remark;
     std::vector<Index> remark_count;
 

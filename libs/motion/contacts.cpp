@@ -17,7 +17,7 @@ namespace
 constexpr double rounding = 0.01; // of the shorter face: where two corners meet
 constexpr double deepest = 0.5;   // overlap over the depth of the thinner zone, at most
 constexpr double deepest_new =
-    0.1; // the same where two faces come to touch; farther in, one lies behind the other
+    0.1; // the same where two faces come to touch; farther in, one lies behind the other, or has slid on
 constexpr double same_way = 0.7; // cosine between the normals of contacts of which one goes on as the other
 constexpr double least_facing = 0.02; // cosine between a face's normal and the other's, turned round
 
@@ -33,6 +33,7 @@ struct Overlap {
     Vector2d normal() const { return {tangent.y(), -tangent.x()}; }
     // Everywhere deeper in each other than they overlap: it is other faces of the two corners that touch.
     bool is_behind() const { return -std::max(gap[0], gap[1]) > length; }
+    double sunk() const { return -std::min(gap[0], gap[1]); } // the deepest that they are in each other [m]
 };
 
 std::optional<Overlap> overlap_along(const Vector2d& tangent, const std::array<Vector2d, 2>& a,
@@ -164,7 +165,8 @@ private:
 
 } // namespace
 
-Contacts::Contacts(std::vector<joint::Law> laws) : laws_(std::move(laws))
+Contacts::Contacts(std::vector<joint::Law> laws, const Vector2d& origin)
+    : laws_(std::move(laws)), origin_(origin)
 {
     for (const joint::Law& law : laws_) {
         stiffest_open_ = std::max({stiffest_open_, joint::k_n(law), joint::k_s(law)});
@@ -189,7 +191,7 @@ void Contacts::set_faces(Faces faces, std::vector<Pair> known, const std::vector
         std::nth_element(lengths.begin(), middle, lengths.end());
         skin_ = *middle / 4;
     }
-    seek(place);
+    seek(place, std::vector<Vector2d>(place.size(), Vector2d::Zero()));
 }
 
 void Contacts::find_corners(const std::vector<Vector2d>& place)
@@ -220,13 +222,29 @@ void Contacts::find_corners(const std::vector<Vector2d>& place)
     }
 }
 
-// All pairs of faces whose boxes come within the skin of each other, by a grid of cells; what pairs of before
-// remember stays.
-void Contacts::seek(const std::vector<Vector2d>& place)
+// All pairs of faces that bear something, and those whose boxes come within the skin of each other, by a grid
+// of cells; what pairs of before remember stays. A box covers the way of the last step, and reaches as far
+// again as its face is in another one, or off one that it is bonded to: there lies the next one to slide on
+// to.
+void Contacts::seek(const std::vector<Vector2d>& place, const std::vector<Vector2d>& move)
 {
     ++searches_;
     sought_at_ = place;
     find_corners(place);
+    std::vector<double> reach(faces_.gridpoint.size(), skin_ / 2);
+    std::vector<std::pair<Index, Index>> near;
+    for (const Pair& pair : pairs_) {
+        if (!pair.is_closed && !pair.is_bonded())
+            continue;
+        near.emplace_back(pair.a, pair.b);
+        const auto found =
+            overlap_of(ends_of(faces_.gridpoint[pair.a], place), ends_of(faces_.gridpoint[pair.b], place),
+                       sharpness_[pair.a], sharpness_[pair.b]);
+        if (found)
+            for (const Index f : {pair.a, pair.b})
+                reach[f] = std::max(reach[f],
+                                    skin_ / 2 + std::max(std::abs(found->gap[0]), std::abs(found->gap[1])));
+    }
     const double cell = 8 * skin_;
     struct Entry {
         std::int64_t x, y;
@@ -237,15 +255,16 @@ void Contacts::seek(const std::vector<Vector2d>& place)
     std::vector<std::array<Vector2d, 2>> box;
     const auto cell_of = [&](double at) { return static_cast<std::int64_t>(std::floor(at / cell)); };
     for (std::size_t f = 0; f < faces_.gridpoint.size(); ++f) {
-        const auto ends = ends_of(faces_.gridpoint[f], place);
-        const Vector2d half = Vector2d::Constant(skin_ / 2);
-        box.push_back({ends[0].cwiseMin(ends[1]) - half, ends[0].cwiseMax(ends[1]) + half});
+        const auto ends = ends_of(faces_.gridpoint[f], place), way = ends_of(faces_.gridpoint[f], move);
+        const Vector2d beyond = Vector2d::Constant(reach[f]);
+        box.push_back(
+            {ends[0].cwiseMin(ends[1]).cwiseMin(ends[0] - way[0]).cwiseMin(ends[1] - way[1]) - beyond,
+             ends[0].cwiseMax(ends[1]).cwiseMax(ends[0] - way[0]).cwiseMax(ends[1] - way[1]) + beyond});
         for (std::int64_t x = cell_of(box[f][0].x()); x <= cell_of(box[f][1].x()); ++x)
             for (std::int64_t y = cell_of(box[f][0].y()); y <= cell_of(box[f][1].y()); ++y)
                 entries.push_back({x, y, static_cast<Index>(f)});
     }
     std::sort(entries.begin(), entries.end());
-    std::vector<std::pair<Index, Index>> near;
     for (std::size_t i = 0; i < entries.size(); ++i)
         for (std::size_t j = i + 1;
              j < entries.size() && entries[j].x == entries[i].x && entries[j].y == entries[i].y; ++j) {
@@ -307,7 +326,7 @@ void Contacts::update(const std::vector<Vector2d>& place, const std::vector<Vect
     for (std::size_t g = 0; g < place.size(); ++g)
         farthest = std::max(farthest, (place[g] - sought_at_[g]).squaredNorm());
     if (4 * farthest > skin_ * skin_)
-        seek(place);
+        seek(place, move);
 
     const auto n = static_cast<Index>(pairs_.size());
     std::vector<char> closes(pairs_.size(), 0); // if it may
@@ -316,6 +335,19 @@ void Contacts::update(const std::vector<Vector2d>& place, const std::vector<Vect
     for (const Pair& pair : pairs_)
         if (pair.is_closed)
             most_lead = std::max({most_lead, pair.lead[0], pair.lead[1]});
+    const auto depth_of = [&](const Pair& pair) {
+        return std::min(faces_.depth[pair.a], faces_.depth[pair.b]);
+    };
+    // Whether faces are too far in each other to have come to touch in this step.
+    const auto is_deep = [&](const Pair& pair, const Overlap& found) {
+        const auto move_a = ends_of(faces_.gridpoint[pair.a], move),
+                   move_b = ends_of(faces_.gridpoint[pair.b], move);
+        std::array<double, 2> gap_before{};
+        for (int i = 0; i < 2; ++i)
+            gap_before[i] =
+                found.gap[i] - (at(move_b, found.on_b[i]) - at(move_a, found.on_a[i])).dot(found.normal());
+        return std::min(found.sunk(), -std::min(gap_before[0], gap_before[1])) > deepest_new * depth_of(pair);
+    };
     const auto evaluate = [&](Pair& pair, Index index, bool may_close) {
         pair.is_slipping = false;
         pair.friction = pair.damped = 0;
@@ -351,16 +383,14 @@ void Contacts::update(const std::vector<Vector2d>& place, const std::vector<Vect
         std::array<double, 2> closing{};
         for (int i = 0; i < 2; ++i)
             closing[i] = pair.lead[0] + found->on_a[i] * (pair.lead[1] - pair.lead[0]) - found->gap[i];
-        const double depth = std::min(faces_.depth[pair.a], faces_.depth[pair.b]);
-        const double sunk = -std::min(found->gap[0], found->gap[1]);
-        const bool is_bonded = pair.is_known && !pair.is_broken;
+        const bool is_too_deep = found->sunk() > deepest * depth_of(pair), is_bonded = pair.is_bonded();
         // One that is not known yet may have a lead to inherit.
         const double most = std::max(closing[0], closing[1]) + (pair.is_known ? 0.0 : most_lead);
-        if (!pair.is_closed && !is_bonded && (most <= 0 || sunk > deepest_new * depth)) {
+        if (!pair.is_closed && !is_bonded && (most <= 0 || (is_too_deep && is_deep(pair, *found)))) {
             open();
             return;
         }
-        if (sunk > deepest * depth) {
+        if (is_too_deep) {
 #pragma omp critical
             too_deep = std::min(too_deep, index);
             return;
@@ -478,9 +508,16 @@ void Contacts::update(const std::vector<Vector2d>& place, const std::vector<Vect
         evaluate(pairs_[p], p, false);
     if (too_deep < n)
         throw equilibrium_error(
-            "two pieces of rock overlap at " + shown(place[faces_.gridpoint[pairs_[too_deep].a][0]]) +
+            "two pieces of rock overlap at " +
+            shown(Vector2d(origin_ + place[faces_.gridpoint[pairs_[too_deep].a][0]])) +
             " by more than half the depth of a zone; the joint's normal stiffness is too small "
             "for what presses on it");
+    const auto sunk_of = [&](const Pair& pair) {
+        const auto found =
+            overlap_of(ends_of(faces_.gridpoint[pair.a], place), ends_of(faces_.gridpoint[pair.b], place),
+                       sharpness_[pair.a], sharpness_[pair.b]);
+        return found ? found->sunk() : 0.0;
+    };
     // Those that lie behind come last: what they may have slid on from must have closed.
     for (const bool is_behind : {false, true})
         for (Index p = 0; p < n; ++p) {
@@ -493,6 +530,9 @@ void Contacts::update(const std::vector<Vector2d>& place, const std::vector<Vect
             if (found->is_behind() != is_behind)
                 continue;
             const Pair* const before = contact_before(pair, found->normal(), place);
+            if (is_deep(pair, *found) &&
+                (before == nullptr || found->sunk() > sunk_of(*before) + deepest_new * depth_of(pair)))
+                continue; // another face behind
             if (before == nullptr &&
                 (is_behind || (!pair.is_known && std::min(found->gap[0], found->gap[1]) >= 0)))
                 continue;

@@ -57,14 +57,15 @@ struct Pair {
     double pressed_in = 0, sheared_in = 0; // what the springs hold [J/m]
     double friction = 0, damped = 0;       // in the last step [J/m]
 
+    bool is_bonded() const { return is_known && !is_broken; }
     double stored() const { return pressed_in + sheared_in; }
 };
 
 class Contacts
 {
 public:
-    // `laws`: those of the pairs; new contacts have the last one.
-    explicit Contacts(std::vector<joint::Law> laws);
+    // `laws`: those of the pairs; new contacts have the last one. Places are counted from `origin` [m].
+    explicit Contacts(std::vector<joint::Law> laws, const Vector2d& origin = Vector2d::Zero());
 
     // Takes these faces instead; pairs of before are forgotten but for `known`, in any order.
     void set_faces(Faces faces, std::vector<Pair> known, const std::vector<Vector2d>& place);
@@ -91,12 +92,13 @@ public:
     Index searches() const { return searches_; }
 
 private:
-    void seek(const std::vector<Vector2d>& place);
+    void seek(const std::vector<Vector2d>& place, const std::vector<Vector2d>& move);
     void find_corners(const std::vector<Vector2d>& place);
     const Pair* contact_before(const Pair& pair, const Vector2d& normal,
                                const std::vector<Vector2d>& place) const;
 
     std::vector<joint::Law> laws_;
+    Vector2d origin_;
     bool stiffens_ = false;                   // as it closes, by any law
     double stiffest_open_ = 0, stiffest_ = 0; // [Pa/m]
     Faces faces_;

@@ -113,9 +113,18 @@ Motion::Motion(mechanics::Assembly& rock, const Mesh& mesh, std::vector<char> is
         }
     }
     laws.push_back(found);
-    contacts_ = Contacts(std::move(laws));
+    low_ = high_ = mesh.gridpoint[0];
+    for (const Vector2d& p : mesh.gridpoint) {
+        low_ = low_.cwiseMin(p);
+        high_ = high_.cwiseMax(p);
+    }
+    middle_ = (low_ + high_) / 2;
+    contacts_ = Contacts(std::move(laws), middle_);
 
-    place_ = rock.position;
+    origin_ = rock.position;
+    for (Vector2d& p : origin_)
+        p -= middle_;
+    place_ = origin_;
     for (std::size_t g = 0; g < place_.size(); ++g)
         place_[g] += rock.displacement[g];
     velocity_.assign(place_.size(), Vector2d::Zero());
@@ -137,14 +146,9 @@ Motion::Motion(mechanics::Assembly& rock, const Mesh& mesh, std::vector<char> is
         yielding.initial_zz = yielding.stress_zz - stiffness[1] * (zone.strain[0] + zone.strain[1]);
         yielding_.push_back({yielding, stress_of(stiffness, zone.strain)});
     }
-    low_ = high_ = mesh.gridpoint[0];
-    for (const Vector2d& p : mesh.gridpoint) {
-        low_ = low_.cwiseMin(p);
-        high_ = high_.cwiseMax(p);
-    }
     const Vector2d diagonal = Vector2d::Constant((high_ - low_).norm());
-    low_ -= diagonal;
-    high_ += diagonal;
+    low_ -= middle_ + diagonal;
+    high_ += diagonal - middle_;
     find_ground();
     start();
 }
@@ -156,6 +160,7 @@ void Motion::start()
     time_ = time_lost_ = 0;
     energy_ = {};
     starts_from_rest_ = true;
+    has_moved_ = false;
     last_kinetic_ = 0;
     checks_in_balance_ = 0;
     last_contact_force_.clear();
@@ -251,7 +256,7 @@ void Motion::find_faces()
                 const Index from = zones_[z].gridpoint[i], to = zones_[z].gridpoint[(i + 1) % 3];
                 if (!sides.contains(key(to, from)))
                     add(from, to, static_cast<Index>(z),
-                        2 * rock_.zones.area[z] / (rock_.position[to] - rock_.position[from]).norm());
+                        2 * rock_.zones.area[z] / (origin_[to] - origin_[from]).norm());
             }
     for (const auto& [from, to] : ground_)
         add(from, to, -1, (mesh_.gridpoint[to] - mesh_.gridpoint[from]).norm());
@@ -592,6 +597,7 @@ void Motion::step()
         velocity_[follower] = velocity_[leader];
     }
     fastest_ = std::sqrt(fastest);
+    has_moved_ = has_moved_ || fastest_ > at_rest;
     std::size_t gone = n; // outside
     for (std::size_t g = 0; g < n; ++g) {
         energy_.work += (rock_.load[g] + rock_.applied[g] + held * released_[g]).dot(move_[g]);
@@ -649,12 +655,14 @@ void Motion::transfer(const Transfer& to, MovedRock& kept)
 {
     // All members, lest a new one is forgotten.
     auto& [rock, mesh, settings, contacts, bodies, is_rigid, body_of, zones, yielding, place, velocity, move,
-           force, released, lost, low, high, inverse_mass, law_of_edge, ground, face_of_mesh, zone_of_face,
-           dt, last_dt, time, time_lost, stiffest_allowed, starts_from_rest, energy, stored_at_start,
-           last_kinetic, stiffest, largest_mean, ratio, force_change, fastest, fastest_gridpoint,
-           stiffest_gridpoint, checks_in_balance, last_contact_force] = *this;
-    to.values(rock.position, kept.origin);
+           force, released, lost, origin, middle, low, high, inverse_mass, law_of_edge, ground, face_of_mesh,
+           zone_of_face, dt, last_dt, time, time_lost, stiffest_allowed, starts_from_rest, has_moved, energy,
+           stored_at_start, last_kinetic, stiffest, largest_mean, ratio, force_change, fastest,
+           fastest_gridpoint, stiffest_gridpoint, checks_in_balance, last_contact_force] = *this;
+    to.values(origin, kept.origin);
     to.values(place, kept.place);
+    for (std::size_t g = 0; g < origin.size(); ++g)
+        rock.position[g] = middle + origin[g];
     std::vector<Eigen::Vector4d> inverse;
     for (const Zone& zone : zones)
         inverse.emplace_back(zone.inverse.reshaped());
@@ -723,7 +731,9 @@ mechanics::no_equilibrium Motion::moves_on(const std::string& why) const
 
 void Motion::count_from_here()
 {
-    rock_.position = place_;
+    origin_ = place_;
+    for (std::size_t g = 0; g < place_.size(); ++g)
+        rock_.position[g] = middle_ + place_[g];
     put_back();
 }
 
@@ -755,17 +765,26 @@ bool Motion::is_at_rest()
             largest =
                 std::max({largest, force.norm(), std::abs(moment) / std::sqrt(body.inertia / body.mass)});
         }
-    // Where forces are almost none, they are rounding errors of stiffness times place. Dashpots multiply
-    // these by their time over that of a step: too much for zones that are tiny, whose forces then say
-    // nothing.
-    const double rounding = 1e-15 * stiffest_ * (1 + settings_.stiffness_damping / dt_) * farthest;
+    // Where forces are almost none, they are rounding errors of stiffness times place; no larger than these,
+    // nothing bears anything. Dashpots multiply them by their time over that of a step: too much for zones
+    // that are tiny, whose forces then say nothing.
+    const double of_springs = 1e-15 * stiffest_ * farthest;
+    const double rounding = of_springs * (1 + settings_.stiffness_damping / dt_);
     largest_mean_ = std::max(largest_mean_, n > 0 ? sum / n : 0.0);
-    if (rounding > most_rounding * largest_mean_ && largest_mean_ > 0)
+    if (largest_mean_ > of_springs && rounding > most_rounding * largest_mean_) {
+        const std::string where =
+            "; what is stiffest is at " + shown(rock_.position[stiffest_gridpoint_]) + ": wanted ";
+        if (of_springs > most_rounding * largest_mean_)
+            throw equilibrium_error(
+                "motion: rounding errors of places, times stiffness, are not small beside the "
+                "mean force on a gridpoint, " +
+                shown(largest_mean_) + " N/m" + where + "more load, softer joints, or no zones so small");
         throw equilibrium_error(
             "motion: a step takes " + shown(dt_) + " s, and what " + shown(settings_.stiffness_damping) +
-            " s of stiffness damping makes of rounding errors is no longer small beside the forces; what is "
-            "stiffest is at " +
-            shown(rock_.position[stiffest_gridpoint_]) + ": wanted less damping there, or no zones so small");
+            " s of stiffness damping makes of rounding errors is no longer small beside the "
+            "forces" +
+            where + "less damping there, or no zones so small");
+    }
     const double mean = n > 0 ? std::max(sum / n, rounding / settings_.tolerance) : 1.0;
     ratio_ = largest / mean;
     const bool has_last = !last_contact_force_.empty();
@@ -786,9 +805,9 @@ std::vector<Touching> Motion::touching() const
         const auto &a = contacts_.faces().gridpoint[pair.a], &b = contacts_.faces().gridpoint[pair.b];
         std::array<Vector2d, 2> between;
         for (int i = 0; i < 2; ++i)
-            between[i] = (place_[a[0]] + pair.on_a[i] * (place_[a[1]] - place_[a[0]]) + place_[b[0]] +
-                          pair.on_b[i] * (place_[b[1]] - place_[b[0]])) /
-                         2;
+            between[i] = middle_ + (place_[a[0]] + pair.on_a[i] * (place_[a[1]] - place_[a[0]]) +
+                                    place_[b[0]] + pair.on_b[i] * (place_[b[1]] - place_[b[0]])) /
+                                       2;
         found.push_back({{zone_of_face_[pair.a], zone_of_face_[pair.b]},
                          between,
                          pair.normal,
@@ -802,7 +821,7 @@ std::vector<Touching> Motion::touching() const
 void Motion::put_back()
 {
     for (std::size_t g = 0; g < place_.size(); ++g)
-        rock_.displacement[g] = place_[g] - rock_.position[g];
+        rock_.displacement[g] = place_[g] - origin_[g];
     for (std::size_t z = 0; z < zones_.size(); ++z) {
         if (!rock_.zones.is_present[z])
             continue;

@@ -81,6 +81,8 @@ public:
     double out_of_balance_ratio() const { return ratio_; }
     double contact_force_change() const { return force_change_; }
     double fastest() const { return fastest_; } // [m/s]
+    // Faster than what counts as rest, since the start of this motion.
+    bool has_moved() const { return has_moved_; }
     std::vector<Touching> touching() const;
 
     // Puts displacements, stresses and contacts of the mesh into the assembly. A contact of the mesh whose
@@ -145,9 +147,12 @@ private:
     std::vector<Index> body_of_;     // of gridpoints; -1 none
     std::vector<Zone> zones_;        // of the assembly
     std::vector<Yielding> yielding_; // by the assembly's yielding_number
+    // Places are counted from the section's middle: what they are rounded to must not depend on where it is.
     std::vector<Vector2d> place_, velocity_, move_, force_, released_;
     std::vector<Vector2d> lost_;       // of places by rounding, until now [m]
-    Vector2d low_, high_;              // of the section and its diagonal all round [m]
+    std::vector<Vector2d> origin_;     // that displacements count from
+    Vector2d middle_;                  // of the section, where it is [m]
+    Vector2d low_, high_;              // of the section and its diagonal all round
     std::vector<double> inverse_mass_; // 0 where held by nothing but rock that is gone [m/kg]
     std::vector<std::size_t> law_of_edge_;
     std::vector<std::array<Index, 2>> ground_;       // its faces, by gridpoints of the mesh
@@ -156,7 +161,7 @@ private:
 
     double dt_ = 0, last_dt_ = 0, time_ = 0, time_lost_ = 0;
     double stiffest_allowed_ = 0; // spring of a contact, by the present step [Pa/m]
-    bool starts_from_rest_ = true;
+    bool starts_from_rest_ = true, has_moved_ = false;
     Energy energy_;
     double stored_at_start_ = 0, last_kinetic_ = 0, stiffest_ = 0, largest_mean_ = 0;
     double ratio_ = 0, force_change_ = 0, fastest_ = 0;

@@ -645,6 +645,10 @@ private:
             return;
         if (scene_.creep)
             once("motion").refuse("new_contacts", "a scene with [motion] has no [creep]");
+        if (scene_.motion->release >= scene_.motion->longest)
+            once("motion").refuse("release_s", "wanted less than longest_s, " +
+                                                   shown(scene_.motion->longest) +
+                                                   " s: before that there is no rest");
         for (std::size_t i = 0; i < scene_.joint_materials.size(); ++i)
             if (scene_.joint_materials[i].dilation_angle > 0)
                 in_list("joint_material", i)

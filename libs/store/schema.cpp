@@ -633,10 +633,11 @@ std::vector<Field> fields_of(Checkpoint& checkpoint)
          "Solver steps since a row of the trace."},
         {"/checkpoint/steps_since_state", &checkpoint.steps_since_state, {}, "1", at_least(0),
          "Creep steps since a state by their number."},
-        {"/checkpoint/remark", &checkpoint.remark, remark, "1", any(), "A joint, a rock or a reason, by name."},
-        {"/checkpoint/remark_kind", &checkpoint.remark_kind, remark, "1", between(0, 2),
-         "0 contacts of the joint beyond strength in situ, 1 zones of the rock, 2 why factorisation gave up."},
-        {"/checkpoint/remark_count", &checkpoint.remark_count, remark, "1", at_least(0), "How often."},
+        {"/checkpoint/remark", &checkpoint.remark, remark, "1", any(), "A joint, a rock, a reason or a stage, by name."},
+        {"/checkpoint/remark_kind", &checkpoint.remark_kind, remark, "1", between(0, 3),
+         "0 contacts of the joint beyond strength in situ, 1 zones of the rock, 2 why factorisation gave up, 3 the stage's "
+         "account of energy is off."},
+        {"/checkpoint/remark_count", &checkpoint.remark_count, remark, "1", at_least(0), "How often, or by how many percent."},
     };
     // clang-format on
 }
@@ -647,8 +648,8 @@ std::vector<Field> fields_of(MovedRock& moved)
                                    pair = {"pair"};
     // clang-format off
     return {
-        {"/moved/origin", &moved.origin, gridpoint, "m", any(), "Place {x, y} that displacements count from."},
-        {"/moved/place", &moved.place, gridpoint, "m", any(), "Place {x, y} now."},
+        {"/moved/origin", &moved.origin, gridpoint, "m", any(), "Place {x, y} that displacements count from, counted from the section's middle."},
+        {"/moved/place", &moved.place, gridpoint, "m", any(), "Place {x, y} now, counted from there."},
         {"/moved/inverse", &moved.inverse, zone, "1/m", any(),
          "Inverse of the matrix of the zone's edges without stress, by columns."},
         {"/moved/area", &moved.area, zone, "m2", positive(), "Area of the zone without stress."},
