@@ -1,11 +1,13 @@
 """Factors of safety against closed forms, and what is left of a run that finds no equilibrium."""
 
 import math
+import re
 
 import h5py
 import numpy as np
 from chain import ChainTest, changed, datasets, main
 from events_test import WEDGE
+from small_scene import held, joint, material, scene
 
 DIP = math.radians(25)  # of data/verification/incline: a block of 10 m x 1 m, loaded by 1 MPa straight down
 SMOOTH = """
@@ -259,6 +261,42 @@ class NoEquilibrium(ChainTest):
         done = self.chain.answer("jointexport", path, "-o", exported)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertRegex(done.stdout, "warning: ended early +no equilibrium")
+
+    def test_small_displacements_end_at_a_tenth_of_the_section(self):
+        """A joint would close by 10 m in a section of 6 m. No increment is large where they are halved."""
+        loaded = {"from_m": [2, 6], "to_m": [0, 6], "traction_MPa": [0, -0.1], "course": [[0, 0], [1, 1]]}
+        text = scene([[0, 0], [2, 0], [2, 6], [0, 6]], [joint("soft", [-1, 2], [3, 2])], [held([0, 0], [2, 0]), loaded],
+                     [material("joint", 0.01)], gravity=0)
+        for engine, said in (("auto", "since the in-situ state, by more than a tenth of the section"),
+                             ("implicit", "more than a tenth of the section"), ("explicit", "is still moving")):
+            message, path = self.failed(text, "--engine", engine)
+            self.assertIn(said, message)
+            found = abs(datasets(path)["/states/displacement"]).max()
+            self.assertLess(found, math.hypot(2, 6) / 10)
+            if engine == "auto":
+                self.assertGreater(found, 0.3, "it goes as far as that")
+                self.assertEqual(datasets(path)["/failure/moves_on"].tolist(), [0])
+
+    def test_rock_that_comes_to_rest_slowly_is_not_said_to_fall(self):
+        """The first quarter of a slow swing; next to no motion for damping; joints of 1 and 1e9 MPa/m in one stack."""
+        stack = [[0, 0], [2, 0], [2, 6], [0, 6]]
+        loaded = {"from_m": [2, 6], "to_m": [0, 6], "traction_MPa": [0, -0.1], "course": [[0, 0], [1, 1]]}
+        two = scene(stack, [joint("one", [-1, 2], [3, 2], "soft"), joint("other", [-1, 4], [3, 4], "hard")],
+                    [held([0, 0], [2, 0]), loaded], [material("soft", 1), material("hard", 1e9)], gravity=0)
+        corner = scene([[0, 0], [10, 0], [10, 10], [0, 10]], [joint("corner", [9.98, 10.01], [10.01, 9.98])],
+                       [{"from_m": [0, 0], "to_m": [10, 0], "joint": "joint"}, held([0, 0], [0, 10], "x"),
+                        held([10, 0], [10, 10], "x")], [material("joint", 10)], zone=5,
+                       more="[cutting]\nshortest_edge_m = 1e-4\n")
+        column = re.sub(r"(?s)^\[(equilibrium|creep)\].*?(?=^\[|\Z)", "", self.chain.text("data/column/scene.toml"),
+                        flags=re.MULTILINE)
+        steps = "[equilibrium]\nengine = \"explicit\"\nmost_steps = 60000\n"
+        damped = steps + 'masses = "real"\ndamping = "mass"\nmass_damping_per_s = '
+        for name, text in (("swing", corner + damped + "20\n"), ("damped", column + damped + "1e6\n"),
+                           ("soft and hard", two + steps)):
+            with self.subTest(name=name):
+                message, path = self.failed(text)
+                self.assertIn("after 60000 steps", message)
+                self.assertEqual(datasets(path)["/failure/moves_on"].tolist(), [0])
 
     def test_what_ends_without_an_answer_says_so(self):
         _, path = self.failed(WEDGE.format(end="[21, 14]") + '[equilibrium]\nengine = "explicit"\nmost_steps = 3000\n')
