@@ -195,6 +195,8 @@ void report(const Network& network, const Scene& scene, const Analysis& analysis
     summary.add("back-substitutions", sum(equilibria.solves));
     summary.add("largest out-of-balance ratio", *std::max_element(equilibria.out_of_balance_ratio.begin(),
                                                                   equilibria.out_of_balance_ratio.end()));
+    summary.add("farthest way to rest left, by estimate",
+                *std::max_element(equilibria.to_go.begin(), equilibria.to_go.end()), "m");
     if (scene.creep && !analysis.creeps())
         summary.add("warning: no creep", std::string("neither joints nor rocks of the section creep"));
     if (const auto& limit = analysis.stable_limit())

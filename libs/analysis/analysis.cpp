@@ -519,6 +519,7 @@ void Analysis::move(const Stage& stage)
     certificate_ = {.steps = effort_.steps,
                     .out_of_balance_ratio = motion_->out_of_balance_ratio(),
                     .contact_force_change = motion_->contact_force_change(),
+                    .to_go = -1,
                     .work_of_loads = energy.work,
                     .stored = energy.stored,
                     .dissipated = energy.friction,

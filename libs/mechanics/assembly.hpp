@@ -216,6 +216,7 @@ struct Certificate {
     double out_of_balance_ratio = 0;
     // Largest over the last 100 steps, or by one more correction; over the mean force on a gridpoint [-].
     double contact_force_change = 0;
+    double to_go = 0; // estimate of the farthest way to rest that is left [m]
     // On the way: work of loads = what zones and contacts store + what contacts dissipate + what damping
     // takes [J/m].
     double work_of_loads = 0, stored = 0, dissipated = 0, damped = 0;

@@ -28,6 +28,14 @@ constexpr double at_rest = 1e-4; // [m/s]
 constexpr double most_rounding = 1e-3; // of the mean force on a gridpoint
 constexpr double slow = 0.01;          // below this speed everywhere, motion is stopped at its peaks [m/s]
 
+// Adds to a sum of very many; what rounding leaves out comes with the next one (Kahan).
+void add(const Vector2d& one, Vector2d& sum, Vector2d& lost)
+{
+    const Vector2d with_lost = one + lost, before = sum;
+    sum += with_lost;
+    lost = with_lost - (sum - before);
+}
+
 Vector3d stress_of(const Vector3d& stiffness, const Vector3d& strain)
 {
     return {stiffness[0] * strain[0] + stiffness[1] * strain[1],
@@ -126,7 +134,9 @@ Motion::Motion(mechanics::Assembly& rock, const Mesh& mesh, std::vector<char> is
 void Motion::start()
 {
     released_.assign(place_.size(), Vector2d::Zero());
+    lost_.assign(place_.size(), Vector2d::Zero());
     time_ = 0;
+    steps_ = 0;
     energy_ = {};
     starts_from_rest_ = true;
     last_kinetic_ = 0;
@@ -373,7 +383,7 @@ double Motion::move(Body& body, double keep, double gain)
     const double last_spin = body.spin;
     body.velocity = keep * body.velocity + gain / body.mass * force;
     body.spin = keep * body.spin + gain / body.inertia * moment;
-    body.centre += dt_ * body.velocity;
+    add(dt_ * body.velocity, body.centre, body.lost);
     body.angle += dt_ * body.spin;
     const Eigen::Rotation2Dd turn(body.angle);
     for (std::size_t k = 0; k < body.gridpoint.size(); ++k) {
@@ -517,7 +527,7 @@ void Motion::step()
             fastest_gridpoint_ = static_cast<Index>(g);
         }
         move_[g] = dt_ * v;
-        place_[g] += move_[g];
+        add(move_[g], place_[g], lost_[g]);
     }
     for (Body& body : bodies_) {
         const double before = move(body, keep, gain);
@@ -546,7 +556,7 @@ void Motion::step()
                                 shown(rock_.position[fastest_gridpoint_]));
     if (gone < n)
         throw moves_on("rock has left the section, and is as far from it as the section is large");
-    time_ += dt_;
+    time_ = static_cast<double>(++steps_) * dt_;
     find_forces(move_);
     energy_.stored = stored() - stored_at_start_;
     for (std::size_t z = 0; z < zones_.size(); ++z)
@@ -580,8 +590,8 @@ void Motion::transfer(const Transfer& to, MovedRock& kept)
 {
     // All members, lest a new one is forgotten.
     auto& [rock, mesh, settings, contacts, bodies, is_rigid, body_of, zones, place, velocity, move, force,
-           released, low, high, inverse_mass, law_of_edge, ground, face_of_mesh, zone_of_face, dt, time,
-           starts_from_rest, energy, stored_at_start, last_kinetic, stiffest, largest_mean, ratio,
+           released, lost, low, high, inverse_mass, law_of_edge, ground, face_of_mesh, zone_of_face, dt, time,
+           steps, starts_from_rest, energy, stored_at_start, last_kinetic, stiffest, largest_mean, ratio,
            force_change, fastest, fastest_gridpoint, stiffest_gridpoint, checks_in_balance,
            last_contact_force] = *this;
     to.values(rock.position, kept.origin);

@@ -105,6 +105,7 @@ private:
         std::vector<Vector2d> arm;    // of each from the centre, before the body has turned [m]
         double mass = 0, inertia = 0; // [kg/m], [kg m]
         Vector2d centre{0, 0}, velocity{0, 0};
+        Vector2d lost{0, 0};        // of the centre by rounding, until now [m]
         double angle = 0, spin = 0; // [rad], [rad/s]
         Vector2d is_free{1, 1};     // in {x, y}, 0 where any of its gridpoints is held
         // One that is held somewhere does not turn.
@@ -133,6 +134,7 @@ private:
     std::vector<Index> body_of_; // of gridpoints; -1 none
     std::vector<Zone> zones_;    // of the assembly
     std::vector<Vector2d> place_, velocity_, move_, force_, released_;
+    std::vector<Vector2d> lost_;       // of places by rounding, until now [m]
     Vector2d low_, high_;              // of the section and its diagonal all round [m]
     std::vector<double> inverse_mass_; // 0 where held by nothing but rock that is gone [m/kg]
     std::vector<std::size_t> law_of_edge_;
@@ -141,6 +143,7 @@ private:
     std::vector<Index> zone_of_face_;                // -1 of the ground
 
     double dt_ = 0, time_ = 0;
+    Index steps_ = 0;
     bool starts_from_rest_ = true;
     Energy energy_;
     double stored_at_start_ = 0, last_kinetic_ = 0, stiffest_ = 0, largest_mean_ = 0;

@@ -313,6 +313,9 @@ std::vector<Field> fields_of(Equilibria& equilibria)
          "1", at_least(0),
          "Largest change of a contact force over the last 100 steps, or by one more correction, over the mean force "
          "on a gridpoint."},
+        {"/equilibria/to_go", &equilibria.to_go, {"equilibrium"}, "m", at_least(-1),
+         "Estimate of the farthest way to rest that is left: from the softest mode that the motion shows, or one more "
+         "correction; -1 after [motion], which has none."},
         {"/equilibria/work_of_loads", &equilibria.work_of_loads, {"equilibrium"}, "J/m", any(),
          "Work of weight, held rock and tractions on the way, not that of displaced boundaries; the sum of the next "
          "three."},

@@ -357,6 +357,48 @@ def toppling(programs):
     return rows
 
 
+def columns_alone(text):
+    """The scene without the block at the toe."""
+    text = changed(text, r",\s*\[-5\.464101615,\s*1\.464101615\],\s*\[-3\.464101615,\s*-2\.0\]\]\nrock", "]\nrock")
+    for table in (r"\[\[region\]\]", r'\[\[rock\]\]\nname = "toe"', r'\[\[joint_material\]\]\nname = "smooth"',
+                  r'\[\[joint\]\]\nname = "toe"', r"\[\[boundary\]\]\nfrom_m = \[-3"):
+        text = changed(text, rf"(?s)^{table}.*?(?=^\[)", "")
+    return text
+
+
+def least_friction_in_balance(text, width):
+    """A bracket of the least tan(phi) with which some forces between columns and base, within friction, balance all
+    weights: without any law of how contacts give way."""
+    scene = tomllib.loads(text)
+    low, high = 0.5, 0.8
+    while high - low > width:
+        middle = (low + high) / 2
+        low, high = (low, middle) if columns_can_stand(scene, middle) else (middle, high)
+    return low, high
+
+
+def columns_can_stand(scene, tan_phi):
+    """Forces at the ends of each joint and of each column's base are sums of the two edges of the friction cone, none
+    negative."""
+    up, along = np.array([-0.5, math.sqrt(0.75)]), np.array([math.sqrt(0.75), 0.5])
+    bases = [np.array([held["from_m"], held["to_m"]]) for held in scene["boundary"]]
+    sides = [np.array([joint["from_m"], joint["to_m"]]) for joint in scene["joint"]]
+    centres = [ends.mean(axis=0) + up * height / 2 for ends, height in zip(bases, HEIGHTS, strict=True)]
+    weights = np.zeros((len(centres), 3))  # {x, y, moment}, over the unit weight
+    weights[:, 1] = [10 * height for height in HEIGHTS]
+    pushes = [(place, up, {i: 1}) for i, ends in enumerate(bases) for place in ends]
+    pushes += [(place, -along, {i: 1, i + 1: -1}) for i, ends in enumerate(sides) for place in ends]
+    columns = []
+    for place, normal, on in pushes:
+        for edge in tan_phi, -tan_phi:
+            force, balance = normal + edge * np.array([-normal[1], normal[0]]), np.zeros_like(weights)
+            for i, sign in on.items():
+                arm = place - centres[i]
+                balance[i] = sign * np.array([*force, arm[0] * force[1] - arm[1] * force[0]])
+            columns.append(balance.ravel())
+    return closed_forms.is_sum_of(np.array(columns).T, weights.ravel())
+
+
 def columns_limit():
     """tan(phi) with which the force on the toe vanishes."""
     low, high = 0.7, 0.8

@@ -41,6 +41,21 @@ class Literature(ChainTest):
     def test_toppling_columns(self):
         self.hold(literature.toppling(self.programs))
 
+    def test_columns_left_alone(self):
+        """How far they stand is the program's own number: with another law of slip it would be another. What stands
+        has to be able to, by statics."""
+        text = literature.columns_alone(self.programs.text("toppling-columns"))
+        for tan_phi, stands in (0.7716, True), (0.7704, False):
+            _, code, message = self.programs.answer(text, "--strength-factor", 0.65 / tan_phi)
+            with self.subTest(tan_phi=tan_phi):
+                self.assertEqual(code, 0 if stands else 3, message)
+        low, high = literature.least_friction_in_balance(text, 2e-4)
+        self.assertLess(high, 0.7704)
+        self.assertLess(low, 0.6605)
+        self.assertGreater(high, 0.6605)
+        self.assertIn("down to tan(phi) = 0.771 ", self.page)
+        self.assertIn("down to 0.6605 ", self.page)
+
     def test_slipping_crack(self):
         self.hold(literature.crack(self.programs))
 
