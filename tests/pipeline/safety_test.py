@@ -185,16 +185,29 @@ class Safety(ChainTest):
             self.assertIn(said, done.stderr)
 
     def test_strength_that_is_not_divided_is_refused(self):
-        for table, keys, said in (("[[joint_material]]", "joint_roughness_coefficient = 5\njoint_wall_strength_MPa = 50\n"
-                                                         "largest_closure_mm = 1", "Barton and Bandis's law"),
-                                  ("[[rock]]", 'law = "Mohr-Coulomb"\ncohesion_MPa = 9\nfriction_angle_deg = 40\n'
-                                               "tensile_strength_MPa = 9", 'rock "rock" yields')):
-            joints = self.chain.joints(HANGING.replace(table, f"{table}\n{keys}"))
-            for options in (("--strength-factor", "2"), ("--factor-of-safety",)):
-                done = self.chain.answer("demsolve", joints, "-o", joints.with_name("result.h5"), *options)
-                self.assertEqual(done.returncode, 2, options)
-                self.assertIn(f"{options[0]}: ", done.stderr)
-                self.assertIn(said, done.stderr)
+        rough = "joint_roughness_coefficient = 5\njoint_wall_strength_MPa = 50\nlargest_closure_mm = 1"
+        joints = self.chain.joints(HANGING.replace("[[joint_material]]", f"[[joint_material]]\n{rough}"))
+        for options in (("--strength-factor", "2"), ("--factor-of-safety",)):
+            done = self.chain.answer("demsolve", joints, "-o", joints.with_name("result.h5"), *options)
+            self.assertEqual(done.returncode, 2, options)
+            self.assertIn(f"{options[0]}: ", done.stderr)
+            self.assertIn("Barton and Bandis's law", done.stderr)
+
+    def test_rock_that_yields(self):
+        """A block squeezed from above, free at its sides, bears 2 c (t + sqrt(1 + t^2)), t = tan(phi); with c / F and t / F
+        for c and t as much as the load q, from which F = 2 c sqrt(1 + q t / c) / q."""
+        cohesion, friction, load = 1.0, math.tan(math.radians(30)), 2.0  # [MPa]
+        strength = (f'law = "Mohr-Coulomb"\ncohesion_MPa = {cohesion}\nfriction_angle_deg = 30\ntensile_strength_MPa = 1\n'
+                    "dilation_angle_deg = 0\n")
+        text = scene([[0, 0], [1, 0], [1, 2], [0, 2]], [],
+                     [held([0, 0], [1, 0], "y"), held([0, 0], [0, 2], "x"),
+                      {"from_m": [1, 2], "to_m": [0, 2], "traction_MPa": [0, -load], "course": [[0, 0], [1, 1]]}],
+                     [material("joint", 1000)], gravity=0, poisson=0.2)
+        text = changed(text, r"^poissons_ratio = 0.2\n", "poissons_ratio = 0.2\n" + strength)
+        factor = 2 * cohesion * math.sqrt(1 + load * friction / cohesion) / load
+        reduced = friction / factor  # the load by the other formula
+        self.assertAlmostEqual(2 * cohesion / factor * (reduced + math.hypot(1, reduced)), load)
+        self.assert_factor(factor, text)
 
 
 class NoEquilibrium(ChainTest):
