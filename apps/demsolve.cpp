@@ -249,13 +249,6 @@ struct Run {
     std::string message{}; // why there is no equilibrium; empty: every one was found
 };
 
-// "result.failed.h5" for "result.h5": what a run that did not come to its end leaves.
-std::string failed_name(const std::string& output)
-{
-    const std::filesystem::path path(output);
-    return (path.parent_path() / (path.stem().string() + ".failed" + path.extension().string())).string();
-}
-
 class Writer
 {
 public:

@@ -101,9 +101,9 @@ std::optional<StableLimit> limit_of_published(const Scene& scene, const Network&
     const std::string of = limit.rock >= 0 ? "rock \"" + scene.rocks[limit.rock].name + "\""
                                            : "joint \"" + joint_name(scene, network, limit.edge) + "\"";
     if (scene.creep->step && *scene.creep->step >= limit.step)
-        throw input_error("creep step of " + shown(*scene.creep->step / unit::day) +
-                          " day: the published scheme is stable only below " + shown(limit.step / unit::day) +
-                          " day, the limit of " + of);
+        throw unstable_step("creep step of " + shown(*scene.creep->step / unit::day) +
+                            " day: the published scheme is stable only below " +
+                            shown(limit.step / unit::day) + " day, the limit of " + of);
     return StableLimit{limit.step, of};
 }
 

@@ -270,6 +270,23 @@ class Shiplock(ChainTest):
             self.assertAlmostEqual(numpy.std(one), 1, delta=0.08)  # five standard errors
         self.assertTrue(0.6 < numpy.std([numpy.mean(one) for one in errors]) < 1.4)  # of the first reading; four of them
 
+    def test_table_of_the_back_analysis(self):
+        """Correlations are those of pairs, each once; a weak combination is told where there is one."""
+        import back_analysis
+        correlation = {("joint-stiffness", "kelvin-stiffness"): -0.96, ("joint-stiffness", "kelvin-viscosity"): -0.53,
+                       ("kelvin-stiffness", "kelvin-viscosity"): 0.72}
+        def rows(weak):
+            return [{"factor": a, "value": "1.1", "low_95": "1", "high_95": "1.2", "chi_squared": "667.6",
+                     "degrees_of_freedom": "703", "runs": "5", "weak_combination_times": weak,
+                     **{f"correlation_{b}": str(correlation.get((a, b), correlation.get((b, a), 1)))
+                        for b in back_analysis.MADE}} for a in back_analysis.MADE]
+        told = back_analysis.markdown(rows(""), 706, 61.2)
+        for words in ("| on E | 0.7 | 1.100 | 1.000 to 1.200 |", "706 readings", "chi squared 668 of 703",
+                      "K and E -0.96, K and eta -0.53, E and eta 0.72.", "5 runs, 61 s of processor time"):
+            self.assertIn(words, told)
+        self.assertNotIn("warns", told)
+        self.assertIn("warns of K x 1.050 with E x 1.050", back_analysis.markdown(rows("1.05"), 706, 61.2))
+
     def test_tables_of_the_page(self):
         """The page's tables have the columns that the scripts write, and a row for every point and choice."""
         import points
