@@ -292,7 +292,7 @@ bool Engine::converge(Assembly& assembly, const State& start, const Equilibrium&
             hold = hold <= least_hold ? 0 : hold / 3;
         }
         take_states(assembly, start, false);
-        if (mechanics::farthest_move(start.displacement, assembly.displacement).first > too_far_) {
+        if (farthest_displacement(assembly).first > too_far_) { // increments must not add up to more either
             reason_ = "rock would move by more than a tenth of the section";
             return false;
         }

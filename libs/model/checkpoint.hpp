@@ -43,7 +43,7 @@ struct Checkpoint {
 
     // Gridpoints.
     std::vector<Eigen::Vector2d> displacement; // [m]
-    std::vector<Eigen::Vector2d> is_free;      // 1 or 0 in {x, y}
+    std::vector<Eigen::Vector2d> is_free;      // 1 or 0 in {x, y}, but for ties
     std::vector<Eigen::Vector2d> load;         // [N/m]
 
     // Zones.

@@ -167,17 +167,22 @@ public:
             give_up("the rock at " + shown(a_.position[g]) + " has moved " + shown_length(moved) +
                         " and is still moving; is it held by anything?",
                     true, steps);
+        if (const auto [in_all, h] = farthest_displacement(a_); in_all > too_far_)
+            give_up("the rock at " + shown(a_.position[h]) + " has moved " + shown_length(in_all) +
+                        " since the in-situ state, by more than a tenth of the section: too far for small "
+                        "displacements",
+                    false, steps);
         if (steps % patience != 0)
             return;
-        // What comes to rest slows down. What slides or falls does not: damping only lends it a steady speed.
         const auto [lately, h] = mechanics::farthest_move(patience_ago_, a_.displacement);
-        windows_without_slowing_ = lately > 0.95 * moved_before_ ? windows_without_slowing_ + 1 : 0;
-        if (windows_without_slowing_ == 4)
+        std::rotate(windows_.begin(), windows_.begin() + 1, windows_.end());
+        windows_.back() = {lately, work_ - work_before_};
+        work_before_ = work_;
+        if (slides_or_falls())
             give_up("the rock at " + shown(a_.position[h]) + " moves on without slowing down, " +
                         shown_length(lately) + " over the last " + std::to_string(patience) +
                         " steps; it slides or falls, and nothing stops it",
                     true, steps);
-        moved_before_ = lately;
         patience_ago_ = a_.displacement;
     }
 
@@ -247,6 +252,22 @@ public:
     }
 
 private:
+    // What comes to rest slows down. What slides or falls does not: damping only lends it a steady speed. So
+    // do a slow swing on its way and a slow approach to rest, at first; but the force that drives them falls
+    // off as they go, to nothing where they come to rest, and there is no saying as long as that is near.
+    bool slides_or_falls() const
+    {
+        for (std::size_t w = 1; w < windows_.size(); ++w)
+            if (!(windows_[w].moved > 0.95 * windows_[w - 1].moved))
+                return false;
+        const Window &first = windows_[1], &last = windows_.back();
+        const double driving = last.work / last.moved, lost = first.work / first.moved - driving;
+        double between = (first.moved - last.moved) / 2; // from the middle of the first to that of the last
+        for (std::size_t w = 2; w < windows_.size(); ++w)
+            between += windows_[w].moved;
+        return driving > 0 && lost * too_far_ < driving * between;
+    }
+
     // Masses and step for these row sums.
     void take_stiffness(const std::vector<double>& row_sums)
     {
@@ -395,9 +416,13 @@ private:
     double time_before_ = 0;                                 // at the last change of the step [s]
     Index steps_since_ = 0;
     double dt_ = 0, too_far_ = 0, alpha_ = 0;
-    double moved_before_ = std::numeric_limits<double>::infinity(); // in the last window of `patience` steps
-    int windows_without_slowing_ = 0;
-    double last_energy_ = 0; // of motion, with kinetic damping: twice it [J/m]
+    struct Window {
+        double moved = std::numeric_limits<double>::infinity(); // by the rock that moved farthest [m]
+        double work = 0;                                        // of the forces out of balance [J/m]
+    };
+    std::array<Window, 5> windows_; // the last ones of `patience` steps
+    double work_before_ = 0;        // them [J/m]
+    double last_energy_ = 0;        // of motion, with kinetic damping: twice it [J/m]
     bool starts_from_rest_ = true;
 };
 

@@ -594,7 +594,7 @@ std::vector<Field> fields_of(Checkpoint& checkpoint)
         {"/checkpoint/displacement", &checkpoint.displacement, gridpoint, "m", any(),
          "Displacement {x, y} since the in-situ equilibrium."},
         {"/checkpoint/is_free", &checkpoint.is_free, gridpoint, "1", between(0, 1),
-         "1 or 0 in {x, y}: free, or held or without rock."},
+         "1 or 0 in {x, y}: free, or held itself or without rock."},
         {"/checkpoint/load", &checkpoint.load, gridpoint, "N/m", any(), "Weight {x, y} that the gridpoint has."},
         {"/checkpoint/zone_present", &checkpoint.zone_present, zone, "1", between(0, 1),
          "1 while the zone is there, 0 once it is removed."},
