@@ -216,10 +216,10 @@ class Motion(ChainTest):
         def wall(order):
             n = 3
             joints = [joint(f"{way}{i}", *ends) for i in range(1, n)
-                      for way, ends in (("level", ([-1, i + 0.1], [n + 1, i])), ("steep", ([i, 0], [i + 0.07, n + 1])))]
+                      for way, ends in (("level", ([-1, i], [n + 1, i])), ("steep", ([i, 0], [i + 0.07, n + 1])))]
             joints.append(joint("floor", [-2, 0], [n + 2, 0]))
             gone = [[[0, n - 1], [1, n - 1], [1, n + 1], [0, n + 1]], [[2, 0], [n, 0], [n, 1], [2, 1]]]
-            materials = [material("joint", 100, 50, 35), material("other", 100, 50, 35)]
+            materials = [material("joint", 1000, 500, 35), material("other", 1000, 500, 35)]
             for of in joints, gone, materials:
                 if order:
                     order.shuffle(of)

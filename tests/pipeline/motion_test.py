@@ -206,8 +206,8 @@ class Blocks(ChainTest):
     def test_a_state_a_step_at_most(self):
         data = datasets(self.chain.result(changed(incline(30, 35, more=RIGID), "^record_every_s = 0.1$",
                                                   "record_every_s = 1e-9")))
-        self.assertEqual(len(data["/motions/time"]), data["/equilibria/steps"][-1] + 2)
-        self.assertTrue((np.diff(data["/motions/motion_time"][:-1]) > 0).all())
+        self.assertEqual(len(data["/motions/time"]), data["/equilibria/steps"][-1] + 1)
+        self.assertTrue((np.diff(data["/motions/motion_time"]) > 0).all())
 
     # Weightless and without stress all forces are rounding errors.
     def test_what_bears_nothing_is_at_rest(self):
@@ -480,8 +480,8 @@ outline_m = {[[0, 0], [10, 0], [10, 5], [4, 5], [4, 2], [0, 2]]}
         block = (centre[:, 0] < 4) & (centre[:, 1] > 2)
         self.assertGreater(block.sum(), 20)
         wanted = np.array([-push, -press, 0]) * 1e6
-        # Closed by 1e-5 and 5e-5 m, its corner is as far beyond the corner of bed and wall.
-        self.assertLess(np.abs(data["/states/stress"][-1][block] - wanted).max(), 1e-3 * press * 1e6)
+        # Its corner is 1e-5 and 5e-5 m beyond the corner of bed and wall, where nothing bears it: 5e-4 of a zone's side.
+        self.assertLess(np.abs(data["/states/stress"][-1][block] - wanted).max(), 2e-3 * press * 1e6)
 
     # Far away something goes, again and again, that bears nothing: each time all looks for rest anew, and finds it at once.
     def test_a_tower_at_rest_stays_there_stage_after_stage(self):
@@ -510,8 +510,7 @@ class Falls(ChainTest):
         return done, datasets(joints.with_name("result.failed.h5"))
 
     def test_what_sinks_deep_comes_up_again(self):
-        height = 5
-        for stiffness, size in (10, 1), (20, 0.5), (50, 0.3):
+        for stiffness, height, size in (10, 5, 1), (20, 2, 0.5), (50, 4, 0.3):
             done, data = self.fall(stiffness, height, size,
                                    "\nstiffness_damping_s = 1e-5\nrecord_every_s = 0.002\nlongest_s = 1.3")
             self.assertIn("no rest within", done.stderr)
@@ -524,7 +523,8 @@ class Falls(ChainTest):
             deep = (weight + math.sqrt(weight**2 + 2 * k * weight * height)) / k
             self.assertAlmostEqual(y.min() / -deep, 1, delta=0.02)
             self.assertGreater(y[-1], 1)
-            self.assertLess(error_of_energy(data), ACCOUNT)
+            # Over all the work: after two steps a sixteenth is missing of what little there is.
+            self.assertLess(np.abs(missing_energy(data)).max() / data["/motions/work_of_loads"].max(), ACCOUNT)
 
     def test_what_sinks_too_deep_is_refused(self):
         done, _ = self.fall(20, 20, 0.3, "\nstiffness_damping_s = 1e-5")
