@@ -7,6 +7,8 @@
 // Reads   curve.csv, or joints.h5 (from strength-averaging) and readings.csv
 // Writes  a table of what was found, and one of the readings on request   (docs/programs.md)
 //
+//         factors.failed.csv   where the search did not come to its end: the best so far
+//
 // The curve is in libs/estimation, the way through the solver in libs/back_analysis.
 
 #include "program.hpp"
@@ -61,7 +63,9 @@ const Program program{
           "from the root of low times high where that is out of bounds"},
          {"since-first-reading", "",
           "through the solver: measurements count from each point's first reading, and share its error"},
-         {"runs", "N", "through the solver: at most so many runs (default 60)"},
+         {"runs", "N",
+          "through the solver: at most so many runs (default 60); where they are too few the exit code is 3, "
+          "and the best so far is in FOUND.failed.csv"},
          {"threads", "N", "through the solver: threads (default 1)"}},
     .example = "creepfit joints.h5 --measurements readings.csv --fit kelvin-stiffness,kelvin-viscosity -o "
                "factors.csv",
@@ -146,6 +150,16 @@ void write(const std::string& path, const std::string& text)
     } catch (const file_error& error) {
         throw file_error(path + ": " + error.what());
     }
+}
+
+// Refuses names where what has failed would be written over a file that is read, or found.
+void refuse_loss(const std::string& failed, const std::vector<std::string>& others)
+{
+    for (const std::string& other : others)
+        if (std::error_code absent; failed == other || std::filesystem::equivalent(failed, other, absent))
+            throw input_error(
+                other +
+                ": a search that does not come to its end would be written there; wanted another name");
 }
 
 // Where to write the readings; refuses what would lose another file.
@@ -414,10 +428,20 @@ std::vector<back_analysis::Factor> factors_in(const std::string& text)
     return factors;
 }
 
-std::string found_table(const back_analysis::Found& found, const std::vector<back_analysis::Factor>& factors)
+std::string found_table(const back_analysis::Found& found, const std::vector<back_analysis::Factor>& factors,
+                        bool knows_deviations)
 {
+    const Confidence& confidence = found.confidence;
+    const auto weak = estimation::weak_combination(found.minimum, confidence);
+    // Of the whole fit: the same in every row.
+    const std::string of_fit = std::string(found.minimum.is_converged ? "yes" : "no") + ',' +
+                               std::to_string(found.minimum.evaluations) + ',' +
+                               (knows_deviations ? shown(confidence.sum_of_squares) : "") + ',' +
+                               std::to_string(confidence.readings - confidence.parameters) + ',' +
+                               shown(confidence.condition_number);
     std::string table =
-        "factor,value,low_95,high_95,low_95_all,high_95_all,standard_error_of_logarithm,at_bound";
+        "factor,value,low_95,high_95,low_95_all,high_95_all,standard_error_of_logarithm,at_bound,"
+        "weak_combination_times,converged,runs,chi_squared,degrees_of_freedom,condition_number";
     for (const back_analysis::Factor& factor : factors)
         table += ",correlation_" + std::string(name_of(factor.parameter).option);
     table += '\n';
@@ -427,18 +451,22 @@ std::string found_table(const back_analysis::Found& found, const std::vector<bac
     for (std::size_t i = 0; i < factors.size(); ++i) {
         const auto index = static_cast<Eigen::Index>(i);
         const double logarithm = found.minimum.parameters[index];
-        const Interval each = found.confidence.interval(logarithm, index),
-                       all = found.confidence.interval(logarithm, index, true);
+        const Interval each = confidence.interval(logarithm, index),
+                       all = confidence.interval(logarithm, index, true);
         const AtBound at = found.minimum.at_bound[i];
         table += std::string(name_of(factors[i].parameter).option) + ',' + shown(found.factors[i]) + ',' +
                  bounded(each.low) + ',' + bounded(each.high) + ',' + bounded(all.low) + ',' +
                  bounded(all.high) + ',' +
-                 (found.confidence.is_fixed[i] ? "" : shown(found.confidence.standard_error(index))) + ',' +
+                 (confidence.is_fixed[i] ? "" : shown(confidence.standard_error(index))) + ',' +
                  (at == AtBound::no    ? "no"
                   : at == AtBound::low ? "low"
-                                       : "high");
-        for (Eigen::Index j = 0; j < found.confidence.correlation.cols(); ++j)
-            table += ',' + shown(found.confidence.correlation(index, j));
+                                       : "high") +
+                 ',' +
+                 (weak ? shown(std::exp(weak->direction[index] * confidence.quantile * weak->standard_error))
+                       : "") +
+                 ',' + of_fit;
+        for (Eigen::Index j = 0; j < confidence.correlation.cols(); ++j)
+            table += ',' + shown(confidence.correlation(index, j));
         table += '\n';
     }
     return table;
@@ -574,6 +602,46 @@ void print_for_the_scene(const back_analysis::Found& found, const Scene& scene,
               << " their Kelvin and Maxwell viscosities.\n";
 }
 
+std::string factors_in_words(const std::vector<back_analysis::Factor>& factors,
+                             const std::vector<double>& values)
+{
+    std::string words;
+    for (std::size_t i = 0; i < factors.size(); ++i)
+        words += (i > 0 ? ", " : "") + std::string(name_of(factors[i].parameter).option) + ' ' +
+                 rounded(values[i]);
+    return words;
+}
+
+// How many, and where the last one was.
+std::string shown_without_answer(const back_analysis::Found& found,
+                                 const std::vector<back_analysis::Factor>& factors)
+{
+    const back_analysis::WithoutAnswer& last = found.without_answer.back();
+    std::string reason = last.reason;
+    std::replace(reason.begin(), reason.end(), '\n', ' ');
+    return std::to_string(found.without_answer.size()) + ", the last at " +
+           factors_in_words(factors, last.factors) + ": " + reason;
+}
+
+// What ended a search before its end, and what helps.
+std::string why_not_converged(const back_analysis::Found& found,
+                              const std::vector<back_analysis::Factor>& factors)
+{
+    const estimation::Minimum& minimum = found.minimum;
+    std::vector<double> wanted;
+    for (std::size_t i = 0; i < factors.size(); ++i)
+        wanted.push_back(found.factors[i] * std::exp(minimum.left[static_cast<Eigen::Index>(i)]));
+    std::string why = "no fit was found in " + std::to_string(minimum.evaluations) + " runs: the best is " +
+                      factors_in_words(factors, found.factors) + ", and the readings still want " +
+                      factors_in_words(factors, wanted);
+    if (minimum.has_stalled)
+        why += ", but no run on the way there was better";
+    if (!found.without_answer.empty())
+        why += "\nruns without an answer: " + shown_without_answer(found, factors);
+    return why + (minimum.has_stalled ? "\nwanted other bounds in --fit, or fewer factors"
+                                      : "\nwanted more --runs");
+}
+
 void report(const back_analysis::Found& found, const std::vector<Measurement>& measurements,
             const Scene& scene, const back_analysis::Settings& settings)
 {
@@ -582,9 +650,8 @@ void report(const back_analysis::Found& found, const std::vector<Measurement>& m
     Summary summary;
     summary.add("readings", measurements.size());
     summary.add("runs", found.minimum.evaluations);
-    if (!found.minimum.is_converged)
-        summary.add("warning: not converged",
-                    std::string("--runs were too few; the best so far is reported"));
+    if (!found.without_answer.empty())
+        summary.add("runs without an answer", shown_without_answer(found, factors));
     for (std::size_t i = 0; i < factors.size(); ++i) {
         const auto index = static_cast<Eigen::Index>(i);
         const auto exponential = [](const Interval& of) {
@@ -661,6 +728,8 @@ void fit_section(const Arguments& arguments)
     settings.most_runs = static_cast<int>(arguments.whole_number("runs", 1, 100000).value_or(60));
     const std::optional<std::string> readings_path = readings_file(arguments);
     check_writable(arguments.output());
+    for (const std::string& path : {arguments.output(), readings_path.value_or(arguments.output())})
+        refuse_loss(failed_name(path), {input, measured, arguments.output(), readings_path.value_or("")});
 
     const JointsFile file = read_joints(input);
     const Scene scene = parse_scene(file.provenance.scene, input + ": /scene");
@@ -681,9 +750,16 @@ void fit_section(const Arguments& arguments)
                                   });
     });
     progress.reset();
+    const auto name = [&](const std::string& path) {
+        return found.minimum.is_converged ? path : failed_name(path);
+    };
     if (readings_path)
-        write(*readings_path, readings_table(found, measurements, scene));
-    write(arguments.output(), found_table(found, settings.factors));
+        write(name(*readings_path), readings_table(found, measurements, scene));
+    write(name(arguments.output()),
+          found_table(found, settings.factors, measurements.front().deviation.has_value()));
+    if (!found.minimum.is_converged)
+        throw fit_error(why_not_converged(found, settings.factors) + "\nthe best so far is in " +
+                        name(arguments.output()));
     if (!arguments.quiet())
         report(found, measurements, scene, settings);
 }

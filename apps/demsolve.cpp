@@ -52,8 +52,8 @@ const Program program{
                  "error of a creep step, by which its length is chosen [m] (default: the scene's)"},
                 {"no-creep", "", "excavate only"},
                 {"strength-factor", "F",
-                 "divide all strengths of joints by F: cohesion, tensile strength, tan(friction angle) and "
-                 "tan(dilation angle) (default 1)"},
+                 "divide all strengths of joints and of rock that yields by F: cohesion, tensile strength, "
+                 "tan(friction angle) and tan(dilation angle) (default 1)"},
                 {"factor-of-safety", "",
                  "bracket the largest F with which every equilibrium is found, by runs with different F; "
                  "result.h5 is of that F, result.failed.h5 of the next one"},
@@ -205,6 +205,8 @@ void report(const Network& network, const Scene& scene, const Analysis& analysis
     summary.add("back-substitutions", sum(equilibria.solves));
     summary.add("largest out-of-balance ratio", *std::max_element(equilibria.out_of_balance_ratio.begin(),
                                                                   equilibria.out_of_balance_ratio.end()));
+    summary.add("farthest way to rest left, by estimate",
+                *std::max_element(equilibria.to_go.begin(), equilibria.to_go.end()), "m");
     if (scene.creep && !analysis.creeps())
         summary.add("warning: no creep", std::string("neither joints nor rocks of the section creep"));
     if (const auto& limit = analysis.stable_limit())
@@ -229,10 +231,11 @@ void report(const Network& network, const Scene& scene, const Analysis& analysis
 
 // A run with strengths divided by a factor.
 struct Run {
-    Run(const Scene& scene, const JointsFile& file, double divisor, int threads, const Recording& recording,
+    Run(const Scene& given, const JointsFile& file, double divisor, int threads, const Recording& recording,
         const Observer& observe, std::optional<CheckpointFile> from = {})
-        : factor(divisor), joints(joint::with_strength_divided(file.equivalent, divisor)),
-          analysis(scene, file.network, divisor == 1 ? file.equivalent : joints, threads, recording, observe)
+        : factor(divisor), scene(divisor == 1 ? given : joint::with_strength_divided(given, divisor)),
+          joints(divisor == 1 ? file.equivalent : joint::with_strength_divided(file.equivalent, divisor)),
+          analysis(scene, file.network, joints, threads, recording, observe)
     {
         try {
             if (from)
@@ -252,6 +255,7 @@ struct Run {
     }
 
     double factor;
+    Scene scene;
     EquivalentJoints joints;
     Analysis analysis;
     std::string message{}; // why there is no equilibrium; empty: every one was found
@@ -263,13 +267,6 @@ std::string warnings_of(const Run& run)
     for (const auto& [stage, percent] : run.analysis.energy_off())
         lines += "\nwarning: account of energy " + off_by(percent, stage);
     return lines;
-}
-
-// "result.failed.h5" for "result.h5": what a run that did not come to its end leaves.
-std::string failed_name(const std::string& output)
-{
-    const std::filesystem::path path(output);
-    return (path.parent_path() / (path.stem().string() + ".failed" + path.extension().string())).string();
 }
 
 class Writer
@@ -371,16 +368,13 @@ double wanted_factor(const Arguments& arguments)
     return factor;
 }
 
-// Factors divide the strengths of joints alone: with rock that yields they would say what they do not mean.
-void check_divided(const Arguments& arguments, const Scene& scene, const EquivalentJoints& joints)
+// Barton and Bandis's strength is no sum of terms that could be divided: in their law roughness and wall
+// strength give friction that falls with pressure, and the closing of the joint besides.
+void check_divided(const Arguments& arguments, const EquivalentJoints& joints)
 {
     const std::string option = arguments.has("strength-factor") ? "--strength-factor" : "--factor-of-safety";
     if (!arguments.has(option.substr(2)))
         return;
-    for (const Rock& rock : scene.rocks)
-        if (rock.law == RockLaw::mohr_coulomb)
-            throw input_error(option + ": it divides the strengths of joints, and rock \"" + rock.name +
-                              "\" yields; wanted law = \"elastic\" of all rock");
     for (const Index law : joints.law)
         if (law == static_cast<Index>(JointLaw::barton_bandis))
             throw input_error(option + ": a joint has Barton and Bandis's law, whose friction falls with "
@@ -469,18 +463,11 @@ void solve_and_write(const Arguments& arguments)
     Scene scene = parse_scene(file.provenance.scene, input + ": /scene");
     const std::string end = end_scene(arguments, scene);
     const Writer writer(arguments, file, choose(arguments, scene), end);
-    check_divided(arguments, scene, file.equivalent);
+    check_divided(arguments, file.equivalent);
     const double factor = wanted_factor(arguments), width = wanted_width(arguments, scene);
     if (scene.motion && arguments.has("factor-of-safety"))
         throw input_error("--factor-of-safety: the scene has [motion], where what fails comes to rest again; "
                           "wanted one without");
-    if (scene.motion) // contacts that come about are as strong as their material
-        for (JointMaterial& material : scene.joint_materials) {
-            const auto divide = [&](double& angle) { angle = std::atan(std::tan(angle) / factor); };
-            divide(material.friction_angle);
-            if (material.residual)
-                divide(material.residual->friction_angle);
-        }
     const auto threads = static_cast<int>(arguments.whole_number("threads", 1, 1024).value_or(1));
     Recording recording{arguments.whole_number("states", 1, 1000000000).value_or(0),
                         arguments.whole_number("trace", 1, 1000000000).value_or(0)};

@@ -64,7 +64,7 @@ std::string help(const Program& program)
          << "Exit codes:\n"
             "  0  done\n"
             "  2  the command line or an input file is not what was wanted\n"
-            "  3  no equilibrium was found\n"
+            "  3  no equilibrium, or no fit, was found\n"
             "  4  a file could not be read or written\n"
             "  5  internal error, or out of memory\n\n"
             "Example:\n  "
@@ -133,6 +133,12 @@ std::string_view shortened(std::string_view text, std::size_t most)
 }
 
 } // namespace
+
+std::string failed_name(const std::string& output)
+{
+    const std::filesystem::path path(output);
+    return (path.parent_path() / (path.stem().string() + ".failed" + path.extension().string())).string();
+}
 
 const std::string& Arguments::wanted(const std::string& name) const
 {
@@ -223,7 +229,10 @@ int run(const Program& program, int argc, char** argv, const std::function<void(
         leave(exit_input);
     } catch (const equilibrium_error& error) {
         complain(program.name, error.what());
-        leave(exit_no_equilibrium);
+        leave(exit_not_found);
+    } catch (const fit_error& error) {
+        complain(program.name, error.what());
+        leave(exit_not_found);
     } catch (const file_error& error) {
         complain(program.name, error.what());
         leave(exit_file);

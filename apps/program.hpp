@@ -19,6 +19,7 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -29,11 +30,19 @@ namespace jointcreep
 
 enum ExitCode {
     exit_ok = 0,
-    exit_input = 2,          // command line, scene or input file: input_error
-    exit_no_equilibrium = 3, // equilibrium_error
-    exit_file = 4,           // not readable or not writable: file_error
-    exit_internal = 5        // anything else, memory that ran out among it
+    exit_input = 2,     // command line, scene or input file: input_error
+    exit_not_found = 3, // no equilibrium, equilibrium_error; no fit, fit_error
+    exit_file = 4,      // not readable or not writable: file_error
+    exit_internal = 5   // anything else, memory that ran out among it
 };
+
+// A search that has not come to its end: exit code 3.
+struct fit_error : std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
+
+// "result.failed.h5" for "result.h5": where what did not come to its end is kept.
+std::string failed_name(const std::string& output);
 
 // An option of one program. All options are long ones (--name), and are given at most once.
 struct Option {

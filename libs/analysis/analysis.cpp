@@ -104,9 +104,9 @@ std::optional<StableLimit> limit_of_published(const Scene& scene, const Network&
     const std::string of = limit.rock >= 0 ? "rock \"" + scene.rocks[limit.rock].name + "\""
                                            : "joint \"" + joint_name(scene, network, limit.edge) + "\"";
     if (scene.creep->step && *scene.creep->step >= limit.step)
-        throw input_error("creep step of " + shown(*scene.creep->step / unit::day) +
-                          " day: the published scheme is stable only below " + shown(limit.step / unit::day) +
-                          " day, the limit of " + of);
+        throw unstable_step("creep step of " + shown(*scene.creep->step / unit::day) +
+                            " day: the published scheme is stable only below " +
+                            shown(limit.step / unit::day) + " day, the limit of " + of);
     return StableLimit{limit.step, of};
 }
 
@@ -122,13 +122,18 @@ std::vector<char> rigid_zones(const Scene& scene, const Network& network, const 
 }
 
 // Of contacts that come about in motion: friction alone, the residual one where there is one.
-joint::Coulomb law_of_new_contacts(const Scene& scene)
+joint::Law law_of_new_contacts(const Scene& scene)
 {
     const auto material = std::find_if(scene.joint_materials.begin(), scene.joint_materials.end(),
                                        [&](const auto& m) { return m.name == scene.motion->new_contacts; });
+    if (material->walls)
+        return joint::BartonBandis{material->normal_stiffness,       material->shear_stiffness,
+                                   material->walls->largest_closure, material->friction_angle,
+                                   material->walls->roughness,       material->walls->strength};
     const double friction_angle =
         material->residual ? material->residual->friction_angle : material->friction_angle;
-    return {material->normal_stiffness, material->shear_stiffness, 0, std::tan(friction_angle), 0};
+    return joint::Coulomb{material->normal_stiffness, material->shear_stiffness, 0, std::tan(friction_angle),
+                          0};
 }
 
 } // namespace
@@ -472,6 +477,13 @@ void Analysis::excavate(const Stage& stage, Index number)
 
 void Analysis::prepare_motion()
 {
+    const auto dilates = std::find_if(joints_.dilation_angle.begin(), joints_.dilation_angle.end(),
+                                      [](double angle) { return angle > 0; });
+    if (dilates != joints_.dilation_angle.end())
+        throw input_error(
+            "with [motion] joints do not dilate, but rock bridges of joint \"" +
+            joint_name(scene_, network_, static_cast<Index>(dilates - joints_.dilation_angle.begin())) +
+            "\" do: wanted dilation_angle_deg = 0 of their [[rock]], or no bridges");
     motion_.emplace(rock_, result_.mesh, rigid_zones(scene_, network_, result_.mesh),
                     law_of_new_contacts(scene_),
                     motion::Settings{scene_.motion->stiffness_damping, scene_.motion->mass_damping,
@@ -526,6 +538,7 @@ void Analysis::move(const Stage& stage)
     certificate_ = {.steps = effort_.steps,
                     .out_of_balance_ratio = motion_->out_of_balance_ratio(),
                     .contact_force_change = motion_->contact_force_change(),
+                    .to_go = -1,
                     .work_of_loads = energy.work,
                     .stored = energy.stored,
                     .dissipated = energy.friction,

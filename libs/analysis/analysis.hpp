@@ -11,6 +11,7 @@
 #include "mechanics/loading.hpp"
 #include "mechanics/recorder.hpp"
 #include "model/checkpoint.hpp"
+#include "model/error.hpp"
 #include "motion/motion.hpp"
 #include "sensitivity/sensitivity.hpp"
 
@@ -30,6 +31,11 @@ struct Recording {
     std::vector<sensitivity::Parameter> parameters{};
     // Told before every stage what it begins with, and the result so far.
     std::function<void(const Result&, const Checkpoint&)> keep{};
+};
+
+// A fixed creep step is not below the published scheme's limit, which goes with the joints' constants.
+struct unstable_step : input_error {
+    using input_error::input_error;
 };
 
 // The longest stable creep step, and what sets it: a joint or rock, by name.

@@ -210,6 +210,7 @@ Found fit(const Scene& scene, const Network& network, const EquivalentJoints& jo
         std::vector<double> displacement, interpolation_error;
     };
     std::vector<Run> done;
+    std::vector<WithoutAnswer> without_answer;
     const Whitening whitening(scene, measurements, settings.since_first_reading);
     const std::vector<std::size_t>& readings = whitening.readings();
     if (readings.empty())
@@ -245,20 +246,23 @@ Found fit(const Scene& scene, const Network& network, const EquivalentJoints& jo
             whitening.apply(at);
             done.push_back({logarithms, std::move(found.displacement), std::move(found.interpolation_error)});
             return at;
-        } catch (const equilibrium_error&) {
+        } catch (const equilibrium_error& error) {
             if (is_first)
                 throw;
-        } catch (const input_error&) { // the published scheme's limit, which goes with the factors
+            without_answer.push_back({factors, error.what()});
+        } catch (const unstable_step& error) {
             if (is_first)
                 throw;
+            without_answer.push_back({factors, error.what()});
         }
         return {};
     };
 
     Found found;
-    // A step that would win a thousandth of a standard error is not worth a run.
+    // A step that would win a hundredth of a standard error is not worth a run.
     found.minimum = estimation::minimise(model, start, low, high, settings.most_runs,
-                                         1e-6 / static_cast<double>(readings.size()));
+                                         1e-4 / static_cast<double>(readings.size()));
+    found.without_answer = std::move(without_answer);
     found.factors = factors_at(found.minimum.parameters);
     found.confidence = estimation::confidence_of(found.minimum, knows_deviations);
     const Run& best = *std::find_if(

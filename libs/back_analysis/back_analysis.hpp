@@ -31,6 +31,12 @@ struct Computed {
     double at_start, at_end; // at the factors that the search started from, and at those found [m]
 };
 
+// A run that had no answer: no equilibrium, or a creep step that is too long for its constants.
+struct WithoutAnswer {
+    std::vector<double> factors;
+    std::string reason;
+};
+
 struct Found {
     std::vector<double> factors;
     estimation::Minimum minimum; // over logarithms; residuals over deviations, or over 1 mm where there are
@@ -39,6 +45,7 @@ struct Found {
     std::vector<Computed> computed; // of the measurements
     // Between its steps an analysis is taken to go straight; by how much that may be off, each [m].
     std::vector<double> interpolation_error;
+    std::vector<WithoutAnswer> without_answer; // runs that the search turned back from
 };
 
 // Told before every run, with the factors it is for.
@@ -46,8 +53,8 @@ using RunObserver = std::function<void(int run, const std::vector<double>& facto
 
 // Throws input_error where the measurements are not of what the section has (rock that is gone, times before
 // a first reading, that reading itself and not 0), where no factor changes any of them, and equilibrium_error
-// where there is no equilibrium at the start; elsewhere in the search factors without an equilibrium are kept
-// away from.
+// where there is no equilibrium at the start. Elsewhere in the search factors without an equilibrium, or with
+// which the scene's creep step is not stable, are kept away from; anything else that a run refuses ends it.
 Found fit(const Scene& scene, const Network& network, const EquivalentJoints& joints,
           const std::vector<Measurement>& measurements, const Settings& settings,
           const RunObserver& observe = {});

@@ -41,14 +41,25 @@ VectorXd step_within(const MatrixXd& information, const VectorXd& downhill, doub
     return step;
 }
 
+// Whether the step left is within a tenth of a standard error, whatever its direction: by the quadratic form
+// of the covariance's inverse, J^T J / s^2.
+bool is_small(const VectorXd& left, const Evaluation& there)
+{
+    constexpr double standard_errors = 0.1, smallest = 1e-5;
+    const auto degrees = static_cast<double>(std::max<Eigen::Index>(1, there.residual.size() - left.size()));
+    return left.lpNorm<Eigen::Infinity>() <= smallest ||
+           (there.jacobian * left).squaredNorm() <=
+               standard_errors * standard_errors * there.residual.squaredNorm() / degrees;
+}
+
 } // namespace
 
 Minimum minimise(const Model& model, const VectorXd& start, const VectorXd& low, const VectorXd& high,
                  int most_evaluations, double relative)
 {
-    constexpr double smallest_step = 1e-10, least_gain = 1e-4, largest_lambda = 1e10;
+    constexpr double smallest_step = 1e-10, least_gain = 1e-4, largest_lambda = 1e10, undamped = 1e-9;
     const auto n = static_cast<std::size_t>(start.size());
-    Minimum best{.parameters = start.cwiseMax(low).cwiseMin(high), .there = {}, .at_bound = {}};
+    Minimum best{.parameters = start.cwiseMax(low).cwiseMin(high), .there = {}, .at_bound = {}, .left = {}};
     std::optional<Evaluation> found = model(best.parameters);
     best.evaluations = 1;
     if (!found)
@@ -72,6 +83,9 @@ Minimum minimise(const Model& model, const VectorXd& start, const VectorXd& low,
                 free.push_back(i);
         }
         const double sum = r.squaredNorm();
+        best.left =
+            step_within(information, downhill, undamped, free, low - best.parameters, high - best.parameters);
+        best.is_converged = is_small(best.left, best.there);
         for (;;) {
             const VectorXd step = step_within(information, downhill, lambda, free, low - best.parameters,
                                               high - best.parameters);
@@ -79,7 +93,7 @@ Minimum minimise(const Model& model, const VectorXd& start, const VectorXd& low,
             const double predicted = sum - (r + J * step).squaredNorm();
             if (!(predicted > relative * sum) || step.lpNorm<Eigen::Infinity>() < smallest_step ||
                 lambda > largest_lambda) {
-                best.is_converged = true;
+                best.has_stalled = !best.is_converged;
                 return best;
             }
             if (best.evaluations == most_evaluations)
@@ -94,6 +108,8 @@ Minimum minimise(const Model& model, const VectorXd& start, const VectorXd& low,
                 growth = 2;
                 break;
             }
+            if (best.is_converged)
+                return best;
             lambda *= growth;
             growth *= 2;
         }

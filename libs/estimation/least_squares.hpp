@@ -34,14 +34,19 @@ struct Minimum {
     VectorXd parameters;
     Evaluation there;
     std::vector<AtBound> at_bound; // where the sum would fall on beyond
+    VectorXd left;                 // the step that the derivatives there still ask for
     int evaluations = 0;
-    bool is_converged = false; // else it ran out of evaluations
+    bool is_converged = false; // else it ran out of evaluations, or
+    bool has_stalled = false;  // no step that was tried lessened the sum, though what is left is not small
 
     double sum_of_squares() const { return there.residual.squaredNorm(); }
 };
 
-// The minimum nearest to the start. Throws input_error if the model has no answer at the start. Converged:
-// the next step would lessen the sum by less than `relative` of itself, or change no parameter by 1e-10.
+// The minimum nearest to the start. Throws input_error if the model has no answer at the start. It stops
+// where the next step would lessen the sum by less than `relative` of itself, or change no parameter by
+// 1e-10; where a step has failed and what is left is small; or out of evaluations. Converged: what is left is
+// small, at most a tenth of a standard error (by the residuals), or 1e-5. Smaller steps may fail by the
+// model's roughness.
 Minimum minimise(const Model& model, const VectorXd& start, const VectorXd& low, const VectorXd& high,
                  int most_evaluations = 100, double relative = 1e-9);
 

@@ -292,7 +292,7 @@ bool Engine::converge(Assembly& assembly, const State& start, const Equilibrium&
             hold = hold <= least_hold ? 0 : hold / 3;
         }
         take_states(assembly, start, false);
-        if (mechanics::farthest_move(start.displacement, assembly.displacement).first > too_far_) {
+        if (farthest_displacement(assembly).first > too_far_) { // increments must not add up to more either
             reason_ = "rock would move by more than a tenth of the section";
             return false;
         }
@@ -307,15 +307,23 @@ bool Engine::is_at_rest(const Assembly& assembly, double mean_force, double tole
                         Certificate& certificate)
 {
     if (mean_force == 0) { // no force anywhere
-        certificate.contact_force_change = 0;
+        certificate.contact_force_change = certificate.to_go = 0;
         return true;
     }
+    const auto take = [&](const VectorXd& du) {
+        certificate.contact_force_change = force_change(assembly, du) / mean_force;
+        std::vector<Vector2d> u(assembly.position.size(), Vector2d::Zero());
+        stiffness_.add_to(u, du, 1);
+        certificate.to_go = 0;
+        for (const Vector2d& one : u)
+            certificate.to_go = std::max(certificate.to_go, one.norm());
+    };
     ++solves_;
-    certificate.contact_force_change = force_change(assembly, stiffness_.solve(force_)) / mean_force;
+    take(stiffness_.solve(force_));
     if (certificate.contact_force_change > tolerance) {
         const VectorXd du = correction(assembly, force_, 0.1 * force_.norm(), 0);
         if (du.size() > 0)
-            certificate.contact_force_change = force_change(assembly, du) / mean_force;
+            take(du);
     }
     return certificate.contact_force_change <= tolerance;
 }

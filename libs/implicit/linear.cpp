@@ -10,7 +10,9 @@ VectorXd Engine::solve_linear(const Assembly& assembly, const std::vector<Tangen
 {
     constexpr double exact = 1e-10, hardly = 1e-6; // residuals over the right side
     constexpr double soft = 1e-6;
-    constexpr int patience = 15, most_refinements = 3;
+    // Several right sides come with the same tangents: a factor of these very tangents is soon worth its
+    // cost.
+    constexpr int patience = 3, patience_with_own = 60, most_refinements = 3;
     const auto product = [&](const VectorXd& x) { return stiffness_.times(assembly, tangents, x); };
     const auto precondition = [&](const VectorXd& x) { return stiffness_.solve(x); };
     if (tangents != linear_ && linear_.size() == tangents.size()) {
@@ -25,16 +27,13 @@ VectorXd Engine::solve_linear(const Assembly& assembly, const std::vector<Tangen
     const double norm = right.norm();
     VectorXd x = VectorXd::Zero(right.size()), residual = right, correction;
     const auto is_solved = [&](double enough) { return residual.norm() <= enough * norm; };
-    const auto refine = [&](int iterations) {
-        for (int i = 0; i < most_refinements && !is_solved(exact); ++i) {
+    const auto refine = [&](int iterations, int refinements) {
+        for (int i = 0; i < refinements && !is_solved(exact); ++i) {
             linear_space_.solve(product, precondition, residual, exact / 2 * norm, iterations, correction);
             x += correction;
             residual = right - product(x);
         }
     };
-    refine(patience);
-    if (is_solved(exact))
-        return x;
     std::vector<Tangent> firm = tangents; // a Cholesky factor does not know slip
     for (std::size_t c = 0; c < firm.size(); ++c) {
         const auto& law = std::get<joint::Coulomb>(assembly.contacts.law[c]); // sensitivities know no other
@@ -43,9 +42,14 @@ VectorXd Engine::solve_linear(const Assembly& assembly, const std::vector<Tangen
         if (firm[c].shear == 0)
             firm[c].shear = soft * (law.k_s > 0 ? law.k_s : law.k_n);
     }
-    if (!stiffness_.factorise(assembly, firm))
-        return {};
-    refine(4 * patience);
+    const bool is_own = stiffness_.has_factor_of(firm);
+    if (stiffness_.has_factor())
+        refine(is_own ? patience_with_own : patience, is_own ? most_refinements : 1);
+    if (!is_solved(exact) && !is_own) {
+        if (!stiffness_.factorise(assembly, firm))
+            return {};
+        refine(patience_with_own, most_refinements);
+    }
     return is_solved(hardly) && x.allFinite() ? x : VectorXd();
 }
 

@@ -230,6 +230,7 @@ bool Stiffness::factorise(const Assembly& assembly, const std::vector<Tangent>& 
     factor_.factorize(factorised_);
     omp_set_max_active_levels(levels);
     has_factor_ = factor_.info() == Eigen::Success;
+    factor_of_ = tangents;
     return has_factor_;
 }
 

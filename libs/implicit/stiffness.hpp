@@ -77,6 +77,10 @@ public:
     bool factorise(const Assembly& assembly, const std::vector<Tangent>& tangents);
     VectorXd solve(const VectorXd& right) const { return factor_.solve(right); }
     bool has_factor() const { return has_factor_; }
+    bool has_factor_of(const std::vector<Tangent>& tangents) const
+    {
+        return has_factor_ && tangents == factor_of_;
+    }
 
 private:
     using Matrix = Eigen::SparseMatrix<double, Eigen::ColMajor, int>;
@@ -98,6 +102,7 @@ private:
     std::vector<Index> present_contact_;
     Matrix factorised_;
     Factor factor_;
+    std::vector<Tangent> factor_of_;
     bool has_factor_ = false;
 
     // What the numbering was made for.

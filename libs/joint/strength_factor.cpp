@@ -5,6 +5,16 @@
 namespace jointcreep::joint
 {
 
+namespace
+{
+
+void divide_tangent(double& angle, double factor)
+{
+    angle = std::atan(std::tan(angle) / factor);
+}
+
+} // namespace
+
 EquivalentJoints with_strength_divided(EquivalentJoints joints, double factor)
 {
     for (std::vector<double>* strength :
@@ -14,8 +24,26 @@ EquivalentJoints with_strength_divided(EquivalentJoints joints, double factor)
     for (std::vector<double>* angle :
          {&joints.friction_angle, &joints.dilation_angle, &joints.residual_friction_angle})
         for (double& value : *angle)
-            value = std::atan(std::tan(value) / factor);
+            divide_tangent(value, factor);
     return joints;
+}
+
+Scene with_strength_divided(Scene scene, double factor)
+{
+    for (Rock& rock : scene.rocks) {
+        if (rock.strength) {
+            rock.strength->cohesion /= factor;
+            rock.strength->tensile_strength /= factor;
+            divide_tangent(rock.strength->friction_angle, factor);
+        }
+        divide_tangent(rock.dilation_angle, factor);
+    }
+    for (JointMaterial& material : scene.joint_materials) {
+        divide_tangent(material.friction_angle, factor);
+        if (material.residual)
+            divide_tangent(material.residual->friction_angle, factor);
+    }
+    return scene;
 }
 
 } // namespace jointcreep::joint

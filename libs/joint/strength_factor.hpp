@@ -1,5 +1,5 @@
-// Strength reduction: how far joints are from failing is asked by dividing all their strengths by one factor
-// F (Zienkiewicz, Humpheson and Lewis 1975), until the rock finds no equilibrium.
+// Strength reduction: how far rock and joints are from failing is asked by dividing all strengths by one
+// factor F (Zienkiewicz, Humpheson and Lewis 1975), until the rock finds no equilibrium.
 //
 //     c / F,   tan(phi) / F,   T / F,   tan(psi) / F,   and residual strengths alike
 //
@@ -9,6 +9,7 @@
 #pragma once
 
 #include "model/network.hpp"
+#include "model/scene.hpp"
 
 namespace jointcreep::joint
 {
@@ -16,5 +17,9 @@ namespace jointcreep::joint
 // The equivalent joints with strengths divided by `factor` [-], which is positive; below 1 they grow.
 // Stiffness, creep and what was averaged stay. No joint has Barton and Bandis's law.
 EquivalentJoints with_strength_divided(EquivalentJoints joints, double factor);
+
+// The scene with the strength of rock divided, for rock that yields, and the friction of joint materials,
+// which contacts have that come about in motion.
+Scene with_strength_divided(Scene scene, double factor);
 
 } // namespace jointcreep::joint

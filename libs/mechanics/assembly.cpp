@@ -257,7 +257,7 @@ Assembly assemble(const Scene& scene, const Network& network, const EquivalentJo
     assembly.load.assign(n, Vector2d::Zero());
     assembly.applied.assign(n, Vector2d::Zero());
     for (const Index held : mesh.gridpoint_fixed)
-        assembly.is_free.emplace_back((held & 1) != 0 ? 0.0 : 1.0, (held & 2) != 0 ? 0.0 : 1.0);
+        assembly.is_free_untied.emplace_back((held & 1) != 0 ? 0.0 : 1.0, (held & 2) != 0 ? 0.0 : 1.0);
     add_zones(assembly, scene, network, mesh);
     add_contacts(assembly, scene, equivalent, mesh);
     find_incidence(assembly);
@@ -317,6 +317,7 @@ void part_ties(Assembly& assembly, Index stage)
     assembly.tied.clear();
     for (const auto& [follower, next] : leader)
         assembly.tied.push_back({follower, root(next)});
+    assembly.is_free = assembly.is_free_untied;
     for (const auto& [follower, first] : assembly.tied)
         assembly.is_free[first] = assembly.is_free[first].cwiseMin(assembly.is_free[follower]);
 }
@@ -506,6 +507,12 @@ std::pair<double, std::size_t> farthest_move(const std::vector<Vector2d>& from,
     return farthest;
 }
 
+std::pair<double, std::size_t> farthest_displacement(const Assembly& assembly)
+{
+    return farthest_move(std::vector<Vector2d>(assembly.displacement.size(), Vector2d::Zero()),
+                         assembly.displacement);
+}
+
 double work_of_loads(const Assembly& assembly, const std::vector<Vector2d>& start)
 {
     double work = 0;
@@ -570,10 +577,11 @@ void transfer(const Transfer& to, Assembly& assembly, Checkpoint& kept)
 {
     // All members have a name here: a new one does not compile until someone has thought whether it is state.
     // What is not passed on is as in a new assembly, or found anew before it is used.
-    auto& [zones, contacts, incidence, position, displacement, is_free, load, applied, force, ties, tied,
-           slot_force, contact_force, slot_magnitudes, stiffness_damping_rate, threads] = assembly;
+    auto& [zones, contacts, incidence, position, displacement, is_free_untied, is_free, load, applied, force,
+           ties, tied, slot_force, contact_force, slot_magnitudes, stiffness_damping_rate, threads] =
+        assembly;
     to.values(displacement, kept.displacement);
-    to.values(is_free, kept.is_free);
+    to.values(is_free_untied, kept.is_free);
     to.values(load, kept.load);
     if (to.restores())
         part_ties(assembly, kept.stage - 1);

@@ -77,12 +77,13 @@ struct Assembly {
     Incidence incidence;
 
     // Gridpoints.
-    std::vector<Vector2d> position;     // at the start [m]
-    std::vector<Vector2d> displacement; // [m]
-    std::vector<Vector2d> is_free;      // 1 or 0 in {x, y}
-    std::vector<Vector2d> load;         // weight, and what excavation still holds [N/m]
-    std::vector<Vector2d> applied;      // from tractions on the outline [N/m]
-    std::vector<Vector2d> force;        // out of balance, also where held; filled by find_forces [N/m]
+    std::vector<Vector2d> position;       // at the start [m]
+    std::vector<Vector2d> displacement;   // [m]
+    std::vector<Vector2d> is_free_untied; // 1 or 0 in {x, y}: neither held by a boundary nor gone
+    std::vector<Vector2d> is_free;        // 1 or 0 in {x, y}: nor tied to one that is held
+    std::vector<Vector2d> load;           // weight, and what excavation still holds [N/m]
+    std::vector<Vector2d> applied;        // from tractions on the outline [N/m]
+    std::vector<Vector2d> force;          // out of balance, also where held; filled by find_forces [N/m]
 
     // Gridpoints that move as one with another until a stage; force and load of {one, other} act on the
     // other.
@@ -163,6 +164,9 @@ Balance balance_of(const Assembly& assembly, double stiffest, double farthest, d
 std::pair<double, std::size_t> farthest_move(const std::vector<Vector2d>& from,
                                              const std::vector<Vector2d>& to);
 
+// The same of the displacements since the in-situ state.
+std::pair<double, std::size_t> farthest_displacement(const Assembly& assembly);
+
 // Work of load and applied forces on the way from the displacements `start` to the present ones [J/m].
 double work_of_loads(const Assembly& assembly, const std::vector<Vector2d>& start);
 
@@ -212,6 +216,7 @@ struct Certificate {
     double out_of_balance_ratio = 0;
     // Largest over the last 100 steps, or by one more correction; over the mean force on a gridpoint [-].
     double contact_force_change = 0;
+    double to_go = 0; // estimate of the farthest way to rest that is left [m]
     // On the way: work of loads = what zones and contacts store + what contacts dissipate + what damping
     // takes [J/m].
     double work_of_loads = 0, stored = 0, dissipated = 0, damped = 0;

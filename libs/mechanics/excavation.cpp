@@ -40,14 +40,21 @@ std::vector<Vector2d> excavate(Assembly& assembly, const Blocks& blocks, const M
     for (std::size_t g = 0; g < assembly.position.size(); ++g)
         if (is_gone(static_cast<Index>(g))) {
             assembly.load[g].setZero();
-            assembly.is_free[g].setZero();
+            assembly.is_free_untied[g].setZero();
         }
+    const std::vector<Vector2d> was_free = assembly.is_free;
     part_ties(assembly, stage);
     loading.leave_removed(assembly);
     find_forces(assembly);
-    for (std::size_t g = 0; g < released.size(); ++g)
-        released[g] = is_gone(static_cast<Index>(g)) ? Vector2d(Vector2d::Zero())
-                                                     : Vector2d(released[g] - assembly.force[g]);
+    for (std::size_t g = 0; g < released.size(); ++g) {
+        if (is_gone(static_cast<Index>(g))) {
+            released[g].setZero();
+            continue;
+        }
+        // What a boundary held through a tie was in balance with it.
+        released[g] = (assembly.is_free[g].array() > was_free[g].array()).select(0, released[g]);
+        released[g] -= assembly.force[g];
+    }
     return released;
 }
 

@@ -28,6 +28,11 @@ void Loading::apply(Assembly& assembly, double time)
                 assembly.displacement[g].y() = u.y();
         }
     }
+    // What follows has its place from the one it is tied to.
+    for (const auto& [follower, leader] : assembly.tied)
+        for (int i = 0; i < 2; ++i)
+            if (assembly.is_free_untied[follower][i] == 0 && assembly.is_free_untied[leader][i] > 0)
+                assembly.displacement[leader][i] = assembly.displacement[follower][i];
 }
 
 void Loading::leave_removed(Assembly& assembly) const

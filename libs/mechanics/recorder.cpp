@@ -180,6 +180,7 @@ void Recorder::record_equilibrium(Result& result, double time, const Certificate
     result.equilibria.solves.push_back(effort.solves);
     result.equilibria.out_of_balance_ratio.push_back(certificate.out_of_balance_ratio);
     result.equilibria.contact_force_change.push_back(certificate.contact_force_change);
+    result.equilibria.to_go.push_back(certificate.to_go);
     result.equilibria.work_of_loads.push_back(certificate.work_of_loads);
     result.equilibria.stored_energy.push_back(certificate.stored);
     result.equilibria.dissipated_energy.push_back(certificate.dissipated);

@@ -20,11 +20,14 @@ struct MovedRock {
     std::vector<Eigen::Vector4d> inverse;        // of zones: of their edges without stress [1/m]
     std::vector<double> area;                    // of zones, without stress [m2]
     std::vector<Eigen::Vector3d> strain;         // of zones, Biot's {xx, yy, 2 xy} [-]
-    std::vector<std::array<Index, 2>> face;      // gridpoints
-    std::vector<std::array<Index, 2>> pair;      // faces
-    std::vector<Index> law;                      // of the pair
-    std::vector<double> first_lead, second_lead; // [m]
-    std::vector<double> tau;                     // [Pa]
+    std::vector<Eigen::Vector4d> plastic_strain; // of it, of zones that yield {xx, yy, zz, 2 xy} [-]
+    std::vector<double> initial_zz, stress_zz; // of these: across the section, without stress in it; now [Pa]
+    std::vector<Eigen::Vector3d> stress;       // of these, Biot's {xx, yy, xy} [Pa]
+    std::vector<std::array<Index, 2>> face;    // gridpoints
+    std::vector<std::array<Index, 2>> pair;    // faces
+    std::vector<Index> law;                    // of the pair
+    std::vector<double> first_lead, second_lead;               // [m]
+    std::vector<double> tau;                                   // [Pa]
     std::vector<Index> is_known, is_new, is_closed, is_broken; // 0 or 1
     std::vector<Eigen::Vector2d> normal;                       // [-]
     std::vector<double> length;                                // [m]
@@ -40,7 +43,7 @@ struct Checkpoint {
 
     // Gridpoints.
     std::vector<Eigen::Vector2d> displacement; // [m]
-    std::vector<Eigen::Vector2d> is_free;      // 1 or 0 in {x, y}
+    std::vector<Eigen::Vector2d> is_free;      // 1 or 0 in {x, y}, but for ties
     std::vector<Eigen::Vector2d> load;         // [N/m]
 
     // Zones.

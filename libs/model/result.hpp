@@ -77,7 +77,8 @@ struct Equilibria {
     std::vector<Index> factorisations, solves; // of the implicit engine; solves are back-substitutions
     std::vector<double> out_of_balance_ratio;  // [-]
     std::vector<double>
-        contact_force_change; // over the last 100 steps or by one more correction, over the mean force [-]
+        contact_force_change;  // over the last 100 steps or by one more correction, over the mean force [-]
+    std::vector<double> to_go; // estimate of the farthest way to rest that is left [m]
     // On the way there, in balance: work_of_loads = stored + dissipated (by contacts) + damped [J/m].
     std::vector<double> work_of_loads, stored_energy, dissipated_energy, damped_energy;
 };

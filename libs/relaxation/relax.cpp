@@ -25,6 +25,40 @@ namespace
 constexpr Index check_every = 20, window = 100; // [steps]
 constexpr Index patience = 5000;                // between looks at what moves on [steps]
 constexpr double safety = 0.9;                  // of the largest stable step
+constexpr double rounding = 1e-11;              // of the out-of-balance ratio: nothing is nearer to balance
+
+// What an equilibrium may be short of its displacement, over that displacement.
+double enough(double tolerance)
+{
+    return std::min(1000 * tolerance, 0.1);
+}
+
+std::string shown_length(double length)
+{
+    std::array<char, 32> text{};
+    std::snprintf(text.data(), text.size(), "%.3g m", length);
+    return text.data();
+}
+
+// With the way still to go, once forces are in balance: it ends where in a third of all steps, and in 5000,
+// the way has not shrunk by a tenth. What is left then is rounding.
+class Patience
+{
+public:
+    bool ends(double share, Index steps)
+    {
+        if (steps < until_)
+            return false;
+        const bool stands_still = until_ > 0 && share >= 0.9 * last_share_;
+        last_share_ = share;
+        until_ = steps + std::max(patience, steps / 2);
+        return stands_still;
+    }
+
+private:
+    Index until_ = 0;
+    double last_share_ = 0;
+};
 
 // Contact forces at the last few checks.
 class ForceMemory
@@ -55,7 +89,9 @@ class Relaxation
 public:
     Relaxation(Assembly& assembly, const Equilibrium& settings, const std::vector<double>& row_sums)
         : a_(assembly), settings_(settings), velocity_(assembly.position.size(), Vector2d::Zero()),
-          start_(assembly.displacement), patience_ago_(assembly.displacement)
+          start_(assembly.displacement),
+          patience_ago_(assembly.displacement), older_{0, assembly.displacement, assembly.force},
+          newer_(older_)
     {
         if (settings.damping == Damping::mass && settings.masses == Masses::scaled)
             throw input_error("equilibrium: damping \"mass\" needs masses = \"real\"; scaled masses have no "
@@ -131,18 +167,60 @@ public:
             give_up("the rock at " + shown(a_.position[g]) + " has moved " + shown_length(moved) +
                         " and is still moving; is it held by anything?",
                     true, steps);
+        if (const auto [in_all, h] = farthest_displacement(a_); in_all > too_far_)
+            give_up("the rock at " + shown(a_.position[h]) + " has moved " + shown_length(in_all) +
+                        " since the in-situ state, by more than a tenth of the section: too far for small "
+                        "displacements",
+                    false, steps);
         if (steps % patience != 0)
             return;
-        // What comes to rest slows down. What slides or falls does not: damping only lends it a steady speed.
         const auto [lately, h] = mechanics::farthest_move(patience_ago_, a_.displacement);
-        windows_without_slowing_ = lately > 0.95 * moved_before_ ? windows_without_slowing_ + 1 : 0;
-        if (windows_without_slowing_ == 4)
+        std::rotate(windows_.begin(), windows_.begin() + 1, windows_.end());
+        windows_.back() = {lately, work_ - work_before_};
+        work_before_ = work_;
+        if (slides_or_falls())
             give_up("the rock at " + shown(a_.position[h]) + " moves on without slowing down, " +
                         shown_length(lately) + " over the last " + std::to_string(patience) +
                         " steps; it slides or falls, and nothing stops it",
                     true, steps);
-        moved_before_ = lately;
         patience_ago_ = a_.displacement;
+    }
+
+    // By estimate, how far the rock still is from rest: over the way it has gone since this began, both as
+    // roots of sums over mass times length squared. Of two moments, the quotient of how forces have answered
+    // to the motion between them shows the softest w^2 in this motion, and w^2 times the way to rest is the
+    // force left over mass. Stiffer modes in the force make it too much. In the motion they make it too
+    // little, so the moments are a quarter of all steps apart or more, in which these modes come to nothing.
+    double share_to_go() const
+    {
+        double force = 0, answer = 0, between = 0, gone = 0;
+        for (std::size_t g = 0; g < mass_.size(); ++g) {
+            const Vector2d now = a_.force[g].cwiseProduct(a_.is_free[g]);
+            const Vector2d moved = a_.displacement[g] - older_.displacement[g];
+            force += inverse_mass_[g] * now.squaredNorm();
+            answer -= moved.dot(now - older_.force[g].cwiseProduct(a_.is_free[g]));
+            between += mass_[g] * moved.squaredNorm();
+            gone += mass_[g] * (a_.displacement[g] - start_[g]).squaredNorm();
+        }
+        if (force == 0)
+            return 0;
+        return answer > 0 && gone > 0 ? std::sqrt(force / gone) * between / answer
+                                      : std::numeric_limits<double>::infinity();
+    }
+
+    // Keeps the present moment for share_to_go if it is time.
+    void remember(Index steps)
+    {
+        if (3 * steps < 4 * newer_.steps)
+            return;
+        older_ = std::move(newer_);
+        newer_ = {steps, a_.displacement, a_.force};
+    }
+
+    // The farthest one of a gridpoint since this began [m].
+    double farthest_way() const
+    {
+        return mechanics::farthest_move(start_, a_.displacement).first;
     }
 
     // Throws, with the motion since the last look at what moves on.
@@ -174,6 +252,22 @@ public:
     }
 
 private:
+    // What comes to rest slows down. What slides or falls does not: damping only lends it a steady speed. So
+    // do a slow swing on its way and a slow approach to rest, at first; but the force that drives them falls
+    // off as they go, to nothing where they come to rest, and there is no saying as long as that is near.
+    bool slides_or_falls() const
+    {
+        for (std::size_t w = 1; w < windows_.size(); ++w)
+            if (!(windows_[w].moved > 0.95 * windows_[w - 1].moved))
+                return false;
+        const Window &first = windows_[1], &last = windows_.back();
+        const double driving = last.work / last.moved, lost = first.work / first.moved - driving;
+        double between = (first.moved - last.moved) / 2; // from the middle of the first to that of the last
+        for (std::size_t w = 2; w < windows_.size(); ++w)
+            between += windows_[w].moved;
+        return driving > 0 && lost * too_far_ < driving * between;
+    }
+
     // Masses and step for these row sums.
     void take_stiffness(const std::vector<double>& row_sums)
     {
@@ -232,6 +326,11 @@ private:
             work_of_changes_ += force.dot(last_dt * last - dt_ * velocity_[g]) / 2;
         }
     }
+
+    struct Moment {
+        Index steps;
+        std::vector<Vector2d> displacement, force;
+    };
 
     // Over gridpoints, in one step.
     struct Sums {
@@ -304,17 +403,11 @@ private:
         return v.array().sign();
     }
 
-    static std::string shown_length(double length)
-    {
-        std::array<char, 32> text{};
-        std::snprintf(text.data(), text.size(), "%.3g m", length);
-        return text.data();
-    }
-
     Assembly& a_;
     const Equilibrium& settings_;
     std::vector<Vector2d> velocity_;
     std::vector<Vector2d> start_, patience_ago_, last_force_;
+    Moment older_, newer_;                    // a quarter of all steps ago or more
     std::vector<double> mass_, inverse_mass_; // [kg/m], [m/kg]
     std::vector<Sums> sums_;                  // of each chunk
     double work_of_changes_ = 0;              // of the step, apart as every thread adds up work_ for itself
@@ -323,9 +416,13 @@ private:
     double time_before_ = 0;                                 // at the last change of the step [s]
     Index steps_since_ = 0;
     double dt_ = 0, too_far_ = 0, alpha_ = 0;
-    double moved_before_ = std::numeric_limits<double>::infinity(); // in the last window of `patience` steps
-    int windows_without_slowing_ = 0;
-    double last_energy_ = 0; // of motion, with kinetic damping: twice it [J/m]
+    struct Window {
+        double moved = std::numeric_limits<double>::infinity(); // by the rock that moved farthest [m]
+        double work = 0;                                        // of the forces out of balance [J/m]
+    };
+    std::array<Window, 5> windows_; // the last ones of `patience` steps
+    double work_before_ = 0;        // them [J/m]
+    double last_energy_ = 0;        // of motion, with kinetic damping: twice it [J/m]
     bool starts_from_rest_ = true;
 };
 
@@ -338,19 +435,22 @@ Certificate relax(Assembly& assembly, const Equilibrium& settings, const StepObs
     const std::vector<double> row_sums = stiffness_row_sums(assembly);
     const double stiffest = *std::max_element(row_sums.begin(), row_sums.end());
     double farthest = 0; // displacement on the way [m]
-    const auto balance_now = [&] {
+    const auto balance_for = [&](double tolerance) {
         for (const Vector2d& u : assembly.displacement)
             farthest = std::max(farthest, u.norm());
-        return balance_of(assembly, stiffest, farthest, settings.tolerance);
+        return balance_of(assembly, stiffest, farthest, tolerance);
     };
-    certificate.out_of_balance_ratio = balance_now().ratio();
-    if (certificate.out_of_balance_ratio <= settings.tolerance)
+    const auto is_rounding = [&] { return balance_for(rounding).ratio() <= rounding; };
+    certificate.out_of_balance_ratio = balance_for(settings.tolerance).ratio();
+    if (is_rounding())
         return certificate;
 
     Relaxation relaxation(assembly, settings, row_sums);
     ForceMemory memory;
     memory.change_since_window(assembly);
     Index steps_in_balance = 0;
+    std::array<double, window / check_every> to_go{}; // shares, at the last looks in balance
+    Patience with_the_way;
     while (certificate.steps < settings.most_steps) {
         const Index steps = observe ? 1
                                     : std::min(check_every - certificate.steps % check_every,
@@ -362,25 +462,37 @@ Certificate relax(Assembly& assembly, const Equilibrium& settings, const StepObs
         if (certificate.steps % check_every != 0)
             continue;
         relaxation.check_motion(certificate.steps);
-        const Balance balance = balance_now();
+        const Balance balance = balance_for(settings.tolerance);
         certificate.out_of_balance_ratio = balance.ratio();
         certificate.contact_force_change = memory.change_since_window(assembly) / balance.mean;
         if (!std::isfinite(certificate.out_of_balance_ratio))
             throw no_equilibrium("forces are no longer finite numbers after " +
                                  std::to_string(certificate.steps) + " steps");
-        steps_in_balance =
-            certificate.out_of_balance_ratio <= settings.tolerance ? steps_in_balance + check_every : 0;
-        if (steps_in_balance >= window && certificate.contact_force_change <= settings.tolerance) {
+        const bool is_balanced = certificate.out_of_balance_ratio <= settings.tolerance;
+        steps_in_balance = is_balanced ? steps_in_balance + check_every : 0;
+        if (is_balanced)
+            to_go[certificate.steps / check_every % to_go.size()] = relaxation.share_to_go();
+        relaxation.remember(certificate.steps);
+        if (steps_in_balance < window || certificate.contact_force_change > settings.tolerance)
+            continue;
+        const double share = *std::max_element(to_go.begin(), to_go.end());
+        certificate.to_go = (std::isfinite(share) ? share : 1) * relaxation.farthest_way();
+        if (share <= enough(settings.tolerance) || is_rounding() ||
+            with_the_way.ends(share, certificate.steps)) {
             relaxation.finish(certificate);
             return certificate;
         }
     }
     const Balance balance = balance_of(assembly);
-    relaxation.give_up("after " + std::to_string(certificate.steps) + " steps the out-of-balance ratio is " +
-                           shown(certificate.out_of_balance_ratio) + ", wanted " + shown(settings.tolerance) +
-                           "; farthest from balance is the rock at " +
-                           shown(assembly.position[balance.worst]),
-                       false, certificate.steps);
+    relaxation.give_up(
+        "after " + std::to_string(certificate.steps) + " steps the out-of-balance ratio is " +
+            shown(certificate.out_of_balance_ratio) + ", wanted " + shown(settings.tolerance) +
+            (certificate.to_go > 0
+                 ? ", and by estimate " + shown_length(certificate.to_go) + " are still to go, wanted " +
+                       shown_length(enough(settings.tolerance) * relaxation.farthest_way())
+                 : "") +
+            "; farthest from balance is the rock at " + shown(assembly.position[balance.worst]),
+        false, certificate.steps);
 }
 
 } // namespace jointcreep::relaxation

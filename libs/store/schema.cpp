@@ -313,6 +313,9 @@ std::vector<Field> fields_of(Equilibria& equilibria)
          "1", at_least(0),
          "Largest change of a contact force over the last 100 steps, or by one more correction, over the mean force "
          "on a gridpoint."},
+        {"/equilibria/to_go", &equilibria.to_go, {"equilibrium"}, "m", at_least(-1),
+         "Estimate of the farthest way to rest that is left: from the softest mode that the motion shows, or one more "
+         "correction; -1 after [motion], which has none."},
         {"/equilibria/work_of_loads", &equilibria.work_of_loads, {"equilibrium"}, "J/m", any(),
          "Work of weight, held rock and tractions on the way, not that of displaced boundaries; the sum of the next "
          "three."},
@@ -521,7 +524,7 @@ std::vector<Field> fields_of(Motions& motions)
         {"/motions/stored_energy", &motions.stored_energy, {"moment"}, "J/m", any(),
          "Energy that zones and contacts took up."},
         {"/motions/friction_energy", &motions.friction_energy, {"moment"}, "J/m", at_least(0),
-         "Energy lost to slip."},
+         "Energy lost to slip and yield."},
         {"/motions/damped_energy", &motions.damped_energy, {"moment"}, "J/m", any(),
          "Energy taken by dashpots, and where slow motion was stopped."},
         {"/motions/fastest", &motions.fastest, {"moment"}, "m/s", at_least(0), "Speed of the fastest gridpoint."},
@@ -591,7 +594,7 @@ std::vector<Field> fields_of(Checkpoint& checkpoint)
         {"/checkpoint/displacement", &checkpoint.displacement, gridpoint, "m", any(),
          "Displacement {x, y} since the in-situ equilibrium."},
         {"/checkpoint/is_free", &checkpoint.is_free, gridpoint, "1", between(0, 1),
-         "1 or 0 in {x, y}: free, or held or without rock."},
+         "1 or 0 in {x, y}: free, or held itself or without rock."},
         {"/checkpoint/load", &checkpoint.load, gridpoint, "N/m", any(), "Weight {x, y} that the gridpoint has."},
         {"/checkpoint/zone_present", &checkpoint.zone_present, zone, "1", between(0, 1),
          "1 while the zone is there, 0 once it is removed."},
@@ -641,7 +644,8 @@ std::vector<Field> fields_of(Checkpoint& checkpoint)
 
 std::vector<Field> fields_of(MovedRock& moved)
 {
-    const std::vector<std::string> gridpoint = {"gridpoint"}, zone = {"zone"}, pair = {"pair"};
+    const std::vector<std::string> gridpoint = {"gridpoint"}, zone = {"zone"}, yields = {"yielding_zone"},
+                                   pair = {"pair"};
     // clang-format off
     return {
         {"/moved/origin", &moved.origin, gridpoint, "m", any(), "Place {x, y} that displacements count from, counted from the section's middle."},
@@ -650,6 +654,11 @@ std::vector<Field> fields_of(MovedRock& moved)
          "Inverse of the matrix of the zone's edges without stress, by columns."},
         {"/moved/area", &moved.area, zone, "m2", positive(), "Area of the zone without stress."},
         {"/moved/strain", &moved.strain, zone, "1", any(), "Biot's strain {xx, yy, 2 xy} of the zone."},
+        {"/moved/plastic_strain", &moved.plastic_strain, yields, "1", any(),
+         "Of it, plastic strain {xx, yy, zz, 2 xy}, extension positive."},
+        {"/moved/initial_zz", &moved.initial_zz, yields, "Pa", any(), "Stress across the section of the shape without stress."},
+        {"/moved/stress_zz", &moved.stress_zz, yields, "Pa", any(), "The same now."},
+        {"/moved/stress", &moved.stress, yields, "Pa", any(), "Biot's stress {xx, yy, xy}, tension positive."},
         {"/moved/face", &moved.face, {"face"}, "1", index_of("gridpoint"), "First and second gridpoint of the face."},
         {"/moved/pair", &moved.pair, pair, "1", index_of("face"), "The two faces."},
         {"/moved/law", &moved.law, pair, "1", at_least(0), "Number of the joint law between them."},

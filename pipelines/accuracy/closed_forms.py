@@ -525,6 +525,26 @@ def toppling_columns(heights, width, head_step, crest, unit_weight, dip, tan_phi
     return forces, force, -1
 
 
+def is_sum_of(columns, wanted):
+    """Whether a vector is a sum of columns with factors that are not negative (Lawson and Hanson's least squares)."""
+    factors, active = np.zeros(columns.shape[1]), np.zeros(columns.shape[1], bool)
+    while True:
+        gain = np.where(active, -1, columns.T @ (wanted - columns @ factors))
+        if gain.max() <= 1e-10 * np.linalg.norm(wanted):
+            return bool(np.linalg.norm(wanted - columns @ factors) < 1e-9 * np.linalg.norm(wanted))
+        active[gain.argmax()] = True
+        while True:
+            found = np.zeros_like(factors)
+            found[active] = np.linalg.lstsq(columns[:, active], wanted, rcond=None)[0]
+            leaves = active & (found <= 0)
+            if not leaves.any():
+                break
+            factors += (factors[leaves] / (factors[leaves] - found[leaves])).min() * (found - factors)
+            active &= factors > 1e-14 * factors.max()
+            factors[~active] = 0
+        factors = found
+
+
 def layers_shear_modulus(shear_modulus, shear_stiffness, spacing):
     """Of rock with one set of joints, along them: 1 / (1/G + 1/(K_s S)) (Amadei and Goodman 1981)."""
     return 1 / (1 / shear_modulus + 1 / (shear_stiffness * spacing))

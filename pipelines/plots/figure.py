@@ -17,6 +17,7 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.colors
 import matplotlib.lines
+import matplotlib.patches
 import matplotlib.patheffects
 import matplotlib.pyplot as plt
 import numpy as np
@@ -30,6 +31,7 @@ WIDTHS = [1.2, 0.8, 1.7, 2.3, 0.6, 1.4]  # of lines that have no markers [pt]
 LINES = ["-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (1, 3))]
 MARKERS = ["o", "s", "^", "D", "v", "P"]
 HALO = [matplotlib.patheffects.withStroke(linewidth=2, foreground="white")]
+ROCKS = ["#dfe3e8", "#e6d3c4", "#f1e6b8", "#dce8d6", "#e5dcec"]  # pale, in the scene's order
 # Pale where there is little, so that black lines and arrows stay visible over it.
 SHADES = matplotlib.colors.ListedColormap(
     0.2 + 0.8 * matplotlib.colormaps["YlGnBu"](np.linspace(0, 0.95, 256))[:, :3])
@@ -167,9 +169,28 @@ def section_axes(outline, window=None):
     return figure, axes
 
 
+def extension(values, low, high):
+    """Which ends of a colour scale are pointed, since values lie beyond it."""
+    ends = {(0, 0): "neither", (1, 0): "min", (0, 1): "max", (1, 1): "both"}
+    return ends[int(np.min(values) < low), int(np.max(values) > high)]
+
+
 def is_in(axes, place):
     """Whether a place is in what the axes show."""
     return all(low <= at <= high for at, (low, high) in zip(place, (axes.get_xlim(), axes.get_ylim())))
+
+
+def draw_rocks(scene, axes, names=None):
+    """The section and its regions in the colours of their rocks. Returns legend entries, by other names if wanted."""
+    rocks = [rock["name"] for rock in scene["rock"]]
+    color = {rock: ROCKS[i % len(ROCKS)] for i, rock in enumerate(rocks)}
+    inside = matplotlib.patches.Polygon(scene["section"]["outline_m"], transform=axes.transData)
+    for place in (scene["section"], *scene.get("region", [])):
+        patch = axes.add_patch(matplotlib.patches.Polygon(place["outline_m"], facecolor=color[place["rock"]], linewidth=0,
+                                                          zorder=0.1))
+        patch.set_clip_path(inside)
+        patch.set_in_layout(False)  # layout fails on what is clipped and outside of the window
+    return [matplotlib.patches.Patch(facecolor=color[rock], label=(names or {}).get(rock, rock)) for rock in rocks]
 
 
 def legend_below(axes, *groups):

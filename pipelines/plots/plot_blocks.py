@@ -2,7 +2,8 @@
 """The blocks, filled by their size, the joint set that makes most of their outline, their rock or the stage that
 removes them, and the edges between them.
 
-The scale of sizes begins where smaller blocks together are 1 percent of the section: slivers would take most of it.
+The scale of sizes begins where smaller blocks together are 1 percent of all: slivers would take most of it. With a
+window it is of the blocks wholly inside, and larger ones, such as rock without joints around them, are grey.
 """
 
 import matplotlib.colors
@@ -16,6 +17,7 @@ from matplotlib.collections import LineCollection, PathCollection
 import figure
 
 BOUNDARY, JOINT, WELDED = 0, 1, 2  # /edges/kind
+LARGER = "0.72"  # than the scale has
 
 
 def block_paths(file):
@@ -35,6 +37,14 @@ def size_range(area):
     ordered = np.sort(area)
     low, high = ordered[np.searchsorted(np.cumsum(ordered), 0.01 * ordered.sum())], ordered[-1]
     return (low, high) if high > 1.0001 * low else (low / 2, high * 2)
+
+
+def whole_blocks(paths, axes):
+    """Which blocks are wholly in what the axes show; all if none is."""
+    (left, right), (bottom, top) = axes.get_xlim(), axes.get_ylim()
+    boxes = [path.get_extents() for path in paths]
+    whole = np.array([left <= box.x0 and box.x1 <= right and bottom <= box.y0 and box.y1 <= top for box in boxes])
+    return whole if np.any(whole) else ~whole
 
 
 def set_of_blocks(file):
@@ -77,12 +87,13 @@ def draw(file, arguments):
 
     fills = []
     if arguments.by == "size":
-        low, high = size_range(area)
-        blocks = PathCollection(paths, cmap=figure.SHADES, norm=matplotlib.colors.LogNorm(low, high), zorder=0)
+        low, high = size_range(area[whole_blocks(paths, axes)])
+        blocks = PathCollection(paths, cmap=figure.SHADES.with_extremes(over=LARGER),
+                                norm=matplotlib.colors.LogNorm(low, high), zorder=0)
         blocks.set_array(area)
         axes.add_collection(blocks)
         scale = plot.colorbar(blocks, ax=axes, label="block area (m²)", shrink=0.6,
-                              extend="min" if low > np.min(area) else "neither")
+                              extend=figure.extension(area, low, high))
         scale.ax.yaxis.set_major_locator(matplotlib.ticker.LogLocator(subs=(1, 2, 5)))
         scale.ax.yaxis.set_major_formatter("{x:g}")
         scale.ax.yaxis.set_minor_locator(matplotlib.ticker.NullLocator())
@@ -97,7 +108,7 @@ def draw(file, arguments):
             axes.add_collection(PathCollection(of_code, facecolor=[shade], zorder=0))
             label = others if i < 0 else f"outline mostly {names[i]}" if arguments.by == "set" else names[i]
             fills.append(matplotlib.patches.Patch(facecolor=shade, edgecolor="k", linewidth=0.5, label=label))
-    entries.append(matplotlib.lines.Line2D([], [], linestyle="none", label=f"{len(paths)} blocks"))
+    entries.append(matplotlib.lines.Line2D([], [], linestyle="none", label=f"{len(paths)} blocks in the section"))
     figure.legend_below(axes, entries + fills)
     return plot
 

@@ -45,11 +45,12 @@ def draw(rows):
     for i, (name, values) in enumerate(curves.items()):
         day, stages, measured, computed, start = zip(*sorted(values))
         color, marker = figure.COLORS[i % 6], figure.MARKERS[i % 6]
-        axes.plot(day, measured, marker, color=color, markerfacecolor="white", markeredgewidth=0.8, label=name)
+        face = color if i // 6 % 2 else "white"
+        axes.plot(day, measured, marker, color=color, markerfacecolor=face, markeredgewidth=0.8, label=name)
         axes.plot(broken(stages, day), broken(stages, computed), color=color, linewidth=1.0)
         if start[0] is not None:
             axes.plot(broken(stages, day), broken(stages, start), color=color, linewidth=0.7, linestyle=(0, (4, 2)))
-        below.plot(day, [c - m for c, m in zip(computed, measured)], marker, color=color, markerfacecolor="white",
+        below.plot(day, [c - m for c, m in zip(computed, measured)], marker, color=color, markerfacecolor=face,
                    markeredgewidth=0.8)
     below.axhline(0, color="0.3", linewidth=0.7)
     axes.set_ylabel("displacement (mm)")

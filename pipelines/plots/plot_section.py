@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The section: joints with their rock bridges, stages, boundary conditions, measuring points and gauges."""
+"""The section: rocks, joints with their rock bridges, stages, boundary conditions, measuring points and gauges."""
 
 import matplotlib.lines
 import matplotlib.patches
@@ -10,6 +10,8 @@ from matplotlib.collections import LineCollection
 import figure
 
 SET_COLORS = [*figure.COLORS, "#8e4f9f", "#5d3b1e"]
+STAGE_BORDER = {"edgecolor": "0.25", "linewidth": 0.8, "linestyle": (0, (6, 2, 1, 2))}
+FEW = 8  # entries of one kind in the legend; of more there is one for all
 
 
 def clip(artist, inside):
@@ -49,7 +51,7 @@ def draw_joints(file, axes, inside):
         axes.add_collection(collection)
         entries.append(matplotlib.lines.Line2D([], [], **style, label=name))
     bridge = entries[:1] if np.any(has_bridges) else []
-    if len(entries) - len(bridge) > 8:  # many single joints: one entry for all
+    if len(entries) - len(bridge) > FEW:  # single joints
         entries = [*bridge, matplotlib.lines.Line2D([], [], color=figure.COLORS[0], label="joints")]
     return entries
 
@@ -65,27 +67,32 @@ def number_place(corners, points, size):
 
 
 def draw_stages(scene, axes, inside):
+    """Few in shades of grey, with their names below; many in outline, where joints and rocks stay visible."""
     entries = []
     points = [np.array(point["at_m"], float) for point in scene.get("point", [])]
     size = max(np.ptp(axes.get_xlim()), np.ptp(axes.get_ylim()))
-    for number, stage in enumerate(scene.get("stage", []), 1):
+    stages = scene.get("stage", [])
+    few = len(stages) <= FEW
+    for number, stage in enumerate(stages, 1):
         shown = False
         for corners in stage["remove_m"]:
-            patch = matplotlib.patches.Polygon(corners, facecolor=str(0.8 + 0.13 * (number % 2)), edgecolor="0.25",
-                                               linewidth=0.8, linestyle=(0, (6, 2, 1, 2)), zorder=0.5)
+            patch = matplotlib.patches.Polygon(corners, facecolor=str(0.8 + 0.13 * (number % 2)) if few else "none",
+                                               **STAGE_BORDER, zorder=0.5)
             axes.add_patch(patch)
             clip(patch, inside)
             place = number_place(corners, points, size)
             if not figure.is_in(axes, place):
                 continue
             shown = True
-            axes.annotate(str(number), place, ha="center", va="center", zorder=4,
+            axes.annotate(str(number), place, ha="center", va="center", zorder=4, fontsize=8 if few else 5.5,
                           bbox={"boxstyle": "circle,pad=0.2", "facecolor": "white", "linewidth": 0.5})
         if not shown:
             continue
         when = f"day {stage['date']}" if isinstance(stage["date"], (int, float)) else str(stage["date"])
         entries.append(matplotlib.lines.Line2D([], [], linestyle="none", marker=f"${number}$", color="k",
                                                markeredgewidth=0, markersize=5, label=f"{stage['name']}, {when}"))
+    if not few:
+        return [matplotlib.patches.Patch(facecolor="none", **STAGE_BORDER, label="stages, numbered as they follow")]
     return entries
 
 
@@ -144,9 +151,12 @@ def draw(file, arguments):
 
     joints = draw_joints(file, axes, inside)
     stages = draw_stages(scene, axes, inside)
-    others = draw_boundaries(scene, outline, axes)
+    others = figure.draw_rocks(scene, axes) if "region" in scene else []
+    others += draw_boundaries(scene, outline, axes)
     others += draw_places(scene, "point", "measuring point", "o", axes)
     others += draw_places(scene, "gauge", "gauge on a joint", "D", axes)
+    if len(stages) == 1:  # no column of its own
+        stages, others = [], stages + others
     figure.legend_below(axes, joints, stages, others)
     return plot
 

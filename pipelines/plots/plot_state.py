@@ -117,9 +117,8 @@ def draw_borders(section, axes, joints=True):
 
 def add_scale(axes, colored, label, low, high, values):
     """A colour scale, with a pointed end where values lie beyond it."""
-    extend = {(0, 0): "neither", (1, 0): "min", (0, 1): "max", (1, 1): "both"}
-    beyond = extend[int(np.min(values) < low), int(np.max(values) > high)]
-    axes.figure.colorbar(colored, ax=axes, label=label, shrink=0.75, aspect=25, pad=0.02, extend=beyond)
+    axes.figure.colorbar(colored, ax=axes, label=label, shrink=0.75, aspect=25, pad=0.02,
+                         extend=figure.extension(values, low, high))
 
 
 def draw_displacement(file, state, section, axes, arguments):

@@ -1,19 +1,21 @@
 #!/usr/bin/python3
 """Finds constants of the lock's joints back by creepfit, from noisy readings of the lock itself with other constants.
 
-    back_analysis.py PROGRAMS SCENE.toml -o OUT
+    back_analysis.py PROGRAMS SCENE.toml [--slip] -o OUT
 
 The readings are those of a run of the same network whose joints have K times 1.2, and E and eta over K times 0.7:
 horizontal, about every 28 days from each point's first reading to the end, less the first one, with normal noise of
-1 mm (standard deviation) in each. Joints neither slip nor open, there and in the fit. In OUT: readings.csv,
-factors.csv, fitted.csv (for plot_fit.py), creepfit.txt and creepfit.md.
+1 mm (standard deviation) in each. Joints neither slip nor open, there and in the fit; with --slip they do both. In OUT:
+readings.csv, factors.csv, fitted.csv (for plot_fit.py), creepfit.txt and creepfit.md.
 """
 
 import argparse
 import csv
+import itertools
 import os
 import pathlib
 import random
+import resource
 import sys
 import tempfile
 import tomllib
@@ -22,6 +24,7 @@ import study
 
 MADE = {"joint-stiffness": 1.2, "kelvin-stiffness": 0.7, "kelvin-viscosity": 0.7}  # as creepfit's factors
 WORDS = {"joint-stiffness": "on K, with E and eta", "kelvin-stiffness": "on E", "kelvin-viscosity": "on eta"}
+SHORT = {"joint-stiffness": "K", "kelvin-stiffness": "E", "kelvin-viscosity": "eta"}
 SIGMA = 1.0  # of a reading [mm]
 
 
@@ -39,17 +42,33 @@ def readings(result, position, seed=1):
                 yield day, name, moved + noise.gauss(0, SIGMA) - error
 
 
-def markdown(factors, number):
+def processor_time():
+    """Of all programs that have been run so far [s]."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
+
+
+def markdown(factors, number, seconds):
     lines = ["| factor | made with | found | 95 percent |", "|---|---|---|---|"]
     for row in factors:
         low, high = float(row["low_95"]), float(row["high_95"])
         lines.append(f"| {WORDS[row['factor']]} | {MADE[row['factor']]} | {float(row['value']):.3f} "
                      f"| {low:.3f} to {high:.3f} |")
-    return "\n".join([*lines, "", f"{number} readings with noise of {SIGMA:g} mm."]) + "\n"
+    fit = factors[0]  # what is of the whole fit is the same in each
+    pairs = ", ".join(f"{SHORT[a['factor']]} and {SHORT[b['factor']]} {float(a['correlation_' + b['factor']]):.2f}"
+                      for a, b in itertools.combinations(factors, 2))
+    told = [f"{number} readings with noise of {SIGMA:g} mm; chi squared {float(fit['chi_squared']):.0f} of "
+            f"{fit['degrees_of_freedom']} degrees of freedom.", f"Correlation of the factors' logarithms: {pairs}."]
+    if fit["weak_combination_times"]:
+        together = " with ".join(f"{SHORT[row['factor']]} x {float(row['weak_combination_times']):.3f}" for row in factors)
+        told.append(f"`creepfit` warns of {together}, which these readings hardly tell.")
+    told.append(f"{fit['runs']} runs, {seconds:.0f} s of processor time.")
+    return "\n".join([*lines, "", *told]) + "\n"
 
 
-def analyse(programs, scene, out):
-    result = study.computed(programs, scene, ["--linear", "--stiffness-times", MADE["joint-stiffness"],
+def analyse(programs, scene, slip, out):
+    law = [] if slip else ["--linear"]
+    result = study.computed(programs, scene, [*law, "--stiffness-times", MADE["joint-stiffness"],
                                               "--kelvin-times", MADE["kelvin-stiffness"]], 0)
     with open(scene, "rb") as file:
         position = {point["name"]: point["at_m"][0] for point in tomllib.load(file)["point"]}
@@ -57,16 +76,18 @@ def analyse(programs, scene, out):
     with tempfile.TemporaryDirectory(dir=out, prefix="creepfit.partial-") as folder:
         folder = pathlib.Path(folder)
         (folder / "chain").mkdir()
-        joints = study.joints_of(programs, scene, ["--linear"], 0, folder / "chain")
+        joints = study.joints_of(programs, scene, law, 0, folder / "chain")
         with open(folder / "readings.csv", "w", encoding="utf-8") as file:
             print("time_day,point,component,displacement_mm,sigma_mm", file=file)
             for day, name, value in rows:
                 print(f"{day:.12g},{name},x,{value:.4f},{SIGMA:g}", file=file)
+        before = processor_time()
         said = study.run(programs / "creepfit", joints, "--measurements", folder / "readings.csv",
                          "--since-first-reading", "--fit", ",".join(MADE), "--readings", folder / "fitted.csv",
                          "-o", folder / "factors.csv")
+        seconds = processor_time() - before
         with open(folder / "factors.csv", newline="", encoding="utf-8") as file:
-            (folder / "creepfit.md").write_text(markdown(list(csv.DictReader(file)), len(rows)))
+            (folder / "creepfit.md").write_text(markdown(list(csv.DictReader(file)), len(rows), seconds))
         (folder / "creepfit.txt").write_text(said)
         for path in filter(pathlib.Path.is_file, folder.iterdir()):
             os.replace(path, out / path.name)
@@ -77,10 +98,11 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("programs", type=pathlib.Path)
     parser.add_argument("scene", type=pathlib.Path)
+    parser.add_argument("--slip", action="store_true", help="joints slip and open")
     parser.add_argument("-o", "--output", type=pathlib.Path, required=True)
     arguments = parser.parse_args()
     try:
-        analyse(arguments.programs, arguments.scene, arguments.output)
+        analyse(arguments.programs, arguments.scene, arguments.slip, arguments.output)
     except study.Failed as error:
         sys.exit(f"back_analysis.py: {error}")
 

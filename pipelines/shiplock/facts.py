@@ -8,6 +8,7 @@ them, the motion of a point before its bench is dug, both slopes, the pier, and 
 """
 
 import argparse
+import datetime
 import pathlib
 
 import numpy as np
@@ -16,7 +17,9 @@ import records
 from records import figure
 
 PIER_HALF_WIDTH, PIER_LEVEL = 28.5, 150.0  # of the places by which the pier is judged [m]
+WALL_TOPS = ("N160", "S160")
 BOX = (-220, 220, 60)  # joints are between these x, and above this y [m]
+OTHER_READINGS = {"N170": datetime.date(1997, 4, 30), "S160": datetime.date(1997, 10, 31)}
 TENSILE_STRENGTH = 1.5e6  # assumed of fresh rock [Pa]
 DRAWS = 2000  # of networks with replacement
 
@@ -57,6 +60,9 @@ def facts_of(path, end):
         return {"names": record.names, "pier": pier(file), "tension": tension(file),
                 "total": [record.at(record.total, end, i)[1] for i in points],
                 "recorded": [record.at(record.recorded, end, i)[1] for i in points],
+                "other": [record.at(record.total, end, i)[1] - record.at(record.total, date, i)[1]
+                          for i, date in ((record.names.index(name), date) for name, date in OTHER_READINGS.items())],
+                "after": [record.total[1, -1, i] - record.at(record.total, end, i)[1] for i in points],
                 "before": [np.interp(day_dug(record, i) - 1e-6, record.days, record.total[1, :, i]) for i in points]}
 
 
@@ -67,7 +73,7 @@ def spread(values, digits=0):
 
 def markdown(facts, targets):
     names, number = facts[0]["names"], len(facts)
-    values = {key: np.array([one[key] for one in facts], float) for key in ("pier", "tension", "total", "recorded", "before")}
+    values = {key: np.array([one[key] for one in facts], float) for key in ("pier", "tension", "total", "recorded", "other", "after", "before")}
     draw = np.random.default_rng(1)
     rows = [draw.integers(number, size=number) for _ in range(DRAWS)]
     lines = []
@@ -80,9 +86,20 @@ def markdown(facts, targets):
         i = int(np.argmin(room))
         lines.append(f"- {key}: nearest to an end of {low}-{high} mm is the median of {names[i]}, {median[i]:.1f} mm, "
                      f"with a standard error of {error[i]:.1f} mm by drawing networks with replacement;")
+    total = dict(zip(names, np.median(values["total"], axis=0)))
+    wall = max(value for name, value in total.items() if name in WALL_TOPS)
+    slope = max(value for name, value in total.items() if name not in WALL_TOPS)
+    for words, value, key in (("wall tops", wall, "wall_top_limit_mm"), ("all others", slope, "slope_top_limit_mm")):
+        lines.append(f"- the largest total of {words} is {value:.0f} mm; {targets[key]} mm was published as a limit, computed by "
+                     "another model;")
+    lines.append(f"- after 1999 no point's median moves by more than {np.median(values['after'], axis=0).max():.1f} mm (range: at "
+                 f"most {targets['after_1999_mm']} mm);")
     before = np.median(values["before"], axis=0)
     lines.append(f"- just before its bench is dug a point has moved by {before.min():.0f} to {before.max():.0f} mm (medians; at "
                  f"most {values['before'].max():.0f} mm in any network);")
+    others = ", ".join(f"{name} {median:.1f} mm from {date}"
+                       for (name, date), median in zip(OTHER_READINGS.items(), np.median(values["other"], axis=0)))
+    lines.append(f"- records with other first readings: {others};")
     north, south = (values["total"][:, names.index(name)] for name in ("N215", "S215"))
     lines.append(f"- at 215 the north has moved more than the south in {np.sum(north > south)} of the {number} networks;")
     to_north, to_south = values["pier"].T

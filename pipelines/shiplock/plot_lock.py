@@ -9,23 +9,14 @@ import numpy as np
 
 from records import figure
 
-ROCKS = {"fresh": "#dfe3e8", "weak": "#e6d3c4", "cover": "#f1e6b8"}
 NAMES = {"fresh": "fresh and microweathered", "weak": "weak (minor-weathered)", "cover": "full and strong"}
 WINDOW = (-190, 85, 190, 250)  # [m]
 
 
-def draw_rocks(scene, axes):
-    section = scene["section"]
-    for rock, corners in [(section["rock"], section["outline_m"]),
-                          *((region["rock"], region["outline_m"]) for region in scene["region"])]:
-        axes.add_patch(matplotlib.patches.Polygon(corners, facecolor=ROCKS[rock], linewidth=0, zorder=0.1))
-    axes.plot(*np.array(scene["in_situ_stress"]["ground_m"]).T, color="0.35", linewidth=0.8, zorder=2)
-    return [matplotlib.patches.Patch(facecolor=ROCKS[rock["name"]], label=NAMES[rock["name"]]) for rock in scene["rock"]]
-
-
 def draw_section(scene):
     plot, axes = figure.section_axes(None, WINDOW)
-    entries = draw_rocks(scene, axes)
+    entries = figure.draw_rocks(scene, axes, NAMES)
+    axes.plot(*np.array(scene["in_situ_stress"]["ground_m"]).T, color="0.35", linewidth=0.8, zorder=2)
     inside = matplotlib.patches.Polygon(scene["section"]["outline_m"], transform=axes.transData)
     for stage in scene["stage"]:
         for polygon in stage["remove_m"]:

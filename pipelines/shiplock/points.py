@@ -3,7 +3,7 @@
 
     points.py ENSEMBLE.h5 WITHOUT-CREEP.h5 TARGETS.toml -o points.md
 
-Both are ensemble.h5 of the same networks, or single results. Numbers are medians over the networks, and in brackets 5
+Both are ensemble.h5 of as many networks, or single results. Numbers are medians over the networks, and in brackets 5
 and 95 percent. The share of creep is of the median recorded displacement. Networks without equilibrium are named, and
 count in nothing else.
 """
@@ -19,7 +19,7 @@ from records import figure
 
 
 def in_range(value, low, high):
-    return "in" if low <= value <= high else f"{value - (low if value < low else high):+.0f}"
+    return "in" if low <= value <= high else f"{value - (low if value < low else high):+.1f}"
 
 
 def shown(three):
@@ -74,20 +74,21 @@ def failures(file):
     return dict(zip(figure.array(file, "/failed/number").tolist(), reasons))
 
 
-def markdown(rows, targets, number, failed=None):
+def markdown(rows, targets, number, failed=None, without=None):
+    """The table of `number` networks with creep and `without` without it (as many by default)."""
     failed = failed or {}
-    lines = ["| point | total | its range | | recorded | its range | | before | total without creep | recorded without |"
-             " creep in the record | year after the end | later |",
-             "|---|---|---|---|---|---|---|---|---|---|---|---|---|"]
+    lines = ["| point | total | its range | | recorded | its range | | before | its range | | total without creep |"
+             " recorded without | creep in the record | year after the end | later |",
+             "|---" * 15 + "|"]
     for row in rows:
         target = targets["point"].get(row["name"])
         cells = [row["name"] + (" (crest)" if row["crest"] else "")]
-        for key in ("total", "recorded"):
+        for key in ("total", "recorded", "before"):
             cells.append(shown(row[key]))
             cells += [f"{target[key + '_mm'][0]}-{target[key + '_mm'][1]}",
                       in_range(row[key][1], *target[key + "_mm"])] if target else ["", ""]
         share = 1 - row["recorded_without"][1] / row["recorded"][1] if row["recorded"][1] else 0
-        cells += [shown(row["before"]), shown(row["total_without"]), shown(row["recorded_without"]),
+        cells += [shown(row["total_without"]), shown(row["recorded_without"]),
                   f"{100 * share:.0f} %", f"{row['year']:.1f}", f"{row['later']:.1f}"]
         lines.append("| " + " | ".join(cells) + " |")
     below = [row for row in rows if not row["crest"]]
@@ -104,6 +105,8 @@ def markdown(rows, targets, number, failed=None):
         lines.append(f"{words} {spread(values)};")
     found = misfit(rows, targets)
     lines.append("no misfit: these points have no ranges." if found is None else f"misfit {found:.2f}.")
+    if without not in (None, number):
+        lines.append(f"Without creep: {without} networks.")
     lines += [f"Not among them, network {number}: {reason}" for number, reason in failed.items()]
     return "\n".join(lines) + "\n"
 
@@ -118,7 +121,7 @@ def main():
         record, without, failed = records.record_of(file), records.record_of(other), failures(file)
     targets = records.targets_of(arguments.targets)
     try:
-        text = markdown(rows_of(record, without, targets), targets, record.number, failed)
+        text = markdown(rows_of(record, without, targets), targets, record.number, failed, without.number)
         with open(arguments.output, "w", encoding="utf-8") as file:
             file.write(text)
     except OSError as error:

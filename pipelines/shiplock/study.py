@@ -55,10 +55,16 @@ CHOICES = {  # name: (what is changed, its value, options of variant.py)
     "rock-stiff": ("Young's modulus of the rock", "40 and 17 GPa", ["--youngs-modulus", "high"]),
     "domain-half": ("domain", "900 m to each side, down to -400 m", ["--domain", "900", "-400"]),
     "domain-double": ("domain", "3600 m to each side, down to -2200 m", ["--domain", "3600", "-2200"]),
+    "zones-half": ("zone size", "2 m", ["--zone-size", "2"]),
     "linear": ("contacts", "neither slip nor open", ["--linear"]),
     "no-creep": ("creep", "none", ["--no-creep"]),
+    "no-creep-soft": ("creep", "none, and K times 0.65", ["--no-creep", "--stiffness-times", "0.65"]),
 }
+BAR, SPREAD = figure.COLORS[4], figure.COLORS[5]  # of the tornado plot
 SHIFTS = {"reading-earlier": -60, "reading-later": 60}  # of the first readings [days]
+
+
+STOPPED = (4, 129, 130, 137, 143)  # exit codes: could not read or write; hung up, interrupted, killed, terminated
 
 
 class Failed(Exception):
@@ -66,9 +72,13 @@ class Failed(Exception):
 
 
 def run(program, *arguments):
+    """Its output. Exits if it was stopped, which is no result and is to be run again."""
     done = subprocess.run([program, *map(str, arguments)], capture_output=True, text=True)
+    words = f"{pathlib.Path(program).name}, exit code {done.returncode}: {done.stderr.strip()}"
+    if done.returncode < 0 or done.returncode in STOPPED:
+        raise SystemExit(f"{words}; it was stopped, and is run again the next time")
     if done.returncode != 0:
-        raise Failed(f"{pathlib.Path(program).name}, exit code {done.returncode}: {done.stderr.strip()}")
+        raise Failed(words)
     return done.stdout
 
 
@@ -120,9 +130,12 @@ def results_of(arguments, options):
     all of them on fewer networks."""
     (arguments.output / "runs").mkdir(parents=True, exist_ok=True)
     todo = [(name, number) for number in range(arguments.networks) for name in options]
-    with concurrent.futures.ThreadPoolExecutor(arguments.jobs) as pool:
+    pool = concurrent.futures.ThreadPoolExecutor(arguments.jobs)
+    try:
         done = list(pool.map(lambda one: result_of(arguments.programs, arguments.scene, arguments.output, one[0],
                                                    options[one[0]], one[1]), todo))
+    finally:
+        pool.shutdown(cancel_futures=True)
     return {name: [result for (other, _), result in zip(todo, done) if other == name] for name in options}
 
 
@@ -144,11 +157,13 @@ def summary(results, targets, below, shift=0):
     kept = [values_of(result, targets, shift) for result in results if "failed" not in result]
     if not kept:
         return None
+    every = np.array([one[0] for one in kept])
     total, recorded = (np.array([one[i] for one in kept])[:, below] for i in (0, 1))
     medians = np.nanmedian(total, axis=0), np.nanmedian(recorded, axis=0)
+    names = next(result["names"] for result in results if "failed" not in result)
     found = {"networks": len(kept), "failed": len(results) - len(kept), "total": float(medians[0].mean()),
-             "recorded": float(medians[1].mean()), "each": (total, recorded)}
-    if not all(name in targets["point"] for name in results[0]["names"]):
+             "recorded": float(medians[1].mean()), "each": (total, recorded), "points": dict(zip(names, np.nanmedian(every, axis=0)))}
+    if not all(name in targets["point"] for name in names):
         return found
     return {**found, "misfit": misfit(medians, targets)}
 
@@ -174,69 +189,102 @@ def misfit_of(found):
     return f"{found['misfit']:.2f}" if "misfit" in found else ""
 
 
+def largest_change(own, found):
+    """Of the median total of a point, crests too, in words; of a row without points nothing."""
+    changes = {name: value / own["points"][name] - 1 for name, value in found.get("points", {}).items()}
+    name = max(changes, key=lambda name: abs(changes[name]), default=None)
+    return f"{100 * changes[name]:+.1f} % ({name})" if name else ""
+
+
 def markdown(own, rows, networks, points):
-    lines = ["| what is changed | to | total (mm) | change | recorded (mm) | change | misfit |",
-             "|---|---|---|---|---|---|---|",
-             f"| nothing | | {own['total']:.1f} | | {own['recorded']:.1f} | | {misfit_of(own)} |"]
+    lines = ["| what is changed | to | total (mm) | change | largest at a point | recorded (mm) | change | misfit |",
+             "|---|---|---|---|---|---|---|---|",
+             f"| nothing | | {own['total']:.1f} | | | {own['recorded']:.1f} | | {misfit_of(own)} |"]
     for what, to, found in rows:
         if isinstance(found, str):
-            lines.append(f"| {what} | {to} | {found} | | | | |")
+            lines.append(f"| {what} | {to} | {found} | | | | | |")
             continue
-        cells = [what, to]
+        lost = found.get("failed", 0)
+        cells = [what, f"{to} ({found['networks']} networks)" if lost else to]
         for key in ("total", "recorded"):
             cells += [f"{found[key]:.1f}", f"{found[key] - own[key]:+.1f}"]
+        cells.insert(4, largest_change(own, found))
         cells.append(misfit_of(found))
         lines.append("| " + " | ".join(cells) + " |")
     lines += ["", f"Horizontal, toward the lock, at the end of 1999: the mean over {points} of the medians over "
-                  f"{own['networks']} network{'s' if own['networks'] > 1 else ''}."]
-    if networks > 1:
+                  f"{own['networks']} network{'s' if own['networks'] > 1 else ''}, or as many as are said to have equilibrium."]
+    if any(what.startswith("network") for what, *_ in rows):
         lines.append(f"Rows of the network: {networks} networks.")
     return "\n".join(lines) + "\n"
 
 
-def tornado(own, rows, targets, path):
-    """Bars from the scene's own value to that of each choice, the longest on top; total and recorded beside each other."""
+def ordered(own, rows, targets):
+    """[(what is changed, [(its value, found)])], the largest change last: of totals or of records, over the width of the
+    paper's range."""
     groups = {}
     for what, to, found in rows:
         if not isinstance(found, str):
-            groups.setdefault(what, []).append((to, found))
-    order = sorted(groups, key=lambda what: max(abs(found["total"] - own["total"]) for _, found in groups[what]))
-    plot, panels = figure.plt.subplots(1, 2, sharey=True, figsize=(figure.TWO_COLUMNS, 1.15 + 0.36 * len(order)),
-                                       width_ratios=[2.1, 1])
+            of = f" ({found['networks']} networks)" if found.get("failed", 0) else ""
+            groups.setdefault(what, []).append((to + of, found))
+
+    def change(group):
+        return max(abs(found[key] - own[key]) / np.ptp(targets[f"{key}_mm"])
+                   for _, found in group[1] for key in ("total", "recorded"))
+    return sorted(groups.items(), key=change)
+
+
+def lines_of(groups):
+    """What stands at the left, from below: (text, whether it names what is changed, found or None over several values)."""
+    for what, group in groups:
+        if len(group) == 1:
+            ((to, found),) = group
+            yield f"{what}: {to}", True, found
+            continue
+        for to, found in reversed(group):
+            yield to, False, found
+        yield what, True, None
+
+
+def tornado(own, rows, targets, path):
+    """Bars from the scene's own value to that of each choice, the largest on top; total and recorded beside each other."""
+    lines = list(lines_of(ordered(own, rows, targets)))
+    plot, panels = figure.plt.subplots(1, 2, sharey=True, figsize=(figure.TWO_COLUMNS, 1.0 + 0.135 * len(lines)))
     for axes, key, label in ((panels[0], "total", "total"), (panels[1], "recorded", "since the first reading")):
         low, high = targets[f"{key}_mm"]
         if "misfit" in own:
             axes.axvspan(low, high, color="#d5eadb", linewidth=0, zorder=0)
         longest = 1.5 * high  # what goes beyond is cut, and says its value
-        for y, what in enumerate(order):
-            for i, (to, found) in enumerate(groups[what]):
-                height = 0.7 / len(groups[what])
-                at = y + 0.35 - (i + 0.5) * height
-                value = min(found[key], longest)
-                axes.barh(at, value - own[key], height=0.85 * height, left=own[key], zorder=2, linewidth=0.4,
-                          edgecolor="k", color=[figure.COLORS[0], figure.COLORS[4], figure.COLORS[5]][i % 3])
-                cut = found[key] > longest
-                if cut:  # two white strokes across the bar
-                    for back in (0.04, 0.07):
-                        axes.plot([value - (back + 0.015) * high, value - back * high], [at - height / 2, at + height / 2],
-                                  color="w", linewidth=1.2, zorder=3)
-                text = " ".join(([to] if key == "total" else []) + ([f"to {found[key]:.0f} mm"] if cut else []))
-                rightward = value >= own[key]
-                axes.annotate(text, (value, at), xytext=(3 if rightward else -3, 0), textcoords="offset points", va="center",
-                              ha="left" if rightward else "right", fontsize=5.5, path_effects=figure.HALO, zorder=4)
+        for y, (*_, found) in enumerate(lines):
+            if found is None:
+                continue
+            value = min(found[key], longest)
+            axes.barh(y, value - own[key], height=0.7, left=own[key], zorder=2, linewidth=0.4, edgecolor="k",
+                      color=BAR if "networks" in found else SPREAD)
+            if found[key] > longest:
+                for back in (0.04, 0.07):  # two white strokes across the bar
+                    axes.plot([value - (back + 0.015) * high, value - back * high], [y - 0.4, y + 0.4], color="w",
+                              linewidth=1.2, zorder=3)
+                axes.annotate(f"to {found[key]:.0f}", (value, y), xytext=(2, 0), textcoords="offset points", va="center",
+                              fontsize=5.5, zorder=4)
         axes.axvline(own[key], color="k", linewidth=0.8, zorder=3)
         axes.set_xlabel(f"{label} (mm)")
-    panels[0].set_xlim(-0.85 * targets["total_mm"][1], 2.35 * targets["total_mm"][1])  # room for the words
-    panels[0].set_xticks(np.arange(0, 1.5 * targets["total_mm"][1], 30))
-    panels[1].set_xlim(0, 2.35 * targets["recorded_mm"][1])
-    panels[0].set_yticks(range(len(order)), order)
-    panels[0].set_ylim(-0.6, len(order) - 0.4)
-    entries = [matplotlib.lines.Line2D([], [], color="k", linewidth=0.8, label="the scene as it is")]
+        axes.set_xlim(0, 1.75 * high)  # room for the words
+    panels[0].set_yticks(range(len(lines)), [text for text, *_ in lines])
+    panels[0].set_ylim(-0.7, len(lines) - 0.3)
+    for axes in panels:
+        axes.tick_params(axis="y", length=0)
+    for tick, (_, names, _) in zip(panels[0].get_yticklabels(), lines):
+        tick.set(fontsize=6, weight="bold" if names else "normal")
+    number = f"{own['networks']} network{'s' if own['networks'] > 1 else ''}"
+    entries = [matplotlib.lines.Line2D([], [], color="k", linewidth=0.8, label="the scene as it is"),
+               matplotlib.patches.Patch(facecolor=BAR, edgecolor="k", linewidth=0.4, label=f"changed, {number}")]
+    if any(found and "networks" not in found for *_, found in lines):
+        entries.append(matplotlib.patches.Patch(facecolor=SPREAD, edgecolor="k", linewidth=0.4, label="spread of the networks"))
     if "misfit" in own:
         entries.append(matplotlib.patches.Patch(facecolor="#d5eadb", label="the paper's range"))
     below = 0.3 / plot.get_figheight()
     plot.get_layout_engine().set(rect=(0, below, 1, 1 - below))
-    plot.legend(handles=entries, loc="lower center", ncol=2)
+    plot.legend(handles=entries, loc="lower center", ncol=len(entries))
     figure.save(plot, path)
 
 
@@ -276,13 +324,13 @@ def main():
     for choice in choices[1:]:
         found = summary(results[choice], targets, below)
         rows.append((*CHOICES[choice][:2], found or results[choice][0]["failed"]))
-    for days in SHIFTS.values():
+    for days in [] if arguments.choice else SHIFTS.values():
         rows.append(("first readings", f"{abs(days)} days {'later' if days > 0 else 'earlier'}",
                      summary(results["scene"], targets, below, days)))
     several = ([read(path) for path in sorted(arguments.realizations.glob("*.h5"))] if arguments.realizations
                else results["scene"])
     each = summary(several, targets, below)["each"]
-    if len(each[0]) > 1:
+    if len(each[0]) > 1 and not arguments.choice:
         rows += spread(own, each)
     text = io.StringIO()
     out = csv.writer(text, lineterminator="\n")

@@ -216,6 +216,13 @@ def domain(scene, half, bottom):
     return change
 
 
+def zone_size(metres):
+    def change(table, _, key, __):
+        return metres if (table, key) == ("zones", "size_m") else None
+
+    return change
+
+
 def first_reading(days):
     def change(table, _, key, value):
         return value + datetime.timedelta(days) if (table, key) == ("point", "first_reading") else None
@@ -282,7 +289,7 @@ def changes_of(arguments, scene):
                        ("rule", rule), ("table_2", table_2), ("stiffness_times", stiffness),
                        ("kelvin_times", kelvin), ("youngs_modulus", youngs_modulus),
                        ("box", lambda of: box(scene, *of)), ("domain", lambda of: domain(scene, *of)),
-                       ("first_reading_days", first_reading), ("linear", linear)):
+                       ("zone_size", zone_size), ("first_reading_days", first_reading), ("linear", linear)):
         if given[name] not in (None, False):
             yield make(given[name])
 
@@ -292,6 +299,9 @@ def variant(text, arguments):
         text = edited(text, change)
     if arguments.no_creep:
         text = re.sub(r"^\[creep\]\n(?:[a-z].*\n)*", "", text, flags=re.MULTILINE)
+    if arguments.section_b:
+        text = ("# Section B-B (chamber 3): the scene of section A-A, below, with its elevations moved. What comments say of places\n"
+                "# and sources is section A-A's.\n#\n" + text)
     return text
 
 
@@ -307,6 +317,7 @@ def main():
     parser.add_argument("--youngs-modulus", choices=["low", "high"], help="ends of Table 1's ranges")
     parser.add_argument("--box", type=float, nargs=2, metavar=("HALF", "BOTTOM"), help="where joints are, in m")
     parser.add_argument("--domain", type=float, nargs=2, metavar=("HALF", "BOTTOM"), help="sides and base, in m")
+    parser.add_argument("--zone-size", type=float, metavar="M", help="at the faces that are dug")
     parser.add_argument("--first-reading-days", type=int, metavar="DAYS", help="later than in the scene")
     parser.add_argument("--linear", action="store_true", help="joints that neither slip nor open")
     parser.add_argument("--no-creep", action="store_true", help="without the table [creep]")

@@ -1,10 +1,11 @@
 #!/usr/bin/python3
 """What halving the zone size, the creep step (or its tolerance) and the tolerance changes.
 
-    convergence.py PROGRAMS JOINTS.h5 [--engine ENGINE] -o OUT
+    convergence.py PROGRAMS JOINTS.h5 [--engine ENGINE] [--component x] [--readings] -o OUT
 
 runs demsolve with the scene's own choices and with each of the three halved, and compares the displacements of every
-measuring point on every recorded day, from the first row on which the point is there to the last. In OUT it writes
+measuring point on every recorded day, from the first row on which the point is there to the last: vectors, or one component of
+them; with --readings also those since each point's first reading, from there on. In OUT it writes
     convergence.md    the largest change of each point, and what the runs cost, as tables
     convergence.csv   the same changes, and where each is largest
 Result files are removed. A run that finds no equilibrium, or is refused, is named with its reason in place of its
@@ -19,6 +20,7 @@ days, and rows 7 days apart, the cubic is right to 4e-6 of what creeps, the para
 
 import argparse
 import csv
+import dataclasses
 import io
 import os
 import pathlib
@@ -28,7 +30,6 @@ import sys
 import tempfile
 import time
 import tomllib
-from dataclasses import dataclass
 
 import h5py
 import numpy as np
@@ -45,13 +46,14 @@ class NotWanted(Exception):
     """A run, or a file, is not what the comparison needs."""
 
 
-@dataclass
+@dataclasses.dataclass
 class Run:
     label: str
     reason: str = ""  # why there is no result
     time: np.ndarray | None = None  # [row] [day]
     displacement: np.ndarray | None = None  # [row, point, 2] [m]
     present: np.ndarray | None = None  # [row, point]
+    first: np.ndarray | None = None  # [point] row of its first reading
     points: tuple = ()
     stages: np.ndarray | None = None  # [row] how many there have been
     dates: np.ndarray | None = None  # on which something happens [day]
@@ -78,10 +80,13 @@ def default_of(programs, table, key):
     return None
 
 
-def read(path, run):
+def read(path, run, component=None):
     with h5py.File(path) as file:
         run.time = file["/history/time"][()]
         run.displacement = file["/history/displacement"][()]
+        if component:
+            run.displacement[:, :, "yx".index(component)] = 0
+        run.first = file["/history/first_reading_row"][()]
         run.present = file["/history/present"][()] == 1
         run.points = tuple(text_of(name) for name in file["/history/point"][()])
         run.stages = np.cumsum([bool(text_of(name)) for name in file["/history/event"][()]])
@@ -92,7 +97,17 @@ def read(path, run):
         run.steps = int(file["/equilibria/steps"][()].sum())
 
 
-def solved(programs, joints, label, options):
+def since_first_reading(run):
+    """The run with displacements that count from each point's first reading, before which there are none."""
+    if run.reason:
+        return run
+    rows = np.arange(len(run.time))[:, None]
+    points = np.arange(len(run.points))
+    return dataclasses.replace(run, displacement=run.displacement - run.displacement[run.first, points],
+                               present=run.present & (rows >= run.first))
+
+
+def solved(programs, joints, label, options, component=None):
     """A run of demsolve."""
     run = Run(label)
     with tempfile.TemporaryDirectory(prefix="jointcreep-") as folder:
@@ -103,7 +118,7 @@ def solved(programs, joints, label, options):
         after = resource.getrusage(resource.RUSAGE_CHILDREN)
         run.seconds = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
         if done.returncode == 0:
-            read(result, run)
+            read(result, run, component)
         else:
             run.reason = f"exit code {done.returncode}: {' '.join(done.stderr.split())}"
     return run
@@ -178,9 +193,10 @@ def percent(change, move):
     return f"{100 * change / move:.2g} %" if move > 0 else "-"
 
 
-def markdown(own, others):
+def changes_table(own, others, what):
+    """Lines of Markdown: what each run changes at each point."""
     heads = " | ".join(run.label for run in others)
-    lines = [f"| point | displacement, largest (mm) | {heads} |", "|---" * (2 + len(others)) + "|"]
+    lines = [f"| point | {what}, largest (mm) | {heads} |", "|---" * (2 + len(others)) + "|"]
     for point, name in enumerate(own.points):
         move = largest_move(own, point)
         cells = []
@@ -191,6 +207,14 @@ def markdown(own, others):
             change, _ = largest_change(own, run, point)
             cells.append(f"{1e3 * change:.2g} mm, {percent(change, move)}")
         lines.append(f"| {name} | {1e3 * move:.3f} | {' | '.join(cells)} |")
+    return lines
+
+
+def markdown(own, others, what, readings):
+    lines = changes_table(own, others, what)
+    if readings:
+        lines += ["", *changes_table(since_first_reading(own), [since_first_reading(run) for run in others],
+                                     f"{what} since the first reading")]
     lines += ["", "| run | zones | contacts | equilibria | solver steps | processor time (s) | interpolation (mm) |",
               "|---" * 7 + "|"]
     for run in [own, *others]:
@@ -227,6 +251,8 @@ def main():
     parser.add_argument("programs", metavar="PROGRAMS", type=pathlib.Path)
     parser.add_argument("joints", metavar="JOINTS.h5", type=pathlib.Path)
     parser.add_argument("--engine", help="handed on to demsolve")
+    parser.add_argument("--component", choices=["x", "y"], help="of the displacements; default: vectors")
+    parser.add_argument("--readings", action="store_true", help="displacements since first readings, too")
     parser.add_argument("-o", "--output", metavar="OUT", type=pathlib.Path, required=True)
     arguments = parser.parse_args()
     engine = ["--engine", arguments.engine] if arguments.engine else []
@@ -244,12 +270,13 @@ def main():
         found = []
         for label, options in runs:
             start = time.monotonic()
-            found.append(solved(arguments.programs, arguments.joints, label, [*engine, *options]))
+            found.append(solved(arguments.programs, arguments.joints, label, [*engine, *options], arguments.component))
             if found[0].reason:
                 raise NotWanted(f"{label}: {found[0].reason}")
             print(f"{label}: {found[-1].reason or f'{time.monotonic() - start:.0f} s'}", flush=True)
         own, *others = found
-        words = markdown(own, others)
+        what = {None: "displacement", "x": "horizontal displacement", "y": "vertical displacement"}[arguments.component]
+        words = markdown(own, others, what, arguments.readings)
         written(arguments.output / "convergence.md", words)
         written(arguments.output / "convergence.csv", table(own, others))
     except (NotWanted, subprocess.CalledProcessError) as error:

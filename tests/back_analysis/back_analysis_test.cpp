@@ -285,3 +285,48 @@ TEST(back_analysis, rock_that_is_gone_has_no_readings)
             << error.what();
     }
 }
+
+// Toward the readings the first step goes to the lower bound, where joints are so soft that rock would move
+// by more than the section allows.
+TEST(back_analysis, turns_back_from_where_there_is_no_equilibrium)
+{
+    const JointedSection section;
+    const std::vector<Truth> truth{{Parameter::joint_stiffness, 0.08}};
+    back_analysis::Settings settings = settings_for(truth);
+    settings.factors[0].low = 1e-6;
+    const Found found =
+        back_analysis::fit(section.scene, section.network, section.joints, made(section, truth), settings);
+    EXPECT_TRUE(found.minimum.is_converged);
+    EXPECT_NEAR(found.factors[0] / 0.08, 1, 1e-5);
+    ASSERT_FALSE(found.without_answer.empty());
+    EXPECT_LT(found.without_answer[0].factors[0], 0.01);
+    EXPECT_NE(found.without_answer[0].reason.find("no equilibrium"), std::string::npos)
+        << found.without_answer[0].reason;
+}
+
+// With the viscosity that the readings want the published scheme's step is too long: that is no fit.
+TEST(back_analysis, says_that_it_could_not_go_where_the_readings_want_it)
+{
+    JointedSection section;
+    section.scene.creep->scheme = CreepScheme::published;
+    section.scene.creep->step = 0.25 * day;
+    const std::vector<Truth> truth{{Parameter::kelvin_viscosity, 0.1}};
+    JointedSection fitted;
+    const Found found = back_analysis::fit(section.scene, section.network, section.joints,
+                                           made(fitted, truth), settings_for(truth));
+    EXPECT_FALSE(found.minimum.is_converged);
+    ASSERT_FALSE(found.without_answer.empty());
+    EXPECT_NE(found.without_answer[0].reason.find("stable only below"), std::string::npos)
+        << found.without_answer[0].reason;
+}
+
+TEST(back_analysis, too_few_runs_are_no_fit)
+{
+    const JointedSection section;
+    back_analysis::Settings settings = settings_for(three);
+    settings.most_runs = 2;
+    const Found found =
+        back_analysis::fit(section.scene, section.network, section.joints, made(section, three), settings);
+    EXPECT_FALSE(found.minimum.is_converged);
+    EXPECT_EQ(found.minimum.evaluations, 2);
+}

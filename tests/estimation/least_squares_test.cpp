@@ -96,6 +96,56 @@ TEST(least_squares, goes_round_where_there_is_no_answer)
     EXPECT_THROW(minimise(nowhere, vector({0, 0}), vector({-1, -1}), vector({1, 1})), input_error);
 }
 
+TEST(least_squares, too_few_evaluations_are_no_end)
+{
+    const Minimum found =
+        minimise(valley, vector({-1.2, 1}), vector({-none, -none}), vector({none, none}), 3);
+    EXPECT_EQ(found.evaluations, 3);
+    EXPECT_FALSE(found.is_converged);
+    EXPECT_FALSE(found.has_stalled);
+    EXPECT_GT(found.left.norm(), 0.1);
+}
+
+// A line whose derivatives have the wrong sign, and one that has an answer at its start alone: no step
+// lessens the sum, though it is not the least.
+TEST(least_squares, standing_still_is_no_end)
+{
+    const VectorXd x = vector({1, 2, 3, 4, 5}), y = vector({2, 3, 5, 4, 6});
+    const Model right = line(x, y),
+                turned =
+                    [&](const VectorXd&p) {
+                        std::optional<Evaluation> at = right(p);
+                        at->jacobian *= -1;
+                        return at;
+                    },
+                alone = [&](const VectorXd&p) { return p.isZero() ? right(p) : std::nullopt; };
+    for (const Model& model : {turned, alone}) {
+        const Minimum found = minimise(model, vector({0, 0}), vector({-9, -9}), vector({9, 9}));
+        EXPECT_FALSE(found.is_converged);
+        EXPECT_TRUE(found.has_stalled);
+        EXPECT_EQ(found.parameters, vector({0, 0}));
+    }
+}
+
+// Steps below a tenth of a standard error may fail by the model's roughness.
+TEST(least_squares, roughness_within_a_tenth_of_a_standard_error_is_an_end)
+{
+    const VectorXd x = vector({1, 2, 3, 4, 5}), y = vector({2, 3, 5, 4, 6});
+    for (const double off : {0.02, 2.0}) {
+        const Minimum best = minimise(line(x, y), vector({0, 0}), vector({-9, -9}), vector({9, 9}));
+        const VectorXd start = best.parameters + vector({off, 0});
+        const Model rough = [&](const VectorXd& p) -> std::optional<Evaluation> {
+            std::optional<Evaluation> at = line(x, y)(p);
+            if (p != start)
+                at->residual *= 10;
+            return at;
+        };
+        const Minimum found = minimise(rough, start, vector({-9, -9}), vector({9, 9}));
+        EXPECT_EQ(found.is_converged, off < 1);
+        EXPECT_EQ(found.has_stalled, off > 1);
+    }
+}
+
 TEST(least_squares, leaves_alone_what_has_no_effect)
 {
     const auto flat = [](const VectorXd& p) -> std::optional<Evaluation> {

@@ -223,6 +223,23 @@ TEST(implicit_equilibrium, a_block_on_an_incline_rests_below_the_friction_angle)
     }
 }
 
+// With a loose tolerance something is left to go, and the certificate says how much.
+TEST(implicit_equilibrium, what_is_left_to_go)
+{
+    const Section loaded = plate({1e5, 0}, {0, -1e5}, 20 * deg, 0, 0);
+    Section s = loaded, tight = loaded;
+    Equilibrium loose = settings();
+    loose.tolerance = 1e-2;
+    implicit::Engine engine;
+    const auto certificate = engine.equilibrate(s.assembly, loose);
+    ASSERT_TRUE(certificate);
+    found(tight.assembly);
+    const double left = mechanics::farthest_move(s.assembly.displacement, tight.assembly.displacement).first;
+    EXPECT_GT(left, 1e-9);
+    EXPECT_GT(certificate->to_go, left / 2);
+    EXPECT_LT(certificate->to_go, 2 * left);
+}
+
 TEST(implicit_equilibrium, a_block_on_an_incline_above_the_friction_angle_has_none)
 {
     for (const double dip : {30.1 * deg, 35 * deg, 60 * deg}) {

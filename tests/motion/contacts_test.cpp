@@ -43,7 +43,7 @@ struct TwoLines {
     }
 };
 
-Contacts contacts_of(const TwoLines& lines, const joint::Coulomb& law = {k_n, k_s, 0, friction, 0})
+Contacts contacts_of(const TwoLines& lines, const joint::Law& law = joint::Coulomb{k_n, k_s, 0, friction, 0})
 {
     Contacts contacts({law});
     contacts.set_faces(lines.faces, {}, lines.place);
@@ -294,6 +294,60 @@ TEST(contacts, slip_weakens)
         // What slides on to the next face leaves its shear there: 1e-5 m at some ends of faces in the last
         // step.
         EXPECT_NEAR(sum, tau * 3.25, 5e-5 * peak * 3.25) << slid;
+    }
+}
+
+// Barton and Bandis's law over a contact that closes evenly: its formulas times the length.
+TEST(contacts, an_even_closing_presses_by_barton_and_bandiss_formulas)
+{
+    const joint::BartonBandis law{1e10, k_s, 2e-4, 0.5, 10, 1e8};
+    const double p_at[] = {1e5, 5e6, 6e7, 2e8}, length = 3.25;
+    for (const double p : p_at) {
+        TwoLines lines = rows(law.closure(p));
+        Contacts contacts = contacts_of(lines, law);
+        std::vector<Vector2d> move(lines.place.size(), Vector2d::Zero());
+        contacts.update(lines.place, move, 1, 0, 1);
+        EXPECT_NEAR(contacts.stiffest() / law.stiffness(p), 1, 1e-9);
+        double stored = 0;
+        for (const motion::Pair& pair : contacts.pairs())
+            stored += pair.stored();
+        EXPECT_NEAR(stored / (law.stored(p) * length), 1, 1e-9);
+        for (std::size_t g = 5; g < lines.place.size(); ++g)
+            lines.place[g] += move[g] = {0.5, 0};
+        contacts.update(lines.place, move, 1, 0, 1);
+        Vector2d sum(0, 0);
+        const std::vector<Vector2d> force = forces_of(contacts, lines.place.size());
+        for (std::size_t g = 5; g < force.size(); ++g)
+            sum += force[g];
+        EXPECT_NEAR(sum.y() / (p * length), 1, 1e-9) << p;
+        EXPECT_NEAR(-sum.x() / std::min(law.strength(p) * length, k_s * 0.5 * length), 1, 1e-9) << p;
+    }
+}
+
+// Wedged open, over a face 3 m long that goes from no closing to that at the pressure p: against the integral
+// by a million points. Five points miss least where the curve is nearly straight.
+TEST(contacts, an_uneven_closing_is_summed_up_at_five_points)
+{
+    const joint::BartonBandis law{1e10, k_s, 2e-4, 0.5, 10, 1e8};
+    struct Case {
+        double p, off; // [Pa], [-]
+    };
+    for (const auto& [p, off] : {Case{1e6, 1e-5}, Case{5e6, 1e-3}, Case{2e7, 2e-2}}) {
+        const double deepest = law.closure(p);
+        TwoLines lines({{4, 0}, {-1, 0}}, {{0, -deepest}, {3, 0}});
+        Contacts contacts = contacts_of(lines, law);
+        const std::vector<Vector2d> still(lines.place.size(), Vector2d::Zero());
+        contacts.update(lines.place, still, 1, 0, 1);
+        const std::vector<Vector2d> force = forces_of(contacts, lines.place.size());
+        double first = 0, second = 0;
+        constexpr int n = 1000000;
+        for (int i = 0; i < n; ++i) {
+            const double at = (i + 0.5) / n, pressure = law.pressure(deepest * (1 - at));
+            first += 3.0 / n * pressure * (1 - at);
+            second += 3.0 / n * pressure * at;
+        }
+        EXPECT_NEAR(force[2].y() / first, 1, off) << p;
+        EXPECT_NEAR(force[3].y() / second, 1, off) << p;
     }
 }
 

@@ -68,6 +68,31 @@ class Creepfit(ChainTest):
         for row in rows.values():
             self.assertAlmostEqual(float(row["value"]), 1, delta=1e-5)
 
+    def test_what_has_not_converged_is_no_fit(self):
+        """It is refused, quiet or not; the best so far is kept under another name, and says so."""
+        folder = self.chain.new_folder()
+        files = "-o", folder / "factors.csv", "--readings", folder / "fitted.csv"
+        command = [self.joints, "--measurements", self.readings(), "--fit", ",".join(TRUTH), *files]
+        for more in [], ["-q"]:
+            done = self.chain.answer("creepfit", *command, "--runs", "2", *more)
+            self.assertEqual((done.returncode, done.stdout), (3, ""))
+            for words in "no fit was found in 2 runs", "wanted more --runs", str(folder / "factors.failed.csv"):
+                self.assertIn(words, done.stderr)
+            self.assertEqual({path.name for path in folder.iterdir()}, {"factors.failed.csv", "fitted.failed.csv"})
+            for row in table(folder / "factors.failed.csv"):
+                self.assertEqual((row["converged"], row["runs"]), ("no", "2"))
+        rows, _, _ = self.found(command[2])
+        for name, row in rows.items():
+            self.assertEqual(row["converged"], "yes")
+            self.assertLess(float(row["chi_squared"]), 2 * float(row["degrees_of_freedom"]))
+            self.assertLess(abs(float(row["value"]) / TRUTH[name] - 1), 0.5)
+        named = folder / "other.failed.csv"
+        named.write_bytes(command[2].read_bytes())
+        done = self.chain.answer("creepfit", self.joints, "--measurements", named, "--fit", "joint-stiffness",
+                                 "-o", folder / "other.csv")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("would be written there", done.stderr)
+
     def test_bounds(self):
         rows, text, _ = self.found(self.readings(), fit="joint-stiffness=0.9:1.1,kelvin-viscosity")
         self.assertEqual((rows["joint-stiffness"]["at_bound"], rows["joint-stiffness"]["low_95"]), ("high", ""))

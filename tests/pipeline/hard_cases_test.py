@@ -435,5 +435,57 @@ class Creep(ChainTest):
             self.assertGreater(checked, 5)
 
 
+class ThickBlock(ChainTest):
+    """A stiff block of 10 m on a joint at an angle b, with its weight acting at its centre: pressed from above by the part
+    across the joint, pushed at its upper end by the part along it, W per area of the joint. It cannot slip. It slides by
+    W sin(b) / K_s and rocks, by h / 2 for the centre; contacts at n + 1 gridpoints resist that 1 + 2 / n^2 as much as the
+    joint all along."""
+
+    LENGTH, WEIGHT, NORMAL, SHEAR = 10, 0.1e6, 100e6, 40e6
+    CASES = ("implicit", 1), ("implicit", 5), ("implicit", 8), ("explicit", 5)
+
+    def solved(self, height, slope, engine, tension):
+        c, s = math.cos(slope), math.sin(slope)
+
+        def at(*places):
+            return [[c * x - s * y, s * x + c * y] for x, y in places]
+
+        length, weight = self.LENGTH, self.WEIGHT / 1e6
+        corners = at([0, 0], [length, 0], [length, height], [0, height])
+        push = weight * s * length / height
+        loaded = [{"from_m": corners[i], "to_m": corners[j], "traction_MPa": [float(t) for t in traction],
+                   "course": [[0, 0], [1, 1]]}
+                  for i, j, traction in ((1, 2, [-push * c, -push * s]), (2, 3, [weight * c * s, -weight * c * c]))]
+        text = scene(corners, [], [{"from_m": corners[0], "to_m": corners[1], "joint": "joint"}, *loaded],
+                     [material("joint", self.NORMAL / 1e6, self.SHEAR / 1e6, cohesion=100, tension=tension)], gravity=0, modulus=1e4,
+                     points=at([length / 2, height / 2]), zone=1)
+        data = solved(self.chain, text, "--engine", engine, "--tolerance", "1e-8")
+        n = len(data["/mesh/contact_edge"]) - 1
+        return data, np.array([c, s]), 1 + 2 / n**2
+
+    def test_slides_and_rocks(self):
+        """(1 + 3 (h/L)^2 K_s/K_n) times as far as a thin one. The rock gives by K_n L / E = 1e-4."""
+        b = math.radians(20)
+        for engine, height in self.CASES:
+            with self.subTest(engine=engine, height=height):
+                data, uphill, firmer = self.solved(height, b, engine, 100)
+                rocking = 3 * (height / self.LENGTH)**2 * self.SHEAR / self.NORMAL / firmer
+                wanted = -self.WEIGHT * math.sin(b) / self.SHEAR * (1 + rocking)
+                self.assertAlmostEqual(data["/history/displacement"][-1, 0] @ uphill / wanted, 1, delta=3e-4)
+
+    def test_opens_at_its_upper_edge(self):
+        """From tan(b) = L / (3 h) on."""
+        firmer = 1 + 2 / 16**2
+        for engine, height in self.CASES[1:]:
+            for share in 0.998, 1.002:
+                with self.subTest(engine=engine, height=height, share=share):
+                    slope = math.atan(share * firmer * self.LENGTH / (3 * height))
+                    data, uphill, found = self.solved(height, slope, engine, 0)
+                    self.assertEqual(found, firmer)
+                    status = data["/states/contact_status"][-1]
+                    upper = (data["/mesh/contact_centre"] @ uphill).argmax()
+                    self.assertEqual(np.flatnonzero(status == OPEN).tolist(), [upper] if share > 1 else [])
+
+
 if __name__ == "__main__":
     main()

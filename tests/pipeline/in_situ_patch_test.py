@@ -34,9 +34,9 @@ class InSituPatch(ChainTest):
         for realization in range(4):
             with self.subTest(realization=realization):
                 joints = self.chain.joints(text, "--realization", realization)
-                for tolerance in "1e-6", "1e-12":
-                    result = self.assert_rests(
-                        self.chain.run("demsolve", joints, joints.with_name(tolerance), "--tolerance", tolerance))
+                for engine, tolerance in ("auto", "1e-6"), ("implicit", "1e-12"), ("explicit", "1e-12"):
+                    result = self.assert_rests(self.chain.run(
+                        "demsolve", joints, joints.with_name(engine), "--tolerance", tolerance, "--engine", engine))
                 blocks = len(result["/blocks/area"])
                 self.assertTrue(210 <= blocks <= 390, f"{blocks} blocks, not 300 by and large")
                 fraction = result["/edges/joint_fraction"][result["/edges/kind"] == 1]
@@ -58,6 +58,21 @@ class InSituPatch(ChainTest):
         text = changed(text, "^shear_xy_MPa = 1.5", "shear_xy_MPa = 0")
         text = changed(text, r'^\[\[boundary\]\]\nfrom_m = \[60, 40\]\nto_m = \[0, 40\]\nfix = "xy"\n', "")
         self.assert_rests(self.chain.result(text))
+
+    def test_a_load_comes_and_goes(self):
+        """On the free surface, and joints hold: an engine moves, and comes back to where nothing had moved."""
+        text = changed(self.chain.text("tests/pipeline/patch.toml"), "^compression_yy_MPa = 4", "compression_yy_MPa = 0")
+        text = changed(text, "^shear_xy_MPa = 1.5", "shear_xy_MPa = 0")
+        text = changed(text, "^tensile_strength_MPa = 0", "tensile_strength_MPa = 10")
+        text = changed(text, r'^from_m = \[60, 40\]\nto_m = \[0, 40\]\nfix = "xy"\n',
+                       "from_m = [60, 40]\nto_m = [0, 40]\ntraction_MPa = [0.3, -0.5]\ncourse = [[0, 0], [1, 1], [2, 0]]\n")
+        for engine in "implicit", "explicit":
+            with self.subTest(engine=engine):
+                result = datasets(self.chain.result(text, "--no-creep", "--engine", engine, "--tolerance", "1e-8"))
+                loaded, back = (numpy.abs(result["/states/displacement"][result["/states/time"] == day]).max()
+                                for day in (1, 2))
+                self.assertGreater(loaded, 1e-4)
+                self.assertLess(back, 1e-5 * loaded)
 
     def test_uniform_by_a_profile_below_uneven_ground(self):
         level = "{ depth_m = %d, compression_xx_MPa = 6, compression_yy_MPa = 4, shear_xy_MPa = 1.5 }"

@@ -140,6 +140,31 @@ class Plots(ChainTest):
         self.assertLess(low, 7)
         self.assertGreater(high, 7)
 
+    def test_blocks_wholly_in_the_window(self):
+        """They make the scale of sizes; if there is none, all blocks do."""
+        import figure
+        import plot_blocks
+
+        def square(x, y, side):
+            return figure.matplotlib.path.Path([[x, y], [x + side, y], [x + side, y + side], [x, y + side], [x, y]])
+
+        squares = [square(1, 1, 2), square(0, 0, 10), square(8, 1, 3), square(-100, -100, 300), square(20, 20, 1)]
+        for window, whole in (((0, 0, 10, 10), [True, True, False, False, False]), ((4, 4, 5, 5), [True] * 5)):
+            _, axes = figure.section_axes(None, window)
+            self.assertEqual(plot_blocks.whole_blocks(squares, axes).tolist(), whole)
+
+    def test_many_stages_share_an_entry_of_the_legend(self):
+        import figure
+        import plot_section
+
+        for count, entries in ((8, 8), (9, 1)):
+            stages = [{"name": f"lift {i}", "date": i, "remove_m": [[[0, i], [5, i], [5, i + 1], [0, i + 1]]]}
+                      for i in range(count)]
+            _, axes = figure.section_axes(None, (0, 0, 5, 9))
+            inside = axes.add_patch(figure.matplotlib.patches.Polygon([[0, 0], [5, 0], [5, 9], [0, 9]]))
+            self.assertEqual(len(plot_section.draw_stages({"stage": stages}, axes, inside)), entries)
+            self.assertEqual([text.get_text() for text in axes.texts], [str(i + 1) for i in range(count)])
+
 
 if __name__ == "__main__":
     main()

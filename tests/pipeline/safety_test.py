@@ -1,11 +1,13 @@
 """Factors of safety against closed forms, and what is left of a run that finds no equilibrium."""
 
 import math
+import re
 
 import h5py
 import numpy as np
 from chain import ChainTest, changed, datasets, main
 from events_test import WEDGE
+from small_scene import held, joint, material, scene
 
 DIP = math.radians(25)  # of data/verification/incline: a block of 10 m x 1 m, loaded by 1 MPa straight down
 SMOOTH = """
@@ -183,16 +185,29 @@ class Safety(ChainTest):
             self.assertIn(said, done.stderr)
 
     def test_strength_that_is_not_divided_is_refused(self):
-        for table, keys, said in (("[[joint_material]]", "joint_roughness_coefficient = 5\njoint_wall_strength_MPa = 50\n"
-                                                         "largest_closure_mm = 1", "Barton and Bandis's law"),
-                                  ("[[rock]]", 'law = "Mohr-Coulomb"\ncohesion_MPa = 9\nfriction_angle_deg = 40\n'
-                                               "tensile_strength_MPa = 9", 'rock "rock" yields')):
-            joints = self.chain.joints(HANGING.replace(table, f"{table}\n{keys}"))
-            for options in (("--strength-factor", "2"), ("--factor-of-safety",)):
-                done = self.chain.answer("demsolve", joints, "-o", joints.with_name("result.h5"), *options)
-                self.assertEqual(done.returncode, 2, options)
-                self.assertIn(f"{options[0]}: ", done.stderr)
-                self.assertIn(said, done.stderr)
+        rough = "joint_roughness_coefficient = 5\njoint_wall_strength_MPa = 50\nlargest_closure_mm = 1"
+        joints = self.chain.joints(HANGING.replace("[[joint_material]]", f"[[joint_material]]\n{rough}"))
+        for options in (("--strength-factor", "2"), ("--factor-of-safety",)):
+            done = self.chain.answer("demsolve", joints, "-o", joints.with_name("result.h5"), *options)
+            self.assertEqual(done.returncode, 2, options)
+            self.assertIn(f"{options[0]}: ", done.stderr)
+            self.assertIn("Barton and Bandis's law", done.stderr)
+
+    def test_rock_that_yields(self):
+        """A block squeezed from above, free at its sides, bears 2 c (t + sqrt(1 + t^2)), t = tan(phi); with c / F and t / F
+        for c and t as much as the load q, from which F = 2 c sqrt(1 + q t / c) / q."""
+        cohesion, friction, load = 1.0, math.tan(math.radians(30)), 2.0  # [MPa]
+        strength = (f'law = "Mohr-Coulomb"\ncohesion_MPa = {cohesion}\nfriction_angle_deg = 30\ntensile_strength_MPa = 1\n'
+                    "dilation_angle_deg = 0\n")
+        text = scene([[0, 0], [1, 0], [1, 2], [0, 2]], [],
+                     [held([0, 0], [1, 0], "y"), held([0, 0], [0, 2], "x"),
+                      {"from_m": [1, 2], "to_m": [0, 2], "traction_MPa": [0, -load], "course": [[0, 0], [1, 1]]}],
+                     [material("joint", 1000)], gravity=0, poisson=0.2)
+        text = changed(text, r"^poissons_ratio = 0.2\n", "poissons_ratio = 0.2\n" + strength)
+        factor = 2 * cohesion * math.sqrt(1 + load * friction / cohesion) / load
+        reduced = friction / factor  # the load by the other formula
+        self.assertAlmostEqual(2 * cohesion / factor * (reduced + math.hypot(1, reduced)), load)
+        self.assert_factor(factor, text)
 
 
 class NoEquilibrium(ChainTest):
@@ -259,6 +274,42 @@ class NoEquilibrium(ChainTest):
         done = self.chain.answer("jointexport", path, "-o", exported)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertRegex(done.stdout, "warning: ended early +no equilibrium")
+
+    def test_small_displacements_end_at_a_tenth_of_the_section(self):
+        """A joint would close by 10 m in a section of 6 m. No increment is large where they are halved."""
+        loaded = {"from_m": [2, 6], "to_m": [0, 6], "traction_MPa": [0, -0.1], "course": [[0, 0], [1, 1]]}
+        text = scene([[0, 0], [2, 0], [2, 6], [0, 6]], [joint("soft", [-1, 2], [3, 2])], [held([0, 0], [2, 0]), loaded],
+                     [material("joint", 0.01)], gravity=0)
+        for engine, said in (("auto", "since the in-situ state, by more than a tenth of the section"),
+                             ("implicit", "more than a tenth of the section"), ("explicit", "is still moving")):
+            message, path = self.failed(text, "--engine", engine)
+            self.assertIn(said, message)
+            found = abs(datasets(path)["/states/displacement"]).max()
+            self.assertLess(found, math.hypot(2, 6) / 10)
+            if engine == "auto":
+                self.assertGreater(found, 0.3, "it goes as far as that")
+                self.assertEqual(datasets(path)["/failure/moves_on"].tolist(), [0])
+
+    def test_rock_that_comes_to_rest_slowly_is_not_said_to_fall(self):
+        """The first quarter of a slow swing; next to no motion for damping; joints of 1 and 1e9 MPa/m in one stack."""
+        stack = [[0, 0], [2, 0], [2, 6], [0, 6]]
+        loaded = {"from_m": [2, 6], "to_m": [0, 6], "traction_MPa": [0, -0.1], "course": [[0, 0], [1, 1]]}
+        two = scene(stack, [joint("one", [-1, 2], [3, 2], "soft"), joint("other", [-1, 4], [3, 4], "hard")],
+                    [held([0, 0], [2, 0]), loaded], [material("soft", 1), material("hard", 1e9)], gravity=0)
+        corner = scene([[0, 0], [10, 0], [10, 10], [0, 10]], [joint("corner", [9.98, 10.01], [10.01, 9.98])],
+                       [{"from_m": [0, 0], "to_m": [10, 0], "joint": "joint"}, held([0, 0], [0, 10], "x"),
+                        held([10, 0], [10, 10], "x")], [material("joint", 10)], zone=5,
+                       more="[cutting]\nshortest_edge_m = 1e-4\n")
+        column = re.sub(r"(?s)^\[(equilibrium|creep)\].*?(?=^\[|\Z)", "", self.chain.text("data/column/scene.toml"),
+                        flags=re.MULTILINE)
+        steps = "[equilibrium]\nengine = \"explicit\"\nmost_steps = 60000\n"
+        damped = steps + 'masses = "real"\ndamping = "mass"\nmass_damping_per_s = '
+        for name, text in (("swing", corner + damped + "20\n"), ("damped", column + damped + "1e6\n"),
+                           ("soft and hard", two + steps)):
+            with self.subTest(name=name):
+                message, path = self.failed(text)
+                self.assertIn("after 60000 steps", message)
+                self.assertEqual(datasets(path)["/failure/moves_on"].tolist(), [0])
 
     def test_what_ends_without_an_answer_says_so(self):
         _, path = self.failed(WEDGE.format(end="[21, 14]") + '[equilibrium]\nengine = "explicit"\nmost_steps = 3000\n')

@@ -1,5 +1,6 @@
 """The shiplock's scene, its variants and the page: sources of every value, a coarse run, tables as their scripts write them."""
 
+import datetime
 import math
 import re
 import subprocess
@@ -40,6 +41,10 @@ class Shiplock(ChainTest):
         scene = tomllib.loads(self.chain.text(SCENE))
         self.assertEqual(len(scene["stage"]), 17)
         self.assertEqual(len(scene["point"]), 12)
+        self.assertEqual((scene["schedule"]["start"].year, scene["stage"][-1]["date"].year), (1994, 1999))
+        self.assertTrue(all(a["date"] < b["date"] for a, b in zip(scene["stage"], scene["stage"][1:])))
+        targets = tomllib.loads(self.chain.text("data/shiplock/targets.toml"))
+        self.assertEqual([point["name"] for point in targets["point"]], [point["name"] for point in scene["point"]])
         levels = scene["in_situ_stress"]["profile"]
         density = {rock["name"]: rock["density_kg_per_m3"] for rock in scene["rock"]}
         for level in levels:
@@ -58,6 +63,9 @@ class Shiplock(ChainTest):
             for key, value in zip(keys, wanted):
                 self.assertAlmostEqual(material[key] * float(k) / value, 1, delta=1e-5, msg=f"{material['name']} {key}")
         sets = {one["name"]: one for one in scene["joint_set"]}
+        import study
+        for name, spacing in (("J1", 6), ("J2", 6), ("J3", 8), ("J4", 12)):
+            self.assertAlmostEqual(sets[name]["spacing"]["mean_m"], spacing * study.TUNED, delta=1e-9)
         for name, one in sets.items():
             materials = {"fresh": one["material"], **{each["rock"]: each["material"] for each in one["material_in"]}}
             self.assertEqual(materials, {rock: f"{of}, k {one['persistence']}" for rock, of in
@@ -93,24 +101,34 @@ class Shiplock(ChainTest):
         floor = min(y for stage in lower["stage"] for polygon in stage["remove_m"] for _, y in polygon)
         self.assertEqual(floor, 92.2)
 
-    def coarse(self, *options):
-        """Displacements toward the lock [mm] at the end, of a scene of few large blocks in few creep steps."""
-        text = changed(self.variant("--spacing-times", "3"), r"^step_days = \S+", "step_days = 180")
-        result = datasets(self.chain.result(text, "--zone-size", "25", *options))
-        self.assertTrue((result["/equilibria/out_of_balance_ratio"] <= 1e-6).all())
-        position, moved = result["/history/point_position"], result["/history/displacement"][-1]
-        return dict(zip(result["/history/point"], -1e3 * numpy.sign(position[:, 0]) * moved[:, 0]))
+    def coarse(self, *variant):
+        """A result of few large blocks in few creep steps."""
+        text = changed(self.variant("--spacing-times", "3.1", *variant), r"^step_days = \S+", "step_days = 180")
+        return self.chain.result(text, "--zone-size", "25")
 
-    def test_points_move_toward_the_lock(self):
-        crept, at_once = self.coarse(), self.coarse("--no-creep")
-        self.assertEqual(len(crept), 12)
-        for name, moved in crept.items():
-            self.assertTrue(10 < moved < 150, f"{name}: {moved} mm")
-        self.assertGreater(sum(crept.values()), 1.05 * sum(at_once.values()))
+    def test_numbers_of_the_page(self):
+        """Realization 0 moves as in the page's table, with creep farther than without at every point."""
+        scene = self.chain.text(SCENE)
+        crept, at_once = (datasets(self.chain.result(scene, *options)) for options in ([], ["--no-creep"]))
+        page = self.chain.text("docs/shiplock.md")
+        table = re.search(r"<!-- convergence.md -->\n(.*?)<!-- end", page, flags=re.DOTALL)[1]
+        rows = dict(re.findall(r"\n\| ([NS]\d+) \| ([\d.]+) \|", table))
+        self.assertEqual(sorted(rows), sorted(crept["/history/point"]))
+        largest = numpy.abs(crept["/history/displacement"][:, :, 0]).max(axis=0)
+        for name, value in zip(crept["/history/point"], largest):
+            self.assertAlmostEqual(1e3 * value / float(rows[name]), 1, delta=1e-3, msg=name)
+        toward = -numpy.sign(crept["/history/point_position"][:, 0])
+        ends = [toward * one["/history/displacement"][-1, :, 0] for one in (crept, at_once)]
+        self.assertTrue((ends[0] > ends[1]).all(), ends)
+
+    def test_section_b_comes_to_rest(self):
+        result = datasets(self.coarse("--section-b"))
+        self.assertTrue((result["/equilibria/out_of_balance_ratio"] <= 1e-6).all())
+        self.assertTrue((-numpy.sign(result["/history/point_position"][:, 0]) * result["/history/displacement"][-1, :, 0]
+                         > 0.01).all())
 
     def test_pictures_and_table_of_one_network(self):
-        text = changed(self.variant("--spacing-times", "3"), r"^step_days = \S+", "step_days = 180")
-        result = self.chain.result(text, "--zone-size", "25")
+        result = self.coarse()
         targets = self.chain.source / "data" / "shiplock" / "targets.toml"
         for script, *options in (["plot_lock"], ["plot_lock", "--plan"],
                                  ["plot_records", "--side", "S", "--targets", targets, "--without", result],
@@ -143,7 +161,7 @@ class Shiplock(ChainTest):
         row = {"crest": False, **{key: numpy.array([50.0, 60, 70]) for key in
                                   ("total", "recorded", "before", "total_without", "recorded_without")}, "year": 0, "later": 0}
         ranges = {"total_mm": [60, 90], "recorded_mm": [20, 40]}
-        own = {"N215": {"crest": False, **ranges}}
+        own = {"N215": {"crest": False, "before_mm": [15, 40], **ranges}}
         for name, misfit in (("N215", "misfit 5.00."), ("N195", "no misfit")):  # squares of -1 and 3
             text = points.markdown([{**row, "name": name}], {"point": own, **ranges}, 2)
             self.assertIn(misfit, text)
@@ -157,6 +175,43 @@ class Shiplock(ChainTest):
         self.assertAlmostEqual(study.summary([result], targets, [0])["misfit"], 5)
         self.assertNotIn("misfit", study.summary([{**result, "names": ["N195"]}], targets, [0]))
 
+    def test_a_run_that_was_stopped_is_no_result(self):
+        """Killed or interrupted, a run leaves no file, and is made again; one that gave up leaves its reason."""
+        import study
+        for signal in ("INT", "KILL"):
+            with self.assertRaisesRegex(SystemExit, "stopped"):
+                study.run("/bin/sh", "-c", f"kill -{signal} $$")
+        with self.assertRaisesRegex(study.Failed, "exit code 3: falls"):
+            study.run("/bin/sh", "-c", "echo falls >&2; exit 3")
+        out = self.chain.new_folder()
+        (out / "runs").mkdir()
+        scene = self.chain.source / SCENE
+        programs = self.chain.new_folder()
+        for name in ("jointgen", "strength-averaging", "demsolve"):
+            (programs / name).write_text("#!/bin/sh\nkill -INT $$\n")
+            (programs / name).chmod(0o755)
+        with self.assertRaises(SystemExit):
+            study.result_of(programs, scene, out, "scene", [], 0)
+        self.assertEqual(list((out / "runs").iterdir()), [])
+        (programs / "jointgen").write_text("#!/bin/sh\necho no joints >&2\nexit 2\n")
+        with unittest.mock.patch("builtins.print"):
+            self.assertIn("no joints", study.result_of(programs, scene, out, "scene", [], 0)["failed"])
+        self.assertEqual(len(list((out / "runs").iterdir())), 1)
+
+    def test_networks_without_result(self):
+        """The others are summed up, whichever it is that has none, and the table says how many they are."""
+        import study
+        result = {"names": ["N215"], "days": [0, 3000], "total": [[0], [60.0]], "first": [0], "there": [True],
+                  "start": "1994-06-15"}
+        targets = {"point": {"N215": {}}, "total_mm": [60, 90], "recorded_mm": [20, 40],
+                   "end_of_record": datetime.date(2002, 1, 1)}
+        found = study.summary([{"failed": "falls"}, result], targets, [0])
+        self.assertEqual((found["networks"], found["failed"]), (1, 1))
+        own = study.summary([result, result], targets, [0])
+        text = study.markdown(own, [("creep", "none", found)], 2, "the points")
+        self.assertIn("| creep | none (1 networks) |", text)
+        self.assertIn("| +0.0 % (N215) |", text)
+
     def test_spread_of_networks(self):
         import study
         each = (numpy.array([[1.0, 4], [3, 8]]), numpy.array([[0.0, 0], [0, 2]]))  # [network, point]
@@ -167,6 +222,37 @@ class Shiplock(ChainTest):
                                                   (-root / 2, root / 2, -root / 2, root / 2)):
             self.assertAlmostEqual(found["total"], 50 + total)
             self.assertAlmostEqual(found["recorded"], 30 + recorded)
+
+    def test_tornado(self):
+        """Ordered by the larger of both changes over the widths of the ranges; a bar for every choice that has a result."""
+        import matplotlib.pyplot
+        import study
+        targets = {"total_mm": [60, 90], "recorded_mm": [20, 40]}
+        own = {"total": 70.0, "recorded": 40.0, "networks": 4, "misfit": 1.0}
+        row = lambda total, recorded, **more: {"total": total, "recorded": recorded, "networks": 4, "failed": 0, **more}
+        rows = [("box", "small", row(61.0, 40.0)), ("box", "large", row(75.0, 42.0)),  # 9 of 30
+                ("readings", "later", row(70.0, 48.0)),  # 8 of 20
+                ("stress", "none", "it slides"),
+                ("stress", "high", row(200.0, 41.0, networks=3, failed=1)),
+                ("network", "plus", {"total": 71.0, "recorded": 41.0})]
+        groups = study.ordered(own, rows, targets)
+        self.assertEqual([what for what, _ in groups], ["network", "box", "readings", "stress"])
+        lines = list(study.lines_of(groups))
+        self.assertEqual([text for text, *_ in lines], ["network: plus", "large", "small", "box", "readings: later",
+                                                        "stress: high (3 networks)"])
+        with unittest.mock.patch.object(study.figure, "save") as save:
+            study.tornado(own, rows, targets, "tornado.png")
+        plot, path = save.call_args.args
+        self.assertEqual(path, "tornado.png")
+        for axes, key, cut in zip(plot.axes, ("total", "recorded"), (135, 60)):
+            bars = [bar for container in axes.containers for bar in container]
+            wanted = [min(found[key], cut) for *_, found in lines if found]
+            for bar, value in zip(bars, wanted, strict=True):
+                self.assertAlmostEqual(bar.get_x(), own[key])
+                self.assertAlmostEqual(bar.get_x() + bar.get_width(), value)
+            self.assertEqual([text.get_text() for text in axes.texts], ["to 200"] if key == "total" else [])
+        self.assertIn("changed, 4 networks", [text.get_text() for text in plot.legends[0].texts])
+        matplotlib.pyplot.close(plot)
 
     def test_readings_of_the_back_analysis(self):
         """They count from the row after the first reading's day's stage, share its error, and leave out days of stages."""
@@ -183,6 +269,23 @@ class Shiplock(ChainTest):
         for one in errors:
             self.assertAlmostEqual(numpy.std(one), 1, delta=0.08)  # five standard errors
         self.assertTrue(0.6 < numpy.std([numpy.mean(one) for one in errors]) < 1.4)  # of the first reading; four of them
+
+    def test_table_of_the_back_analysis(self):
+        """Correlations are those of pairs, each once; a weak combination is told where there is one."""
+        import back_analysis
+        correlation = {("joint-stiffness", "kelvin-stiffness"): -0.96, ("joint-stiffness", "kelvin-viscosity"): -0.53,
+                       ("kelvin-stiffness", "kelvin-viscosity"): 0.72}
+        def rows(weak):
+            return [{"factor": a, "value": "1.1", "low_95": "1", "high_95": "1.2", "chi_squared": "667.6",
+                     "degrees_of_freedom": "703", "runs": "5", "weak_combination_times": weak,
+                     **{f"correlation_{b}": str(correlation.get((a, b), correlation.get((b, a), 1)))
+                        for b in back_analysis.MADE}} for a in back_analysis.MADE]
+        told = back_analysis.markdown(rows(""), 706, 61.2)
+        for words in ("| on E | 0.7 | 1.100 | 1.000 to 1.200 |", "706 readings", "chi squared 668 of 703",
+                      "K and E -0.96, K and eta -0.53, E and eta 0.72.", "5 runs, 61 s of processor time"):
+            self.assertIn(words, told)
+        self.assertNotIn("warns", told)
+        self.assertIn("warns of K x 1.050 with E x 1.050", back_analysis.markdown(rows("1.05"), 706, 61.2))
 
     def test_tables_of_the_page(self):
         """The page's tables have the columns that the scripts write, and a row for every point and choice."""

@@ -4,11 +4,13 @@ Answers and errors are those of pipelines/accuracy (closed_forms.py, errors.py):
 displacements at the end, tractions over the whole run.
 """
 
+import csv
 import math
+import re
 import sys
 
 import numpy as np
-from chain import ChainTest, changed, main
+from chain import ChainTest, changed, datasets, main
 
 sys.path.append(sys.argv[2] + "/pipelines/accuracy")
 import cases  # noqa: E402
@@ -215,6 +217,23 @@ class Verification(ChainTest):
         self.assertAlmostEqual(found.traction[LAST_STATE, 0, 0],
                                closed_forms.platens(found.scene).traction(found.contacts, 200, 0)[0, 0],
                                delta=1e-3 * 1e6)
+
+    def test_friction_stack_beside_calculix(self):
+        """Partial slip, pushed and let go: another code's figures, which change by 1 percent with its own increments and
+        bricks (pipelines/accuracy/calculix_stack.py, and the page accuracy)."""
+        with open(self.chain.source / "data/verification/friction-stack/calculix.csv") as file:
+            rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
+        # Places on the outline a little inside it.
+        points = "".join(f'[[point]]\nname = "{row["point"]}"\nat_m = [{min(float(row["x_m"]), 4 - 1e-6)}, '
+                         f'{min(float(row["y_m"]), 3 - 1e-6)}]\n\n' for row in rows if row["step"] == "pushed")
+        text = re.sub(r"(?s)^\[\[point\]\].*?\n\n", points, self.scene("friction-stack"), flags=re.MULTILINE)
+        text = changed(text, "^size_m = 0.25", "size_m = 0.125")
+        result = datasets(self.chain.result(text))
+        names, time = list(result["/history/point"]), result["/history/time"]
+        found = np.array([result["/history/displacement"][time == {"pushed": 1, "let go": 2}[row["step"]]][-1][
+            names.index(row["point"])] for row in rows])
+        wanted = np.array([[float(row["moved_x_m"]), float(row["moved_y_m"])] for row in rows])
+        self.assertLess(np.abs(found - wanted).max(), 0.015 * np.abs(wanted).max())
 
     def test_friction_stack_slips_no_more_when_pushed_at_once(self):
         """Within 3e-4 of its displacements, and 3e-3 of what stays of them; badly damped, it slips twice as far."""
