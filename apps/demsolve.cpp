@@ -163,7 +163,8 @@ std::string choose(const Arguments& arguments, Scene& scene)
 
 std::string off_by(Index percent, const std::string& stage)
 {
-    return "off by " + std::to_string(percent) + " percent in the motion of stage \"" + stage + "\"";
+    return "off by " + std::to_string(percent) + " percent in the motion " +
+           (stage.empty() ? "in situ" : "of stage \"" + stage + "\"");
 }
 
 void report(const Network& network, const Scene& scene, const Analysis& analysis, Summary summary)

@@ -237,7 +237,8 @@ void Analysis::transfer(const Transfer& to, Checkpoint& kept)
     auto& [scene, network, joints, recording, observe, engine, result, rock, loading, recorder, implicit,
            motion, creep, step, closing, sensitivity, sensitivities, now, next_stage, stage, solver_time,
            solver_steps, creep_steps, certificate, effort, last_move, cuts_left, last_step, stable_limit,
-           end_of_creep, beyond_strength, yielded_in_situ, given_up, energy_off, largest_energy] = *this;
+           end_of_creep, beyond_strength, yielded_in_situ, given_up, energy_off, largest_error,
+           largest_energy] = *this;
     to.value(next_stage, kept.stage);
     to.value(now, kept.time);
     if (to.restores())
@@ -523,7 +524,7 @@ bool Analysis::follow_motion(double until)
 void Analysis::move(const Stage& stage)
 {
     double due = 0;
-    largest_energy_ = 0;
+    largest_energy_ = largest_error_ = 0;
     do {
         observe_(now_ / scene_.end, stage.name + ", " + shown(due) + " s");
         due = std::max(due + scene_.motion->record_every, // once a step at most
@@ -546,6 +547,7 @@ void Analysis::move(const Stage& stage)
     take_down_equilibrium();
     take_down(stage.name, true);
     take_down_motion();
+    check_energy();
     if (stage.reset_displacements)
         mechanics::Recorder::reset(result_);
 }
@@ -556,6 +558,7 @@ void Analysis::give_up_motion(const mechanics::no_equilibrium& error)
     motion_->put_back();
     take_down("", true);
     take_down_motion();
+    check_energy();
     fail(failure_of(error, result_.mesh, rock_), now_);
 }
 
@@ -573,7 +576,9 @@ void Analysis::take_down_motion()
     motions.damped_energy.push_back(energy.damped);
     motions.fastest.push_back(motion_->fastest());
     motions.out_of_balance_ratio.push_back(motion_->out_of_balance_ratio());
-    check_energy(energy);
+    for (const double part : {energy.work, energy.kinetic, energy.stored, energy.friction, energy.damped})
+        largest_energy_ = std::max(largest_energy_, std::abs(part));
+    largest_error_ = std::max(largest_error_, std::abs(energy.error()));
     const auto block_of = [&](Index zone) { return zone < 0 ? zone : result_.mesh.zone_block[zone]; };
     for (const motion::Touching& contact : motion_->touching()) {
         motions.contact_block.push_back({block_of(contact.zone[0]), block_of(contact.zone[1])});
@@ -587,16 +592,13 @@ void Analysis::take_down_motion()
     motions.first_contact.push_back(static_cast<Index>(motions.contact_block.size()));
 }
 
-// Where nothing has moved to speak of, all parts are rounding errors.
-void Analysis::check_energy(const motion::Energy& energy)
+// Of the motion that has ended. Where rock only settles, all parts are small, and an error of the
+// first step, which goes with the square of its length, is not small beside them.
+void Analysis::check_energy()
 {
-    for (const double part : {energy.work, energy.kinetic, energy.stored, energy.friction, energy.damped})
-        largest_energy_ = std::max(largest_energy_, std::abs(part));
-    const double off = std::abs(energy.error()) / largest_energy_;
-    if (!motion_->has_moved() || off <= energy_closes)
-        return;
-    Index& percent = energy_off_[stage_];
-    percent = std::max(percent, static_cast<Index>(std::lround(100 * std::min(off, 1e6))));
+    const double off = largest_error_ / largest_energy_;
+    if (motion_->has_moved() && off > energy_closes)
+        energy_off_[stage_] = static_cast<Index>(std::lround(100 * std::min(off, 1e6)));
 }
 
 // After a jump of loads: what was learnt from the steps before no longer holds.

@@ -99,7 +99,7 @@ private:
     void move(const Stage& stage);
     [[noreturn]] void give_up_motion(const mechanics::no_equilibrium& error);
     void take_down_motion();
-    void check_energy(const motion::Energy& energy);
+    void check_energy();
     bool settles_nearby(const std::vector<mechanics::Vector2d>& guess, double time);
     void settle_by_motion(double time, const std::string& reason = {}); // without one the implicit engine's
     void yield_by_motion(double time, Index zone);
@@ -143,7 +143,8 @@ private:
     std::map<std::string, Index> yielded_in_situ_;
     std::map<std::string, Index> given_up_;   // equilibria by the implicit engine's reason
     std::map<std::string, Index> energy_off_; // by stage [percent]
-    double largest_energy_ = 0;               // of the parts of the account of this motion, so far [J/m]
+    double largest_error_ = 0;                // of the account of this motion, at recorded moments [J/m]
+    double largest_energy_ = 0;               // of its parts
 };
 
 } // namespace jointcreep

@@ -591,13 +591,17 @@ void Motion::step()
                 fastest_gridpoint_ = g;
             }
     }
+    // After a stop: from then on it is the product of this velocity and its opposite that counts as kinetic
+    // energy (see energy()).
+    if (starts_from_rest_ && time_ > 0)
+        energy_.damped += half_step_energy();
     starts_from_rest_ = false;
     for (const auto& [follower, leader] : rock_.tied) {
         move_[follower] = move_[leader];
         velocity_[follower] = velocity_[leader];
     }
     fastest_ = std::sqrt(fastest);
-    has_moved_ = has_moved_ || fastest_ > at_rest;
+    has_moved_ = has_moved_ || fastest_ > slow;
     std::size_t gone = n; // outside
     for (std::size_t g = 0; g < n; ++g) {
         energy_.work += (rock_.load[g] + rock_.applied[g] + held * released_[g]).dot(move_[g]);
@@ -632,16 +636,11 @@ void Motion::step()
     // What is nearly at rest swings about it. Stopped where its kinetic energy is largest, it comes to rest;
     // what slides or falls has no such peak until it is no longer slow.
     if (fastest_ < slow && kinetic < last_kinetic_) {
-        double now = 0;
-        for (std::size_t g = 0; g < n; ++g)
-            if (inverse_mass_[g] > 0)
-                now += velocity_[g].squaredNorm() / (2 * inverse_mass_[g]);
+        energy_.damped += energy().kinetic;
         for (Body& body : bodies_) {
-            now += (body.mass * body.velocity.squaredNorm() + body.inertia * body.spin * body.spin) / 2;
             body.velocity.setZero();
             body.spin = 0;
         }
-        energy_.damped += now;
         last_kinetic_ = 0;
         velocity_.assign(n, Vector2d::Zero());
         starts_from_rest_ = true;
@@ -692,6 +691,18 @@ void Motion::transfer(const Transfer& to, MovedRock& kept)
     to.value(fastest, kept.fastest);
     to.value(ratio, kept.out_of_balance_ratio);
     to.value(largest_mean, kept.largest_mean_force);
+}
+
+// Of the velocities as they are, half a step ago [J/m].
+double Motion::half_step_energy() const
+{
+    double sum = 0;
+    for (std::size_t g = 0; g < place_.size(); ++g)
+        if (inverse_mass_[g] > 0)
+            sum += velocity_[g].squaredNorm() / (2 * inverse_mass_[g]);
+    for (const Body& body : bodies_)
+        sum += (body.mass * body.velocity.squaredNorm() + body.inertia * body.spin * body.spin) / 2;
+    return sum;
 }
 
 // Velocities are known half a step before and after now; with their product as the square, work of forces is

@@ -81,7 +81,7 @@ public:
     double out_of_balance_ratio() const { return ratio_; }
     double contact_force_change() const { return force_change_; }
     double fastest() const { return fastest_; } // [m/s]
-    // Faster than what counts as rest, since the start of this motion.
+    // Faster than where motion is stopped at its peaks, since the start of this motion.
     bool has_moved() const { return has_moved_; }
     std::vector<Touching> touching() const;
 
@@ -136,6 +136,7 @@ private:
     std::pair<Vector2d, double> load_on(const Body& body) const;
     void find_forces(const std::vector<Vector2d>& move);
     double release_factor() const;
+    double half_step_energy() const;
     double stored() const;
 
     mechanics::Assembly& rock_;
