@@ -624,8 +624,9 @@ void Motion::step()
         if (Yielding* const yields = yielding(z); yields != nullptr && deforms(z)) {
             if (yields->is_torn)
                 throw equilibrium_error("motion: rock that yields at " +
-                                        shown(place_[zones_[z].gridpoint[0]]) + " is strained by more than " +
-                                        shown(100 * most_strain) + " percent, more than a zone can be");
+                                        shown(Vector2d(middle_ + place_[zones_[z].gridpoint[0]])) +
+                                        " is strained by more than " + shown(100 * most_strain) +
+                                        " percent, more than a zone can be");
             energy_.friction += zones_[z].area * yields->zone.dissipated;
             yields->zone.dissipated = 0;
         }
