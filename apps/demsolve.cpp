@@ -152,9 +152,19 @@ std::string choose(const Arguments& arguments, Scene& scene)
     if (arguments.has("checkpoint") && arguments.has("factor-of-safety"))
         throw input_error("--checkpoint and --factor-of-safety do not go together");
     for (const char* option : {"states", "trace"})
-        if (const auto every = arguments.whole_number(option, 1, 1000000000))
+        if (const auto every = arguments.whole_number(option, 1, 1000000000)) {
+            if (scene.motion)
+                throw input_error("--" + std::string(option) +
+                                  ": the scene has [motion], which records the section every record_every_s");
             note(option, std::to_string(*every));
+        }
     return chosen;
+}
+
+std::string off_by(Index percent, const std::string& stage)
+{
+    return "off by " + std::to_string(percent) + " percent in the motion " +
+           (stage.empty() ? "in situ" : "of stage \"" + stage + "\"");
 }
 
 void report(const Network& network, const Scene& scene, const Analysis& analysis, Summary summary)
@@ -214,6 +224,8 @@ void report(const Network& network, const Scene& scene, const Analysis& analysis
                     std::to_string(n) + " zones of rock \"" + rock + "\"");
     for (const auto& [rock, n] : analysis.yielded())
         summary.add("zones yielded since", std::to_string(n) + " of rock \"" + rock + "\"");
+    for (const auto& [stage, percent] : analysis.energy_off())
+        summary.add("warning: account of energy", off_by(percent, stage));
     summary.print();
 }
 
@@ -248,6 +260,14 @@ struct Run {
     Analysis analysis;
     std::string message{}; // why there is no equilibrium; empty: every one was found
 };
+
+std::string warnings_of(const Run& run)
+{
+    std::string lines;
+    for (const auto& [stage, percent] : run.analysis.energy_off())
+        lines += "\nwarning: account of energy " + off_by(percent, stage);
+    return lines;
+}
 
 class Writer
 {
@@ -493,7 +513,7 @@ void solve_and_write(const Arguments& arguments)
         run = run_with(factor);
         progress.reset();
         if (!run->message.empty())
-            throw equilibrium_error(run->message + '\n' + writer.write_failed(*run));
+            throw equilibrium_error(run->message + '\n' + writer.write_failed(*run) + warnings_of(*run));
         writer.write(*run);
     }
     if (!arguments.quiet())

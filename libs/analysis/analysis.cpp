@@ -28,6 +28,9 @@ constexpr int most_halvings = 5;
 // Of one creep step where contacts close: in rock full of open joints some close all the time.
 constexpr int most_cuts = 6;
 
+// By how much of its largest part a motion's account of energy may be off.
+constexpr double energy_closes = 0.01;
+
 // What an edge's joint is called: its set, or the material of the joint that a boundary rests on.
 std::string joint_name(const Scene& scene, const Network& network, Index edge)
 {
@@ -119,13 +122,18 @@ std::vector<char> rigid_zones(const Scene& scene, const Network& network, const 
 }
 
 // Of contacts that come about in motion: friction alone, the residual one where there is one.
-joint::Coulomb law_of_new_contacts(const Scene& scene)
+joint::Law law_of_new_contacts(const Scene& scene)
 {
     const auto material = std::find_if(scene.joint_materials.begin(), scene.joint_materials.end(),
                                        [&](const auto& m) { return m.name == scene.motion->new_contacts; });
+    if (material->walls)
+        return joint::BartonBandis{material->normal_stiffness,       material->shear_stiffness,
+                                   material->walls->largest_closure, material->friction_angle,
+                                   material->walls->roughness,       material->walls->strength};
     const double friction_angle =
         material->residual ? material->residual->friction_angle : material->friction_angle;
-    return {material->normal_stiffness, material->shear_stiffness, 0, std::tan(friction_angle), 0};
+    return joint::Coulomb{material->normal_stiffness, material->shear_stiffness, 0, std::tan(friction_angle),
+                          0};
 }
 
 } // namespace
@@ -229,7 +237,8 @@ void Analysis::transfer(const Transfer& to, Checkpoint& kept)
     auto& [scene, network, joints, recording, observe, engine, result, rock, loading, recorder, implicit,
            motion, creep, step, closing, sensitivity, sensitivities, now, next_stage, stage, solver_time,
            solver_steps, creep_steps, certificate, effort, last_move, cuts_left, last_step, stable_limit,
-           end_of_creep, beyond_strength, yielded_in_situ, given_up] = *this;
+           end_of_creep, beyond_strength, yielded_in_situ, given_up, energy_off, largest_error,
+           largest_energy] = *this;
     to.value(next_stage, kept.stage);
     to.value(now, kept.time);
     if (to.restores())
@@ -249,7 +258,8 @@ void Analysis::transfer(const Transfer& to, Checkpoint& kept)
     to.value(since_state, kept.steps_since_state);
     solver_steps = since_trace;
     creep_steps = since_state;
-    const std::array<std::map<std::string, Index>*, 3> remarks{&beyond_strength, &yielded_in_situ, &given_up};
+    const std::array<std::map<std::string, Index>*, 4> remarks{&beyond_strength, &yielded_in_situ, &given_up,
+                                                               &energy_off};
     if (to.restores())
         for (std::size_t r = 0; r < kept.remark.size(); ++r)
             (*remarks.at(kept.remark_kind[r]))[kept.remark[r]] = kept.remark_count[r];
@@ -467,6 +477,13 @@ void Analysis::excavate(const Stage& stage, Index number)
 
 void Analysis::prepare_motion()
 {
+    const auto dilates = std::find_if(joints_.dilation_angle.begin(), joints_.dilation_angle.end(),
+                                      [](double angle) { return angle > 0; });
+    if (dilates != joints_.dilation_angle.end())
+        throw input_error(
+            "with [motion] joints do not dilate, but rock bridges of joint \"" +
+            joint_name(scene_, network_, static_cast<Index>(dilates - joints_.dilation_angle.begin())) +
+            "\" do: wanted dilation_angle_deg = 0 of their [[rock]], or no bridges");
     motion_.emplace(rock_, result_.mesh, rigid_zones(scene_, network_, result_.mesh),
                     law_of_new_contacts(scene_),
                     motion::Settings{scene_.motion->stiffness_damping, scene_.motion->mass_damping,
@@ -507,9 +524,11 @@ bool Analysis::follow_motion(double until)
 void Analysis::move(const Stage& stage)
 {
     double due = 0;
+    largest_energy_ = largest_error_ = 0;
     do {
         observe_(now_ / scene_.end, stage.name + ", " + shown(due) + " s");
-        due += scene_.motion->record_every;
+        due = std::max(due + scene_.motion->record_every, // once a step at most
+                       std::nextafter(motion_->time(), std::numeric_limits<double>::infinity()));
         motion_->put_back();
         recorder_.record_state(result_, now_, "", rock_);
         take_down_motion();
@@ -528,6 +547,7 @@ void Analysis::move(const Stage& stage)
     take_down_equilibrium();
     take_down(stage.name, true);
     take_down_motion();
+    check_energy();
     if (stage.reset_displacements)
         mechanics::Recorder::reset(result_);
 }
@@ -538,6 +558,7 @@ void Analysis::give_up_motion(const mechanics::no_equilibrium& error)
     motion_->put_back();
     take_down("", true);
     take_down_motion();
+    check_energy();
     fail(failure_of(error, result_.mesh, rock_), now_);
 }
 
@@ -555,6 +576,9 @@ void Analysis::take_down_motion()
     motions.damped_energy.push_back(energy.damped);
     motions.fastest.push_back(motion_->fastest());
     motions.out_of_balance_ratio.push_back(motion_->out_of_balance_ratio());
+    for (const double part : {energy.work, energy.kinetic, energy.stored, energy.friction, energy.damped})
+        largest_energy_ = std::max(largest_energy_, std::abs(part));
+    largest_error_ = std::max(largest_error_, std::abs(energy.error()));
     const auto block_of = [&](Index zone) { return zone < 0 ? zone : result_.mesh.zone_block[zone]; };
     for (const motion::Touching& contact : motion_->touching()) {
         motions.contact_block.push_back({block_of(contact.zone[0]), block_of(contact.zone[1])});
@@ -566,6 +590,15 @@ void Analysis::take_down_motion()
         motions.contact_slips.push_back(contact.is_slipping ? 1 : 0);
     }
     motions.first_contact.push_back(static_cast<Index>(motions.contact_block.size()));
+}
+
+// Of the motion that has ended. Where rock only settles, all parts are small, and an error of the
+// first step, which goes with the square of its length, is not small beside them.
+void Analysis::check_energy()
+{
+    const double off = largest_error_ / largest_energy_;
+    if (motion_->has_moved() && off > energy_closes)
+        energy_off_[stage_] = static_cast<Index>(std::lround(100 * std::min(off, 1e6)));
 }
 
 // After a jump of loads: what was learnt from the steps before no longer holds.

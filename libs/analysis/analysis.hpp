@@ -79,6 +79,9 @@ public:
     const std::map<std::string, Index>& yielded_in_situ() const { return yielded_in_situ_; }
     std::map<std::string, Index> yielded() const;
     const std::map<std::string, Index>& given_up() const { return given_up_; }
+    // By how many percent of its largest part the account of energy is off, by stages where it does not
+    // close.
+    const std::map<std::string, Index>& energy_off() const { return energy_off_; }
 
 private:
     void prepare_creep();
@@ -96,6 +99,7 @@ private:
     void move(const Stage& stage);
     [[noreturn]] void give_up_motion(const mechanics::no_equilibrium& error);
     void take_down_motion();
+    void check_energy();
     bool settles_nearby(const std::vector<mechanics::Vector2d>& guess, double time);
     void settle_by_motion(double time, const std::string& reason = {}); // without one the implicit engine's
     void yield_by_motion(double time, Index zone);
@@ -137,7 +141,10 @@ private:
     std::optional<double> end_of_creep_;           // [s]
     std::map<std::string, Index> beyond_strength_; // contacts by joint: what the in-situ stress breaks
     std::map<std::string, Index> yielded_in_situ_;
-    std::map<std::string, Index> given_up_; // equilibria by the implicit engine's reason
+    std::map<std::string, Index> given_up_;   // equilibria by the implicit engine's reason
+    std::map<std::string, Index> energy_off_; // by stage [percent]
+    double largest_error_ = 0;                // of the account of this motion, at recorded moments [J/m]
+    double largest_energy_ = 0;               // of its parts
 };
 
 } // namespace jointcreep

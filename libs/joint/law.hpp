@@ -110,6 +110,11 @@ inline double cohesion(const Law& law)
     const auto* const coulomb = std::get_if<Coulomb>(&law);
     return coulomb ? coulomb->cohesion : 0.0;
 }
+inline double tensile_strength(const Law& law)
+{
+    const auto* const coulomb = std::get_if<Coulomb>(&law);
+    return coulomb ? coulomb->tensile_strength : 0.0;
+}
 inline bool weakens_by_slip(const Law& law)
 {
     const auto* const coulomb = std::get_if<Coulomb>(&law);

@@ -20,11 +20,14 @@ struct MovedRock {
     std::vector<Eigen::Vector4d> inverse;        // of zones: of their edges without stress [1/m]
     std::vector<double> area;                    // of zones, without stress [m2]
     std::vector<Eigen::Vector3d> strain;         // of zones, Biot's {xx, yy, 2 xy} [-]
-    std::vector<std::array<Index, 2>> face;      // gridpoints
-    std::vector<std::array<Index, 2>> pair;      // faces
-    std::vector<Index> law;                      // of the pair
-    std::vector<double> first_lead, second_lead; // [m]
-    std::vector<double> tau;                     // [Pa]
+    std::vector<Eigen::Vector4d> plastic_strain; // of it, of zones that yield {xx, yy, zz, 2 xy} [-]
+    std::vector<double> initial_zz, stress_zz; // of these: across the section, without stress in it; now [Pa]
+    std::vector<Eigen::Vector3d> stress;       // of these, Biot's {xx, yy, xy} [Pa]
+    std::vector<std::array<Index, 2>> face;    // gridpoints
+    std::vector<std::array<Index, 2>> pair;    // faces
+    std::vector<Index> law;                    // of the pair
+    std::vector<double> first_lead, second_lead;               // [m]
+    std::vector<double> tau;                                   // [Pa]
     std::vector<Index> is_known, is_new, is_closed, is_broken; // 0 or 1
     std::vector<Eigen::Vector2d> normal;                       // [-]
     std::vector<double> length;                                // [m]
@@ -69,7 +72,7 @@ struct Checkpoint {
     Index steps_since_trace = 0;    // solver steps
     double solver_time = 0;         // of motion [s]
     Index steps_since_state = 0;    // creep steps
-    std::vector<Index> remark_kind; // as in Analysis: beyond strength, yielded in situ, given up
+    std::vector<Index> remark_kind; // as in Analysis: beyond strength, yielded in situ, given up, energy off
     std::vector<std::string> remark;
     std::vector<Index> remark_count;
 

@@ -17,7 +17,7 @@ namespace
 constexpr double rounding = 0.01; // of the shorter face: where two corners meet
 constexpr double deepest = 0.5;   // overlap over the depth of the thinner zone, at most
 constexpr double deepest_new =
-    0.1; // the same where two faces come to touch; farther in, one lies behind the other
+    0.1; // the same where two faces come to touch; farther in, one lies behind the other, or has slid on
 constexpr double same_way = 0.7; // cosine between the normals of contacts of which one goes on as the other
 constexpr double least_facing = 0.02; // cosine between a face's normal and the other's, turned round
 
@@ -33,6 +33,7 @@ struct Overlap {
     Vector2d normal() const { return {tangent.y(), -tangent.x()}; }
     // Everywhere deeper in each other than they overlap: it is other faces of the two corners that touch.
     bool is_behind() const { return -std::max(gap[0], gap[1]) > length; }
+    double sunk() const { return -std::min(gap[0], gap[1]); } // the deepest that they are in each other [m]
 };
 
 std::optional<Overlap> overlap_along(const Vector2d& tangent, const std::array<Vector2d, 2>& a,
@@ -88,7 +89,91 @@ Vector2d at(const std::array<Vector2d, 2>& ends, double fraction)
     return ends[0] + fraction * (ends[1] - ends[0]);
 }
 
+// A joint law over the closed part of a contact, per depth of the section. Closing goes straight from one end
+// to the other; what does not go with it, Barton and Bandis's law, is summed up at five points (Gauss).
+class Part
+{
+public:
+    Part(const joint::Law& law, const std::array<double, 2>& closing, double length)
+        : coulomb_(std::get_if<joint::Coulomb>(&law)), barton_bandis_(std::get_if<joint::BartonBandis>(&law)),
+          closing_(closing), length_(length)
+    {
+    }
+
+    double deep() const { return (closing_[0] + closing_[1]) / 2; } // mean closing [m]
+    // That presses [N/m].
+    double force() const
+    {
+        if (coulomb_ != nullptr)
+            return coulomb_->k_n * length_ * deep();
+        return sum([](double, double p) { return p; });
+    }
+    // On one end, of a given share of the force: forces on both are as the traction between them [N/m].
+    double force_on(int end, double share) const
+    {
+        if (coulomb_ != nullptr)
+            return share * coulomb_->k_n * length_ * (2 * closing_[end] + closing_[1 - end]) / 6;
+        return share * sum([&](double at, double p) { return (end == 0 ? 1 - at : at) * p; });
+    }
+    // Shear force it bears [N/m].
+    double strength(bool is_broken) const
+    {
+        if (coulomb_ != nullptr)
+            return std::max(0.0, coulomb_->cohesion_of(is_broken) * length_ +
+                                     force() * coulomb_->tan_phi_of(is_broken));
+        return sum([&](double, double p) { return barton_bandis_->strength(p); });
+    }
+    // In the normal springs [J/m].
+    double stored() const
+    {
+        if (coulomb_ != nullptr)
+            return coulomb_->k_n * length_ *
+                   (closing_[0] * closing_[0] + closing_[0] * closing_[1] + closing_[1] * closing_[1]) / 6;
+        return sum([&](double, double p) { return barton_bandis_->stored(p); });
+    }
+    // Of the normal springs, in the middle and where it is largest [Pa/m].
+    double stiffness() const { return stiffness_at(deep()); }
+    double stiffest() const { return stiffness_at(std::max(closing_[0], closing_[1])); }
+
+private:
+    double stiffness_at(double closing) const
+    {
+        return coulomb_ != nullptr ? coulomb_->k_n
+                                   : barton_bandis_->stiffness(barton_bandis_->pressure(closing));
+    }
+    // Of a function of the fraction along the part and the pressure there.
+    template <class Function>
+    double sum(const Function& function) const
+    {
+        constexpr std::array<std::array<double, 2>, 5> points{{{0.046910077030668, 0.118463442528095},
+                                                               {0.230765344947158, 0.239314335249683},
+                                                               {0.5, 0.284444444444444},
+                                                               {0.769234655052842, 0.239314335249683},
+                                                               {0.953089922969332, 0.118463442528095}}};
+        double all = 0;
+        for (const auto& [at, weight] : points)
+            all += weight *
+                   function(at, barton_bandis_->pressure(closing_[0] + at * (closing_[1] - closing_[0])));
+        return length_ * all;
+    }
+
+    const joint::Coulomb* coulomb_;
+    const joint::BartonBandis* barton_bandis_;
+    std::array<double, 2> closing_;
+    double length_;
+};
+
 } // namespace
+
+Contacts::Contacts(std::vector<joint::Law> laws, const Vector2d& origin)
+    : laws_(std::move(laws)), origin_(origin)
+{
+    for (const joint::Law& law : laws_) {
+        stiffest_open_ = std::max({stiffest_open_, joint::k_n(law), joint::k_s(law)});
+        stiffens_ = stiffens_ || !joint::is_linear(law);
+    }
+    stiffest_ = stiffest_open_;
+}
 
 void Contacts::set_faces(Faces faces, std::vector<Pair> known, const std::vector<Vector2d>& place)
 {
@@ -99,13 +184,14 @@ void Contacts::set_faces(Faces faces, std::vector<Pair> known, const std::vector
     std::vector<double> lengths;
     for (const auto& [from, to] : faces_.gridpoint)
         lengths.push_back((place[to] - place[from]).norm());
+    stiffest_ = stiffest_open_;
     skin_ = 0;
     if (!lengths.empty()) {
         const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
         std::nth_element(lengths.begin(), middle, lengths.end());
         skin_ = *middle / 4;
     }
-    seek(place);
+    seek(place, std::vector<Vector2d>(place.size(), Vector2d::Zero()));
 }
 
 void Contacts::find_corners(const std::vector<Vector2d>& place)
@@ -136,13 +222,29 @@ void Contacts::find_corners(const std::vector<Vector2d>& place)
     }
 }
 
-// All pairs of faces whose boxes come within the skin of each other, by a grid of cells; what pairs of before
-// remember stays.
-void Contacts::seek(const std::vector<Vector2d>& place)
+// All pairs of faces that bear something, and those whose boxes come within the skin of each other, by a grid
+// of cells; what pairs of before remember stays. A box covers the way of the last step, and reaches as far
+// again as its face is in another one, or off one that it is bonded to: there lies the next one to slide on
+// to.
+void Contacts::seek(const std::vector<Vector2d>& place, const std::vector<Vector2d>& move)
 {
     ++searches_;
     sought_at_ = place;
     find_corners(place);
+    std::vector<double> reach(faces_.gridpoint.size(), skin_ / 2);
+    std::vector<std::pair<Index, Index>> near;
+    for (const Pair& pair : pairs_) {
+        if (!pair.is_closed && !pair.is_bonded())
+            continue;
+        near.emplace_back(pair.a, pair.b);
+        const auto found =
+            overlap_of(ends_of(faces_.gridpoint[pair.a], place), ends_of(faces_.gridpoint[pair.b], place),
+                       sharpness_[pair.a], sharpness_[pair.b]);
+        if (found)
+            for (const Index f : {pair.a, pair.b})
+                reach[f] = std::max(reach[f],
+                                    skin_ / 2 + std::max(std::abs(found->gap[0]), std::abs(found->gap[1])));
+    }
     const double cell = 8 * skin_;
     struct Entry {
         std::int64_t x, y;
@@ -153,15 +255,16 @@ void Contacts::seek(const std::vector<Vector2d>& place)
     std::vector<std::array<Vector2d, 2>> box;
     const auto cell_of = [&](double at) { return static_cast<std::int64_t>(std::floor(at / cell)); };
     for (std::size_t f = 0; f < faces_.gridpoint.size(); ++f) {
-        const auto ends = ends_of(faces_.gridpoint[f], place);
-        const Vector2d half = Vector2d::Constant(skin_ / 2);
-        box.push_back({ends[0].cwiseMin(ends[1]) - half, ends[0].cwiseMax(ends[1]) + half});
+        const auto ends = ends_of(faces_.gridpoint[f], place), way = ends_of(faces_.gridpoint[f], move);
+        const Vector2d beyond = Vector2d::Constant(reach[f]);
+        box.push_back(
+            {ends[0].cwiseMin(ends[1]).cwiseMin(ends[0] - way[0]).cwiseMin(ends[1] - way[1]) - beyond,
+             ends[0].cwiseMax(ends[1]).cwiseMax(ends[0] - way[0]).cwiseMax(ends[1] - way[1]) + beyond});
         for (std::int64_t x = cell_of(box[f][0].x()); x <= cell_of(box[f][1].x()); ++x)
             for (std::int64_t y = cell_of(box[f][0].y()); y <= cell_of(box[f][1].y()); ++y)
                 entries.push_back({x, y, static_cast<Index>(f)});
     }
     std::sort(entries.begin(), entries.end());
-    std::vector<std::pair<Index, Index>> near;
     for (std::size_t i = 0; i < entries.size(); ++i)
         for (std::size_t j = i + 1;
              j < entries.size() && entries[j].x == entries[i].x && entries[j].y == entries[i].y; ++j) {
@@ -223,7 +326,7 @@ void Contacts::update(const std::vector<Vector2d>& place, const std::vector<Vect
     for (std::size_t g = 0; g < place.size(); ++g)
         farthest = std::max(farthest, (place[g] - sought_at_[g]).squaredNorm());
     if (4 * farthest > skin_ * skin_)
-        seek(place);
+        seek(place, move);
 
     const auto n = static_cast<Index>(pairs_.size());
     std::vector<char> closes(pairs_.size(), 0); // if it may
@@ -232,6 +335,19 @@ void Contacts::update(const std::vector<Vector2d>& place, const std::vector<Vect
     for (const Pair& pair : pairs_)
         if (pair.is_closed)
             most_lead = std::max({most_lead, pair.lead[0], pair.lead[1]});
+    const auto depth_of = [&](const Pair& pair) {
+        return std::min(faces_.depth[pair.a], faces_.depth[pair.b]);
+    };
+    // Whether faces are too far in each other to have come to touch in this step.
+    const auto is_deep = [&](const Pair& pair, const Overlap& found) {
+        const auto move_a = ends_of(faces_.gridpoint[pair.a], move),
+                   move_b = ends_of(faces_.gridpoint[pair.b], move);
+        std::array<double, 2> gap_before{};
+        for (int i = 0; i < 2; ++i)
+            gap_before[i] =
+                found.gap[i] - (at(move_b, found.on_b[i]) - at(move_a, found.on_a[i])).dot(found.normal());
+        return std::min(found.sunk(), -std::min(gap_before[0], gap_before[1])) > deepest_new * depth_of(pair);
+    };
     const auto evaluate = [&](Pair& pair, Index index, bool may_close) {
         pair.is_slipping = false;
         pair.friction = pair.damped = 0;
@@ -262,20 +378,19 @@ void Contacts::update(const std::vector<Vector2d>& place, const std::vector<Vect
             pair.friction += last_pressed_in; // where rock slides off an edge
             return;
         }
-        const joint::Coulomb& law = laws_[pair.law];
+        const joint::Law& law = laws_[pair.law];
+        const double k_n = joint::k_n(law), k_s = joint::k_s(law);
         std::array<double, 2> closing{};
         for (int i = 0; i < 2; ++i)
             closing[i] = pair.lead[0] + found->on_a[i] * (pair.lead[1] - pair.lead[0]) - found->gap[i];
-        const double depth = std::min(faces_.depth[pair.a], faces_.depth[pair.b]);
-        const double sunk = -std::min(found->gap[0], found->gap[1]);
-        const bool is_bonded = pair.is_known && !pair.is_broken;
+        const bool is_too_deep = found->sunk() > deepest * depth_of(pair), is_bonded = pair.is_bonded();
         // One that is not known yet may have a lead to inherit.
         const double most = std::max(closing[0], closing[1]) + (pair.is_known ? 0.0 : most_lead);
-        if (!pair.is_closed && !is_bonded && (most <= 0 || sunk > deepest_new * depth)) {
+        if (!pair.is_closed && !is_bonded && (most <= 0 || (is_too_deep && is_deep(pair, *found)))) {
             open();
             return;
         }
-        if (sunk > deepest * depth) {
+        if (is_too_deep) {
 #pragma omp critical
             too_deep = std::min(too_deep, index);
             return;
@@ -284,10 +399,6 @@ void Contacts::update(const std::vector<Vector2d>& place, const std::vector<Vect
             closes[index] = 1;
             return;
         }
-        const auto pressed_in = [&](double length) {
-            return law.k_n * length *
-                   (closing[0] * closing[0] + closing[0] * closing[1] + closing[1] * closing[1]) / 6;
-        };
         std::array<double, 2> part{0, 1}; // of the overlap that is closed
         double in_bonds = 0;              // what springs hold that is lost with the bonds, if they break now
         const auto leave_bonds = [&] {
@@ -298,9 +409,9 @@ void Contacts::update(const std::vector<Vector2d>& place, const std::vector<Vect
                 part[1] = zero;
             closing = {std::max(closing[0], 0.0), std::max(closing[1], 0.0)};
         };
-        if (!pair.is_broken && -law.k_n * std::min(closing[0], closing[1]) > law.tensile_strength) {
+        if (!pair.is_broken && -k_n * std::min(closing[0], closing[1]) > joint::tensile_strength(law)) {
             pair.is_broken = true;
-            in_bonds = pressed_in(found->length);
+            in_bonds = Part(law, closing, found->length).stored();
         }
         if (pair.is_broken) {
             if (std::max(closing[0], closing[1]) <= 0) {
@@ -322,30 +433,7 @@ void Contacts::update(const std::vector<Vector2d>& place, const std::vector<Vect
             pair.on_b[i] = fraction(found->on_b, part[i]);
         }
         const Vector2d tangent = along(pair.normal);
-
-        // Forces on the ends that are as the linear traction between them. In the step in which it closes,
-        // and in the one before it opens, a contact is closed for a part of the time that its force acts.
-        const std::array<double, 2> opening{parted_at(0).dot(pair.normal), parted_at(1).dot(pair.normal)};
-        const double deep = (closing[0] + closing[1]) / 2, way = (opening[0] + opening[1]) / 2;
-        double acts = 1;
-        if (pair.is_broken && !was_closed && deep < -way)
-            acts = (1 - deep / way) / 2;
-        else if (pair.is_broken && was_closed && way > 0) {
-            const double next = way + (way - pair.way) * deep / (deep + way); // forces go with the closing
-            if (next > deep)
-                acts = (way + deep) / (way + next);
-        }
-        pair.way = way;
-        for (int i = 0; i < 2; ++i) {
-            const double pressed = acts * law.k_n * pair.length * (2 * closing[i] + closing[1 - i]) / 6;
-            double held = viscosity / dt * law.k_n * pair.length / 2 * opening[i];
-            if (pair.is_broken)
-                held = std::min(held, pressed);
-            pair.force[i] = (held - pressed) * pair.normal;
-            pair.held[i] = held * pair.normal;
-        }
-        const double pressed = law.k_n * pair.length * deep;
-        pair.sigma = pair.length > 0 ? -pressed / pair.length : 0.0;
+        const Part closed(law, closing, pair.length);
 
         // Two points a gap apart that turn together move along each other, too; that is no slip.
         const double gap = fraction(found->gap, (part[0] + part[1]) / 2);
@@ -355,40 +443,62 @@ void Contacts::update(const std::vector<Vector2d>& place, const std::vector<Vect
         // A part that opens takes along the shear that it has; one that closes has none yet.
         const double last_shear = pair.is_new ? 0.0 : last_tau * last_length;
         const double kept = last_tau * (pair.is_new ? pair.length : std::min(last_length, pair.length));
-        const double trial = kept + law.k_s * slid * pair.length;
-        const auto strength = [&] {
-            return std::max(0.0, law.cohesion_of(pair.is_broken) * pair.length +
-                                     pressed * law.tan_phi_of(pair.is_broken));
-        };
-        const bool weakens = !pair.is_broken && law.weakens && std::abs(trial) > strength();
+        const double trial = kept + k_s * slid * pair.length;
+        const bool was_broken = pair.is_broken;
+        const bool weakens =
+            !was_broken && joint::weakens_by_slip(law) && std::abs(trial) > closed.strength(false);
         if (weakens) {
             pair.is_broken = true;
-            in_bonds = pressed_in(found->length);
+            in_bonds = Part(law, closing, found->length).stored();
         }
-        const double limit = strength(), shear = std::clamp(trial, -limit, limit);
+
+        // Forces on the ends that are as the traction between them. In the step in which it closes, and in
+        // the one before it opens, a contact is closed for a part of the time that its force acts.
+        const std::array<double, 2> opening{parted_at(0).dot(pair.normal), parted_at(1).dot(pair.normal)};
+        const double deep = closed.deep(), way = (opening[0] + opening[1]) / 2;
+        double acts = 1;
+        if (was_broken && !was_closed && deep < -way)
+            acts = (1 - deep / way) / 2;
+        else if (was_broken && was_closed && way > 0) {
+            const double next = way + (way - pair.way) * deep / (deep + way); // forces go with the closing
+            if (next > deep)
+                acts = (way + deep) / (way + next);
+        }
+        pair.way = way;
+        for (int i = 0; i < 2; ++i) {
+            const double pressed = closed.force_on(i, acts);
+            double held = viscosity / dt * closed.stiffness() * pair.length / 2 * opening[i];
+            if (was_broken)
+                held = std::min(held, pressed);
+            pair.force[i] = (held - pressed) * pair.normal;
+            pair.held[i] = held * pair.normal;
+        }
+        pair.sigma = pair.length > 0 ? -closed.force() / pair.length : 0.0;
+        pair.stiffest = closed.stiffest();
+
+        const double limit = closed.strength(pair.is_broken), shear = std::clamp(trial, -limit, limit);
         pair.is_slipping = shear != trial;
         const auto sheared_in = [&](double force, double length) {
-            return law.k_s > 0 && length > 0 ? force * force / (2 * law.k_s * length) : 0.0;
+            return k_s > 0 && length > 0 ? force * force / (2 * k_s * length) : 0.0;
         };
         if (!pair.is_new)
             pair.friction = last_sheared_in - sheared_in(kept, pair.length) + (last_shear - kept) / 2 * slid;
-        if (pair.is_slipping && law.k_s > 0 && pair.length > 0)
-            pair.friction += (kept + shear) / 2 * (trial - shear) / (law.k_s * pair.length);
+        if (pair.is_slipping && k_s > 0 && pair.length > 0)
+            pair.friction += (kept + shear) / 2 * (trial - shear) / (k_s * pair.length);
         pair.is_new = false;
         pair.tau = pair.length > 0 ? shear / pair.length : 0.0;
         double held = 0;
         if (!pair.is_slipping)
-            held = std::clamp(shear + viscosity / dt * law.k_s * pair.length * slid, -limit, limit) - shear;
+            held = std::clamp(shear + viscosity / dt * k_s * pair.length * slid, -limit, limit) - shear;
         for (int i = 0; i < 2; ++i) {
             pair.force[i] += (shear + held) / 2 * tangent;
             pair.held[i] += held / 2 * tangent;
             pair.damped += pair.held[i].dot(parted_at(i)) / 2;
         }
-        if (weakens) {
+        if (weakens)
             leave_bonds();
-            pair.pressed_in = pressed_in((part[1] - part[0]) * found->length);
-        } else
-            pair.pressed_in = pressed_in(pair.length);
+        pair.pressed_in =
+            Part(law, closing, weakens ? (part[1] - part[0]) * found->length : pair.length).stored();
         if (in_bonds > 0)
             pair.friction += in_bonds - pair.pressed_in;
         pair.sheared_in = sheared_in(shear, pair.length);
@@ -398,9 +508,16 @@ void Contacts::update(const std::vector<Vector2d>& place, const std::vector<Vect
         evaluate(pairs_[p], p, false);
     if (too_deep < n)
         throw equilibrium_error(
-            "two pieces of rock overlap at " + shown(place[faces_.gridpoint[pairs_[too_deep].a][0]]) +
+            "two pieces of rock overlap at " +
+            shown(Vector2d(origin_ + place[faces_.gridpoint[pairs_[too_deep].a][0]])) +
             " by more than half the depth of a zone; the joint's normal stiffness is too small "
             "for what presses on it");
+    const auto sunk_of = [&](const Pair& pair) {
+        const auto found =
+            overlap_of(ends_of(faces_.gridpoint[pair.a], place), ends_of(faces_.gridpoint[pair.b], place),
+                       sharpness_[pair.a], sharpness_[pair.b]);
+        return found ? found->sunk() : 0.0;
+    };
     // Those that lie behind come last: what they may have slid on from must have closed.
     for (const bool is_behind : {false, true})
         for (Index p = 0; p < n; ++p) {
@@ -413,6 +530,9 @@ void Contacts::update(const std::vector<Vector2d>& place, const std::vector<Vect
             if (found->is_behind() != is_behind)
                 continue;
             const Pair* const before = contact_before(pair, found->normal(), place);
+            if (is_deep(pair, *found) &&
+                (before == nullptr || found->sunk() > sunk_of(*before) + deepest_new * depth_of(pair)))
+                continue; // another face behind
             if (before == nullptr &&
                 (is_behind || (!pair.is_known && std::min(found->gap[0], found->gap[1]) >= 0)))
                 continue;
@@ -428,6 +548,11 @@ void Contacts::update(const std::vector<Vector2d>& place, const std::vector<Vect
             pair.is_known = true;
             evaluate(pair, p, true);
         }
+    stiffest_ = stiffest_open_;
+    if (stiffens_)
+        for (const Pair& pair : pairs_)
+            if (pair.is_closed)
+                stiffest_ = std::max(stiffest_, pair.stiffest);
 }
 
 void Contacts::transfer(const Transfer& to, MovedRock& kept)
@@ -436,8 +561,8 @@ void Contacts::transfer(const Transfer& to, MovedRock& kept)
     for (Pair& pair :
          pairs_) // all members, lest a new one is forgotten; those not passed on are of one update alone
         [[maybe_unused]] auto& [a, b, law, lead, tau, is_known, is_new, is_closed, is_broken, is_slipping,
-                                on_a, on_b, force, normal, way, length, sigma, held, pressed_in, sheared_in,
-                                friction, damped] = pair;
+                                on_a, on_b, force, normal, way, length, sigma, stiffest, held, pressed_in,
+                                sheared_in, friction, damped] = pair;
     std::vector<std::array<Index, 2>> faces;
     for (const Pair& pair : pairs_)
         faces.push_back({pair.a, pair.b});

@@ -2,9 +2,9 @@
 //
 // A face is one side of a zone with no rock before it. A contact is a pair of faces that look at each other:
 // on the length that they overlap, the joint closes linearly, and its springs (stiffness per area) are
-// integrated exactly over the part that is closed. So gridpoints of the two faces need not match: a uniform
-// traction stays uniform however far they have slid. A corner that presses into a face is the same with a
-// short closed part.
+// integrated over the part that is closed: linear ones exactly, those of Barton and Bandis's law at five
+// points. So gridpoints of the two faces need not match: a uniform traction stays uniform however far they
+// have slid. A corner that presses into a face is the same with a short closed part.
 //
 // The plane of a contact is that of the face into which a corner of the other one sinks. Within a hundredth
 // of the shorter face about two ends that meet, it turns smoothly from one face to the other (corner to
@@ -52,18 +52,20 @@ struct Pair {
     Vector2d normal{0, 0};                 // from a to b
     double way = 0;                        // by which it opened in the last step [m]
     double length = 0, sigma = 0;          // [m], [Pa]
+    double stiffest = 0;                   // of its normal springs [Pa/m]
     std::array<Vector2d, 2> held{};        // of the force, what dashpots add [N/m]
     double pressed_in = 0, sheared_in = 0; // what the springs hold [J/m]
     double friction = 0, damped = 0;       // in the last step [J/m]
 
+    bool is_bonded() const { return is_known && !is_broken; }
     double stored() const { return pressed_in + sheared_in; }
 };
 
 class Contacts
 {
 public:
-    // `laws`: those of the pairs; new contacts have the last one.
-    explicit Contacts(std::vector<joint::Coulomb> laws) : laws_(std::move(laws)) {}
+    // `laws`: those of the pairs; new contacts have the last one. Places are counted from `origin` [m].
+    explicit Contacts(std::vector<joint::Law> laws, const Vector2d& origin = Vector2d::Zero());
 
     // Takes these faces instead; pairs of before are forgotten but for `known`, in any order.
     void set_faces(Faces faces, std::vector<Pair> known, const std::vector<Vector2d>& place);
@@ -82,17 +84,23 @@ public:
 
     const Faces& faces() const { return faces_; }
     const std::vector<Pair>& pairs() const { return pairs_; }
-    const std::vector<joint::Coulomb>& laws() const { return laws_; }
+    const std::vector<joint::Law>& laws() const { return laws_; }
+    // Of any spring: while nothing closes, and in the last update [Pa/m].
+    double stiffest() const { return stiffest_; }
+    bool stiffens() const { return stiffens_; }
     // How often what may touch was sought.
     Index searches() const { return searches_; }
 
 private:
-    void seek(const std::vector<Vector2d>& place);
+    void seek(const std::vector<Vector2d>& place, const std::vector<Vector2d>& move);
     void find_corners(const std::vector<Vector2d>& place);
     const Pair* contact_before(const Pair& pair, const Vector2d& normal,
                                const std::vector<Vector2d>& place) const;
 
-    std::vector<joint::Coulomb> laws_;
+    std::vector<joint::Law> laws_;
+    Vector2d origin_;
+    bool stiffens_ = false;                   // as it closes, by any law
+    double stiffest_open_ = 0, stiffest_ = 0; // [Pa/m]
     Faces faces_;
     std::vector<Pair> pairs_;                 // in order of {a, b}
     std::vector<std::vector<Index>> of_face_; // pairs of each face

@@ -21,17 +21,19 @@ using Eigen::Vector3d;
 namespace
 {
 
-constexpr double safety = 0.9;   // of the largest stable step
-constexpr double impacts = 4;    // steps are so much shorter for rigid bodies: what one step misses of an
-                                 // impact's beginning is energy that is lost or gained
-constexpr double at_rest = 1e-4; // [m/s]
+constexpr double safety = 0.9;      // of the largest stable step
+constexpr double impacts = 4;       // steps are so much shorter for rigid bodies: what one step misses of an
+                                    // impact's beginning is energy that is lost or gained
+constexpr double at_rest = 1e-4;    // [m/s]
+constexpr double most_strain = 0.5; // of a zone that yields [-]
 constexpr double most_rounding = 1e-3; // of the mean force on a gridpoint
 constexpr double slow = 0.01;          // below this speed everywhere, motion is stopped at its peaks [m/s]
 
 // Adds to a sum of very many; what rounding leaves out comes with the next one (Kahan).
-void add(const Vector2d& one, Vector2d& sum, Vector2d& lost)
+template <class Value>
+void add(const Value& one, Value& sum, Value& lost)
 {
-    const Vector2d with_lost = one + lost, before = sum;
+    const Value with_lost = one + lost, before = sum;
     sum += with_lost;
     lost = with_lost - (sum - before);
 }
@@ -73,6 +75,15 @@ Polar polar_of(const Matrix2d& f)
     return {rotation, rotation.transpose() * f};
 }
 
+// The part of R' P, P being the first Piola-Kirchhoff stress, that does no work on the stretch U but keeps
+// Cauchy's stress symmetric: the skew W with W U + U W = U T - T U. None where Biot's stress T has the axes
+// of U, as without plastic strain.
+Matrix2d skew_part(const Matrix2d& stretch, const Matrix2d& stress)
+{
+    const double w = (stretch * stress - stress * stretch)(1, 0) / stretch.trace();
+    return (Matrix2d() << 0, -w, w, 0).finished();
+}
+
 Matrix2d edges_of(const std::array<Index, 3>& g, const std::vector<Vector2d>& place)
 {
     Matrix2d edges;
@@ -83,11 +94,11 @@ Matrix2d edges_of(const std::array<Index, 3>& g, const std::vector<Vector2d>& pl
 } // namespace
 
 Motion::Motion(mechanics::Assembly& rock, const Mesh& mesh, std::vector<char> is_rigid,
-               const joint::Coulomb& found, const Settings& settings)
+               const joint::Law& found, const Settings& settings)
     : rock_(rock), mesh_(mesh), settings_(settings), contacts_({}), is_rigid_(std::move(is_rigid))
 {
     // One law for every edge with contacts.
-    std::vector<joint::Coulomb> laws;
+    std::vector<joint::Law> laws;
     law_of_edge_.assign(mesh.contact_edge.empty()
                             ? 0
                             : *std::max_element(mesh.contact_edge.begin(), mesh.contact_edge.end()) + 1,
@@ -98,13 +109,22 @@ Motion::Motion(mechanics::Assembly& rock, const Mesh& mesh, std::vector<char> is
         if (!has_law[e]) {
             has_law[e] = 1;
             law_of_edge_[e] = laws.size();
-            laws.push_back(std::get<joint::Coulomb>(rock.contacts.law[c])); // the scene has no other
+            laws.push_back(rock.contacts.law[c]);
         }
     }
     laws.push_back(found);
-    contacts_ = Contacts(std::move(laws));
+    low_ = high_ = mesh.gridpoint[0];
+    for (const Vector2d& p : mesh.gridpoint) {
+        low_ = low_.cwiseMin(p);
+        high_ = high_.cwiseMax(p);
+    }
+    middle_ = (low_ + high_) / 2;
+    contacts_ = Contacts(std::move(laws), middle_);
 
-    place_ = rock.position;
+    origin_ = rock.position;
+    for (Vector2d& p : origin_)
+        p -= middle_;
+    place_ = origin_;
     for (std::size_t g = 0; g < place_.size(); ++g)
         place_[g] += rock.displacement[g];
     velocity_.assign(place_.size(), Vector2d::Zero());
@@ -118,15 +138,17 @@ Motion::Motion(mechanics::Assembly& rock, const Mesh& mesh, std::vector<char> is
         zone.stiffness = stiffness;
         zone.strain = {stretch(0, 0) - 1, stretch(1, 1) - 1, 2 * stretch(0, 1)};
         zones_.push_back(zone);
-    }
-    low_ = high_ = mesh.gridpoint[0];
-    for (const Vector2d& p : mesh.gridpoint) {
-        low_ = low_.cwiseMin(p);
-        high_ = high_.cwiseMax(p);
+        if (rock.zones.yielding.empty() || rock.zones.yielding_number[z] < 0)
+            continue;
+        mechanics::YieldingZone yielding = rock.zones.yielding[rock.zones.yielding_number[z]];
+        yielding.plastic.setZero(); // is in the shape without stress
+        yielding.dissipated = 0;
+        yielding.initial_zz = yielding.stress_zz - stiffness[1] * (zone.strain[0] + zone.strain[1]);
+        yielding_.push_back({yielding, stress_of(stiffness, zone.strain)});
     }
     const Vector2d diagonal = Vector2d::Constant((high_ - low_).norm());
-    low_ -= diagonal;
-    high_ += diagonal;
+    low_ -= middle_ + diagonal;
+    high_ += diagonal - middle_;
     find_ground();
     start();
 }
@@ -135,10 +157,10 @@ void Motion::start()
 {
     released_.assign(place_.size(), Vector2d::Zero());
     lost_.assign(place_.size(), Vector2d::Zero());
-    time_ = 0;
-    steps_ = 0;
+    time_ = time_lost_ = 0;
     energy_ = {};
     starts_from_rest_ = true;
+    has_moved_ = false;
     last_kinetic_ = 0;
     checks_in_balance_ = 0;
     last_contact_force_.clear();
@@ -147,11 +169,20 @@ void Motion::start()
     find_bodies();
     find_time_step();
     find_forces(velocity_);
+    if (contacts_.stiffest() > stiffest_allowed_)
+        find_time_step();
     if (settings_.release > 0) // what is out of balance now, the rock that has gone has held
         for (std::size_t g = 0; g < place_.size(); ++g)
             released_[g] = -force_[g];
     find_forces(velocity_);
     stored_at_start_ = stored();
+}
+
+Motion::Yielding* Motion::yielding(std::size_t z)
+{
+    if (yielding_.empty() || rock_.zones.yielding_number[z] < 0)
+        return nullptr;
+    return &yielding_[rock_.zones.yielding_number[z]];
 }
 
 // The gridpoint that each one moves with: itself, but for those that are tied.
@@ -225,7 +256,7 @@ void Motion::find_faces()
                 const Index from = zones_[z].gridpoint[i], to = zones_[z].gridpoint[(i + 1) % 3];
                 if (!sides.contains(key(to, from)))
                     add(from, to, static_cast<Index>(z),
-                        2 * rock_.zones.area[z] / (rock_.position[to] - rock_.position[from]).norm());
+                        2 * rock_.zones.area[z] / (origin_[to] - origin_[from]).norm());
             }
     for (const auto& [from, to] : ground_)
         add(from, to, -1, (mesh_.gridpoint[to] - mesh_.gridpoint[from]).norm());
@@ -287,6 +318,8 @@ void Motion::find_faces()
         }
         if (n == 0)
             continue;
+        if (!joint::is_linear(contacts_.laws()[pair.law]))
+            pair.is_broken = true; // it never had bonds
         pair.tau /= n;
         for (int end = 0; end < 2; ++end)
             if (!has_lead[end])
@@ -383,7 +416,7 @@ double Motion::move(Body& body, double keep, double gain)
     const double last_spin = body.spin;
     body.velocity = keep * body.velocity + gain / body.mass * force;
     body.spin = keep * body.spin + gain / body.inertia * moment;
-    add(dt_ * body.velocity, body.centre, body.lost);
+    add<Vector2d>(dt_ * body.velocity, body.centre, body.lost);
     body.angle += dt_ * body.spin;
     const Eigen::Rotation2Dd turn(body.angle);
     for (std::size_t k = 0; k < body.gridpoint.size(); ++k) {
@@ -407,9 +440,10 @@ void Motion::find_time_step()
                 for (int j = 0; j < 3; ++j)
                     sums[zones_[z].gridpoint[i]] +=
                         rock_.zones.area[z] * stiffness_between(rock_.zones, z, i, j).norm();
-    double stiffest_joint = 0;
-    for (const joint::Coulomb& law : contacts_.laws())
-        stiffest_joint = std::max({stiffest_joint, law.k_n, law.k_s});
+    // Where joints grow stiffer as they close, with room for that.
+    double& stiffest_joint = stiffest_allowed_;
+    stiffest_joint =
+        contacts_.stiffens() ? mechanics::room_to_stiffen * contacts_.stiffest() : contacts_.stiffest();
     for (const auto& [from, to] : contacts_.faces().gridpoint)
         for (const Index g : {from, to})
             sums[g] += stiffest_joint * (place_[to] - place_[from]).norm();
@@ -437,11 +471,15 @@ void Motion::find_time_step()
         }
     // Stiffness damping shortens the stable step: (2 / w) (sqrt(1 + xi^2) - xi), xi = beta w / 2.
     const double xi = settings_.stiffness_damping * std::sqrt(highest) / 2;
-    if (highest == 0) { // all rock is held
-        dt_ = 1e-3;
-        return;
-    }
-    dt_ = safety * 2 / std::sqrt(highest) * (std::sqrt(1 + xi * xi) - xi);
+    dt_ = highest == 0 ? 1e-3 // all rock is held
+                       : safety * 2 / std::sqrt(highest) * (std::sqrt(1 + xi * xi) - xi);
+}
+
+// Of a step's time, by which the force at its beginning counts beside the velocity before: half of this step
+// and half of the last one.
+double Motion::first_half() const
+{
+    return starts_from_rest_ ? 0.5 : (last_dt_ + dt_) / (2 * dt_);
 }
 
 double Motion::release_factor() const
@@ -463,13 +501,27 @@ void Motion::find_forces(const std::vector<Vector2d>& move)
         Zone& zone = zones_[z];
         const Polar polar = polar_of(edges_of(zone.gridpoint, place_) * zone.inverse);
         const Vector3d strain(polar.stretch(0, 0) - 1, polar.stretch(1, 1) - 1, 2 * polar.stretch(0, 1));
-        const Vector3d stress = stress_of(zone.stiffness, strain);
-        const Vector3d held = viscosity * stress_of(zone.stiffness, strain - zone.strain);
-        zone.stored = zone.area / 2 * stress.dot(strain);
+        Vector3d stress, held;
+        Yielding* const yields = yielding(z);
+        if (yields != nullptr) {
+            const Vector3d last = yields->stress;
+            stress = yielded(yields->zone, zone.stiffness, Vector3d::Zero(), last, strain);
+            held = viscosity * (stress - last);
+            yields->stress = stress;
+            yields->is_torn = !(strain.cwiseAbs().maxCoeff() <= most_strain);
+            zone.stored = zone.area * mechanics::stored(zone.stiffness, stress, yields->zone.stress_zz);
+        } else {
+            stress = stress_of(zone.stiffness, strain);
+            held = viscosity * stress_of(zone.stiffness, strain - zone.strain);
+            zone.stored = zone.area / 2 * stress.dot(strain);
+        }
         zone.damped = zone.area / 2 * (zone.held + held).dot(strain - zone.strain); // as of contacts
         zone.held = held;
         zone.strain = strain;
-        const Matrix2d forces = zone.area * polar.rotation * tensor(stress + held) * zone.inverse.transpose();
+        Matrix2d acting = tensor(stress + held);
+        if (yields != nullptr)
+            acting += skew_part(polar.stretch, acting);
+        const Matrix2d forces = zone.area * polar.rotation * acting * zone.inverse.transpose();
         zone.force = {forces.col(0) + forces.col(1), -forces.col(0), -forces.col(1)};
     }
     contacts_.update(place_, move, dt_, settings_.stiffness_damping, rock_.threads);
@@ -509,7 +561,7 @@ void Motion::step()
     const auto n = place_.size();
     const double alpha = settings_.mass_damping;
     const double keep = (1 - alpha * dt_ / 2) / (1 + alpha * dt_ / 2);
-    const double gain = (starts_from_rest_ ? 0.5 : 1.0) * dt_ / (1 + alpha * dt_ / 2);
+    const double gain = first_half() * dt_ / (1 + alpha * dt_ / 2);
     const double held = release_factor();
     double kinetic = 0, fastest = 0;
     move_.assign(n, Vector2d::Zero());
@@ -539,12 +591,17 @@ void Motion::step()
                 fastest_gridpoint_ = g;
             }
     }
+    // After a stop: from then on it is the product of this velocity and its opposite that counts as kinetic
+    // energy (see energy()).
+    if (starts_from_rest_ && time_ > 0)
+        energy_.damped += half_step_energy();
     starts_from_rest_ = false;
     for (const auto& [follower, leader] : rock_.tied) {
         move_[follower] = move_[leader];
         velocity_[follower] = velocity_[leader];
     }
     fastest_ = std::sqrt(fastest);
+    has_moved_ = has_moved_ || fastest_ > slow;
     std::size_t gone = n; // outside
     for (std::size_t g = 0; g < n; ++g) {
         energy_.work += (rock_.load[g] + rock_.applied[g] + held * released_[g]).dot(move_[g]);
@@ -556,12 +613,22 @@ void Motion::step()
                                 shown(rock_.position[fastest_gridpoint_]));
     if (gone < n)
         throw moves_on("rock has left the section, and is as far from it as the section is large");
-    time_ = static_cast<double>(++steps_) * dt_;
+    add(dt_, time_, time_lost_);
+    last_dt_ = dt_;
     find_forces(move_);
     energy_.stored = stored() - stored_at_start_;
     for (std::size_t z = 0; z < zones_.size(); ++z)
         if (deforms(z))
             energy_.damped += zones_[z].damped;
+    for (std::size_t z = 0; z < zones_.size() && !yielding_.empty(); ++z)
+        if (Yielding* const yields = yielding(z); yields != nullptr && deforms(z)) {
+            if (yields->is_torn)
+                throw equilibrium_error("motion: rock that yields at " +
+                                        shown(place_[zones_[z].gridpoint[0]]) + " is strained by more than " +
+                                        shown(100 * most_strain) + " percent, more than a zone can be");
+            energy_.friction += zones_[z].area * yields->zone.dissipated;
+            yields->zone.dissipated = 0;
+        }
     for (const Pair& pair : contacts_.pairs()) {
         energy_.friction += pair.friction;
         energy_.damped += pair.damped;
@@ -569,33 +636,32 @@ void Motion::step()
     // What is nearly at rest swings about it. Stopped where its kinetic energy is largest, it comes to rest;
     // what slides or falls has no such peak until it is no longer slow.
     if (fastest_ < slow && kinetic < last_kinetic_) {
-        double now = 0;
-        for (std::size_t g = 0; g < n; ++g)
-            if (inverse_mass_[g] > 0)
-                now += velocity_[g].squaredNorm() / (2 * inverse_mass_[g]);
+        energy_.damped += energy().kinetic;
         for (Body& body : bodies_) {
-            now += (body.mass * body.velocity.squaredNorm() + body.inertia * body.spin * body.spin) / 2;
             body.velocity.setZero();
             body.spin = 0;
         }
-        energy_.damped += now;
         last_kinetic_ = 0;
         velocity_.assign(n, Vector2d::Zero());
         starts_from_rest_ = true;
     } else
         last_kinetic_ = kinetic;
+    if (contacts_.stiffest() > stiffest_allowed_)
+        find_time_step();
 }
 
 void Motion::transfer(const Transfer& to, MovedRock& kept)
 {
     // All members, lest a new one is forgotten.
-    auto& [rock, mesh, settings, contacts, bodies, is_rigid, body_of, zones, place, velocity, move, force,
-           released, lost, low, high, inverse_mass, law_of_edge, ground, face_of_mesh, zone_of_face, dt, time,
-           steps, starts_from_rest, energy, stored_at_start, last_kinetic, stiffest, largest_mean, ratio,
-           force_change, fastest, fastest_gridpoint, stiffest_gridpoint, checks_in_balance,
-           last_contact_force] = *this;
-    to.values(rock.position, kept.origin);
+    auto& [rock, mesh, settings, contacts, bodies, is_rigid, body_of, zones, yielding, place, velocity, move,
+           force, released, lost, origin, middle, low, high, inverse_mass, law_of_edge, ground, face_of_mesh,
+           zone_of_face, dt, last_dt, time, time_lost, stiffest_allowed, starts_from_rest, has_moved, energy,
+           stored_at_start, last_kinetic, stiffest, largest_mean, ratio, force_change, fastest,
+           fastest_gridpoint, stiffest_gridpoint, checks_in_balance, last_contact_force] = *this;
+    to.values(origin, kept.origin);
     to.values(place, kept.place);
+    for (std::size_t g = 0; g < origin.size(); ++g)
+        rock.position[g] = middle + origin[g];
     std::vector<Eigen::Vector4d> inverse;
     for (const Zone& zone : zones)
         inverse.emplace_back(zone.inverse.reshaped());
@@ -607,12 +673,36 @@ void Motion::transfer(const Transfer& to, MovedRock& kept)
             zone;
     to.values(zones, kept.area, &Zone::area);
     to.values(zones, kept.strain, &Zone::strain);
+    for (Yielding& one : yielding)
+        [[maybe_unused]] auto& [zone, stress, is_torn] = one; // the last is of one step alone
+    const auto of_zone = [](auto member) {
+        return [member](Yielding & one) -> auto&
+        {
+            return one.zone.*member;
+        };
+    };
+    to.values(yielding, kept.plastic_strain, of_zone(&mechanics::YieldingZone::plastic));
+    to.values(yielding, kept.initial_zz, of_zone(&mechanics::YieldingZone::initial_zz));
+    to.values(yielding, kept.stress_zz, of_zone(&mechanics::YieldingZone::stress_zz));
+    to.values(yielding, kept.stress, &Yielding::stress);
     to.size(face_of_mesh, kept.face);
     to.values(face_of_mesh, kept.face);
     contacts.transfer(to, kept);
     to.value(fastest, kept.fastest);
     to.value(ratio, kept.out_of_balance_ratio);
     to.value(largest_mean, kept.largest_mean_force);
+}
+
+// Of the velocities as they are, half a step ago [J/m].
+double Motion::half_step_energy() const
+{
+    double sum = 0;
+    for (std::size_t g = 0; g < place_.size(); ++g)
+        if (inverse_mass_[g] > 0)
+            sum += velocity_[g].squaredNorm() / (2 * inverse_mass_[g]);
+    for (const Body& body : bodies_)
+        sum += (body.mass * body.velocity.squaredNorm() + body.inertia * body.spin * body.spin) / 2;
+    return sum;
 }
 
 // Velocities are known half a step before and after now; with their product as the square, work of forces is
@@ -652,7 +742,9 @@ mechanics::no_equilibrium Motion::moves_on(const std::string& why) const
 
 void Motion::count_from_here()
 {
-    rock_.position = place_;
+    origin_ = place_;
+    for (std::size_t g = 0; g < place_.size(); ++g)
+        rock_.position[g] = middle_ + place_[g];
     put_back();
 }
 
@@ -684,17 +776,26 @@ bool Motion::is_at_rest()
             largest =
                 std::max({largest, force.norm(), std::abs(moment) / std::sqrt(body.inertia / body.mass)});
         }
-    // Where forces are almost none, they are rounding errors of stiffness times place. Dashpots multiply
-    // these by their time over that of a step: too much for zones that are tiny, whose forces then say
-    // nothing.
-    const double rounding = 1e-15 * stiffest_ * (1 + settings_.stiffness_damping / dt_) * farthest;
+    // Where forces are almost none, they are rounding errors of stiffness times place; no larger than these,
+    // nothing bears anything. Dashpots multiply them by their time over that of a step: too much for zones
+    // that are tiny, whose forces then say nothing.
+    const double of_springs = 1e-15 * stiffest_ * farthest;
+    const double rounding = of_springs * (1 + settings_.stiffness_damping / dt_);
     largest_mean_ = std::max(largest_mean_, n > 0 ? sum / n : 0.0);
-    if (rounding > most_rounding * largest_mean_ && largest_mean_ > 0)
+    if (largest_mean_ > of_springs && rounding > most_rounding * largest_mean_) {
+        const std::string where =
+            "; what is stiffest is at " + shown(rock_.position[stiffest_gridpoint_]) + ": wanted ";
+        if (of_springs > most_rounding * largest_mean_)
+            throw equilibrium_error(
+                "motion: rounding errors of places, times stiffness, are not small beside the "
+                "mean force on a gridpoint, " +
+                shown(largest_mean_) + " N/m" + where + "more load, softer joints, or no zones so small");
         throw equilibrium_error(
             "motion: a step takes " + shown(dt_) + " s, and what " + shown(settings_.stiffness_damping) +
-            " s of stiffness damping makes of rounding errors is no longer small beside the forces; what is "
-            "stiffest is at " +
-            shown(rock_.position[stiffest_gridpoint_]) + ": wanted less damping there, or no zones so small");
+            " s of stiffness damping makes of rounding errors is no longer small beside the "
+            "forces" +
+            where + "less damping there, or no zones so small");
+    }
     const double mean = n > 0 ? std::max(sum / n, rounding / settings_.tolerance) : 1.0;
     ratio_ = largest / mean;
     const bool has_last = !last_contact_force_.empty();
@@ -715,14 +816,14 @@ std::vector<Touching> Motion::touching() const
         const auto &a = contacts_.faces().gridpoint[pair.a], &b = contacts_.faces().gridpoint[pair.b];
         std::array<Vector2d, 2> between;
         for (int i = 0; i < 2; ++i)
-            between[i] = (place_[a[0]] + pair.on_a[i] * (place_[a[1]] - place_[a[0]]) + place_[b[0]] +
-                          pair.on_b[i] * (place_[b[1]] - place_[b[0]])) /
-                         2;
+            between[i] = middle_ + (place_[a[0]] + pair.on_a[i] * (place_[a[1]] - place_[a[0]]) +
+                                    place_[b[0]] + pair.on_b[i] * (place_[b[1]] - place_[b[0]])) /
+                                       2;
         found.push_back({{zone_of_face_[pair.a], zone_of_face_[pair.b]},
                          between,
                          pair.normal,
                          {pair.sigma, pair.tau},
-                         -pair.sigma / contacts_.laws()[pair.law].k_n,
+                         -joint::opening(contacts_.laws()[pair.law], pair.sigma),
                          pair.is_slipping});
     }
     return found;
@@ -731,7 +832,7 @@ std::vector<Touching> Motion::touching() const
 void Motion::put_back()
 {
     for (std::size_t g = 0; g < place_.size(); ++g)
-        rock_.displacement[g] = place_[g] - rock_.position[g];
+        rock_.displacement[g] = place_[g] - origin_[g];
     for (std::size_t z = 0; z < zones_.size(); ++z) {
         if (!rock_.zones.is_present[z])
             continue;
@@ -741,8 +842,19 @@ void Motion::put_back()
         }
         const Zone& zone = zones_[z];
         const Polar polar = polar_of(edges_of(zone.gridpoint, place_) * zone.inverse);
-        const Matrix2d stress = polar.rotation * tensor(stress_of(zone.stiffness, zone.strain)) *
-                                polar.stretch * polar.rotation.transpose() / polar.stretch.determinant();
+        const Yielding* const yields = yielding(z);
+        Matrix2d biot = tensor(yields != nullptr ? yields->stress : stress_of(zone.stiffness, zone.strain));
+        if (yields != nullptr) {
+            biot += skew_part(polar.stretch, biot);
+            const Eigen::Vector4d& p = yields->zone.plastic;
+            const Matrix2d plastic =
+                polar.rotation * tensor({p[0], p[1], p[3] / 2}) * polar.rotation.transpose();
+            mechanics::YieldingZone& seen = rock_.zones.yielding[rock_.zones.yielding_number[z]];
+            seen.plastic = {plastic(0, 0), plastic(1, 1), p[2], 2 * plastic(0, 1)};
+            seen.stress_zz = yields->zone.stress_zz;
+        }
+        const Matrix2d stress =
+            polar.rotation * biot * polar.stretch * polar.rotation.transpose() / polar.stretch.determinant();
         rock_.zones.stress[z] = {stress(0, 0), stress(1, 1), (stress(0, 1) + stress(1, 0)) / 2};
     }
     const std::vector<Index> leader = leaders();

@@ -2,8 +2,8 @@
 //
 // Zones are elastic in the frame that turns with them (Biot's stress over Biot's strain, from a shape without
 // stress that has the in-situ stress in the shape they start from), so turning costs nothing and the forces
-// have a potential. Joints are libs/motion/contacts. Real masses; velocities are half a step behind
-// displacements.
+// have a potential. Rock that yields has its plastic strain taken off Biot's strain there. Joints are
+// libs/motion/contacts. Real masses; velocities are half a step behind displacements.
 
 #pragma once
 
@@ -19,7 +19,7 @@ struct Energy {
     double work = 0; // of weight, tractions on the outline and what excavation still holds
     double kinetic = 0;
     double stored = 0;   // by zones and contacts, less that at the start
-    double friction = 0; // lost to slip
+    double friction = 0; // lost to slip and yield
     double damped = 0;   // by dashpots, and where motion is stopped (see `settle`)
 
     double error() const { return work - kinetic - stored - friction - damped; }
@@ -49,8 +49,8 @@ class Motion
 public:
     // `found` are the laws of contacts that come about.
     // Zones of rigid rock form bodies that do not deform.
-    Motion(mechanics::Assembly& rock, const Mesh& mesh, std::vector<char> is_rigid,
-           const joint::Coulomb& found, const Settings& settings);
+    Motion(mechanics::Assembly& rock, const Mesh& mesh, std::vector<char> is_rigid, const joint::Law& found,
+           const Settings& settings);
 
     // Begins anew after the assembly has lost rock, or gained loads. What is out of balance then fades away
     // within the time of release.
@@ -63,7 +63,8 @@ public:
     void count_from_here();
 
     // One step of time. Throws no_equilibrium where rock has left the section, farther than its diagonal;
-    // equilibrium_error where faces overlap too much, and where places are no numbers.
+    // equilibrium_error where faces overlap too much, where rock yields too far, and where places are no
+    // numbers.
     void step();
 
     // That it goes on moving as it does now.
@@ -80,6 +81,8 @@ public:
     double out_of_balance_ratio() const { return ratio_; }
     double contact_force_change() const { return force_change_; }
     double fastest() const { return fastest_; } // [m/s]
+    // Faster than where motion is stopped at its peaks, since the start of this motion.
+    bool has_moved() const { return has_moved_; }
     std::vector<Touching> touching() const;
 
     // Puts displacements, stresses and contacts of the mesh into the assembly. A contact of the mesh whose
@@ -99,6 +102,14 @@ private:
         double stored = 0, damped = 0;                   // now; in the last step [J/m]
     };
 
+    // Of rock that yields, in the frame that turns with its zone.
+    struct Yielding {
+        mechanics::YieldingZone
+            zone;               // strains since the shape without stress; its dissipation is of one step
+        Eigen::Vector3d stress; // Biot's {xx, yy, xy} now [Pa]
+        bool is_torn = false;   // strained by more than a zone can be
+    };
+
     // Rock that does not deform: gridpoints that zones of rigid rock connect.
     struct Body {
         std::vector<Index> gridpoint; // leaders of ties
@@ -113,16 +124,19 @@ private:
         bool is_held() const { return is_free.maxCoeff() == 0; }
     };
 
+    Yielding* yielding(std::size_t z);
     bool deforms(std::size_t z) const { return rock_.zones.is_present[z] && !is_rigid_[z]; }
     std::vector<Index> leaders() const;
     void find_ground();
     void find_faces();
     void find_bodies();
     void find_time_step();
+    double first_half() const;
     double move(Body& body, double keep, double gain);
     std::pair<Vector2d, double> load_on(const Body& body) const;
     void find_forces(const std::vector<Vector2d>& move);
     double release_factor() const;
+    double half_step_energy() const;
     double stored() const;
 
     mechanics::Assembly& rock_;
@@ -130,21 +144,25 @@ private:
     Settings settings_;
     Contacts contacts_;
     std::vector<Body> bodies_;
-    std::vector<char> is_rigid_; // zones
-    std::vector<Index> body_of_; // of gridpoints; -1 none
-    std::vector<Zone> zones_;    // of the assembly
+    std::vector<char> is_rigid_;     // zones
+    std::vector<Index> body_of_;     // of gridpoints; -1 none
+    std::vector<Zone> zones_;        // of the assembly
+    std::vector<Yielding> yielding_; // by the assembly's yielding_number
+    // Places are counted from the section's middle: what they are rounded to must not depend on where it is.
     std::vector<Vector2d> place_, velocity_, move_, force_, released_;
     std::vector<Vector2d> lost_;       // of places by rounding, until now [m]
-    Vector2d low_, high_;              // of the section and its diagonal all round [m]
+    std::vector<Vector2d> origin_;     // that displacements count from
+    Vector2d middle_;                  // of the section, where it is [m]
+    Vector2d low_, high_;              // of the section and its diagonal all round
     std::vector<double> inverse_mass_; // 0 where held by nothing but rock that is gone [m/kg]
     std::vector<std::size_t> law_of_edge_;
     std::vector<std::array<Index, 2>> ground_;       // its faces, by gridpoints of the mesh
     std::vector<std::array<Index, 2>> face_of_mesh_; // the contacts' faces, by gridpoints before leaders
     std::vector<Index> zone_of_face_;                // -1 of the ground
 
-    double dt_ = 0, time_ = 0;
-    Index steps_ = 0;
-    bool starts_from_rest_ = true;
+    double dt_ = 0, last_dt_ = 0, time_ = 0, time_lost_ = 0;
+    double stiffest_allowed_ = 0; // spring of a contact, by the present step [Pa/m]
+    bool starts_from_rest_ = true, has_moved_ = false;
     Energy energy_;
     double stored_at_start_ = 0, last_kinetic_ = 0, stiffest_ = 0, largest_mean_ = 0;
     double ratio_ = 0, force_change_ = 0, fastest_ = 0;

@@ -645,21 +645,19 @@ private:
             return;
         if (scene_.creep)
             once("motion").refuse("new_contacts", "a scene with [motion] has no [creep]");
-        for (std::size_t i = 0; i < scene_.joint_materials.size(); ++i) {
-            const Given material = in_list("joint_material", i);
-            if (material.find("joint_roughness_coefficient"))
-                material.refuse("joint_roughness_coefficient",
-                                "with [motion], joints do not have Barton and Bandis's law");
+        if (scene_.motion->release >= scene_.motion->longest)
+            once("motion").refuse("release_s", "wanted less than longest_s, " +
+                                                   shown(scene_.motion->longest) +
+                                                   " s: before that there is no rest");
+        for (std::size_t i = 0; i < scene_.joint_materials.size(); ++i)
             if (scene_.joint_materials[i].dilation_angle > 0)
-                material.refuse("dilation_angle_deg", "wanted 0: with [motion], joints do not dilate");
-        }
-        for (std::size_t i = 0; i < scene_.rocks.size(); ++i) {
-            if (scene_.rocks[i].law == RockLaw::mohr_coulomb)
-                in_list("rock", i).refuse("law", "wanted \"elastic\" of all rock in a scene with [motion]");
-            if (scene_.rocks[i].dilation_angle > 0)
-                in_list("rock", i).refuse("dilation_angle_deg",
-                                          "wanted 0: with [motion], rock bridges do not dilate");
-        }
+                in_list("joint_material", i)
+                    .refuse("dilation_angle_deg", "wanted 0: with [motion], joints do not dilate");
+        for (std::size_t i = 0; i < scene_.rocks.size(); ++i)
+            if (scene_.rocks[i].dilation_angle > 0 && scene_.rocks[i].law != RockLaw::mohr_coulomb)
+                in_list("rock", i).refuse(
+                    "dilation_angle_deg",
+                    "wanted 0 of elastic rock: with [motion], rock bridges do not dilate");
         for (std::size_t i = 0; i < scene_.boundaries.size(); ++i)
             for (const char* key : {"displacement_mm", "course"})
                 if (const Given boundary = in_list("boundary", i); boundary.find(key))

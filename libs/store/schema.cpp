@@ -524,7 +524,7 @@ std::vector<Field> fields_of(Motions& motions)
         {"/motions/stored_energy", &motions.stored_energy, {"moment"}, "J/m", any(),
          "Energy that zones and contacts took up."},
         {"/motions/friction_energy", &motions.friction_energy, {"moment"}, "J/m", at_least(0),
-         "Energy lost to slip."},
+         "Energy lost to slip and yield."},
         {"/motions/damped_energy", &motions.damped_energy, {"moment"}, "J/m", any(),
          "Energy taken by dashpots, and where slow motion was stopped."},
         {"/motions/fastest", &motions.fastest, {"moment"}, "m/s", at_least(0), "Speed of the fastest gridpoint."},
@@ -633,25 +633,32 @@ std::vector<Field> fields_of(Checkpoint& checkpoint)
          "Solver steps since a row of the trace."},
         {"/checkpoint/steps_since_state", &checkpoint.steps_since_state, {}, "1", at_least(0),
          "Creep steps since a state by their number."},
-        {"/checkpoint/remark", &checkpoint.remark, remark, "1", any(), "A joint, a rock or a reason, by name."},
-        {"/checkpoint/remark_kind", &checkpoint.remark_kind, remark, "1", between(0, 2),
-         "0 contacts of the joint beyond strength in situ, 1 zones of the rock, 2 why factorisation gave up."},
-        {"/checkpoint/remark_count", &checkpoint.remark_count, remark, "1", at_least(0), "How often."},
+        {"/checkpoint/remark", &checkpoint.remark, remark, "1", any(), "A joint, a rock, a reason or a stage, by name."},
+        {"/checkpoint/remark_kind", &checkpoint.remark_kind, remark, "1", between(0, 3),
+         "0 contacts of the joint beyond strength in situ, 1 zones of the rock, 2 why factorisation gave up, 3 the stage's "
+         "account of energy is off."},
+        {"/checkpoint/remark_count", &checkpoint.remark_count, remark, "1", at_least(0), "How often, or by how many percent."},
     };
     // clang-format on
 }
 
 std::vector<Field> fields_of(MovedRock& moved)
 {
-    const std::vector<std::string> gridpoint = {"gridpoint"}, zone = {"zone"}, pair = {"pair"};
+    const std::vector<std::string> gridpoint = {"gridpoint"}, zone = {"zone"}, yields = {"yielding_zone"},
+                                   pair = {"pair"};
     // clang-format off
     return {
-        {"/moved/origin", &moved.origin, gridpoint, "m", any(), "Place {x, y} that displacements count from."},
-        {"/moved/place", &moved.place, gridpoint, "m", any(), "Place {x, y} now."},
+        {"/moved/origin", &moved.origin, gridpoint, "m", any(), "Place {x, y} that displacements count from, counted from the section's middle."},
+        {"/moved/place", &moved.place, gridpoint, "m", any(), "Place {x, y} now, counted from there."},
         {"/moved/inverse", &moved.inverse, zone, "1/m", any(),
          "Inverse of the matrix of the zone's edges without stress, by columns."},
         {"/moved/area", &moved.area, zone, "m2", positive(), "Area of the zone without stress."},
         {"/moved/strain", &moved.strain, zone, "1", any(), "Biot's strain {xx, yy, 2 xy} of the zone."},
+        {"/moved/plastic_strain", &moved.plastic_strain, yields, "1", any(),
+         "Of it, plastic strain {xx, yy, zz, 2 xy}, extension positive."},
+        {"/moved/initial_zz", &moved.initial_zz, yields, "Pa", any(), "Stress across the section of the shape without stress."},
+        {"/moved/stress_zz", &moved.stress_zz, yields, "Pa", any(), "The same now."},
+        {"/moved/stress", &moved.stress, yields, "Pa", any(), "Biot's stress {xx, yy, xy}, tension positive."},
         {"/moved/face", &moved.face, {"face"}, "1", index_of("gridpoint"), "First and second gridpoint of the face."},
         {"/moved/pair", &moved.pair, pair, "1", index_of("face"), "The two faces."},
         {"/moved/law", &moved.law, pair, "1", at_least(0), "Number of the joint law between them."},

@@ -193,7 +193,7 @@ def largest_change(own, found):
     """Of the median total of a point, crests too, in words; of a row without points nothing."""
     changes = {name: value / own["points"][name] - 1 for name, value in found.get("points", {}).items()}
     name = max(changes, key=lambda name: abs(changes[name]), default=None)
-    return f"{100 * changes[name]:+.2g} % ({name})" if name else ""
+    return f"{100 * changes[name]:+.1f} % ({name})" if name else ""
 
 
 def markdown(own, rows, networks, points):
@@ -213,7 +213,7 @@ def markdown(own, rows, networks, points):
         lines.append("| " + " | ".join(cells) + " |")
     lines += ["", f"Horizontal, toward the lock, at the end of 1999: the mean over {points} of the medians over "
                   f"{own['networks']} network{'s' if own['networks'] > 1 else ''}, or as many as are said to have equilibrium."]
-    if networks > 1:
+    if any(what.startswith("network") for what, *_ in rows):
         lines.append(f"Rows of the network: {networks} networks.")
     return "\n".join(lines) + "\n"
 
@@ -324,13 +324,13 @@ def main():
     for choice in choices[1:]:
         found = summary(results[choice], targets, below)
         rows.append((*CHOICES[choice][:2], found or results[choice][0]["failed"]))
-    for days in SHIFTS.values():
+    for days in [] if arguments.choice else SHIFTS.values():
         rows.append(("first readings", f"{abs(days)} days {'later' if days > 0 else 'earlier'}",
                      summary(results["scene"], targets, below, days)))
     several = ([read(path) for path in sorted(arguments.realizations.glob("*.h5"))] if arguments.realizations
                else results["scene"])
     each = summary(several, targets, below)["each"]
-    if len(each[0]) > 1:
+    if len(each[0]) > 1 and not arguments.choice:
         rows += spread(own, each)
     text = io.StringIO()
     out = csv.writer(text, lineterminator="\n")

@@ -1,5 +1,6 @@
 // Contacts between two rows of faces, against closed forms.
 
+#include "model/error.hpp"
 #include "motion/contacts.hpp"
 
 #include <Eigen/Geometry>
@@ -42,7 +43,7 @@ struct TwoLines {
     }
 };
 
-Contacts contacts_of(const TwoLines& lines, const joint::Coulomb& law = {k_n, k_s, 0, friction, 0})
+Contacts contacts_of(const TwoLines& lines, const joint::Law& law = joint::Coulomb{k_n, k_s, 0, friction, 0})
 {
     Contacts contacts({law});
     contacts.set_faces(lines.faces, {}, lines.place);
@@ -296,6 +297,60 @@ TEST(contacts, slip_weakens)
     }
 }
 
+// Barton and Bandis's law over a contact that closes evenly: its formulas times the length.
+TEST(contacts, an_even_closing_presses_by_barton_and_bandiss_formulas)
+{
+    const joint::BartonBandis law{1e10, k_s, 2e-4, 0.5, 10, 1e8};
+    const double p_at[] = {1e5, 5e6, 6e7, 2e8}, length = 3.25;
+    for (const double p : p_at) {
+        TwoLines lines = rows(law.closure(p));
+        Contacts contacts = contacts_of(lines, law);
+        std::vector<Vector2d> move(lines.place.size(), Vector2d::Zero());
+        contacts.update(lines.place, move, 1, 0, 1);
+        EXPECT_NEAR(contacts.stiffest() / law.stiffness(p), 1, 1e-9);
+        double stored = 0;
+        for (const motion::Pair& pair : contacts.pairs())
+            stored += pair.stored();
+        EXPECT_NEAR(stored / (law.stored(p) * length), 1, 1e-9);
+        for (std::size_t g = 5; g < lines.place.size(); ++g)
+            lines.place[g] += move[g] = {0.5, 0};
+        contacts.update(lines.place, move, 1, 0, 1);
+        Vector2d sum(0, 0);
+        const std::vector<Vector2d> force = forces_of(contacts, lines.place.size());
+        for (std::size_t g = 5; g < force.size(); ++g)
+            sum += force[g];
+        EXPECT_NEAR(sum.y() / (p * length), 1, 1e-9) << p;
+        EXPECT_NEAR(-sum.x() / std::min(law.strength(p) * length, k_s * 0.5 * length), 1, 1e-9) << p;
+    }
+}
+
+// Wedged open, over a face 3 m long that goes from no closing to that at the pressure p: against the integral
+// by a million points. Five points miss least where the curve is nearly straight.
+TEST(contacts, an_uneven_closing_is_summed_up_at_five_points)
+{
+    const joint::BartonBandis law{1e10, k_s, 2e-4, 0.5, 10, 1e8};
+    struct Case {
+        double p, off; // [Pa], [-]
+    };
+    for (const auto& [p, off] : {Case{1e6, 1e-5}, Case{5e6, 1e-3}, Case{2e7, 2e-2}}) {
+        const double deepest = law.closure(p);
+        TwoLines lines({{4, 0}, {-1, 0}}, {{0, -deepest}, {3, 0}});
+        Contacts contacts = contacts_of(lines, law);
+        const std::vector<Vector2d> still(lines.place.size(), Vector2d::Zero());
+        contacts.update(lines.place, still, 1, 0, 1);
+        const std::vector<Vector2d> force = forces_of(contacts, lines.place.size());
+        double first = 0, second = 0;
+        constexpr int n = 1000000;
+        for (int i = 0; i < n; ++i) {
+            const double at = (i + 0.5) / n, pressure = law.pressure(deepest * (1 - at));
+            first += 3.0 / n * pressure * (1 - at);
+            second += 3.0 / n * pressure * at;
+        }
+        EXPECT_NEAR(force[2].y() / first, 1, off) << p;
+        EXPECT_NEAR(force[3].y() / second, 1, off) << p;
+    }
+}
+
 // A corner that goes past another one, far below it, does not touch the face above: its side does.
 TEST(contacts, faces_far_behind_do_not_touch)
 {
@@ -308,4 +363,76 @@ TEST(contacts, faces_far_behind_do_not_touch)
     contacts.update(lines.place, still, 1, 0, 1);
     for (const Vector2d& force : forces_of(contacts, lines.place.size()))
         EXPECT_EQ(force.y(), 0);
+}
+
+// However soft the joint: what sinks deeper than faces are sought (a quarter of the median face, here 0.2 m)
+// goes on to press, down to half the depth of a zone, where it is refused.
+TEST(contacts, what_sinks_deep_goes_on_to_press)
+{
+    TwoLines lines({{4, 0}, {3, 0}, {2, 0}, {1, 0}, {0, 0}}, {{0.2, 0}, {1, 0}, {1.8, 0}});
+    Contacts contacts = contacts_of(lines);
+    std::vector<Vector2d> move(lines.place.size(), Vector2d::Zero());
+    const auto sink = [&](double by) {
+        for (std::size_t g = 5; g < lines.place.size(); ++g)
+            lines.place[g] += move[g] = {0, -by};
+        contacts.update(lines.place, move, 1, 0, 1);
+    };
+    for (int step = 1; step < 50; ++step) {
+        sink(0.01);
+        double held = 0;
+        const std::vector<Vector2d> force = forces_of(contacts, lines.place.size());
+        for (std::size_t g = 5; g < force.size(); ++g)
+            held += force[g].y();
+        const double expected = k_n * 0.01 * step * 1.6;
+        EXPECT_NEAR(held, expected, 1e-9 * expected) << step;
+    }
+    EXPECT_GT(contacts.searches(), 3);
+    EXPECT_THROW(sink(0.02), equilibrium_error);
+}
+
+// The same while it slides from face to face, and back; and where it came from outside within one step.
+TEST(contacts, what_has_sunk_deep_slides_on)
+{
+    const double sunk = 0.3;
+    TwoLines lines({{5, 0}, {4, 0}, {3, 0}, {2, 0}, {1, 0}, {0, 0}}, {{0.2, 0.01}, {0.8, 0.01}});
+    Contacts contacts = contacts_of(lines);
+    std::vector<Vector2d> move(lines.place.size(), Vector2d::Zero());
+    const auto go = [&](const Vector2d& way) {
+        for (std::size_t g = 6; g < lines.place.size(); ++g)
+            lines.place[g] += move[g] = way;
+        contacts.update(lines.place, move, 1, 0, 1);
+    };
+    go({0, -0.01 - sunk});
+    const double pressed = k_n * sunk * 0.6;
+    for (int step = 0; step < 900; ++step) {
+        go({step < 450 ? 0.009 : -0.009, 0});
+        const std::vector<Vector2d> force = forces_of(contacts, lines.place.size());
+        const Vector2d sum = force[6] + force[7];
+        EXPECT_NEAR(sum.y(), pressed, 1e-9 * pressed) << step;
+        EXPECT_LE(std::abs(sum.x()), friction * pressed * (1 + 1e-9)) << step;
+    }
+    EXPECT_GT(contacts.searches(), 10);
+}
+
+// A bond is not forgotten however far it stretches; where it tears it is gone.
+TEST(contacts, bonds_stretch_beyond_the_skin)
+{
+    TwoLines lines({{2, 0}, {1, 0}, {0, 0}}, {{0, 0}, {1, 0}, {2, 0}});
+    Contacts contacts({joint::Coulomb{k_n, k_s, 1e9, friction, 0.7 * k_n}});
+    std::vector<motion::Pair> bonded;
+    for (const auto& [a, b] : {std::pair(0, 3), std::pair(1, 2)})
+        bonded.push_back({.a = a, .b = b, .is_known = true, .is_broken = false});
+    contacts.set_faces(lines.faces, bonded, lines.place);
+    std::vector<Vector2d> move(lines.place.size(), Vector2d::Zero());
+    for (int step = 1; step < 100; ++step) {
+        for (std::size_t g = 3; g < lines.place.size(); ++g)
+            lines.place[g] += move[g] = {0, 0.01};
+        contacts.update(lines.place, move, 1, 0, 1);
+        double held = 0;
+        const std::vector<Vector2d> force = forces_of(contacts, lines.place.size());
+        for (std::size_t g = 3; g < force.size(); ++g)
+            held -= force[g].y();
+        const double stretched = 0.01 * step;
+        EXPECT_NEAR(held, stretched < 0.7 ? k_n * stretched * 2 : 0.0, 1e-9 * k_n) << step;
+    }
 }

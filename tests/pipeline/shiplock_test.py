@@ -210,7 +210,7 @@ class Shiplock(ChainTest):
         own = study.summary([result, result], targets, [0])
         text = study.markdown(own, [("creep", "none", found)], 2, "the points")
         self.assertIn("| creep | none (1 networks) |", text)
-        self.assertIn("| +0 % (N215) |", text)
+        self.assertIn("| +0.0 % (N215) |", text)
 
     def test_spread_of_networks(self):
         import study
