@@ -38,3 +38,24 @@ TEST(with_strength_divided, divides_what_the_joint_bears_and_leaves_the_rest)
     EXPECT_EQ(reduced.normal_stiffness, joints.normal_stiffness);
     EXPECT_EQ(reduced.cohesion[1] + reduced.friction_angle[1] + reduced.tensile_strength[1], 0);
 }
+
+TEST(with_strength_divided, divides_the_strength_of_rock_and_the_friction_of_new_contacts)
+{
+    Scene scene;
+    scene.rocks.resize(2);
+    scene.rocks[0].strength = RockStrength{2e6, 40 * deg, 1e6};
+    scene.rocks[0].dilation_angle = 40 * deg;
+    scene.joint_materials.resize(1);
+    scene.joint_materials[0].friction_angle = 30 * deg;
+    scene.joint_materials[0].residual = {0, 20 * deg};
+    const double F = 1.37;
+    const Scene reduced = joint::with_strength_divided(scene, F);
+    const RockStrength& rock = *reduced.rocks[0].strength;
+    EXPECT_DOUBLE_EQ(rock.cohesion, 2e6 / F);
+    EXPECT_DOUBLE_EQ(rock.tensile_strength, 1e6 / F);
+    EXPECT_DOUBLE_EQ(std::tan(rock.friction_angle), std::tan(40 * deg) / F);
+    EXPECT_DOUBLE_EQ(reduced.rocks[0].dilation_angle, rock.friction_angle);
+    EXPECT_FALSE(reduced.rocks[1].strength);
+    EXPECT_DOUBLE_EQ(std::tan(reduced.joint_materials[0].friction_angle), std::tan(30 * deg) / F);
+    EXPECT_DOUBLE_EQ(std::tan(reduced.joint_materials[0].residual->friction_angle), std::tan(20 * deg) / F);
+}
