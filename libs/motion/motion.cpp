@@ -727,6 +727,10 @@ Energy Motion::energy() const
                  keep * body.inertia * body.spin * body.spin + gain * body.spin * moment) /
                 2;
         }
+    // A sum of what shear gains and loses as the length of a contact changes: without slip, rounding about 0.
+    if (energy.friction < 0 &&
+        -energy.friction < 1e-12 * std::max({energy.kinetic, std::abs(energy.work), energy.stored}))
+        energy.friction = 0;
     return energy;
 }
 
