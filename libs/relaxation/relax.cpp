@@ -186,14 +186,15 @@ public:
         patience_ago_ = a_.displacement;
     }
 
-    // By estimate, how far the rock still is from rest: over the way it has gone since this began, both as
-    // roots of sums over mass times length squared. Of two moments, the quotient of how forces have answered
-    // to the motion between them shows the softest w^2 in this motion, and w^2 times the way to rest is the
-    // force left over mass. Stiffer modes in the force make it too much. In the motion they make it too
-    // little, so the moments are a quarter of all steps apart or more, in which these modes come to nothing.
+    // By estimate, how far the rock still is from rest: over the way it has gone since this began, or a tenth
+    // of its whole displacement if that is more, as roots of sums over mass times length squared. Of two
+    // moments, the quotient of how forces have answered to the motion between them shows the softest w^2 in
+    // this motion, and w^2 times the way to rest is the force left over mass. Stiffer modes in the force make
+    // it too much. In the motion they make it too little, so the moments are a quarter of all steps apart or
+    // more, in which these modes come to nothing.
     double share_to_go() const
     {
-        double force = 0, answer = 0, between = 0, gone = 0;
+        double force = 0, answer = 0, between = 0, gone = 0, whole = 0;
         for (std::size_t g = 0; g < mass_.size(); ++g) {
             const Vector2d now = a_.force[g].cwiseProduct(a_.is_free[g]);
             const Vector2d moved = a_.displacement[g] - older_.displacement[g];
@@ -201,7 +202,9 @@ public:
             answer -= moved.dot(now - older_.force[g].cwiseProduct(a_.is_free[g]));
             between += mass_[g] * moved.squaredNorm();
             gone += mass_[g] * (a_.displacement[g] - start_[g]).squaredNorm();
+            whole += mass_[g] * a_.displacement[g].squaredNorm();
         }
+        gone = std::max(gone, whole / 100);
         if (force == 0)
             return 0;
         return answer > 0 && gone > 0 ? std::sqrt(force / gone) * between / answer
@@ -217,10 +220,14 @@ public:
         newer_ = {steps, a_.displacement, a_.force};
     }
 
-    // The farthest one of a gridpoint since this began [m].
+    // What the share is of: the farthest way of a gridpoint since this began, or a tenth of the farthest
+    // displacement [m].
     double farthest_way() const
     {
-        return mechanics::farthest_move(start_, a_.displacement).first;
+        double whole = 0;
+        for (const Vector2d& u : a_.displacement)
+            whole = std::max(whole, u.norm());
+        return std::max(mechanics::farthest_move(start_, a_.displacement).first, whole / 10);
     }
 
     // Throws, with the motion since the last look at what moves on.

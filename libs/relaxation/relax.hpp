@@ -28,11 +28,10 @@ using StepObserver = std::function<void(double solver_time)>;
 // Moves the assembly to equilibrium: every 20 steps in 100 the out-of-balance ratio was at most the
 // tolerance, and over these 100 steps no contact force changed by more than the tolerance times the mean
 // force on a gridpoint; and by estimate it is at most 1000 times the tolerance, or a tenth, short of the
-// displacement of this equilibrium, unless that is rounding. Starts from rest; a state in balance to rounding
-// is left as it is, after 0 steps.
-// Throws no_equilibrium when a gridpoint has moved by a tenth of the section's size, in this or since the
-// in-situ state, or moves on without slowing down, when forces are no longer numbers, and after
-// settings.most_steps.
+// displacement of this equilibrium, or of a tenth of the whole displacement if that is more, unless that is
+// rounding. Starts from rest; a state in balance to rounding is left as it is, after 0 steps. Throws
+// no_equilibrium when a gridpoint has moved by a tenth of the section's size, in this or since the in-situ
+// state, or moves on without slowing down, when forces are no longer numbers, and after settings.most_steps.
 mechanics::Certificate relax(mechanics::Assembly& assembly, const Equilibrium& settings,
                              const StepObserver& observe = {});
 
