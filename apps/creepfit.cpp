@@ -165,7 +165,7 @@ void refuse_loss(const std::string& failed, const std::vector<std::string>& othe
 // Where to write the readings; refuses what would lose another file.
 std::optional<std::string> readings_file(const Arguments& arguments)
 {
-    const std::optional<std::string> path = arguments.text("readings");
+    std::optional<std::string> path = arguments.text("readings");
     if (!path)
         return {};
     for (const std::string& other :

@@ -11,7 +11,6 @@ namespace jointcreep::implicit
 
 using mechanics::Balance;
 using mechanics::Certificate;
-using mechanics::State;
 
 namespace
 {

@@ -93,7 +93,7 @@ public:
         if (restores_)
             live = static_cast<Live>(kept);
         else
-            kept = static_cast<Kept>(live);
+            kept = static_cast<Kept>(live); // NOLINT(bugprone-signed-char-misuse): flags are 0 and 1
     }
 
     // Of every item, or of a part of it.

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <tuple>
 #include <unordered_map>
 
 namespace jointcreep::motion
@@ -249,7 +250,10 @@ void Contacts::seek(const std::vector<Vector2d>& place, const std::vector<Vector
     struct Entry {
         std::int64_t x, y;
         Index face;
-        auto operator<=>(const Entry&) const = default;
+        bool operator<(const Entry& other) const
+        {
+            return std::tie(x, y, face) < std::tie(other.x, other.y, other.face);
+        }
     };
     std::vector<Entry> entries;
     std::vector<std::array<Vector2d, 2>> box;

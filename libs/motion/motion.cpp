@@ -54,7 +54,7 @@ Matrix2d tensor(const Vector3d& stress)
 Matrix2d stretch_for(const Vector3d& stiffness, const Vector3d& stress)
 {
     const Eigen::SelfAdjointEigenSolver<Matrix2d> principal(tensor(stress));
-    const Vector2d cauchy = principal.eigenvalues();
+    const Vector2d& cauchy = principal.eigenvalues();
     const Matrix2d elastic =
         (Matrix2d() << stiffness[0], stiffness[1], stiffness[1], stiffness[0]).finished();
     Vector2d stretch = Vector2d::Ones();

@@ -993,7 +993,8 @@ Table<Equilibrium> equilibrium()
                 "Marching in time, or solving for the state of rest at once; auto takes the implicit one "
                 "unless the masses are real, by which the scene asks for motion.")
              .or_else(std::string("auto")),
-         number("tolerance", &E::tolerance, none, from(1e-12).to(1e-2), "Of the out-of-balance ratio; motion also ends within 1000 times it of its displacement.")
+         number("tolerance", &E::tolerance, none, from(1e-12).to(1e-2),
+                "Of the out-of-balance ratio; motion also ends within 1000 times it of its displacement.")
              .or_else(1e-6),
          choice("masses", &E::masses, {{"scaled", Masses::scaled}, {"real", Masses::real}},
                 "Nodal masses: scaled for a fast way to the same equilibrium, or the real ones.")
