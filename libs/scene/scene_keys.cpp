@@ -1031,8 +1031,8 @@ Table<Motion> motion()
         {"motion", once, optional,
          "Lets rock move far after each stage: with real masses and large displacements, contacts found "
          "anew, until "
-         "it is at rest. Without this table displacements are small. Not with [creep], "
-         "joints that dilate, Barton-Bandis joints or rock that yields."},
+         "it is at rest. Without this table displacements are small. Not with [creep] "
+         "or joints that dilate."},
         {text("new_contacts", &Motion::new_contacts,
               "Joint material of contacts that come about: its stiffnesses and friction angle, the residual "
               "one if "
