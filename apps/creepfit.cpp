@@ -152,11 +152,17 @@ void write(const std::string& path, const std::string& text)
     }
 }
 
+bool is_same_file(const std::string& one, const std::string& other)
+{
+    std::error_code absent;
+    return one == other || std::filesystem::equivalent(one, other, absent);
+}
+
 // Refuses names where what has failed would be written over a file that is read, or found.
 void refuse_loss(const std::string& failed, const std::vector<std::string>& others)
 {
     for (const std::string& other : others)
-        if (std::error_code absent; failed == other || std::filesystem::equivalent(failed, other, absent))
+        if (is_same_file(failed, other))
             throw input_error(
                 other +
                 ": a search that does not come to its end would be written there; wanted another name");
@@ -170,7 +176,7 @@ std::optional<std::string> readings_file(const Arguments& arguments)
         return {};
     for (const std::string& other :
          {arguments.input(), arguments.output(), arguments.text("measurements").value_or("")})
-        if (std::error_code absent; *path == other || std::filesystem::equivalent(*path, other, absent))
+        if (is_same_file(*path, other))
             throw input_error("--readings: " + *path + " is used already; give it another name");
     check_writable(*path);
     return path;

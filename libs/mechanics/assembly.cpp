@@ -494,12 +494,13 @@ double size_of(const Assembly& assembly)
     return (high - low).norm();
 }
 
-std::pair<double, std::size_t> farthest_move(const std::vector<Vector2d>& from,
-                                             const std::vector<Vector2d>& to)
+// The largest of n lengths, or the first that is no number.
+template <class Length>
+static std::pair<double, std::size_t> farthest_of(std::size_t n, const Length& length)
 {
     std::pair<double, std::size_t> farthest(0, 0);
-    for (std::size_t g = 0; g < from.size(); ++g) {
-        const double moved = (to[g] - from[g]).norm();
+    for (std::size_t g = 0; g < n; ++g) {
+        const double moved = length(g);
         if (!std::isfinite(moved))
             return {moved, g};
         farthest = std::max(farthest, {moved, g});
@@ -507,10 +508,16 @@ std::pair<double, std::size_t> farthest_move(const std::vector<Vector2d>& from,
     return farthest;
 }
 
+std::pair<double, std::size_t> farthest_move(const std::vector<Vector2d>& from,
+                                             const std::vector<Vector2d>& to)
+{
+    return farthest_of(from.size(), [&](std::size_t g) { return (to[g] - from[g]).norm(); });
+}
+
 std::pair<double, std::size_t> farthest_displacement(const Assembly& assembly)
 {
-    return farthest_move(std::vector<Vector2d>(assembly.displacement.size(), Vector2d::Zero()),
-                         assembly.displacement);
+    return farthest_of(assembly.displacement.size(),
+                       [&](std::size_t g) { return assembly.displacement[g].norm(); });
 }
 
 double work_of_loads(const Assembly& assembly, const std::vector<Vector2d>& start)

@@ -85,6 +85,15 @@ std::array<Vector2d, 2> ends_of(const std::array<Index, 2>& face, const std::vec
     return {place[face[0]], place[face[1]]};
 }
 
+// The same of a pair of these faces.
+std::optional<Overlap> overlap_of(const Pair& pair, const Faces& faces,
+                                  const std::vector<std::array<double, 2>>& sharpness,
+                                  const std::vector<Vector2d>& place)
+{
+    return overlap_of(ends_of(faces.gridpoint[pair.a], place), ends_of(faces.gridpoint[pair.b], place),
+                      sharpness[pair.a], sharpness[pair.b]);
+}
+
 Vector2d at(const std::array<Vector2d, 2>& ends, double fraction)
 {
     return ends[0] + fraction * (ends[1] - ends[0]);
@@ -238,9 +247,7 @@ void Contacts::seek(const std::vector<Vector2d>& place, const std::vector<Vector
         if (!pair.is_closed && !pair.is_bonded())
             continue;
         near.emplace_back(pair.a, pair.b);
-        const auto found =
-            overlap_of(ends_of(faces_.gridpoint[pair.a], place), ends_of(faces_.gridpoint[pair.b], place),
-                       sharpness_[pair.a], sharpness_[pair.b]);
+        const auto found = overlap_of(pair, faces_, sharpness_, place);
         if (found)
             for (const Index f : {pair.a, pair.b})
                 reach[f] = std::max(reach[f],
@@ -355,7 +362,6 @@ void Contacts::update(const std::vector<Vector2d>& place, const std::vector<Vect
     const auto evaluate = [&](Pair& pair, Index index, bool may_close) {
         pair.is_slipping = false;
         pair.friction = pair.damped = 0;
-        const auto a = ends_of(faces_.gridpoint[pair.a], place), b = ends_of(faces_.gridpoint[pair.b], place);
         const auto move_a = ends_of(faces_.gridpoint[pair.a], move),
                    move_b = ends_of(faces_.gridpoint[pair.b], move);
         const auto parted_at = [&](int i) -> Vector2d {
@@ -376,7 +382,7 @@ void Contacts::update(const std::vector<Vector2d>& place, const std::vector<Vect
                 pair.is_broken = true;
             pair.tau = pair.length = pair.sigma = 0;
         };
-        const auto found = overlap_of(a, b, sharpness_[pair.a], sharpness_[pair.b]);
+        const auto found = overlap_of(pair, faces_, sharpness_, place);
         if (!found) {
             open();
             pair.friction += last_pressed_in; // where rock slides off an edge
@@ -517,9 +523,7 @@ void Contacts::update(const std::vector<Vector2d>& place, const std::vector<Vect
             " by more than half the depth of a zone; the joint's normal stiffness is too small "
             "for what presses on it");
     const auto sunk_of = [&](const Pair& pair) {
-        const auto found =
-            overlap_of(ends_of(faces_.gridpoint[pair.a], place), ends_of(faces_.gridpoint[pair.b], place),
-                       sharpness_[pair.a], sharpness_[pair.b]);
+        const auto found = overlap_of(pair, faces_, sharpness_, place);
         return found ? found->sunk() : 0.0;
     };
     // Those that lie behind come last: what they may have slid on from must have closed.
@@ -528,9 +532,7 @@ void Contacts::update(const std::vector<Vector2d>& place, const std::vector<Vect
             if (!closes[p])
                 continue;
             Pair& pair = pairs_[p];
-            const auto found =
-                overlap_of(ends_of(faces_.gridpoint[pair.a], place), ends_of(faces_.gridpoint[pair.b], place),
-                           sharpness_[pair.a], sharpness_[pair.b]);
+            const auto found = overlap_of(pair, faces_, sharpness_, place);
             if (found->is_behind() != is_behind)
                 continue;
             const Pair* const before = contact_before(pair, found->normal(), place);

@@ -441,12 +441,11 @@ void Motion::find_time_step()
                     sums[zones_[z].gridpoint[i]] +=
                         rock_.zones.area[z] * stiffness_between(rock_.zones, z, i, j).norm();
     // Where joints grow stiffer as they close, with room for that.
-    double& stiffest_joint = stiffest_allowed_;
-    stiffest_joint =
+    stiffest_allowed_ =
         contacts_.stiffens() ? mechanics::room_to_stiffen * contacts_.stiffest() : contacts_.stiffest();
     for (const auto& [from, to] : contacts_.faces().gridpoint)
         for (const Index g : {from, to})
-            sums[g] += stiffest_joint * (place_[to] - place_[from]).norm();
+            sums[g] += stiffest_allowed_ * (place_[to] - place_[from]).norm();
     for (const auto& [follower, leader] : rock_.tied)
         sums[leader] += sums[follower];
     const auto stiffest = std::max_element(sums.begin(), sums.end());

@@ -224,10 +224,8 @@ public:
     // displacement [m].
     double farthest_way() const
     {
-        double whole = 0;
-        for (const Vector2d& u : a_.displacement)
-            whole = std::max(whole, u.norm());
-        return std::max(mechanics::farthest_move(start_, a_.displacement).first, whole / 10);
+        return std::max(mechanics::farthest_move(start_, a_.displacement).first,
+                        farthest_displacement(a_).first / 10);
     }
 
     // Throws, with the motion since the last look at what moves on.

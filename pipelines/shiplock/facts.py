@@ -21,7 +21,6 @@ WALL_TOPS = ("N160", "S160")
 BOX = (-220, 220, 60)  # joints are between these x, and above this y [m]
 OTHER_READINGS = {"N170": datetime.date(1997, 4, 30), "S160": datetime.date(1997, 10, 31)}
 TENSILE_STRENGTH = 1.5e6  # assumed of fresh rock [Pa]
-DRAWS = 2000  # of networks with replacement
 
 
 def day_dug(record, point):
@@ -74,12 +73,10 @@ def spread(values, digits=0):
 def markdown(facts, targets):
     names, number = facts[0]["names"], len(facts)
     values = {key: np.array([one[key] for one in facts], float) for key in ("pier", "tension", "total", "recorded", "other", "after", "before")}
-    draw = np.random.default_rng(1)
-    rows = [draw.integers(number, size=number) for _ in range(DRAWS)]
     lines = []
     for key in ("total", "recorded"):
         low, high = targets[f"{key}_mm"]
-        error = np.std([np.median(values[key][row], axis=0) for row in rows], axis=0)
+        error = records.standard_error(lambda rows, of=values[key]: np.median(of[rows], axis=0), number)
         median = np.median(values[key], axis=0)
         room = np.minimum(median - low, high - median)
         room[[targets["point"].get(name, {}).get("crest", False) for name in names]] = np.inf

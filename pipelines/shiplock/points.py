@@ -28,17 +28,11 @@ def shown(three):
 
 
 def misfit(rows, targets):
-    """Mean of the squares of (median less the middle of the paper's range) over half its width, of both ranges, over the
-    points below the crest. None if a point is not one that the ranges are for."""
+    """Over the points below the crest. None if a point is not one that the ranges are for."""
     if any(row["name"] not in targets["point"] for row in rows):
         return None
-    terms = []
-    for row in rows:
-        if not row["crest"]:
-            for key in ("total", "recorded"):
-                low, high = targets[f"{key}_mm"]
-                terms.append(((row[key][1] - (low + high) / 2) / ((high - low) / 2)) ** 2)
-    return float(np.mean(terms))
+    return records.misfit([np.array([row[key][1] for row in rows if not row["crest"]]) for key in ("total", "recorded")],
+                          targets)
 
 
 def rows_of(record, without, targets):

@@ -75,6 +75,20 @@ def targets_of(path):
     return {**targets, "point": {point["name"]: point for point in targets["point"]}}
 
 
+def misfit(medians, targets):
+    """Of medians {total, recorded} of points [mm]: the mean of the squares of (median less the middle of the paper's range)
+    over half its width."""
+    terms = [((one - np.mean(targets[key])) / (np.ptp(targets[key]) / 2)) ** 2
+             for one, key in zip(medians, ("total_mm", "recorded_mm"))]
+    return float(np.mean(terms))
+
+
+def standard_error(statistic, number, draws=2000):
+    """Of statistic(rows) over a number of networks, by drawing their rows with replacement."""
+    draw = np.random.default_rng(1)
+    return np.std([statistic(draw.integers(number, size=number)) for _ in range(draws)], axis=0)
+
+
 def levels_of(scene, side):
     """Dates and elevations of the excavation north or south of the pier's middle: [(date, level), ...]."""
     sign = {"N": 1, "S": -1}[side]

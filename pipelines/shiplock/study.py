@@ -165,14 +165,7 @@ def summary(results, targets, below, shift=0):
              "recorded": float(medians[1].mean()), "each": (total, recorded), "points": dict(zip(names, np.nanmedian(every, axis=0)))}
     if not all(name in targets["point"] for name in names):
         return found
-    return {**found, "misfit": misfit(medians, targets)}
-
-
-def misfit(medians, targets):
-    """As in points.py, of medians {total, recorded} of the points below the crest [mm]."""
-    terms = [((one - np.mean(targets[key])) / (np.ptp(targets[key]) / 2)) ** 2
-             for one, key in zip(medians, ("total_mm", "recorded_mm"))]
-    return float(np.mean(terms))
+    return {**found, "misfit": records.misfit(medians, targets)}
 
 
 def spread(own, each):

@@ -16,15 +16,11 @@ import numpy as np
 import records
 import study
 
-DRAWS = 2000  # of networks with replacement
-
 
 def standard_error(each, targets):
     """Of the misfit over the networks of `each`, {total, recorded} arrays [network, point] [mm]."""
-    draw = np.random.default_rng(1)
-    number = len(each[0])
-    rows = (draw.integers(number, size=number) for _ in range(DRAWS))
-    return float(np.std([study.misfit([np.nanmedian(one[row], axis=0) for one in each], targets) for row in rows]))
+    return records.standard_error(
+        lambda rows: records.misfit([np.nanmedian(one[rows], axis=0) for one in each], targets), len(each[0]))
 
 
 def outside(names, medians, low, high):
