@@ -124,8 +124,21 @@ void list_by_gridpoint(const std::vector<std::array<Index, N>>& gridpoints, std:
             entry[next[gridpoints[i][k]]++] = static_cast<Index>(N * i + k);
 }
 
-template <bool any_yields> // a branch less for each zone where none does
-void pull_zones(Assembly& assembly, bool forces_alone)
+// A number of one zone and the same of the next: two zones at a time go through one instruction. Every one of
+// the two is rounded as it would be alone.
+using Two = double __attribute__((vector_size(16)));
+
+Two xs_of(const Vector2d& one, const Vector2d& next)
+{
+    return Two{one.x(), next.x()};
+}
+Two ys_of(const Vector2d& one, const Vector2d& next)
+{
+    return Two{one.y(), next.y()};
+}
+
+template <bool any_yields, bool forces_alone> // branches less for each zone
+void pull_zones(Assembly& assembly)
 {
     Zones& zones = assembly.zones;
     const Incidence& incidence = assembly.incidence;
@@ -149,47 +162,72 @@ void pull_zones(Assembly& assembly, bool forces_alone)
         if (!forces_alone)
             std::fill(magnitudes + incidence.part_start[part], magnitudes + incidence.part_start[part + 1],
                       0.0);
-        for (Index z = part * zones_of_part; z < std::min(n, (part + 1) * zones_of_part); ++z) {
-            if (!is_present[z])
+        const Index end = std::min(n, (part + 1) * zones_of_part);
+        for (Index z = part * zones_of_part; z < end; z += 2) {
+            const std::array<Index, 2> both{z, std::min(z + 1, end - 1)};
+            const std::array<bool, 2> is_there{is_present[z] != 0, z + 1 < end && is_present[z + 1] != 0};
+            if (!is_there[0] && !is_there[1])
                 continue;
-            const Vector2d &u = displacement[gridpoint[z][0]], &v = displacement[gridpoint[z][1]],
-                           &w = displacement[gridpoint[z][2]];
-            const Vector2d &a = gradient[z][0], &b = gradient[z][1], &c = gradient[z][2];
-            const double exx = a.x() * u.x() + b.x() * v.x() + c.x() * w.x();
-            const double eyy = a.y() * u.y() + b.y() * v.y() + c.y() * w.y();
-            const double gxy = (a.y() * u.x() + a.x() * u.y()) + (b.y() * v.x() + b.x() * v.y()) +
-                               (c.y() * w.x() + c.x() * w.y());
-            const double c11 = stiffness[z][0], c12 = stiffness[z][1], c33 = stiffness[z][2];
-            double xx = initial[z][0] + (c11 * exx + c12 * eyy), yy = initial[z][1] + (c12 * exx + c11 * eyy),
-                   xy = initial[z][2] + c33 * gxy;
-            if constexpr (any_yields)
-                if (zones.yielding_number[z] >= 0) {
-                    const Vector3d now = stress_of_yielding(zones, z, {exx, eyy, gxy});
-                    xx = now[0];
-                    yy = now[1];
-                    xy = now[2];
-                }
-            if (any_yields || !forces_alone) // the account of what yielding takes wants the last stress
-                stress[z] = {xx, yy, xy};
-            if (damping > 0) {
-                const Vector3d now(xx, yy, xy), acting = now + damping * (now - last_stress[z]);
-                last_stress[z] = now;
-                xx = acting[0];
-                yy = acting[1];
-                xy = acting[2];
-            }
-            xx *= -area[z];
-            yy *= -area[z];
-            xy *= -area[z];
-            // Numbers, not vectors: a vector made of two numbers goes through memory, and waits for it.
+            std::array<Two, 3> ux, uy, bx, by; // of the corners
             for (int i = 0; i < 3; ++i) {
-                const double x = xx * gradient[z][i].x() + xy * gradient[z][i].y(),
-                             y = xy * gradient[z][i].x() + yy * gradient[z][i].y();
-                force[slot[z][i]].x() += x;
-                force[slot[z][i]].y() += y;
-                if (!forces_alone)
-                    magnitudes[slot[z][i]] += std::sqrt(x * x + y * y);
+                const Vector2d &u = displacement[gridpoint[both[0]][i]],
+                               &v = displacement[gridpoint[both[1]][i]];
+                ux[i] = xs_of(u, v);
+                uy[i] = ys_of(u, v);
+                bx[i] = xs_of(gradient[both[0]][i], gradient[both[1]][i]);
+                by[i] = ys_of(gradient[both[0]][i], gradient[both[1]][i]);
             }
+            const auto of_both = [&](const Vector3d* of, int i) {
+                return Two{of[both[0]][i], of[both[1]][i]};
+            };
+            const Two exx = bx[0] * ux[0] + bx[1] * ux[1] + bx[2] * ux[2];
+            const Two eyy = by[0] * uy[0] + by[1] * uy[1] + by[2] * uy[2];
+            const Two gxy = (by[0] * ux[0] + bx[0] * uy[0]) + (by[1] * ux[1] + bx[1] * uy[1]) +
+                            (by[2] * ux[2] + bx[2] * uy[2]);
+            const Two c11 = of_both(stiffness, 0), c12 = of_both(stiffness, 1), c33 = of_both(stiffness, 2);
+            Two xx = of_both(initial, 0) + (c11 * exx + c12 * eyy),
+                yy = of_both(initial, 1) + (c12 * exx + c11 * eyy), xy = of_both(initial, 2) + c33 * gxy;
+            if constexpr (any_yields)
+                for (int k = 0; k < 2; ++k)
+                    if (is_there[k] && zones.yielding_number[both[k]] >= 0) {
+                        const Vector3d now = stress_of_yielding(zones, both[k], {exx[k], eyy[k], gxy[k]});
+                        xx[k] = now[0];
+                        yy[k] = now[1];
+                        xy[k] = now[2];
+                    }
+            if (any_yields || !forces_alone) // the account of what yielding takes wants the last stress
+                for (int k = 0; k < 2; ++k)
+                    if (is_there[k])
+                        stress[both[k]] = {xx[k], yy[k], xy[k]};
+            if (damping > 0)
+                for (int k = 0; k < 2; ++k) {
+                    if (!is_there[k])
+                        continue;
+                    const Vector3d now(xx[k], yy[k], xy[k]),
+                        acting = now + damping * (now - last_stress[both[k]]);
+                    last_stress[both[k]] = now;
+                    xx[k] = acting[0];
+                    yy[k] = acting[1];
+                    xy[k] = acting[2];
+                }
+            const Two pull = Two{-area[both[0]], -area[both[1]]};
+            xx *= pull;
+            yy *= pull;
+            xy *= pull;
+            std::array<Two, 3> x, y;
+            for (int i = 0; i < 3; ++i) {
+                x[i] = xx * bx[i] + xy * by[i];
+                y[i] = xy * bx[i] + yy * by[i];
+            }
+            for (int k = 0; k < 2; ++k)
+                if (is_there[k])
+                    for (int i = 0; i < 3; ++i) {
+                        const Index s = slot[both[k]][i];
+                        force[s].x() += x[i][k];
+                        force[s].y() += y[i][k];
+                        if (!forces_alone)
+                            magnitudes[s] += std::sqrt(x[i][k] * x[i][k] + y[i][k] * y[i][k]);
+                    }
         }
     }
 }
@@ -335,10 +373,10 @@ void find_forces_in_team(Assembly& assembly, bool forces_alone)
         for (const auto& [follower, leader] : assembly.tied)
             assembly.displacement[follower] = assembly.displacement[leader];
     }
-    if (assembly.zones.yielding.empty())
-        pull_zones<false>(assembly, forces_alone);
+    if (!assembly.zones.yielding.empty())
+        forces_alone ? pull_zones<true, true>(assembly) : pull_zones<true, false>(assembly);
     else
-        pull_zones<true>(assembly, forces_alone);
+        forces_alone ? pull_zones<false, true>(assembly) : pull_zones<false, false>(assembly);
     pull_contacts(assembly);
 #pragma omp barrier
     add_up_forces(assembly);

@@ -30,7 +30,7 @@ from scaling import measured
 from speed_against_error import number, table
 
 GROWTH = [0.6, 1, 1.7, 3, 5.3, 9.5, 16.5]  # over the slope's section
-MOST, STEPS = {"explicit": 4e4, "motion": 1.5e4}, 2000
+MOST, STEPS = {"explicit": 1e5, "motion": 4e4}, 2000
 PROGRAMS = ["jointgen", "strength-averaging", "implicit", "explicit"]
 NAMES = {"jointgen": "jointgen", "strength-averaging": "strength-averaging", "implicit": "demsolve, implicit",
          "explicit": "demsolve, explicit", "motion": f"motion, {STEPS} steps"}

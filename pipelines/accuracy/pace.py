@@ -8,6 +8,7 @@ and writes OUT/pace.csv and OUT/tables/pace.md. On two threads it measures wall 
 """
 
 import csv
+import os
 import subprocess
 import sys
 import tempfile
@@ -28,8 +29,9 @@ def main():
         subprocess.run([programs / "jointgen", data / "slope/scene.toml", "-q", "-o", network], check=True)
         subprocess.run([programs / "strength-averaging", network, "-q", "-o", joints], check=True)
         for size, (steps, rounds) in SIZES.items():
+            # Threads wait for each other as those of demsolve do.
             done = subprocess.run([benchmark, joints, *map(str, (size, steps, rounds))], check=True, text=True,
-                                  stdout=subprocess.PIPE)
+                                  stdout=subprocess.PIPE, env=os.environ | {"GOMP_SPINCOUNT": "1000"})
             rows += csv.DictReader(done.stdout.splitlines())
     (out / "tables").mkdir(parents=True, exist_ok=True)
     with open(out / "pace.csv", "w", newline="") as file:
