@@ -133,9 +133,9 @@ std::string_view shortened(std::string_view text, std::size_t most)
 }
 
 // Threads that wait for each other do so busily, by default for milliseconds: beside other programs that keep
-// all processors busy a run then takes tens of times as long. For how long, the OpenMP library (libgomp) takes
-// from the environment before main() begins; so the program starts once more with it. Where that cannot be,
-// it goes on.
+// all processors busy a run then takes tens of times as long. For how long, the OpenMP library (libgomp)
+// takes from the environment before main() begins; so the program starts once more with it. Where that cannot
+// be, it goes on.
 void start_with_short_waits(char** argv)
 {
     if (std::getenv("OMP_WAIT_POLICY") != nullptr || std::getenv("GOMP_SPINCOUNT") != nullptr)
