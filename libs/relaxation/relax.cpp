@@ -24,6 +24,7 @@ namespace
 
 constexpr Index check_every = 20, window = 100; // [steps]
 constexpr Index patience = 5000;                // between looks at what moves on [steps]
+constexpr Index looks_enough = 3;               // in a row, that see it slide or fall
 constexpr double safety = 0.9;                  // of the largest stable step
 constexpr double rounding = 1e-11;              // of the out-of-balance ratio: nothing is nearer to balance
 
@@ -90,7 +91,7 @@ public:
     Relaxation(Assembly& assembly, const Equilibrium& settings, const std::vector<double>& row_sums)
         : a_(assembly), settings_(settings), velocity_(assembly.position.size(), Vector2d::Zero()),
           start_(assembly.displacement),
-          patience_ago_(assembly.displacement), older_{0, assembly.displacement, assembly.force},
+          patience_ago_(assembly.displacement), older_{0, assembly.displacement, assembly.force, 0},
           newer_(older_)
     {
         if (settings.damping == Damping::mass && settings.masses == Masses::scaled)
@@ -175,13 +176,12 @@ public:
         if (steps % patience != 0)
             return;
         const auto [lately, h] = mechanics::farthest_move(patience_ago_, a_.displacement);
-        std::rotate(windows_.begin(), windows_.begin() + 1, windows_.end());
-        windows_.back() = {lately, work_ - work_before_};
-        work_before_ = work_;
-        if (slides_or_falls())
-            give_up("the rock at " + shown(a_.position[h]) + " moves on without slowing down, " +
-                        shown_length(lately) + " over the last " + std::to_string(patience) +
-                        " steps; it slides or falls, and nothing stops it",
+        looks_in_motion_ = slides_or_falls() ? looks_in_motion_ + 1 : 0;
+        if (looks_in_motion_ == looks_enough)
+            give_up("the rock at " + shown(a_.position[h]) + " moves on, " + shown_length(lately) +
+                        " over the last " + std::to_string(patience) +
+                        " steps, and what drives it does not fall off; it slides or "
+                        "falls, and nothing stops it",
                     true, steps);
         patience_ago_ = a_.displacement;
     }
@@ -217,7 +217,7 @@ public:
         if (3 * steps < 4 * newer_.steps)
             return;
         older_ = std::move(newer_);
-        newer_ = {steps, a_.displacement, a_.force};
+        newer_ = {steps, a_.displacement, a_.force, work_};
     }
 
     // What the share is of: the farthest way of a gridpoint since this began, or a tenth of the farthest
@@ -257,20 +257,19 @@ public:
     }
 
 private:
-    // What comes to rest slows down. What slides or falls does not: damping only lends it a steady speed. So
-    // do a slow swing on its way and a slow approach to rest, at first; but the force that drives them falls
-    // off as they go, to nothing where they come to rest, and there is no saying as long as that is near.
+    // What comes to rest does so as springs take up the force that drives it; what slides or falls finds none
+    // that do. Since the older moment the forces out of balance have done work, and over the same way they
+    // have fallen off by `answer`: carried on, they come to nothing within a tenth of the section, or not. Of
+    // springs `answer` is twice the energy that the way would store in them, which no trembling makes less.
     bool slides_or_falls() const
     {
-        for (std::size_t w = 1; w < windows_.size(); ++w)
-            if (!(windows_[w].moved > 0.95 * windows_[w - 1].moved))
-                return false;
-        const Window &first = windows_[1], &last = windows_.back();
-        const double driving = last.work / last.moved, lost = first.work / first.moved - driving;
-        double between = (first.moved - last.moved) / 2; // from the middle of the first to that of the last
-        for (std::size_t w = 2; w < windows_.size(); ++w)
-            between += windows_[w].moved;
-        return driving > 0 && lost * too_far_ < driving * between;
+        const double work = work_ - older_.work;
+        const double way = mechanics::farthest_move(older_.displacement, a_.displacement).first;
+        double answer = 0;
+        for (std::size_t g = 0; g < a_.force.size(); ++g)
+            answer -= (a_.displacement[g] - older_.displacement[g])
+                          .dot((a_.force[g] - older_.force[g]).cwiseProduct(a_.is_free[g]));
+        return work > 0 && work * way > answer * too_far_;
     }
 
     // Masses and step for these row sums.
@@ -335,6 +334,7 @@ private:
     struct Moment {
         Index steps;
         std::vector<Vector2d> displacement, force;
+        double work = 0; // of the forces out of balance, since the start [J/m]
     };
 
     // Over gridpoints, in one step.
@@ -421,13 +421,8 @@ private:
     double time_before_ = 0;                                 // at the last change of the step [s]
     Index steps_since_ = 0;
     double dt_ = 0, too_far_ = 0, alpha_ = 0;
-    struct Window {
-        double moved = std::numeric_limits<double>::infinity(); // by the rock that moved farthest [m]
-        double work = 0;                                        // of the forces out of balance [J/m]
-    };
-    std::array<Window, 5> windows_; // the last ones of `patience` steps
-    double work_before_ = 0;        // them [J/m]
-    double last_energy_ = 0;        // of motion, with kinetic damping: twice it [J/m]
+    Index looks_in_motion_ = 0; // in a row, every `patience` steps
+    double last_energy_ = 0;    // of motion, with kinetic damping: twice it [J/m]
     bool starts_from_rest_ = true;
 };
 

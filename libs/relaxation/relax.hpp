@@ -31,7 +31,8 @@ using StepObserver = std::function<void(double solver_time)>;
 // displacement of this equilibrium, or of a tenth of the whole displacement if that is more, unless that is
 // rounding. Starts from rest; a state in balance to rounding is left as it is, after 0 steps. Throws
 // no_equilibrium when a gridpoint has moved by a tenth of the section's size, in this or since the in-situ
-// state, or moves on without slowing down, when forces are no longer numbers, and after settings.most_steps.
+// state, or moves on while what drives it does not fall off, when forces are no longer numbers, and after
+// settings.most_steps.
 mechanics::Certificate relax(mechanics::Assembly& assembly, const Equilibrium& settings,
                              const StepObserver& observe = {});
 

@@ -151,6 +151,37 @@ TEST_P(relax_with, a_small_load_on_a_tall_stack)
     EXPECT_LT(certificate.to_go, 1.01e-3 * farthest); // its farthest gridpoint is above a middle
 }
 
+// A stack of 60 cubes that gets all of its weight at once, and another one, at rest under it, that is pushed
+// sideways at its top: slow ways to rest, on which local damping keeps the cubes trembling. Neither slides.
+TEST_P(relax_with, a_tall_stack_that_comes_to_rest_slowly_is_not_said_to_slide)
+{
+    const Index n = 60;
+    for (const bool pushed : {false, true}) {
+        Scene scene = section({{0, 0}, {1, 0}, {1, double(n)}, {0, double(n)}}, 0.01);
+        scene.rocks = {{"rock", 2700, 2e10, 0, std::nullopt}};
+        scene.zone_size = 2;
+        scene.gravity = pushed ? 0 : 9.81;
+        scene.boundaries = {{.from = {0, 0}, .to = {1, 0}, .joint = "joint"}};
+        Joints joints;
+        for (Index i = 1; i < n; ++i)
+            add_joint(joints, {0, double(i)}, {1, double(i)});
+        Section s = assembled(std::move(scene), joints, 5e9, 2e9);
+        if (pushed)
+            for (std::size_t g = 0; g < s.assembly.position.size(); ++g)
+                if (s.assembly.position[g].y() > n - 1e-6)
+                    s.assembly.load[g].x() -= 50;
+        Equilibrium how = settings(GetParam().first, GetParam().second);
+        how.mass_damping = 70;
+        how.tolerance = 1e-9;
+        how.most_steps = 150000;
+        try {
+            relaxation::relax(s.assembly, how);
+        } catch (const mechanics::no_equilibrium& error) {
+            EXPECT_FALSE(error.moves_on) << error.what();
+        }
+    }
+}
+
 INSTANTIATE_TEST_SUITE_P(
     every_damping, relax_with,
     testing::Values(std::pair(Damping::adaptive, Masses::scaled), std::pair(Damping::adaptive, Masses::real),
