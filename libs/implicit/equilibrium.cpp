@@ -1,5 +1,6 @@
 #include "implicit/equilibrium.hpp"
 
+#include "mechanics/rest.hpp"
 #include "model/signs.hpp"
 
 #include <algorithm>
@@ -237,10 +238,12 @@ bool Engine::converge(Assembly& assembly, const State& start, const Equilibrium&
         const Balance balance = balance_of(assembly, stiffest_, 0, settings.tolerance);
         certificate.out_of_balance_ratio = balance.ratio();
         const bool is_balanced = balance.ratio() <= settings.tolerance;
-        if (is_balanced && is_at_rest(assembly, balance.mean, settings.tolerance, certificate))
+        if (is_balanced && is_at_rest(assembly, start, balance.mean, settings.tolerance, certificate))
             return true;
         if (corrections_ - first == most_corrections || since_least == 15) {
-            reason_ = "forces do not come into balance";
+            reason_ = unborne_ < 0 ? "forces do not come into balance"
+                                   : "what the rock at " + shown(assembly.position[unborne_]) +
+                                         " weighs, or bears, its contacts do not bear";
             return false;
         }
 
@@ -300,11 +303,12 @@ bool Engine::converge(Assembly& assembly, const State& start, const Equilibrium&
     }
 }
 
-// Whether one more correction would leave contact forces as they are. A rough one says that first: it says
-// too much rather than too little.
-bool Engine::is_at_rest(const Assembly& assembly, double mean_force, double tolerance,
+// Whether one more correction would leave contact forces as they are, and contacts bear every piece of rock.
+// A rough correction says that first: too much rather than too little, but where contacts are open.
+bool Engine::is_at_rest(const Assembly& assembly, const State& start, double mean_force, double tolerance,
                         Certificate& certificate)
 {
+    unborne_ = -1;
     if (mean_force == 0) { // no force anywhere
         certificate.contact_force_change = certificate.to_go = 0;
         return true;
@@ -324,7 +328,16 @@ bool Engine::is_at_rest(const Assembly& assembly, double mean_force, double tole
         if (du.size() > 0)
             take(du);
     }
-    return certificate.contact_force_change <= tolerance;
+    if (certificate.contact_force_change > tolerance)
+        return false;
+    // The share of their springs that open contacts keep in the factor may bear rock that nothing else does.
+    const double farthest = farthest_displacement(assembly).first, enough = mechanics::enough(tolerance);
+    const mechanics::ToGo left = farthest_to_go(assembly, enough, 1e-15 * stiffest_ * farthest);
+    const double way =
+        std::max(mechanics::farthest_move(start.displacement, assembly.displacement).first, farthest / 10);
+    unborne_ = left.way > enough * way ? left.gridpoint : -1;
+    certificate.to_go = std::max(certificate.to_go, left.way);
+    return unborne_ < 0;
 }
 
 std::optional<Certificate> Engine::equilibrate(Assembly& assembly, const Equilibrium& settings,

@@ -66,7 +66,7 @@ private:
     void prepare(const Assembly& assembly);
     bool converge(Assembly& assembly, const State& start, const Equilibrium& settings, int most_corrections,
                   mechanics::Certificate& certificate);
-    bool is_at_rest(const Assembly& assembly, double mean_force, double tolerance,
+    bool is_at_rest(const Assembly& assembly, const State& start, double mean_force, double tolerance,
                     mechanics::Certificate& certificate);
     bool break_bonds(const Assembly& assembly, const State& start);
     bool mend_bonds(const Assembly& assembly);
@@ -82,6 +82,7 @@ private:
     std::vector<char> broken_; // when states were taken
     VectorXd scale_;           // of forces: the stiffness against which they act [Pa]
     double stiffest_ = 0;      // row sum [Pa]
+    Index unborne_ = -1;       // gridpoint of rock that forces in balance leave out; -1: none
     double too_far_ = 0;       // to look for equilibrium [m]
     VectorXd force_;           // out of balance, at the last evaluation
     Index corrections_ = 0, factorisations_ = 0, solves_ = 0;

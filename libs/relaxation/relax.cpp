@@ -1,6 +1,7 @@
 #include "relaxation/relax.hpp"
 
 #include "mechanics/failure.hpp"
+#include "mechanics/rest.hpp"
 #include "model/error.hpp"
 
 #include <algorithm>
@@ -17,6 +18,7 @@ using mechanics::Assembly;
 using mechanics::Balance;
 using mechanics::Certificate;
 using mechanics::chunk;
+using mechanics::enough;
 using mechanics::no_equilibrium;
 
 namespace
@@ -27,12 +29,6 @@ constexpr Index patience = 5000;                // between looks at what moves o
 constexpr Index looks_enough = 3;               // in a row, that see it slide or fall
 constexpr double safety = 0.9;                  // of the largest stable step
 constexpr double rounding = 1e-11;              // of the out-of-balance ratio: nothing is nearer to balance
-
-// What an equilibrium may be short of its displacement, over that displacement.
-double enough(double tolerance)
-{
-    return std::min(1000 * tolerance, 0.1);
-}
 
 std::string shown_length(double length)
 {
@@ -451,6 +447,8 @@ Certificate relax(Assembly& assembly, const Equilibrium& settings, const StepObs
     Index steps_in_balance = 0;
     std::array<double, window / check_every> to_go{}; // shares, at the last looks in balance
     Patience with_the_way;
+    mechanics::ToGo unborne; // at the last look at pieces
+    Index look_again = 0;    // at them [steps]
     while (certificate.steps < settings.most_steps) {
         const Index steps = observe ? 1
                                     : std::min(check_every - certificate.steps % check_every,
@@ -477,11 +475,17 @@ Certificate relax(Assembly& assembly, const Equilibrium& settings, const StepObs
             continue;
         const double share = *std::max_element(to_go.begin(), to_go.end());
         certificate.to_go = (std::isfinite(share) ? share : 1) * relaxation.farthest_way();
-        if (share <= enough(settings.tolerance) || is_rounding() ||
-            with_the_way.ends(share, certificate.steps)) {
+        const bool is_near = share <= enough(settings.tolerance) || is_rounding() ||
+                             with_the_way.ends(share, certificate.steps);
+        if (!is_near || certificate.steps < look_again)
+            continue;
+        unborne = farthest_to_go(assembly, enough(settings.tolerance), 1e-15 * stiffest * farthest);
+        if (unborne.way <= enough(settings.tolerance) * relaxation.farthest_way()) {
+            certificate.to_go = std::max(certificate.to_go, unborne.way);
             relaxation.finish(certificate);
             return certificate;
         }
+        look_again = certificate.steps + certificate.steps / 10;
     }
     const Balance balance = balance_of(assembly);
     relaxation.give_up(
@@ -491,6 +495,9 @@ Certificate relax(Assembly& assembly, const Equilibrium& settings, const StepObs
                  ? ", and by estimate " + shown_length(certificate.to_go) + " are still to go, wanted " +
                        shown_length(enough(settings.tolerance) * relaxation.farthest_way())
                  : "") +
+            (unborne.way > 0 ? "; what the rock at " + shown(assembly.position[unborne.gridpoint]) +
+                                   " weighs, or bears, its contacts do not bear"
+                             : "") +
             "; farthest from balance is the rock at " + shown(assembly.position[balance.worst]),
         false, certificate.steps);
 }

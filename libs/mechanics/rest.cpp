@@ -1,0 +1,178 @@
+#include "mechanics/rest.hpp"
+
+#include "model/disjoint_sets.hpp"
+#include "model/signs.hpp"
+
+#include <Eigen/Sparse>
+
+#include <algorithm>
+#include <cmath>
+
+namespace jointcreep::mechanics
+{
+
+namespace
+{
+
+using Eigen::Vector3d;
+
+constexpr double soft = 1e-9; // share of their springs that contacts keep which bear nothing
+
+// Rock that hangs together, as a rigid body: it moves by {x, y, turn times radius}.
+struct Piece {
+    Index first = -1; // gridpoint
+    Vector2d middle{0, 0};
+    double radius = 0;                             // farthest gridpoint from the middle [m]
+    Vector3d out_of_balance{0, 0, 0};              // force, moment over radius [N/m]
+    double loads = 0, pressed = 0, gridpoints = 0; // sums of magnitudes [N/m]; count
+    double own() const { return loads > 0 ? loads : pressed; }
+
+    // How a place of it moves.
+    Eigen::Matrix<double, 2, 3> moves(const Vector2d& place) const
+    {
+        const Vector2d arm = (place - middle) / radius;
+        return (Eigen::Matrix<double, 2, 3>() << 1, 0, -arm.y(), 0, 1, arm.x()).finished();
+    }
+};
+
+// Whether no gridpoint is out of balance by more than a share of its own load: then no piece is either.
+bool is_plain(const Assembly& assembly, double share, double rounding)
+{
+    const double n = static_cast<double>(assembly.force.size());
+    for (std::size_t g = 0; g < assembly.force.size(); ++g)
+        if (const double force = assembly.force[g].cwiseProduct(assembly.is_free[g]).norm();
+            n * force > rounding && force > share * (assembly.load[g] + assembly.applied[g]).norm())
+            return false;
+    return true;
+}
+
+// Of each gridpoint the number of its piece, and the pieces.
+std::vector<Piece> pieces_of(const Assembly& assembly, std::vector<Index>& piece_of)
+{
+    const std::size_t n = assembly.position.size();
+    DisjointSets sets(n);
+    std::vector<char> is_rock(n, 0);
+    for (std::size_t z = 0; z < assembly.zones.gridpoint.size(); ++z)
+        if (assembly.zones.is_present[z])
+            for (const Index g : assembly.zones.gridpoint[z]) {
+                sets.join(g, assembly.zones.gridpoint[z][0]);
+                is_rock[g] = 1;
+            }
+    for (const auto& [follower, leader] : assembly.tied)
+        sets.join(follower, leader);
+
+    std::vector<Piece> pieces;
+    std::vector<Index> number(n, -1); // by root
+    piece_of.assign(n, -1);
+    for (std::size_t g = 0; g < n; ++g) {
+        if (!is_rock[g])
+            continue;
+        Index& of_root = number[sets.root(static_cast<Index>(g))];
+        if (of_root < 0) {
+            of_root = static_cast<Index>(pieces.size());
+            pieces.push_back({.first = static_cast<Index>(g)});
+        }
+        piece_of[g] = of_root;
+        pieces[of_root].middle += assembly.position[g];
+        ++pieces[of_root].gridpoints;
+    }
+    for (Piece& piece : pieces)
+        piece.middle /= piece.gridpoints;
+    for (std::size_t g = 0; g < n; ++g)
+        if (piece_of[g] >= 0) {
+            Piece& piece = pieces[piece_of[g]];
+            piece.radius = std::max(piece.radius, (assembly.position[g] - piece.middle).norm());
+        }
+    for (std::size_t g = 0; g < n; ++g)
+        if (piece_of[g] >= 0) {
+            Piece& piece = pieces[piece_of[g]];
+            piece.out_of_balance += piece.moves(assembly.position[g]).transpose() *
+                                    assembly.force[g].cwiseProduct(assembly.is_free[g]);
+            piece.loads += (assembly.load[g] + assembly.applied[g]).norm();
+        }
+    const Contacts& contacts = assembly.contacts;
+    for (std::size_t c = 0; c < contacts.gridpoint.size(); ++c)
+        for (const Index g : contacts.gridpoint[c])
+            if (contacts.status[c] != ContactStatus::removed && piece_of[g] >= 0)
+                pieces[piece_of[g]].pressed += assembly.contact_force[c].norm();
+    return pieces;
+}
+
+// Of rigid pieces, on the contacts and on gridpoints that are held.
+Eigen::SparseMatrix<double> stiffness_of(const Assembly& assembly, const std::vector<Piece>& pieces,
+                                         const std::vector<Index>& piece_of)
+{
+    std::vector<Eigen::Triplet<double>> entries;
+    const auto add = [&](Index p, Index q, const Eigen::Matrix3d& block) {
+        for (int i = 0; i < 3; ++i)
+            for (int j = 0; j < 3; ++j)
+                entries.emplace_back(3 * p + i, 3 * q + j, block(i, j));
+    };
+    const Contacts& contacts = assembly.contacts;
+    double stiffest = 0; // [Pa]
+    for (std::size_t c = 0; c < contacts.gridpoint.size(); ++c) {
+        if (contacts.status[c] == ContactStatus::removed)
+            continue;
+        const joint::Slopes law = slopes(contacts.law[c], contacts.state[c], contacts.traction[c].x());
+        const double k_n = law.k_n * (contacts.status[c] == ContactStatus::open ? soft : 1.0),
+                     k_s = (law.k_s > 0 ? law.k_s : law.k_n) *
+                           (contacts.status[c] == ContactStatus::stuck && law.k_s > 0 ? 1.0 : soft);
+        const Vector2d normal = contacts.normal[c], tangent = along(normal);
+        const Eigen::Matrix2d spring =
+            contacts.length[c] * (k_n * normal * normal.transpose() + k_s * tangent * tangent.transpose());
+        stiffest = std::max(stiffest, contacts.length[c] * std::max(k_n, k_s));
+        for (int i = 0; i < 2; ++i)
+            for (int j = 0; j < 2; ++j) {
+                const Index a = contacts.gridpoint[c][i], b = contacts.gridpoint[c][j];
+                if (piece_of[a] >= 0 && piece_of[b] >= 0)
+                    add(piece_of[a], piece_of[b],
+                        (i == j ? 1 : -1) * pieces[piece_of[a]].moves(assembly.position[a]).transpose() *
+                            spring * pieces[piece_of[b]].moves(assembly.position[b]));
+            }
+    }
+    const double firm = stiffest > 0 ? stiffest : 1.0;
+    for (std::size_t g = 0; g < piece_of.size(); ++g)
+        if (piece_of[g] >= 0 && assembly.is_free[g].minCoeff() == 0) {
+            const Eigen::Matrix<double, 2, 3> moves = pieces[piece_of[g]].moves(assembly.position[g]);
+            const Vector2d held = Vector2d::Ones() - assembly.is_free[g];
+            add(piece_of[g], piece_of[g], firm * moves.transpose() * held.asDiagonal() * moves);
+        }
+    // What nothing holds at all moves out of all bounds, and the others as they do.
+    for (Index i = 0; i < 3 * static_cast<Index>(pieces.size()); ++i)
+        entries.emplace_back(i, i, 1e-14 * firm);
+    Eigen::SparseMatrix<double> stiffness(3 * static_cast<Index>(pieces.size()),
+                                          3 * static_cast<Index>(pieces.size()));
+    stiffness.setFromTriplets(entries.begin(), entries.end());
+    return stiffness;
+}
+
+} // namespace
+
+double enough(double tolerance)
+{
+    return std::min(1000 * tolerance, 0.1);
+}
+
+ToGo farthest_to_go(const Assembly& assembly, double share, double rounding)
+{
+    ToGo farthest;
+    if (is_plain(assembly, share, rounding))
+        return farthest;
+    std::vector<Index> piece_of;
+    const std::vector<Piece> pieces = pieces_of(assembly, piece_of);
+    Eigen::VectorXd push = Eigen::VectorXd::Zero(3 * static_cast<Index>(pieces.size()));
+    for (std::size_t p = 0; p < pieces.size(); ++p)
+        if (const double force = pieces[p].out_of_balance.norm();
+            force > share * pieces[p].own() && force > rounding)
+            push.segment<3>(3 * static_cast<Index>(p)) = pieces[p].out_of_balance;
+    if (push.isZero(0))
+        return farthest;
+    const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(stiffness_of(assembly, pieces, piece_of));
+    const Eigen::VectorXd way = factor.solve(push);
+    for (std::size_t p = 0; p < pieces.size(); ++p)
+        if (const double moved = way.segment<3>(3 * static_cast<Index>(p)).norm(); !(moved <= farthest.way))
+            farthest = {std::isfinite(moved) ? moved : size_of(assembly), pieces[p].first};
+    return farthest;
+}
+
+} // namespace jointcreep::mechanics
