@@ -351,6 +351,36 @@ class BarelyHeld(ChainTest):
                      more=FALLING)
         self.assert_falls(text, 3)
 
+    def beside_a_column(self, cohesion, more=""):
+        """A column under 50 MPa, and a block of 5 cm at its side on a joint alone: 6e-7 of what presses on the column."""
+        outline = [[0, 0], [2, 0], [2, 4], [2.05, 4], [2.05, 4.05], [2, 4.05], [2, 6], [0, 6]]
+        return scene(outline, [joint("side", [2, 4], [2, 4.05])],
+                     [held([0, 0], [2, 0]), {"from_m": [2, 6], "to_m": [0, 6], "traction_MPa": [0, -50]}],
+                     [material("joint", 1000, cohesion=cohesion, tension=cohesion)], more=more)
+
+    def test_a_light_block_that_falls_beside_a_large_force(self):
+        weight = 2500 * GRAVITY * 0.05**2
+        for tolerance in 1e-6, 1e-5:
+            for engine, damping in (("auto", "adaptive"), ("explicit", "adaptive"), ("explicit", "local"),
+                                    ("explicit", "combined")):
+                with self.subTest(tolerance=tolerance, engine=engine, damping=damping):
+                    settings = f'[equilibrium]\ntolerance = {tolerance}\nengine = "{engine}"\ndamping = "{damping}"\n'
+                    left, message = self.failed(self.beside_a_column(0, settings))
+                    self.assertEqual((left["/failure/block"].tolist(), left["/failure/moves_on"].tolist()), ([1], [1]),
+                                     message)
+            # One that its joint bears stays; what it still has to go is a thousand times the tolerance of what the column
+            # went down.
+            settings = f"[equilibrium]\ntolerance = {tolerance}\n"
+            explicit, implicit = (solved(self.chain, self.beside_a_column(10, settings), "--engine", engine)
+                                  for engine in ("explicit", "implicit"))
+            for data in explicit, implicit:
+                self.assertTrue((data["/states/contact_status"][-1] == STUCK).all())
+            self.assertLess(explicit["/equilibria/to_go"].max(), 1000 * tolerance * 50e6 / 10e9 * 6)
+            force = forces_on(implicit, np.arange(2)).sum(axis=0)
+            self.assertLess(np.abs(np.abs(force) - [0, weight]).max() / weight, 1e-4)
+        left, message = self.failed(self.beside_a_column(0), "--factor-of-safety")
+        self.assertIn("still no equilibrium", message)
+
     def sloping(self, friction, dip=30):
         """A thin block on a joint on the ground, which dips; only friction holds it."""
         turn = np.array([[math.cos(math.radians(dip)), math.sin(math.radians(dip))],
