@@ -69,6 +69,13 @@ const Program program{
          {"threads", "N", "through the solver: threads (default 1)"}},
     .example = "creepfit joints.h5 --measurements readings.csv --fit kelvin-stiffness,kelvin-viscosity -o "
                "factors.csv",
+    .columns =
+        "  CURVE.csv       time_day, displacement_mm; if wanted sigma_mm\n"
+        "  --measurements  a row a reading: time_day, point, component (x or y), displacement_mm;\n"
+        "                  if wanted sigma_mm, event\n"
+        "                  or a row a time, as jointexport writes it: time_day, event, and A_x_m, A_y_m,\n"
+        "                  A_present of a point A; if wanted A_x_sigma_m, A_y_sigma_m\n"
+        "  A length may be in _m, _cm or _mm, as its name says.\n",
 };
 
 struct Name {

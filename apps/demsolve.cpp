@@ -53,7 +53,8 @@ const Program program{
                 {"no-creep", "", "excavate only"},
                 {"strength-factor", "F",
                  "divide all strengths of joints and of rock that yields by F: cohesion, tensile strength, "
-                 "tan(friction angle) and tan(dilation angle) (default 1)"},
+                 "tan(friction angle) and tan(dilation angle), or what Barton and Bandis's law bears "
+                 "(default 1)"},
                 {"factor-of-safety", "",
                  "bracket the largest F with which every equilibrium is found, by runs with different F; "
                  "result.h5 is of that F, result.failed.h5 of the next one"},
@@ -368,19 +369,6 @@ double wanted_factor(const Arguments& arguments)
     return factor;
 }
 
-// Barton and Bandis's strength is no sum of terms that could be divided: in their law roughness and wall
-// strength give friction that falls with pressure, and the closing of the joint besides.
-void check_divided(const Arguments& arguments, const EquivalentJoints& joints)
-{
-    const std::string option = arguments.has("strength-factor") ? "--strength-factor" : "--factor-of-safety";
-    if (!arguments.has(option.substr(2)))
-        return;
-    for (const Index law : joints.law)
-        if (law == static_cast<Index>(JointLaw::barton_bandis))
-            throw input_error(option + ": a joint has Barton and Bandis's law, whose friction falls with "
-                                       "pressure; wanted Coulomb's law of all joints");
-}
-
 double wanted_width(const Arguments& arguments, const Scene& scene)
 {
     const double width = arguments.number("safety-width").value_or(0.01);
@@ -463,7 +451,6 @@ void solve_and_write(const Arguments& arguments)
     Scene scene = parse_scene(file.provenance.scene, input + ": /scene");
     const std::string end = end_scene(arguments, scene);
     const Writer writer(arguments, file, choose(arguments, scene), end);
-    check_divided(arguments, file.equivalent);
     const double factor = wanted_factor(arguments), width = wanted_width(arguments, scene);
     if (scene.motion && arguments.has("factor-of-safety"))
         throw input_error("--factor-of-safety: the scene has [motion], where what fails comes to rest again; "

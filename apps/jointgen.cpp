@@ -40,6 +40,7 @@ const Program program{
                 {"scene-keys", "", "print every scene key as a table, tab separated"},
                 {"scene-keys-markdown", "", "print docs/scene.md"}},
     .example = "jointgen data/column/scene.toml -o network.h5",
+    .other_usage = "SCENE.toml --check",
 };
 
 void report(const Network& network)

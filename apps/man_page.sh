@@ -10,7 +10,7 @@ version=$("$1" --version | sed "s/^$name //; s/+.*//")
     printf ".TH \"%s\" 1 \"\" \"jointcreep %s\" \"User Commands\"\n.SH NAME\n%s \\- %s\n", name, version, name, tolower(substr($0, 1, 1)) substr($0, 2)
     next
   }
-  /^usage: / { sub(/^usage: /, ""); printf ".SH SYNOPSIS\n%s\n", $0; next }
+  /^usage: / { sub(/^usage: /, ""); print (usages++ ? ".br" : ".SH SYNOPSIS"); print; next }
   /^[A-Z][A-Za-z ]*:$/ {
     if (open) print ".fi"
     printf ".SH %s\n.nf\n", toupper(substr($0, 1, length($0) - 1))

@@ -52,7 +52,8 @@ po::options_description described(const Program& program)
 std::string usage(const Program& program)
 {
     return "usage: " + program.name + ' ' + program.input + " -o " + program.output +
-           (program.options.empty() ? "" : " [options]") + '\n';
+           (program.options.empty() ? "" : " [options]") + '\n' +
+           (program.other_usage.empty() ? "" : "usage: " + program.name + ' ' + program.other_usage + '\n');
 }
 
 std::string help(const Program& program)
@@ -61,6 +62,7 @@ std::string help(const Program& program)
     text << program.name << ": " << program.summary << "\n\n"
          << usage(program) << '\n'
          << described(program) << '\n'
+         << (program.columns.empty() ? "" : "Columns of tables read:\n" + program.columns + '\n')
          << "Exit codes:\n"
             "  0  done\n"
             "  2  the command line or an input file is not what was wanted\n"

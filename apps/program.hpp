@@ -58,7 +58,9 @@ struct Program {
     std::string input;   // the one argument: "SCENE.toml"
     std::string output;  // the value of -o: "network.h5"
     std::vector<Option> options;
-    std::string example; // a whole command line
+    std::string example;       // a whole command line
+    std::string other_usage{}; // arguments without -o, if some go without it
+    std::string columns{};     // of tables that it reads, if any; indented lines
 };
 
 // What was given on the command line. Every accessor throws input_error when what is given is not what is

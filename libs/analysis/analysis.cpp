@@ -129,7 +129,8 @@ joint::Law law_of_new_contacts(const Scene& scene)
     if (material->walls)
         return joint::BartonBandis{material->normal_stiffness,       material->shear_stiffness,
                                    material->walls->largest_closure, material->friction_angle,
-                                   material->walls->roughness,       material->walls->strength};
+                                   material->walls->roughness,       material->walls->strength,
+                                   material->walls->strength_divisor};
     const double friction_angle =
         material->residual ? material->residual->friction_angle : material->friction_angle;
     return joint::Coulomb{material->normal_stiffness, material->shear_stiffness, 0, std::tan(friction_angle),
@@ -151,6 +152,9 @@ Analysis::Analysis(const Scene& scene, const Network& network, const EquivalentJ
       rock_(mechanics::assemble(scene, network, joints, result_.mesh)), loading_(scene, result_.mesh),
       recorder_(scene, network.blocks, result_.mesh)
 {
+    for (joint::Law& law : rock_.contacts.law)
+        if (auto* barton_bandis = std::get_if<joint::BartonBandis>(&law))
+            barton_bandis->divisor = joints.strength_divisor;
     stable_limit_ = limit_of_published(scene, network, joints);
     rock_.threads =
         std::min(threads, 1 + static_cast<int>(result_.mesh.zone_gridpoint.size()) / zones_per_thread);

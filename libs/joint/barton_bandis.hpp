@@ -9,7 +9,8 @@
 // stiffness there, V_m the largest closure, JRC the roughness and JCS the strength of the walls, both for
 // joints as long as those of the section. It unloads along the curve it was loaded along: that of the first
 // cycle. At p = JCS the walls are crushed; from there on the curve goes straight on, as stiff as it is there.
-// Shear is a spring k_s up to that limit, without dilation, cohesion or tension. Signs as in model/signs.hpp.
+// Shear is a spring k_s up to that limit, without dilation, cohesion or tension. Where strengths are divided
+// (strength_factor.hpp) the limit is; closing stays as it is. Signs as in model/signs.hpp.
 
 #pragma once
 
@@ -26,6 +27,7 @@ struct BartonBandis {
     double residual_angle;  // phi_r [rad]
     double roughness;       // JRC [-]
     double wall_strength;   // JCS [Pa]
+    double divisor = 1;     // of the shear strength, above 0 [-]
 
     // dp/dv at a pressure p [Pa/m].
     double stiffness(double p) const
@@ -50,23 +52,23 @@ struct BartonBandis {
         return v < crushed ? k_n * v / (1 - v / largest_closure)
                            : wall_strength + stiffness(wall_strength) * (v - crushed);
     }
-    // The friction angle at a pressure above 0 [rad].
+    // The friction angle at a pressure above 0, of the undivided strength [rad].
     double friction_angle(double p) const
     {
         constexpr double deg = std::numbers::pi / 180, steepest = 70 * deg;
         return std::min(residual_angle + roughness * deg * std::max(0.0, std::log10(wall_strength / p)),
                         std::max(steepest, residual_angle));
     }
-    double strength(double p) const { return p > 0 ? p * std::tan(friction_angle(p)) : 0.0; }
+    double strength(double p) const { return p > 0 ? p * std::tan(friction_angle(p)) / divisor : 0.0; }
     // d(strength)/dp [-].
     double friction(double p) const
     {
         constexpr double deg = std::numbers::pi / 180, steepest = 70 * deg;
         if (!(p > 0))
-            return std::tan(std::max(steepest, residual_angle));
+            return std::tan(std::max(steepest, residual_angle)) / divisor;
         const double angle = friction_angle(p), tan = std::tan(angle);
         const bool changes = p < wall_strength && angle < steepest;
-        return tan - (changes ? roughness * deg / std::numbers::ln10 * (1 + tan * tan) : 0.0);
+        return (tan - (changes ? roughness * deg / std::numbers::ln10 * (1 + tan * tan) : 0.0)) / divisor;
     }
     // Work of closing it to p [J/m2].
     double stored(double p) const

@@ -21,10 +21,13 @@ EquivalentJoints with_strength_divided(EquivalentJoints joints, double factor)
          {&joints.cohesion, &joints.tensile_strength, &joints.residual_cohesion})
         for (double& value : *strength)
             value /= factor;
-    for (std::vector<double>* angle :
-         {&joints.friction_angle, &joints.dilation_angle, &joints.residual_friction_angle})
+    for (std::vector<double>* angle : {&joints.dilation_angle, &joints.residual_friction_angle})
         for (double& value : *angle)
             divide_tangent(value, factor);
+    for (std::size_t e = 0; e < joints.friction_angle.size(); ++e)
+        if (joints.law[e] != static_cast<Index>(JointLaw::barton_bandis))
+            divide_tangent(joints.friction_angle[e], factor);
+    joints.strength_divisor *= factor;
     return joints;
 }
 
@@ -39,7 +42,10 @@ Scene with_strength_divided(Scene scene, double factor)
         divide_tangent(rock.dilation_angle, factor);
     }
     for (JointMaterial& material : scene.joint_materials) {
-        divide_tangent(material.friction_angle, factor);
+        if (material.walls)
+            material.walls->strength_divisor *= factor;
+        else
+            divide_tangent(material.friction_angle, factor);
         if (material.residual)
             divide_tangent(material.residual->friction_angle, factor);
     }

@@ -3,8 +3,9 @@
 //
 //     c / F,   tan(phi) / F,   T / F,   tan(psi) / F,   and residual strengths alike
 //
-// The dilation angle is no strength. It goes along so that psi stays at most phi, and where the two were
-// equal they stay so.
+// and the shear strength that Barton and Bandis's law gives at each pressure (as curved
+// envelopes are divided: Hammah, Yacoub, Corkum and Curran 2005). The dilation angle is no strength. It goes
+// along so that psi stays at most phi, and where the two were equal they stay so.
 
 #pragma once
 
@@ -15,7 +16,7 @@ namespace jointcreep::joint
 {
 
 // The equivalent joints with strengths divided by `factor` [-], which is positive; below 1 they grow.
-// Stiffness, creep and what was averaged stay. No joint has Barton and Bandis's law.
+// Stiffness, creep and what was averaged stay.
 EquivalentJoints with_strength_divided(EquivalentJoints joints, double factor);
 
 // The scene with the strength of rock divided, for rock that yields, and the friction of joint materials,

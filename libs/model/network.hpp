@@ -184,6 +184,7 @@ struct EquivalentJoints {
     std::vector<double> roughness{};       // [-]
     std::vector<double> wall_strength{};   // [Pa]
     std::vector<double> largest_closure{}; // [m]
+    double strength_divisor = 1; // of their shear strength, for a run with strengths divided; in no file [-]
 
     // What was averaged, and with which persistence; 0 without joint [-].
     std::vector<double> persistence{};

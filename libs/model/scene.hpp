@@ -73,9 +73,10 @@ struct ResidualStrength {
 
 // What Barton and Bandis ask for (libs/joint/barton_bandis.hpp).
 struct JointWalls {
-    double roughness;       // JRC [-]
-    double strength;        // JCS [Pa]
-    double largest_closure; // V_m [m]
+    double roughness;            // JRC [-]
+    double strength;             // JCS [Pa]
+    double largest_closure;      // V_m [m]
+    double strength_divisor = 1; // of the shear strength, for a run with strengths divided; no key [-]
 };
 
 // The open part of a joint.

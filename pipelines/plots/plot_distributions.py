@@ -97,7 +97,7 @@ def draw_areas(axes, area):
     axes.set_ylabel("share of a class (%)")
     axes.legend(handles=[matplotlib.patches.Patch(label=f"of the {len(area)} blocks", **BARS),
                          matplotlib.lines.Line2D([], [], color=look["color"], linewidth=1.2, label="of their area")],
-                loc="upper left")
+                loc="lower right", bbox_to_anchor=(1, 0.98), ncol=2)
 
 
 def draw(file, _):

@@ -10,6 +10,7 @@ count in nothing else.
 
 import argparse
 import datetime
+import re
 import sys
 
 import numpy as np
@@ -71,16 +72,19 @@ def failures(file):
 def markdown(rows, targets, number, failed=None, without=None):
     """The table of `number` networks with creep and `without` without it (as many by default)."""
     failed = failed or {}
-    lines = ["| point | total | its range | | recorded | its range | | before | its range | | total without creep |"
-             " recorded without | creep in the record | year after the end | later |",
-             "|---" * 15 + "|"]
+    has_ranges = any(row["name"] in targets["point"] for row in rows)
+    heads = ["point"]
+    for head in ("total", "recorded", "before"):
+        heads += [head, "its range", ""] if has_ranges else [head]
+    heads += ["total without creep", "recorded without", "creep in the record", "year after the end", "later"]
+    lines = [re.sub(" +", " ", "| " + " | ".join(heads) + " |"), "|---" * len(heads) + "|"]
     for row in rows:
         target = targets["point"].get(row["name"])
         cells = [row["name"] + (" (crest)" if row["crest"] else "")]
         for key in ("total", "recorded", "before"):
             cells.append(shown(row[key]))
             cells += [f"{target[key + '_mm'][0]}-{target[key + '_mm'][1]}",
-                      in_range(row[key][1], *target[key + "_mm"])] if target else ["", ""]
+                      in_range(row[key][1], *target[key + "_mm"])] if target else ["", ""] * has_ranges
         share = 1 - row["recorded_without"][1] / row["recorded"][1] if row["recorded"][1] else 0
         cells += [shown(row["total_without"]), shown(row["recorded_without"]),
                   f"{100 * share:.0f} %", f"{row['year']:.1f}", f"{row['later']:.1f}"]

@@ -2,6 +2,8 @@
 
 #include "joint/strength_factor.hpp"
 
+#include "joint/barton_bandis.hpp"
+
 #include "model/units.hpp"
 
 #include <gtest/gtest.h>
@@ -15,6 +17,7 @@ using namespace jointcreep::unit;
 TEST(with_strength_divided, divides_what_the_joint_bears_and_leaves_the_rest)
 {
     EquivalentJoints joints;
+    joints.law.assign(2, static_cast<Index>(JointLaw::coulomb));
     joints.normal_stiffness = {5e9, 1e9};
     joints.cohesion = {1e5, 0};
     joints.friction_angle = {38 * deg, 0};
@@ -37,6 +40,35 @@ TEST(with_strength_divided, divides_what_the_joint_bears_and_leaves_the_rest)
                      reduced.friction_angle[0]); // still at most the friction angle
     EXPECT_EQ(reduced.normal_stiffness, joints.normal_stiffness);
     EXPECT_EQ(reduced.cohesion[1] + reduced.friction_angle[1] + reduced.tensile_strength[1], 0);
+}
+
+// Of Barton and Bandis's law the factor divides the strength at every pressure, and nothing else.
+TEST(with_strength_divided, divides_the_strength_of_barton_and_bandis)
+{
+    EquivalentJoints joints;
+    joints.law = {static_cast<Index>(JointLaw::barton_bandis)};
+    joints.friction_angle = {30 * deg};
+    joints.roughness = {10};
+    const EquivalentJoints reduced = joint::with_strength_divided(joints, 1.37);
+    EXPECT_DOUBLE_EQ(reduced.friction_angle[0], 30 * deg);
+    EXPECT_DOUBLE_EQ(reduced.roughness[0], 10);
+    EXPECT_DOUBLE_EQ(reduced.strength_divisor, 1.37);
+    Scene scene;
+    scene.joint_materials.resize(1);
+    scene.joint_materials[0].friction_angle = 30 * deg;
+    scene.joint_materials[0].walls = JointWalls{10, 1e8, 2e-4};
+    const Scene new_contacts = joint::with_strength_divided(scene, 1.37);
+    EXPECT_DOUBLE_EQ(new_contacts.joint_materials[0].friction_angle, 30 * deg);
+    EXPECT_DOUBLE_EQ(new_contacts.joint_materials[0].walls->strength_divisor, 1.37);
+
+    joint::BartonBandis law{1e10, 1e9, 2e-4, 30 * deg, 10, 1e8};
+    const joint::BartonBandis whole = law;
+    law.divisor = 1.37;
+    for (const double p : {0.0, 1e3, 1e6, 4e7, 2e8}) {
+        EXPECT_DOUBLE_EQ(law.strength(p), whole.strength(p) / 1.37);
+        EXPECT_DOUBLE_EQ(law.friction(p), whole.friction(p) / 1.37);
+        EXPECT_DOUBLE_EQ(law.stiffness(p), whole.stiffness(p));
+    }
 }
 
 TEST(with_strength_divided, divides_the_strength_of_rock_and_the_friction_of_new_contacts)

@@ -2,6 +2,7 @@
 that collapse and come to rest, with their balance of energy."""
 
 import math
+import re
 
 import numpy as np
 
@@ -676,6 +677,27 @@ class Collapse(ChainTest):
         self.assertGreater(data["/motions/fastest"].max(), 5)
         self.assertLessEqual(data["/equilibria/out_of_balance_ratio"][-1], 1e-6)
         return data
+
+    def test_an_account_of_energy_that_does_not_close_is_said(self):
+        """Joints so soft that columns sink into each other: what is missing is in the file, and the closing screen says how
+        much of the work it is. On firm joints it says nothing."""
+        for stiffness, is_off in (3, True), (50, False):
+            text = changed(self.chain.text("data/collapse/toppling.toml"), "^(normal|shear)_stiffness_MPa_per_m = .*",
+                           rf"\1_stiffness_MPa_per_m = {stiffness}", 2)
+            joints = self.chain.joints(changed(text, "^mass_damping_per_s = .*", "mass_damping_per_s = 0.5"))
+            output = joints.with_name("result.h5")
+            done = self.chain.answer("demsolve", joints, "-o", output)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            said = re.findall('warning: account of energy +off by ([0-9]+) percent in the motion of stage "toe removed"',
+                              done.stdout)
+            data = datasets(output)
+            largest = max(abs(data[f"/motions/{part}"]).max() for part in
+                          ("work_of_loads", "kinetic_energy", "stored_energy", "friction_energy", "damped_energy"))
+            off = 100 * abs(missing_energy(data)).max() / largest
+            self.assertEqual(off > 1, is_off)
+            self.assertEqual(len(said), is_off)
+            if is_off:
+                self.assertAlmostEqual(float(said[0]), off, delta=0.51)
 
     def test_sliding(self):
         self.check_sliding(self.collapse("sliding"))

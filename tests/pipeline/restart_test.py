@@ -13,6 +13,7 @@ import numpy as np
 
 from chain import ChainTest, changed, datasets, main
 from motion_test import incline
+from small_scene import held, joint, material, scene
 
 # A face that is dug in three benches: joints that weaken, dilate, close by Barton and Bandis and creep by chains; rock
 # that creeps below rock that yields; loads and displacements on the outline that change between stages.
@@ -264,6 +265,33 @@ class Restart(ChainTest):
                 moved = np.linalg.norm(datasets(path)["/history/displacement"][:, 0], axis=1)
                 self.assertAlmostEqual(moved.max(), 4, delta=0.05)
                 self.assertLess(abs(moved - 2).min(), 0.05)  # at rest on the ledge
+
+    def test_motion_of_rock_that_yields(self):
+        """It is crushed a little where it comes down on the ledge, before the last stage, and again at the wall."""
+        text = changed(sliding_block("stiffness_damping_s = 3e-5"), '^name = "rock"$',
+                       'name = "rock"\nlaw = "Mohr-Coulomb"\ncohesion_MPa = 1\nfriction_angle_deg = 30\n'
+                       "tensile_strength_MPa = 0.5\ndilation_angle_deg = 5")
+        result, checkpoint, _ = self.assert_same(text, (1, 1.5))
+        path, kept = (self.chain.new_folder() / "result.h5" for _ in range(2))
+        path.write_bytes(result)
+        kept.write_bytes(checkpoint)
+        before, after = abs(datasets(kept)["/checkpoint/plastic_strain"]), abs(datasets(path)["/states/plastic_strain"][-1])
+        self.assertGreater(before.max(), 1e-4)
+        self.assertGreater(after.sum(), 1.01 * before.sum())
+
+    def test_a_tie_that_has_parted_on_a_held_gridpoint(self):
+        """A wedge goes, and the rock left and right of it meets only where it stands on the ground; then more goes."""
+        text = scene([[0, 0], [6, 0], [6, 2], [0, 2]], [joint("flat", [-1, 1.2], [7, 1.3])], [held([0, 0], [6, 0])],
+                     [material("joint", 1000)], stages=[[[[3, 0], [4, 2], [2, 2]]], [[[5, 0], [6, 0], [6, 2], [5, 2]]]],
+                     points=[[1.5, 1.9]], end=4)
+        for engine in "implicit", "explicit":
+            result = self.assert_same(text, (1, 2), "--engine", engine)[0]
+            path = self.chain.new_folder() / "result.h5"
+            path.write_bytes(result)
+            data = datasets(path)
+            at = data["/mesh/gridpoint_position"][data["/mesh/tie_gridpoint"]]
+            is_held = (data["/mesh/gridpoint_fixed"][data["/mesh/tie_gridpoint"]] == 3).all(axis=1)
+            self.assertTrue(((abs(at - [3, 0]) < 1e-9).all(axis=(1, 2)) & is_held & (data["/mesh/tie_stage"] == 0)).any())
 
     def test_a_run_that_is_killed_goes_on(self):
         joints = self.chain.joints(SCENE)

@@ -184,14 +184,23 @@ class Safety(ChainTest):
             self.assertEqual(done.returncode, 2, options)
             self.assertIn(said, done.stderr)
 
-    def test_strength_that_is_not_divided_is_refused(self):
-        rough = "joint_roughness_coefficient = 5\njoint_wall_strength_MPa = 50\nlargest_closure_mm = 1"
-        joints = self.chain.joints(HANGING.replace("[[joint_material]]", f"[[joint_material]]\n{rough}"))
-        for options in (("--strength-factor", "2"), ("--factor-of-safety",)):
-            done = self.chain.answer("demsolve", joints, "-o", joints.with_name("result.h5"), *options)
-            self.assertEqual(done.returncode, 2, options)
-            self.assertIn(f"{options[0]}: ", done.stderr)
-            self.assertIn("Barton and Bandis's law", done.stderr)
+    def test_a_block_on_a_rough_incline(self):
+        """F = tan(phi_r + JRC log10(JCS / p)) / tan(b), with the pressure p = q cos(b) that does not depend on F. A block
+        as thin as 0.1 m, lest the pressure be larger downhill: friction falls with it."""
+        rough = "joint_roughness_coefficient = 8\njoint_wall_strength_MPa = 50\nlargest_closure_mm = 1"
+        text = self.incline(("^friction_angle_deg = 35", f"friction_angle_deg = 28\n{rough}"),
+                            ("(?:^(?:normal|shear)_kelvin_.*\n){4}", ""))
+        thin = (9.063077870367 - 0.0422618261741, 4.226182617407 + 0.0906307787037), (-0.0422618261741, 0.0906307787037)
+        for thick, (x, y) in zip((r"8.640459608626, 5.132490404444", r"-0.422618261741, 0.906307787037"), thin):
+            text = changed(text, re.escape(f"[{thick}]"), f"[{x}, {y}]", 2)
+        pressure = math.cos(DIP)  # [MPa]: 1 MPa straight down, per area of the joint, has this part across it
+        wanted = math.tan(math.radians(28 + 8 * math.log10(50 / pressure))) / math.tan(DIP)
+        stands, _ = self.assert_factor(wanted, text, "--safety-width", "0.001", width=0.001)
+        data = datasets(stands)
+        length = data["/mesh/contact_length"]
+        sigma_n, tau = length @ data["/states/traction"][-1] / length.sum()
+        self.assertAlmostEqual(-sigma_n / 1e6 / pressure, 1, delta=1e-4)
+        self.assertAlmostEqual(abs(tau / sigma_n) / math.tan(DIP), 1, delta=1e-4)
 
     def test_rock_that_yields(self):
         """A block squeezed from above, free at its sides, bears 2 c (t + sqrt(1 + t^2)), t = tan(phi); with c / F and t / F

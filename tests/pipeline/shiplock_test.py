@@ -166,6 +166,8 @@ class Shiplock(ChainTest):
             text = points.markdown([{**row, "name": name}], {"point": own, **ranges}, 2)
             self.assertIn(misfit, text)
             self.assertNotIn("Not among them", text)
+            lines = [line.count("|") for line in text.split("\n") if line.startswith("|")]
+            self.assertEqual(set(lines), {16 if name == "N215" else 10}, "columns of ranges where there are some")
         text = points.markdown([{**row, "name": "N215"}], {"point": own, **ranges}, 2, {8: "it slides"})
         self.assertIn("\nNot among them, network 8: it slides\n", text)
         start = study.datetime.date(1994, 6, 15)
@@ -296,7 +298,9 @@ class Shiplock(ChainTest):
         head = points.markdown([{"crest": False, "name": "N1", **{key: numpy.array([1.0, 2, 3]) for key in
                                                                  ("total", "recorded", "before", "total_without",
                                                                   "recorded_without")}, "year": 0.0, "later": 0.0}],
-                               {"point": {}, "total_mm": [60, 90], "recorded_mm": [20, 40]}, 2).split("\n")[0]
+                               {"point": {"N1": {"crest": False, "total_mm": [60, 90], "recorded_mm": [20, 40],
+                                                 "before_mm": [15, 40]}},
+                                "total_mm": [60, 90], "recorded_mm": [20, 40]}, 2).split("\n")[0]
         self.assertIn(head, tables["networks.md"])
         for point in tomllib.loads(self.chain.text(SCENE))["point"]:
             self.assertRegex(tables["networks.md"], rf"\n\| {point['name']}\b")
