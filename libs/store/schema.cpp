@@ -449,6 +449,8 @@ std::vector<Field> fields_of(EquivalentJoints& joints)
          "Tensile strength."},
         {"/equivalent/dilation_angle", &joints.dilation_angle, edge, "rad", between(0, std::numbers::pi / 2),
          "Dilation angle."},
+        {"/equivalent/dilation_until", &joints.dilation_until, edge, "m", at_least(0),
+         "Slip at which dilation ends; 0 where it does not, or there is none."},
         {"/equivalent/law", &joints.law, edge, "1", between(0, 2),
          "0 Coulomb, whose bonds break by opening; 1 Coulomb with residual strength: they break by slip, too; 2 "
          "Barton-Bandis, whose friction angle is phi_r and whose normal stiffness is that without pressure."},
@@ -665,6 +667,7 @@ std::vector<Field> fields_of(MovedRock& moved)
         {"/moved/first_lead", &moved.first_lead, pair, "m", any(),
          "Closing without a gap at the first end of the first face."},
         {"/moved/second_lead", &moved.second_lead, pair, "m", any(), "The same at its second end."},
+        {"/moved/dilation", &moved.dilation, pair, "m", at_least(0), "What dilation has added to both."},
         {"/moved/tau", &moved.tau, pair, "Pa", any(), "Shear traction."},
         {"/moved/is_known", &moved.is_known, pair, "1", between(0, 1), "1 if they have touched since they came near."},
         {"/moved/is_new", &moved.is_new, pair, "1", between(0, 1), "1 if they have not borne a force yet."},
