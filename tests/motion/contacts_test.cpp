@@ -557,6 +557,9 @@ TEST(contacts, all_of_a_joint_is_raised_by_one_amount)
                     5, dilatant(0.5));
     const double start = tilted.stored();
     const int steps = 4000;
+    // Per way, where it rises by 0.1 of it: k_n (tan(psi) slip - 0.1) presses, and its friction shears the
+    // spring.
+    const double stiffer = k_n * friction * psi / k_s, dilating = (psi + stiffer * 0.1) / (1 + stiffer);
     for (int step = 0; step < steps; ++step) {
         tilted.step(
             [&](const Vector2d& at) {
@@ -565,10 +568,12 @@ TEST(contacts, all_of_a_joint_is_raised_by_one_amount)
             },
             1e-2);
         if (step % 100 == 0) {
-            EXPECT_GT(tilted.dilation(), std::min(0.19 * step / steps, 0.5 * psi - 1e-9)) << step;
+            const double expected = std::min(dilating * step / steps, 0.5 * psi);
+            EXPECT_NEAR(tilted.dilation(), expected, 0.01 * expected + 2e-4) << step;
         }
     }
     // It slid 1 m and rose by half of what it dilated in the first half of that, then by the rest.
+    EXPECT_NEAR(tilted.dilation(), 0.5 * psi, 1e-12);
     EXPECT_GT(tilted.friction, 1e6);
     EXPECT_NEAR(tilted.work + tilted.stored() - start + tilted.friction + tilted.damped, 0,
                 5e-3 * tilted.friction);

@@ -276,7 +276,8 @@ class Dilation(ChainTest):
     def test_held_down_it_stops_where_it_is_strong_enough(self):
         """A block between its joint and a lid that slides; a stage takes the support from one side of it, and what presses
         on the other one moves it until p tan(phi) is as much: by (p - p_0) / (k_n tan(psi)), and the shear of the springs.
-        Where rock deforms, as the two engines for small displacements have it."""
+        Where rock deforms, as the two engines for small displacements have it. What slides on to the next face has no
+        shear yet: with 3 mm and faces of 1 m, 0.3 percent of the length at most."""
         pushed, pressed, k_n, k_s, tan_phi, tan_psi = 1.4e6, 1e6, 1e9, 0.5e9, math.tan(math.pi / 6), math.tan(math.pi / 18)
         stress = changed(NO_STRESS, r"^compression_(..)_MPa = 0$", lambda found: f"compression_{found[1]}_MPa = "
                          f"{(pushed if found[1] == 'xx' else pressed) / 1e6}", 2)
@@ -284,11 +285,11 @@ class Dilation(ChainTest):
                            '[[boundary]]\nfrom_m = [0, 1]\nto_m = [3, 1]\nfix = "y"',
                            '[[boundary]]\nfrom_m = [3, 0]\nto_m = [3, 1]\nfix = "x"',
                            f'[[boundary]]\nfrom_m = [0, 0]\nto_m = [0, 1]\ntraction_MPa = [{pushed / 1e6}, 0]'))
-        slowly = "release_s = 0.3\nmass_damping_per_s = 100\nrecord_every_s = 0.1\n"
+        slowly = "release_s = 1\nmass_damping_per_s = 300\nrecord_every_s = 0.1\n"
 
-        def moved(more, engine=""):
+        def moved(more, size, engine=""):
             text = scene(box(0, 0, 3, 1), [([2, -1], [2, 2])], [[box(2, 0, 3, 1)]], sides, slowly + more, gravity=0,
-                         stress=stress, size=0.25, points='[[point]]\nname = "middle"\nat_m = [1, 0.5]')
+                         stress=stress, size=size, points='[[point]]\nname = "middle"\nat_m = [1, 0.5]')
             text = changed(text, "^tensile_strength_MPa = 0$", "tensile_strength_MPa = 0\ndilation_angle_deg = 10")
             if engine:
                 text = text[:text.index("[motion]")] + f'[equilibrium]\nengine = "{engine}"\nunloading_increments = 50\n'
@@ -299,10 +300,10 @@ class Dilation(ChainTest):
 
         tau = pushed / 2
         slip = (tau / tan_phi - pressed) / (k_n * tan_psi)
-        self.assertAlmostEqual(moved(RIGID) / (slip + tau / k_s), 1, delta=2e-3)
-        small = [moved("", engine) for engine in ("explicit", "implicit")]
-        self.assertAlmostEqual(small[0] / small[1], 1, delta=2e-3)
-        self.assertAlmostEqual(moved("") / small[1], 1, delta=1e-2)
+        self.assertAlmostEqual(moved(RIGID, 1) / (slip + tau / k_s), 1, delta=3e-3)
+        small = [moved("", 0.5, engine) for engine in ("explicit", "implicit")]
+        self.assertAlmostEqual(small[0] / small[1], 1, delta=1e-3)
+        self.assertAlmostEqual(moved("", 0.5) / small[1], 1, delta=6e-3)
 
 
 # Marl under the same pressure all round, between smooth walls; a stage takes one of them away.
