@@ -320,8 +320,19 @@ void Contacts::seek(const std::vector<Vector2d>& place, const std::vector<Vector
     std::map<std::pair<Index, Index>, std::vector<Index>> joints;
     for (std::size_t p = 0; p < pairs_.size(); ++p)
         joints[std::minmax({side_[pairs_[p].a], side_[pairs_[p].b]})].push_back(static_cast<Index>(p));
-    for (auto& [sides, joint] : joints)
+    for (auto& [sides, joint] : joints) {
+        // What has come near is raised as the rest of its joint is, but for what is nearer than that.
+        double most = 0;
+        for (const Index p : joint)
+            most = std::max(most, pairs_[p].is_known ? pairs_[p].dilation : 0.0);
+        for (const Index p : joint)
+            if (!pairs_[p].is_known && pairs_[p].dilation < most) {
+                const auto found = overlap_of(pairs_[p], faces_, sharpness_, place);
+                if (!found || -found->sunk() > most)
+                    pairs_[p].raise(most - pairs_[p].dilation);
+            }
         joints_.push_back(std::move(joint));
+    }
 }
 
 // Raises the joints that dilate, for the slip of this step: by x = sum of F tan(psi) slip(x) over sum of F,
@@ -401,13 +412,10 @@ void Contacts::dilate(const std::vector<Vector2d>& place, const std::vector<Vect
                 break;
         }
         x = std::min(x, left);
-        for (const Index p : joint)
-            if (Pair& pair = pairs_[p]; pair.is_known) {
-                pair.raised = x;
-                pair.dilation += x;
-                for (double& lead : pair.lead)
-                    lead += x;
-            }
+        for (const Index p : joint) {
+            pairs_[p].raised = x;
+            pairs_[p].raise(x);
+        }
     }
 }
 
@@ -458,15 +466,26 @@ void Contacts::update(const std::vector<Vector2d>& place, const std::vector<Vect
     const auto depth_of = [&](const Pair& pair) {
         return std::min(faces_.depth[pair.a], faces_.depth[pair.b]);
     };
-    // Whether faces are too far in each other to have come to touch in this step.
-    const auto is_deep = [&](const Pair& pair, const Overlap& found) {
+    // Gaps at these ends a step before, and how far the faces have slid since.
+    struct Gaps {
+        std::array<double, 2> gap;
+        double slid;
+    };
+    const auto gaps_before = [&](const Pair& pair, const Overlap& found) {
         const auto move_a = ends_of(faces_.gridpoint[pair.a], move),
                    move_b = ends_of(faces_.gridpoint[pair.b], move);
-        std::array<double, 2> gap_before{};
-        for (int i = 0; i < 2; ++i)
-            gap_before[i] =
-                found.gap[i] - (at(move_b, found.on_b[i]) - at(move_a, found.on_a[i])).dot(found.normal());
-        return std::min(found.sunk(), -std::min(gap_before[0], gap_before[1])) > deepest_new * depth_of(pair);
+        Gaps before{found.gap, 0};
+        for (int i = 0; i < 2; ++i) {
+            const Vector2d parted = at(move_b, found.on_b[i]) - at(move_a, found.on_a[i]);
+            before.gap[i] -= parted.dot(found.normal());
+            before.slid = std::max(before.slid, std::abs(parted.dot(found.tangent)));
+        }
+        return before;
+    };
+    // Whether faces are too far in each other to have come to touch in this step.
+    const auto is_deep = [&](const Pair& pair, const Overlap& found) {
+        const auto before = gaps_before(pair, found).gap;
+        return std::min(found.sunk(), -std::min(before[0], before[1])) > deepest_new * depth_of(pair);
     };
     const auto evaluate = [&](Pair& pair, Index index, bool may_close) {
         pair.is_slipping = false;
@@ -656,18 +675,21 @@ void Contacts::update(const std::vector<Vector2d>& place, const std::vector<Vect
             if (is_deep(pair, *found) &&
                 (before == nullptr || found->sunk() > sunk_of(*before) + deepest_new * depth_of(pair)))
                 continue; // another face behind
-            if (before == nullptr &&
-                (is_behind || (!pair.is_known && std::min(found->gap[0], found->gap[1]) >= 0)))
+            if (before == nullptr && (is_behind || (!pair.is_known && -found->sunk() >= pair.lead[0])))
                 continue;
             if (before != nullptr && !pair.is_known) {
                 // What slides on takes along what its joint is and remembers. A pair's sides may change
                 // places: a's first end looks at b's second one, and `along` turns round with the normal
-                // twice over, so that the shear traction keeps its sign.
-                const double lead = (before->lead[0] + before->lead[1]) / 2;
+                // twice over, so that the shear traction keeps its sign. What was nearer than it is raised
+                // before it slid on to there, is raised no farther than that.
+                const double unraised = (before->lead[0] + before->lead[1]) / 2 - before->dilation;
+                const Gaps last = gaps_before(pair, *found);
+                const double room = last.slid < found->length ? std::min(last.gap[0], last.gap[1]) - unraised
+                                                              : before->dilation;
+                pair.dilation = std::max(pair.dilation, std::clamp(room, 0.0, before->dilation));
                 pair.law = before->law;
                 pair.tau = before->tau;
-                pair.lead = {lead, lead};
-                pair.dilation = before->dilation;
+                pair.lead = {unraised + pair.dilation, unraised + pair.dilation};
             }
             pair.is_known = true;
             evaluate(pair, p, true);

@@ -64,6 +64,12 @@ struct Pair {
     double pressed_in = 0, sheared_in = 0; // what the springs hold [J/m]
     double friction = 0, damped = 0;       // in the last step [J/m]
 
+    void raise(double by)
+    {
+        dilation += by;
+        for (double& end : lead)
+            end += by;
+    }
     bool is_bonded() const { return is_known && !is_broken; }
     double stored() const { return pressed_in + sheared_in; }
 };
