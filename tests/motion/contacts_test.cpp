@@ -616,3 +616,37 @@ TEST(contacts, dilation_goes_on_to_the_next_face)
         ASSERT_NEAR(slider.dilation(), psi * std::min(slid, until), 1e-5) << slid;
     }
 }
+
+// Raised by 0.06 m, lifted off and put down tilted where its faces have not touched: all of it touches as far
+// up, and no energy comes from nowhere.
+TEST(contacts, what_lands_beside_is_raised_as_its_joint_is)
+{
+    Dilatant slider({{{8, 0}, {7, 0}, {6, 0}, {5, 0}, {4, 0}, {3, 0}, {2, 0}, {1, 0}, {0, 0}},
+                     {{0.2, -1e-4}, {1.2, -1e-4}, {2.2, -1e-4}}},
+                    9, dilatant(0.3));
+    for (int step = 0; step < 300; ++step)
+        slider.step([&](const Vector2d&) { return Vector2d(1e-3, 1e-3 * psi); });
+    for (int step = 0; step < 5; ++step) // to the end of dilation
+        slider.step([&](const Vector2d&) { return Vector2d(1e-3, 0); });
+    const double dilation = slider.dilation();
+    EXPECT_NEAR(dilation, 0.3 * psi, 1e-12);
+    const auto go = [&](int steps, const Vector2d& way, double turn) {
+        for (int step = 0; step < steps; ++step)
+            slider.step([&](const Vector2d& at) { return Vector2d(way.x(), way.y() + turn * at.x()); });
+    };
+    go(50, {0, 1e-4}, 0);
+    EXPECT_EQ(slider.stored(), 0);
+    go(200, {1e-2, 0}, 0);
+    go(100, {0, 0}, 1e-4);
+    slider.friction = slider.work = 0;
+    double lowest = 1e9;
+    for (int step = 0; step < 3000 && slider.stored() == 0; ++step) {
+        go(1, {0, -1e-5}, 0);
+        lowest = std::min(lowest, slider.lines.place[9].y());
+    }
+    EXPECT_NEAR(lowest, dilation, 2e-5); // the end that is lower touches there
+    go(100, {0, -1e-5}, 0);
+    EXPECT_NEAR(slider.dilation(), dilation, 1e-12);
+    EXPECT_GT(slider.stored(), 10);
+    EXPECT_NEAR(slider.work + slider.stored() + slider.friction, 0, 0.02 * slider.stored());
+}

@@ -273,6 +273,24 @@ class Dilation(ChainTest):
             self.assertAlmostEqual(x * c - y * s, length - 5, delta=0.05)
             self.assertAlmostEqual(x * s + y * c, until * tan_psi, delta=5e-4)
 
+    def test_the_account_closes_where_blocks_are_thrown_and_land(self):
+        """Over the edge of the bedding, and where it ends to dilate, blocks leave the joint and come down tilted on what
+        their slip has raised, with faces that have not touched before."""
+        for more in RIGID, "":
+            text = dilatant(self.chain.text("data/collapse/sliding.toml"), 15, 0.5)
+            data = datasets(self.chain.result(text if more else changed(text, "^rigid_rocks.*\n", "")))
+            self.assertGreater(np.linalg.norm(data["/history/displacement"][-1], axis=1).min(), 10)
+            self.assertLessEqual(data["/equilibria/out_of_balance_ratio"].max(), 1e-6)
+            self.assertLess(error_of_energy(data), ACCOUNT, more)
+
+    def test_threads_do_not_change_a_byte(self):
+        text = dilatant(incline(30, 25, length=7, more=RIGID), 8, 0.3)
+        joints = self.chain.joints(changed(text, "^size_m = 1$", "size_m = 0.3"))
+        one, two = (datasets(self.chain.run("demsolve", joints, self.chain.new_folder() / "result.h5", "--threads", n))
+                    for n in (1, 2))
+        for name, values in one.items():
+            self.assertTrue(np.array_equal(values, two[name]), name)
+
     def test_held_down_it_stops_where_it_is_strong_enough(self):
         """A block between its joint and a lid that slides; a stage takes the support from one side of it, and what presses
         on the other one moves it until p tan(phi) is as much: by (p - p_0) / (k_n tan(psi)), and the shear of the springs.
