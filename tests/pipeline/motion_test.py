@@ -255,9 +255,12 @@ class Dilation(ChainTest):
         lifts it presses too."""
         dip, friction, psi, until = 30, 25, 8, 1.0
         tan_psi = math.tan(math.radians(psi))
-        for more in RIGID, "stiffness_damping_s = 3e-5":
+        for more, peak in (RIGID, friction), ("stiffness_damping_s = 3e-5", friction), (RIGID, 29):
             length = 9 if more == RIGID else 7
-            text = dilatant(incline(dip, friction, length=length, wall=4, more=more), psi, until)
+            text = dilatant(incline(dip, peak, length=length, wall=4, more=more), psi, until)
+            if peak > friction:
+                text = changed(text, "^cohesion_MPa = 0$", f"cohesion_MPa = 0\nresidual_cohesion_MPa = 0\n"
+                               f"residual_friction_angle_deg = {friction}")
             data = datasets(self.chain.result(changed(text, "^record_every_s.*", "record_every_s = 0.05")))
             c, s, f = math.cos(math.radians(dip)), math.sin(math.radians(dip)), math.tan(math.radians(friction))
             acceleration = GRAVITY * (s - c * f) / (1 + f * tan_psi)
