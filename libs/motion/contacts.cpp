@@ -196,7 +196,7 @@ void Contacts::set_faces(Faces faces, std::vector<Pair> known, const std::vector
               [](const Pair& p, const Pair& q) { return std::pair(p.a, p.b) < std::pair(q.a, q.b); });
     pairs_ = std::move(known);
     for (Pair& pair : pairs_)
-        pair.sigma = 0; // of the last update alone
+        pair.sigma = 0; // of the last update, which a checkpoint does not have
     std::vector<double> lengths;
     for (const auto& [from, to] : faces_.gridpoint)
         lengths.push_back((place[to] - place[from]).norm());
@@ -341,7 +341,7 @@ void Contacts::seek(const std::vector<Vector2d>& place, const std::vector<Vector
 void Contacts::dilate(const std::vector<Vector2d>& place, const std::vector<Vector2d>& move)
 {
     struct Sheared {
-        double share;         // F tan(psi) over sum of F [-]
+        double share;         // of the work, F tan(psi) [N/m]
         double trial, bears;  // without slip, and the strength, where it is not raised [N/m]
         double rises, shears; // the strength by x, the shear by slip [Pa]
     };

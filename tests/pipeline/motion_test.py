@@ -276,6 +276,17 @@ class Dilation(ChainTest):
             self.assertAlmostEqual(x * c - y * s, length - 5, delta=0.05)
             self.assertAlmostEqual(x * s + y * c, until * tan_psi, delta=5e-4)
 
+    def test_slip_that_dilates_by_the_friction_angle_loses_nothing(self):
+        """The block climbs as on a smooth slope, until it no longer dilates."""
+        for more in RIGID, "stiffness_damping_s = 3e-5":
+            data = datasets(self.chain.result(dilatant(incline(30, 25, length=7, wall=4, more=more), 25, 0.3)))
+            kinetic, lost = data["/motions/kinetic_energy"], data["/motions/friction_energy"]
+            climbing = data["/motions/motion_time"] < 0.8  # s = a t^2 / 2, a = g sin(5 deg) cos(25 deg)
+            self.assertGreater(kinetic[climbing].max(), 500)
+            self.assertLess(abs(lost[climbing]).max(), 1e-3 * kinetic[climbing].max())
+            self.assertGreater(lost[-1], 1e4)
+            self.assertLess(error_of_energy(data), ACCOUNT, more)
+
     def test_the_account_closes_where_blocks_are_thrown_and_land(self):
         """Over the edge of the bedding, and where it ends to dilate, blocks leave the joint and come down tilted on what
         their slip has raised, with faces that have not touched before."""
