@@ -120,7 +120,7 @@ TEST(edges_csv, numbers_kelvin_units_where_there_are_several)
     equivalent.normal_kelvin_viscosity.assign(2 * edges, 0);
     equivalent.shear_kelvin_viscosity.assign(2 * edges, 0);
     const auto rows = rows_of(edges_csv(small_network(), &equivalent));
-    ASSERT_EQ(rows[0].size(), 33u);
+    ASSERT_EQ(rows[0].size(), 34u);
     EXPECT_EQ(rows[0][17], "normal_kelvin_stiffness_1_Pa_per_m");
     EXPECT_EQ(rows[0][21], "normal_kelvin_stiffness_2_Pa_per_m");
     EXPECT_EQ(number(rows[3][17]), 0);
