@@ -481,13 +481,6 @@ void Analysis::excavate(const Stage& stage, Index number)
 
 void Analysis::prepare_motion()
 {
-    const auto dilates = std::find_if(joints_.dilation_angle.begin(), joints_.dilation_angle.end(),
-                                      [](double angle) { return angle > 0; });
-    if (dilates != joints_.dilation_angle.end())
-        throw input_error(
-            "with [motion] joints do not dilate, but rock bridges of joint \"" +
-            joint_name(scene_, network_, static_cast<Index>(dilates - joints_.dilation_angle.begin())) +
-            "\" do: wanted dilation_angle_deg = 0 of their [[rock]], or no bridges");
     motion_.emplace(rock_, result_.mesh, rigid_zones(scene_, network_, result_.mesh),
                     law_of_new_contacts(scene_),
                     motion::Settings{scene_.motion->stiffness_damping, scene_.motion->mass_damping,

@@ -123,7 +123,7 @@ std::string edges_csv(const Network& network, const EquivalentJoints* equivalent
     if (equivalent)
         table += ",normal_maxwell_viscosity_Pa_s_per_m,shear_maxwell_viscosity_Pa_s_per_m,law,residual_"
                  "cohesion_Pa,"
-                 "residual_friction_angle_rad,roughness,wall_strength_Pa,largest_closure_m";
+                 "residual_friction_angle_rad,roughness,wall_strength_Pa,largest_closure_m,dilation_until_m";
     table += '\n';
     for (std::size_t edge = 0; edge < blocks.edge_vertex.size(); ++edge) {
         const auto [first, second] = blocks.edge_vertex[edge];
@@ -152,7 +152,8 @@ std::string edges_csv(const Network& network, const EquivalentJoints* equivalent
                     field(equivalent->shear_maxwell_viscosity[edge]), field(equivalent->law[edge]),
                     field(equivalent->residual_cohesion[edge]),
                     field(equivalent->residual_friction_angle[edge]), field(equivalent->roughness[edge]),
-                    field(equivalent->wall_strength[edge]), field(equivalent->largest_closure[edge]));
+                    field(equivalent->wall_strength[edge]), field(equivalent->largest_closure[edge]),
+                    field(equivalent->dilation_until[edge]));
         }
     }
     return table;

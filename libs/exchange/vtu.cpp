@@ -259,6 +259,7 @@ std::string joints_vtu(const Network& network, const EquivalentJoints* equivalen
         grid.add("friction_angle", picked(equivalent->friction_angle, edges));
         grid.add("tensile_strength", picked(equivalent->tensile_strength, edges));
         grid.add("dilation_angle", picked(equivalent->dilation_angle, edges));
+        grid.add("dilation_until", picked(equivalent->dilation_until, edges));
         const std::size_t units = equivalent->kelvin_units();
         for (std::size_t unit = 0; unit < units; ++unit) {
             const std::string number = units == 1 ? "" : "_" + std::to_string(unit + 1);

@@ -6,7 +6,8 @@
 //     d(dilation) = tan(psi) |d(slip)|           whichever way it slips
 //
 // with psi at most phi, or slip would give energy. That is the plastic flow of Coulomb's law with a potential
-// of its own, psi in place of phi. A joint that is open shears without dilating.
+// of its own, psi in place of phi. A joint that is open shears without dilating. Where an end is given, the
+// slip that has dilated, dilation / tan(psi), goes up to it and no farther; beyond it slip dilates no more.
 //
 // Opening breaks the joint's bonds: its cohesion and tensile strength are lost for good. (A cohesion that
 // came back on closing would let a contact flicker between open and closed.) Slip alone leaves them, but
@@ -20,6 +21,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace jointcreep::joint
 {
@@ -33,9 +35,14 @@ struct Coulomb {
     bool weakens = false;    // by slip; without it a broken joint has no cohesion, and the friction it had
     double residual_cohesion = 0; // [Pa]
     double residual_tan_phi = 0;  // [-]
+    double dilation_until = 0;    // slip at which dilation ends; 0: it does not [m]
 
     double cohesion_of(bool is_broken) const { return is_broken ? residual_cohesion : cohesion; }
     double tan_phi_of(bool is_broken) const { return is_broken && weakens ? residual_tan_phi : tan_phi; }
+    double dilation_end() const // [m]
+    {
+        return dilation_until > 0 ? tan_psi * dilation_until : std::numeric_limits<double>::infinity();
+    }
 };
 
 // What the joint remembers.
@@ -61,13 +68,22 @@ inline Response respond(const Coulomb& law, CoulombState& state, double sigma_0,
     const double give = law.k_s > 0 ? 1 / law.k_s : 0.0;
     // Slip presses a joint that dilates together, by this times itself, and its strength grows with that;
     // where it has none to begin with, under tension, it slips until no shear is left at most.
-    const double pressing = law.k_s > 0 ? law.k_n * law.tan_psi : 0.0;
+    const double left = std::max(0.0, law.dilation_end() - state.dilation);
+    const double pressing = law.k_s > 0 && left > 0 ? law.k_n * law.tan_psi : 0.0;
     double cohesion = law.cohesion_of(state.is_broken), tan_phi = law.tan_phi_of(state.is_broken);
     const auto slipped = [&] {
-        const double excess = std::abs(tau_trial) - (cohesion - sigma_trial * tan_phi);
-        return std::clamp(excess / (law.k_s + pressing * tan_phi), 0.0, std::abs(tau_trial) * give);
+        const double excess = std::abs(tau_trial) - (cohesion - sigma_trial * tan_phi),
+                     most = std::abs(tau_trial) * give;
+        const double slip = std::clamp(excess / (law.k_s + pressing * tan_phi), 0.0, most);
+        if (slip * law.tan_psi <= left)
+            return slip;
+        return std::clamp((excess - law.k_n * left * tan_phi) / law.k_s, 0.0,
+                          most); // dilation ends on the way
     };
-    const auto pressed = [&] { return pressing > 0 ? sigma_trial - pressing * slipped() : sigma_trial; };
+    const auto pressed_by = [&](double slip) {
+        return sigma_trial - (slip * law.tan_psi <= left ? pressing * slip : law.k_n * left);
+    };
+    const auto pressed = [&] { return pressing > 0 ? pressed_by(slipped()) : sigma_trial; };
 
     const bool opens = pressed() > (state.is_broken ? 0.0 : law.tensile_strength);
     const bool weakens = law.weakens && std::abs(tau_trial) > std::max(0.0, cohesion - sigma_trial * tan_phi);
@@ -91,8 +107,8 @@ inline Response respond(const Coulomb& law, CoulombState& state, double sigma_0,
     }
     const double slip = slipped();
     state.slip += std::copysign(slip, tau_trial);
-    state.dilation += slip * law.tan_psi;
-    return {sigma_trial - pressing * slip, std::copysign(std::abs(tau_trial) - law.k_s * slip, tau_trial),
+    state.dilation = std::min(state.dilation + slip * law.tan_psi, law.dilation_end());
+    return {pressed_by(slip), std::copysign(std::abs(tau_trial) - law.k_s * slip, tau_trial),
             ContactStatus::slipping};
 }
 

@@ -331,7 +331,7 @@ EquivalentJoints without_joints(std::size_t edges, std::size_t kelvin_units)
     EquivalentJoints joints;
     for (std::vector<double>* const list :
          {&joints.normal_stiffness, &joints.shear_stiffness, &joints.cohesion, &joints.friction_angle,
-          &joints.tensile_strength, &joints.dilation_angle, &joints.residual_cohesion,
+          &joints.tensile_strength, &joints.dilation_angle, &joints.dilation_until, &joints.residual_cohesion,
           &joints.residual_friction_angle, &joints.roughness, &joints.wall_strength, &joints.largest_closure,
           &joints.normal_maxwell_viscosity, &joints.shear_maxwell_viscosity, &joints.persistence})
         list->assign(edges, 0.0);
@@ -354,7 +354,7 @@ std::size_t most_kelvin_units(const Scene& scene)
 }
 
 void set_joint(EquivalentJoints& joints, std::size_t edge, const Stiffnesses::Found& found,
-               const Strength& strength, double persistence)
+               const Strength& strength, double dilation_until, double persistence)
 {
     const JointChain &normal = found.chain[0], &shear = found.chain[1];
     joints.normal_stiffness[edge] = normal.spring;
@@ -363,6 +363,7 @@ void set_joint(EquivalentJoints& joints, std::size_t edge, const Stiffnesses::Fo
     joints.friction_angle[edge] = strength.friction_angle;
     joints.tensile_strength[edge] = strength.tensile_strength;
     joints.dilation_angle[edge] = strength.dilation_angle;
+    joints.dilation_until[edge] = strength.dilation_angle > 0 ? dilation_until : 0.0;
     if (strength.residual) {
         joints.law[edge] = static_cast<Index>(JointLaw::residual);
         joints.residual_cohesion[edge] = strength.residual->cohesion;
@@ -518,7 +519,7 @@ EquivalentJoints average_strength(const Scene& scene, const Network& network)
                                   ", and its joint material \"" + material.name +
                                   "\" is one of Barton-Bandis, which has no average with rock; wanted a "
                                   "persistence of 1");
-            set_joint(joints, edge, found, strength, share.persistence);
+            set_joint(joints, edge, found, strength, material.dilation_until, share.persistence);
             set_walls(joints, edge, material);
         } else if (blocks.edge_kind[edge] == static_cast<Index>(EdgeKind::boundary) &&
                    blocks.edge_boundary[edge] >= 0) {
@@ -526,7 +527,8 @@ EquivalentJoints average_strength(const Scene& scene, const Network& network)
             if (name.empty())
                 continue;
             const JointMaterial& material = by_name(scene.joint_materials, name, "joint material");
-            set_joint(joints, edge, stiffnesses.of(edge, material, {1, 0, 0}), strength_of(material), 1);
+            set_joint(joints, edge, stiffnesses.of(edge, material, {1, 0, 0}), strength_of(material),
+                      material.dilation_until, 1);
             set_walls(joints, edge, material);
         }
     }

@@ -30,8 +30,8 @@ Strength average(const Strength& joint, const Strength& rock, double persistence
 // of its set inside the section, as the scene's averaging says. Of an edge on which its joint was carried on
 // beyond its ends, the persistence of line or set counts for the part between these ends, and the rest is
 // rock. The rock is the weaker of the two on the edge's sides, in cohesion, friction angle, tensile
-// strength and dilation angle each by itself. Stiffnesses and the constants of creep are the joint's own, or
-// by another rule those of libs/joint/bridged.hpp, for
+// strength and dilation angle each by itself. Dilation ends where the joint's own does. Stiffnesses and the
+// constants of creep are the joint's own, or by another rule those of libs/joint/bridged.hpp, for
 //  - the trace length: sum of L^2 / sum of L over the traces of the line (with averages over lines), or of
 //    the set;
 //  - the spacing: the area of the blocks where the set may be / length of its lines inside the section.

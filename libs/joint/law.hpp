@@ -22,7 +22,8 @@ struct Slopes {
 
 inline Slopes slopes(const Coulomb& law, const CoulombState& state, double)
 {
-    return {law.k_n, law.k_s, law.tan_phi_of(state.is_broken), law.tan_psi};
+    return {law.k_n, law.k_s, law.tan_phi_of(state.is_broken),
+            state.dilation < law.dilation_end() ? law.tan_psi : 0.0};
 }
 inline Slopes slopes(const BartonBandis& law, const CoulombState&, double sigma_n)
 {

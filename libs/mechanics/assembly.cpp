@@ -75,7 +75,8 @@ void add_contacts(Assembly& assembly, const Scene& scene, const EquivalentJoints
                 joints.normal_stiffness[e], joints.shear_stiffness[e], joints.cohesion[e],
                 std::tan(joints.friction_angle[e]), joints.tensile_strength[e],
                 std::tan(joints.dilation_angle[e]), joints.law[e] == static_cast<Index>(JointLaw::residual),
-                joints.residual_cohesion[e], std::tan(joints.residual_friction_angle[e])});
+                joints.residual_cohesion[e], std::tan(joints.residual_friction_angle[e]),
+                joints.dilation_until[e]});
         const Vector3d stress = scene.in_situ_stress.at(mesh.contact_centre[c]);
         const Vector2d normal = mesh.contact_normal[c], tangent = along(normal);
         const Vector2d pull(stress[0] * normal.x() + stress[2] * normal.y(),

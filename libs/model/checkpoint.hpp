@@ -27,6 +27,7 @@ struct MovedRock {
     std::vector<std::array<Index, 2>> pair;    // faces
     std::vector<Index> law;                    // of the pair
     std::vector<double> first_lead, second_lead;               // [m]
+    std::vector<double> dilation;                              // in the leads [m]
     std::vector<double> tau;                                   // [Pa]
     std::vector<Index> is_known, is_new, is_closed, is_broken; // 0 or 1
     std::vector<Eigen::Vector2d> normal;                       // [-]

@@ -170,6 +170,7 @@ struct EquivalentJoints {
     std::vector<double> friction_angle;                    // [rad]
     std::vector<double> tensile_strength;                  // [Pa]
     std::vector<double> dilation_angle;                    // [rad]
+    std::vector<double> dilation_until;                    // slip at which dilation ends; 0: it does not [m]
     // Kelvin units in series, [edge, unit], the unit running fastest; a stiffness of 0 is no unit.
     std::vector<double> normal_kelvin_stiffness, shear_kelvin_stiffness; // [Pa/m]
     std::vector<double> normal_kelvin_viscosity, shear_kelvin_viscosity; // [Pa s/m]

@@ -90,6 +90,7 @@ struct JointMaterial {
     std::vector<Kelvin> kelvin{};     // units in series with the springs; one and a Maxwell: Burgers
     std::optional<Maxwell> maxwell{}; // without either the joint does not creep
     double dilation_angle = 0;        // [rad]
+    double dilation_until = 0;        // slip at which dilation ends; 0: it does not [m]
     std::optional<ResidualStrength> residual{}; // without it slip alone weakens nothing
     std::optional<JointWalls> walls{};          // with them the law is Barton and Bandis's
 };

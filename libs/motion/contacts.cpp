@@ -1,10 +1,12 @@
 #include "motion/contacts.hpp"
 
+#include "model/disjoint_sets.hpp"
 #include "model/error.hpp"
 #include "model/signs.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
 #include <tuple>
 #include <unordered_map>
@@ -181,6 +183,8 @@ Contacts::Contacts(std::vector<joint::Law> laws, const Vector2d& origin)
     for (const joint::Law& law : laws_) {
         stiffest_open_ = std::max({stiffest_open_, joint::k_n(law), joint::k_s(law)});
         stiffens_ = stiffens_ || !joint::is_linear(law);
+        const auto* const coulomb = std::get_if<joint::Coulomb>(&law);
+        dilates_ = dilates_ || (coulomb != nullptr && coulomb->tan_psi > 0);
     }
     stiffest_ = stiffest_open_;
 }
@@ -191,6 +195,8 @@ void Contacts::set_faces(Faces faces, std::vector<Pair> known, const std::vector
     std::sort(known.begin(), known.end(),
               [](const Pair& p, const Pair& q) { return std::pair(p.a, p.b) < std::pair(q.a, q.b); });
     pairs_ = std::move(known);
+    for (Pair& pair : pairs_)
+        pair.sigma = 0; // of the last update, which a checkpoint does not have
     std::vector<double> lengths;
     for (const auto& [from, to] : faces_.gridpoint)
         lengths.push_back((place[to] - place[from]).norm());
@@ -211,6 +217,7 @@ void Contacts::find_corners(const std::vector<Vector2d>& place)
     for (std::size_t f = 0; f < faces_.gridpoint.size(); ++f)
         starting.emplace(faces_.gridpoint[f][0], static_cast<Index>(f));
     sharpness_.assign(faces_.gridpoint.size(), {1, 1}); // also where the outline of a ground ends
+    DisjointSets sides(faces_.gridpoint.size());
     for (std::size_t f = 0; f < faces_.gridpoint.size(); ++f) {
         const auto p = ends_of(faces_.gridpoint[f], place);
         const Vector2d one = p[1] - p[0];
@@ -229,7 +236,12 @@ void Contacts::find_corners(const std::vector<Vector2d>& place)
         }
         if (next >= 0)
             sharpness_[f][1] = sharpness_[next][0] = std::clamp(most / corner, 0.0, 1.0);
+        if (next >= 0 && std::abs(most) < corner)
+            sides.join(static_cast<Index>(f), next);
     }
+    side_.clear();
+    for (std::size_t f = 0; f < faces_.gridpoint.size(); ++f)
+        side_.push_back(sides.root(static_cast<Index>(f)));
 }
 
 // All pairs of faces that bear something, and those whose boxes come within the skin of each other, by a grid
@@ -302,6 +314,109 @@ void Contacts::seek(const std::vector<Vector2d>& place, const std::vector<Vector
     for (std::size_t p = 0; p < pairs_.size(); ++p)
         for (const Index f : {pairs_[p].a, pairs_[p].b})
             of_face_[f].push_back(static_cast<Index>(p));
+    joints_.clear();
+    if (!dilates_)
+        return;
+    std::map<std::pair<Index, Index>, std::vector<Index>> joints;
+    for (std::size_t p = 0; p < pairs_.size(); ++p)
+        joints[std::minmax({side_[pairs_[p].a], side_[pairs_[p].b]})].push_back(static_cast<Index>(p));
+    for (auto& [sides, joint] : joints) {
+        // What has come near is raised as the rest of its joint is, but for what is nearer than that.
+        double most = 0;
+        for (const Index p : joint)
+            most = std::max(most, pairs_[p].is_known ? pairs_[p].dilation : 0.0);
+        for (const Index p : joint)
+            if (!pairs_[p].is_known && pairs_[p].dilation < most) {
+                const auto found = overlap_of(pairs_[p], faces_, sharpness_, place);
+                if (!found || -found->sunk() > most)
+                    pairs_[p].raise(most - pairs_[p].dilation);
+            }
+        joints_.push_back(std::move(joint));
+    }
+}
+
+// Raises the joints that dilate, for the slip of this step: by x = sum of F tan(psi) slip(x) over sum of F,
+// with the forces F that press the pairs of a joint, and the slip of each that leaves it the shear that it
+// bears once it is raised. The right side falls with x.
+void Contacts::dilate(const std::vector<Vector2d>& place, const std::vector<Vector2d>& move)
+{
+    struct Sheared {
+        double share;         // of the work, F tan(psi) [N/m]
+        double trial, bears;  // without slip, and the strength, where it is not raised [N/m]
+        double rises, shears; // the strength by x, the shear by slip [Pa]
+    };
+    for (Pair& pair : pairs_)
+        pair.raised = 0;
+    std::vector<Sheared> sheared;
+    for (const std::vector<Index>& joint : joints_) {
+        sheared.clear();
+        double all = 0, left = 0;
+        for (const Index p : joint) {
+            const Pair& pair = pairs_[p];
+            const double pressed = -pair.sigma * pair.length;
+            if (!pair.is_closed || pressed <= 0)
+                continue;
+            all += pressed;
+            const auto* const law = std::get_if<joint::Coulomb>(&laws_[pair.law]);
+            if (law == nullptr || law->tan_psi == 0 || law->k_s == 0 || pair.dilation >= law->dilation_end())
+                continue;
+            left = std::max(left, law->dilation_end() - pair.dilation);
+            const auto a = ends_of(faces_.gridpoint[pair.a], place),
+                       b = ends_of(faces_.gridpoint[pair.b], place),
+                       move_a = ends_of(faces_.gridpoint[pair.a], move),
+                       move_b = ends_of(faces_.gridpoint[pair.b], move);
+            const auto middle = [](const auto& of_ends, const std::array<double, 2>& fractions) {
+                return at(of_ends, (fractions[0] + fractions[1]) / 2);
+            };
+            const Vector2d parted = middle(move_b, pair.on_b) - middle(move_a, pair.on_a),
+                           apart = middle(b, pair.on_b) - middle(a, pair.on_a) - parted;
+            const auto turn = [](const auto& ends, const auto& way) {
+                const Vector2d face = ends[1] - ends[0], by = way[1] - way[0];
+                return (face.x() * by.y() - face.y() * by.x()) / face.squaredNorm();
+            };
+            // What turns together does not slip, as in evaluate(), where the normal turns by this.
+            const double turned = -apart.dot(pair.normal) * (turn(a, move_a) + turn(b, move_b)) / 2,
+                         slid = parted.dot(along(pair.normal)) - turned;
+            const double trial = std::abs(pair.tau + law->k_s * slid) * pair.length,
+                         presses = pressed - law->k_n * pair.length * parted.dot(pair.normal);
+            const auto bears = [&](bool is_broken) {
+                return law->cohesion_of(is_broken) * pair.length + presses * law->tan_phi_of(is_broken);
+            };
+            const bool is_broken = pair.is_broken || (law->weakens && trial > std::max(0.0, bears(false)));
+            sheared.push_back({pressed * law->tan_psi, trial, bears(is_broken),
+                               law->tan_phi_of(is_broken) * law->k_n * pair.length, law->k_s * pair.length});
+        }
+        // The right side, and how fast it falls.
+        const auto raising = [&](double x) {
+            std::array<double, 2> sum{0, 0};
+            for (const Sheared& one : sheared) {
+                const double excess = one.trial - one.bears - one.rises * x;
+                sum[0] += one.share / all * std::clamp(excess, 0.0, one.trial) / one.shears;
+                if (excess > 0 && excess < one.trial)
+                    sum[1] += one.share / all * one.rises / one.shears;
+            }
+            return sum;
+        };
+        double low = 0, high = sheared.empty() ? 0.0 : raising(0)[0], x = 0;
+        if (high == 0)
+            continue;
+        for (int i = 0; i < 100; ++i) { // Newton's, which ends as soon as it is on the right straight piece
+            const auto [raised, slope] = raising(x);
+            (raised > x ? low : high) = x;
+            double next = (raised + slope * x) / (1 + slope);
+            if (!(next >= low && next <= high))
+                next = (low + high) / 2;
+            const double change = std::abs(next - x);
+            x = next;
+            if (change <= 1e-15 * x)
+                break;
+        }
+        x = std::min(x, left);
+        for (const Index p : joint) {
+            pairs_[p].raised = x;
+            pairs_[p].raise(x);
+        }
+    }
 }
 
 // The longest closed contact from which a face of this pair slides on to the next one, pressing in about the
@@ -338,6 +453,8 @@ void Contacts::update(const std::vector<Vector2d>& place, const std::vector<Vect
         farthest = std::max(farthest, (place[g] - sought_at_[g]).squaredNorm());
     if (4 * farthest > skin_ * skin_)
         seek(place, move);
+    if (dilates_)
+        dilate(place, move);
 
     const auto n = static_cast<Index>(pairs_.size());
     std::vector<char> closes(pairs_.size(), 0); // if it may
@@ -349,15 +466,26 @@ void Contacts::update(const std::vector<Vector2d>& place, const std::vector<Vect
     const auto depth_of = [&](const Pair& pair) {
         return std::min(faces_.depth[pair.a], faces_.depth[pair.b]);
     };
-    // Whether faces are too far in each other to have come to touch in this step.
-    const auto is_deep = [&](const Pair& pair, const Overlap& found) {
+    // Gaps at these ends a step before, and how far the faces have slid since.
+    struct Gaps {
+        std::array<double, 2> gap;
+        double slid;
+    };
+    const auto gaps_before = [&](const Pair& pair, const Overlap& found) {
         const auto move_a = ends_of(faces_.gridpoint[pair.a], move),
                    move_b = ends_of(faces_.gridpoint[pair.b], move);
-        std::array<double, 2> gap_before{};
-        for (int i = 0; i < 2; ++i)
-            gap_before[i] =
-                found.gap[i] - (at(move_b, found.on_b[i]) - at(move_a, found.on_a[i])).dot(found.normal());
-        return std::min(found.sunk(), -std::min(gap_before[0], gap_before[1])) > deepest_new * depth_of(pair);
+        Gaps before{found.gap, 0};
+        for (int i = 0; i < 2; ++i) {
+            const Vector2d parted = at(move_b, found.on_b[i]) - at(move_a, found.on_a[i]);
+            before.gap[i] -= parted.dot(found.normal());
+            before.slid = std::max(before.slid, std::abs(parted.dot(found.tangent)));
+        }
+        return before;
+    };
+    // Whether faces are too far in each other to have come to touch in this step.
+    const auto is_deep = [&](const Pair& pair, const Overlap& found) {
+        const auto before = gaps_before(pair, found).gap;
+        return std::min(found.sunk(), -std::min(before[0], before[1])) > deepest_new * depth_of(pair);
     };
     const auto evaluate = [&](Pair& pair, Index index, bool may_close) {
         pair.is_slipping = false;
@@ -367,16 +495,23 @@ void Contacts::update(const std::vector<Vector2d>& place, const std::vector<Vect
         const auto parted_at = [&](int i) -> Vector2d {
             return at(move_b, pair.on_b[i]) - at(move_a, pair.on_a[i]);
         };
-        // Between two moments a force works as the mean of both: here with the first one's half.
+        // Between two moments a force works as the mean of both: here with the first one's half. What
+        // dilation opens, neither springs nor dashpots do, and friction pays for it.
         for (int i = 0; i < 2; ++i)
-            pair.damped += pair.held[i].dot(parted_at(i)) / 2;
+            pair.damped += pair.held[i].dot(parted_at(i) - pair.raised * pair.normal) / 2;
+        const auto raising = [&] { // work of it
+            return pair.is_closed && pair.raised > 0
+                       ? -(pair.force[0] + pair.force[1]).dot(pair.normal) * pair.raised / 2
+                       : 0.0;
+        };
+        const double raised_before = raising();
         pair.held = {Vector2d::Zero(), Vector2d::Zero()};
         const Vector2d last_normal = pair.normal;
         const double last_length = pair.length, last_tau = pair.tau, last_pressed_in = pair.pressed_in,
                      last_sheared_in = pair.sheared_in;
         pair.pressed_in = pair.sheared_in = 0;
         const auto open = [&] {
-            pair.friction = last_sheared_in;
+            pair.friction = last_sheared_in - raised_before;
             pair.is_closed = false;
             if (pair.is_known)
                 pair.is_broken = true;
@@ -465,7 +600,7 @@ void Contacts::update(const std::vector<Vector2d>& place, const std::vector<Vect
         // Forces on the ends that are as the traction between them. In the step in which it closes, and in
         // the one before it opens, a contact is closed for a part of the time that its force acts.
         const std::array<double, 2> opening{parted_at(0).dot(pair.normal), parted_at(1).dot(pair.normal)};
-        const double deep = closed.deep(), way = (opening[0] + opening[1]) / 2;
+        const double deep = closed.deep(), way = (opening[0] + opening[1]) / 2 - pair.raised;
         double acts = 1;
         if (was_broken && !was_closed && deep < -way)
             acts = (1 - deep / way) / 2;
@@ -477,7 +612,7 @@ void Contacts::update(const std::vector<Vector2d>& place, const std::vector<Vect
         pair.way = way;
         for (int i = 0; i < 2; ++i) {
             const double pressed = closed.force_on(i, acts);
-            double held = viscosity / dt * closed.stiffness() * pair.length / 2 * opening[i];
+            double held = viscosity / dt * closed.stiffness() * pair.length / 2 * (opening[i] - pair.raised);
             if (was_broken)
                 held = std::min(held, pressed);
             pair.force[i] = (held - pressed) * pair.normal;
@@ -503,8 +638,9 @@ void Contacts::update(const std::vector<Vector2d>& place, const std::vector<Vect
         for (int i = 0; i < 2; ++i) {
             pair.force[i] += (shear + held) / 2 * tangent;
             pair.held[i] += held / 2 * tangent;
-            pair.damped += pair.held[i].dot(parted_at(i)) / 2;
+            pair.damped += pair.held[i].dot(parted_at(i) - pair.raised * pair.normal) / 2;
         }
+        pair.friction -= raised_before + raising();
         if (weakens)
             leave_bonds();
         pair.pressed_in =
@@ -539,17 +675,21 @@ void Contacts::update(const std::vector<Vector2d>& place, const std::vector<Vect
             if (is_deep(pair, *found) &&
                 (before == nullptr || found->sunk() > sunk_of(*before) + deepest_new * depth_of(pair)))
                 continue; // another face behind
-            if (before == nullptr &&
-                (is_behind || (!pair.is_known && std::min(found->gap[0], found->gap[1]) >= 0)))
+            if (before == nullptr && (is_behind || (!pair.is_known && -found->sunk() >= pair.lead[0])))
                 continue;
             if (before != nullptr && !pair.is_known) {
                 // What slides on takes along what its joint is and remembers. A pair's sides may change
                 // places: a's first end looks at b's second one, and `along` turns round with the normal
-                // twice over, so that the shear traction keeps its sign.
-                const double lead = (before->lead[0] + before->lead[1]) / 2;
+                // twice over, so that the shear traction keeps its sign. What was nearer than it is raised
+                // before it slid on to there, is raised no farther than that.
+                const double unraised = (before->lead[0] + before->lead[1]) / 2 - before->dilation;
+                const Gaps last = gaps_before(pair, *found);
+                const double room = last.slid < found->length ? std::min(last.gap[0], last.gap[1]) - unraised
+                                                              : before->dilation;
+                pair.dilation = std::max(pair.dilation, std::clamp(room, 0.0, before->dilation));
                 pair.law = before->law;
                 pair.tau = before->tau;
-                pair.lead = {lead, lead};
+                pair.lead = {unraised + pair.dilation, unraised + pair.dilation};
             }
             pair.is_known = true;
             evaluate(pair, p, true);
@@ -566,9 +706,9 @@ void Contacts::transfer(const Transfer& to, MovedRock& kept)
     to.size(pairs_, kept.pair);
     for (Pair& pair :
          pairs_) // all members, lest a new one is forgotten; those not passed on are of one update alone
-        [[maybe_unused]] auto& [a, b, law, lead, tau, is_known, is_new, is_closed, is_broken, is_slipping,
-                                on_a, on_b, force, normal, way, length, sigma, stiffest, held, pressed_in,
-                                sheared_in, friction, damped] = pair;
+        [[maybe_unused]] auto& [a, b, law, lead, dilation, tau, is_known, is_new, is_closed, is_broken,
+                                is_slipping, on_a, on_b, force, normal, raised, way, length, sigma, stiffest,
+                                held, pressed_in, sheared_in, friction, damped] = pair;
     std::vector<std::array<Index, 2>> faces;
     for (const Pair& pair : pairs_)
         faces.push_back({pair.a, pair.b});
@@ -580,6 +720,7 @@ void Contacts::transfer(const Transfer& to, MovedRock& kept)
     to.values(pairs_, kept.law, &Pair::law);
     to.values(pairs_, kept.first_lead, [](Pair& pair) -> double& { return pair.lead[0]; });
     to.values(pairs_, kept.second_lead, [](Pair& pair) -> double& { return pair.lead[1]; });
+    to.values(pairs_, kept.dilation, &Pair::dilation);
     to.values(pairs_, kept.tau, &Pair::tau);
     to.values(pairs_, kept.is_known, &Pair::is_known);
     to.values(pairs_, kept.is_new, &Pair::is_new);

@@ -13,6 +13,11 @@
 // Closing is counted from the closing of the in-situ joint, `lead`, which stays with a pair of faces, and
 // goes on to the next face when one slides along. The shear traction is kept as a stress along the contact
 // and so turns with it.
+//
+// Slip raises a joint that dilates, by adding to the closing: by one amount all along the joint, which is all
+// pairs between the same two straight sides of outlines, as its walls are rigid beside its springs. This
+// amount is such that it takes the work that the slip of each pair would give it by itself: the mean of
+// tan(psi) |slip|, weighted by pressure. It is found at once with the slip, as in joint/coulomb.hpp.
 
 #pragma once
 
@@ -38,6 +43,7 @@ struct Pair {
     Index a, b; // faces, a < b
     std::size_t law = 0;
     std::array<double, 2> lead{0, 0}; // closing without a gap, at the first and the second end of a [m]
+    double dilation = 0;              // in the lead [m]
     double tau = 0;                   // along(normal from a to b), on a [Pa]
     bool is_known = false;            // has touched since the two came near
     bool is_new = true;               // has not borne a force yet
@@ -50,13 +56,20 @@ struct Pair {
     std::array<double, 2> on_a{}, on_b{};
     std::array<Vector2d, 2> force{};
     Vector2d normal{0, 0};                 // from a to b
-    double way = 0;                        // by which it opened in the last step [m]
+    double raised = 0;                     // of the dilation, in the last step [m]
+    double way = 0;                        // by which it opened in the last step, dilation aside [m]
     double length = 0, sigma = 0;          // [m], [Pa]
     double stiffest = 0;                   // of its normal springs [Pa/m]
     std::array<Vector2d, 2> held{};        // of the force, what dashpots add [N/m]
     double pressed_in = 0, sheared_in = 0; // what the springs hold [J/m]
     double friction = 0, damped = 0;       // in the last step [J/m]
 
+    void raise(double by)
+    {
+        dilation += by;
+        for (double& end : lead)
+            end += by;
+    }
     bool is_bonded() const { return is_known && !is_broken; }
     double stored() const { return pressed_in + sheared_in; }
 };
@@ -94,16 +107,20 @@ public:
 private:
     void seek(const std::vector<Vector2d>& place, const std::vector<Vector2d>& move);
     void find_corners(const std::vector<Vector2d>& place);
+    void dilate(const std::vector<Vector2d>& place, const std::vector<Vector2d>& move);
     const Pair* contact_before(const Pair& pair, const Vector2d& normal,
                                const std::vector<Vector2d>& place) const;
 
     std::vector<joint::Law> laws_;
     Vector2d origin_;
     bool stiffens_ = false;                   // as it closes, by any law
+    bool dilates_ = false;                    // by any law
     double stiffest_open_ = 0, stiffest_ = 0; // [Pa/m]
     Faces faces_;
     std::vector<Pair> pairs_;                 // in order of {a, b}
     std::vector<std::vector<Index>> of_face_; // pairs of each face
+    std::vector<Index> side_;                 // of each face: the lowest one of its straight side
+    std::vector<std::vector<Index>> joints_;  // pairs between the same two sides, if any law dilates
     std::vector<std::array<double, 2>>
         sharpness_;                   // of each face's ends: 0 where the outline runs on straight, 1 a corner
     std::vector<Vector2d> sought_at_; // places when pairs were sought last

@@ -268,7 +268,8 @@ private:
             if (material.walls) {
                 for (const auto& [key, value] : {std::pair{"cohesion_MPa", material.cohesion},
                                                  std::pair{"tensile_strength_MPa", material.tensile_strength},
-                                                 std::pair{"dilation_angle_deg", material.dilation_angle}})
+                                                 std::pair{"dilation_angle_deg", material.dilation_angle},
+                                                 std::pair{"dilation_until_m", material.dilation_until}})
                     if (value != 0)
                         given.refuse(key, "wanted 0 of a Barton-Bandis joint, which has none");
                 if (material.friction_angle >= 70 * unit::deg)
@@ -649,15 +650,6 @@ private:
             once("motion").refuse("release_s", "wanted less than longest_s, " +
                                                    shown(scene_.motion->longest) +
                                                    " s: before that there is no rest");
-        for (std::size_t i = 0; i < scene_.joint_materials.size(); ++i)
-            if (scene_.joint_materials[i].dilation_angle > 0)
-                in_list("joint_material", i)
-                    .refuse("dilation_angle_deg", "wanted 0: with [motion], joints do not dilate");
-        for (std::size_t i = 0; i < scene_.rocks.size(); ++i)
-            if (scene_.rocks[i].dilation_angle > 0 && scene_.rocks[i].law != RockLaw::mohr_coulomb)
-                in_list("rock", i).refuse(
-                    "dilation_angle_deg",
-                    "wanted 0 of elastic rock: with [motion], rock bridges do not dilate");
         for (std::size_t i = 0; i < scene_.boundaries.size(); ++i)
             for (const char* key : {"displacement_mm", "course"})
                 if (const Given boundary = in_list("boundary", i); boundary.find(key))

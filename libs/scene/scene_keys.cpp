@@ -183,6 +183,9 @@ Table<JointMaterial> joint_material(const Table<Kelvin>& chain)
              "Dilation angle, at most the friction angle: a joint that slips opens by its tangent times the "
              "slip.")
              .or_else(std::int64_t{0}),
+         number("dilation_until_m", &JointMaterial::dilation_until, metres, from(0).to(1000),
+                "Slip at which dilation ends, also that of rock bridges in the joint; 0 if it does not.")
+             .or_else(std::int64_t{0}),
          number<JointMaterial>(
              "residual_cohesion_MPa", part<&JointMaterial::residual, &ResidualStrength::cohesion>, MPa,
              strength,
@@ -1031,12 +1034,11 @@ Table<Motion> motion()
         {"motion", once, optional,
          "Lets rock move far after each stage: with real masses and large displacements, contacts found "
          "anew, until "
-         "it is at rest. Without this table displacements are small. Not with [creep] "
-         "or joints that dilate."},
+         "it is at rest. Without this table displacements are small. Not with [creep]."},
         {text("new_contacts", &Motion::new_contacts,
               "Joint material of contacts that come about: its stiffnesses and friction angle, the residual "
               "one if "
-              "it has one, without cohesion and tensile strength."),
+              "it has one, without cohesion, tensile strength and dilation."),
          names("rigid_rocks", &Motion::rigid_rocks,
                "Rocks whose blocks do not deform in motion; they do before it.")
              .optional("none"),

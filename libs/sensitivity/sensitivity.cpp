@@ -20,6 +20,12 @@ const joint::Coulomb& coulomb(const Assembly& assembly, std::size_t c)
     return std::get<joint::Coulomb>(assembly.contacts.law[c]);
 }
 
+// To the end: its dilation is that, whatever changes.
+bool has_dilated(const Assembly& assembly, std::size_t c)
+{
+    return assembly.contacts.state[c].dilation >= coulomb(assembly, c).dilation_end();
+}
+
 } // namespace
 
 void scale(EquivalentJoints& joints, InSituStress& stress, Parameter parameter, double factor)
@@ -120,13 +126,15 @@ ContactNow Sensitivity::contact(const Assembly& assembly, std::size_t c) const
     const double slipped = contacts.state[c].slip - start_slip_[c];
     joint::Coulomb law = coulomb(assembly, c);
     law.tan_phi = law.tan_phi_of(contacts.state[c].is_broken);
+    if (has_dilated(assembly, c))
+        law.tan_psi = 0;
     return {law,
             contacts.status[c] == ContactStatus::removed ? Branch::removed : branch_[c],
             slipped < 0 ? -1.0 : 1.0,
             contacts.jump[c] - contacts.offset[c],
             contacts.initial_traction[c].y(),
             start_slip_[c],
-            start_dilation_[c],
+            has_dilated(assembly, c) ? contacts.state[c].dilation : start_dilation_[c],
             std::abs(slipped)};
 }
 
@@ -140,8 +148,9 @@ ResponseChange Sensitivity::response(const Assembly& assembly, const Change& cha
         const Vector2d jump = change.displacement[b] - change.displacement[a];
         spring += Vector2d(normal.dot(jump), along(normal).dot(jump));
     }
-    return respond(contact(assembly, c), {change.stiffness[c], change.initial_traction[c], spring,
-                                          change.slip[c], change.dilation[c]});
+    return respond(contact(assembly, c),
+                   {change.stiffness[c], change.initial_traction[c], spring, change.slip[c],
+                    has_dilated(assembly, c) ? 0.0 : change.dilation[c]});
 }
 
 Vector3d Sensitivity::stress(const Assembly& assembly, const Change& change, std::size_t z,

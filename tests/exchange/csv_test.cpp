@@ -87,7 +87,7 @@ TEST(edges_csv, adds_the_equivalent_joints)
 {
     const EquivalentJoints equivalent = small_equivalent();
     const auto rows = rows_of(edges_csv(small_network(), &equivalent));
-    ASSERT_EQ(rows[0].size(), 29u);
+    ASSERT_EQ(rows[0].size(), 30u);
     EXPECT_EQ(rows[0][11], "normal_stiffness_Pa_per_m");
     EXPECT_EQ(number(rows[3][11]), 1e9 / 3);
     EXPECT_EQ(rows[0][14], "friction_angle_rad");
@@ -102,9 +102,10 @@ TEST(edges_csv, adds_the_equivalent_joints)
     EXPECT_EQ(rows[0][24], "residual_cohesion_Pa");
     EXPECT_EQ(rows[0][26], "roughness");
     EXPECT_EQ(rows[0][28], "largest_closure_m");
+    EXPECT_EQ(rows[0][29], "dilation_until_m");
     EXPECT_EQ(rows[3][23], "1");
-    const double values[] = {2e4, 0.4, 8, 5e7, 2e-4};
-    for (int i = 0; i < 5; ++i)
+    const double values[] = {2e4, 0.4, 8, 5e7, 2e-4, 0.03};
+    for (int i = 0; i < 6; ++i)
         EXPECT_EQ(number(rows[3][24 + i]), values[i]);
     EXPECT_EQ(number(rows[2][11]), 0);
 }
@@ -119,7 +120,7 @@ TEST(edges_csv, numbers_kelvin_units_where_there_are_several)
     equivalent.normal_kelvin_viscosity.assign(2 * edges, 0);
     equivalent.shear_kelvin_viscosity.assign(2 * edges, 0);
     const auto rows = rows_of(edges_csv(small_network(), &equivalent));
-    ASSERT_EQ(rows[0].size(), 33u);
+    ASSERT_EQ(rows[0].size(), 34u);
     EXPECT_EQ(rows[0][17], "normal_kelvin_stiffness_1_Pa_per_m");
     EXPECT_EQ(rows[0][21], "normal_kelvin_stiffness_2_Pa_per_m");
     EXPECT_EQ(number(rows[3][17]), 0);

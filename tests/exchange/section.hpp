@@ -64,23 +64,15 @@ inline EquivalentJoints small_equivalent()
         values[2] = joint;
         return values;
     };
-    return {on_joints(6.9e8, 1e9 / 3),
-            on_joints(0, 2.8e8),
-            on_joints(0, 1e5),
-            on_joints(0.5, 0.6),
-            on_joints(0, 1e4),
-            on_joints(0, 0.1),
-            on_joints(6.9e8, 7e8),
-            on_joints(1e8, 2e8),
-            on_joints(5e13, 6e13),
-            on_joints(7e13, 8e13),
-            on_joints(0, 9e15),
-            on_joints(0, 3e15),
-            {0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0},
-            on_joints(0, 2e4),
-            on_joints(0, 0.4),
-            on_joints(0, 8),
-            on_joints(0, 5e7),
+    return {on_joints(6.9e8, 1e9 / 3), on_joints(0, 2.8e8),
+            on_joints(0, 1e5),         on_joints(0.5, 0.6),
+            on_joints(0, 1e4),         on_joints(0, 0.1),
+            on_joints(0, 0.03),        on_joints(6.9e8, 7e8),
+            on_joints(1e8, 2e8),       on_joints(5e13, 6e13),
+            on_joints(7e13, 8e13),     on_joints(0, 9e15),
+            on_joints(0, 3e15),        {0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0},
+            on_joints(0, 2e4),         on_joints(0, 0.4),
+            on_joints(0, 8),           on_joints(0, 5e7),
             on_joints(0, 2e-4)};
 }
 

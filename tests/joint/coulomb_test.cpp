@@ -1,6 +1,6 @@
 // The joint law against its own definition, on paths worked out by hand.
 
-#include "joint/coulomb.hpp"
+#include "joint/law.hpp"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -99,6 +99,35 @@ TEST(coulomb, dilates_the_same_in_one_step_and_in_many_one_way)
         last = respond(dilatant, often, -1e6, 0, 1e-7 * i, 1e-5 * i);
     EXPECT_NEAR(last.tau, r.tau, 1e-5 * std::abs(r.tau));
     EXPECT_NEAR(often.dilation, once.dilation, 1e-5 * once.dilation);
+}
+
+// At a slip of 1 mm dilation ends: held apart, the joint is pressed by 1e9 0.1 1e-3 Pa more, and no farther.
+TEST(coulomb, dilation_ends)
+{
+    Coulomb dilatant = law;
+    dilatant.tan_psi = 0.1;
+    dilatant.dilation_until = 1e-3;
+    const double sigma_n = -1e6 - 1e9 * 1e-4, tau = 1e5 - 0.5 * sigma_n, slip = 4e-3;
+    for (const int steps : {1, 3, 400}) { // the third of three, and the first, are on both sides of the end
+        CoulombState state;
+        Response r{};
+        for (int i = 1; i <= steps; ++i)
+            r = respond(dilatant, state, -1e6, 0, 0, (slip + tau / 5e8) * i / steps);
+        EXPECT_EQ(r.status, ContactStatus::slipping);
+        EXPECT_NEAR(state.slip, slip, 1e-12) << steps;
+        EXPECT_EQ(state.dilation, 0.1 * 1e-3) << steps;
+        EXPECT_NEAR(r.sigma_n, sigma_n, 1e-6) << steps;
+        EXPECT_NEAR(r.tau, tau, 1e-6) << steps;
+        EXPECT_EQ(slopes(dilatant, state, r.sigma_n).tan_psi, 0);
+        // Slip back opens it no more.
+        respond(dilatant, state, -1e6, 0, 0, 0);
+        EXPECT_LT(state.slip, 0.9 * slip);
+        EXPECT_EQ(state.dilation, 0.1 * 1e-3);
+    }
+    CoulombState before;
+    respond(dilatant, before, -1e6, 0, 0, 1.5e-3);
+    ASSERT_GT(before.slip, 0);
+    EXPECT_EQ(slopes(dilatant, before, -1e6).tan_psi, 0.1);
 }
 
 // Peak 1e5 + 0.5 1e6, residual 2e4 + 0.3 1e6 Pa: the peak holds up to 1.2 mm and is gone for good beyond.
@@ -225,6 +254,7 @@ RC_GTEST_PROP(coulomb, never_beyond_its_strength_and_the_same_when_asked_twice, 
 {
     Coulomb law = ::law;
     law.tan_psi = *rc::gen::element(0.0, 0.1, 0.5);
+    law.dilation_until = *rc::gen::element(0.0, 1e-3, 1e-2);
     CoulombState state;
     const auto number = [](double scale) { return scale * (*rc::gen::inRange(-1000, 1001)) / 1000.0; };
     for (int i = 0; i < 10; ++i) {
@@ -233,7 +263,8 @@ RC_GTEST_PROP(coulomb, never_beyond_its_strength_and_the_same_when_asked_twice, 
         const Response r = respond(law, state, -1e6, 1e5, u_n, u_s);
         if (r.status == ContactStatus::slipping) { // slip takes energy, never gives it
             const double slip = state.slip - start.slip, dilation = state.dilation - start.dilation;
-            RC_ASSERT(std::abs(dilation - law.tan_psi * std::abs(slip)) <= 1e-15);
+            const double left = law.dilation_end() - start.dilation;
+            RC_ASSERT(std::abs(dilation - std::min(law.tan_psi * std::abs(slip), left)) <= 1e-15);
             RC_ASSERT(r.tau * slip + r.sigma_n * dilation >= -1e-9 * std::abs(r.tau * slip));
         }
         RC_ASSERT(r.sigma_n <= (state.is_broken ? 0.0 : law.tensile_strength));

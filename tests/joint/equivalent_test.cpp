@@ -233,6 +233,20 @@ TEST(AverageStrength, TakesTheWeakerRockInEachStrengthByItself)
     EXPECT_NEAR(std::tan(joints.friction_angle[0]), .4 * std::tan(30 * deg) + .6 * std::tan(40 * deg), 1e-12);
 }
 
+// Also where it is only the bridges that dilate; where nothing does, there is no end.
+TEST(AverageStrength, DilatesAsFarAsTheJointItself)
+{
+    for (const double of_rock : {0.0, 5 * deg}) {
+        Section section(.4);
+        for (Rock& one : section.scene.rocks)
+            one.dilation_angle = of_rock;
+        section.scene.joint_materials[1].dilation_until = .03;
+        const EquivalentJoints joints = average_strength(section.scene, section.network);
+        EXPECT_NEAR(std::tan(joints.dilation_angle[0]), .6 * std::tan(of_rock), 1e-12);
+        EXPECT_EQ(joints.dilation_until[0], of_rock > 0 ? .03 : 0);
+    }
+}
+
 TEST(AverageStrength, LeavesStiffnessAndCreepTheJointsOwn)
 {
     const Section section(.4);
@@ -285,9 +299,9 @@ TEST(AverageStrength, IsZeroWithoutAJoint)
     const EquivalentJoints joints = average_strength(section.scene, section.network);
     for (const auto& column :
          {joints.normal_stiffness, joints.shear_stiffness, joints.cohesion, joints.friction_angle,
-          joints.tensile_strength, joints.dilation_angle, joints.normal_kelvin_stiffness,
-          joints.shear_kelvin_stiffness, joints.normal_kelvin_viscosity, joints.shear_kelvin_viscosity,
-          joints.normal_maxwell_viscosity, joints.shear_maxwell_viscosity}) {
+          joints.tensile_strength, joints.dilation_angle, joints.dilation_until,
+          joints.normal_kelvin_stiffness, joints.shear_kelvin_stiffness, joints.normal_kelvin_viscosity,
+          joints.shear_kelvin_viscosity, joints.normal_maxwell_viscosity, joints.shear_maxwell_viscosity}) {
         ASSERT_EQ(column.size(), 4);
         EXPECT_EQ(column[2], 0);
         EXPECT_EQ(column[3], 0);

@@ -27,7 +27,8 @@ inline EquivalentJoints joints_everywhere(const Scene& scene, const Blocks& bloc
         joints.tensile_strength.push_back(friction_angle ? 0 : there * 1e12);
     }
     const std::vector<double> none(blocks.edge_vertex.size(), 0.0);
-    joints.dilation_angle = joints.residual_cohesion = joints.residual_friction_angle = none;
+    joints.dilation_angle = joints.dilation_until = joints.residual_cohesion =
+        joints.residual_friction_angle = none;
     joints.roughness = joints.wall_strength = joints.largest_closure = none;
     joints.law.assign(none.size(), static_cast<Index>(JointLaw::coulomb));
     joints.normal_kelvin_stiffness = joints.shear_kelvin_stiffness = none;

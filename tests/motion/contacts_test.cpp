@@ -436,3 +436,217 @@ TEST(contacts, bonds_stretch_beyond_the_skin)
         EXPECT_NEAR(held, stretched < 0.7 ? k_n * stretched * 2 : 0.0, 1e-9 * k_n) << step;
     }
 }
+
+namespace
+{
+
+constexpr double psi = 0.2; // its tangent
+
+// Two rows that are moved by hand, and what becomes of the energy.
+struct Dilatant {
+    TwoLines lines;
+    std::size_t lower; // gridpoints of the lower row
+    Contacts contacts;
+    std::vector<Vector2d> move, force;
+    double work = 0, friction = 0, damped = 0; // of the contacts on the rows; lost [J/m]
+
+    Dilatant(const TwoLines& rows, std::size_t lower_row, const joint::Law& law)
+        : lines(rows), lower(lower_row), contacts({law}), move(rows.place.size(), Vector2d::Zero())
+    {
+        contacts.set_faces(lines.faces, {}, lines.place);
+        contacts.update(lines.place, move, 1, 0, 1);
+        force = forces_of(contacts, move.size());
+    }
+    template <class Way>
+    void step(const Way& way, double viscosity = 0)
+    {
+        for (std::size_t g = 0; g < move.size(); ++g)
+            lines.place[g] += move[g] = g < lower ? Vector2d(0, 0) : Vector2d(way(lines.place[g]));
+        take(viscosity);
+    }
+    void take(double viscosity = 0)
+    {
+        contacts.update(lines.place, move, 1, viscosity, 1);
+        const std::vector<Vector2d> now = forces_of(contacts, move.size());
+        for (std::size_t g = 0; g < move.size(); ++g)
+            work += (force[g] + now[g]).dot(move[g]) / 2;
+        force = now;
+        for (const motion::Pair& pair : contacts.pairs()) {
+            friction += pair.friction;
+            damped += pair.damped;
+        }
+    }
+    double stored() const
+    {
+        double sum = 0;
+        for (const motion::Pair& pair : contacts.pairs())
+            sum += pair.stored();
+        return sum;
+    }
+    Vector2d on_upper() const
+    {
+        Vector2d sum(0, 0);
+        for (std::size_t g = lower; g < force.size(); ++g)
+            sum += force[g];
+        return sum;
+    }
+    // Of all pairs that touch.
+    double dilation() const
+    {
+        double least = 1e9, most = -1e9;
+        for (const motion::Pair& pair : contacts.pairs())
+            if (pair.is_closed) {
+                least = std::min(least, pair.dilation);
+                most = std::max(most, pair.dilation);
+            }
+        EXPECT_EQ(least, most);
+        return most;
+    }
+};
+
+joint::Coulomb dilatant(double until = 0)
+{
+    return {k_n, k_s, 0, friction, 0, psi, false, 0, 0, until};
+}
+
+} // namespace
+
+// Held at its height it is pressed by k_n tan(psi) slip, and bears friction of that, at once as in many
+// steps; dilation ends, also within a step.
+TEST(contacts, slip_raises_what_dilates)
+{
+    const double sunk = 1e-4, length = 3.25, slid = 2e-3;
+    for (const double until : {0.0, 1e-3})
+        for (const int steps : {1, 7, 1000}) {
+            Dilatant rows_of(rows(sunk), 5, dilatant(until));
+            const double start = rows_of.stored();
+            for (int step = 0; step < steps; ++step)
+                rows_of.step([&](const Vector2d&) { return Vector2d(slid / steps, 0); });
+            const double elastic = friction * k_n * sunk / k_s;
+            double slip = (slid - elastic) / (1 + k_n * friction * psi / k_s);
+            double dilation = psi * slip;
+            if (until > 0) {
+                dilation = psi * until;
+                slip = slid - friction * k_n * (sunk + dilation) / k_s;
+                ASSERT_GT(slip, until);
+            }
+            const double sigma = k_n * (sunk + dilation);
+            EXPECT_NEAR(rows_of.dilation() / dilation, 1, 2e-3) << steps; // the shear of what slides on
+            EXPECT_NEAR(rows_of.on_upper().y() / (sigma * length), 1, 2e-3) << steps;
+            EXPECT_NEAR(-rows_of.on_upper().x() / (friction * rows_of.on_upper().y()), 1, 1e-3) << steps;
+            // Slip loses (tau - p tan(psi)) each, of friction p, while it dilates.
+            const double while_it_does = dilation / psi, mean = k_n * (sunk + dilation / 2);
+            const double lost = length * (mean * (friction - psi) * while_it_does +
+                                          friction * sigma * (slip - while_it_does));
+            if (steps == 1000) {
+                EXPECT_NEAR(rows_of.friction / lost, 1, 3e-3) << until;
+            }
+            if (steps > 1) { // what one step takes from sticking to slipping is not its mean
+                EXPECT_NEAR(rows_of.work + rows_of.stored() - start + rows_of.friction, 0,
+                            steps == 1000 ? 1e-3 * lost : 0.1 * lost)
+                    << until;
+            }
+        }
+}
+
+// One that is pressed unevenly, partly open, and tilts on its way.
+TEST(contacts, all_of_a_joint_is_raised_by_one_amount)
+{
+    Dilatant tilted({{{4, 0}, {2.7, 0}, {1.9, 0}, {0.4, 0}, {-3, 0}},
+                     {{0.25, -1e-3}, {1, -0.7e-3}, {2.2, -0.2e-3}, {3.5, 0.3e-3}}},
+                    5, dilatant(0.5));
+    const double start = tilted.stored();
+    const int steps = 4000;
+    // Per way, where it rises by 0.1 of it: k_n (tan(psi) slip - 0.1) presses, and its friction shears the
+    // spring.
+    const double stiffer = k_n * friction * psi / k_s, dilating = (psi + stiffer * 0.1) / (1 + stiffer);
+    for (int step = 0; step < steps; ++step) {
+        tilted.step(
+            [&](const Vector2d& at) {
+                return Vector2d(-1.0 / steps,
+                                0.1 / steps + 5e-4 * std::sin(12.0 * step / steps) / steps * at.x());
+            },
+            1e-2);
+        if (step % 100 == 0) {
+            const double expected = std::min(dilating * step / steps, 0.5 * psi);
+            EXPECT_NEAR(tilted.dilation(), expected, 0.01 * expected + 2e-4) << step;
+        }
+    }
+    // It slid 1 m and rose by half of what it dilated in the first half of that, then by the rest.
+    EXPECT_NEAR(tilted.dilation(), 0.5 * psi, 1e-12);
+    EXPECT_GT(tilted.friction, 1e6);
+    EXPECT_NEAR(tilted.work + tilted.stored() - start + tilted.friction + tilted.damped, 0,
+                5e-3 * tilted.friction);
+}
+
+// What turns as a whole does not slip, also at the limit of its strength and raised far.
+TEST(contacts, what_turns_does_not_dilate)
+{
+    Dilatant far(rows(1e-4), 5, dilatant());
+    for (int step = 0; step < 1000; ++step)
+        far.step([&](const Vector2d&) { return Vector2d(2e-4, 2e-4 * psi); });
+    const double dilation = far.dilation(), shear = far.on_upper().x();
+    EXPECT_NEAR(dilation, 0.2 * psi, 0.02 * psi);
+    for (int step = 0; step < 1000; ++step) {
+        const std::vector<Vector2d> before = far.lines.place;
+        far.lines.turn(1e-3);
+        for (std::size_t g = 0; g < far.move.size(); ++g)
+            far.move[g] = far.lines.place[g] - before[g];
+        far.take();
+    }
+    EXPECT_NEAR(far.dilation(), dilation, 1e-3 * dilation);
+    EXPECT_NEAR((Eigen::Rotation2Dd(-1) * far.on_upper()).x() / shear, 1, 0.02);
+}
+
+// It goes on from face to face: rising by tan(psi) it bears the same all the way, to the end of dilation.
+TEST(contacts, dilation_goes_on_to_the_next_face)
+{
+    const double sunk = 1e-4, until = 1.5;
+    Dilatant slider({{{4, 0}, {3, 0}, {2, 0}, {1, 0}, {0, 0}}, {{0.2, -sunk}, {0.8, -sunk}}}, 5,
+                    dilatant(until));
+    const double elastic = friction * k_n * sunk / k_s;
+    slider.step([&](const Vector2d&) { return Vector2d(elastic, 0); });
+    double slid = 0;
+    while (slid < 3) {
+        const double way = std::min(3e-3, slid < until ? until - slid : 1.0);
+        slider.step([&](const Vector2d&) { return Vector2d(way, slid < until - 1e-9 ? way * psi : 0.0); });
+        slid += way;
+        ASSERT_NEAR(slider.on_upper().y() / (k_n * sunk * 0.6), 1, 0.05) << slid;
+        ASSERT_NEAR(-slider.on_upper().x() / (friction * k_n * sunk * 0.6), 1, 0.05) << slid;
+        ASSERT_NEAR(slider.dilation(), psi * std::min(slid, until), 1e-5) << slid;
+    }
+}
+
+// Raised by 0.06 m, lifted off and put down tilted where its faces have not touched: all of it touches as far
+// up, and no energy comes from nowhere.
+TEST(contacts, what_lands_beside_is_raised_as_its_joint_is)
+{
+    Dilatant slider({{{8, 0}, {7, 0}, {6, 0}, {5, 0}, {4, 0}, {3, 0}, {2, 0}, {1, 0}, {0, 0}},
+                     {{0.2, -1e-4}, {1.2, -1e-4}, {2.2, -1e-4}}},
+                    9, dilatant(0.3));
+    for (int step = 0; step < 300; ++step)
+        slider.step([&](const Vector2d&) { return Vector2d(1e-3, 1e-3 * psi); });
+    for (int step = 0; step < 5; ++step) // to the end of dilation
+        slider.step([&](const Vector2d&) { return Vector2d(1e-3, 0); });
+    const double dilation = slider.dilation();
+    EXPECT_NEAR(dilation, 0.3 * psi, 1e-12);
+    const auto go = [&](int steps, const Vector2d& way, double turn) {
+        for (int step = 0; step < steps; ++step)
+            slider.step([&](const Vector2d& at) { return Vector2d(way.x(), way.y() + turn * at.x()); });
+    };
+    go(50, {0, 1e-4}, 0);
+    EXPECT_EQ(slider.stored(), 0);
+    go(200, {1e-2, 0}, 0);
+    go(100, {0, 0}, 1e-4);
+    slider.friction = slider.work = 0;
+    double lowest = 1e9;
+    for (int step = 0; step < 3000 && slider.stored() == 0; ++step) {
+        go(1, {0, -1e-5}, 0);
+        lowest = std::min(lowest, slider.lines.place[9].y());
+    }
+    EXPECT_NEAR(lowest, dilation, 2e-5); // the end that is lower touches there
+    go(100, {0, -1e-5}, 0);
+    EXPECT_NEAR(slider.dilation(), dilation, 1e-12);
+    EXPECT_GT(slider.stored(), 10);
+    EXPECT_NEAR(slider.work + slider.stored() + slider.friction, 0, 0.02 * slider.stored());
+}

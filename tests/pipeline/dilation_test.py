@@ -143,6 +143,23 @@ class Dilation(ChainTest):
                     self.assertAlmostEqual(found[0] / sigma_n, 1, delta=delta)
                     self.assertAlmostEqual(found[1] / tau, 1, delta=delta)
 
+    def test_it_ends_at_the_slip_that_is_given(self):
+        """Beyond it the block rises no farther, and held down it is pressed no more."""
+        until = 2e-3
+        ending = ("^dilation_angle_deg = 10", f"dilation_angle_deg = 10\ndilation_until_m = {until}")
+        stiffness = 1 / (1 / K_N + 1 / STEEL)
+        for engine in "explicit", "implicit":
+            with self.subTest(engine=engine):
+                self.assertGreater(sheared(4e-3, stiffness)[0], until)
+                data = self.shear(changed(SCENE, *ending), engine)
+                self.assertAlmostEqual(data["/history/displacement"][-1, 0, 1] / (until * TAN_PSI), 1, delta=1e-4)
+                text = changed(changed(SCENE, *ending), *HELD)
+                data = self.shear(changed(text, "^tolerance", "unloading_increments = 200\ntolerance"), engine)
+                sigma_n = -1e6 - stiffness * until * TAN_PSI
+                for found in data["/states/traction"][-1]:
+                    self.assertAlmostEqual(found[0] / sigma_n, 1, delta=1e-3)
+                    self.assertAlmostEqual(found[1] / (C - sigma_n * TAN_PHI), 1, delta=1e-3)
+
     def test_creeps_as_by_tiny_steps(self):
         fine = crept(10, 4e-3, 20000)
         again = crept(10, 4e-3, 40000)

@@ -13,6 +13,7 @@ LINE, POLYGON, TRIANGLE, VERTEX = 3, 7, 5, 1  # cell types of VTK
 EQUIVALENT = {"normal_stiffness": "Pa_per_m", "shear_stiffness": "Pa_per_m", "cohesion": "Pa", "friction_angle": "rad",
               "tensile_strength": "Pa", "dilation_angle": "rad", "law": "", "residual_cohesion": "Pa",
               "residual_friction_angle": "rad", "roughness": "", "wall_strength": "Pa", "largest_closure": "m",
+              "dilation_until": "m",
               "normal_kelvin_stiffness": "Pa_per_m", "shear_kelvin_stiffness": "Pa_per_m",
               "normal_kelvin_viscosity": "Pa_s_per_m", "shear_kelvin_viscosity": "Pa_s_per_m",
               "normal_maxwell_viscosity": "Pa_s_per_m", "shear_maxwell_viscosity": "Pa_s_per_m"}

@@ -257,9 +257,12 @@ class Restart(ChainTest):
         self.assertGreater(len(datasets(path)["/mesh/zone_block"]), 2000)  # fewer are one thread's
 
     def test_motion(self):
-        for more in 'rigid_rocks = ["rock"]', "stiffness_damping_s = 3e-5\nrelease_s = 0.05":
-            with self.subTest(more=more):
-                result = self.assert_same(sliding_block(more), (1, 1.5))[0]
+        for more, psi in (('rigid_rocks = ["rock"]', 0), ("stiffness_damping_s = 3e-5\nrelease_s = 0.05", 0),
+                          ('rigid_rocks = ["rock"]', 5)):
+            with self.subTest(more=more, psi=psi):  # dilation ends beyond the ledge
+                text = changed(sliding_block(more), "^tensile_strength_MPa = 0$", "tensile_strength_MPa = 0\n"
+                               f"dilation_angle_deg = {psi}\ndilation_until_m = 3")
+                result = self.assert_same(text, (1, 1.5))[0]
                 path = self.chain.new_folder() / "result.h5"
                 path.write_bytes(result)
                 moved = np.linalg.norm(datasets(path)["/history/displacement"][:, 0], axis=1)

@@ -126,6 +126,8 @@ TEST(every_key, all_else)
     EXPECT_EQ(scene.rocks[1].dilation_angle, 8 * deg);
     EXPECT_EQ(scene.rocks[0].dilation_angle, 0);
     EXPECT_EQ(scene.joint_materials.at(1).dilation_angle, 5 * deg);
+    EXPECT_EQ(scene.joint_materials.at(1).dilation_until, 0.02);
+    EXPECT_EQ(scene.joint_materials.at(0).dilation_until, 0);
     EXPECT_FALSE(scene.joint_materials.at(0).residual);
     ASSERT_TRUE(scene.joint_materials.at(1).residual);
     EXPECT_EQ(scene.joint_materials.at(1).residual->cohesion, 0.05 * MPa);

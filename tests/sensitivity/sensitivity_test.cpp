@@ -119,6 +119,8 @@ TEST(sensitivity, of_joints_that_dilate_is_that_of_whole_runs)
             study.scene.creep->scheme = scheme;
             std::fill(study.joints.dilation_angle.begin(), study.joints.dilation_angle.end(), 0.2);
             EXPECT_LT(study.largest_error(1e-4), 1e-6) << static_cast<int>(scheme) << ' ' << friction_angle;
+            std::fill(study.joints.dilation_until.begin(), study.joints.dilation_until.end(), 1e-5);
+            EXPECT_LT(study.largest_error(1e-4), 1e-6) << static_cast<int>(scheme) << ' ' << friction_angle;
         }
 }
 
