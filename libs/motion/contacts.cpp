@@ -2,9 +2,11 @@
 
 #include "model/error.hpp"
 #include "model/signs.hpp"
+#include "motion/in_chunks.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <optional>
 #include <tuple>
 #include <unordered_map>
@@ -58,40 +60,40 @@ std::optional<Overlap> overlap_along(const Vector2d& tangent, const std::array<V
     return found;
 }
 
-// Seen in the plane of the contact; none where the faces do not look at each other or nothing overlaps.
-// Sharpnesses are those of the faces' ends.
-std::optional<Overlap> overlap_of(const std::array<Vector2d, 2>& a, const std::array<Vector2d, 2>& b,
-                                  const std::array<double, 2>& sharp_a, const std::array<double, 2>& sharp_b)
-{
-    const double length_a = (a[1] - a[0]).norm(), length_b = (b[1] - b[0]).norm();
-    const Vector2d along_a = (a[1] - a[0]) / length_a, along_b = (b[0] - b[1]) / length_b;
-    if (along_a.dot(along_b) < least_facing)
-        return {};
-    const auto between = overlap_along((along_a + along_b).normalized(), a, b);
-    if (!between)
-        return {};
-    // Which of the two ends that meet at the deeper side lies inside the other face, and whether it is a
-    // corner: an end where the outline runs on straight belongs to a face that something sinks into farther
-    // on.
-    const int deep = between->gap[1] < between->gap[0] ? 1 : 0;
-    const double is_end_of_a =
-        std::clamp(0.5 + between->inset[deep] / (2 * rounding * std::min(length_a, length_b)), 0.0, 1.0);
-    const double of_b = is_end_of_a * sharp_a[deep] + (1 - is_end_of_a) * (1 - sharp_b[1 - deep]);
-    return overlap_along((of_b * along_b + (1 - of_b) * along_a).normalized(), a, b);
-}
-
 std::array<Vector2d, 2> ends_of(const std::array<Index, 2>& face, const std::vector<Vector2d>& place)
 {
     return {place[face[0]], place[face[1]]};
 }
 
-// The same of a pair of these faces.
-std::optional<Overlap> overlap_of(const Pair& pair, const Faces& faces,
-                                  const std::vector<std::array<double, 2>>& sharpness,
+// The overlap seen along the line between the two faces, if these look at each other.
+std::optional<Overlap> overlap_between(const Pair& pair, const Faces& faces,
+                                       const std::vector<FaceShape>& shapes,
+                                       const std::vector<Vector2d>& place)
+{
+    const Vector2d along_a = shapes[pair.a].along, along_b = -shapes[pair.b].along;
+    if (along_a.dot(along_b) < least_facing)
+        return {};
+    return overlap_along((along_a + along_b).normalized(), ends_of(faces.gridpoint[pair.a], place),
+                         ends_of(faces.gridpoint[pair.b], place));
+}
+
+// Seen in the plane of the contact; none where the faces do not look at each other or nothing overlaps.
+std::optional<Overlap> overlap_of(const Pair& pair, const Faces& faces, const std::vector<FaceShape>& shapes,
                                   const std::vector<Vector2d>& place)
 {
-    return overlap_of(ends_of(faces.gridpoint[pair.a], place), ends_of(faces.gridpoint[pair.b], place),
-                      sharpness[pair.a], sharpness[pair.b]);
+    const auto between = overlap_between(pair, faces, shapes, place);
+    if (!between)
+        return {};
+    const FaceShape &a = shapes[pair.a], &b = shapes[pair.b];
+    // Which of the two ends that meet at the deeper side lies inside the other face, and whether it is a
+    // corner: an end where the outline runs on straight belongs to a face that something sinks into farther
+    // on.
+    const int deep = between->gap[1] < between->gap[0] ? 1 : 0;
+    const double is_end_of_a =
+        std::clamp(0.5 + between->inset[deep] / (2 * rounding * std::min(a.length, b.length)), 0.0, 1.0);
+    const double of_b = is_end_of_a * a.sharp[deep] + (1 - is_end_of_a) * (1 - b.sharp[1 - deep]);
+    return overlap_along((of_b * -b.along + (1 - of_b) * a.along).normalized(),
+                         ends_of(faces.gridpoint[pair.a], place), ends_of(faces.gridpoint[pair.b], place));
 }
 
 Vector2d at(const std::array<Vector2d, 2>& ends, double fraction)
@@ -105,25 +107,21 @@ class Part
 {
 public:
     Part(const joint::Law& law, const std::array<double, 2>& closing, double length)
-        : coulomb_(std::get_if<joint::Coulomb>(&law)), barton_bandis_(std::get_if<joint::BartonBandis>(&law)),
-          closing_(closing), length_(length)
+        : coulomb_(std::get_if<joint::Coulomb>(&law)), closing_(closing), length_(length)
     {
+        if (coulomb_ == nullptr)
+            add_up(std::get<joint::BartonBandis>(law));
     }
 
     double deep() const { return (closing_[0] + closing_[1]) / 2; } // mean closing [m]
     // That presses [N/m].
-    double force() const
-    {
-        if (coulomb_ != nullptr)
-            return coulomb_->k_n * length_ * deep();
-        return sum([](double, double p) { return p; });
-    }
+    double force() const { return coulomb_ != nullptr ? coulomb_->k_n * length_ * deep() : sums_.force; }
     // On one end, of a given share of the force: forces on both are as the traction between them [N/m].
     double force_on(int end, double share) const
     {
         if (coulomb_ != nullptr)
             return share * coulomb_->k_n * length_ * (2 * closing_[end] + closing_[1 - end]) / 6;
-        return share * sum([&](double at, double p) { return (end == 0 ? 1 - at : at) * p; });
+        return share * sums_.force_on[end];
     }
     // Shear force it bears [N/m].
     double strength(bool is_broken) const
@@ -131,7 +129,7 @@ public:
         if (coulomb_ != nullptr)
             return std::max(0.0, coulomb_->cohesion_of(is_broken) * length_ +
                                      force() * coulomb_->tan_phi_of(is_broken));
-        return sum([&](double, double p) { return barton_bandis_->strength(p); });
+        return sums_.strength;
     }
     // In the normal springs [J/m].
     double stored() const
@@ -139,38 +137,45 @@ public:
         if (coulomb_ != nullptr)
             return coulomb_->k_n * length_ *
                    (closing_[0] * closing_[0] + closing_[0] * closing_[1] + closing_[1] * closing_[1]) / 6;
-        return sum([&](double, double p) { return barton_bandis_->stored(p); });
+        return sums_.stored;
     }
     // Of the normal springs, in the middle and where it is largest [Pa/m].
-    double stiffness() const { return stiffness_at(deep()); }
-    double stiffest() const { return stiffness_at(std::max(closing_[0], closing_[1])); }
+    double stiffness() const { return coulomb_ != nullptr ? coulomb_->k_n : sums_.stiffness; }
+    double stiffest() const { return coulomb_ != nullptr ? coulomb_->k_n : sums_.stiffest; }
 
 private:
-    double stiffness_at(double closing) const
-    {
-        return coulomb_ != nullptr ? coulomb_->k_n
-                                   : barton_bandis_->stiffness(barton_bandis_->pressure(closing));
-    }
-    // Of a function of the fraction along the part and the pressure there.
-    template <class Function>
-    double sum(const Function& function) const
+    // Apart from Coulomb's law, which nearly all have, and which would be slower with this in its way.
+    [[gnu::noinline]] void add_up(const joint::BartonBandis& law)
     {
         constexpr std::array<std::array<double, 2>, 5> points{{{0.046910077030668, 0.118463442528095},
                                                                {0.230765344947158, 0.239314335249683},
                                                                {0.5, 0.284444444444444},
                                                                {0.769234655052842, 0.239314335249683},
                                                                {0.953089922969332, 0.118463442528095}}};
-        double all = 0;
-        for (const auto& [at, weight] : points)
-            all += weight *
-                   function(at, barton_bandis_->pressure(closing_[0] + at * (closing_[1] - closing_[0])));
-        return length_ * all;
+        sums_ = {};
+        for (const auto& [at, weight] : points) {
+            const double p = law.pressure(closing_[0] + at * (closing_[1] - closing_[0]));
+            sums_.force += weight * p;
+            sums_.force_on[0] += weight * ((1 - at) * p);
+            sums_.force_on[1] += weight * (at * p);
+            sums_.strength += weight * law.strength(p);
+            sums_.stored += weight * law.stored(p);
+        }
+        for (double* const sum :
+             {&sums_.force, &sums_.force_on[0], &sums_.force_on[1], &sums_.strength, &sums_.stored})
+            *sum *= length_;
+        sums_.stiffness = law.stiffness(law.pressure(deep()));
+        sums_.stiffest = law.stiffness(law.pressure(std::max(closing_[0], closing_[1])));
     }
 
-    const joint::Coulomb* coulomb_;
-    const joint::BartonBandis* barton_bandis_;
+    struct Sums {
+        double force, strength, stored, stiffness, stiffest;
+        std::array<double, 2> force_on;
+    };
+    const joint::Coulomb* coulomb_; // none: Barton and Bandis's law
     std::array<double, 2> closing_;
     double length_;
+    Sums sums_; // of Barton and Bandis's law alone
 };
 
 } // namespace
@@ -195,13 +200,30 @@ void Contacts::set_faces(Faces faces, std::vector<Pair> known, const std::vector
     for (const auto& [from, to] : faces_.gridpoint)
         lengths.push_back((place[to] - place[from]).norm());
     stiffest_ = stiffest_open_;
+    most_lead_ = 0;
+    for (const Pair& pair : pairs_)
+        if (pair.is_closed)
+            most_lead_ = std::max({most_lead_, pair.lead[0], pair.lead[1]});
     skin_ = 0;
     if (!lengths.empty()) {
         const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
         std::nth_element(lengths.begin(), middle, lengths.end());
         skin_ = *middle / 4;
     }
+    find_shapes(place, 1);
     seek(place, std::vector<Vector2d>(place.size(), Vector2d::Zero()));
+}
+
+void Contacts::find_shapes(const std::vector<Vector2d>& place, int threads)
+{
+    const auto n = static_cast<Index>(faces_.gridpoint.size());
+    shapes_.resize(n);
+#pragma omp parallel for schedule(static) num_threads(threads) if (threads > 1)
+    for (Index f = 0; f < n; ++f) {
+        const Vector2d way = place[faces_.gridpoint[f][1]] - place[faces_.gridpoint[f][0]];
+        shapes_[f].length = way.norm();
+        shapes_[f].along = way / shapes_[f].length;
+    }
 }
 
 void Contacts::find_corners(const std::vector<Vector2d>& place)
@@ -210,7 +232,8 @@ void Contacts::find_corners(const std::vector<Vector2d>& place)
     std::unordered_multimap<Index, Index> starting; // faces, by their first gridpoint
     for (std::size_t f = 0; f < faces_.gridpoint.size(); ++f)
         starting.emplace(faces_.gridpoint[f][0], static_cast<Index>(f));
-    sharpness_.assign(faces_.gridpoint.size(), {1, 1}); // also where the outline of a ground ends
+    for (FaceShape& shape : shapes_)
+        shape.sharp = {1, 1}; // also where the outline of a ground ends
     for (std::size_t f = 0; f < faces_.gridpoint.size(); ++f) {
         const auto p = ends_of(faces_.gridpoint[f], place);
         const Vector2d one = p[1] - p[0];
@@ -228,7 +251,7 @@ void Contacts::find_corners(const std::vector<Vector2d>& place)
             }
         }
         if (next >= 0)
-            sharpness_[f][1] = sharpness_[next][0] = std::clamp(most / corner, 0.0, 1.0);
+            shapes_[f].sharp[1] = shapes_[next].sharp[0] = std::clamp(most / corner, 0.0, 1.0);
     }
 }
 
@@ -241,17 +264,18 @@ void Contacts::seek(const std::vector<Vector2d>& place, const std::vector<Vector
     ++searches_;
     sought_at_ = place;
     find_corners(place);
-    std::vector<double> reach(faces_.gridpoint.size(), skin_ / 2);
+    is_sought_ = true;
+    reach_.assign(faces_.gridpoint.size(), skin_ / 2);
     std::vector<std::pair<Index, Index>> near;
     for (const Pair& pair : pairs_) {
         if (!pair.is_closed && !pair.is_bonded())
             continue;
         near.emplace_back(pair.a, pair.b);
-        const auto found = overlap_of(pair, faces_, sharpness_, place);
+        const auto found = overlap_of(pair, faces_, shapes_, place);
         if (found)
             for (const Index f : {pair.a, pair.b})
-                reach[f] = std::max(reach[f],
-                                    skin_ / 2 + std::max(std::abs(found->gap[0]), std::abs(found->gap[1])));
+                reach_[f] = std::max(reach_[f],
+                                     skin_ / 2 + std::max(std::abs(found->gap[0]), std::abs(found->gap[1])));
     }
     const double cell = 8 * skin_;
     struct Entry {
@@ -267,7 +291,7 @@ void Contacts::seek(const std::vector<Vector2d>& place, const std::vector<Vector
     const auto cell_of = [&](double at) { return static_cast<std::int64_t>(std::floor(at / cell)); };
     for (std::size_t f = 0; f < faces_.gridpoint.size(); ++f) {
         const auto ends = ends_of(faces_.gridpoint[f], place), way = ends_of(faces_.gridpoint[f], move);
-        const Vector2d beyond = Vector2d::Constant(reach[f]);
+        const Vector2d beyond = Vector2d::Constant(reach_[f]);
         box.push_back(
             {ends[0].cwiseMin(ends[1]).cwiseMin(ends[0] - way[0]).cwiseMin(ends[1] - way[1]) - beyond,
              ends[0].cwiseMax(ends[1]).cwiseMax(ends[0] - way[0]).cwiseMax(ends[1] - way[1]) + beyond});
@@ -302,6 +326,68 @@ void Contacts::seek(const std::vector<Vector2d>& place, const std::vector<Vector
     for (std::size_t p = 0; p < pairs_.size(); ++p)
         for (const Index f : {pairs_[p].a, pairs_[p].b})
             of_face_[f].push_back(static_cast<Index>(p));
+    closes_.assign(pairs_.size(), 0);
+    active_.resize(pairs_.size());
+    std::iota(active_.begin(), active_.end(), 0);
+}
+
+// Of all pairs, those that may bear anything before faces are sought again. Until then no gridpoint is
+// farther than half the skin from where it was, so that faces turn little, and come no nearer than by the
+// skin; and where one is in another, they come out no farther than they reach. The others have been seen
+// once, as they are open, and would stay as they are.
+void Contacts::find_active()
+{
+    double most_lead = 0; // that an unknown pair may inherit
+    for (const Pair& pair : pairs_)
+        if (pair.is_known)
+            most_lead = std::max({most_lead, pair.lead[0], pair.lead[1]});
+    const auto turn = [&](const Vector2d& way) { // of a face, at most
+        return std::asin(std::min(1.0, skin_ / way.norm()));
+    };
+    const auto may_touch = [&](const Pair& pair) {
+        const auto a = ends_of(faces_.gridpoint[pair.a], sought_at_),
+                   b = ends_of(faces_.gridpoint[pair.b], sought_at_);
+        const Vector2d along_a = a[1] - a[0], along_b = b[0] - b[1];
+        // How far apart the faces are at least: seen along and across either.
+        double apart = 0;
+        for (const Vector2d& axis : {along_a, along(along_a), along_b, along(along_b)}) {
+            const double p = (b[0] - a[0]).dot(axis), q = (b[1] - a[0]).dot(axis),
+                         end = (a[1] - a[0]).dot(axis);
+            apart = std::max(
+                apart, std::max(std::min(p, q) - std::max(0.0, end), std::min(0.0, end) - std::max(p, q)) /
+                           axis.norm());
+        }
+        const double lead = pair.is_known ? std::max({0.0, pair.lead[0], pair.lead[1]}) : most_lead;
+        if (apart > (reach_[pair.a] + reach_[pair.b] + lead) * (1 + 1e-9))
+            return false;
+        const double between =
+            std::atan2(std::abs(along_a.x() * along_b.y() - along_a.y() * along_b.x()), along_a.dot(along_b));
+        return between - turn(along_a) - turn(along_b) <= std::acos(least_facing) + 1e-9;
+    };
+    active_.clear();
+    for (std::size_t p = 0; p < pairs_.size(); ++p)
+        if (pairs_[p].is_closed || pairs_[p].is_bonded() || may_touch(pairs_[p]))
+            active_.push_back(static_cast<Index>(p));
+
+    std::vector<std::array<Index, 2>> corners; // {gridpoint, place in the list of forces}
+    for (const Index p : active_) {
+        const auto &a = faces_.gridpoint[pairs_[p].a], &b = faces_.gridpoint[pairs_[p].b];
+        Index corner = 4 * p;
+        for (const Index g : {a[0], a[1], b[0], b[1]})
+            corners.push_back({g, corner++});
+    }
+    std::sort(corners.begin(), corners.end());
+    corner_.clear();
+    touched_.clear();
+    corner_start_.clear();
+    for (const auto& [g, corner] : corners) {
+        if (touched_.empty() || touched_.back() != g) {
+            touched_.push_back(g);
+            corner_start_.push_back(static_cast<Index>(corner_.size()));
+        }
+        corner_.push_back(corner);
+    }
+    corner_start_.push_back(static_cast<Index>(corner_.size()));
 }
 
 // The longest closed contact from which a face of this pair slides on to the next one, pressing in about the
@@ -334,18 +420,17 @@ void Contacts::update(const std::vector<Vector2d>& place, const std::vector<Vect
                       double viscosity, int threads)
 {
     double farthest = 0;
-    for (std::size_t g = 0; g < place.size(); ++g)
+    const auto n_gridpoints = static_cast<Index>(place.size());
+#pragma omp parallel for schedule(static) num_threads(threads) reduction(max : farthest) if (threads > 1)
+    for (Index g = 0; g < n_gridpoints; ++g)
         farthest = std::max(farthest, (place[g] - sought_at_[g]).squaredNorm());
+    find_shapes(place, threads);
     if (4 * farthest > skin_ * skin_)
         seek(place, move);
 
     const auto n = static_cast<Index>(pairs_.size());
-    std::vector<char> closes(pairs_.size(), 0); // if it may
     Index too_deep = n;
-    double most_lead = 0;
-    for (const Pair& pair : pairs_)
-        if (pair.is_closed)
-            most_lead = std::max({most_lead, pair.lead[0], pair.lead[1]});
+    const double most_lead = most_lead_;
     const auto depth_of = [&](const Pair& pair) {
         return std::min(faces_.depth[pair.a], faces_.depth[pair.b]);
     };
@@ -382,7 +467,7 @@ void Contacts::update(const std::vector<Vector2d>& place, const std::vector<Vect
                 pair.is_broken = true;
             pair.tau = pair.length = pair.sigma = 0;
         };
-        const auto found = overlap_of(pair, faces_, sharpness_, place);
+        const auto found = overlap_of(pair, faces_, shapes_, place);
         if (!found) {
             open();
             pair.friction += last_pressed_in; // where rock slides off an edge
@@ -406,7 +491,7 @@ void Contacts::update(const std::vector<Vector2d>& place, const std::vector<Vect
             return;
         }
         if (!pair.is_closed && !is_bonded && !may_close) {
-            closes[index] = 1;
+            closes_[index] = 1; // if it may
             return;
         }
         std::array<double, 2> part{0, 1}; // of the overlap that is closed
@@ -508,14 +593,49 @@ void Contacts::update(const std::vector<Vector2d>& place, const std::vector<Vect
         if (weakens)
             leave_bonds();
         pair.pressed_in =
-            Part(law, closing, weakens ? (part[1] - part[0]) * found->length : pair.length).stored();
+            weakens ? Part(law, closing, (part[1] - part[0]) * found->length).stored() : closed.stored();
         if (in_bonds > 0)
             pair.friction += in_bonds - pair.pressed_in;
         pair.sheared_in = sheared_in(shear, pair.length);
     };
-#pragma omp parallel for schedule(static) num_threads(threads) if (threads > 1)
-    for (Index p = 0; p < n; ++p)
-        evaluate(pairs_[p], p, false);
+    // An open pair that has been seen as such, and whose faces do not face each other: nothing more happens.
+    const auto is_idle = [&](const Pair& pair) {
+        return !is_sought_ && !pair.is_closed && !pair.is_bonded() &&
+               !overlap_between(pair, faces_, shapes_, place);
+    };
+    struct Sum {
+        PairEnergy energy;
+        double stiffest = 0, most_lead = 0;
+        bool closes = false;
+
+        void take(const Pair& pair)
+        {
+            energy += {pair.stored(), pair.friction, pair.damped};
+            if (!pair.is_closed)
+                return;
+            stiffest = std::max(stiffest, pair.stiffest);
+            most_lead = std::max({most_lead, pair.lead[0], pair.lead[1]});
+        }
+        void operator+=(const Sum& other)
+        {
+            energy += other.energy;
+            stiffest = std::max(stiffest, other.stiffest);
+            most_lead = std::max(most_lead, other.most_lead);
+            closes = closes || other.closes;
+        }
+    };
+    Sum sum = sum_in_chunks<Sum>(static_cast<Index>(active_.size()), threads, [&](Index i, Sum& some) {
+        const Index p = active_[i];
+        Pair& pair = pairs_[p];
+        if (is_idle(pair)) {
+            pair.is_slipping = false;
+            pair.friction = pair.damped = 0;
+            return;
+        }
+        evaluate(pair, p, false);
+        some.take(pair);
+        some.closes = some.closes || closes_[p];
+    });
     if (too_deep < n)
         throw equilibrium_error(
             "two pieces of rock overlap at " +
@@ -523,18 +643,21 @@ void Contacts::update(const std::vector<Vector2d>& place, const std::vector<Vect
             " by more than half the depth of a zone; the joint's normal stiffness is too small "
             "for what presses on it");
     const auto sunk_of = [&](const Pair& pair) {
-        const auto found = overlap_of(pair, faces_, sharpness_, place);
+        const auto found = overlap_of(pair, faces_, shapes_, place);
         return found ? found->sunk() : 0.0;
     };
     // Those that lie behind come last: what they may have slid on from must have closed.
     for (const bool is_behind : {false, true})
-        for (Index p = 0; p < n; ++p) {
-            if (!closes[p])
+        for (const Index p : active_) {
+            if (!sum.closes)
+                break;
+            if (!closes_[p])
                 continue;
             Pair& pair = pairs_[p];
-            const auto found = overlap_of(pair, faces_, sharpness_, place);
+            const auto found = overlap_of(pair, faces_, shapes_, place);
             if (found->is_behind() != is_behind)
                 continue;
+            closes_[p] = 0;
             const Pair* const before = contact_before(pair, found->normal(), place);
             if (is_deep(pair, *found) &&
                 (before == nullptr || found->sunk() > sunk_of(*before) + deepest_new * depth_of(pair)))
@@ -553,12 +676,14 @@ void Contacts::update(const std::vector<Vector2d>& place, const std::vector<Vect
             }
             pair.is_known = true;
             evaluate(pair, p, true);
+            sum.take(pair);
         }
-    stiffest_ = stiffest_open_;
-    if (stiffens_)
-        for (const Pair& pair : pairs_)
-            if (pair.is_closed)
-                stiffest_ = std::max(stiffest_, pair.stiffest);
+    energy_ = sum.energy;
+    most_lead_ = sum.most_lead;
+    stiffest_ = std::max(stiffest_open_, sum.stiffest);
+    if (is_sought_)
+        find_active();
+    is_sought_ = false;
 }
 
 void Contacts::transfer(const Transfer& to, MovedRock& kept)
@@ -591,17 +716,22 @@ void Contacts::transfer(const Transfer& to, MovedRock& kept)
     to.values(pairs_, kept.sheared_in, &Pair::sheared_in);
 }
 
-void Contacts::add_forces(std::vector<Vector2d>& force) const
+void Contacts::add_forces(std::vector<Vector2d>& force, int threads) const
 {
-    for (const Pair& pair : pairs_) {
-        if (!pair.is_closed)
-            continue;
-        const auto &a = faces_.gridpoint[pair.a], &b = faces_.gridpoint[pair.b];
-        for (int i = 0; i < 2; ++i) {
-            force[a[0]] += (1 - pair.on_a[i]) * pair.force[i];
-            force[a[1]] += pair.on_a[i] * pair.force[i];
-            force[b[0]] -= (1 - pair.on_b[i]) * pair.force[i];
-            force[b[1]] -= pair.on_b[i] * pair.force[i];
+    const auto n = static_cast<Index>(touched_.size());
+#pragma omp parallel for schedule(static) num_threads(threads) if (threads > 1)
+    for (Index i = 0; i < n; ++i) {
+        Vector2d& sum = force[touched_[i]];
+        for (Index k = corner_start_[i]; k < corner_start_[i + 1]; ++k) {
+            const Pair& pair = pairs_[corner_[k] / 4];
+            if (!pair.is_closed)
+                continue;
+            const int corner = corner_[k] % 4;
+            for (int end = 0; end < 2; ++end) {
+                const double at = corner < 2 ? pair.on_a[end] : pair.on_b[end];
+                const double share = corner % 2 == 0 ? 1 - at : at;
+                sum += (corner < 2 ? share : -share) * pair.force[end];
+            }
         }
     }
 }
