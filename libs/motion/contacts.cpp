@@ -65,35 +65,42 @@ std::array<Vector2d, 2> ends_of(const std::array<Index, 2>& face, const std::vec
     return {place[face[0]], place[face[1]]};
 }
 
-// The overlap seen along the line between the two faces, if these look at each other.
-std::optional<Overlap> overlap_between(const Pair& pair, const Faces& faces,
-                                       const std::vector<FaceShape>& shapes,
-                                       const std::vector<Vector2d>& place)
+// Seen in the plane of the contact; none where the faces do not look at each other or nothing overlaps.
+[[gnu::flatten]] std::optional<Overlap> overlap_of(const Pair& pair, const Faces& faces,
+                                                   const std::vector<FaceShape>& shapes,
+                                                   const std::vector<Vector2d>& place)
 {
-    const Vector2d along_a = shapes[pair.a].along, along_b = -shapes[pair.b].along;
+    const FaceShape &shape_a = shapes[pair.a], &shape_b = shapes[pair.b];
+    const Vector2d along_a = shape_a.along, along_b = -shape_b.along;
     if (along_a.dot(along_b) < least_facing)
         return {};
-    return overlap_along((along_a + along_b).normalized(), ends_of(faces.gridpoint[pair.a], place),
-                         ends_of(faces.gridpoint[pair.b], place));
-}
-
-// Seen in the plane of the contact; none where the faces do not look at each other or nothing overlaps.
-std::optional<Overlap> overlap_of(const Pair& pair, const Faces& faces, const std::vector<FaceShape>& shapes,
-                                  const std::vector<Vector2d>& place)
-{
-    const auto between = overlap_between(pair, faces, shapes, place);
+    const auto a = ends_of(faces.gridpoint[pair.a], place), b = ends_of(faces.gridpoint[pair.b], place);
+    const auto between = overlap_along((along_a + along_b).normalized(), a, b);
     if (!between)
         return {};
-    const FaceShape &a = shapes[pair.a], &b = shapes[pair.b];
     // Which of the two ends that meet at the deeper side lies inside the other face, and whether it is a
     // corner: an end where the outline runs on straight belongs to a face that something sinks into farther
     // on.
     const int deep = between->gap[1] < between->gap[0] ? 1 : 0;
-    const double is_end_of_a =
-        std::clamp(0.5 + between->inset[deep] / (2 * rounding * std::min(a.length, b.length)), 0.0, 1.0);
-    const double of_b = is_end_of_a * a.sharp[deep] + (1 - is_end_of_a) * (1 - b.sharp[1 - deep]);
-    return overlap_along((of_b * -b.along + (1 - of_b) * a.along).normalized(),
-                         ends_of(faces.gridpoint[pair.a], place), ends_of(faces.gridpoint[pair.b], place));
+    const double is_end_of_a = std::clamp(
+        0.5 + between->inset[deep] / (2 * rounding * std::min(shape_a.length, shape_b.length)), 0.0, 1.0);
+    const double of_b = is_end_of_a * shape_a.sharp[deep] + (1 - is_end_of_a) * (1 - shape_b.sharp[1 - deep]);
+    return overlap_along((of_b * along_b + (1 - of_b) * along_a).normalized(), a, b);
+}
+
+// Whether two faces do not look at each other, or do not overlap by more than rounding: then there is no
+// overlap_of() them. Most pairs that are near each other are like that.
+bool are_apart(const Pair& pair, const Faces& faces, const std::vector<FaceShape>& shapes,
+               const std::vector<Vector2d>& place)
+{
+    const Vector2d along_a = shapes[pair.a].along, along_b = -shapes[pair.b].along;
+    if (along_a.dot(along_b) < least_facing)
+        return true;
+    const Vector2d between = along_a + along_b;
+    const auto a = ends_of(faces.gridpoint[pair.a], place), b = ends_of(faces.gridpoint[pair.b], place);
+    const double end_of_a = (a[1] - a[0]).dot(between), first_of_b = (b[1] - a[0]).dot(between),
+                 last_of_b = (b[0] - a[0]).dot(between);
+    return std::min(end_of_a, last_of_b) - std::max(0.0, first_of_b) <= -1e-9 * end_of_a;
 }
 
 Vector2d at(const std::array<Vector2d, 2>& ends, double fraction)
@@ -216,14 +223,12 @@ void Contacts::set_faces(Faces faces, std::vector<Pair> known, const std::vector
 
 void Contacts::find_shapes(const std::vector<Vector2d>& place, int threads)
 {
-    const auto n = static_cast<Index>(faces_.gridpoint.size());
-    shapes_.resize(n);
-#pragma omp parallel for schedule(static) num_threads(threads) if (threads > 1)
-    for (Index f = 0; f < n; ++f) {
+    shapes_.resize(faces_.gridpoint.size());
+    for_each(static_cast<Index>(shapes_.size()), threads, [&](Index f) {
         const Vector2d way = place[faces_.gridpoint[f][1]] - place[faces_.gridpoint[f][0]];
         shapes_[f].length = way.norm();
         shapes_[f].along = way / shapes_[f].length;
-    }
+    });
 }
 
 void Contacts::find_corners(const std::vector<Vector2d>& place)
@@ -369,25 +374,29 @@ void Contacts::find_active()
         if (pairs_[p].is_closed || pairs_[p].is_bonded() || may_touch(pairs_[p]))
             active_.push_back(static_cast<Index>(p));
 
-    std::vector<std::array<Index, 2>> corners; // {gridpoint, place in the list of forces}
-    for (const Index p : active_) {
-        const auto &a = faces_.gridpoint[pairs_[p].a], &b = faces_.gridpoint[pairs_[p].b];
-        Index corner = 4 * p;
+    std::vector<std::array<Index, 2>> corners; // {gridpoint, 4 active + corner}
+    for (std::size_t i = 0; i < active_.size(); ++i) {
+        const auto &a = faces_.gridpoint[pairs_[active_[i]].a], &b = faces_.gridpoint[pairs_[active_[i]].b];
+        auto corner = static_cast<Index>(4 * i);
         for (const Index g : {a[0], a[1], b[0], b[1]})
             corners.push_back({g, corner++});
     }
     std::sort(corners.begin(), corners.end());
-    corner_.clear();
+    corner_force_.resize(corners.size());
+    corner_place_.resize(corners.size());
     touched_.clear();
-    corner_start_.clear();
-    for (const auto& [g, corner] : corners) {
-        if (touched_.empty() || touched_.back() != g) {
-            touched_.push_back(g);
-            corner_start_.push_back(static_cast<Index>(corner_.size()));
-        }
-        corner_.push_back(corner);
+    touched_start_.clear();
+    for (std::size_t k = 0; k < corners.size(); ++k) {
+        const auto [g, corner] = corners[k];
+        corner_place_[corner] = static_cast<Index>(k);
+        if (k > 0 && corners[k - 1][0] == g)
+            continue;
+        touched_.push_back(g);
+        touched_start_.push_back(static_cast<Index>(k));
     }
-    corner_start_.push_back(static_cast<Index>(corner_.size()));
+    touched_start_.push_back(static_cast<Index>(corners.size()));
+    for (std::size_t i = 0; i < active_.size(); ++i)
+        take_forces(static_cast<Index>(i));
 }
 
 // The longest closed contact from which a face of this pair slides on to the next one, pressing in about the
@@ -419,11 +428,15 @@ const Pair* Contacts::contact_before(const Pair& pair, const Vector2d& normal,
 void Contacts::update(const std::vector<Vector2d>& place, const std::vector<Vector2d>& move, double dt,
                       double viscosity, int threads)
 {
-    double farthest = 0;
-    const auto n_gridpoints = static_cast<Index>(place.size());
-#pragma omp parallel for schedule(static) num_threads(threads) reduction(max : farthest) if (threads > 1)
-    for (Index g = 0; g < n_gridpoints; ++g)
-        farthest = std::max(farthest, (place[g] - sought_at_[g]).squaredNorm());
+    struct Farthest {
+        double squared = 0; // [m2]
+
+        void operator+=(const Farthest& other) { squared = std::max(squared, other.squared); }
+    };
+    const double farthest =
+        sum_in_chunks<Farthest>(static_cast<Index>(place.size()), threads, [&](Index g, Farthest& some) {
+            some += {(place[g] - sought_at_[g]).squaredNorm()};
+        }).squared;
     find_shapes(place, threads);
     if (4 * farthest > skin_ * skin_)
         seek(place, move);
@@ -600,8 +613,7 @@ void Contacts::update(const std::vector<Vector2d>& place, const std::vector<Vect
     };
     // An open pair that has been seen as such, and whose faces do not face each other: nothing more happens.
     const auto is_idle = [&](const Pair& pair) {
-        return !is_sought_ && !pair.is_closed && !pair.is_bonded() &&
-               !overlap_between(pair, faces_, shapes_, place);
+        return !is_sought_ && !pair.is_closed && !pair.is_bonded() && are_apart(pair, faces_, shapes_, place);
     };
     struct Sum {
         PairEnergy energy;
@@ -632,8 +644,11 @@ void Contacts::update(const std::vector<Vector2d>& place, const std::vector<Vect
             pair.friction = pair.damped = 0;
             return;
         }
+        const bool was_closed = pair.is_closed;
         evaluate(pair, p, false);
         some.take(pair);
+        if (!is_sought_ && (was_closed || pair.is_closed))
+            take_forces(i);
         some.closes = some.closes || closes_[p];
     });
     if (too_deep < n)
@@ -648,9 +663,8 @@ void Contacts::update(const std::vector<Vector2d>& place, const std::vector<Vect
     };
     // Those that lie behind come last: what they may have slid on from must have closed.
     for (const bool is_behind : {false, true})
-        for (const Index p : active_) {
-            if (!sum.closes)
-                break;
+        for (std::size_t i = 0; sum.closes && i < active_.size(); ++i) {
+            const Index p = active_[i];
             if (!closes_[p])
                 continue;
             Pair& pair = pairs_[p];
@@ -677,6 +691,8 @@ void Contacts::update(const std::vector<Vector2d>& place, const std::vector<Vect
             pair.is_known = true;
             evaluate(pair, p, true);
             sum.take(pair);
+            if (!is_sought_)
+                take_forces(static_cast<Index>(i));
         }
     energy_ = sum.energy;
     most_lead_ = sum.most_lead;
@@ -716,24 +732,28 @@ void Contacts::transfer(const Transfer& to, MovedRock& kept)
     to.values(pairs_, kept.sheared_in, &Pair::sheared_in);
 }
 
+void Contacts::take_forces(Index active)
+{
+    const Pair& pair = pairs_[active_[active]];
+    const Index* const at = &corner_place_[4 * active];
+    for (int end = 0; end < 2; ++end) {
+        const Vector2d force = pair.is_closed ? pair.force[end] : Vector2d(Vector2d::Zero());
+        corner_force_[at[0]][end] = (1 - pair.on_a[end]) * force;
+        corner_force_[at[1]][end] = pair.on_a[end] * force;
+        corner_force_[at[2]][end] = -(1 - pair.on_b[end]) * force;
+        corner_force_[at[3]][end] = -pair.on_b[end] * force;
+    }
+}
+
 void Contacts::add_forces(std::vector<Vector2d>& force, int threads) const
 {
-    const auto n = static_cast<Index>(touched_.size());
-#pragma omp parallel for schedule(static) num_threads(threads) if (threads > 1)
-    for (Index i = 0; i < n; ++i) {
-        Vector2d& sum = force[touched_[i]];
-        for (Index k = corner_start_[i]; k < corner_start_[i + 1]; ++k) {
-            const Pair& pair = pairs_[corner_[k] / 4];
-            if (!pair.is_closed)
-                continue;
-            const int corner = corner_[k] % 4;
-            for (int end = 0; end < 2; ++end) {
-                const double at = corner < 2 ? pair.on_a[end] : pair.on_b[end];
-                const double share = corner % 2 == 0 ? 1 - at : at;
-                sum += (corner < 2 ? share : -share) * pair.force[end];
-            }
-        }
-    }
+    for_each(static_cast<Index>(touched_.size()), threads, [&](Index i) {
+        Vector2d sum = force[touched_[i]];
+        for (Index k = touched_start_[i]; k < touched_start_[i + 1]; ++k)
+            for (const Vector2d& one : corner_force_[k])
+                sum += one;
+        force[touched_[i]] = sum;
+    });
 }
 
 } // namespace jointcreep::motion

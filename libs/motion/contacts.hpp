@@ -118,6 +118,7 @@ private:
     void seek(const std::vector<Vector2d>& place, const std::vector<Vector2d>& move);
     void find_shapes(const std::vector<Vector2d>& place, int threads);
     void find_active();
+    void take_forces(Index active);
     void find_corners(const std::vector<Vector2d>& place);
     const Pair* contact_before(const Pair& pair, const Vector2d& normal,
                                const std::vector<Vector2d>& place) const;
@@ -132,8 +133,11 @@ private:
     std::vector<std::vector<Index>> of_face_; // pairs of each face
     std::vector<Index> active_;               // pairs that may bear anything before the next search
     std::vector<char> closes_;                // pairs that may in this update
-    // Gridpoints of active pairs; of each one the corners there, 4 pair + {0, 1 of a, 2, 3 of b}.
-    std::vector<Index> touched_, corner_start_, corner_;
+    // Of active pairs the gridpoints, and what is added to each of them [N/m]: by each corner of each pair
+    // its shares of the two forces.
+    std::vector<Index> touched_, touched_start_;
+    std::vector<std::array<Vector2d, 2>> corner_force_;
+    std::vector<Index> corner_place_; // of the corners of each active pair, 0 and 1 of a, 2 and 3 of b, in it
     std::vector<Vector2d> sought_at_; // places when pairs were sought last
     std::vector<double> reach_;       // of faces, then [m]
     double skin_ = 0;                 // faces come within this of each other are pairs [m]

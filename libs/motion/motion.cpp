@@ -65,15 +65,26 @@ Matrix2d stretch_for(const Vector3d& stiffness, const Vector3d& stress)
     return principal.eigenvectors() * stretch.asDiagonal() * principal.eigenvectors().transpose();
 }
 
-// F = rotation * stretch.
+// F = rotation * stretch, by numbers of their own: what goes through matrices goes through memory.
 struct Polar {
-    Matrix2d rotation, stretch;
+    double cos, sin;       // of the rotation
+    double xx, xy, yx, yy; // of the stretch; xy and yx are the same but for rounding
+
+    Matrix2d rotation() const { return (Matrix2d() << cos, -sin, sin, cos).finished(); }
+    Matrix2d stretch() const { return (Matrix2d() << xx, xy, yx, yy).finished(); }
 };
-Polar polar_of(const Matrix2d& f)
+
+// Of a zone, from the inverse of its edges in the shape without stress.
+inline Polar polar_of(const std::array<Index, 3>& g, const std::vector<Vector2d>& place,
+                      const Matrix2d& inverse)
 {
-    const double c = f(0, 0) + f(1, 1), s = f(1, 0) - f(0, 1), r = std::hypot(c, s);
-    const Matrix2d rotation = (Matrix2d() << c / r, -s / r, s / r, c / r).finished();
-    return {rotation, rotation.transpose() * f};
+    const Vector2d one = place[g[1]] - place[g[0]], two = place[g[2]] - place[g[0]];
+    const double xx = one.x() * inverse(0, 0) + two.x() * inverse(1, 0),
+                 xy = one.x() * inverse(0, 1) + two.x() * inverse(1, 1),
+                 yx = one.y() * inverse(0, 0) + two.y() * inverse(1, 0),
+                 yy = one.y() * inverse(0, 1) + two.y() * inverse(1, 1);
+    const double c = xx + yy, s = yx - xy, r = std::hypot(c, s), cos = c / r, sin = s / r;
+    return {cos, sin, cos * xx + sin * yx, cos * xy + sin * yy, -sin * xx + cos * yx, -sin * xy + cos * yy};
 }
 
 // The part of R' P, P being the first Piola-Kirchhoff stress, that does no work on the stretch U but keeps
@@ -166,6 +177,7 @@ void Motion::start()
     checks_in_balance_ = 0;
     last_contact_force_.clear();
     in_zones_ = {};
+    corner_force_.assign(3 * zones_.size(), Vector2d::Zero());
     velocity_.assign(place_.size(), Vector2d::Zero());
     find_faces();
     find_bodies();
@@ -493,14 +505,13 @@ void Motion::find_forces(const std::vector<Vector2d>& move)
     for (const auto& [follower, leader] : rock_.tied)
         place_[follower] = place_[leader];
     const auto n_zones = static_cast<Index>(zones_.size());
-    const auto n = static_cast<Index>(place_.size());
     const double viscosity = settings_.stiffness_damping / dt_;
     const auto pull = [&](Index z, ZoneSums& sums) {
         if (!deforms(z))
             return;
         Zone& zone = zones_[z];
-        const Polar polar = polar_of(edges_of(zone.gridpoint, place_) * zone.inverse);
-        const Vector3d strain(polar.stretch(0, 0) - 1, polar.stretch(1, 1) - 1, 2 * polar.stretch(0, 1));
+        const Polar polar = polar_of(zone.gridpoint, place_, zone.inverse);
+        const Vector3d strain(polar.xx - 1, polar.yy - 1, 2 * polar.xy);
         Vector3d stress, held;
         Yielding* const yields = yielding(z);
         if (yields != nullptr) {
@@ -521,11 +532,22 @@ void Motion::find_forces(const std::vector<Vector2d>& move)
         sums.damped += zone.area / 2 * (zone.held + held).dot(strain - zone.strain); // as of contacts
         zone.held = held;
         zone.strain = strain;
-        Matrix2d acting = tensor(stress + held);
-        if (yields != nullptr)
-            acting += skew_part(polar.stretch, acting);
-        const Matrix2d forces = zone.area * polar.rotation * acting * zone.inverse.transpose();
-        zone.force = {forces.col(0) + forces.col(1), -forces.col(0), -forces.col(1)};
+        const Vector3d acting = stress + held;
+        double xy = acting[2], yx = acting[2];
+        if (yields != nullptr) {
+            const double w = skew_part(polar.stretch(), tensor(acting))(1, 0);
+            xy -= w;
+            yx += w;
+        }
+        // First Piola-Kirchhoff stress, times the area.
+        const double c = zone.area * polar.cos, s = zone.area * polar.sin;
+        const Vector2d of_x(c * acting[0] - s * yx, s * acting[0] + c * yx),
+            of_y(c * xy - s * acting[1], s * xy + c * acting[1]);
+        const Vector2d one = zone.inverse(0, 0) * of_x + zone.inverse(0, 1) * of_y,
+                       two = zone.inverse(1, 0) * of_x + zone.inverse(1, 1) * of_y;
+        corner_force_[3 * z] = one + two;
+        corner_force_[3 * z + 1] = -one;
+        corner_force_[3 * z + 2] = -two;
     };
     const double lost_before = in_zones_.friction; // at the start
     in_zones_ = sum_in_chunks<ZoneSums>(n_zones, rock_.threads, pull);
@@ -534,16 +556,12 @@ void Motion::find_forces(const std::vector<Vector2d>& move)
     const double held = release_factor();
     force_.resize(place_.size());
     const mechanics::Incidence& incidence = rock_.incidence;
-#pragma omp parallel for schedule(static) num_threads(rock_.threads) if (rock_.threads > 1)
-    for (Index g = 0; g < n; ++g) {
+    for_each(static_cast<Index>(place_.size()), rock_.threads, [&](Index g) {
         Vector2d force = rock_.load[g] + rock_.applied[g] + held * released_[g];
-        for (Index k = incidence.zone_start[g]; k < incidence.zone_start[g + 1]; ++k) {
-            const Index corner = incidence.zone_corner[k];
-            if (rock_.zones.is_present[corner / 3])
-                force += zones_[corner / 3].force[corner % 3];
-        }
+        for (Index k = incidence.zone_start[g]; k < incidence.zone_start[g + 1]; ++k)
+            force += corner_force_[incidence.zone_corner[k]];
         force_[g] = force;
-    }
+    });
     contacts_.add_forces(force_, rock_.threads);
     for (const auto& [follower, leader] : rock_.tied) {
         force_[leader] += force_[follower];
@@ -677,11 +695,12 @@ void Motion::step()
 void Motion::transfer(const Transfer& to, MovedRock& kept)
 {
     // All members, lest a new one is forgotten.
-    auto& [rock, mesh, settings, contacts, bodies, is_rigid, body_of, zones, yielding, place, velocity, move,
-           force, released, lost, origin, middle, low, high, inverse_mass, law_of_edge, ground, face_of_mesh,
-           zone_of_face, dt, last_dt, time, time_lost, stiffest_allowed, starts_from_rest, has_moved, energy,
-           stored_at_start, in_zones, last_kinetic, stiffest, largest_mean, ratio, force_change, fastest,
-           fastest_gridpoint, stiffest_gridpoint, checks_in_balance, last_contact_force] = *this;
+    auto& [rock, mesh, settings, contacts, bodies, is_rigid, body_of, zones, corner_force, yielding, place,
+           velocity, move, force, released, lost, origin, middle, low, high, inverse_mass, law_of_edge,
+           ground, face_of_mesh, zone_of_face, dt, last_dt, time, time_lost, stiffest_allowed,
+           starts_from_rest, has_moved, energy, stored_at_start, in_zones, last_kinetic, stiffest,
+           largest_mean, ratio, force_change, fastest, fastest_gridpoint, stiffest_gridpoint,
+           checks_in_balance, last_contact_force] = *this;
     to.values(origin, kept.origin);
     to.values(place, kept.place);
     for (std::size_t g = 0; g < origin.size(); ++g)
@@ -693,7 +712,7 @@ void Motion::transfer(const Transfer& to, MovedRock& kept)
     for (std::size_t z = 0; z < zones.size(); ++z)
         zones[z].inverse = inverse[z].reshaped(2, 2);
     for (Zone& zone : zones)
-        [[maybe_unused]] auto& [gridpoint, of_edges, area, stiffness, strain, forces, held] = zone;
+        [[maybe_unused]] auto& [gridpoint, of_edges, area, stiffness, strain, held] = zone;
     to.values(zones, kept.area, &Zone::area);
     to.values(zones, kept.strain, &Zone::strain);
     for (Yielding& one : yielding)
@@ -791,8 +810,7 @@ bool Motion::is_at_rest()
         farthest = std::max(farthest, place_[g].norm());
         double all = rock_.load[g].norm() + rock_.applied[g].norm() + contact_force[g].norm();
         for (Index k = incidence.zone_start[g]; k < incidence.zone_start[g + 1]; ++k)
-            if (const Index corner = incidence.zone_corner[k]; rock_.zones.is_present[corner / 3])
-                all += zones_[corner / 3].force[corner % 3].norm();
+            all += corner_force_[incidence.zone_corner[k]].norm();
         if (all > 0) {
             sum += all;
             ++n;
@@ -871,20 +889,19 @@ void Motion::put_back()
             continue;
         }
         const Zone& zone = zones_[z];
-        const Polar polar = polar_of(edges_of(zone.gridpoint, place_) * zone.inverse);
+        const Polar polar = polar_of(zone.gridpoint, place_, zone.inverse);
+        const Matrix2d rotation = polar.rotation(), stretch = polar.stretch();
         const Yielding* const yields = yielding(z);
         Matrix2d biot = tensor(yields != nullptr ? yields->stress : stress_of(zone.stiffness, zone.strain));
         if (yields != nullptr) {
-            biot += skew_part(polar.stretch, biot);
+            biot += skew_part(stretch, biot);
             const Eigen::Vector4d& p = yields->zone.plastic;
-            const Matrix2d plastic =
-                polar.rotation * tensor({p[0], p[1], p[3] / 2}) * polar.rotation.transpose();
+            const Matrix2d plastic = rotation * tensor({p[0], p[1], p[3] / 2}) * rotation.transpose();
             mechanics::YieldingZone& seen = rock_.zones.yielding[rock_.zones.yielding_number[z]];
             seen.plastic = {plastic(0, 0), plastic(1, 1), p[2], 2 * plastic(0, 1)};
             seen.stress_zz = yields->zone.stress_zz;
         }
-        const Matrix2d stress =
-            polar.rotation * biot * polar.stretch * polar.rotation.transpose() / polar.stretch.determinant();
+        const Matrix2d stress = rotation * biot * stretch * rotation.transpose() / stretch.determinant();
         rock_.zones.stress[z] = {stress(0, 0), stress(1, 1), (stress(0, 1) + stress(1, 0)) / 2};
     }
     const std::vector<Index> leader = leaders();

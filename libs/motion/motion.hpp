@@ -92,13 +92,11 @@ public:
 private:
     struct Zone {
         std::array<Index, 3> gridpoint;
-        Eigen::Matrix2d inverse;   // of the edges {1 - 0, 2 - 0} in the shape without stress [1/m]
-        double area = 0;           // of that shape [m2]
-        Eigen::Vector3d stiffness; // {C11, C12, C33} [Pa]
-        Eigen::Vector3d strain;    // Biot's {xx, yy, 2 xy} in the last step
-        std::array<Vector2d, 3> force{Vector2d::Zero(), Vector2d::Zero(),
-                                      Vector2d::Zero()}; // on its corners [N/m]
-        Eigen::Vector3d held{0, 0, 0};                   // stress of dashpots now [Pa]
+        Eigen::Matrix2d inverse;       // of the edges {1 - 0, 2 - 0} in the shape without stress [1/m]
+        double area = 0;               // of that shape [m2]
+        Eigen::Vector3d stiffness;     // {C11, C12, C33} [Pa]
+        Eigen::Vector3d strain;        // Biot's {xx, yy, 2 xy} in the last step
+        Eigen::Vector3d held{0, 0, 0}; // stress of dashpots now [Pa]
     };
 
     // Of all zones [J/m].
@@ -157,10 +155,11 @@ private:
     Settings settings_;
     Contacts contacts_;
     std::vector<Body> bodies_;
-    std::vector<char> is_rigid_;     // zones
-    std::vector<Index> body_of_;     // of gridpoints; -1 none
-    std::vector<Zone> zones_;        // of the assembly
-    std::vector<Yielding> yielding_; // by the assembly's yielding_number
+    std::vector<char> is_rigid_;         // zones
+    std::vector<Index> body_of_;         // of gridpoints; -1 none
+    std::vector<Zone> zones_;            // of the assembly
+    std::vector<Vector2d> corner_force_; // on the three corners of each zone [N/m]
+    std::vector<Yielding> yielding_;     // by the assembly's yielding_number
     // Places are counted from the section's middle: what they are rounded to must not depend on where it is.
     std::vector<Vector2d> place_, velocity_, move_, force_, released_;
     std::vector<Vector2d> lost_;       // of places by rounding, until now [m]
