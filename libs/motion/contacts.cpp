@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <optional>
 #include <tuple>
@@ -42,14 +43,18 @@ struct Overlap {
 std::optional<Overlap> overlap_along(const Vector2d& tangent, const std::array<Vector2d, 2>& a,
                                      const std::array<Vector2d, 2>& b)
 {
+    std::optional<Overlap> overlap;
     const std::array<double, 2> along_a{0, (a[1] - a[0]).dot(tangent)},
         along_b{(b[0] - a[0]).dot(tangent), (b[1] - a[0]).dot(tangent)}; // runs the other way
     if (along_a[1] <= 0 || along_b[0] <= along_b[1])
-        return {};
+        return overlap;
     const std::array<double, 2> at{std::max(along_a[0], along_b[1]), std::min(along_a[1], along_b[0])};
     if (at[1] <= at[0])
-        return {};
-    Overlap found{tangent, {}, {}, {}, {along_a[0] - along_b[1], along_b[0] - along_a[1]}, at[1] - at[0]};
+        return overlap;
+    Overlap& found = overlap.emplace();
+    found.tangent = tangent;
+    found.inset = {along_a[0] - along_b[1], along_b[0] - along_a[1]};
+    found.length = at[1] - at[0];
     const Vector2d normal = found.normal();
     for (int i = 0; i < 2; ++i) {
         found.on_a[i] = at[i] / along_a[1];
@@ -57,7 +62,7 @@ std::optional<Overlap> overlap_along(const Vector2d& tangent, const std::array<V
         found.gap[i] =
             (b[0] + found.on_b[i] * (b[1] - b[0]) - a[0] - found.on_a[i] * (a[1] - a[0])).dot(normal);
     }
-    return found;
+    return overlap;
 }
 
 std::array<Vector2d, 2> ends_of(const std::array<Index, 2>& face, const std::vector<Vector2d>& place)
@@ -270,6 +275,7 @@ void Contacts::seek(const std::vector<Vector2d>& place, const std::vector<Vector
     sought_at_ = place;
     find_corners(place);
     is_sought_ = true;
+    farthest_ = 0;
     reach_.assign(faces_.gridpoint.size(), skin_ / 2);
     std::vector<std::pair<Index, Index>> near;
     for (const Pair& pair : pairs_) {
@@ -336,10 +342,11 @@ void Contacts::seek(const std::vector<Vector2d>& place, const std::vector<Vector
     std::iota(active_.begin(), active_.end(), 0);
 }
 
-// Of all pairs, those that may bear anything before faces are sought again. Until then no gridpoint is
-// farther than half the skin from where it was, so that faces turn little, and come no nearer than by the
-// skin; and where one is in another, they come out no farther than they reach. The others have been seen
-// once, as they are open, and would stay as they are.
+// Of all pairs, those that may bear anything before faces are sought again, and how far gridpoints have to go
+// for that at least. Until then none is farther than half the skin from where it was, so that faces turn
+// little, and come no nearer than by twice the way; and where one is in another, or comes to be, others come
+// out no farther than that. The pairs that are left out have been seen once, are open, and would stay as they
+// are.
 void Contacts::find_active()
 {
     double most_lead = 0; // that an unknown pair may inherit
@@ -349,7 +356,8 @@ void Contacts::find_active()
     const auto turn = [&](const Vector2d& way) { // of a face, at most
         return std::asin(std::min(1.0, skin_ / way.norm()));
     };
-    const auto may_touch = [&](const Pair& pair) {
+    const auto way_to = [&](const Pair& pair) {
+        constexpr double never = std::numeric_limits<double>::infinity();
         const auto a = ends_of(faces_.gridpoint[pair.a], sought_at_),
                    b = ends_of(faces_.gridpoint[pair.b], sought_at_);
         const Vector2d along_a = a[1] - a[0], along_b = b[0] - b[1];
@@ -364,15 +372,22 @@ void Contacts::find_active()
         }
         const double lead = pair.is_known ? std::max({0.0, pair.lead[0], pair.lead[1]}) : most_lead;
         if (apart > (reach_[pair.a] + reach_[pair.b] + lead) * (1 + 1e-9))
-            return false;
+            return never;
         const double between =
             std::atan2(std::abs(along_a.x() * along_b.y() - along_a.y() * along_b.x()), along_a.dot(along_b));
-        return between - turn(along_a) - turn(along_b) <= std::acos(least_facing) + 1e-9;
+        if (between - turn(along_a) - turn(along_b) > std::acos(least_facing) + 1e-9)
+            return never;
+        return (apart * (1 - 1e-9) - (reach_[pair.a] + reach_[pair.b] - skin_) - lead) / 4;
     };
     active_.clear();
-    for (std::size_t p = 0; p < pairs_.size(); ++p)
-        if (pairs_[p].is_closed || pairs_[p].is_bonded() || may_touch(pairs_[p]))
-            active_.push_back(static_cast<Index>(p));
+    way_to_.clear();
+    for (std::size_t p = 0; p < pairs_.size(); ++p) {
+        const double way = pairs_[p].is_closed || pairs_[p].is_bonded() ? 0.0 : way_to(pairs_[p]);
+        if (way > skin_ / 2)
+            continue;
+        active_.push_back(static_cast<Index>(p));
+        way_to_.push_back(way);
+    }
 
     std::vector<std::array<Index, 2>> corners; // {gridpoint, 4 active + corner}
     for (std::size_t i = 0; i < active_.size(); ++i) {
@@ -433,12 +448,13 @@ void Contacts::update(const std::vector<Vector2d>& place, const std::vector<Vect
 
         void operator+=(const Farthest& other) { squared = std::max(squared, other.squared); }
     };
-    const double farthest =
+    const double squared =
         sum_in_chunks<Farthest>(static_cast<Index>(place.size()), threads, [&](Index g, Farthest& some) {
             some += {(place[g] - sought_at_[g]).squaredNorm()};
         }).squared;
     find_shapes(place, threads);
-    if (4 * farthest > skin_ * skin_)
+    farthest_ = std::max(farthest_, std::sqrt(squared));
+    if (4 * squared > skin_ * skin_)
         seek(place, move);
 
     const auto n = static_cast<Index>(pairs_.size());
@@ -637,6 +653,8 @@ void Contacts::update(const std::vector<Vector2d>& place, const std::vector<Vect
         }
     };
     Sum sum = sum_in_chunks<Sum>(static_cast<Index>(active_.size()), threads, [&](Index i, Sum& some) {
+        if (!is_sought_ && farthest_ < way_to_[i])
+            return;
         const Index p = active_[i];
         Pair& pair = pairs_[p];
         if (is_idle(pair)) {

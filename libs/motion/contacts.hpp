@@ -132,6 +132,7 @@ private:
     std::vector<Pair> pairs_;                 // in order of {a, b}
     std::vector<std::vector<Index>> of_face_; // pairs of each face
     std::vector<Index> active_;               // pairs that may bear anything before the next search
+    std::vector<double> way_to_;              // how far gridpoints go before they can [m]
     std::vector<char> closes_;                // pairs that may in this update
     // Of active pairs the gridpoints, and what is added to each of them [N/m]: by each corner of each pair
     // its shares of the two forces.
@@ -139,6 +140,7 @@ private:
     std::vector<std::array<Vector2d, 2>> corner_force_;
     std::vector<Index> corner_place_; // of the corners of each active pair, 0 and 1 of a, 2 and 3 of b, in it
     std::vector<Vector2d> sought_at_; // places when pairs were sought last
+    double farthest_ = 0;             // that a gridpoint has been from there since [m]
     std::vector<double> reach_;       // of faces, then [m]
     double skin_ = 0;                 // faces come within this of each other are pairs [m]
     bool is_sought_ = false;          // since the last update
