@@ -3,10 +3,13 @@
 #include "model/disjoint_sets.hpp"
 #include "model/error.hpp"
 #include "model/signs.hpp"
+#include "motion/in_chunks.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
+#include <numeric>
 #include <optional>
 #include <tuple>
 #include <unordered_map>
@@ -42,14 +45,18 @@ struct Overlap {
 std::optional<Overlap> overlap_along(const Vector2d& tangent, const std::array<Vector2d, 2>& a,
                                      const std::array<Vector2d, 2>& b)
 {
+    std::optional<Overlap> overlap;
     const std::array<double, 2> along_a{0, (a[1] - a[0]).dot(tangent)},
         along_b{(b[0] - a[0]).dot(tangent), (b[1] - a[0]).dot(tangent)}; // runs the other way
     if (along_a[1] <= 0 || along_b[0] <= along_b[1])
-        return {};
+        return overlap;
     const std::array<double, 2> at{std::max(along_a[0], along_b[1]), std::min(along_a[1], along_b[0])};
     if (at[1] <= at[0])
-        return {};
-    Overlap found{tangent, {}, {}, {}, {along_a[0] - along_b[1], along_b[0] - along_a[1]}, at[1] - at[0]};
+        return overlap;
+    Overlap& found = overlap.emplace();
+    found.tangent = tangent;
+    found.inset = {along_a[0] - along_b[1], along_b[0] - along_a[1]};
+    found.length = at[1] - at[0];
     const Vector2d normal = found.normal();
     for (int i = 0; i < 2; ++i) {
         found.on_a[i] = at[i] / along_a[1];
@@ -57,29 +64,7 @@ std::optional<Overlap> overlap_along(const Vector2d& tangent, const std::array<V
         found.gap[i] =
             (b[0] + found.on_b[i] * (b[1] - b[0]) - a[0] - found.on_a[i] * (a[1] - a[0])).dot(normal);
     }
-    return found;
-}
-
-// Seen in the plane of the contact; none where the faces do not look at each other or nothing overlaps.
-// Sharpnesses are those of the faces' ends.
-std::optional<Overlap> overlap_of(const std::array<Vector2d, 2>& a, const std::array<Vector2d, 2>& b,
-                                  const std::array<double, 2>& sharp_a, const std::array<double, 2>& sharp_b)
-{
-    const double length_a = (a[1] - a[0]).norm(), length_b = (b[1] - b[0]).norm();
-    const Vector2d along_a = (a[1] - a[0]) / length_a, along_b = (b[0] - b[1]) / length_b;
-    if (along_a.dot(along_b) < least_facing)
-        return {};
-    const auto between = overlap_along((along_a + along_b).normalized(), a, b);
-    if (!between)
-        return {};
-    // Which of the two ends that meet at the deeper side lies inside the other face, and whether it is a
-    // corner: an end where the outline runs on straight belongs to a face that something sinks into farther
-    // on.
-    const int deep = between->gap[1] < between->gap[0] ? 1 : 0;
-    const double is_end_of_a =
-        std::clamp(0.5 + between->inset[deep] / (2 * rounding * std::min(length_a, length_b)), 0.0, 1.0);
-    const double of_b = is_end_of_a * sharp_a[deep] + (1 - is_end_of_a) * (1 - sharp_b[1 - deep]);
-    return overlap_along((of_b * along_b + (1 - of_b) * along_a).normalized(), a, b);
+    return overlap;
 }
 
 std::array<Vector2d, 2> ends_of(const std::array<Index, 2>& face, const std::vector<Vector2d>& place)
@@ -87,13 +72,42 @@ std::array<Vector2d, 2> ends_of(const std::array<Index, 2>& face, const std::vec
     return {place[face[0]], place[face[1]]};
 }
 
-// The same of a pair of these faces.
-std::optional<Overlap> overlap_of(const Pair& pair, const Faces& faces,
-                                  const std::vector<std::array<double, 2>>& sharpness,
-                                  const std::vector<Vector2d>& place)
+// Seen in the plane of the contact; none where the faces do not look at each other or nothing overlaps.
+[[gnu::flatten]] std::optional<Overlap> overlap_of(const Pair& pair, const Faces& faces,
+                                                   const std::vector<FaceShape>& shapes,
+                                                   const std::vector<Vector2d>& place)
 {
-    return overlap_of(ends_of(faces.gridpoint[pair.a], place), ends_of(faces.gridpoint[pair.b], place),
-                      sharpness[pair.a], sharpness[pair.b]);
+    const FaceShape &shape_a = shapes[pair.a], &shape_b = shapes[pair.b];
+    const Vector2d along_a = shape_a.along, along_b = -shape_b.along;
+    if (along_a.dot(along_b) < least_facing)
+        return {};
+    const auto a = ends_of(faces.gridpoint[pair.a], place), b = ends_of(faces.gridpoint[pair.b], place);
+    const auto between = overlap_along((along_a + along_b).normalized(), a, b);
+    if (!between)
+        return {};
+    // Which of the two ends that meet at the deeper side lies inside the other face, and whether it is a
+    // corner: an end where the outline runs on straight belongs to a face that something sinks into farther
+    // on.
+    const int deep = between->gap[1] < between->gap[0] ? 1 : 0;
+    const double is_end_of_a = std::clamp(
+        0.5 + between->inset[deep] / (2 * rounding * std::min(shape_a.length, shape_b.length)), 0.0, 1.0);
+    const double of_b = is_end_of_a * shape_a.sharp[deep] + (1 - is_end_of_a) * (1 - shape_b.sharp[1 - deep]);
+    return overlap_along((of_b * along_b + (1 - of_b) * along_a).normalized(), a, b);
+}
+
+// Whether two faces do not look at each other, or do not overlap by more than rounding: then there is no
+// overlap_of() them. Most pairs that are near each other are like that.
+bool are_apart(const Pair& pair, const Faces& faces, const std::vector<FaceShape>& shapes,
+               const std::vector<Vector2d>& place)
+{
+    const Vector2d along_a = shapes[pair.a].along, along_b = -shapes[pair.b].along;
+    if (along_a.dot(along_b) < least_facing)
+        return true;
+    const Vector2d between = along_a + along_b;
+    const auto a = ends_of(faces.gridpoint[pair.a], place), b = ends_of(faces.gridpoint[pair.b], place);
+    const double end_of_a = (a[1] - a[0]).dot(between), first_of_b = (b[1] - a[0]).dot(between),
+                 last_of_b = (b[0] - a[0]).dot(between);
+    return std::min(end_of_a, last_of_b) - std::max(0.0, first_of_b) <= -1e-9 * end_of_a;
 }
 
 Vector2d at(const std::array<Vector2d, 2>& ends, double fraction)
@@ -107,25 +121,21 @@ class Part
 {
 public:
     Part(const joint::Law& law, const std::array<double, 2>& closing, double length)
-        : coulomb_(std::get_if<joint::Coulomb>(&law)), barton_bandis_(std::get_if<joint::BartonBandis>(&law)),
-          closing_(closing), length_(length)
+        : coulomb_(std::get_if<joint::Coulomb>(&law)), closing_(closing), length_(length)
     {
+        if (coulomb_ == nullptr)
+            add_up(std::get<joint::BartonBandis>(law));
     }
 
     double deep() const { return (closing_[0] + closing_[1]) / 2; } // mean closing [m]
     // That presses [N/m].
-    double force() const
-    {
-        if (coulomb_ != nullptr)
-            return coulomb_->k_n * length_ * deep();
-        return sum([](double, double p) { return p; });
-    }
+    double force() const { return coulomb_ != nullptr ? coulomb_->k_n * length_ * deep() : sums_.force; }
     // On one end, of a given share of the force: forces on both are as the traction between them [N/m].
     double force_on(int end, double share) const
     {
         if (coulomb_ != nullptr)
             return share * coulomb_->k_n * length_ * (2 * closing_[end] + closing_[1 - end]) / 6;
-        return share * sum([&](double at, double p) { return (end == 0 ? 1 - at : at) * p; });
+        return share * sums_.force_on[end];
     }
     // Shear force it bears [N/m].
     double strength(bool is_broken) const
@@ -133,7 +143,7 @@ public:
         if (coulomb_ != nullptr)
             return std::max(0.0, coulomb_->cohesion_of(is_broken) * length_ +
                                      force() * coulomb_->tan_phi_of(is_broken));
-        return sum([&](double, double p) { return barton_bandis_->strength(p); });
+        return sums_.strength;
     }
     // In the normal springs [J/m].
     double stored() const
@@ -141,38 +151,45 @@ public:
         if (coulomb_ != nullptr)
             return coulomb_->k_n * length_ *
                    (closing_[0] * closing_[0] + closing_[0] * closing_[1] + closing_[1] * closing_[1]) / 6;
-        return sum([&](double, double p) { return barton_bandis_->stored(p); });
+        return sums_.stored;
     }
     // Of the normal springs, in the middle and where it is largest [Pa/m].
-    double stiffness() const { return stiffness_at(deep()); }
-    double stiffest() const { return stiffness_at(std::max(closing_[0], closing_[1])); }
+    double stiffness() const { return coulomb_ != nullptr ? coulomb_->k_n : sums_.stiffness; }
+    double stiffest() const { return coulomb_ != nullptr ? coulomb_->k_n : sums_.stiffest; }
 
 private:
-    double stiffness_at(double closing) const
-    {
-        return coulomb_ != nullptr ? coulomb_->k_n
-                                   : barton_bandis_->stiffness(barton_bandis_->pressure(closing));
-    }
-    // Of a function of the fraction along the part and the pressure there.
-    template <class Function>
-    double sum(const Function& function) const
+    // Apart from Coulomb's law, which nearly all have, and which would be slower with this in its way.
+    [[gnu::noinline]] void add_up(const joint::BartonBandis& law)
     {
         constexpr std::array<std::array<double, 2>, 5> points{{{0.046910077030668, 0.118463442528095},
                                                                {0.230765344947158, 0.239314335249683},
                                                                {0.5, 0.284444444444444},
                                                                {0.769234655052842, 0.239314335249683},
                                                                {0.953089922969332, 0.118463442528095}}};
-        double all = 0;
-        for (const auto& [at, weight] : points)
-            all += weight *
-                   function(at, barton_bandis_->pressure(closing_[0] + at * (closing_[1] - closing_[0])));
-        return length_ * all;
+        sums_ = {};
+        for (const auto& [at, weight] : points) {
+            const double p = law.pressure(closing_[0] + at * (closing_[1] - closing_[0]));
+            sums_.force += weight * p;
+            sums_.force_on[0] += weight * ((1 - at) * p);
+            sums_.force_on[1] += weight * (at * p);
+            sums_.strength += weight * law.strength(p);
+            sums_.stored += weight * law.stored(p);
+        }
+        for (double* const sum :
+             {&sums_.force, &sums_.force_on[0], &sums_.force_on[1], &sums_.strength, &sums_.stored})
+            *sum *= length_;
+        sums_.stiffness = law.stiffness(law.pressure(deep()));
+        sums_.stiffest = law.stiffness(law.pressure(std::max(closing_[0], closing_[1])));
     }
 
-    const joint::Coulomb* coulomb_;
-    const joint::BartonBandis* barton_bandis_;
+    struct Sums {
+        double force, strength, stored, stiffness, stiffest;
+        std::array<double, 2> force_on;
+    };
+    const joint::Coulomb* coulomb_; // none: Barton and Bandis's law
     std::array<double, 2> closing_;
     double length_;
+    Sums sums_; // of Barton and Bandis's law alone
 };
 
 } // namespace
@@ -201,13 +218,28 @@ void Contacts::set_faces(Faces faces, std::vector<Pair> known, const std::vector
     for (const auto& [from, to] : faces_.gridpoint)
         lengths.push_back((place[to] - place[from]).norm());
     stiffest_ = stiffest_open_;
+    most_lead_ = 0;
+    for (const Pair& pair : pairs_)
+        if (pair.is_closed)
+            most_lead_ = std::max({most_lead_, pair.lead[0], pair.lead[1]});
     skin_ = 0;
     if (!lengths.empty()) {
         const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
         std::nth_element(lengths.begin(), middle, lengths.end());
         skin_ = *middle / 4;
     }
+    find_shapes(place, 1);
     seek(place, std::vector<Vector2d>(place.size(), Vector2d::Zero()));
+}
+
+void Contacts::find_shapes(const std::vector<Vector2d>& place, int threads)
+{
+    shapes_.resize(faces_.gridpoint.size());
+    for_each(static_cast<Index>(shapes_.size()), threads, [&](Index f) {
+        const Vector2d way = place[faces_.gridpoint[f][1]] - place[faces_.gridpoint[f][0]];
+        shapes_[f].length = way.norm();
+        shapes_[f].along = way / shapes_[f].length;
+    });
 }
 
 void Contacts::find_corners(const std::vector<Vector2d>& place)
@@ -216,7 +248,8 @@ void Contacts::find_corners(const std::vector<Vector2d>& place)
     std::unordered_multimap<Index, Index> starting; // faces, by their first gridpoint
     for (std::size_t f = 0; f < faces_.gridpoint.size(); ++f)
         starting.emplace(faces_.gridpoint[f][0], static_cast<Index>(f));
-    sharpness_.assign(faces_.gridpoint.size(), {1, 1}); // also where the outline of a ground ends
+    for (FaceShape& shape : shapes_)
+        shape.sharp = {1, 1}; // also where the outline of a ground ends
     DisjointSets sides(faces_.gridpoint.size());
     for (std::size_t f = 0; f < faces_.gridpoint.size(); ++f) {
         const auto p = ends_of(faces_.gridpoint[f], place);
@@ -235,7 +268,7 @@ void Contacts::find_corners(const std::vector<Vector2d>& place)
             }
         }
         if (next >= 0)
-            sharpness_[f][1] = sharpness_[next][0] = std::clamp(most / corner, 0.0, 1.0);
+            shapes_[f].sharp[1] = shapes_[next].sharp[0] = std::clamp(most / corner, 0.0, 1.0);
         if (next >= 0 && std::abs(most) < corner)
             sides.join(static_cast<Index>(f), next);
     }
@@ -253,17 +286,19 @@ void Contacts::seek(const std::vector<Vector2d>& place, const std::vector<Vector
     ++searches_;
     sought_at_ = place;
     find_corners(place);
-    std::vector<double> reach(faces_.gridpoint.size(), skin_ / 2);
+    is_sought_ = true;
+    farthest_ = raised_ = 0;
+    reach_.assign(faces_.gridpoint.size(), skin_ / 2);
     std::vector<std::pair<Index, Index>> near;
     for (const Pair& pair : pairs_) {
         if (!pair.is_closed && !pair.is_bonded())
             continue;
         near.emplace_back(pair.a, pair.b);
-        const auto found = overlap_of(pair, faces_, sharpness_, place);
+        const auto found = overlap_of(pair, faces_, shapes_, place);
         if (found)
             for (const Index f : {pair.a, pair.b})
-                reach[f] = std::max(reach[f],
-                                    skin_ / 2 + std::max(std::abs(found->gap[0]), std::abs(found->gap[1])));
+                reach_[f] = std::max(reach_[f],
+                                     skin_ / 2 + std::max(std::abs(found->gap[0]), std::abs(found->gap[1])));
     }
     const double cell = 8 * skin_;
     struct Entry {
@@ -279,7 +314,7 @@ void Contacts::seek(const std::vector<Vector2d>& place, const std::vector<Vector
     const auto cell_of = [&](double at) { return static_cast<std::int64_t>(std::floor(at / cell)); };
     for (std::size_t f = 0; f < faces_.gridpoint.size(); ++f) {
         const auto ends = ends_of(faces_.gridpoint[f], place), way = ends_of(faces_.gridpoint[f], move);
-        const Vector2d beyond = Vector2d::Constant(reach[f]);
+        const Vector2d beyond = Vector2d::Constant(reach_[f]);
         box.push_back(
             {ends[0].cwiseMin(ends[1]).cwiseMin(ends[0] - way[0]).cwiseMin(ends[1] - way[1]) - beyond,
              ends[0].cwiseMax(ends[1]).cwiseMax(ends[0] - way[0]).cwiseMax(ends[1] - way[1]) + beyond});
@@ -314,6 +349,9 @@ void Contacts::seek(const std::vector<Vector2d>& place, const std::vector<Vector
     for (std::size_t p = 0; p < pairs_.size(); ++p)
         for (const Index f : {pairs_[p].a, pairs_[p].b})
             of_face_[f].push_back(static_cast<Index>(p));
+    closes_.assign(pairs_.size(), 0);
+    active_.resize(pairs_.size());
+    std::iota(active_.begin(), active_.end(), 0);
     joints_.clear();
     if (!dilates_)
         return;
@@ -327,7 +365,7 @@ void Contacts::seek(const std::vector<Vector2d>& place, const std::vector<Vector
             most = std::max(most, pairs_[p].is_known ? pairs_[p].dilation : 0.0);
         for (const Index p : joint)
             if (!pairs_[p].is_known && pairs_[p].dilation < most) {
-                const auto found = overlap_of(pairs_[p], faces_, sharpness_, place);
+                const auto found = overlap_of(pairs_[p], faces_, shapes_, place);
                 if (!found || -found->sunk() > most)
                     pairs_[p].raise(most - pairs_[p].dilation);
             }
@@ -348,6 +386,7 @@ void Contacts::dilate(const std::vector<Vector2d>& place, const std::vector<Vect
     for (Pair& pair : pairs_)
         pair.raised = 0;
     std::vector<Sheared> sheared;
+    double most = 0;
     for (const std::vector<Index>& joint : joints_) {
         sheared.clear();
         double all = 0, left = 0;
@@ -412,11 +451,85 @@ void Contacts::dilate(const std::vector<Vector2d>& place, const std::vector<Vect
                 break;
         }
         x = std::min(x, left);
+        most = std::max(most, x);
         for (const Index p : joint) {
             pairs_[p].raised = x;
             pairs_[p].raise(x);
         }
     }
+    raised_ += most;
+}
+
+// Of all pairs, those that may bear anything before faces are sought again, and how far gridpoints have to go
+// for that at least. Until then none is farther than half the skin from where it was, so that faces turn
+// little, and come no nearer than by twice the way; and where one is in another, or comes to be, others come
+// out no farther than that. The pairs that are left out have been seen once, are open, and would stay as they
+// are.
+void Contacts::find_active()
+{
+    double most_lead = 0; // that an unknown pair may inherit
+    for (const Pair& pair : pairs_)
+        if (pair.is_known)
+            most_lead = std::max({most_lead, pair.lead[0], pair.lead[1]});
+    const auto turn = [&](const Vector2d& way) { // of a face, at most
+        return std::asin(std::min(1.0, skin_ / way.norm()));
+    };
+    const auto way_to = [&](const Pair& pair) {
+        constexpr double never = std::numeric_limits<double>::infinity();
+        const auto a = ends_of(faces_.gridpoint[pair.a], sought_at_),
+                   b = ends_of(faces_.gridpoint[pair.b], sought_at_);
+        const Vector2d along_a = a[1] - a[0], along_b = b[0] - b[1];
+        // How far apart the faces are at least: seen along and across either.
+        double apart = 0;
+        for (const Vector2d& axis : {along_a, along(along_a), along_b, along(along_b)}) {
+            const double p = (b[0] - a[0]).dot(axis), q = (b[1] - a[0]).dot(axis),
+                         end = (a[1] - a[0]).dot(axis);
+            apart = std::max(
+                apart, std::max(std::min(p, q) - std::max(0.0, end), std::min(0.0, end) - std::max(p, q)) /
+                           axis.norm());
+        }
+        const double lead = std::max({pair.is_known ? 0.0 : most_lead, pair.lead[0], pair.lead[1]});
+        if (apart > (reach_[pair.a] + reach_[pair.b] + lead) * (1 + 1e-9))
+            return never;
+        const double between =
+            std::atan2(std::abs(along_a.x() * along_b.y() - along_a.y() * along_b.x()), along_a.dot(along_b));
+        if (between - turn(along_a) - turn(along_b) > std::acos(least_facing) + 1e-9)
+            return never;
+        return (apart * (1 - 1e-9) - (reach_[pair.a] + reach_[pair.b] - skin_) - lead) / 4;
+    };
+    active_.clear();
+    way_to_.clear();
+    for (std::size_t p = 0; p < pairs_.size(); ++p) {
+        const double way = pairs_[p].is_closed || pairs_[p].is_bonded() ? 0.0 : way_to(pairs_[p]);
+        if (way > skin_ / 2)
+            continue;
+        active_.push_back(static_cast<Index>(p));
+        way_to_.push_back(way);
+    }
+
+    std::vector<std::array<Index, 2>> corners; // {gridpoint, 4 active + corner}
+    for (std::size_t i = 0; i < active_.size(); ++i) {
+        const auto &a = faces_.gridpoint[pairs_[active_[i]].a], &b = faces_.gridpoint[pairs_[active_[i]].b];
+        auto corner = static_cast<Index>(4 * i);
+        for (const Index g : {a[0], a[1], b[0], b[1]})
+            corners.push_back({g, corner++});
+    }
+    std::sort(corners.begin(), corners.end());
+    corner_force_.resize(corners.size());
+    corner_place_.resize(corners.size());
+    touched_.clear();
+    touched_start_.clear();
+    for (std::size_t k = 0; k < corners.size(); ++k) {
+        const auto [g, corner] = corners[k];
+        corner_place_[corner] = static_cast<Index>(k);
+        if (k > 0 && corners[k - 1][0] == g)
+            continue;
+        touched_.push_back(g);
+        touched_start_.push_back(static_cast<Index>(k));
+    }
+    touched_start_.push_back(static_cast<Index>(corners.size()));
+    for (std::size_t i = 0; i < active_.size(); ++i)
+        take_forces(static_cast<Index>(i));
 }
 
 // The longest closed contact from which a face of this pair slides on to the next one, pressing in about the
@@ -448,21 +561,25 @@ const Pair* Contacts::contact_before(const Pair& pair, const Vector2d& normal,
 void Contacts::update(const std::vector<Vector2d>& place, const std::vector<Vector2d>& move, double dt,
                       double viscosity, int threads)
 {
-    double farthest = 0;
-    for (std::size_t g = 0; g < place.size(); ++g)
-        farthest = std::max(farthest, (place[g] - sought_at_[g]).squaredNorm());
-    if (4 * farthest > skin_ * skin_)
+    struct Farthest {
+        double squared = 0; // [m2]
+
+        void operator+=(const Farthest& other) { squared = std::max(squared, other.squared); }
+    };
+    const double squared =
+        sum_in_chunks<Farthest>(static_cast<Index>(place.size()), threads, [&](Index g, Farthest& some) {
+            some += {(place[g] - sought_at_[g]).squaredNorm()};
+        }).squared;
+    find_shapes(place, threads);
+    farthest_ = std::max(farthest_, std::sqrt(squared));
+    if (std::sqrt(squared) + raised_ > skin_ / 2)
         seek(place, move);
     if (dilates_)
         dilate(place, move);
 
     const auto n = static_cast<Index>(pairs_.size());
-    std::vector<char> closes(pairs_.size(), 0); // if it may
     Index too_deep = n;
-    double most_lead = 0;
-    for (const Pair& pair : pairs_)
-        if (pair.is_closed)
-            most_lead = std::max({most_lead, pair.lead[0], pair.lead[1]});
+    const double most_lead = most_lead_;
     const auto depth_of = [&](const Pair& pair) {
         return std::min(faces_.depth[pair.a], faces_.depth[pair.b]);
     };
@@ -517,7 +634,7 @@ void Contacts::update(const std::vector<Vector2d>& place, const std::vector<Vect
                 pair.is_broken = true;
             pair.tau = pair.length = pair.sigma = 0;
         };
-        const auto found = overlap_of(pair, faces_, sharpness_, place);
+        const auto found = overlap_of(pair, faces_, shapes_, place);
         if (!found) {
             open();
             pair.friction += last_pressed_in; // where rock slides off an edge
@@ -541,7 +658,7 @@ void Contacts::update(const std::vector<Vector2d>& place, const std::vector<Vect
             return;
         }
         if (!pair.is_closed && !is_bonded && !may_close) {
-            closes[index] = 1;
+            closes_[index] = 1; // if it may
             return;
         }
         std::array<double, 2> part{0, 1}; // of the overlap that is closed
@@ -644,14 +761,53 @@ void Contacts::update(const std::vector<Vector2d>& place, const std::vector<Vect
         if (weakens)
             leave_bonds();
         pair.pressed_in =
-            Part(law, closing, weakens ? (part[1] - part[0]) * found->length : pair.length).stored();
+            weakens ? Part(law, closing, (part[1] - part[0]) * found->length).stored() : closed.stored();
         if (in_bonds > 0)
             pair.friction += in_bonds - pair.pressed_in;
         pair.sheared_in = sheared_in(shear, pair.length);
     };
-#pragma omp parallel for schedule(static) num_threads(threads) if (threads > 1)
-    for (Index p = 0; p < n; ++p)
-        evaluate(pairs_[p], p, false);
+    // An open pair that has been seen as such, and whose faces do not face each other: nothing more happens.
+    const auto is_idle = [&](const Pair& pair) {
+        return !is_sought_ && !pair.is_closed && !pair.is_bonded() && are_apart(pair, faces_, shapes_, place);
+    };
+    struct Sum {
+        PairEnergy energy;
+        double stiffest = 0, most_lead = 0;
+        bool closes = false;
+
+        void take(const Pair& pair)
+        {
+            energy += {pair.stored(), pair.friction, pair.damped};
+            if (!pair.is_closed)
+                return;
+            stiffest = std::max(stiffest, pair.stiffest);
+            most_lead = std::max({most_lead, pair.lead[0], pair.lead[1]});
+        }
+        void operator+=(const Sum& other)
+        {
+            energy += other.energy;
+            stiffest = std::max(stiffest, other.stiffest);
+            most_lead = std::max(most_lead, other.most_lead);
+            closes = closes || other.closes;
+        }
+    };
+    Sum sum = sum_in_chunks<Sum>(static_cast<Index>(active_.size()), threads, [&](Index i, Sum& some) {
+        if (!is_sought_ && farthest_ + raised_ < way_to_[i])
+            return;
+        const Index p = active_[i];
+        Pair& pair = pairs_[p];
+        if (is_idle(pair)) {
+            pair.is_slipping = false;
+            pair.friction = pair.damped = 0;
+            return;
+        }
+        const bool was_closed = pair.is_closed;
+        evaluate(pair, p, false);
+        some.take(pair);
+        if (!is_sought_ && (was_closed || pair.is_closed))
+            take_forces(i);
+        some.closes = some.closes || closes_[p];
+    });
     if (too_deep < n)
         throw equilibrium_error(
             "two pieces of rock overlap at " +
@@ -659,18 +815,20 @@ void Contacts::update(const std::vector<Vector2d>& place, const std::vector<Vect
             " by more than half the depth of a zone; the joint's normal stiffness is too small "
             "for what presses on it");
     const auto sunk_of = [&](const Pair& pair) {
-        const auto found = overlap_of(pair, faces_, sharpness_, place);
+        const auto found = overlap_of(pair, faces_, shapes_, place);
         return found ? found->sunk() : 0.0;
     };
     // Those that lie behind come last: what they may have slid on from must have closed.
     for (const bool is_behind : {false, true})
-        for (Index p = 0; p < n; ++p) {
-            if (!closes[p])
+        for (std::size_t i = 0; sum.closes && i < active_.size(); ++i) {
+            const Index p = active_[i];
+            if (!closes_[p])
                 continue;
             Pair& pair = pairs_[p];
-            const auto found = overlap_of(pair, faces_, sharpness_, place);
+            const auto found = overlap_of(pair, faces_, shapes_, place);
             if (found->is_behind() != is_behind)
                 continue;
+            closes_[p] = 0;
             const Pair* const before = contact_before(pair, found->normal(), place);
             if (is_deep(pair, *found) &&
                 (before == nullptr || found->sunk() > sunk_of(*before) + deepest_new * depth_of(pair)))
@@ -693,12 +851,16 @@ void Contacts::update(const std::vector<Vector2d>& place, const std::vector<Vect
             }
             pair.is_known = true;
             evaluate(pair, p, true);
+            sum.take(pair);
+            if (!is_sought_)
+                take_forces(static_cast<Index>(i));
         }
-    stiffest_ = stiffest_open_;
-    if (stiffens_)
-        for (const Pair& pair : pairs_)
-            if (pair.is_closed)
-                stiffest_ = std::max(stiffest_, pair.stiffest);
+    energy_ = sum.energy;
+    most_lead_ = sum.most_lead;
+    stiffest_ = std::max(stiffest_open_, sum.stiffest);
+    if (is_sought_)
+        find_active();
+    is_sought_ = false;
 }
 
 void Contacts::transfer(const Transfer& to, MovedRock& kept)
@@ -732,19 +894,28 @@ void Contacts::transfer(const Transfer& to, MovedRock& kept)
     to.values(pairs_, kept.sheared_in, &Pair::sheared_in);
 }
 
-void Contacts::add_forces(std::vector<Vector2d>& force) const
+void Contacts::take_forces(Index active)
 {
-    for (const Pair& pair : pairs_) {
-        if (!pair.is_closed)
-            continue;
-        const auto &a = faces_.gridpoint[pair.a], &b = faces_.gridpoint[pair.b];
-        for (int i = 0; i < 2; ++i) {
-            force[a[0]] += (1 - pair.on_a[i]) * pair.force[i];
-            force[a[1]] += pair.on_a[i] * pair.force[i];
-            force[b[0]] -= (1 - pair.on_b[i]) * pair.force[i];
-            force[b[1]] -= pair.on_b[i] * pair.force[i];
-        }
+    const Pair& pair = pairs_[active_[active]];
+    const Index* const at = &corner_place_[4 * active];
+    for (int end = 0; end < 2; ++end) {
+        const Vector2d force = pair.is_closed ? pair.force[end] : Vector2d(Vector2d::Zero());
+        corner_force_[at[0]][end] = (1 - pair.on_a[end]) * force;
+        corner_force_[at[1]][end] = pair.on_a[end] * force;
+        corner_force_[at[2]][end] = -(1 - pair.on_b[end]) * force;
+        corner_force_[at[3]][end] = -pair.on_b[end] * force;
     }
+}
+
+void Contacts::add_forces(std::vector<Vector2d>& force, int threads) const
+{
+    for_each(static_cast<Index>(touched_.size()), threads, [&](Index i) {
+        Vector2d sum = force[touched_[i]];
+        for (Index k = touched_start_[i]; k < touched_start_[i + 1]; ++k)
+            for (const Vector2d& one : corner_force_[k])
+                sum += one;
+        force[touched_[i]] = sum;
+    });
 }
 
 } // namespace jointcreep::motion

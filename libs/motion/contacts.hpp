@@ -74,6 +74,26 @@ struct Pair {
     double stored() const { return pressed_in + sheared_in; }
 };
 
+// A face as it is now.
+struct FaceShape {
+    Vector2d along;                    // unit, from its first end to its second
+    double length;                     // [m]
+    std::array<double, 2> sharp{1, 1}; // of its ends: 0 where the outline runs on straight, 1 a corner
+};
+
+// Of pairs [J/m].
+struct PairEnergy {
+    double stored = 0;               // now
+    double friction = 0, damped = 0; // in the last step
+
+    void operator+=(const PairEnergy& other)
+    {
+        stored += other.stored;
+        friction += other.friction;
+        damped += other.damped;
+    }
+};
+
 class Contacts
 {
 public:
@@ -90,7 +110,10 @@ public:
                 double viscosity, int threads);
 
     // Adds the forces of the last update to those on gridpoints [N/m].
-    void add_forces(std::vector<Vector2d>& force) const;
+    void add_forces(std::vector<Vector2d>& force, int threads) const;
+
+    // Of all pairs, at the last update.
+    const PairEnergy& energy() const { return energy_; }
 
     // What set_faces(), with what is known of before, and update() need.
     void transfer(const Transfer& to, MovedRock& kept);
@@ -106,6 +129,9 @@ public:
 
 private:
     void seek(const std::vector<Vector2d>& place, const std::vector<Vector2d>& move);
+    void find_shapes(const std::vector<Vector2d>& place, int threads);
+    void find_active();
+    void take_forces(Index active);
     void find_corners(const std::vector<Vector2d>& place);
     void dilate(const std::vector<Vector2d>& place, const std::vector<Vector2d>& move);
     const Pair* contact_before(const Pair& pair, const Vector2d& normal,
@@ -117,14 +143,27 @@ private:
     bool dilates_ = false;                    // by any law
     double stiffest_open_ = 0, stiffest_ = 0; // [Pa/m]
     Faces faces_;
+    std::vector<FaceShape> shapes_;
     std::vector<Pair> pairs_;                 // in order of {a, b}
     std::vector<std::vector<Index>> of_face_; // pairs of each face
     std::vector<Index> side_;                 // of each face: the lowest one of its straight side
     std::vector<std::vector<Index>> joints_;  // pairs between the same two sides, if any law dilates
-    std::vector<std::array<double, 2>>
-        sharpness_;                   // of each face's ends: 0 where the outline runs on straight, 1 a corner
+    std::vector<Index> active_;               // pairs that may bear anything before the next search
+    std::vector<double> way_to_;              // how far gridpoints go before they can [m]
+    std::vector<char> closes_;                // pairs that may in this update
+    // Of active pairs the gridpoints, and what is added to each of them [N/m]: by each corner of each pair
+    // its shares of the two forces.
+    std::vector<Index> touched_, touched_start_;
+    std::vector<std::array<Vector2d, 2>> corner_force_;
+    std::vector<Index> corner_place_; // of the corners of each active pair, 0 and 1 of a, 2 and 3 of b, in it
     std::vector<Vector2d> sought_at_; // places when pairs were sought last
+    double farthest_ = 0;             // that a gridpoint has been from there since [m]
+    double raised_ = 0;               // by the joint that has dilated most, since [m]
+    std::vector<double> reach_;       // of faces, then [m]
     double skin_ = 0;                 // faces come within this of each other are pairs [m]
+    bool is_sought_ = false;          // since the last update
+    double most_lead_ = 0;            // of closed pairs [m]
+    PairEnergy energy_;
     Index searches_ = 0;
 };
 

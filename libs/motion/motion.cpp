@@ -3,6 +3,7 @@
 #include "model/disjoint_sets.hpp"
 #include "model/error.hpp"
 #include "model/signs.hpp"
+#include "motion/in_chunks.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
@@ -64,15 +65,26 @@ Matrix2d stretch_for(const Vector3d& stiffness, const Vector3d& stress)
     return principal.eigenvectors() * stretch.asDiagonal() * principal.eigenvectors().transpose();
 }
 
-// F = rotation * stretch.
+// F = rotation * stretch, by numbers of their own: what goes through matrices goes through memory.
 struct Polar {
-    Matrix2d rotation, stretch;
+    double cos, sin;       // of the rotation
+    double xx, xy, yx, yy; // of the stretch; xy and yx are the same but for rounding
+
+    Matrix2d rotation() const { return (Matrix2d() << cos, -sin, sin, cos).finished(); }
+    Matrix2d stretch() const { return (Matrix2d() << xx, xy, yx, yy).finished(); }
 };
-Polar polar_of(const Matrix2d& f)
+
+// Of a zone, from the inverse of its edges in the shape without stress.
+inline Polar polar_of(const std::array<Index, 3>& g, const std::vector<Vector2d>& place,
+                      const Matrix2d& inverse)
 {
-    const double c = f(0, 0) + f(1, 1), s = f(1, 0) - f(0, 1), r = std::hypot(c, s);
-    const Matrix2d rotation = (Matrix2d() << c / r, -s / r, s / r, c / r).finished();
-    return {rotation, rotation.transpose() * f};
+    const Vector2d one = place[g[1]] - place[g[0]], two = place[g[2]] - place[g[0]];
+    const double xx = one.x() * inverse(0, 0) + two.x() * inverse(1, 0),
+                 xy = one.x() * inverse(0, 1) + two.x() * inverse(1, 1),
+                 yx = one.y() * inverse(0, 0) + two.y() * inverse(1, 0),
+                 yy = one.y() * inverse(0, 1) + two.y() * inverse(1, 1);
+    const double c = xx + yy, s = yx - xy, r = std::hypot(c, s), cos = c / r, sin = s / r;
+    return {cos, sin, cos * xx + sin * yx, cos * xy + sin * yy, -sin * xx + cos * yx, -sin * xy + cos * yy};
 }
 
 // The part of R' P, P being the first Piola-Kirchhoff stress, that does no work on the stretch U but keeps
@@ -164,6 +176,8 @@ void Motion::start()
     last_kinetic_ = 0;
     checks_in_balance_ = 0;
     last_contact_force_.clear();
+    in_zones_ = {};
+    corner_force_.assign(3 * zones_.size(), Vector2d::Zero());
     velocity_.assign(place_.size(), Vector2d::Zero());
     find_faces();
     find_bodies();
@@ -491,53 +505,64 @@ void Motion::find_forces(const std::vector<Vector2d>& move)
     for (const auto& [follower, leader] : rock_.tied)
         place_[follower] = place_[leader];
     const auto n_zones = static_cast<Index>(zones_.size());
-    const auto n = static_cast<Index>(place_.size());
     const double viscosity = settings_.stiffness_damping / dt_;
-#pragma omp parallel for schedule(static) num_threads(rock_.threads) if (rock_.threads > 1)
-    for (Index z = 0; z < n_zones; ++z) {
+    const auto pull = [&](Index z, ZoneSums& sums) {
         if (!deforms(z))
-            continue;
+            return;
         Zone& zone = zones_[z];
-        const Polar polar = polar_of(edges_of(zone.gridpoint, place_) * zone.inverse);
-        const Vector3d strain(polar.stretch(0, 0) - 1, polar.stretch(1, 1) - 1, 2 * polar.stretch(0, 1));
+        const Polar polar = polar_of(zone.gridpoint, place_, zone.inverse);
+        const Vector3d strain(polar.xx - 1, polar.yy - 1, 2 * polar.xy);
         Vector3d stress, held;
         Yielding* const yields = yielding(z);
         if (yields != nullptr) {
             const Vector3d last = yields->stress;
+            yields->zone.dissipated = 0;
             stress = yielded(yields->zone, zone.stiffness, Vector3d::Zero(), last, strain);
             held = viscosity * (stress - last);
             yields->stress = stress;
-            yields->is_torn = !(strain.cwiseAbs().maxCoeff() <= most_strain);
-            zone.stored = zone.area * mechanics::stored(zone.stiffness, stress, yields->zone.stress_zz);
+            if (sums.torn < 0 && !(strain.cwiseAbs().maxCoeff() <= most_strain))
+                sums.torn = z;
+            sums.friction += zone.area * yields->zone.dissipated;
+            sums.stored += zone.area * mechanics::stored(zone.stiffness, stress, yields->zone.stress_zz);
         } else {
             stress = stress_of(zone.stiffness, strain);
             held = viscosity * stress_of(zone.stiffness, strain - zone.strain);
-            zone.stored = zone.area / 2 * stress.dot(strain);
+            sums.stored += zone.area / 2 * stress.dot(strain);
         }
-        zone.damped = zone.area / 2 * (zone.held + held).dot(strain - zone.strain); // as of contacts
+        sums.damped += zone.area / 2 * (zone.held + held).dot(strain - zone.strain); // as of contacts
         zone.held = held;
         zone.strain = strain;
-        Matrix2d acting = tensor(stress + held);
-        if (yields != nullptr)
-            acting += skew_part(polar.stretch, acting);
-        const Matrix2d forces = zone.area * polar.rotation * acting * zone.inverse.transpose();
-        zone.force = {forces.col(0) + forces.col(1), -forces.col(0), -forces.col(1)};
-    }
+        const Vector3d acting = stress + held;
+        double xy = acting[2], yx = acting[2];
+        if (yields != nullptr) {
+            const double w = skew_part(polar.stretch(), tensor(acting))(1, 0);
+            xy -= w;
+            yx += w;
+        }
+        // First Piola-Kirchhoff stress, times the area.
+        const double c = zone.area * polar.cos, s = zone.area * polar.sin;
+        const Vector2d of_x(c * acting[0] - s * yx, s * acting[0] + c * yx),
+            of_y(c * xy - s * acting[1], s * xy + c * acting[1]);
+        const Vector2d one = zone.inverse(0, 0) * of_x + zone.inverse(0, 1) * of_y,
+                       two = zone.inverse(1, 0) * of_x + zone.inverse(1, 1) * of_y;
+        corner_force_[3 * z] = one + two;
+        corner_force_[3 * z + 1] = -one;
+        corner_force_[3 * z + 2] = -two;
+    };
+    const double lost_before = in_zones_.friction; // at the start
+    in_zones_ = sum_in_chunks<ZoneSums>(n_zones, rock_.threads, pull);
+    in_zones_.friction += lost_before;
     contacts_.update(place_, move, dt_, settings_.stiffness_damping, rock_.threads);
     const double held = release_factor();
     force_.resize(place_.size());
     const mechanics::Incidence& incidence = rock_.incidence;
-#pragma omp parallel for schedule(static) num_threads(rock_.threads) if (rock_.threads > 1)
-    for (Index g = 0; g < n; ++g) {
+    for_each(static_cast<Index>(place_.size()), rock_.threads, [&](Index g) {
         Vector2d force = rock_.load[g] + rock_.applied[g] + held * released_[g];
-        for (Index k = incidence.zone_start[g]; k < incidence.zone_start[g + 1]; ++k) {
-            const Index corner = incidence.zone_corner[k];
-            if (rock_.zones.is_present[corner / 3])
-                force += zones_[corner / 3].force[corner % 3];
-        }
+        for (Index k = incidence.zone_start[g]; k < incidence.zone_start[g + 1]; ++k)
+            force += corner_force_[incidence.zone_corner[k]];
         force_[g] = force;
-    }
-    contacts_.add_forces(force_);
+    });
+    contacts_.add_forces(force_, rock_.threads);
     for (const auto& [follower, leader] : rock_.tied) {
         force_[leader] += force_[follower];
         force_[follower].setZero();
@@ -546,50 +571,66 @@ void Motion::find_forces(const std::vector<Vector2d>& move)
 
 double Motion::stored() const
 {
-    double energy = 0;
-    for (std::size_t z = 0; z < zones_.size(); ++z)
-        if (deforms(z))
-            energy += zones_[z].stored;
-    for (const Pair& pair : contacts_.pairs())
-        energy += pair.stored();
-    return energy;
+    return in_zones_.stored + contacts_.energy().stored;
 }
 
 void Motion::step()
 {
-    const auto n = place_.size();
+    const auto n = static_cast<Index>(place_.size());
     const double alpha = settings_.mass_damping;
     const double keep = (1 - alpha * dt_ / 2) / (1 + alpha * dt_ / 2);
     const double gain = first_half() * dt_ / (1 + alpha * dt_ / 2);
     const double held = release_factor();
-    double kinetic = 0, fastest = 0;
-    move_.assign(n, Vector2d::Zero());
-    for (std::size_t g = 0; g < n; ++g) {
-        if (inverse_mass_[g] == 0)
-            continue;
+    struct Moved {
+        double kinetic = 0, damped = 0;
+        double fastest = 0; // [m2/s2]
+        Index fastest_gridpoint = -1;
+
+        void see(const Vector2d& velocity, Index g)
+        {
+            if (velocity.squaredNorm() > fastest) {
+                fastest = velocity.squaredNorm();
+                fastest_gridpoint = g;
+            }
+        }
+        void operator+=(const Moved& other)
+        {
+            kinetic += other.kinetic;
+            damped += other.damped;
+            if (other.fastest > fastest) {
+                fastest = other.fastest;
+                fastest_gridpoint = other.fastest_gridpoint;
+            }
+        }
+    };
+    move_.resize(n);
+    Moved moved = sum_in_chunks<Moved>(n, rock_.threads, [&](Index g, Moved& some) {
+        if (inverse_mass_[g] == 0) {
+            move_[g].setZero();
+            return;
+        }
         Vector2d& v = velocity_[g];
         const Vector2d last = v;
         v = keep * v + gain * inverse_mass_[g] * force_[g].cwiseProduct(rock_.is_free[g]);
         const Vector2d now = starts_from_rest_ ? last : Vector2d((last + v) / 2);
-        kinetic += last.dot(v) / (2 * inverse_mass_[g]);
-        energy_.damped += alpha * dt_ * now.squaredNorm() / inverse_mass_[g];
-        if (v.squaredNorm() > fastest) {
-            fastest = v.squaredNorm();
-            fastest_gridpoint_ = static_cast<Index>(g);
-        }
+        some.kinetic += last.dot(v) / (2 * inverse_mass_[g]);
+        some.damped += alpha * dt_ * now.squaredNorm() / inverse_mass_[g];
+        some.see(v, g);
         move_[g] = dt_ * v;
         add(move_[g], place_[g], lost_[g]);
-    }
-    for (Body& body : bodies_) {
-        const double before = move(body, keep, gain);
-        kinetic += before;
-        energy_.damped += 2 * alpha * dt_ * before;
-        for (const Index g : body.gridpoint)
-            if (velocity_[g].squaredNorm() > fastest) {
-                fastest = velocity_[g].squaredNorm();
-                fastest_gridpoint_ = g;
-            }
-    }
+    });
+    moved +=
+        sum_in_chunks<Moved>(static_cast<Index>(bodies_.size()), rock_.threads, [&](Index b, Moved& some) {
+            const double before = move(bodies_[b], keep, gain);
+            some.kinetic += before;
+            some.damped += 2 * alpha * dt_ * before;
+            for (const Index g : bodies_[b].gridpoint)
+                some.see(velocity_[g], g);
+        });
+    const double kinetic = moved.kinetic;
+    energy_.damped += moved.damped;
+    if (moved.fastest_gridpoint >= 0)
+        fastest_gridpoint_ = moved.fastest_gridpoint;
     // After a stop: from then on it is the product of this velocity and its opposite that counts as kinetic
     // energy (see energy()).
     if (starts_from_rest_ && time_ > 0)
@@ -599,40 +640,41 @@ void Motion::step()
         move_[follower] = move_[leader];
         velocity_[follower] = velocity_[leader];
     }
-    fastest_ = std::sqrt(fastest);
+    fastest_ = std::sqrt(moved.fastest);
     has_moved_ = has_moved_ || fastest_ > slow;
-    std::size_t gone = n; // outside
-    for (std::size_t g = 0; g < n; ++g) {
-        energy_.work += (rock_.load[g] + rock_.applied[g] + held * released_[g]).dot(move_[g]);
+    struct Work {
+        double work = 0;
+        bool is_gone = false; // outside
+
+        void operator+=(const Work& other)
+        {
+            work += other.work;
+            is_gone = is_gone || other.is_gone;
+        }
+    };
+    const auto worked = sum_in_chunks<Work>(n, rock_.threads, [&](Index g, Work& some) {
+        some.work += (rock_.load[g] + rock_.applied[g] + held * released_[g]).dot(move_[g]);
         if (!((place_[g].array() > low_.array()).all() && (place_[g].array() < high_.array()).all()))
-            gone = g;
-    }
+            some.is_gone = true;
+    });
+    energy_.work += worked.work;
     if (!std::isfinite(fastest_) || !std::isfinite(kinetic))
         throw equilibrium_error("motion: the velocity of rock is no number; it was at " +
                                 shown(rock_.position[fastest_gridpoint_]));
-    if (gone < n)
+    if (worked.is_gone)
         throw moves_on("rock has left the section, and is as far from it as the section is large");
     add(dt_, time_, time_lost_);
     last_dt_ = dt_;
     find_forces(move_);
+    if (in_zones_.torn >= 0)
+        throw equilibrium_error("motion: rock that yields at " +
+                                shown(Vector2d(middle_ + place_[zones_[in_zones_.torn].gridpoint[0]])) +
+                                " is strained by more than " + shown(100 * most_strain) +
+                                " percent, more than a zone can be");
     energy_.stored = stored() - stored_at_start_;
-    for (std::size_t z = 0; z < zones_.size(); ++z)
-        if (deforms(z))
-            energy_.damped += zones_[z].damped;
-    for (std::size_t z = 0; z < zones_.size() && !yielding_.empty(); ++z)
-        if (Yielding* const yields = yielding(z); yields != nullptr && deforms(z)) {
-            if (yields->is_torn)
-                throw equilibrium_error("motion: rock that yields at " +
-                                        shown(Vector2d(middle_ + place_[zones_[z].gridpoint[0]])) +
-                                        " is strained by more than " + shown(100 * most_strain) +
-                                        " percent, more than a zone can be");
-            energy_.friction += zones_[z].area * yields->zone.dissipated;
-            yields->zone.dissipated = 0;
-        }
-    for (const Pair& pair : contacts_.pairs()) {
-        energy_.friction += pair.friction;
-        energy_.damped += pair.damped;
-    }
+    energy_.damped += in_zones_.damped + contacts_.energy().damped;
+    energy_.friction += in_zones_.friction + contacts_.energy().friction;
+    in_zones_.friction = 0;
     // What is nearly at rest swings about it. Stopped where its kinetic energy is largest, it comes to rest;
     // what slides or falls has no such peak until it is no longer slow.
     if (fastest_ < slow && kinetic < last_kinetic_) {
@@ -653,11 +695,12 @@ void Motion::step()
 void Motion::transfer(const Transfer& to, MovedRock& kept)
 {
     // All members, lest a new one is forgotten.
-    auto& [rock, mesh, settings, contacts, bodies, is_rigid, body_of, zones, yielding, place, velocity, move,
-           force, released, lost, origin, middle, low, high, inverse_mass, law_of_edge, ground, face_of_mesh,
-           zone_of_face, dt, last_dt, time, time_lost, stiffest_allowed, starts_from_rest, has_moved, energy,
-           stored_at_start, last_kinetic, stiffest, largest_mean, ratio, force_change, fastest,
-           fastest_gridpoint, stiffest_gridpoint, checks_in_balance, last_contact_force] = *this;
+    auto& [rock, mesh, settings, contacts, bodies, is_rigid, body_of, zones, corner_force, yielding, place,
+           velocity, move, force, released, lost, origin, middle, low, high, inverse_mass, law_of_edge,
+           ground, face_of_mesh, zone_of_face, dt, last_dt, time, time_lost, stiffest_allowed,
+           starts_from_rest, has_moved, energy, stored_at_start, in_zones, last_kinetic, stiffest,
+           largest_mean, ratio, force_change, fastest, fastest_gridpoint, stiffest_gridpoint,
+           checks_in_balance, last_contact_force] = *this;
     to.values(origin, kept.origin);
     to.values(place, kept.place);
     for (std::size_t g = 0; g < origin.size(); ++g)
@@ -669,12 +712,11 @@ void Motion::transfer(const Transfer& to, MovedRock& kept)
     for (std::size_t z = 0; z < zones.size(); ++z)
         zones[z].inverse = inverse[z].reshaped(2, 2);
     for (Zone& zone : zones)
-        [[maybe_unused]] auto& [gridpoint, of_edges, area, stiffness, strain, forces, held, stored, damped] =
-            zone;
+        [[maybe_unused]] auto& [gridpoint, of_edges, area, stiffness, strain, held] = zone;
     to.values(zones, kept.area, &Zone::area);
     to.values(zones, kept.strain, &Zone::strain);
     for (Yielding& one : yielding)
-        [[maybe_unused]] auto& [zone, stress, is_torn] = one; // the last is of one step alone
+        [[maybe_unused]] auto& [zone, stress] = one;
     const auto of_zone = [](auto member) {
         return [member](Yielding & one) -> auto&
         {
@@ -696,10 +738,11 @@ void Motion::transfer(const Transfer& to, MovedRock& kept)
 // Of the velocities as they are, half a step ago [J/m].
 double Motion::half_step_energy() const
 {
-    double sum = 0;
-    for (std::size_t g = 0; g < place_.size(); ++g)
-        if (inverse_mass_[g] > 0)
-            sum += velocity_[g].squaredNorm() / (2 * inverse_mass_[g]);
+    auto sum =
+        sum_in_chunks<double>(static_cast<Index>(place_.size()), rock_.threads, [&](Index g, double& some) {
+            if (inverse_mass_[g] > 0)
+                some += velocity_[g].squaredNorm() / (2 * inverse_mass_[g]);
+        });
     for (const Body& body : bodies_)
         sum += (body.mass * body.velocity.squaredNorm() + body.inertia * body.spin * body.spin) / 2;
     return sum;
@@ -712,12 +755,14 @@ Energy Motion::energy() const
     Energy energy = energy_;
     const double alpha = settings_.mass_damping;
     const double keep = (1 - alpha * dt_ / 2) / (1 + alpha * dt_ / 2), gain = dt_ / (1 + alpha * dt_ / 2);
-    for (std::size_t g = 0; g < place_.size(); ++g)
-        if (inverse_mass_[g] > 0) {
+    energy.kinetic +=
+        sum_in_chunks<double>(static_cast<Index>(place_.size()), rock_.threads, [&](Index g, double& some) {
+            if (inverse_mass_[g] == 0)
+                return;
             const Vector2d next =
                 keep * velocity_[g] + gain * inverse_mass_[g] * force_[g].cwiseProduct(rock_.is_free[g]);
-            energy.kinetic += velocity_[g].dot(next) / (2 * inverse_mass_[g]);
-        }
+            some += velocity_[g].dot(next) / (2 * inverse_mass_[g]);
+        });
     for (const Body& body : bodies_)
         if (!body.is_held()) {
             const auto [force, moment] = load_on(body);
@@ -755,7 +800,7 @@ void Motion::count_from_here()
 bool Motion::is_at_rest()
 {
     std::vector<Vector2d> contact_force(place_.size(), Vector2d::Zero());
-    contacts_.add_forces(contact_force);
+    contacts_.add_forces(contact_force, rock_.threads);
     double largest = 0, sum = 0, farthest = 0, change = 0;
     Index n = 0;
     const mechanics::Incidence& incidence = rock_.incidence;
@@ -765,8 +810,7 @@ bool Motion::is_at_rest()
         farthest = std::max(farthest, place_[g].norm());
         double all = rock_.load[g].norm() + rock_.applied[g].norm() + contact_force[g].norm();
         for (Index k = incidence.zone_start[g]; k < incidence.zone_start[g + 1]; ++k)
-            if (const Index corner = incidence.zone_corner[k]; rock_.zones.is_present[corner / 3])
-                all += zones_[corner / 3].force[corner % 3].norm();
+            all += corner_force_[incidence.zone_corner[k]].norm();
         if (all > 0) {
             sum += all;
             ++n;
@@ -845,20 +889,19 @@ void Motion::put_back()
             continue;
         }
         const Zone& zone = zones_[z];
-        const Polar polar = polar_of(edges_of(zone.gridpoint, place_) * zone.inverse);
+        const Polar polar = polar_of(zone.gridpoint, place_, zone.inverse);
+        const Matrix2d rotation = polar.rotation(), stretch = polar.stretch();
         const Yielding* const yields = yielding(z);
         Matrix2d biot = tensor(yields != nullptr ? yields->stress : stress_of(zone.stiffness, zone.strain));
         if (yields != nullptr) {
-            biot += skew_part(polar.stretch, biot);
+            biot += skew_part(stretch, biot);
             const Eigen::Vector4d& p = yields->zone.plastic;
-            const Matrix2d plastic =
-                polar.rotation * tensor({p[0], p[1], p[3] / 2}) * polar.rotation.transpose();
+            const Matrix2d plastic = rotation * tensor({p[0], p[1], p[3] / 2}) * rotation.transpose();
             mechanics::YieldingZone& seen = rock_.zones.yielding[rock_.zones.yielding_number[z]];
             seen.plastic = {plastic(0, 0), plastic(1, 1), p[2], 2 * plastic(0, 1)};
             seen.stress_zz = yields->zone.stress_zz;
         }
-        const Matrix2d stress =
-            polar.rotation * biot * polar.stretch * polar.rotation.transpose() / polar.stretch.determinant();
+        const Matrix2d stress = rotation * biot * stretch * rotation.transpose() / stretch.determinant();
         rock_.zones.stress[z] = {stress(0, 0), stress(1, 1), (stress(0, 1) + stress(1, 0)) / 2};
     }
     const std::vector<Index> leader = leaders();

@@ -92,14 +92,26 @@ public:
 private:
     struct Zone {
         std::array<Index, 3> gridpoint;
-        Eigen::Matrix2d inverse;   // of the edges {1 - 0, 2 - 0} in the shape without stress [1/m]
-        double area = 0;           // of that shape [m2]
-        Eigen::Vector3d stiffness; // {C11, C12, C33} [Pa]
-        Eigen::Vector3d strain;    // Biot's {xx, yy, 2 xy} in the last step
-        std::array<Vector2d, 3> force{Vector2d::Zero(), Vector2d::Zero(),
-                                      Vector2d::Zero()}; // on its corners [N/m]
-        Eigen::Vector3d held{0, 0, 0};                   // stress of dashpots now [Pa]
-        double stored = 0, damped = 0;                   // now; in the last step [J/m]
+        Eigen::Matrix2d inverse;       // of the edges {1 - 0, 2 - 0} in the shape without stress [1/m]
+        double area = 0;               // of that shape [m2]
+        Eigen::Vector3d stiffness;     // {C11, C12, C33} [Pa]
+        Eigen::Vector3d strain;        // Biot's {xx, yy, 2 xy} in the last step
+        Eigen::Vector3d held{0, 0, 0}; // stress of dashpots now [Pa]
+    };
+
+    // Of all zones [J/m].
+    struct ZoneSums {
+        double stored = 0;               // now
+        double friction = 0, damped = 0; // in the last step
+        Index torn = -1;                 // one strained by more than a zone can be
+
+        void operator+=(const ZoneSums& other)
+        {
+            stored += other.stored;
+            friction += other.friction;
+            damped += other.damped;
+            torn = torn < 0 ? other.torn : torn;
+        }
     };
 
     // Of rock that yields, in the frame that turns with its zone.
@@ -107,7 +119,6 @@ private:
         mechanics::YieldingZone
             zone;               // strains since the shape without stress; its dissipation is of one step
         Eigen::Vector3d stress; // Biot's {xx, yy, xy} now [Pa]
-        bool is_torn = false;   // strained by more than a zone can be
     };
 
     // Rock that does not deform: gridpoints that zones of rigid rock connect.
@@ -144,10 +155,11 @@ private:
     Settings settings_;
     Contacts contacts_;
     std::vector<Body> bodies_;
-    std::vector<char> is_rigid_;     // zones
-    std::vector<Index> body_of_;     // of gridpoints; -1 none
-    std::vector<Zone> zones_;        // of the assembly
-    std::vector<Yielding> yielding_; // by the assembly's yielding_number
+    std::vector<char> is_rigid_;         // zones
+    std::vector<Index> body_of_;         // of gridpoints; -1 none
+    std::vector<Zone> zones_;            // of the assembly
+    std::vector<Vector2d> corner_force_; // on the three corners of each zone [N/m]
+    std::vector<Yielding> yielding_;     // by the assembly's yielding_number
     // Places are counted from the section's middle: what they are rounded to must not depend on where it is.
     std::vector<Vector2d> place_, velocity_, move_, force_, released_;
     std::vector<Vector2d> lost_;       // of places by rounding, until now [m]
@@ -164,7 +176,9 @@ private:
     double stiffest_allowed_ = 0; // spring of a contact, by the present step [Pa/m]
     bool starts_from_rest_ = true, has_moved_ = false;
     Energy energy_;
-    double stored_at_start_ = 0, last_kinetic_ = 0, stiffest_ = 0, largest_mean_ = 0;
+    double stored_at_start_ = 0;
+    ZoneSums in_zones_;
+    double last_kinetic_ = 0, stiffest_ = 0, largest_mean_ = 0;
     double ratio_ = 0, force_change_ = 0, fastest_ = 0;
     Index fastest_gridpoint_ = 0, stiffest_gridpoint_ = 0, checks_in_balance_ = 0;
     std::vector<Vector2d> last_contact_force_;

@@ -53,7 +53,7 @@ Contacts contacts_of(const TwoLines& lines, const joint::Law& law = joint::Coulo
 std::vector<Vector2d> forces_of(const Contacts& contacts, std::size_t n)
 {
     std::vector<Vector2d> force(n, Vector2d::Zero());
-    contacts.add_forces(force);
+    contacts.add_forces(force, 1);
     return force;
 }
 

@@ -51,6 +51,24 @@ class InSituPatch(ChainTest):
                 across = numpy.einsum("ci,ij,cj->c", normal, tensor, normal)
                 self.assertTrue(numpy.allclose(result["/states/traction"][:, :, 0], across, rtol=1e-9))
 
+    def test_motion(self):
+        """Its displacements count from where it has come to, so it is stresses that tell: a way u in a length L would be
+        u E / L of them. Contacts are other ones, between faces, and have to find the same tractions."""
+        text = changed(self.chain.text("tests/pipeline/patch.toml"), r'^\[creep\]\nstep_days = 1\nscheme = "published"\n', "")
+        text = changed(text, r"^(normal|shear)_kelvin_.*\n", "", count=4)
+        text += '\n[motion]\nnew_contacts = "joint"\nmass_damping_per_s = 100\n'
+        for realization in range(2):
+            with self.subTest(realization=realization):
+                joints = self.chain.joints(text, "--realization", realization)
+                result = self.assert_rests(self.chain.run("demsolve", joints, joints.with_name("result.h5")))
+                self.assertLess(numpy.abs(result["/states/stress"] - [-6e6, -4e6, 1.5e6]).max() / STRESS, 1e-10)
+                normal = result["/mesh/contact_normal"]
+                tangent = numpy.stack([normal[:, 1], -normal[:, 0]], axis=1)
+                tensor = numpy.array([[-6e6, 1.5e6], [1.5e6, -4e6]])
+                for part, on in enumerate((normal, tangent)):
+                    wanted = numpy.einsum("ci,ij,cj->c", normal, tensor, on)
+                    self.assertLess(numpy.abs(result["/states/traction"][:, :, part] - wanted).max() / STRESS, 1e-9)
+
     def test_free_surface(self):
         """Where the stress leaves it, a surface is not held at all."""
         text = self.chain.text("tests/pipeline/patch.toml")

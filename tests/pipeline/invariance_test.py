@@ -3,10 +3,11 @@ momentum and energy, where nothing acts from outside. (Threads: same_bytes_test.
 
 import math
 import random
+import re
 
 import numpy as np
 
-from chain import ChainTest, datasets, main
+from chain import ChainTest, changed, datasets, main
 from hard_cases_test import error_of_forces, line, moved, patch
 from motion_test import RIGID, missing_energy
 from small_scene import OPEN, SLIPPING, held, joint, material, scene, solved
@@ -204,10 +205,63 @@ stiffness_damping_s = {0.001 * root}
 mass_damping_per_s = {0.5 / root}
 record_every_s = {0.1 * root}
 longest_s = {20 * root}
-""")
+{more}""")
+
+
+# The block in two, of different rock, with a joint of its own material between them.
+IN_TWO = """
+[[rock]]
+name = "heavy"
+density_kg_per_m3 = 3000
+youngs_modulus_GPa = 20
+poissons_ratio = 0.2
+[[region]]
+rock = "heavy"
+outline_m = [[-1, 2], [3.9, 2], [3.9, 5], [-1, 5]]
+[[joint_material]]
+name = "soft"
+normal_stiffness_MPa_per_m = 100
+shear_stiffness_MPa_per_m = 50
+cohesion_MPa = 0
+friction_angle_deg = 25
+tensile_strength_MPa = 0
+[[joint]]
+name = "upper"
+from_m = [0.9, 3.1]
+to_m = [4.1, 3]
+material = "soft"
+"""
+
+
+def in_another_order(text, seed):
+    """The scene with the tables of every list in which order means nothing in another order."""
+    tables = re.split(r"(?m)^(?=\[)", text)
+    order = random.Random(seed)
+    for name in "rock", "joint_material", "joint", "boundary":
+        places = [place for place, one in enumerate(tables) if one.startswith(f"[[{name}]]")]
+        others = list(places)
+        while others == places:
+            order.shuffle(others)
+        for place, one in zip(places, [tables[other] for other in others]):
+            tables[place] = one
+    return "".join(tables)
 
 
 class Motion(ChainTest):
+    def test_order_in_the_scene(self):
+        """The same blocks to the bit; they slide, bump and rest alike, but for rounding."""
+        text = changed(pushed(more=IN_TWO), r"^rigid_rocks = .*", 'rigid_rocks = ["rock", "heavy"]')
+        one = solved(self.chain, text)
+        self.assertEqual(len(one["/blocks/area"]), 6)
+        self.assertGreater(one["/history/displacement"][-1, 0, 0], 8)
+        for seed in 1, 2, 3:
+            with self.subTest(seed=seed):
+                other = solved(self.chain, in_another_order(text, seed))
+                for name in "/names/rock", "/names/joint_material":
+                    self.assertFalse(np.array_equal(one[name], other[name]), name)
+                np.testing.assert_array_equal(one["/mesh/gridpoint_position"], other["/mesh/gridpoint_position"])
+                self.check_same(one, other, 1e-9)
+
     def test_a_block_that_is_pushed_comes_to_the_same_place(self):
         """It bumps into a wall and rocks; rounding grows there, but where it rests is the joints' and the loads' doing, to what
         friction leaves open: some closings of joints, 1e-4 of the way."""
@@ -224,7 +278,6 @@ class Motion(ChainTest):
             with self.subTest(length=length):
                 other = solved(self.chain, pushed(length=length))["/history/displacement"][-1]
                 self.assertLess(np.abs(other / length - one).max() / np.abs(one).max(), 1e-3)
-
 
     def check_same(self, one, other, share):
         way = np.abs(one["/history/displacement"]).max()

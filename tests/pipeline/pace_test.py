@@ -13,7 +13,7 @@ class Pace(ChainTest):
         done = subprocess.run([benchmark, joints, "3", "80", "1"], capture_output=True, text=True, timeout=300)
         self.assertEqual(done.returncode, 0, done.stderr)
         ways = list(csv.DictReader(done.stdout.splitlines()))
-        self.assertEqual([way["threads"] for way in ways], ["1"] * 3 + ["2"] * 3)
+        self.assertEqual([way["threads"] for way in ways], ["1"] * 5 + ["2"] * 5)
         for way in ways:
             self.assertGreater(int(way["zones"]), 5000)
 

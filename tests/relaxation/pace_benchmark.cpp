@@ -6,14 +6,18 @@
 // 200) with real masses and damping in proportion to them: by the engine (relaxation/relax.hpp), and by the
 // plainest loop over flat arrays that does the same to the same mesh. Both must arrive at the same
 // displacements, to rounding. A third way is the engine with its own masses and damping, scaled and adaptive,
-// held to the same bare loop. Prints CSV, a line for each way, on one thread and on two. `s_per_step` is the
-// least of ROUNDS (default 5) runs [s], processor time on one thread and wall time on two; all ways take
-// turns, so that what else goes on in the machine falls on all. What a run takes before its first steps is
-// left out. `over_bare` is the pace over that of the bare loop on as many threads, the median over the
-// rounds, and `gain` that on two threads over that on one.
+// held to the same bare loop. The last two are motion with large displacements (motion/motion.hpp), of rock
+// that deforms and of rigid blocks, which finds out what touches what, and so is about other springs with a
+// step of its own: that all of them come to the same bits on two threads is all that is asked. Prints CSV, a
+// line for each way, on one thread and on two. `s_per_step` is the least of ROUNDS (default 5) runs [s],
+// processor time on one thread and wall time on two; all ways take turns, so that what else goes on in the
+// machine falls on all. What a run takes before its first steps is left out. `over_bare` is the pace over
+// that of the bare loop on as many threads, the median over the rounds, and `gain` that on two threads over
+// that on one.
 
 #include "mechanics/excavation.hpp"
 #include "model/error.hpp"
+#include "motion/motion.hpp"
 #include "relaxation/relax.hpp"
 #include "scene/scene.hpp"
 #include "store/files.hpp"
@@ -190,22 +194,37 @@ double seconds(int threads)
     return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
+enum class Kind { bare, relaxation, motion, rigid_motion };
+
 struct Way {
     const char* name;
-    bool is_engine;
-    Damping damping;
+    Kind kind;
+    Damping damping; // of the engine for small displacements
     int threads;
     std::vector<double> taken{}; // of each round [s a step]
     std::vector<Vector2d> u{};   // where it came to
 };
 
 // Moves a copy of the section by so many steps; returns what that took with all before it [s].
-double run(const Assembly& section, Way& way, int steps)
+double run(const Assembly& section, const Mesh& mesh, Way& way, int steps)
 {
     Assembly moving = section;
     moving.threads = way.threads;
     double start = 0, end = 0;
-    if (way.is_engine) {
+    if (way.kind == Kind::motion || way.kind == Kind::rigid_motion) {
+        joint::Coulomb found = std::get<joint::Coulomb>(moving.contacts.law.at(0));
+        found.cohesion = found.tensile_strength = 0;
+        motion::Motion motion(
+            moving, mesh,
+            std::vector<char>(mesh.zone_gridpoint.size(), way.kind == Kind::rigid_motion ? 1 : 0), found,
+            {.mass_damping = alpha});
+        start = seconds(way.threads);
+        for (int i = 0; i < steps; ++i)
+            motion.step();
+        end = seconds(way.threads);
+        motion.put_back();
+        way.u = moving.displacement;
+    } else if (way.kind == Kind::relaxation) {
         Equilibrium settings{.tolerance = 1e-300, .damping = way.damping, .mass_damping = alpha};
         settings.masses = way.damping == Damping::mass ? Masses::real : Masses::scaled;
         settings.most_steps = steps;
@@ -256,40 +275,44 @@ void measure(const std::string& path, double zone_size, int steps, int rounds)
 
     std::vector<Way> ways;
     for (const int threads : {1, 2}) {
-        ways.push_back({"bare loop", false, Damping::mass, threads});
-        ways.push_back({"engine", true, Damping::mass, threads});
-        ways.push_back({"engine as by default", true, Damping::adaptive, threads});
+        ways.push_back({"bare loop", Kind::bare, Damping::mass, threads});
+        ways.push_back({"engine", Kind::relaxation, Damping::mass, threads});
+        ways.push_back({"engine as by default", Kind::relaxation, Damping::adaptive, threads});
+        ways.push_back({"motion, deformable", Kind::motion, Damping::mass, threads});
+        ways.push_back({"motion, rigid", Kind::rigid_motion, Damping::mass, threads});
     }
+    const std::size_t n = ways.size() / 2; // on each number of threads
     for (Way& way : ways)
         way.u = section.displacement;
     for (int round = 0; round < rounds; ++round)
         for (Way& way : ways) {
-            const double start = run(section, way, before);
-            way.taken.push_back((run(section, way, before + steps) - start) / steps);
+            const double start = run(section, mesh, way, before);
+            way.taken.push_back((run(section, mesh, way, before + steps) - start) / steps);
         }
 
     double farthest = 0;
     for (const Vector2d& u : ways[0].u)
         farthest = std::max(farthest, u.norm());
     for (std::size_t i = 0; i < ways.size(); ++i) {
-        const Way& same = ways[ways[i].damping == Damping::mass ? 0 : 2];
+        const Way& alone = ways[i % n]; // the same on one thread
+        if (ways[i].kind != Kind::bare && ways[i].u != alone.u)
+            throw std::runtime_error(std::string(ways[i].name) + ": the bits are others on two threads");
+        const bool is_in_motion = ways[i].kind == Kind::motion || ways[i].kind == Kind::rigid_motion;
+        const Way& same = is_in_motion ? alone : ways[ways[i].damping == Damping::mass ? 0 : 2];
         const double apart = mechanics::farthest_move(same.u, ways[i].u).first;
-        const Way& alone = ways[i % 3]; // the same on one thread
         if (!(apart <= 1e-9 * farthest))
             throw std::runtime_error(std::string(ways[i].name) + ", " + std::to_string(ways[i].threads) +
                                      " thread(s): arrives elsewhere than the " + same.name + ", by " +
                                      std::to_string(apart / farthest) + " of the farthest displacement");
-        if (ways[i].is_engine && ways[i].u != alone.u)
-            throw std::runtime_error("the engine's bits are others on two threads");
     }
     const auto zones = std::ranges::count(section.zones.is_present, 1);
     std::cout << "way,threads,zones,contacts,s_per_step,zone_steps_per_s,over_bare,gain\n";
     for (std::size_t i = 0; i < ways.size(); ++i) {
         const double least = *std::ranges::min_element(ways[i].taken);
-        std::cout << ways[i].name << ',' << ways[i].threads << ',' << zones << ','
+        std::cout << '"' << ways[i].name << "\"," << ways[i].threads << ',' << zones << ','
                   << section.contacts.law.size() << ',' << least << ',' << static_cast<double>(zones) / least
-                  << ',' << median_ratio(ways[i / 3 * 3], ways[i]) << ','
-                  << median_ratio(ways[i % 3], ways[i]) << '\n';
+                  << ',' << median_ratio(ways[i / n * n], ways[i]) << ','
+                  << median_ratio(ways[i % n], ways[i]) << '\n';
     }
 }
 
