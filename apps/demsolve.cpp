@@ -25,6 +25,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <numeric>
 #include <optional>
@@ -405,6 +406,14 @@ void add_safety(Summary& summary, const Bracket& bracket, const std::string& why
     for (std::size_t end = 0; end != std::string::npos; from = end + 1) {
         end = why.find('\n', from);
         summary.add("  there", why.substr(from, end == std::string::npos ? end : end - from));
+    }
+    if (trials.stands[upper] != 0) { // one that fails may be known all the same
+        double fails = std::numeric_limits<double>::infinity();
+        for (std::size_t i = 0; i < trials.factor.size(); ++i)
+            if (trials.stands[i] == 0)
+                fails = std::min(fails, trials.factor[i]);
+        if (std::isfinite(fails))
+            summary.add("factor of safety, below", shown(fails));
     }
 }
 
