@@ -138,10 +138,10 @@ Eigen::SparseMatrix<double> stiffness_of(const Assembly& assembly, const std::ve
             add(piece_of[g], piece_of[g], firm * moves.transpose() * held.asDiagonal() * moves);
         }
     // What nothing holds at all moves out of all bounds, and the others as they do.
-    for (Index i = 0; i < 3 * static_cast<Index>(pieces.size()); ++i)
-        entries.emplace_back(i, i, 1e-14 * firm);
-    Eigen::SparseMatrix<double> stiffness(3 * static_cast<Index>(pieces.size()),
-                                          3 * static_cast<Index>(pieces.size()));
+    for (Eigen::Index i = 0; i < 3 * static_cast<Eigen::Index>(pieces.size()); ++i)
+        entries.emplace_back(static_cast<int>(i), static_cast<int>(i), 1e-14 * firm);
+    Eigen::SparseMatrix<double> stiffness(3 * static_cast<Eigen::Index>(pieces.size()),
+                                          3 * static_cast<Eigen::Index>(pieces.size()));
     stiffness.setFromTriplets(entries.begin(), entries.end());
     return stiffness;
 }
@@ -160,17 +160,18 @@ ToGo farthest_to_go(const Assembly& assembly, double share, double rounding)
         return farthest;
     std::vector<Index> piece_of;
     const std::vector<Piece> pieces = pieces_of(assembly, piece_of);
-    Eigen::VectorXd push = Eigen::VectorXd::Zero(3 * static_cast<Index>(pieces.size()));
+    Eigen::VectorXd push = Eigen::VectorXd::Zero(3 * static_cast<Eigen::Index>(pieces.size()));
     for (std::size_t p = 0; p < pieces.size(); ++p)
         if (const double force = pieces[p].out_of_balance.norm();
             force > share * pieces[p].own() && force > rounding)
-            push.segment<3>(3 * static_cast<Index>(p)) = pieces[p].out_of_balance;
+            push.segment<3>(3 * static_cast<Eigen::Index>(p)) = pieces[p].out_of_balance;
     if (push.isZero(0))
         return farthest;
     const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(stiffness_of(assembly, pieces, piece_of));
     const Eigen::VectorXd way = factor.solve(push);
     for (std::size_t p = 0; p < pieces.size(); ++p)
-        if (const double moved = way.segment<3>(3 * static_cast<Index>(p)).norm(); !(moved <= farthest.way))
+        if (const double moved = way.segment<3>(3 * static_cast<Eigen::Index>(p)).norm();
+            !(moved <= farthest.way))
             farthest = {std::isfinite(moved) ? moved : size_of(assembly), pieces[p].first};
     return farthest;
 }
