@@ -1,5 +1,6 @@
 #include "analysis/analysis.hpp"
 
+#include "joint/equivalent.hpp"
 #include "mechanics/excavation.hpp"
 #include "model/error.hpp"
 #include "model/units.hpp"
@@ -121,11 +122,22 @@ std::vector<char> rigid_zones(const Scene& scene, const Network& network, const 
     return is_rigid;
 }
 
+// What the joint of each contact is made of, by its number in the scene.
+std::vector<Index> material_of_contacts(const Scene& scene, const Network& network, const Mesh& mesh)
+{
+    std::vector<Index> number;
+    for (const Index edge : mesh.contact_edge)
+        number.push_back(static_cast<Index>(&material_of(scene, network, static_cast<std::size_t>(edge)) -
+                                            scene.joint_materials.data()));
+    return number;
+}
+
 // Of contacts that come about in motion: friction alone, the residual one where there is one.
 joint::Law law_of_new_contacts(const Scene& scene)
 {
     const auto material = std::find_if(scene.joint_materials.begin(), scene.joint_materials.end(),
                                        [&](const auto& m) { return m.name == scene.motion->new_contacts; });
+    static_assert(joint::number_of_laws == 2);
     if (material->walls)
         return joint::BartonBandis{material->normal_stiffness,       material->shear_stiffness,
                                    material->walls->largest_closure, material->friction_angle,
@@ -152,6 +164,7 @@ Analysis::Analysis(const Scene& scene, const Network& network, const EquivalentJ
       rock_(mechanics::assemble(scene, network, joints, result_.mesh)), loading_(scene, result_.mesh),
       recorder_(scene, network.blocks, result_.mesh)
 {
+    static_assert(joint::number_of_laws == 2); // the strength of Coulomb's has been divided
     for (joint::Law& law : rock_.contacts.law)
         if (auto* barton_bandis = std::get_if<joint::BartonBandis>(&law))
             barton_bandis->divisor = joints.strength_divisor;
@@ -481,8 +494,8 @@ void Analysis::excavate(const Stage& stage, Index number)
 
 void Analysis::prepare_motion()
 {
-    motion_.emplace(rock_, result_.mesh, rigid_zones(scene_, network_, result_.mesh),
-                    law_of_new_contacts(scene_),
+    motion_.emplace(rock_, result_.mesh, material_of_contacts(scene_, network_, result_.mesh),
+                    rigid_zones(scene_, network_, result_.mesh), law_of_new_contacts(scene_),
                     motion::Settings{scene_.motion->stiffness_damping, scene_.motion->mass_damping,
                                      scene_.motion->release, scene_.equilibrium.tolerance});
 }

@@ -123,6 +123,7 @@ public:
     Part(const joint::Law& law, const std::array<double, 2>& closing, double length)
         : coulomb_(std::get_if<joint::Coulomb>(&law)), closing_(closing), length_(length)
     {
+        static_assert(joint::number_of_laws == 2);
         if (coulomb_ == nullptr)
             add_up(std::get<joint::BartonBandis>(law));
     }
@@ -194,14 +195,14 @@ private:
 
 } // namespace
 
-Contacts::Contacts(std::vector<joint::Law> laws, const Vector2d& origin)
-    : laws_(std::move(laws)), origin_(origin)
+Contacts::Contacts(std::vector<joint::Law> laws, std::vector<Index> material, const Vector2d& origin)
+    : laws_(std::move(laws)), material_(std::move(material)), origin_(origin)
 {
+    material_.resize(laws_.size(), -1);
     for (const joint::Law& law : laws_) {
         stiffest_open_ = std::max({stiffest_open_, joint::k_n(law), joint::k_s(law)});
         stiffens_ = stiffens_ || !joint::is_linear(law);
-        const auto* const coulomb = std::get_if<joint::Coulomb>(&law);
-        dilates_ = dilates_ || (coulomb != nullptr && coulomb->tan_psi > 0);
+        dilates_ = dilates_ || joint::dilates(law);
     }
     stiffest_ = stiffest_open_;
 }
@@ -209,6 +210,7 @@ Contacts::Contacts(std::vector<joint::Law> laws, const Vector2d& origin)
 void Contacts::set_faces(Faces faces, std::vector<Pair> known, const std::vector<Vector2d>& place)
 {
     faces_ = std::move(faces);
+    faces_.law.resize(faces_.gridpoint.size(), laws_.size() - 1);
     std::sort(known.begin(), known.end(),
               [](const Pair& p, const Pair& q) { return std::pair(p.a, p.b) < std::pair(q.a, q.b); });
     pairs_ = std::move(known);
@@ -396,6 +398,7 @@ void Contacts::dilate(const std::vector<Vector2d>& place, const std::vector<Vect
             if (!pair.is_closed || pressed <= 0)
                 continue;
             all += pressed;
+            static_assert(joint::number_of_laws == 2); // only Coulomb's dilates
             const auto* const law = std::get_if<joint::Coulomb>(&laws_[pair.law]);
             if (law == nullptr || law->tan_psi == 0 || law->k_s == 0 || pair.dilation >= law->dilation_end())
                 continue;
@@ -556,6 +559,16 @@ const Pair* Contacts::contact_before(const Pair& pair, const Vector2d& normal,
                 from = &other;
         }
     return from;
+}
+
+std::size_t Contacts::law_slid_on_to(const Pair& pair, const Pair& before) const
+{
+    const std::size_t of_a = faces_.law[pair.a], of_b = faces_.law[pair.b];
+    if (material_[of_a] < 0 || material_[of_a] != material_[of_b])
+        return laws_.size() - 1;
+    if (material_[before.law] == material_[of_a])
+        return before.law;
+    return pair.a == before.a || pair.a == before.b ? of_b : of_a; // of the face that is next
 }
 
 void Contacts::update(const std::vector<Vector2d>& place, const std::vector<Vector2d>& move, double dt,
@@ -836,7 +849,7 @@ void Contacts::update(const std::vector<Vector2d>& place, const std::vector<Vect
             if (before == nullptr && (is_behind || (!pair.is_known && -found->sunk() >= pair.lead[0])))
                 continue;
             if (before != nullptr && !pair.is_known) {
-                // What slides on takes along what its joint is and remembers. A pair's sides may change
+                // What slides on takes along what its joint remembers. A pair's sides may change
                 // places: a's first end looks at b's second one, and `along` turns round with the normal
                 // twice over, so that the shear traction keeps its sign. What was nearer than it is raised
                 // before it slid on to there, is raised no farther than that.
@@ -845,7 +858,7 @@ void Contacts::update(const std::vector<Vector2d>& place, const std::vector<Vect
                 const double room = last.slid < found->length ? std::min(last.gap[0], last.gap[1]) - unraised
                                                               : before->dilation;
                 pair.dilation = std::max(pair.dilation, std::clamp(room, 0.0, before->dilation));
-                pair.law = before->law;
+                pair.law = law_slid_on_to(pair, *before);
                 pair.tau = before->tau;
                 pair.lead = {unraised + pair.dilation, unraised + pair.dilation};
             }
