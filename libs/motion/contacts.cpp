@@ -910,7 +910,7 @@ void Contacts::transfer(const Transfer& to, MovedRock& kept)
 void Contacts::take_forces(Index active)
 {
     const Pair& pair = pairs_[active_[active]];
-    const Index* const at = &corner_place_[4 * active];
+    const Index* const at = corner_place_.data() + 4 * static_cast<std::ptrdiff_t>(active);
     for (int end = 0; end < 2; ++end) {
         const Vector2d force = pair.is_closed ? pair.force[end] : Vector2d(Vector2d::Zero());
         corner_force_[at[0]][end] = (1 - pair.on_a[end]) * force;

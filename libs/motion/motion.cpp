@@ -595,9 +595,10 @@ void Motion::find_forces(const std::vector<Vector2d>& move)
             of_y(c * xy - s * acting[1], s * xy + c * acting[1]);
         const Vector2d one = zone.inverse(0, 0) * of_x + zone.inverse(0, 1) * of_y,
                        two = zone.inverse(1, 0) * of_x + zone.inverse(1, 1) * of_y;
-        corner_force_[3 * z] = one + two;
-        corner_force_[3 * z + 1] = -one;
-        corner_force_[3 * z + 2] = -two;
+        Vector2d* const force = corner_force_.data() + 3 * static_cast<std::ptrdiff_t>(z);
+        force[0] = one + two;
+        force[1] = -one;
+        force[2] = -two;
     };
     const double lost_before = in_zones_.friction; // at the start
     in_zones_ = sum_in_chunks<ZoneSums>(n_zones, rock_.threads, pull);
