@@ -42,7 +42,8 @@ const Program program{
     .input = "joints.h5",
     .output = "result.h5",
     .options = {{"threads", "N", "threads of the solver; they do not change the result (default 1)"},
-                {"zone-size", "M", "longest side of zones [m] (default: the scene's)"},
+                {"zone-size", "M",
+                 "longest side of zones [m]; size_at_faces_m changes in proportion (default: the scene's)"},
                 {"tolerance", "T", "out-of-balance ratio of an equilibrium (default: the scene's)"},
                 {"engine", "NAME",
                  "auto, explicit (motion) or implicit (factorisation) (default: the scene's)"},
@@ -107,6 +108,8 @@ std::string choose(const Arguments& arguments, Scene& scene)
     };
     if (const auto size = arguments.number("zone-size")) {
         require(*size > 0 && *size <= 1e6, "--zone-size", *size, "m", "must be above 0 and at most 1e6");
+        if (scene.zone_size_at_faces)
+            *scene.zone_size_at_faces *= *size / scene.zone_size;
         scene.zone_size = *size;
         note("zone-size", shown(*size));
     }

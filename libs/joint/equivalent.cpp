@@ -257,7 +257,7 @@ public:
         for (const Rock* const rock : rocks) {
             const double E = rock->youngs_modulus, nu = rock->poissons_ratio;
             compliance += (1 - nu * nu) / E / static_cast<double>(rocks.size());
-            zone = std::max(zone, E * (1 - nu) / ((1 + nu) * (1 - 2 * nu)) / scene_.zone_size);
+            zone = std::max(zone, E * (1 - nu) / ((1 + nu) * (1 - 2 * nu)) / scene_.smallest_zone_size());
         }
         for (const Direction direction : {Direction::normal, Direction::shear}) {
             JointChain& chain = found.chain[direction == Direction::normal ? 0 : 1];

@@ -358,6 +358,8 @@ struct Scene {
     double zone_size = 0;                // longest zone side aimed at [m]
     std::optional<Polygon> fine_zones{}; // where zones have that size, or else everywhere
     double zone_coarsening = 0;          // distance from there in which the size grows by `zone_size` [m]
+    std::optional<double> zone_size_at_faces{}; // and where something is measured; at most `zone_size` [m]
+    double smallest_zone_size() const { return zone_size_at_faces.value_or(zone_size); } // aimed at [m]
     Cutting cutting;
     Averaging averaging;
     Equilibrium equilibrium;

@@ -596,6 +596,10 @@ private:
             cutting.refuse("shortest_edge_m",
                            "wanted at most [zones] size_m, " + shown(scene_.zone_size) + " m");
 
+        if (scene_.zone_size_at_faces.value_or(0) > scene_.zone_size)
+            once("zones").refuse("size_at_faces_m",
+                                 "wanted at most size_m, " + shown(scene_.zone_size) + " m");
+
         if (scene_.cutting.dead_ends == DeadEnds::extend)
             for (const Rock& rock : scene_.rocks)
                 if (!rock.strength)

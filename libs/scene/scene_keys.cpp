@@ -932,16 +932,21 @@ Table<Creep> creep()
 
 Table<Scene> zones()
 {
-    return {{"zones", once, required, "Zones: the constant-strain triangles inside the blocks."},
-            {number("size_m", &Scene::zone_size, metres, length, "Longest zone side aimed at."),
-             polygon("fine_m", &Scene::fine_zones,
-                     "Where they are of that size; outside they are larger. Without it they are of that "
-                     "size everywhere.")
-                 .together("coarsening"),
-             number("coarsening_m", &Scene::zone_coarsening, metres, length,
-                    "Distance from fine_m in which the size grows by size_m: at twice the distance zones are "
-                    "three times as large.")
-                 .together("coarsening")}};
+    return {
+        {"zones", once, required, "Zones: the constant-strain triangles inside the blocks."},
+        {number("size_m", &Scene::zone_size, metres, length, "Longest zone side aimed at."),
+         polygon("fine_m", &Scene::fine_zones,
+                 "Where they are of that size; outside they are larger. Without it they are of that "
+                 "size everywhere.")
+             .together("coarsening"),
+         number("coarsening_m", &Scene::zone_coarsening, metres, length,
+                "Distance from fine_m in which the size grows by size_m: at twice the distance zones are "
+                "three times as large.")
+             .together("coarsening"),
+         number("size_at_faces_m", &Scene::zone_size_at_faces, metres, length,
+                "Longest zone side aimed at on faces that stages dig, at points and at gauges; from there "
+                "it grows by 0.3 m a metre to what the other keys ask for. At most size_m.")
+             .optional()}};
 }
 
 Table<Cutting> cutting()

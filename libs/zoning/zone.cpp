@@ -1,8 +1,8 @@
 #include "zoning/zone.hpp"
 
 #include "model/disjoint_sets.hpp"
-#include "model/polygon.hpp"
 #include "model/signs.hpp"
+#include "zoning/size.hpp"
 #include "zoning/triangulation.hpp"
 
 #include <algorithm>
@@ -93,20 +93,13 @@ private:
     std::vector<Tie> ties_;
 };
 
-// Longest zone side aimed at [m].
-double size_at(const Scene& scene, const Eigen::Vector2d& place)
-{
-    if (!scene.fine_zones || covers(*scene.fine_zones, place))
-        return scene.zone_size;
-    return scene.zone_size * (1 + distance_to_sides(*scene.fine_zones, place) / scene.zone_coarsening);
-}
-
 } // namespace
 
 Mesh zone(const Scene& scene, const Blocks& blocks)
 {
-    const Triangulation t = triangulate(
-        blocks, scene.zone_size, [&scene](const Eigen::Vector2d& place) { return size_at(scene, place); });
+    const ZoneSize size(scene, blocks);
+    const Triangulation t = triangulate(blocks, scene.smallest_zone_size(),
+                                        [&size](const Eigen::Vector2d& place) { return size.at(place); });
     const auto n_zones = static_cast<Index>(t.triangle.size());
 
     const Corners corners(t, blocks);

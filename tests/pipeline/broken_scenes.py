@@ -152,6 +152,7 @@ def wrong_together(text):
         yield what, "ground_m", line, edited(("elevation_m = 20\n", line + "\n"))
     fine = "fine_m = [[50, 5], [60, 5], [60, 9]]"
     yield "outside the section", "fine_m", fine, edited(("fine_m = [[5, 5], [35, 5], [35, 20], [5, 20]]", fine))
+    yield "above size_m", "size_at_faces_m", "size_at_faces_m = 5", edited(("size_at_faces_m = 2", "size_at_faces_m = 5"))
     profile = WITH_PROFILE[1].split("\n")[1]
     yield "beside one linear key", "profile", profile, edited((LINEAR_STRESS, WITH_PROFILE[1] + "shear_xy_MPa = 0\n"))
     strength = "cohesion_MPa = 0.5\nfriction_angle_deg = 35\ntensile_strength_MPa = 0.2\n"

@@ -285,6 +285,13 @@ TEST(checks, fine_zones)
     EXPECT_EQ(by("[-10, -10], [60, -10], [60, 60], [-10, 60]"), "accepted"); // all around
 }
 
+TEST(checks, size_at_faces)
+{
+    expect_refused("size_at_faces_m = 2", "size_at_faces_m = 4.1",
+                   "[zones] size_at_faces_m = 4.1: wanted at most size_m, 4 m");
+    EXPECT_EQ(refusal(replaced(text, "size_at_faces_m = 2", "size_at_faces_m = 4")), "accepted");
+}
+
 TEST(checks, times)
 {
     expect_refused("end = 1994-07-01", "end = 1994-06-01", "wanted an end after the start");

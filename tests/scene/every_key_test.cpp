@@ -156,6 +156,7 @@ TEST(every_key, all_else)
     ASSERT_TRUE(scene.fine_zones);
     EXPECT_EQ((*scene.fine_zones)[1], Eigen::Vector2d(35, 5));
     EXPECT_EQ(scene.zone_coarsening, 10);
+    EXPECT_EQ(scene.zone_size_at_faces, 2);
     EXPECT_EQ(scene.cutting.shortest_edge, 0.2);
     EXPECT_EQ(scene.cutting.smallest_angle, 3 * deg);
     EXPECT_EQ(scene.averaging.over, AverageOver::line);

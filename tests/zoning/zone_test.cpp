@@ -175,6 +175,81 @@ TEST(zone, zones_grow_outside_where_they_are_fine)
     EXPECT_NEAR(static_cast<double>(fewer) / static_cast<double>(all), (20 + 30 * 6 / 7.0) / 200, 0.06);
 }
 
+TEST(zone, zones_are_small_at_faces_that_stages_dig_and_where_something_is_measured)
+{
+    Scene scene = section({{0, 0}, {100, 0}, {100, 50}, {0, 50}}, 0.1);
+    scene.zone_size = 5;
+    scene.zone_size_at_faces = 1;
+    Joints joints;
+    add_joint(joints, {-1, 30}, {101, 35});
+    add_joint(joints, {30, -1}, {80, 51});
+    // Level and upright stretches that zones are to be small at: {lower left, upper right}.
+    using Stretches = std::vector<std::array<Vector2d, 2>>;
+    const auto expect_sizes = [&](const Stretches& stretches, const auto& others) {
+        const auto size_at = [&](const Vector2d& p) {
+            double size = others(p);
+            for (const auto& [low, high] : stretches)
+                size = std::min(size, 1 + 0.3 * (low - p).cwiseMax(p - high).cwiseMax(0.0).norm());
+            return size;
+        };
+        const Blocks blocks = blocks::cut(scene, joints);
+        const Mesh mesh = zoning::zone(scene, blocks);
+        expect_sound(blocks, mesh);
+        double small = 0, middle = 0, large = 0; // longest side over the size asked for, where that is so
+        double wanted = 0;                       // zones, but for a factor: area over the size squared
+        for (std::size_t z = 0; z < mesh.zone_gridpoint.size(); ++z) {
+            const auto& g = mesh.zone_gridpoint[z];
+            const Vector2d &a = mesh.gridpoint[g[0]], &b = mesh.gridpoint[g[1]], &c = mesh.gridpoint[g[2]];
+            const double side = std::max({(a - b).norm(), (b - c).norm(), (c - a).norm()});
+            const double size = size_at((a + b + c) / 3);
+            double& worst = size < 1.2 ? small : size < 5 ? middle : large;
+            worst = std::max(worst, side / size);
+            wanted += zone_area(mesh, z) / (size * size);
+        }
+        for (const double worst : {small, middle, large}) {
+            EXPECT_LE(worst, 1);
+            EXPECT_GT(worst, 0.8);
+        }
+        return static_cast<double>(mesh.zone_gridpoint.size()) / wanted;
+    };
+    const auto even = [](const Vector2d&) { return 5.0; };
+
+    // Of the stages' outlines only what is inside the section, without the top; the floor of the first, too.
+    scene.stages.push_back({"upper", 1, {{{60, 30}, {110, 30}, {110, 60}, {60, 60}}}});
+    scene.stages.push_back({"lower", 2, {{{60, 20}, {110, 20}, {110, 30}, {60, 30}}}});
+    Stretches stretches{{{{60, 20}, {60, 50}}}, {{{60, 20}, {100, 20}}}, {{{60, 30}, {100, 30}}}};
+    const double at_faces = expect_sizes(stretches, even);
+
+    scene.points = {{"on a side", {0, 10}}};
+    scene.gauges = {{"inside", {20, 31}}};
+    stretches.push_back({{{0, 10}, {0, 10}}});
+    stretches.push_back({{{20, 31}, {20, 31}}});
+    expect_sizes(stretches, even);
+
+    // Beside zones that grow of themselves the smaller size counts.
+    scene.fine_zones = Polygon{{-5, -5}, {20, -5}, {20, 55}, {-5, 55}};
+    scene.zone_coarsening = 30;
+    expect_sizes(stretches, [](const Vector2d& p) { return 5 * (1 + std::max(0.0, p.x() - 20) / 30); });
+    scene.fine_zones.reset();
+
+    scene.stages.clear();
+    stretches.erase(stretches.begin(), stretches.end() - 2);
+    const double at_places = expect_sizes(stretches, even);
+
+    scene.points.clear();
+    scene.gauges.clear();
+    const auto zones = [&] { return zoning::zone(scene, blocks::cut(scene, joints)).zone_gridpoint; };
+    const auto nothing_to_be_small_at = zones();
+    scene.zone_size_at_faces.reset();
+    EXPECT_EQ(nothing_to_be_small_at, zones());
+
+    // About as many zones as if they were all of one size, for what is asked for.
+    scene.zone_size = 1;
+    const double all = static_cast<double>(zones().size());
+    EXPECT_NEAR(at_faces, all / (100 * 50), 0.1 * at_faces); // 5 percent more seen
+    EXPECT_NEAR(at_places, all / (100 * 50), 0.1 * at_places);
+}
+
 TEST(zone, boundaries_are_held_or_rest_on_the_ground)
 {
     Scene scene = section({{0, 0}, {10, 0}, {10, 10}, {0, 10}}, 0.1);
