@@ -1,5 +1,6 @@
 #include "analysis/analysis.hpp"
 
+#include "joint/equivalent.hpp"
 #include "mechanics/excavation.hpp"
 #include "model/error.hpp"
 #include "model/units.hpp"
@@ -119,6 +120,16 @@ std::vector<char> rigid_zones(const Scene& scene, const Network& network, const 
         is_rigid.push_back(std::find(rigid.begin(), rigid.end(), rock) != rigid.end() ? 1 : 0);
     }
     return is_rigid;
+}
+
+// What the joint of each contact is made of, by its number in the scene.
+std::vector<Index> material_of_contacts(const Scene& scene, const Network& network, const Mesh& mesh)
+{
+    std::vector<Index> number;
+    for (const Index edge : mesh.contact_edge)
+        number.push_back(static_cast<Index>(&material_of(scene, network, static_cast<std::size_t>(edge)) -
+                                            scene.joint_materials.data()));
+    return number;
 }
 
 // Of contacts that come about in motion: friction alone, the residual one where there is one.
@@ -481,8 +492,8 @@ void Analysis::excavate(const Stage& stage, Index number)
 
 void Analysis::prepare_motion()
 {
-    motion_.emplace(rock_, result_.mesh, rigid_zones(scene_, network_, result_.mesh),
-                    law_of_new_contacts(scene_),
+    motion_.emplace(rock_, result_.mesh, material_of_contacts(scene_, network_, result_.mesh),
+                    rigid_zones(scene_, network_, result_.mesh), law_of_new_contacts(scene_),
                     motion::Settings{scene_.motion->stiffness_damping, scene_.motion->mass_damping,
                                      scene_.motion->release, scene_.equilibrium.tolerance});
 }

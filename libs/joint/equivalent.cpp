@@ -71,27 +71,6 @@ std::vector<const Rock*> rocks_beside(const Scene& scene, const Network& network
     return rocks;
 }
 
-// What an edge's joint is made of there; between two rocks the softer of both in normal direction.
-const JointMaterial& material_of(const Scene& scene, const Network& network, std::size_t edge)
-{
-    const Index joint = network.blocks.edge_joint[edge];
-    const auto material = [&](const std::string& name) -> const JointMaterial& {
-        return by_name(scene.joint_materials, name, "joint material");
-    };
-    const JointMaterial& usual = material(network.names.joint_material[network.joints.material[joint]]);
-    const auto set = std::ranges::find(scene.joint_sets, set_name(network, edge), &JointSet::name);
-    if (set == scene.joint_sets.end() || set->material_in.empty())
-        return usual;
-    const JointMaterial* softest = nullptr;
-    for (const Rock* const rock : rocks_beside(scene, network, edge)) {
-        const auto in = std::ranges::find(set->material_in, rock->name, &MaterialInRock::rock);
-        const JointMaterial& here = in == set->material_in.end() ? usual : material(in->material);
-        if (!softest || here.normal_stiffness < softest->normal_stiffness)
-            softest = &here;
-    }
-    return *softest;
-}
-
 Strength bridge_strength(const Scene& scene, const Network& network, std::size_t edge, double persistence)
 {
     std::optional<Strength> weakest;
@@ -470,6 +449,28 @@ SetAverages averages_of(const Scene& scene, const Network& network, const Pieces
 
 } // namespace
 
+const JointMaterial& material_of(const Scene& scene, const Network& network, std::size_t edge)
+{
+    const auto material = [&](const std::string& name) -> const JointMaterial& {
+        return by_name(scene.joint_materials, name, "joint material");
+    };
+    const Index joint = network.blocks.edge_joint[edge];
+    if (joint < 0)
+        return material(scene.boundaries[network.blocks.edge_boundary[edge]].joint);
+    const JointMaterial& usual = material(network.names.joint_material[network.joints.material[joint]]);
+    const auto set = std::ranges::find(scene.joint_sets, set_name(network, edge), &JointSet::name);
+    if (set == scene.joint_sets.end() || set->material_in.empty())
+        return usual;
+    const JointMaterial* softest = nullptr;
+    for (const Rock* const rock : rocks_beside(scene, network, edge)) {
+        const auto in = std::ranges::find(set->material_in, rock->name, &MaterialInRock::rock);
+        const JointMaterial& here = in == set->material_in.end() ? usual : material(in->material);
+        if (!softest || here.normal_stiffness < softest->normal_stiffness)
+            softest = &here;
+    }
+    return *softest;
+}
+
 Strength average(const Strength& joint, const Strength& rock, double persistence)
 {
     const double k = persistence;
@@ -526,7 +527,7 @@ EquivalentJoints average_strength(const Scene& scene, const Network& network)
             const std::string& name = scene.boundaries[blocks.edge_boundary[edge]].joint;
             if (name.empty())
                 continue;
-            const JointMaterial& material = by_name(scene.joint_materials, name, "joint material");
+            const JointMaterial& material = material_of(scene, network, edge);
             set_joint(joints, edge, stiffnesses.of(edge, material, {1, 0, 0}), strength_of(material),
                       material.dilation_until, 1);
             set_walls(joints, edge, material);

@@ -46,4 +46,8 @@ Strength average(const Strength& joint, const Strength& rock, double persistence
 // are not in the scene.
 EquivalentJoints average_strength(const Scene& scene, const Network& network);
 
+// What the joint of an edge is made of, one of the scene's joint materials: its set's for the rock there,
+// between two rocks the softer of both in normal direction; or what a boundary rests on.
+const JointMaterial& material_of(const Scene& scene, const Network& network, std::size_t edge);
+
 } // namespace jointcreep

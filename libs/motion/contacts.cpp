@@ -194,9 +194,10 @@ private:
 
 } // namespace
 
-Contacts::Contacts(std::vector<joint::Law> laws, const Vector2d& origin)
-    : laws_(std::move(laws)), origin_(origin)
+Contacts::Contacts(std::vector<joint::Law> laws, std::vector<Index> material, const Vector2d& origin)
+    : laws_(std::move(laws)), material_(std::move(material)), origin_(origin)
 {
+    material_.resize(laws_.size(), -1);
     for (const joint::Law& law : laws_) {
         stiffest_open_ = std::max({stiffest_open_, joint::k_n(law), joint::k_s(law)});
         stiffens_ = stiffens_ || !joint::is_linear(law);
@@ -209,6 +210,7 @@ Contacts::Contacts(std::vector<joint::Law> laws, const Vector2d& origin)
 void Contacts::set_faces(Faces faces, std::vector<Pair> known, const std::vector<Vector2d>& place)
 {
     faces_ = std::move(faces);
+    faces_.law.resize(faces_.gridpoint.size(), laws_.size() - 1);
     std::sort(known.begin(), known.end(),
               [](const Pair& p, const Pair& q) { return std::pair(p.a, p.b) < std::pair(q.a, q.b); });
     pairs_ = std::move(known);
@@ -558,6 +560,16 @@ const Pair* Contacts::contact_before(const Pair& pair, const Vector2d& normal,
     return from;
 }
 
+std::size_t Contacts::law_slid_on_to(const Pair& pair, const Pair& before) const
+{
+    const std::size_t of_a = faces_.law[pair.a], of_b = faces_.law[pair.b];
+    if (material_[of_a] < 0 || material_[of_a] != material_[of_b])
+        return laws_.size() - 1;
+    if (material_[before.law] == material_[of_a])
+        return before.law;
+    return pair.a == before.a || pair.a == before.b ? of_b : of_a; // of the face that is next
+}
+
 void Contacts::update(const std::vector<Vector2d>& place, const std::vector<Vector2d>& move, double dt,
                       double viscosity, int threads)
 {
@@ -836,7 +848,7 @@ void Contacts::update(const std::vector<Vector2d>& place, const std::vector<Vect
             if (before == nullptr && (is_behind || (!pair.is_known && -found->sunk() >= pair.lead[0])))
                 continue;
             if (before != nullptr && !pair.is_known) {
-                // What slides on takes along what its joint is and remembers. A pair's sides may change
+                // What slides on takes along what its joint remembers. A pair's sides may change
                 // places: a's first end looks at b's second one, and `along` turns round with the normal
                 // twice over, so that the shear traction keeps its sign. What was nearer than it is raised
                 // before it slid on to there, is raised no farther than that.
@@ -845,7 +857,7 @@ void Contacts::update(const std::vector<Vector2d>& place, const std::vector<Vect
                 const double room = last.slid < found->length ? std::min(last.gap[0], last.gap[1]) - unraised
                                                               : before->dilation;
                 pair.dilation = std::max(pair.dilation, std::clamp(room, 0.0, before->dilation));
-                pair.law = before->law;
+                pair.law = law_slid_on_to(pair, *before);
                 pair.tau = before->tau;
                 pair.lead = {unraised + pair.dilation, unraised + pair.dilation};
             }

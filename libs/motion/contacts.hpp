@@ -14,6 +14,11 @@
 // goes on to the next face when one slides along. The shear traction is kept as a stress along the contact
 // and so turns with it.
 //
+// What slides keeps to the law of its joint as long as both faces were walls of joints of one material.
+// Beyond, the contact is one that comes about, as between any two faces that were not: which of the two
+// slides is the same to it, and of two walls that never lay on each other neither one's filling and bonds say
+// anything.
+//
 // Slip raises a joint that dilates, by adding to the closing: by one amount all along the joint, which is all
 // pairs between the same two straight sides of outlines, as its walls are rigid beside its springs. This
 // amount is such that it takes the work that the slip of each pair would give it by itself: the mean of
@@ -35,7 +40,8 @@ using mechanics::Vector2d;
 // Faces run with their rock on the left. Faces that follow each other share a gridpoint.
 struct Faces {
     std::vector<std::array<Index, 2>> gridpoint;
-    std::vector<double> depth; // of the zone behind it [m]
+    std::vector<double> depth;      // of the zone behind it [m]
+    std::vector<std::size_t> law{}; // of the joint whose wall it was; that of new contacts where of none
 };
 
 // What two faces that may touch remember.
@@ -97,10 +103,13 @@ struct PairEnergy {
 class Contacts
 {
 public:
-    // `laws`: those of the pairs; new contacts have the last one. Places are counted from `origin` [m].
-    explicit Contacts(std::vector<joint::Law> laws, const Vector2d& origin = Vector2d::Zero());
+    // `laws`: those of the pairs; new contacts have the last one. `material`: numbers of what the joints of
+    // the others are made of. Places are counted from `origin` [m].
+    explicit Contacts(std::vector<joint::Law> laws, std::vector<Index> material = {},
+                      const Vector2d& origin = Vector2d::Zero());
 
-    // Takes these faces instead; pairs of before are forgotten but for `known`, in any order.
+    // Takes these faces instead; pairs of before are forgotten but for `known`, in any order. Faces without
+    // laws are walls of no joint.
     void set_faces(Faces faces, std::vector<Pair> known, const std::vector<Vector2d>& place);
 
     // Tractions and forces of all pairs after gridpoints have moved by `move` to `place` [m] within `dt` [s]:
@@ -134,10 +143,12 @@ private:
     void take_forces(Index active);
     void find_corners(const std::vector<Vector2d>& place);
     void dilate(const std::vector<Vector2d>& place, const std::vector<Vector2d>& move);
+    std::size_t law_slid_on_to(const Pair& pair, const Pair& before) const;
     const Pair* contact_before(const Pair& pair, const Vector2d& normal,
                                const std::vector<Vector2d>& place) const;
 
     std::vector<joint::Law> laws_;
+    std::vector<Index> material_; // of laws; -1 of new contacts
     Vector2d origin_;
     bool stiffens_ = false;                   // as it closes, by any law
     bool dilates_ = false;                    // by any law

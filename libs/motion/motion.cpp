@@ -105,12 +105,13 @@ Matrix2d edges_of(const std::array<Index, 3>& g, const std::vector<Vector2d>& pl
 
 } // namespace
 
-Motion::Motion(mechanics::Assembly& rock, const Mesh& mesh, std::vector<char> is_rigid,
-               const joint::Law& found, const Settings& settings)
+Motion::Motion(mechanics::Assembly& rock, const Mesh& mesh, const std::vector<Index>& material,
+               std::vector<char> is_rigid, const joint::Law& found, const Settings& settings)
     : rock_(rock), mesh_(mesh), settings_(settings), contacts_({}), is_rigid_(std::move(is_rigid))
 {
     // One law for every edge with contacts.
     std::vector<joint::Law> laws;
+    std::vector<Index> material_of_law;
     law_of_edge_.assign(mesh.contact_edge.empty()
                             ? 0
                             : *std::max_element(mesh.contact_edge.begin(), mesh.contact_edge.end()) + 1,
@@ -122,6 +123,7 @@ Motion::Motion(mechanics::Assembly& rock, const Mesh& mesh, std::vector<char> is
             has_law[e] = 1;
             law_of_edge_[e] = laws.size();
             laws.push_back(rock.contacts.law[c]);
+            material_of_law.push_back(material[c]);
         }
     }
     laws.push_back(found);
@@ -131,7 +133,7 @@ Motion::Motion(mechanics::Assembly& rock, const Mesh& mesh, std::vector<char> is
         high_ = high_.cwiseMax(p);
     }
     middle_ = (low_ + high_) / 2;
-    contacts_ = Contacts(std::move(laws), middle_);
+    contacts_ = Contacts(std::move(laws), std::move(material_of_law), middle_);
 
     origin_ = rock.position;
     for (Vector2d& p : origin_)
@@ -162,6 +164,7 @@ Motion::Motion(mechanics::Assembly& rock, const Mesh& mesh, std::vector<char> is
     low_ -= middle_ + diagonal;
     high_ += diagonal - middle_;
     find_ground();
+    find_walls();
     start();
 }
 
@@ -234,6 +237,51 @@ void Motion::find_ground()
     }
 }
 
+// The laws of the joints that sides of zones and of the ground lie on, whatever rock there is.
+void Motion::find_walls()
+{
+    std::map<std::array<Index, 2>, std::vector<std::size_t>> between; // gridpoints {lower, higher}
+    for (std::size_t c = 0; c < mesh_.contact_gridpoint.size(); ++c) {
+        const auto [a, b] = mesh_.contact_gridpoint[c];
+        between[{std::min(a, b), std::max(a, b)}].push_back(c);
+    }
+    const auto contacts_of = [&](Index a, Index b) {
+        const auto there = between.find({std::min(a, b), std::max(a, b)});
+        return there == between.end() ? std::vector<std::size_t>() : there->second;
+    };
+    std::map<std::array<double, 4>, std::array<Index, 2>> side_at; // {from, to}
+    const auto take = [&](Index from, Index to) {
+        const Vector2d &p = mesh_.gridpoint[from], &q = mesh_.gridpoint[to];
+        side_at[{p.x(), p.y(), q.x(), q.y()}] = {from, to};
+        const auto opposite = side_at.find({q.x(), q.y(), p.x(), p.y()});
+        if (opposite == side_at.end())
+            return;
+        // Both ends are on the edge; the tip of a joint has no contact.
+        const Vector2d normal = normal_of(tangent_of(p, q));
+        const std::vector<std::size_t> first = contacts_of(from, opposite->second[1]),
+                                       second = contacts_of(to, opposite->second[0]);
+        std::size_t best = 0;
+        double most = 0;
+        for (const auto& [some, others] : {std::pair(&first, &second), std::pair(&second, &first)})
+            for (const std::size_t c : *some) {
+                const bool is_at_both = std::ranges::any_of(
+                    *others, [&](std::size_t d) { return mesh_.contact_edge[d] == mesh_.contact_edge[c]; });
+                const double fits = std::abs(mesh_.contact_normal[c].dot(normal)) + (is_at_both ? 1 : 0);
+                if (fits > most) {
+                    most = fits;
+                    best = c;
+                }
+            }
+        if (most > 0)
+            wall_law_[{from, to}] = wall_law_[opposite->second] = law_of_edge_[mesh_.contact_edge[best]];
+    };
+    for (const Zone& zone : zones_)
+        for (int i = 0; i < 3; ++i)
+            take(zone.gridpoint[i], zone.gridpoint[(i + 1) % 3]);
+    for (const auto& [from, to] : ground_)
+        take(from, to);
+}
+
 // The faces of what rock there is, and of the ground. Where both of two faces were not there before, a joint
 // of the mesh between them makes them a pair; other pairs stay what they are.
 void Motion::find_faces()
@@ -263,6 +311,8 @@ void Motion::find_faces()
         of_mesh.push_back({from, to});
         faces.gridpoint.push_back(key(from, to));
         faces.depth.push_back(depth);
+        const auto wall = wall_law_.find({from, to});
+        faces.law.push_back(wall == wall_law_.end() ? contacts_.laws().size() - 1 : wall->second);
     };
     for (std::size_t z = 0; z < zones_.size(); ++z)
         if (rock_.zones.is_present[z])
@@ -697,7 +747,7 @@ void Motion::transfer(const Transfer& to, MovedRock& kept)
     // All members, lest a new one is forgotten.
     auto& [rock, mesh, settings, contacts, bodies, is_rigid, body_of, zones, corner_force, yielding, place,
            velocity, move, force, released, lost, origin, middle, low, high, inverse_mass, law_of_edge,
-           ground, face_of_mesh, zone_of_face, dt, last_dt, time, time_lost, stiffest_allowed,
+           ground, wall_law, face_of_mesh, zone_of_face, dt, last_dt, time, time_lost, stiffest_allowed,
            starts_from_rest, has_moved, energy, stored_at_start, in_zones, last_kinetic, stiffest,
            largest_mean, ratio, force_change, fastest, fastest_gridpoint, stiffest_gridpoint,
            checks_in_balance, last_contact_force] = *this;

@@ -11,6 +11,8 @@
 #include "model/network.hpp"
 #include "motion/contacts.hpp"
 
+#include <map>
+
 namespace jointcreep::motion
 {
 
@@ -47,10 +49,10 @@ struct Settings {
 class Motion
 {
 public:
-    // `found` are the laws of contacts that come about.
-    // Zones of rigid rock form bodies that do not deform.
-    Motion(mechanics::Assembly& rock, const Mesh& mesh, std::vector<char> is_rigid, const joint::Law& found,
-           const Settings& settings);
+    // `material` numbers what the joint of each contact of the mesh is made of; `found` is the law of
+    // contacts that come about. Zones of rigid rock form bodies that do not deform.
+    Motion(mechanics::Assembly& rock, const Mesh& mesh, const std::vector<Index>& material,
+           std::vector<char> is_rigid, const joint::Law& found, const Settings& settings);
 
     // Begins anew after the assembly has lost rock, or gained loads. What is out of balance then fades away
     // within the time of release.
@@ -139,6 +141,7 @@ private:
     bool deforms(std::size_t z) const { return rock_.zones.is_present[z] && !is_rigid_[z]; }
     std::vector<Index> leaders() const;
     void find_ground();
+    void find_walls();
     void find_faces();
     void find_bodies();
     void find_time_step();
@@ -168,7 +171,8 @@ private:
     Vector2d low_, high_;              // of the section and its diagonal all round
     std::vector<double> inverse_mass_; // 0 where held by nothing but rock that is gone [m/kg]
     std::vector<std::size_t> law_of_edge_;
-    std::vector<std::array<Index, 2>> ground_;       // its faces, by gridpoints of the mesh
+    std::vector<std::array<Index, 2>> ground_;             // its faces, by gridpoints of the mesh
+    std::map<std::array<Index, 2>, std::size_t> wall_law_; // of sides on a joint, by gridpoints of the mesh
     std::vector<std::array<Index, 2>> face_of_mesh_; // the contacts' faces, by gridpoints before leaders
     std::vector<Index> zone_of_face_;                // -1 of the ground
 

@@ -1036,9 +1036,9 @@ Table<Motion> motion()
          "anew, until "
          "it is at rest. Without this table displacements are small. Not with [creep]."},
         {text("new_contacts", &Motion::new_contacts,
-              "Joint material of contacts that come about: its stiffnesses and friction angle, the residual "
-              "one if "
-              "it has one, without cohesion, tensile strength and dilation."),
+              "Joint material of contacts that come about, and of what slides off its joint: its stiffnesses "
+              "and friction angle, the residual one if it has one, without cohesion, tensile strength and "
+              "dilation."),
          names("rigid_rocks", &Motion::rigid_rocks,
                "Rocks whose blocks do not deform in motion; they do before it.")
              .optional("none"),

@@ -414,6 +414,43 @@ TEST(contacts, what_has_sunk_deep_slides_on)
     EXPECT_GT(contacts.searches(), 10);
 }
 
+// On the walls of joints of its own material it keeps its law, and finds one again; elsewhere it has that of
+// new contacts.
+TEST(contacts, what_slides_has_the_law_of_a_joint_of_which_both_faces_were_walls)
+{
+    const std::vector<double> tan_phi{0.1, 0.2, 0.3,
+                                      0.4}; // two edges of a joint, another joint, new contacts
+    std::vector<joint::Law> laws;
+    for (const double one : tan_phi)
+        laws.push_back(joint::Coulomb{k_n, k_s, 0, one, 0});
+    TwoLines lines({{5, 0}, {4, 0}, {3, 0}, {2, 0}, {1, 0}, {0, 0}}, {{0.2, 0}, {0.8, 0}});
+    lines.faces.law = {2, 1, 3, 1, 0, 0};
+    const std::vector<double> expected{0.1, 0.1, 0.4, 0.2, 0.4}; // on the lower faces, from the left
+    Contacts contacts(laws, {0, 0, 1});
+    contacts.set_faces(lines.faces, {{.a = 4, .b = 5, .law = 0, .is_known = true}}, lines.place);
+    std::vector<Vector2d> move(lines.place.size(), Vector2d::Zero());
+    const auto go = [&](const Vector2d& way) {
+        for (std::size_t g = 6; g < lines.place.size(); ++g)
+            lines.place[g] += move[g] = way;
+        contacts.update(lines.place, move, 1, 0, 1);
+    };
+    const double sunk = 1e-3, pressed = k_n * sunk * 0.6;
+    go({0, -sunk});
+    std::vector<int> seen(expected.size(), 0);
+    while (lines.place[7].x() < 4.9) {
+        go({0.009, 0});
+        const double left = lines.place[6].x(), on = std::floor(left);
+        if (lines.place[7].x() > on + 1 || left < 0.25)
+            continue; // on two faces, or not slipping yet
+        const std::vector<Vector2d> force = forces_of(contacts, lines.place.size());
+        const auto face = static_cast<std::size_t>(on);
+        EXPECT_NEAR(-(force[6] + force[7]).x(), expected[face] * pressed, 1e-9 * pressed) << left;
+        ++seen[face];
+    }
+    for (const int times : seen)
+        EXPECT_GT(times, 5);
+}
+
 // A bond is not forgotten however far it stretches; where it tears it is gone.
 TEST(contacts, bonds_stretch_beyond_the_skin)
 {

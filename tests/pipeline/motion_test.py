@@ -11,19 +11,24 @@ from chain import ChainTest, changed, datasets, main
 GRAVITY = 9.81
 
 
-def incline(dip, friction, width=2.0, height=1.0, length=20, wall=1.5, more=""):
-    """A block, held by a piece of rock until day 1, on a plane with a wall at its lower end. Angles in degrees."""
+def incline(dip, friction, width=2.0, height=1.0, length=20, wall=1.5, more="", seam=0.0, below="plane"):
+    """A block, held by a piece of rock until day 1, on a plane with a wall at its lower end. This piece stands on a joint of
+    the material `below` for the length `seam`, and on 1 m of unbroken rock. Angles in degrees."""
     c, s = math.cos(math.radians(dip)), math.sin(math.radians(dip))
 
     def place(down, off):  # along the plane from its upper end, and off it
         return [round(down * c + off * s, 9), round((length - down) * s + off * c, 9)]
 
     at, toe = 2.0, 2.0 + width
+    end = toe + seam
     top = max(height, 0.5)
     outline = [[0, -1], [length * c, -1], place(length, 0), place(length, wall), place(length - 1, wall),
-               place(length - 1, 0), place(toe + 1, 0), place(toe + 1, top), place(toe, top), place(at, top), place(at, 0),
-               place(0, 0)]
+               place(length - 1, 0), place(end + 1, 0), place(end + 1, top), place(end, top), place(toe, top),
+               place(at, top), place(at, 0), place(0, 0)]
     outline = [corner for corner, last in zip(outline, outline[-1:] + outline) if corner != last]
+    on_seam = "".join(f'[[joint]]\nname = "{name}"\nfrom_m = {a}\nto_m = {b}\nmaterial = "{of}"\n' for name, a, b, of in (
+        ("below the piece", place(toe, 0), place(end, 0), below),
+        ("end of the seam", place(end, 0), place(end, top + 1), "plane"))) if seam else ""
     return f"""
 [section]
 outline_m = {outline}
@@ -51,7 +56,7 @@ name = "end"
 from_m = {place(toe, 0)}
 to_m = {place(toe, top + 1)}
 material = "plane"
-[in_situ_stress]
+{on_seam}[in_situ_stress]
 elevation_m = 0
 compression_xx_MPa = 0
 compression_yy_MPa = 0
@@ -69,7 +74,7 @@ end = 2
 [[stage]]
 name = "stop removed"
 date = 1
-remove_m = [{[place(toe, 0), place(toe + 1, 0), place(toe + 1, top), place(toe, top)]}]
+remove_m = [{[place(toe, 0), place(end + 1, 0), place(end + 1, top), place(toe, top)]}]
 [[point]]
 name = "block"
 at_m = {place(at + width / 2, top / 2)}
@@ -243,6 +248,69 @@ class Blocks(ChainTest):
             self.assertRegex(done.stderr, message)
 
 
+def with_material(text, name, friction):
+    """With one more joint material, as the plane's but for its friction angle."""
+    plane = re.search(r'\[\[joint_material\]\]\nname = "plane"\n(.*\n)*?tensile_strength_MPa = .*\n', text)[0]
+    other = re.sub("friction_angle_deg = .*", f"friction_angle_deg = {friction}", plane.replace("plane", name))
+    return text.replace(plane, plane + other)
+
+
+class Surfaces(ChainTest):
+    """What slides off its joint, onto rock that was never a wall of it."""
+
+    def test_it_stops_where_bare_rock_has_taken_its_energy(self):
+        """The pressure under a rigid block is a line over its length. Its part beyond the joint's end bears by the friction
+        of new contacts: friction has taken what gravity gave, g sin(dip) s = integral of F / m, where it stops."""
+        dip, friction, width, height = 35, 30, 2.0, 0.5
+        sin, cos = math.sin(math.radians(dip)), math.cos(math.radians(dip))
+        tan = math.tan(math.radians(friction))
+        for bare in 60, 45, 30:
+            rough = math.tan(math.radians(bare))
+            text = with_material(incline(dip, friction, width, height, length=7, more=RIGID), "bare", bare)
+            text = changed(text, "^youngs_modulus_GPa = 5$", "youngs_modulus_GPa = 1000")  # straight in situ, too
+            data = datasets(self.chain.result(changed(text, "^new_contacts.*", 'new_contacts = "bare"')))
+            x, y = data["/history/displacement"][-1, 0]
+            moved = x * cos - y * sin
+            self.assertLess(error_of_energy(data), ACCOUNT, bare)
+            if bare == friction:  # to the wall
+                self.assertAlmostEqual(moved, 2, delta=0.02)
+                continue
+            # Shares of the weight's normal part: beyond the end, s / width + tilt (s / width) (1 - s / width) / 2, with
+            # the tilt of the pressure over the mean, 6 f height / width, that f, the friction, asks for.
+            s = np.linspace(0, width, 20001)
+            share = s / width
+            turned = 3 * height / width * share * (1 - share)  # of f
+            f = (tan + (rough - tan) * share) / (1 - (rough - tan) * turned)
+            gained = np.concatenate([[0], np.cumsum((sin - cos * (f[1:] + f[:-1]) / 2) * np.diff(s))])
+            stop = s[np.flatnonzero(gained > 0)[-1]]
+            self.assertLess(stop, width - 0.1)
+            self.assertLess(3 * f[s <= stop].max() * height / width, 1)  # pressed all along
+            self.assertAlmostEqual(moved / stop, 1, delta=5e-3, msg=bare)
+
+    def test_every_stretch_has_the_friction_of_its_surface(self):
+        """g (sin - cos tan(phi)): on the joint, also on that of its material below what has gone; and on new contacts, as on
+        the wall of a joint of another material."""
+        dip, seam, friction, bare = 30, 4.0, 10, 25
+
+        def expected(phi):
+            return GRAVITY * (math.sin(math.radians(dip)) - math.cos(math.radians(dip)) * math.tan(math.radians(phi)))
+
+        for below, first in ("plane", friction), ("other", bare):
+            text = with_material(with_material(incline(dip, friction, length=17, more=RIGID, seam=seam, below=below),
+                                               "bare", bare), "other", 40)
+            text = changed(text, "^new_contacts.*", 'new_contacts = "bare"')
+            data = datasets(self.chain.result(changed(text, "^record_every_s.*", "record_every_s = 0.05")))
+            time = data["/motions/motion_time"]
+            speed = np.sqrt(2 * data["/motions/kinetic_energy"] / (2700 * 2.0))
+            way = np.concatenate([[0], np.cumsum((speed[1:] + speed[:-1]) / 2 * np.diff(time))])
+            self.assertLess(error_of_energy(data), ACCOUNT, below)
+            for start, end, phi in ((2.1, 3.9, first), (6.1, 9.9, bare)):
+                there = (way > start) & (way < end) & (time < time[speed.argmax()])
+                self.assertGreater(there.sum(), 5)
+                found = np.polyfit(time[there], speed[there], 1)[0]
+                self.assertAlmostEqual(found / expected(phi), 1, delta=0.01, msg=(below, phi))
+
+
 def dilatant(text, angle, until):
     return changed(text, "^tensile_strength_MPa = 0$",
                    f"tensile_strength_MPa = 0\ndilation_angle_deg = {angle}\ndilation_until_m = {until}")
@@ -257,8 +325,8 @@ class Dilation(ChainTest):
         dip, friction, psi, until = 30, 25, 8, 1.0
         tan_psi = math.tan(math.radians(psi))
         for more, peak in (RIGID, friction), ("stiffness_damping_s = 3e-5", friction), (RIGID, 29):
-            length = 9 if more == RIGID else 7
-            text = dilatant(incline(dip, peak, length=length, wall=4, more=more), psi, until)
+            length = 9 if more == RIGID else 8
+            text = dilatant(incline(dip, peak, length=length, wall=4, more=more, seam=1.5), psi, until)
             if peak > friction:
                 text = changed(text, "^cohesion_MPa = 0$", f"cohesion_MPa = 0\nresidual_cohesion_MPa = 0\n"
                                f"residual_friction_angle_deg = {friction}")
@@ -280,7 +348,7 @@ class Dilation(ChainTest):
     def test_slip_that_dilates_by_the_friction_angle_loses_nothing(self):
         """The block climbs as on a smooth slope, until it no longer dilates."""
         for more in RIGID, "stiffness_damping_s = 3e-5":
-            data = datasets(self.chain.result(dilatant(incline(30, 25, length=7, wall=4, more=more), 25, 0.3)))
+            data = datasets(self.chain.result(dilatant(incline(30, 25, length=7, wall=4, more=more, seam=0.5), 25, 0.3)))
             kinetic, lost = data["/motions/kinetic_energy"], data["/motions/friction_energy"]
             climbing = data["/motions/motion_time"] < 0.8  # s = a t^2 / 2, a = g sin(5 deg) cos(25 deg)
             self.assertGreater(kinetic[climbing].max(), 500)

@@ -215,7 +215,7 @@ double run(const Assembly& section, const Mesh& mesh, Way& way, int steps)
         joint::Coulomb found = std::get<joint::Coulomb>(moving.contacts.law.at(0));
         found.cohesion = found.tensile_strength = 0;
         motion::Motion motion(
-            moving, mesh,
+            moving, mesh, std::vector<Index>(mesh.contact_edge.size(), 0),
             std::vector<char>(mesh.zone_gridpoint.size(), way.kind == Kind::rigid_motion ? 1 : 0), found,
             {.mass_damping = alpha});
         start = seconds(way.threads);
