@@ -137,6 +137,7 @@ joint::Law law_of_new_contacts(const Scene& scene)
 {
     const auto material = std::find_if(scene.joint_materials.begin(), scene.joint_materials.end(),
                                        [&](const auto& m) { return m.name == scene.motion->new_contacts; });
+    static_assert(joint::number_of_laws == 2);
     if (material->walls)
         return joint::BartonBandis{material->normal_stiffness,       material->shear_stiffness,
                                    material->walls->largest_closure, material->friction_angle,
@@ -163,6 +164,7 @@ Analysis::Analysis(const Scene& scene, const Network& network, const EquivalentJ
       rock_(mechanics::assemble(scene, network, joints, result_.mesh)), loading_(scene, result_.mesh),
       recorder_(scene, network.blocks, result_.mesh)
 {
+    static_assert(joint::number_of_laws == 2); // the strength of Coulomb's has been divided
     for (joint::Law& law : rock_.contacts.law)
         if (auto* barton_bandis = std::get_if<joint::BartonBandis>(&law))
             barton_bandis->divisor = joints.strength_divisor;

@@ -100,4 +100,25 @@ inline Response respond(const BartonBandis& law, CoulombState& state, double sig
     return {-p, tau, ContactStatus::slipping};
 }
 
+inline bool is_linear(const BartonBandis&)
+{
+    return false;
+}
+inline double cohesion(const BartonBandis&)
+{
+    return 0;
+}
+inline double tensile_strength(const BartonBandis&)
+{
+    return 0;
+}
+inline bool weakens_by_slip(const BartonBandis&)
+{
+    return false;
+}
+inline bool dilates(const BartonBandis&)
+{
+    return false;
+}
+
 } // namespace jointcreep::joint

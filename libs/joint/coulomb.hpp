@@ -112,4 +112,26 @@ inline Response respond(const Coulomb& law, CoulombState& state, double sigma_0,
             ContactStatus::slipping};
 }
 
+// Whether its stiffness is that of its springs, whatever the traction; its bonds [Pa]; what slip does to it.
+inline bool is_linear(const Coulomb&)
+{
+    return true;
+}
+inline double cohesion(const Coulomb& law)
+{
+    return law.cohesion;
+}
+inline double tensile_strength(const Coulomb& law)
+{
+    return law.tensile_strength;
+}
+inline bool weakens_by_slip(const Coulomb& law)
+{
+    return law.weakens;
+}
+inline bool dilates(const Coulomb& law)
+{
+    return law.tan_psi > 0;
+}
+
 } // namespace jointcreep::joint

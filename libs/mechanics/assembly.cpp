@@ -66,6 +66,7 @@ void add_contacts(Assembly& assembly, const Scene& scene, const EquivalentJoints
     contacts.length = mesh.contact_length;
     for (std::size_t c = 0; c < n; ++c) {
         const Index e = mesh.contact_edge[c];
+        static_assert(joint::number_of_laws == 2);
         if (joints.law[e] == static_cast<Index>(JointLaw::barton_bandis))
             contacts.law.push_back(joint::BartonBandis{joints.normal_stiffness[e], joints.shear_stiffness[e],
                                                        joints.largest_closure[e], joints.friction_angle[e],

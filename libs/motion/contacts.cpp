@@ -123,6 +123,7 @@ public:
     Part(const joint::Law& law, const std::array<double, 2>& closing, double length)
         : coulomb_(std::get_if<joint::Coulomb>(&law)), closing_(closing), length_(length)
     {
+        static_assert(joint::number_of_laws == 2);
         if (coulomb_ == nullptr)
             add_up(std::get<joint::BartonBandis>(law));
     }
@@ -201,8 +202,7 @@ Contacts::Contacts(std::vector<joint::Law> laws, std::vector<Index> material, co
     for (const joint::Law& law : laws_) {
         stiffest_open_ = std::max({stiffest_open_, joint::k_n(law), joint::k_s(law)});
         stiffens_ = stiffens_ || !joint::is_linear(law);
-        const auto* const coulomb = std::get_if<joint::Coulomb>(&law);
-        dilates_ = dilates_ || (coulomb != nullptr && coulomb->tan_psi > 0);
+        dilates_ = dilates_ || joint::dilates(law);
     }
     stiffest_ = stiffest_open_;
 }
@@ -398,6 +398,7 @@ void Contacts::dilate(const std::vector<Vector2d>& place, const std::vector<Vect
             if (!pair.is_closed || pressed <= 0)
                 continue;
             all += pressed;
+            static_assert(joint::number_of_laws == 2); // only Coulomb's dilates
             const auto* const law = std::get_if<joint::Coulomb>(&laws_[pair.law]);
             if (law == nullptr || law->tan_psi == 0 || law->k_s == 0 || pair.dilation >= law->dilation_end())
                 continue;
