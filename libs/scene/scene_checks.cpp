@@ -650,6 +650,11 @@ private:
             once("motion").refuse("release_s", "wanted less than longest_s, " +
                                                    shown(scene_.motion->longest) +
                                                    " s: before that there is no rest");
+        if (scene_.equilibrium.unloading_increments > 1)
+            once("equilibrium")
+                .refuse("unloading_increments",
+                        "with [motion] a stage takes its rock away at once; wanted 1, and [motion] release_s "
+                        "for forces that fade away in time");
         for (std::size_t i = 0; i < scene_.boundaries.size(); ++i)
             for (const char* key : {"displacement_mm", "course"})
                 if (const Given boundary = in_list("boundary", i); boundary.find(key))

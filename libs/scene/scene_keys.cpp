@@ -1021,10 +1021,12 @@ Table<Equilibrium> equilibrium()
                 "Fraction of the out-of-balance force; with damping = \"local\" or \"combined\" only.")
              .optional("0.8"),
          integer("unloading_increments", &E::unloading_increments, from(1).to(1000),
-                 "In which the rock of a stage is taken away, and in which loads change between dates.")
+                 "In which the rock of a stage is taken away, and in which loads change between dates. With "
+                 "[motion] 1; there release_s does it.")
              .or_else(std::int64_t{1}),
          integer("most_steps", &E::most_steps, from(1).to(2147483647),
-                 "Without equilibrium after so many steps the program gives up.")
+                 "Without equilibrium after so many steps of the explicit engine the program gives up. With "
+                 "[motion] this is so in situ alone; longest_s bounds motion.")
              .or_else(std::int64_t{1000000})}};
 }
 

@@ -181,8 +181,9 @@ def fault(jointgen, folder, number, text, line, name):
 
 
 def at_rest(text):
-    """Without boundaries that move, which do not go together with [motion]."""
-    return text.replace("displacement_mm = [-0.1, 0]\ncourse = [[1, 0], [4, 1]]\n", "")
+    """Without boundaries that move and unloading increments, which do not go together with [motion]."""
+    text = text.replace("displacement_mm = [-0.1, 0]\ncourse = [[1, 0], [4, 1]]\n", "")
+    return text.replace("unloading_increments = 2\n", "")
 
 
 def main():
