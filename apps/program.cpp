@@ -142,6 +142,10 @@ void start_with_short_waits(char** argv)
 {
     if (std::getenv("OMP_WAIT_POLICY") != nullptr || std::getenv("GOMP_SPINCOUNT") != nullptr)
         return;
+    std::error_code none; // where a loader has been started with this program, the other name is the loader's
+    if (std::filesystem::read_symlink("/proc/self/exe", none).filename() !=
+        std::filesystem::path(argv[0]).filename())
+        return;
     setenv("GOMP_SPINCOUNT", "1000", 0); // some 20 us
     execv("/proc/self/exe", argv);
 }

@@ -22,10 +22,9 @@ constexpr double soft = 1e-9; // share of their springs that contacts keep which
 struct Piece {
     Index first = -1; // gridpoint
     Vector2d middle{0, 0};
-    double radius = 0;                             // farthest gridpoint from the middle [m]
-    Vector3d out_of_balance{0, 0, 0};              // force, moment over radius [N/m]
-    double loads = 0, pressed = 0, gridpoints = 0; // sums of magnitudes [N/m]; count
-    double own() const { return loads > 0 ? loads : pressed; }
+    double radius = 0;                // farthest gridpoint from the middle [m]
+    Vector3d out_of_balance{0, 0, 0}; // force, moment over radius [N/m]
+    double loads = 0, gridpoints = 0; // sum of magnitudes of weight and tractions [N/m]; count
 
     // How a place of it moves.
     Eigen::Matrix<double, 2, 3> moves(const Vector2d& place) const
@@ -90,11 +89,6 @@ std::vector<Piece> pieces_of(const Assembly& assembly, std::vector<Index>& piece
                                     assembly.force[g].cwiseProduct(assembly.is_free[g]);
             piece.loads += (assembly.load[g] + assembly.applied[g]).norm();
         }
-    const Contacts& contacts = assembly.contacts;
-    for (std::size_t c = 0; c < contacts.gridpoint.size(); ++c)
-        for (const Index g : contacts.gridpoint[c])
-            if (contacts.status[c] != ContactStatus::removed && piece_of[g] >= 0)
-                pieces[piece_of[g]].pressed += assembly.contact_force[c].norm();
     return pieces;
 }
 
@@ -163,7 +157,7 @@ ToGo farthest_to_go(const Assembly& assembly, double share, double rounding)
     Eigen::VectorXd push = Eigen::VectorXd::Zero(3 * static_cast<Eigen::Index>(pieces.size()));
     for (std::size_t p = 0; p < pieces.size(); ++p)
         if (const double force = pieces[p].out_of_balance.norm();
-            force > share * pieces[p].own() && force > rounding)
+            pieces[p].loads > 0 && force > share * pieces[p].loads && force > rounding)
             push.segment<3>(3 * static_cast<Eigen::Index>(p)) = pieces[p].out_of_balance;
     if (push.isZero(0))
         return farthest;

@@ -19,10 +19,10 @@ struct ToGo {
 
 // How far rock would still go that its contacts do not bear. A piece is rock that hangs together; what is out
 // of balance on it, as a force or about its middle, counts where it is more than `share` of the piece's own
-// weight and tractions (of what contacts press on it, if it has none) and more than `rounding` [N/m]. The way
-// is that of rigid pieces on contacts as they are now, where those that are open or slip have a billionth of
-// their springs: micrometres where springs take it up, and out of all bounds where rock falls. 0 if nothing
-// counts. Contact forces and those on gridpoints are the present ones.
+// weight and tractions and more than `rounding` [N/m]; rock without any of these is driven by nothing of its
+// own. The way is that of rigid pieces on contacts as they are now, where those that are open or slip have a
+// billionth of their springs: micrometres where springs take it up, and out of all bounds where rock falls. 0
+// if nothing counts. Contact forces and those on gridpoints are the present ones.
 ToGo farthest_to_go(const Assembly& assembly, double share, double rounding);
 
 } // namespace jointcreep::mechanics

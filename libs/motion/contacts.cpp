@@ -491,7 +491,7 @@ void Contacts::find_active()
                 apart, std::max(std::min(p, q) - std::max(0.0, end), std::min(0.0, end) - std::max(p, q)) /
                            axis.norm());
         }
-        const double lead = std::max({pair.is_known ? 0.0 : most_lead, pair.lead[0], pair.lead[1]});
+        const double lead = std::max({0.0, pair.lead[0], pair.lead[1]}) + (pair.is_known ? 0.0 : most_lead);
         if (apart > (reach_[pair.a] + reach_[pair.b] + lead) * (1 + 1e-9))
             return never;
         const double between =

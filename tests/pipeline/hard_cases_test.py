@@ -383,6 +383,20 @@ class BarelyHeld(ChainTest):
         left, message = self.failed(self.beside_a_column(0), "--factor-of-safety")
         self.assertIn("still no equilibrium", message)
 
+    def test_rock_without_weight_that_bears_nothing_any_more(self):
+        """All of its stress in situ goes with the top: what is left has nothing that drives or presses it, and rests."""
+        text = scene([[0, 0], [6, 0], [6, 4], [0, 4]], [joint("low", [-1, 1], [7, 1]), joint("high", [-1, 3], [7, 3])],
+                     [held([0, 0], [6, 0]), held([6, 4], [0, 4], "y")], [material("joint", 1000)], gravity=0,
+                     stress=(0, -5, 0), stages=[[[[0, 3], [6, 3], [6, 4], [0, 4]]]], points=[[3, 2]], zone=0.15,
+                     more="[equilibrium]\ntolerance = 1e-6\nmost_steps = 20000\n")
+        for engine in ENGINES:
+            data = solved(self.chain, text, "--engine", engine)
+            # 5 MPa less on the joint below, and on the 2 m of rock below the point.
+            rise = 5e6 * (1 / 1000e6 + 2 / 10e9)
+            self.assertLess(abs(data["/history/displacement"][-1, 0, 1] - rise) / rise, 1e-3)
+            there = np.flatnonzero(data["/states/contact_status"][-1] > 0)
+            self.assertLess(np.abs(forces_on(data, there)).max(), 1e-3 * 5e6 * 0.15)
+
     def sloping(self, friction, dip=30):
         """A thin block on a joint on the ground, which dips; only friction holds it."""
         turn = np.array([[math.cos(math.radians(dip)), math.sin(math.radians(dip))],
