@@ -1,21 +1,32 @@
 #!/bin/sh
-# Installs what jointcreep is built and tested with (Debian 12 packages), and builds it into build/release.
+# Installs the Debian 12 packages that a purpose needs, and builds for it into build/release.
+#
+#   sh pipelines/setup.sh          the programs, and what draws pictures of their results
+#   sh pipelines/setup.sh test     these and the tests
+#
+# A list of packages is a file of pipelines/packages, one name a line.
 set -eu
 cd "$(dirname "$0")/.."
 
-packages="
-  g++ cmake ninja-build make git ca-certificates pkg-config
-  libeigen3-dev libcgal-dev libboost-dev libboost-program-options-dev libhdf5-dev libssl-dev zlib1g-dev
-  libtomlplusplus-dev nlohmann-json3-dev librandom123-dev libsuitesparse-dev libopenblas0-serial
-  googletest libgtest-dev librapidcheck-dev groff-base
-  python3 python3-h5py python3-matplotlib python3-numpy"
+purpose="${1:-run}"
+case "$purpose" in
+run) lists="run" preset="release" ;;
+test) lists="run test" preset="test" ;;
+*)
+  echo "setup.sh: unknown purpose \"$purpose\"; expected nothing, or test" >&2
+  exit 2
+  ;;
+esac
 
 missing=""
-for package in $packages; do
-  case "$(dpkg-query -W -f '${Status}' "$package" 2>/dev/null)" in
-    *" installed") ;;
-    *) missing="$missing $package" ;;
-  esac
+for list in $lists; do
+  while read -r package; do
+    case "$package" in "" | "#"*) continue ;; esac
+    case "$(dpkg-query -W -f '${Status}' "$package" 2>/dev/null)" in
+      *" installed") ;;
+      *) missing="$missing $package" ;;
+    esac
+  done <"pipelines/packages/$list.txt"
 done
 if [ -n "$missing" ]; then
   as_root=""
@@ -31,5 +42,5 @@ if [ -n "$missing" ]; then
   $as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends $missing
 fi
 
-cmake --preset release
-cmake --build --preset release
+cmake --preset "$preset"
+cmake --build --preset "$preset"

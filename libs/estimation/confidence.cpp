@@ -13,7 +13,7 @@ namespace jointcreep::estimation
 namespace
 {
 
-constexpr double beyond = 0.05; // of each or of all intervals together
+constexpr double significance = 0.05; // of each or of all intervals together
 
 std::vector<Eigen::Index> free_of(const std::vector<bool>& is_fixed)
 {
@@ -65,13 +65,13 @@ Confidence confidence_of(const Minimum& minimum, bool deviations_are_known)
 
     if (deviations_are_known && found.sum_of_squares > 0)
         found.p_value = statistics::chi_squared_above(found.sum_of_squares, degrees);
-    found.is_noise_from_residuals = !deviations_are_known || found.p_value < beyond;
+    found.is_noise_from_residuals = !deviations_are_known || found.p_value < significance;
     if (found.is_noise_from_residuals)
         found.noise_factor = std::sqrt(found.sum_of_squares / degrees);
     const double t_degrees = found.is_noise_from_residuals ? degrees : 1e6; // nearly normal
     const auto quantile = [&](double p) { return statistics::student_quantile(p, t_degrees); };
-    found.quantile = quantile(beyond / 2);
-    found.quantile_all = quantile(beyond / 2 / std::max<double>(1, static_cast<double>(free.size())));
+    found.quantile = quantile(significance / 2);
+    found.quantile_all = quantile(significance / 2 / std::max<double>(1, static_cast<double>(free.size())));
     if (free.empty())
         return found;
 

@@ -13,14 +13,14 @@ namespace
 
 using Eigen::Vector2d;
 
-constexpr double rounding = 1e-9; // of a line's length
+constexpr double line_rounding = 1e-9; // of a line's length
 
 // Appends an interval, or lengthens the last one where they touch.
 void append(std::vector<Interval>& intervals, const Interval& next)
 {
-    if (next.high - next.low <= rounding)
+    if (next.high - next.low <= line_rounding)
         return;
-    if (!intervals.empty() && next.low <= intervals.back().high + rounding)
+    if (!intervals.empty() && next.low <= intervals.back().high + line_rounding)
         intervals.back().high = std::max(intervals.back().high, next.high);
     else
         intervals.push_back(next);
@@ -36,7 +36,7 @@ void append_crossings(std::vector<double>& cuts, const Polygon& polygon, const V
         if (turn == 0)
             continue;
         const double on_side = cross(reach, along) / turn, on_line = cross(reach, side) / turn;
-        if (on_side >= -rounding && on_side <= 1 + rounding && on_line > 0 && on_line < 1)
+        if (on_side >= -line_rounding && on_side <= 1 + line_rounding && on_line > 0 && on_line < 1)
             cuts.push_back(on_line);
     }
 }
@@ -90,7 +90,7 @@ Pieces pieces_of(const Joints& joints, const Polygon& outline, const std::vector
         const Vector2d from = joints.from[joint], along = joints.to[joint] - from;
         double line = 0, joint_length = 0;
         const auto add = [&](double low, double high, bool is_bridge) {
-            if (high - low <= rounding)
+            if (high - low <= line_rounding)
                 return;
             const double length = (high - low) * along.norm();
             line += length;
@@ -109,7 +109,7 @@ Pieces pieces_of(const Joints& joints, const Polygon& outline, const std::vector
             for (const Interval& trace : open) {
                 const double low = std::max(trace.low, stretch.low),
                              high = std::min(trace.high, stretch.high);
-                if (high - low <= rounding)
+                if (high - low <= line_rounding)
                     continue;
                 add(done, low, true);
                 add(low, high, false);

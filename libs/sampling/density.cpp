@@ -3,6 +3,7 @@
 #include "model/error.hpp"
 #include "sampling/laws.hpp"
 #include "sampling/orientations.hpp"
+#include "sampling/quoted.hpp"
 
 #include <numbers>
 
@@ -13,11 +14,6 @@ namespace
 {
 
 constexpr double least_along = 1e-3; // of a scanline: it runs next to along all joints
-
-std::string quoted(const JointSet& set)
-{
-    return "joint set \"" + set.name + "\"";
-}
 
 [[noreturn]] void refuse(const JointSet& set, const std::string& what)
 {

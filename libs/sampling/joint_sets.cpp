@@ -4,6 +4,7 @@
 #include "sampling/density.hpp"
 #include "sampling/laws.hpp"
 #include "sampling/orientations.hpp"
+#include "sampling/quoted.hpp"
 #include "sampling/stretches.hpp"
 #include "sampling/terminations.hpp"
 
@@ -26,11 +27,6 @@ constexpr std::int64_t most_skipped_lines = 10'000'000;
 constexpr std::int64_t most_intervals = 10'000'000; // traces and bridges drawn for one scene
 constexpr Index most_pieces = std::numeric_limits<Index>::max() / piece_step; // of a line
 constexpr Index most_mapped_ids = std::numeric_limits<Index>::max() / mapped_step;
-
-std::string quoted(const JointSet& set)
-{
-    return "joint set \"" + set.name + "\"";
-}
 
 Interval widened(Interval interval, double margin)
 {

@@ -3,6 +3,7 @@
 #include "model/error.hpp"
 #include "model/units.hpp"
 #include "sampling/laws.hpp"
+#include "sampling/quoted.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
@@ -23,11 +24,6 @@ namespace
 constexpr double least_section_normal = 1e-6; // a plane nearer to parallel leaves no trace worth the name
 constexpr double steepest_trace = 85 * unit::deg;
 constexpr double least_in_rose = 0.05; // |n_p| of a line's plane: 3 degrees off the section
-
-std::string quoted(const JointSet& set)
-{
-    return "joint set \"" + set.name + "\"";
-}
 
 // Along the trace, in length |n_p|.
 Vector2d trace_of(const Vector2d& section_normal)

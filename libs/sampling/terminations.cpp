@@ -14,18 +14,13 @@
 namespace jointcreep
 {
 
-namespace
-{
-
 namespace bg = boost::geometry;
 using Eigen::Vector2d;
 using Point = bg::model::point<double, 2, bg::cs::cartesian>;
 using Box = bg::model::box<Point>;
 
-struct Trace {
-    Vector2d from, to;
-};
-using Entry = std::pair<Box, Trace>;
+namespace
+{
 
 Box box_of(const Vector2d& a, const Vector2d& b)
 {
@@ -36,6 +31,11 @@ Box box_of(const Vector2d& a, const Vector2d& b)
 } // namespace
 
 struct TraceIndex::Tree {
+    struct Trace {
+        Vector2d from, to;
+    };
+    using Entry = std::pair<Box, Trace>;
+
     bg::index::rtree<Entry, bg::index::quadratic<16>> entries;
 };
 
@@ -47,7 +47,7 @@ TraceIndex::TraceIndex(const std::vector<const Joints*>& sets) : tree_(std::make
     for (const Joints* const joints : sets)
         for (std::size_t t = 0; t < joints->trace_from.size(); ++t)
             all.extend(joints->trace_from[t]).extend(joints->trace_to[t]);
-    std::vector<Entry> entries;
+    std::vector<Tree::Entry> entries;
     for (const Joints* const joints : sets)
         for (std::size_t t = 0; t < joints->trace_from.size(); ++t) {
             const Vector2d &from = joints->trace_from[t], run = joints->trace_to[t] - from;
@@ -69,7 +69,7 @@ bool TraceIndex::empty() const
 double TraceIndex::end_of(const Line& line, double reach, double probability,
                           const std::vector<Interval>& where, Stream& stream) const
 {
-    std::vector<Entry> near;
+    std::vector<Tree::Entry> near;
     tree_->entries.query(bg::index::intersects(box_of(line.point, line.at(reach))), std::back_inserter(near));
     std::vector<double> crossings;
     for (const auto& [box, trace] : near) {

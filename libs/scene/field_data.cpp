@@ -39,7 +39,7 @@ std::optional<std::int64_t> id_of(std::string_view text)
     return id;
 }
 
-constexpr Range coordinate = within(farthest_metre);
+constexpr Range coordinate_range = within(farthest_metre);
 
 std::vector<FoundTrace> traces_in_csv(const Csv& csv, const TraceFilter& filter)
 {
@@ -52,7 +52,8 @@ std::vector<FoundTrace> traces_in_csv(const Csv& csv, const TraceFilter& filter)
         for (const Csv::Row& row : csv.rows) {
             if (taken(row)) {
                 const auto at = [&](std::string_view x, std::string_view y) {
-                    return Vector2d(csv.number(row, x, coordinate), csv.number(row, y, coordinate));
+                    return Vector2d(csv.number(row, x, coordinate_range),
+                                    csv.number(row, y, coordinate_range));
                 };
                 found.push_back({csv.has("id") ? id_of(row.field[csv.column("id")]) : std::nullopt,
                                  place,
@@ -81,8 +82,8 @@ std::vector<FoundTrace> traces_in_csv(const Csv& csv, const TraceFilter& filter)
                     {id_of(row.field[id]), place, {Polygon{}}, "line " + std::to_string(row.line)});
             else if (!taken(*before))
                 refuse_line(row.line, "a trace has more than one " + filter.property);
-            found.back().polylines[0].emplace_back(csv.number(row, "x_m", coordinate),
-                                                   csv.number(row, "y_m", coordinate));
+            found.back().polylines[0].emplace_back(csv.number(row, "x_m", coordinate_range),
+                                                   csv.number(row, "y_m", coordinate_range));
         } else if (!begins && taken(*before)) {
             refuse_line(row.line, "a trace has more than one " + filter.property);
         }
@@ -103,9 +104,9 @@ Polygon polyline_of(const json& coordinates, const std::string& where)
                 where + " has the coordinates " + place.dump().substr(0, 60) +
                 "; wanted [x, y], in metres of the section (a third one, the height, is not used)");
         const Vector2d at(place[0].get<double>(), place[1].get<double>());
-        if (!coordinate.holds(at.x()) || !coordinate.holds(at.y()))
+        if (!coordinate_range.holds(at.x()) || !coordinate_range.holds(at.y()))
             throw input_error(where + " has the coordinates " + place.dump().substr(0, 60) +
-                              "; wanted numbers in " + shown(coordinate, metres));
+                              "; wanted numbers in " + shown(coordinate_range, metres));
         polyline.push_back(at);
     }
     return polyline;

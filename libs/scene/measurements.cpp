@@ -42,7 +42,7 @@ Column column_of(const Csv& csv, const std::string& name)
     return found;
 }
 
-double length(const Csv& csv, const Csv::Row& row, const Column& column, const Range& range_in_m)
+double length_of(const Csv& csv, const Csv::Row& row, const Column& column, const Range& range_in_m)
 {
     const Range range{range_in_m.least / column.in_m, range_in_m.most / column.in_m, range_in_m.least_open,
                       range_in_m.most_open};
@@ -117,11 +117,11 @@ std::vector<Measurement> listed(const Csv& csv, const Scene& scene)
                                 .component = component == "x" ? 0 : 1,
                                 .time = time_in(csv, row, scene.end),
                                 .is_before_stage = csv.has("event") && is_empty(csv, row, "event"),
-                                .displacement = length(csv, row, displacement, within(farthest)),
+                                .displacement = length_of(csv, row, displacement, within(farthest)),
                                 .deviation = {},
                                 .line = row.line};
         if (!sigma.name.empty())
-            measurement.deviation = length(csv, row, sigma, deviations);
+            measurement.deviation = length_of(csv, row, sigma, deviations);
         readings.add(measurement, event_in(csv, row), scene);
     }
     return readings.list;
@@ -175,11 +175,11 @@ std::vector<Measurement> tabled(const Csv& csv, const Scene& scene)
                                     .component = place.component,
                                     .time = time_in(csv, row, scene.end),
                                     .is_before_stage = csv.has("event") && is_empty(csv, row, "event"),
-                                    .displacement = length(csv, row, place.displacement, within(farthest)),
+                                    .displacement = length_of(csv, row, place.displacement, within(farthest)),
                                     .deviation = {},
                                     .line = row.line};
             if (!place.sigma.name.empty())
-                measurement.deviation = length(csv, row, place.sigma, deviations);
+                measurement.deviation = length_of(csv, row, place.sigma, deviations);
             readings.add(measurement, event_in(csv, row), scene);
         }
     if (readings.list.empty())
@@ -213,11 +213,11 @@ std::vector<Measurement> creep_curve_in_csv(std::string_view text)
         Measurement measurement{.point = 0,
                                 .component = 0,
                                 .time = time,
-                                .displacement = length(csv, row, displacement, within(farthest)),
+                                .displacement = length_of(csv, row, displacement, within(farthest)),
                                 .deviation = {},
                                 .line = row.line};
         if (!sigma.name.empty())
-            measurement.deviation = length(csv, row, sigma, deviations);
+            measurement.deviation = length_of(csv, row, sigma, deviations);
         measurements.push_back(measurement);
     }
     return measurements;

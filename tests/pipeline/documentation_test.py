@@ -10,8 +10,8 @@ from chain import ChainTest, main
 
 CHAIN = ["jointgen", "strength-averaging", "demsolve", "jointexport"]
 PROGRAMS = [*CHAIN, "creepfit"]
-BUILD_AND_RUN = "sh pipelines/setup.sh && make -C pipelines/slope"
-BUILD_AND_TEST = "sh pipelines/setup.sh && ctest --preset release"
+BUILD_AND_RUN = "sh pipelines/setup.sh && make -j2 -C pipelines/slope"
+BUILD_AND_TEST = 'sh pipelines/setup.sh test && ctest --preset test -j "$(nproc)"'
 
 
 def code_blocks(text, language):
@@ -33,7 +33,6 @@ class Documentation(ChainTest):
         self.assertEqual(commands[:2], [BUILD_AND_RUN, BUILD_AND_TEST])
         run = self.chain.text(".ci/run").splitlines()
         self.assertEqual([line for line in run if "pipelines" in line], [BUILD_AND_TEST])
-        self.assertEqual(run[-1], BUILD_AND_TEST)
         for path in "pipelines/setup.sh", "pipelines/slope/Makefile", ".ci/run":
             self.assertTrue((self.chain.source / path).is_file(), path)
 
@@ -47,7 +46,7 @@ class Documentation(ChainTest):
     def test_make_commands(self):
         """Those in README and docs/programs.md are possible, and the pictures that README speaks of are made."""
         readme = self.chain.text("README.md")
-        commands = re.findall(r"make -C pipelines/[^\n`]*", readme + self.chain.text("docs/programs.md"))
+        commands = re.findall(r"make (?:-j2 )?-C pipelines/[^\n`]*", readme + self.chain.text("docs/programs.md"))
         plans = {command: self.planned(command) for command in sorted(set(commands))}
         self.assertGreaterEqual(len(plans), 7)
         made = set(re.findall(r" -o \S+/([\w-]+\.png)$", "\n".join(plans.values()), flags=re.MULTILINE))

@@ -2,7 +2,7 @@
 //
 // Every check is one of statistics.hpp, wrong about a right sampler once in a thousand times; seeds are
 // fixed. REALIZATIONS in the environment sets how many realizations each takes: 200, or 2000 with ctest
-// --preset release -C Slow.
+// --preset test -C Slow.
 
 #include "blocks/cut.hpp"
 #include "model/units.hpp"

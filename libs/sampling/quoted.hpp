@@ -1,0 +1,17 @@
+// A joint set as messages name it.
+
+#pragma once
+
+#include "model/scene.hpp"
+
+#include <string>
+
+namespace jointcreep
+{
+
+inline std::string quoted(const JointSet& set)
+{
+    return "joint set \"" + set.name + "\"";
+}
+
+} // namespace jointcreep
