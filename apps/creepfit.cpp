@@ -51,8 +51,7 @@ const Program program{
          {"elastic-mm", "MM", "of a curve: what the joint did at once, if known (default: found)"},
          {"load-day", "DAY",
           "of a curve: when the load changed (default: day of the first reading); the mean of readings "
-          "before "
-          "it is taken as 0"},
+          "before it is taken as 0"},
          {"converged-day", "DAY",
           "of a curve: when creep is taken to be over, for the closed estimate (default: last reading)"},
          {"measurements", "FILE.csv", "through the solver: displacements of the scene's points"},
@@ -246,10 +245,7 @@ void fit_curve(const Arguments& arguments)
     refuse_options(arguments, "joints.h5 and --measurements",
                    {"fit", "since-first-reading", "runs", "threads"});
     const std::string& input = arguments.input();
-    const std::optional<double> stiffness = arguments.number("stiffness");
-    if (stiffness)
-        require(*stiffness > 0 && *stiffness <= 1e9, "--stiffness", *stiffness, "MPa/m",
-                "must be above 0 and at most 1e9");
+    const std::optional<double> stiffness = arguments.number("stiffness", joint_stiffnesses, "MPa/m");
     const std::optional<std::string> readings_path = readings_file(arguments);
     check_writable(arguments.output());
     const std::string text = text_of(input);

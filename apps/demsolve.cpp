@@ -44,9 +44,9 @@ const Program program{
     .options = {{"threads", "N", "threads of the solver; they do not change the result (default 1)"},
                 {"zone-size", "M",
                  "longest side of zones [m]; size_at_faces_m changes in proportion (default: the scene's)"},
-                {"tolerance", "T", "out-of-balance ratio of an equilibrium (default: the scene's)"},
+                {"tolerance", "T", "unbalanced force ratio of an equilibrium (default: the scene's)"},
                 {"engine", "NAME",
-                 "auto, explicit (motion) or implicit (factorisation) (default: the scene's)"},
+                 "auto, relaxation (dynamic relaxation) or implicit (default: the scene's)"},
                 {"creep-scheme", "NAME",
                  "published, backward, linear-force or fitted (default: the scene's)"},
                 {"creep-step", "DAYS", "creep step of a fixed length [day] (default: the scene's)"},
@@ -65,38 +65,36 @@ const Program program{
                 {"checkpoint", "FILE",
                  "before every stage, keep there what it begins with; if FILE exists, go on from it"},
                 {"states", "N", "record the whole section every N creep steps too (default: at dates only)"},
-                {"trace", "N", "record points and gauges every N solver steps"}},
+                {"step-history", "N", "record points and gauges every N solver steps"}},
     .example = "demsolve joints.h5 --threads 2 -o result.h5",
 };
 
-template <class Choice>
-using Choices = std::vector<std::pair<std::string, Choice>>;
-
-const Choices<Engine> engines{{"auto", Engine::automatic},
-                              {"explicit", Engine::explicit_engine},
-                              {"implicit", Engine::implicit_engine}};
-const Choices<CreepScheme> schemes{{"published", CreepScheme::published},
-                                   {"backward", CreepScheme::backward},
-                                   {"linear-force", CreepScheme::linear_force},
-                                   {"fitted", CreepScheme::fitted}};
+// A word of a scene as the command line has it: without blanks.
+std::string as_option(std::string_view word)
+{
+    std::string option(word);
+    std::replace(option.begin(), option.end(), ' ', '-');
+    return option;
+}
 
 template <class Choice>
-Choice chosen_from(const Choices<Choice>& choices, const std::string& option, const std::string& name)
+Choice chosen_from(const Words<Choice>& words, const std::string& option, const std::string& name)
 {
     std::string all;
-    for (const auto& [known, choice] : choices) {
-        if (known == name)
+    for (const auto& [word, choice] : words) {
+        if (as_option(word) == name)
             return choice;
-        all += (all.empty() ? "" : ", ") + known;
+        all += (all.empty() ? "" : ", ") + as_option(word);
     }
     throw input_error("--" + option + ": \"" + name + "\" is none of " + all);
 }
 
-std::string named(Engine engine)
+std::string named(EngineChoice engine)
 {
-    return std::find_if(engines.begin(), engines.end(),
-                        [&](const auto& known) { return known.second == engine; })
-        ->first;
+    for (const auto& [word, choice] : engine_words())
+        if (choice == engine)
+            return std::string(word);
+    return "";
 }
 
 // Takes the command line's choices into the scene, and returns them as the result file records them.
@@ -106,21 +104,18 @@ std::string choose(const Arguments& arguments, Scene& scene)
     const auto note = [&](const char* name, const std::string& value) {
         chosen += (chosen.empty() ? "--" : " --") + std::string(name) + (value.empty() ? "" : " " + value);
     };
-    if (const auto size = arguments.number("zone-size")) {
-        require(*size > 0 && *size <= 1e6, "--zone-size", *size, "m", "must be above 0 and at most 1e6");
+    if (const auto size = arguments.number("zone-size", zone_sizes, "m")) {
         if (scene.zone_size_at_faces)
             *scene.zone_size_at_faces *= *size / scene.zone_size;
         scene.zone_size = *size;
         note("zone-size", shown(*size));
     }
-    if (const auto tolerance = arguments.number("tolerance")) {
-        require(*tolerance >= 1e-12 && *tolerance <= 1e-2, "--tolerance", *tolerance, "(ratio)",
-                "must be between 1e-12 and 0.01");
+    if (const auto tolerance = arguments.number("tolerance", equilibrium_tolerances, "(ratio)")) {
         scene.equilibrium.tolerance = *tolerance;
         note("tolerance", shown(*tolerance));
     }
     if (const auto engine = arguments.text("engine")) {
-        scene.equilibrium.engine = chosen_from(engines, "engine", *engine);
+        scene.equilibrium.engine = chosen_from(engine_words(), "engine", *engine);
         note("engine", *engine);
     }
     for (const char* option : {"creep-scheme", "creep-step", "creep-tolerance"}) {
@@ -132,20 +127,17 @@ std::string choose(const Arguments& arguments, Scene& scene)
             throw input_error("--" + std::string(option) + ": the scene has no [creep]");
     }
     if (const auto scheme = arguments.text("creep-scheme")) {
-        scene.creep->scheme = chosen_from(schemes, "creep-scheme", *scheme);
+        scene.creep->scheme = chosen_from(creep_scheme_words(), "creep-scheme", *scheme);
         note("creep-scheme", *scheme);
     }
-    if (const auto step = arguments.number("creep-step")) {
-        require(*step > 0 && *step <= 1e6, "--creep-step", *step, "day", "must be above 0 and at most 1e6");
+    if (const auto step = arguments.number("creep-step", creep_steps, "day")) {
         if (arguments.has("creep-tolerance"))
             throw input_error("--creep-step and --creep-tolerance do not go together");
         scene.creep->step = *step * unit::day;
         scene.creep->tolerance.reset();
         note("creep-step", shown(*step));
     }
-    if (const auto tolerance = arguments.number("creep-tolerance")) {
-        require(*tolerance > 0 && *tolerance <= 1, "--creep-tolerance", *tolerance, "m",
-                "must be above 0 and at most 1");
+    if (const auto tolerance = arguments.number("creep-tolerance", creep_tolerances, "m")) {
         scene.creep->step.reset();
         scene.creep->tolerance = *tolerance;
         note("creep-tolerance", shown(*tolerance));
@@ -156,11 +148,12 @@ std::string choose(const Arguments& arguments, Scene& scene)
     }
     if (arguments.has("checkpoint") && arguments.has("factor-of-safety"))
         throw input_error("--checkpoint and --factor-of-safety do not go together");
-    for (const char* option : {"states", "trace"})
+    for (const char* option : {"states", "step-history"})
         if (const auto every = arguments.whole_number(option, 1, 1000000000)) {
-            if (scene.motion)
-                throw input_error("--" + std::string(option) +
-                                  ": the scene has [motion], which records the section every record_every_s");
+            if (scene.large_displacements)
+                throw input_error(
+                    "--" + std::string(option) +
+                    ": the scene has [large_displacements], which records the section every record_every_s");
             note(option, std::to_string(*every));
         }
     return chosen;
@@ -168,7 +161,7 @@ std::string choose(const Arguments& arguments, Scene& scene)
 
 std::string off_by(Index percent, const std::string& stage)
 {
-    return "off by " + std::to_string(percent) + " percent in the motion " +
+    return "off by " + std::to_string(percent) + " percent in the dynamic analysis " +
            (stage.empty() ? "in situ" : "of stage \"" + stage + "\"");
 }
 
@@ -194,24 +187,27 @@ void report(const Network& network, const Scene& scene, const Analysis& analysis
     summary.add("smallest zone altitude", quality.smallest_altitude, "m");
     summary.add("smallest zone angle", quality.smallest_angle / unit::deg, "deg");
     summary.add("stages", scene.stages.size());
-    const bool chose = scene.equilibrium.engine == Engine::automatic;
+    const bool chose = scene.equilibrium.engine == EngineChoice::automatic;
     summary.add("engine",
-                analysis.engine() == Engine::automatic
-                    ? std::string("implicit, and explicit where that gives up (auto)")
-                    : named(analysis.engine()) + (chose ? " (auto: the scene is about motion)" : ""));
-    summary.add("equilibria by factorisation", by_factor);
-    summary.add("equilibria by motion", static_cast<std::int64_t>(equilibria.is_implicit.size()) - by_factor);
+                analysis.engine() == EngineChoice::automatic
+                    ? std::string("implicit, and dynamic relaxation where that gives up (auto)")
+                    : named(analysis.engine()) + (chose ? " (auto: real masses or a step history)" : ""));
+    summary.add("equilibria by the implicit engine", by_factor);
+    summary.add("equilibria by dynamic relaxation",
+                static_cast<std::int64_t>(equilibria.is_implicit.size()) - by_factor);
     for (const auto& [reason, n] : analysis.given_up())
-        summary.add("factorisation gave up", std::to_string(n) + " times: " + reason);
+        summary.add("implicit engine gave up", std::to_string(n) + " times: " + reason);
     summary.add("equilibria rejected or sought in vain",
                 sum(equilibria.searches) - static_cast<std::int64_t>(equilibria.searches.size()));
     summary.add("solver steps", sum(equilibria.steps));
     summary.add("factorisations", sum(equilibria.factorisations));
     summary.add("back-substitutions", sum(equilibria.solves));
-    summary.add("largest out-of-balance ratio", *std::max_element(equilibria.out_of_balance_ratio.begin(),
-                                                                  equilibria.out_of_balance_ratio.end()));
-    summary.add("farthest way to rest left, by estimate",
-                *std::max_element(equilibria.to_go.begin(), equilibria.to_go.end()), "m");
+    summary.add("largest unbalanced force ratio", *std::max_element(equilibria.unbalanced_force_ratio.begin(),
+                                                                    equilibria.unbalanced_force_ratio.end()));
+    summary.add(
+        "largest remaining displacement, by estimate",
+        *std::max_element(equilibria.remaining_displacement.begin(), equilibria.remaining_displacement.end()),
+        "m");
     if (scene.creep && !analysis.creeps())
         summary.add("warning: no creep", std::string("neither joints nor rocks of the section creep"));
     if (const auto& limit = analysis.stable_limit())
@@ -365,9 +361,7 @@ private:
 
 double wanted_factor(const Arguments& arguments)
 {
-    const double factor = arguments.number("strength-factor").value_or(1);
-    require(factor >= 1e-3 && factor <= 1e3, "--strength-factor", factor, "(ratio)",
-            "must be between 0.001 and 1000");
+    const double factor = arguments.number("strength-factor", from(1e-3).to(1e3), "(ratio)").value_or(1);
     if (arguments.has("strength-factor") && arguments.has("factor-of-safety"))
         throw input_error("--strength-factor and --factor-of-safety do not go together");
     return factor;
@@ -375,8 +369,7 @@ double wanted_factor(const Arguments& arguments)
 
 double wanted_width(const Arguments& arguments, const Scene& scene)
 {
-    const double width = arguments.number("safety-width").value_or(0.01);
-    require(width >= 1e-4 && width <= 1, "--safety-width", width, "(ratio)", "must be between 0.0001 and 1");
+    const double width = arguments.number("safety-width", from(1e-4).to(1), "(ratio)").value_or(0.01);
     if (!arguments.has("factor-of-safety")) {
         if (arguments.has("safety-width"))
             throw input_error("--safety-width goes with --factor-of-safety only");
@@ -384,10 +377,10 @@ double wanted_width(const Arguments& arguments, const Scene& scene)
     }
     require(width >= 100 * scene.equilibrium.tolerance, "--safety-width", width, "(ratio)",
             "must be at least 100 times the tolerance of equilibria, " + shown(scene.equilibrium.tolerance) +
-                ", which tells rest from motion");
-    if (scene.equilibrium.engine == Engine::implicit_engine)
+                ", which tells rest from movement");
+    if (scene.equilibrium.engine == EngineChoice::implicit)
         throw input_error("--factor-of-safety: the implicit engine cannot tell rock that moves on from an "
-                          "equilibrium it does not find; wanted --engine auto or explicit");
+                          "equilibrium it does not find; wanted --engine auto or relaxation");
     return width;
 }
 
@@ -423,13 +416,12 @@ void add_safety(Summary& summary, const Bracket& bracket, const std::string& why
 // Lets the scene end on the day of --until, if given; returns that option as the result file records it.
 std::string end_scene(const Arguments& arguments, Scene& scene)
 {
-    const auto day = arguments.number("until");
+    const auto day = arguments.number("until", above(0).to(farthest_day), "day");
     if (!day)
         return "";
-    require(*day > 0 && *day <= 1e6, "--until", *day, "day", "must be above 0 and at most 1e6");
     scene.end = *day * unit::day;
     std::erase_if(scene.stages, [&](const Stage& stage) { return stage.time > scene.end; });
-    for (MeasuringPoint& point : scene.points)
+    for (MonitoringPoint& point : scene.points)
         point.first_reading = std::min(point.first_reading, scene.end);
     return "--until " + shown(*day);
 }
@@ -464,12 +456,13 @@ void solve_and_write(const Arguments& arguments)
     const std::string end = end_scene(arguments, scene);
     const Writer writer(arguments, file, choose(arguments, scene), end);
     const double factor = wanted_factor(arguments), width = wanted_width(arguments, scene);
-    if (scene.motion && arguments.has("factor-of-safety"))
-        throw input_error("--factor-of-safety: the scene has [motion], where what fails comes to rest again; "
-                          "wanted one without");
+    if (scene.large_displacements && arguments.has("factor-of-safety"))
+        throw input_error(
+            "--factor-of-safety: the scene has [large_displacements], where what fails comes to rest again; "
+            "wanted one without");
     const auto threads = static_cast<int>(arguments.whole_number("threads", 1, 1024).value_or(1));
     Recording recording{arguments.whole_number("states", 1, 1000000000).value_or(0),
-                        arguments.whole_number("trace", 1, 1000000000).value_or(0)};
+                        arguments.whole_number("step-history", 1, 1000000000).value_or(0)};
     std::optional<CheckpointFile> kept = kept_before(arguments, scene, writer, factor);
     if (const auto path = arguments.text("checkpoint"))
         recording.keep = [&writer, path, factor](const Result& so_far, const Checkpoint& checkpoint) {
@@ -499,7 +492,7 @@ void solve_and_write(const Arguments& arguments)
                 return ending;
             },
             width);
-        progress.reset(); // wiped out before the closing screen
+        progress.reset(); // wiped out before the summary
         if (!run)
             throw equilibrium_error("with strengths " + shown(1 / failed->factor) +
                                     " times as large there is still " + failed->message + '\n' +

@@ -2,7 +2,7 @@
 //
 //   jointexport result.h5 -o result.xdmf2                     the zones at all states, for ParaView
 //   jointexport result.h5 -o result.vtu                       the zones at the last state
-//   jointexport result.h5 -o histories.csv                    the histories of the measuring points
+//   jointexport result.h5 -o histories.csv                    the histories of the monitoring points
 //   jointexport network.h5 -o joints.csv                      the joint traces
 //   jointexport result.h5 -o base.vtu --what contacts --state 0
 //
@@ -204,12 +204,10 @@ int main(int argc, char** argv)
          .options = {{"what", "NAME",
                       "blocks (.vtu, .csv), joints (.vtu, .csv), edges (.csv); from a result file also "
                       "zones (.vtu, .xdmf2), contacts (.vtu, .xdmf2), histories (.csv). Default: zones or "
-                      "histories from "
-                      "a result file, blocks or joints from others"},
+                      "histories from a result file, blocks or joints from others"},
                      {"state", "STATE",
                       "of zones and contacts in a .vtu file: its number, counted from 0, the stage that it "
-                      "follows, or "
-                      "last (default)"},
+                      "follows, or last (default)"},
                      {"file-format", "", "show the format of the HDF5 files of the chain, and no more"}},
          .example = "jointexport result.h5 -o zones.vtu --state \"block 2 removed\""},
         argc, argv, export_file);

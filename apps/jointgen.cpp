@@ -54,7 +54,7 @@ void report(const Network& network)
     summary.add("joint traces", network.joints.trace_joint.size());
     summary.add("blocks", blocks.block_area.size());
     summary.add("edges on joints", edges[static_cast<std::size_t>(EdgeKind::joint)]);
-    summary.add("edges welded", edges[static_cast<std::size_t>(EdgeKind::welded)]);
+    summary.add("edges bonded", edges[static_cast<std::size_t>(EdgeKind::bonded)]);
     summary.add("area", std::accumulate(blocks.block_area.begin(), blocks.block_area.end(), 0.0), "m2");
     summary.add("shortest edge", blocks.report.shortest_edge, "m");
     summary.add("smallest angle", blocks.report.smallest_angle / unit::deg, "deg");
@@ -68,13 +68,13 @@ void report(const Network& network)
     const JointFates& fates = blocks.fates;
     summary.add("length of joints",
                 total(fates.kept) + total(fates.shared) + total(fates.on_outline) + total(fates.outside) +
-                    total(fates.dead_end) + total(fates.merged),
+                    total(fates.dangling_end) + total(fates.merged),
                 "m");
     summary.add("  on block edges", total(fates.kept), "m");
     summary.add("  on edges of others", total(fates.shared), "m");
     summary.add("  along the outline", total(fates.on_outline), "m");
     summary.add("  outside, clipped", total(fates.outside), "m");
-    summary.add("  inside, cut back", total(fates.dead_end), "m");
+    summary.add("  inside, cut back", total(fates.dangling_end), "m");
     summary.add("  merged away", total(fates.merged), "m");
     if (const double extended = total(fates.extended); extended > 0)
         summary.add("carried on", extended, "m");

@@ -30,6 +30,32 @@ namespace
 
 constexpr unsigned text_width = 100; // of the help [columns]
 
+// Options of earlier versions, refused by a message that has the new name. Without values: the whole option.
+struct RenamedOption {
+    std::string_view before, value_before, now, value_now;
+};
+constexpr std::array<RenamedOption, 2> renamed_options{
+    {{"trace", "", "step-history", ""}, {"engine", "explicit", "engine", "relaxation"}}};
+
+void refuse_renamed(const Program& program, std::string_view option, std::string_view value)
+{
+    const auto written = [](std::string_view name, std::string_view of) {
+        return "--" + std::string(name) + (of.empty() ? "" : " ") + std::string(of);
+    };
+    for (const auto& [before, value_before, now, value_now] : renamed_options)
+        for (const Option& known : program.options)
+            if (before == option && value_before == value && known.name == now)
+                throw input_error(written(before, value_before) + " is now called " +
+                                  written(now, value_now));
+}
+
+// A range in words: "above 0 and at most 1".
+std::string in_words(const Range& range)
+{
+    return std::string(range.least_open ? "above " : "at least ") + shown(range.least) + " and " +
+           (range.most_open ? "below " : "at most ") + shown(range.most);
+}
+
 po::options_description described(const Program& program)
 {
     po::options_description options("Options", text_width, text_width / 2);
@@ -43,7 +69,7 @@ po::options_description described(const Program& program)
         else
             options.add_options()(option.name.c_str(), value(option.value), option.text.c_str());
     }
-    options.add_options()("quiet,q", "no progress bar and no closing screen");
+    options.add_options()("quiet,q", "no progress bar and no summary");
     options.add_options()("help,h", "show this text");
     options.add_options()("version", "show the version, and the commit it was built from");
     return options;
@@ -90,6 +116,11 @@ po::variables_map parsed(const Program& program, int argc, char** argv)
                       .style(unix_style & ~allow_guessing)
                       .run(),
                   given);
+    } catch (const po::unknown_option& error) {
+        std::string name = error.get_option_name(); // "--trace", "--trace=20"
+        name = name.substr(0, name.find('='));
+        refuse_renamed(program, name.substr(std::min<std::size_t>(2, name.size())), "");
+        throw input_error(error.what());
     } catch (const po::too_many_positional_options_error&) {
         throw input_error("more than one " + program.input + " is given");
     } catch (const po::error& error) {
@@ -202,6 +233,15 @@ std::optional<double> Arguments::number(const std::string& option) const
     return value;
 }
 
+std::optional<double> Arguments::number(const std::string& option, const Range& range,
+                                        std::string_view unit) const
+{
+    const std::optional<double> value = number(option);
+    if (value)
+        require(range.holds(*value), shown_.at(option), *value, unit, "must be " + in_words(range));
+    return value;
+}
+
 // Writing over what is read would lose it.
 static void require_other_file(const std::string& input, const std::string& output)
 {
@@ -229,6 +269,8 @@ int run(const Program& program, int argc, char** argv, const std::function<void(
         for (const auto& [name, value] : parsed(program, argc, argv)) {
             const auto* text = boost::any_cast<std::string>(&value.value());
             arguments.given_[name] = text ? *text : "";
+            if (text)
+                refuse_renamed(program, name, *text);
         }
         if (arguments.has("input") && arguments.has("output"))
             require_other_file(arguments.input(), arguments.output());

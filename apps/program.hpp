@@ -1,5 +1,5 @@
 // What the programs share: their command line, their exit codes (docs/programs.md), a progress bar and the
-// closing screen.
+// summary.
 //
 //     int main(int argc, char** argv)
 //     {
@@ -7,12 +7,15 @@
 //                     .summary = "Makes the joints and blocks of a section.",
 //                     .input = "SCENE.toml",
 //                     .output = "network.h5",
-//                     .options = {{"seed", "N", "seed of the joint sets (default: the scene's)"}, {"check",
-//                     "", "..."}}, .example = "jointgen data/column/scene.toml -o network.h5"},
+//                     .options = {{"seed", "N", "seed of the joint sets (default: the scene's)"},
+//                                 {"check", "", "..."}},
+//                     .example = "jointgen data/column/scene.toml -o network.h5"},
 //                    argc, argv, generate);
 //     }
 
 #pragma once
+
+#include "scene/shared_settings.hpp"
 
 #include <chrono>
 #include <cstdint>
@@ -80,6 +83,7 @@ public:
     std::optional<std::uint64_t> whole_number(const std::string& option, std::uint64_t least,
                                               std::uint64_t most) const;
     std::optional<double> number(const std::string& option) const; // finite
+    std::optional<double> number(const std::string& option, const Range& range, std::string_view unit) const;
 
 private:
     friend int run(const Program&, int, char**, const std::function<void(const Arguments&)>&);
@@ -112,7 +116,7 @@ private:
     std::chrono::steady_clock::time_point next_{};
 };
 
-// The closing screen: lines "label   value unit", their values aligned.
+// The summary at the end of a run: lines "label   value unit", their values aligned.
 class Summary
 {
 public:

@@ -23,13 +23,13 @@ namespace
 // A thread with fewer zones than this spends its time waiting for the others.
 constexpr int zones_per_thread = 2000;
 
-// Of a stage's increment or a creep step, where factorisation finds no equilibrium at its end.
+// Of a stage's increment or a creep step, where the implicit engine finds no equilibrium at its end.
 constexpr int most_halvings = 5;
 
 // Of one creep step where contacts close: in rock full of open joints some close all the time.
 constexpr int most_cuts = 6;
 
-// By how much of its largest part a motion's account of energy may be off.
+// By how much of its largest part the energy balance of a dynamic analysis may be off.
 constexpr double energy_closes = 0.01;
 
 // What an edge's joint is called: its set, or the material of the joint that a boundary rests on.
@@ -41,7 +41,7 @@ std::string joint_name(const Scene& scene, const Network& network, Index edge)
 }
 
 // Throws if steps of a fixed length would be more than anyone can want.
-void check_number_of_steps(double from, double to, const Creep& creep)
+void check_number_of_steps(double from, double to, const CreepSettings& creep)
 {
     constexpr double most = 1e6;
     if (creep.step && (to - from) / *creep.step > most)
@@ -60,35 +60,39 @@ std::set<double> dates_of(const Scene& scene, const mechanics::Loading& loading)
             dates.insert(time);
     for (const Stage& stage : scene.stages)
         dates.insert(stage.time);
-    for (const MeasuringPoint& point : scene.points)
+    for (const MonitoringPoint& point : scene.points)
         if (point.first_reading > 0)
             dates.insert(point.first_reading);
     return dates;
 }
 
-// Motion, where that is what the scene or the user asks for; otherwise factorisation, and motion where it
-// fails.
-Engine engine_for(const Scene& scene, const Recording& recording)
+// Dynamic relaxation where the scene or the user asks for it. Otherwise the implicit engine, and dynamic
+// relaxation where that fails.
+EngineChoice engine_for(const Scene& scene, const Recording& recording)
 {
-    const bool is_about_motion = scene.equilibrium.masses == Masses::real || recording.trace_every > 0;
-    if (scene.equilibrium.engine == Engine::implicit_engine && recording.trace_every > 0)
-        throw input_error("--trace records motion, which the implicit engine has none of");
+    const bool needs_relaxation =
+        scene.equilibrium.masses == Masses::real || recording.step_history_every > 0;
+    if (scene.equilibrium.engine == EngineChoice::implicit && recording.step_history_every > 0)
+        throw input_error(
+            "--step-history records steps of dynamic relaxation; the implicit engine has none. Choose "
+            "--engine auto or relaxation");
     if (!recording.parameters.empty()) { // masses make no difference at rest
-        if (scene.motion)
-            throw input_error("sensitivities are of small displacements; wanted a scene without [motion]");
+        if (scene.large_displacements)
+            throw input_error(
+                "sensitivities are of small displacements; wanted a scene without [large_displacements]");
         for (const Rock& rock : scene.rocks)
             if (rock.law != RockLaw::elastic)
                 throw input_error(
                     "sensitivities are those of elastic rock; wanted law = \"elastic\" of [[rock]] \"" +
                     rock.name + "\"");
-        if (scene.equilibrium.engine == Engine::explicit_engine || recording.trace_every > 0)
+        if (scene.equilibrium.engine == EngineChoice::relaxation || recording.step_history_every > 0)
             throw input_error(
-                "sensitivities are found by factorisation; wanted an equilibrium.engine other than "
-                "\"explicit\", and no trace");
-        return Engine::implicit_engine;
+                "sensitivities are found by the implicit engine; wanted an equilibrium.engine other than "
+                "\"relaxation\", and no step history");
+        return EngineChoice::implicit;
     }
-    if (scene.equilibrium.engine == Engine::automatic && is_about_motion)
-        return Engine::explicit_engine;
+    if (scene.equilibrium.engine == EngineChoice::automatic && needs_relaxation)
+        return EngineChoice::relaxation;
     return scene.equilibrium.engine;
 }
 
@@ -113,7 +117,7 @@ std::optional<StableLimit> limit_of_published(const Scene& scene, const Network&
 
 std::vector<char> rigid_zones(const Scene& scene, const Network& network, const Mesh& mesh)
 {
-    const std::vector<std::string>& rigid = scene.motion->rigid_rocks;
+    const std::vector<std::string>& rigid = scene.large_displacements->rigid_rocks;
     std::vector<char> is_rigid;
     for (const Index block : mesh.zone_block) {
         const std::string& rock = scene.rocks[network.blocks.block_rock[block]].name;
@@ -132,11 +136,12 @@ std::vector<Index> material_of_contacts(const Scene& scene, const Network& netwo
     return number;
 }
 
-// Of contacts that come about in motion: friction alone, the residual one where there is one.
+// Of contacts that form in a dynamic analysis: friction alone, the residual one where there is one.
 joint::Law law_of_new_contacts(const Scene& scene)
 {
-    const auto material = std::find_if(scene.joint_materials.begin(), scene.joint_materials.end(),
-                                       [&](const auto& m) { return m.name == scene.motion->new_contacts; });
+    const auto material =
+        std::find_if(scene.joint_materials.begin(), scene.joint_materials.end(),
+                     [&](const auto& m) { return m.name == scene.large_displacements->new_contacts; });
     static_assert(joint::number_of_laws == 2);
     if (material->walls)
         return joint::BartonBandis{material->normal_stiffness,       material->shear_stiffness,
@@ -159,8 +164,8 @@ Analysis::Analysis(const Scene& scene, const Network& network, const EquivalentJ
                                                      .history = {},
                                                      .states = {},
                                                      .equilibria = {},
-                                                     .trace = {},
-                                                     .motions = {}},
+                                                     .step_history = {},
+                                                     .dynamics = {}},
       rock_(mechanics::assemble(scene, network, joints, result_.mesh)), loading_(scene, result_.mesh),
       recorder_(scene, network.blocks, result_.mesh)
 {
@@ -180,8 +185,8 @@ Analysis::Analysis(const Scene& scene, const Network& network, const EquivalentJ
 void Analysis::run()
 {
     settle_in_situ();
-    if (scene_.motion)
-        start_motion();
+    if (scene_.large_displacements)
+        start_dynamics();
     prepare_creep();
     follow_schedule(false);
 }
@@ -190,8 +195,8 @@ void Analysis::go_on(Result so_far, Checkpoint kept)
 {
     so_far.mesh = std::move(result_.mesh);
     result_ = std::move(so_far);
-    if (scene_.motion)
-        prepare_motion();
+    if (scene_.large_displacements)
+        prepare_dynamics();
     prepare_creep();
     transfer(Transfer(Transfer::Way::restore), kept);
     follow_schedule(true);
@@ -226,7 +231,7 @@ void Analysis::follow_schedule(bool is_at_stage)
             continue;
         if (is_at_stage) {
             // creep has come here before
-        } else if (motion_)
+        } else if (dynamics_)
             rest_until(date);
         else
             creep_until(date, now_ >= last_event);
@@ -242,7 +247,7 @@ void Analysis::follow_schedule(bool is_at_stage)
         }
         recorder_.start_readings(result_, now_);
     }
-    for (const MeasuringPoint& point : scene_.points)
+    for (const MonitoringPoint& point : scene_.points)
         if (point.first_reading > now_) // creep has ended before: nothing moves until then
             recorder_.start_readings(result_, point.first_reading);
 }
@@ -252,8 +257,8 @@ void Analysis::transfer(const Transfer& to, Checkpoint& kept)
     // All members, lest a new one is forgotten. What is not passed on is made from the scene, or found anew
     // in a stage.
     auto& [scene, network, joints, recording, observe, engine, result, rock, loading, recorder, implicit,
-           motion, creep, step, closing, sensitivity, sensitivities, now, next_stage, stage, solver_time,
-           solver_steps, creep_steps, certificate, effort, last_move, cuts_left, last_step, stable_limit,
+           dynamics, creep, step, closing, sensitivity, sensitivities, now, next_stage, stage, solver_time,
+           solver_steps, creep_steps, convergence, effort, last_move, cuts_left, last_step, stable_limit,
            end_of_creep, beyond_strength, yielded_in_situ, given_up, energy_off, largest_error,
            largest_energy] = *this;
     to.value(next_stage, kept.stage);
@@ -261,19 +266,19 @@ void Analysis::transfer(const Transfer& to, Checkpoint& kept)
     if (to.restores())
         loading.apply(rock, now);
     mechanics::transfer(to, rock, kept);
-    if (motion)
-        motion->transfer(to, kept.moved);
+    if (dynamics)
+        dynamics->transfer(to, kept.dynamics);
     if (creep)
         creep->transfer(to, kept);
     if (step)
         step->transfer(to, kept);
     to.value(solver_time, kept.solver_time);
     // Only what is left over from the last that was recorded counts.
-    std::uint64_t since_trace = solver_steps % std::max<std::uint64_t>(recording.trace_every, 1),
+    std::uint64_t since_record = solver_steps % std::max<std::uint64_t>(recording.step_history_every, 1),
                   since_state = creep_steps % std::max<std::uint64_t>(recording.state_every, 1);
-    to.value(since_trace, kept.steps_since_trace);
+    to.value(since_record, kept.steps_since_record);
     to.value(since_state, kept.steps_since_state);
-    solver_steps = since_trace;
+    solver_steps = since_record;
     creep_steps = since_state;
     const std::array<std::map<std::string, Index>*, 4> remarks{&beyond_strength, &yielded_in_situ, &given_up,
                                                                &energy_off};
@@ -297,10 +302,10 @@ void Analysis::settle_in_situ()
     try {
         check_held();
         if (!settles_nearby({}, 0))
-            settle_by_motion(0);
+            settle_by_relaxation(0);
     } catch (const equilibrium_error&) {
         go_back(rock_, given);
-        take_down("", true);
+        record("", true);
         throw;
     }
     yielded_in_situ_ = yielded();
@@ -314,8 +319,8 @@ void Analysis::settle_in_situ()
     }
     start_from_here(rock_);
     loading_.apply(rock_, 0);
-    take_down_equilibrium();
-    take_down("", true);
+    record_equilibrium();
+    record("", true);
 }
 
 // 3. Creep, and what the loading does meanwhile, up to a date. It may stop where the scene's stop rate is
@@ -346,7 +351,7 @@ void Analysis::creep_until(double date, bool may_stop)
                 continue; // cut short where a contact closes: times stay the same whatever contacts do
             const bool is_due = recording_.state_every > 0 && creeps() &&
                                 ++creep_steps_ % recording_.state_every == 0 && now_ < date;
-            take_down("", is_due);
+            record("", is_due);
         }
     }
     recorder_.record_state(result_, now_, "", rock_);
@@ -358,7 +363,7 @@ void Analysis::rest_until(double date)
     if (date == now_)
         return;
     now_ = date;
-    take_down("", true);
+    record("", true);
 }
 
 // One step of creep and loading, to the target or to where an open contact closes before. False if its error
@@ -377,7 +382,7 @@ bool Analysis::step_to(double target, bool is_loaded)
     if (sensitivity_)
         sensitivity_->start_step(rock_);
     double end = target;
-    int halvings = engine_ == Engine::explicit_engine ? most_halvings : 0;
+    int halvings = engine_ == EngineChoice::relaxation ? most_halvings : 0;
     for (;;) {
         if (creeps())
             creep_->begin(end - now_, rock_);
@@ -387,8 +392,8 @@ bool Analysis::step_to(double target, bool is_loaded)
             move *= 0.9 * (end - now_) / last_step_;
         bool is_found = true;
         try {
-            if (halvings == most_halvings) // all the way then, by motion
-                settle_by_motion(end);
+            if (halvings == most_halvings) // all the way then, by dynamic relaxation
+                settle_by_relaxation(end);
             else
                 is_found = settles_nearby(guess, end);
         } catch (const equilibrium_error&) {
@@ -435,7 +440,7 @@ bool Analysis::step_to(double target, bool is_loaded)
     for (std::size_t g = 0; g < last_move_.size(); ++g)
         last_move_[g] -= start.displacement[g];
     now_ = end;
-    take_down_equilibrium();
+    record_equilibrium();
     if (end < target && step_) // cut short
         step_->start_afresh();
     return true;
@@ -458,16 +463,16 @@ void Analysis::excavate(const Stage& stage, Index number)
     const auto released = mechanics::excavate(rock_, network_.blocks, result_.mesh, loading_, number);
     if (sensitivity_)
         sensitivity_->after_excavation(rock_);
-    if (motion_) {
-        motion_->start();
+    if (dynamics_) {
+        dynamics_->start();
         move(stage);
         stage_.clear();
         return;
     }
     check_held();
     const std::vector<Vector2d> load = rock_.load;
-    // In the scene's increments; in smaller ones where factorisation finds nothing nearby.
-    const int finest = engine_ == Engine::explicit_engine ? 1 : 1 << most_halvings;
+    // In the scene's increments; in smaller ones where the implicit engine finds no equilibrium nearby.
+    const int finest = engine_ == EngineChoice::relaxation ? 1 : 1 << most_halvings;
     const int n = finest * scene_.equilibrium.unloading_increments;
     for (int done = 0, increment = finest; done < n;) {
         const double held = 1 - static_cast<double>(done + increment) / n;
@@ -478,54 +483,57 @@ void Analysis::excavate(const Stage& stage, Index number)
                 increment /= 2;
                 continue;
             }
-            settle_by_motion(now_);
+            settle_by_relaxation(now_);
         }
         if (sensitivity_)
             sensitivity_->settle(rock_, implicit_, now_, held);
         done += increment;
-        take_down_equilibrium();
+        record_equilibrium();
     }
     start_afresh();
-    take_down(stage.name, true);
+    record(stage.name, true);
     if (stage.reset_displacements)
         mechanics::Recorder::reset(result_);
     stage_.clear();
 }
 
-void Analysis::prepare_motion()
+void Analysis::prepare_dynamics()
 {
-    motion_.emplace(rock_, result_.mesh, material_of_contacts(scene_, network_, result_.mesh),
-                    rigid_zones(scene_, network_, result_.mesh), law_of_new_contacts(scene_),
-                    motion::Settings{scene_.motion->stiffness_damping, scene_.motion->mass_damping,
-                                     scene_.motion->release, scene_.equilibrium.tolerance});
+    dynamics_.emplace(rock_, result_.mesh, material_of_contacts(scene_, network_, result_.mesh),
+                      rigid_zones(scene_, network_, result_.mesh), law_of_new_contacts(scene_),
+                      large_displacements::Settings{scene_.large_displacements->stiffness_damping,
+                                                    scene_.large_displacements->mass_damping,
+                                                    scene_.large_displacements->release,
+                                                    scene_.equilibrium.tolerance});
 }
 
 // 2, where rock may move far: contacts between faces are a little other than those between gridpoints, and
 // find their equilibrium first.
-void Analysis::start_motion()
+void Analysis::start_dynamics()
 {
-    prepare_motion();
-    follow_motion(std::numeric_limits<double>::infinity());
+    prepare_dynamics();
+    follow_dynamics(std::numeric_limits<double>::infinity());
     effort_ = {};
-    motion_->count_from_here();
+    dynamics_->count_from_here();
 }
 
 // Steps until rock is at rest, or a time has come [s].
-bool Analysis::follow_motion(double until)
+bool Analysis::follow_dynamics(double until)
 {
-    while (motion_->time() < until) {
+    while (dynamics_->time() < until) {
         try {
-            motion_->step();
+            dynamics_->step();
             ++effort_.steps;
-            if (effort_.steps % motion::Motion::check_every == 0 && motion_->is_at_rest())
+            if (effort_.steps % large_displacements::Dynamics::check_every == 0 && dynamics_->is_at_rest())
                 return true;
         } catch (const mechanics::no_equilibrium& error) {
-            give_up_motion(error);
+            give_up_dynamics(error);
         } catch (const equilibrium_error& error) {
             fail({.reason = error.what()}, now_);
         }
-        if (motion_->time() > scene_.motion->longest)
-            give_up_motion(motion_->moves_on("no rest within " + shown(scene_.motion->longest) + " s"));
+        if (dynamics_->time() > scene_.large_displacements->longest)
+            give_up_dynamics(
+                dynamics_->moves_on("no rest within " + shown(scene_.large_displacements->longest) + " s"));
     }
     return false;
 }
@@ -537,81 +545,81 @@ void Analysis::move(const Stage& stage)
     largest_energy_ = largest_error_ = 0;
     do {
         observe_(now_ / scene_.end, stage.name + ", " + shown(due) + " s");
-        due = std::max(due + scene_.motion->record_every, // once a step at most
-                       std::nextafter(motion_->time(), std::numeric_limits<double>::infinity()));
-        motion_->put_back();
+        due = std::max(due + scene_.large_displacements->record_every, // once a step at most
+                       std::nextafter(dynamics_->time(), std::numeric_limits<double>::infinity()));
+        dynamics_->put_back();
         recorder_.record_state(result_, now_, "", rock_);
-        take_down_motion();
-    } while (!follow_motion(due));
-    motion_->put_back();
-    const motion::Energy energy = motion_->energy();
-    certificate_ = {.steps = effort_.steps,
-                    .out_of_balance_ratio = motion_->out_of_balance_ratio(),
-                    .contact_force_change = motion_->contact_force_change(),
-                    .to_go = -1,
+        record_dynamics();
+    } while (!follow_dynamics(due));
+    dynamics_->put_back();
+    const large_displacements::Energy energy = dynamics_->energy();
+    convergence_ = {.steps = effort_.steps,
+                    .unbalanced_force_ratio = dynamics_->unbalanced_force_ratio(),
+                    .contact_force_change = dynamics_->contact_force_change(),
+                    .remaining_displacement = -1,
                     .work_of_loads = energy.work,
                     .stored = energy.stored,
                     .dissipated = energy.friction,
                     .damped = energy.damped};
     effort_.searches = 1;
-    take_down_equilibrium();
-    take_down(stage.name, true);
-    take_down_motion();
+    record_equilibrium();
+    record(stage.name, true);
+    record_dynamics();
     check_energy();
     if (stage.reset_displacements)
         mechanics::Recorder::reset(result_);
 }
 
-// Keeps the state that a motion has come to, and says what moves.
-void Analysis::give_up_motion(const mechanics::no_equilibrium& error)
+// Keeps the state that a dynamic analysis has come to, and says what moves.
+void Analysis::give_up_dynamics(const mechanics::no_equilibrium& error)
 {
-    motion_->put_back();
-    take_down("", true);
-    take_down_motion();
+    dynamics_->put_back();
+    record("", true);
+    record_dynamics();
     check_energy();
     fail(failure_of(error, result_.mesh, rock_), now_);
 }
 
-void Analysis::take_down_motion()
+void Analysis::record_dynamics()
 {
-    Motions& motions = result_.motions;
-    const motion::Energy energy = motion_->energy();
-    motions.time.push_back(now_ / unit::day);
-    motions.motion_time.push_back(motion_->time());
-    motions.state.push_back(static_cast<Index>(result_.states.time.size()) - 1);
-    motions.work_of_loads.push_back(energy.work);
-    motions.kinetic_energy.push_back(energy.kinetic);
-    motions.stored_energy.push_back(energy.stored);
-    motions.friction_energy.push_back(energy.friction);
-    motions.damped_energy.push_back(energy.damped);
-    motions.fastest.push_back(motion_->fastest());
-    motions.out_of_balance_ratio.push_back(motion_->out_of_balance_ratio());
+    DynamicsHistory& dynamics = result_.dynamics;
+    const large_displacements::Energy energy = dynamics_->energy();
+    dynamics.time.push_back(now_ / unit::day);
+    dynamics.dynamic_time.push_back(dynamics_->time());
+    dynamics.state.push_back(static_cast<Index>(result_.states.time.size()) - 1);
+    dynamics.work_of_loads.push_back(energy.work);
+    dynamics.kinetic_energy.push_back(energy.kinetic);
+    dynamics.stored_energy.push_back(energy.stored);
+    dynamics.friction_energy.push_back(energy.friction);
+    dynamics.damped_energy.push_back(energy.damped);
+    dynamics.fastest.push_back(dynamics_->fastest());
+    dynamics.unbalanced_force_ratio.push_back(dynamics_->unbalanced_force_ratio());
     for (const double part : {energy.work, energy.kinetic, energy.stored, energy.friction, energy.damped})
         largest_energy_ = std::max(largest_energy_, std::abs(part));
     largest_error_ = std::max(largest_error_, std::abs(energy.error()));
     const auto block_of = [&](Index zone) { return zone < 0 ? zone : result_.mesh.zone_block[zone]; };
-    for (const motion::Touching& contact : motion_->touching()) {
-        motions.contact_block.push_back({block_of(contact.zone[0]), block_of(contact.zone[1])});
-        motions.contact_from.push_back(contact.between[0]);
-        motions.contact_to.push_back(contact.between[1]);
-        motions.contact_normal.push_back(contact.normal);
-        motions.contact_traction.push_back(contact.traction);
-        motions.contact_closing.push_back(contact.closing);
-        motions.contact_slips.push_back(contact.is_slipping ? 1 : 0);
+    for (const large_displacements::Touching& contact : dynamics_->touching()) {
+        dynamics.contact_block.push_back({block_of(contact.zone[0]), block_of(contact.zone[1])});
+        dynamics.contact_from.push_back(contact.between[0]);
+        dynamics.contact_to.push_back(contact.between[1]);
+        dynamics.contact_normal.push_back(contact.normal);
+        dynamics.contact_traction.push_back(contact.traction);
+        dynamics.contact_closing.push_back(contact.closing);
+        dynamics.contact_slips.push_back(contact.is_slipping ? 1 : 0);
     }
-    motions.first_contact.push_back(static_cast<Index>(motions.contact_block.size()));
+    dynamics.first_contact.push_back(static_cast<Index>(dynamics.contact_block.size()));
 }
 
-// Of the motion that has ended. Where rock only settles, all parts are small, and an error of the
+// Of the dynamic analysis that has ended. Where rock only settles, all parts are small, and an error of the
 // first step, which goes with the square of its length, is not small beside them.
 void Analysis::check_energy()
 {
     const double off = largest_error_ / largest_energy_;
-    if (motion_->has_moved() && off > energy_closes)
+    if (dynamics_->has_moved() && off > energy_closes)
         energy_off_[stage_] = static_cast<Index>(std::lround(100 * std::min(off, 1e6)));
 }
 
-// After a jump of loads: what was learnt from the steps before no longer holds.
+// After a sudden change of loads: what was learnt from the steps before no longer holds.
 void Analysis::start_afresh()
 {
     last_move_.clear();
@@ -623,11 +631,12 @@ void Analysis::start_afresh()
         sensitivity_->start_afresh();
 }
 
-// Equilibrium by factorisation, if the engine is not the explicit one; false if there is none nearby. All
-// rock is elastic in it. Where some is beyond its strength in the end, motion goes on from there.
+// Equilibrium by the implicit engine, unless only dynamic relaxation is asked for; false if there is none
+// nearby. All rock is elastic in it. Where some is beyond its strength in the end, dynamic relaxation goes on
+// from there.
 bool Analysis::settles_nearby(const std::vector<Vector2d>& guess, double time)
 {
-    if (engine_ == Engine::explicit_engine)
+    if (engine_ == EngineChoice::relaxation)
         return false;
     rock_.zones.holds_yield = true;
     const auto found = implicit_.equilibrate(rock_, scene_.equilibrium, guess);
@@ -636,38 +645,38 @@ bool Analysis::settles_nearby(const std::vector<Vector2d>& guess, double time)
     effort_.solves += implicit_.solves();
     effort_.steps += implicit_.corrections();
     if (found) {
-        certificate_ = *found;
+        convergence_ = *found;
         if (const Index zone = weakest_zone(rock_); zone >= 0)
-            yield_by_motion(time, zone);
+            yield_by_relaxation(time, zone);
     }
     rock_.zones.holds_yield = false;
     return found.has_value();
 }
 
 // From an elastic equilibrium in which this zone is beyond its strength.
-void Analysis::yield_by_motion(double time, Index zone)
+void Analysis::yield_by_relaxation(double time, Index zone)
 {
     rock_.zones.holds_yield = false;
-    if (engine_ == Engine::implicit_engine) {
+    if (engine_ == EngineChoice::implicit) {
         const auto& [a, b, c] = result_.mesh.zone_gridpoint[zone];
         const std::vector<Vector2d>& at = result_.mesh.gridpoint;
-        fail(failure_of(mechanics::no_equilibrium("the rock at " +
-                                                  shown(Vector2d((at[a] + at[b] + at[c]) / 3)) +
-                                                  " yields (--engine auto would go on by motion)"),
-                        result_.mesh, rock_),
+        fail(failure_of(
+                 mechanics::no_equilibrium("the rock at " + shown(Vector2d((at[a] + at[b] + at[c]) / 3)) +
+                                           " yields (--engine auto would continue by dynamic relaxation)"),
+                 result_.mesh, rock_),
              time);
     }
-    mechanics::Certificate elastic = certificate_;
+    mechanics::Convergence elastic = convergence_;
     const double beyond_strength = stored_energy(rock_);
     find_forces(rock_);
     const double lost = beyond_strength - stored_energy(rock_); // nothing has moved
     elastic.stored -= lost;
     elastic.dissipated += lost;
-    settle_by_motion(time, "rock yields");
-    certificate_.work_of_loads += elastic.work_of_loads;
-    certificate_.stored += elastic.stored;
-    certificate_.dissipated += elastic.dissipated;
-    certificate_.damped += elastic.damped;
+    settle_by_relaxation(time, "rock yields");
+    convergence_.work_of_loads += elastic.work_of_loads;
+    convergence_.stored += elastic.stored;
+    convergence_.dissipated += elastic.dissipated;
+    convergence_.damped += elastic.damped;
 }
 
 std::map<std::string, Index> Analysis::yielded() const
@@ -680,30 +689,31 @@ std::map<std::string, Index> Analysis::yielded() const
     return zones;
 }
 
-// Equilibrium by motion, if the engine is not the implicit one.
-void Analysis::settle_by_motion(double time, const std::string& reason)
+// Equilibrium by dynamic relaxation, unless only the implicit engine is asked for.
+void Analysis::settle_by_relaxation(double time, const std::string& reason)
 {
-    if (engine_ == Engine::implicit_engine)
+    if (engine_ == EngineChoice::implicit)
         fail(failure_of(mechanics::no_equilibrium("none nearby: " + implicit_.reason() +
-                                                  " (--engine auto would go on by motion)"),
+                                                  " (--engine auto would continue by dynamic relaxation)"),
                         result_.mesh, rock_),
              time);
-    if (engine_ == Engine::automatic)
+    if (engine_ == EngineChoice::automatic)
         ++given_up_[reason.empty() ? implicit_.reason() : reason];
     ++effort_.searches;
     double last = 0;
     const auto observe = [&](double since_start) {
         last = since_start;
-        if (recording_.trace_every > 0 && ++solver_steps_ % recording_.trace_every == 0)
-            recorder_.record_trace(result_, time, solver_time_ + since_start, rock_);
+        if (recording_.step_history_every > 0 && ++solver_steps_ % recording_.step_history_every == 0)
+            recorder_.record_step(result_, time, solver_time_ + since_start, rock_);
     };
     try {
-        certificate_ = relaxation::relax(rock_, scene_.equilibrium,
-                                         recording_.trace_every > 0 ? observe : relaxation::StepObserver{});
+        convergence_ =
+            relaxation::relax(rock_, scene_.equilibrium,
+                              recording_.step_history_every > 0 ? observe : relaxation::StepObserver{});
     } catch (const mechanics::no_equilibrium& error) {
         fail(failure_of(error, result_.mesh, rock_), time);
     }
-    effort_.steps += certificate_.steps;
+    effort_.steps += convergence_.steps;
     solver_time_ += last;
 }
 
@@ -736,13 +746,13 @@ void Analysis::fail(Failure failure, double time)
     throw equilibrium_error(message);
 }
 
-void Analysis::take_down_equilibrium()
+void Analysis::record_equilibrium()
 {
-    recorder_.record_equilibrium(result_, now_, certificate_, effort_);
+    recorder_.record_equilibrium(result_, now_, convergence_, effort_);
     effort_ = {};
 }
 
-void Analysis::take_down(const std::string& event, bool with_state)
+void Analysis::record(const std::string& event, bool with_state)
 {
     recorder_.record_history(result_, now_, event, rock_);
     for (std::size_t p = 0; p < sensitivities_.size(); ++p)

@@ -6,13 +6,13 @@
 #include "creep/creep.hpp"
 #include "creep/step_length.hpp"
 #include "implicit/equilibrium.hpp"
+#include "large_displacements/dynamics.hpp"
 #include "mechanics/assembly.hpp"
 #include "mechanics/failure.hpp"
 #include "mechanics/loading.hpp"
 #include "mechanics/recorder.hpp"
 #include "model/checkpoint.hpp"
 #include "model/error.hpp"
-#include "motion/motion.hpp"
 #include "sensitivity/sensitivity.hpp"
 
 #include <functional>
@@ -25,8 +25,8 @@ namespace jointcreep
 
 // What is to be recorded besides histories and the states at dates; 0 is never.
 struct Recording {
-    std::uint64_t state_every = 0; // creep steps
-    std::uint64_t trace_every = 0; // solver steps
+    std::uint64_t state_every = 0;        // creep steps
+    std::uint64_t step_history_every = 0; // solver steps
     // Whose sensitivities are found along with the histories: by the implicit engine alone.
     std::vector<sensitivity::Parameter> parameters{};
     // Told before every stage what it begins with, and the result so far.
@@ -67,7 +67,7 @@ public:
     // Of the histories' displacements, [parameter][time, point]: per unit of the parameter's logarithm [m].
     const std::vector<std::vector<mechanics::Vector2d>>& sensitivities() const { return sensitivities_; }
     const mechanics::Assembly& rock() const { return rock_; }
-    Engine engine() const { return engine_; }
+    EngineChoice engine() const { return engine_; }
     bool creeps() const { return step_.has_value(); }
     const std::optional<StableLimit>& stable_limit() const
     {
@@ -93,20 +93,21 @@ private:
     bool step_to(double target, bool is_loaded);
     bool is_slower_than(double rate) const;
     void excavate(const Stage& stage, Index number);
-    void prepare_motion();
-    void start_motion();
-    bool follow_motion(double until);
+    void prepare_dynamics();
+    void start_dynamics();
+    bool follow_dynamics(double until);
     void move(const Stage& stage);
-    [[noreturn]] void give_up_motion(const mechanics::no_equilibrium& error);
-    void take_down_motion();
+    [[noreturn]] void give_up_dynamics(const mechanics::no_equilibrium& error);
+    void record_dynamics();
     void check_energy();
     bool settles_nearby(const std::vector<mechanics::Vector2d>& guess, double time);
-    void settle_by_motion(double time, const std::string& reason = {}); // without one the implicit engine's
-    void yield_by_motion(double time, Index zone);
+    void settle_by_relaxation(double time,
+                              const std::string& reason = {}); // without one the implicit engine's
+    void yield_by_relaxation(double time, Index zone);
     void check_held();
     [[noreturn]] void fail(Failure failure, double time);
-    void take_down_equilibrium();
-    void take_down(const std::string& event, bool with_state);
+    void record_equilibrium();
+    void record(const std::string& event, bool with_state);
     void start_afresh();
 
     const Scene& scene_;
@@ -114,13 +115,13 @@ private:
     const EquivalentJoints& joints_;
     const Recording& recording_;
     Observer observe_;
-    Engine engine_;
+    EngineChoice engine_;
     Result result_;
     mechanics::Assembly rock_;
     mechanics::Loading loading_;
     mechanics::Recorder recorder_;
-    implicit::Engine implicit_;
-    std::optional<motion::Motion> motion_;
+    implicit::Solver implicit_;
+    std::optional<large_displacements::Dynamics> dynamics_;
     std::optional<creep::Creep> creep_;
     std::optional<creep::StepLength> step_;
     std::optional<creep::Closing> closing_;
@@ -130,11 +131,11 @@ private:
     double now_ = 0;         // since start [s]
     Index next_stage_ = 0;   // to be excavated
     std::string stage_;      // being excavated, or ""
-    double solver_time_ = 0; // of motion, over all equilibria [s]
+    double solver_time_ = 0; // of dynamic relaxation, over all equilibria [s]
     std::uint64_t solver_steps_ = 0, creep_steps_ = 0;
-    mechanics::Certificate certificate_;         // of the last equilibrium
-    mechanics::Effort effort_;                   // since the last one that was taken down
-    std::vector<mechanics::Vector2d> last_move_; // in the last creep step [m]; none after a jump
+    mechanics::Convergence convergence_;         // of the last equilibrium
+    mechanics::Effort effort_;                   // since the last one that was recorded
+    std::vector<mechanics::Vector2d> last_move_; // in the last creep step [m]; none after a sudden change
     int cuts_left_ = 0;                          // of this creep step
     double last_step_ = 0;                       // [s]
     std::optional<StableLimit> stable_limit_;
@@ -143,8 +144,8 @@ private:
     std::map<std::string, Index> yielded_in_situ_;
     std::map<std::string, Index> given_up_;   // equilibria by the implicit engine's reason
     std::map<std::string, Index> energy_off_; // by stage [percent]
-    double largest_error_ = 0;                // of the account of this motion, at recorded moments [J/m]
-    double largest_energy_ = 0;               // of its parts
+    double largest_error_ = 0;  // of this dynamic analysis's energy balance, at recorded moments [J/m]
+    double largest_energy_ = 0; // of its parts
 };
 
 } // namespace jointcreep

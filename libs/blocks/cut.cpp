@@ -198,10 +198,10 @@ private:
         for (const Polygon& outline : outlines_)
             add_polygon(outline, Source::Kind::outline);
         for (const Region& region : scene_.regions)
-            add_polygon(region.outline, Source::Kind::welded);
+            add_polygon(region.outline, Source::Kind::bonded);
         for (const Stage& stage : scene_.stages)
             for (const Polygon& polygon : stage.remove)
-                add_polygon(polygon, Source::Kind::welded);
+                add_polygon(polygon, Source::Kind::bonded);
         const std::size_t first_joint = lines_.size(), corners = graph_.vertex.size();
         for (std::size_t j = 0; j < joints_.set.size(); ++j) {
             // An end on a slanting line is, in doubles, a little off it: a bit of overlap makes it reach.
@@ -211,7 +211,7 @@ private:
                      given_end(joints_.to[j], overlap, j, corners),
                      {Source::Kind::joint, static_cast<Index>(j)});
         }
-        if (scene_.cutting.dead_ends == DeadEnds::extend)
+        if (scene_.cutting.dangling_ends == DanglingEnds::extend)
             carry_on(first_joint);
         divide_by_parts(first_joint);
         pass_through_corners(first_joint);
@@ -417,7 +417,7 @@ private:
     {
         if (is_on_joint(edge) && length(edge) > 1.001 * reach_) // shorter: overlap
             report_.pruned_length += length(edge);
-        record(edge, Fate::dead_end);
+        record(edge, Fate::dangling_end);
     }
 
     void remove_edges(const std::vector<char>& gone)
@@ -504,7 +504,7 @@ private:
 
     void describe_edge(Blocks& blocks, Edge edge, std::array<Index, 2> sides)
     {
-        EdgeKind kind = EdgeKind::welded;
+        EdgeKind kind = EdgeKind::bonded;
         Index joint = -1, boundary = -1;
         double fraction = 0;
         const auto turn_round = [&] {

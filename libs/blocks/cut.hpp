@@ -17,7 +17,7 @@ namespace jointcreep::blocks
 //    on it, so the blocks' areas add up to the section's.
 //  - A joint that ends inside a block is cut back to the last block border it met, or carried on to the next
 //  line
-//    as rock bridge, by scene.cutting.dead_ends.
+//    as rock bridge, by scene.cutting.dangling_ends.
 //  - Inside the section's holes there are no blocks.
 //  - Blocks are checked before they are given (blocks/check.hpp), and each joint's length is accounted for.
 //  - An edge on several joints belongs to the one with the largest joint fraction, then to the first.

@@ -35,7 +35,7 @@ JointFates FateRecord::table(double tolerance) const
 {
     const std::size_t count = joints_.set.size();
     JointFates table;
-    for (auto* column : {&table.kept, &table.shared, &table.on_outline, &table.outside, &table.dead_end,
+    for (auto* column : {&table.kept, &table.shared, &table.on_outline, &table.outside, &table.dangling_end,
                          &table.merged, &table.extended})
         column->assign(count, 0);
     table.fate.assign(count, 0);
@@ -88,7 +88,7 @@ JointFates FateRecord::table(double tolerance) const
         table.shared[j] = of(Fate::shared);
         table.on_outline[j] = of(Fate::on_outline);
         table.outside[j] = of(Fate::outside);
-        table.dead_end[j] = of(Fate::dead_end);
+        table.dangling_end[j] = of(Fate::dangling_end);
         table.merged[j] = std::max(0.0, length - covered);
         if (carried_on_.empty() || !carried_on_[j])
             table.extended[j] = 0; // the overlap at its ends, or merging has moved an end
@@ -96,7 +96,7 @@ JointFates FateRecord::table(double tolerance) const
         JointFate fate = JointFate::kept;
         if (of(Fate::kept) + of(Fate::shared) == 0)
             fate = JointFate::dropped;
-        else if (of(Fate::dead_end) > tolerance)
+        else if (of(Fate::dangling_end) > tolerance)
             fate = JointFate::trimmed;
         else if (table.merged[j] > tolerance)
             fate = JointFate::merged;

@@ -13,7 +13,7 @@ namespace jointcreep::blocks
 
 // What a piece of a joint's line ended as. Where pieces overlap, which merging by moving brings about, the
 // first named counts.
-enum class Fate : Index { kept, shared, on_outline, dead_end, outside };
+enum class Fate : Index { kept, shared, on_outline, dangling_end, outside };
 
 // Collects pieces of joints with their fates. What no piece covers in the end has merged away.
 class FateRecord

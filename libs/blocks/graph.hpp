@@ -20,7 +20,7 @@ namespace jointcreep::blocks
 
 // A line of the scene that edges can lie on.
 struct Source {
-    enum class Kind { outline, welded, joint };
+    enum class Kind { outline, bonded, joint };
     Kind kind;
     Index index; // side of the outline and its holes; side of a stage or region polygon; joint
 };
@@ -38,7 +38,7 @@ public:
     Index united(Index a, Index b) { return a == b ? a : united_sets(a, b); }
     std::span<const Index> lines_of(Index set) const; // ascending
     bool has_outline(Index set) const { return has_[set] & bit(Source::Kind::outline); }
-    bool has_welded(Index set) const { return has_[set] & bit(Source::Kind::welded); }
+    bool has_bonded(Index set) const { return has_[set] & bit(Source::Kind::bonded); }
     bool has_joint(Index set) const { return has_[set] & bit(Source::Kind::joint); }
 
 private:

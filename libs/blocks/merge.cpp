@@ -16,13 +16,13 @@ namespace
 using Eigen::Vector2d;
 
 // Who moves to whom: the lower level moves.
-enum Level : char { free_vertex = 0, on_welded = 1, on_outline = 2, outline_corner = 3 };
+enum Level : char { free_vertex = 0, on_bonded = 1, on_outline = 2, outline_corner = 3 };
 
 Level level_of(const Edge& edge, const Sources& sources)
 {
     if (sources.has_outline(edge.sources))
         return on_outline;
-    return sources.has_welded(edge.sources) ? on_welded : free_vertex;
+    return sources.has_bonded(edge.sources) ? on_bonded : free_vertex;
 }
 
 // Vertices by square cells of a size that puts few into one, for finding those near a place.

@@ -12,8 +12,8 @@ namespace
 // How far a contact is open beyond where it touches; below 0: how much it is closed, springs and all [m].
 double opening_of(const mechanics::Contacts& contacts, std::size_t c)
 {
-    return joint::opening(contacts.law[c], contacts.initial_traction[c].x()) + contacts.jump[c].x() -
-           contacts.offset[c].x() - contacts.state[c].dilation;
+    return joint::opening(contacts.law[c], contacts.initial_traction[c].x()) +
+           contacts.relative_displacement[c].x() - contacts.offset[c].x() - contacts.state[c].dilation;
 }
 
 } // namespace
@@ -29,7 +29,7 @@ void Closing::start(const mechanics::Assembly& assembly)
     for (std::size_t c = 0; c < n; ++c) {
         was_open_[c] = contacts.status[c] == ContactStatus::open ? 1 : 0;
         opening_[c] = opening_of(contacts, c);
-        shear_[c] = contacts.jump[c].y();
+        shear_[c] = contacts.relative_displacement[c].y();
     }
 }
 
@@ -51,8 +51,9 @@ double Closing::longest_step(const mechanics::Assembly& assembly, double duratio
         const double touches =
             is_by_rate ? opening_[c] / -rate_[c].x() : (knows_rate ? until_now : until_now / 2);
         // Stuck at the wrong place it may seem not to shear at all.
-        const double shear_rate = std::max(std::abs(contacts.jump[c].y() - shear_[c]) / duration,
-                                           knows_rate ? std::abs(rate_[c].y()) : 0.0);
+        const double shear_rate =
+            std::max(std::abs(contacts.relative_displacement[c].y() - shear_[c]) / duration,
+                     knows_rate ? std::abs(rate_[c].y()) : 0.0);
         if (touches * shear_rate > tolerance_ && touches < longest) {
             longest = touches;
             cut_ = {static_cast<Index>(c),
@@ -77,7 +78,7 @@ void Closing::finish(const mechanics::Assembly& assembly, double duration)
     for (std::size_t c = 0; c < was_open_.size(); ++c)
         if (was_open_[c] && assembly.contacts.status[c] == ContactStatus::open)
             rate_[c] = Eigen::Vector2d(opening_of(assembly.contacts, c) - opening_[c],
-                                       assembly.contacts.jump[c].y() - shear_[c]) /
+                                       assembly.contacts.relative_displacement[c].y() - shear_[c]) /
                        duration;
 }
 

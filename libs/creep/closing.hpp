@@ -41,7 +41,7 @@ public:
     bool was_open(std::size_t contact) const { return was_open_[contact] != 0; }
     double rate(std::size_t contact) const { return rate_[contact].x(); }
 
-    // Forgets how fast contacts were closing: after a jump of loads.
+    // Forgets how fast contacts were closing: after a sudden change of loads.
     void start_afresh() { rate_.clear(); }
 
 private:

@@ -127,7 +127,7 @@ Number relaxation_rate(Number spring, const std::vector<std::pair<Number, Number
 double relaxation_rate(const Chain& chain)
 {
     std::vector<std::pair<double, double>> units;
-    for (const Unit& unit : chain.units)
+    for (const KelvinUnit& unit : chain.units)
         units.emplace_back(unit.stiffness, unit.viscosity);
     return relaxation_rate(chain.spring, units);
 }
@@ -144,7 +144,7 @@ Step step_of(const Chain& chain, CreepScheme scheme, double duration)
     const double rate = relaxation_rate(chain);
     Step step{{}, 0, 0, 0};
     double others = 0;
-    for (const Unit& unit : chain.units) {
+    for (const KelvinUnit& unit : chain.units) {
         const auto part = part_of(unit.stiffness, unit.viscosity, rate, scheme, duration);
         step.units.push_back({part.decay, part.first, part.last});
         step.compliance += part.last;
@@ -179,7 +179,7 @@ Step change_of_step(const Chain& chain, const Chain& change, CreepScheme scheme,
 bool is_stable(const Chain& chain, double duration)
 {
     double sum = 0;
-    for (const Unit& unit : chain.units)
+    for (const KelvinUnit& unit : chain.units)
         sum += unit.stiffness > 0 ? std::tanh(unit.stiffness / unit.viscosity * duration / 2) / unit.stiffness
                                   : duration / 2 / unit.viscosity;
     return chain.spring * sum < 1;
@@ -188,7 +188,7 @@ bool is_stable(const Chain& chain, double duration)
 double longest_stable_step(const Chain& chain)
 {
     double most = 0;
-    for (const Unit& unit : chain.units)
+    for (const KelvinUnit& unit : chain.units)
         most += unit.stiffness > 0 ? 1 / unit.stiffness : std::numeric_limits<double>::infinity();
     if (chain.spring * most <= 1)
         return std::numeric_limits<double>::infinity();

@@ -23,16 +23,16 @@ namespace jointcreep::creep
 {
 
 // In joints stiffnesses are in Pa/m and viscosities in Pa s/m; in rock Pa and Pa s.
-struct Unit {
+struct KelvinUnit {
     double stiffness; // E; 0 for a Maxwell dashpot
     double viscosity; // eta
 
-    bool operator==(const Unit&) const = default;
+    bool operator==(const KelvinUnit&) const = default;
 };
 
 struct Chain {
     double spring; // K, above 0
-    std::vector<Unit> units;
+    std::vector<KelvinUnit> units;
 
     bool operator==(const Chain&) const = default;
 };

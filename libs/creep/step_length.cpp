@@ -14,7 +14,7 @@ constexpr double safety = 0.9, most_growth = 3, most_cut = 0.2;
 
 } // namespace
 
-StepLength::StepLength(const jointcreep::Creep& settings, double fastest_rate, double longest_stable)
+StepLength::StepLength(const CreepSettings& settings, double fastest_rate, double longest_stable)
     : settings_(settings), first_(settings.first_step.value_or(0.1 / fastest_rate)),
       shortest_(settings.shortest_step.value_or(1e-3 * first_)),
       longest_(std::min(settings.longest_step.value_or(std::numeric_limits<double>::infinity()),

@@ -11,7 +11,7 @@ class StepLength
 {
 public:
     // `fastest_rate` of relaxation [1/s] and the `longest_stable` step [s], infinite if there is none.
-    StepLength(const jointcreep::Creep& settings, double fastest_rate, double longest_stable);
+    StepLength(const CreepSettings& settings, double fastest_rate, double longest_stable);
 
     // The step to try next, where nothing may be stepped over for `remaining` [s], and no step may be longer
     // than `longest` [s]. The steps of a fixed length up to a date are equal, none longer than the scene's.
@@ -21,7 +21,7 @@ public:
     // Steps of a fixed length always stand, and so does one of the shortest length.
     bool stands(double step, double error);
 
-    // After a jump of loads or a change of contacts: begins with the first step again.
+    // After a sudden change of loads or a change of contacts: begins with the first step again.
     void start_afresh();
 
     void transfer(const Transfer& to, Checkpoint& kept) { to.value(wanted_, kept.creep_step); }
@@ -30,7 +30,7 @@ public:
     double closing_tolerance() const;
 
 private:
-    jointcreep::Creep settings_;
+    CreepSettings settings_;
     double first_, shortest_, longest_; // [s]
     double order_;                      // of the local error in the step
     double wanted_;                     // [s]

@@ -105,7 +105,7 @@ std::string blocks_csv(const Network& network)
 
 std::string edges_csv(const Network& network, const EquivalentJoints* equivalent)
 {
-    constexpr std::array kinds = {"boundary", "joint", "welded"}; // by EdgeKind
+    constexpr std::array kinds = {"boundary", "joint", "bonded"}; // by EdgeKind
     const Blocks& blocks = network.blocks;
     const Joints& joints = network.joints;
     std::string table = "edge,x1_m,y1_m,x2_m,y2_m,left_block,right_block,kind,set,number,joint_fraction";
@@ -121,9 +121,9 @@ std::string edges_csv(const Network& network, const EquivalentJoints* equivalent
                     quantity[0] == 's' ? "_Pa_per_m" : "_Pa_s_per_m");
     }
     if (equivalent)
-        table += ",normal_maxwell_viscosity_Pa_s_per_m,shear_maxwell_viscosity_Pa_s_per_m,law,residual_"
-                 "cohesion_Pa,"
-                 "residual_friction_angle_rad,roughness,wall_strength_Pa,largest_closure_m,dilation_until_m";
+        table += ",normal_maxwell_viscosity_Pa_s_per_m,shear_maxwell_viscosity_Pa_s_per_m,law,"
+                 "residual_cohesion_Pa,residual_friction_angle_rad,roughness,wall_strength_Pa,"
+                 "largest_closure_m,dilation_until_m";
     table += '\n';
     for (std::size_t edge = 0; edge < blocks.edge_vertex.size(); ++edge) {
         const auto [first, second] = blocks.edge_vertex[edge];

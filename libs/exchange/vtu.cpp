@@ -379,7 +379,7 @@ std::string contacts_vtu(const Result& result, std::size_t state)
             (states.displacement[first_gridpoint + a] + states.displacement[first_gridpoint + b]) / 2);
     }
     const auto traction = picked(states.traction, present, state * contacts);
-    const auto jump = picked(states.jump, present, state * contacts);
+    const auto relative = picked(states.relative_displacement, present, state * contacts);
 
     GridText grid(present.size(), present.size());
     grid.open("FieldData");
@@ -392,8 +392,8 @@ std::string contacts_vtu(const Result& result, std::size_t state)
     grid.add("displacement", displacement);
     grid.add("normal_traction", component(traction, 0));
     grid.add("shear_traction", component(traction, 1));
-    grid.add("normal_jump", component(jump, 0));
-    grid.add("shear_jump", component(jump, 1));
+    grid.add("normal_relative_displacement", component(relative, 0));
+    grid.add("shear_relative_displacement", component(relative, 1));
     grid.add("status", picked(states.contact_status, present, state * contacts));
     grid.open("Points");
     grid.add("position", picked(mesh.contact_centre, present));

@@ -36,7 +36,8 @@ std::string zones_vtu(const Network& network, const Result& result, std::size_t 
 
 // The contacts present in a state, one point each, at their centres at the start.
 // Points: contact, edge, normal (from side a to side b), length [m], displacement (mean of the two sides)
-// [m], normal_traction, shear_traction [Pa], normal_jump, shear_jump [m], status (ContactStatus).
+// [m], normal_traction, shear_traction [Pa], normal_relative_displacement, shear_relative_displacement [m],
+// status (ContactStatus).
 std::string contacts_vtu(const Result& result, std::size_t state);
 
 } // namespace jointcreep

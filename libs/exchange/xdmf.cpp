@@ -254,8 +254,10 @@ std::string contacts_xdmf(const Result& result, const std::string& result_file)
         text.points("/mesh/contact_centre", contacts);
         text.column_of_state("normal_traction", "Node", "/states/traction", contacts, 2, 0);
         text.column_of_state("shear_traction", "Node", "/states/traction", contacts, 2, 1);
-        text.column_of_state("normal_jump", "Node", "/states/jump", contacts, 2, 0);
-        text.column_of_state("shear_jump", "Node", "/states/jump", contacts, 2, 1);
+        text.column_of_state("normal_relative_displacement", "Node", "/states/relative_displacement",
+                             contacts, 2, 0);
+        text.column_of_state("shear_relative_displacement", "Node", "/states/relative_displacement", contacts,
+                             2, 1);
         text.scalar_of_state("status", "Node", integer, "/states/contact_status", contacts);
         text.scalar("length", "Node", real, "/mesh/contact_length", contacts);
         text.close_state();

@@ -24,8 +24,8 @@ namespace jointcreep
 std::string zones_xdmf(const Result& result, const std::string& result_file);
 
 // The contacts as points, at their centres at the start. Points: normal_traction, shear_traction [Pa],
-// normal_jump, shear_jump [m], status (ContactStatus), length [m]. Cells: vtkGhostType. A result without
-// contacts throws input_error too.
+// normal_relative_displacement, shear_relative_displacement [m], status (ContactStatus), length [m]. Cells:
+// vtkGhostType. A result without contacts throws input_error too.
 std::string contacts_xdmf(const Result& result, const std::string& result_file);
 
 } // namespace jointcreep

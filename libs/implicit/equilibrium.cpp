@@ -11,7 +11,7 @@ namespace jointcreep::implicit
 {
 
 using mechanics::Balance;
-using mechanics::Certificate;
+using mechanics::Convergence;
 
 namespace
 {
@@ -27,8 +27,8 @@ constexpr double soft = 1e-6; // share of their springs that open and slipping c
 } // namespace
 
 // Finds forces at the present displacements, as reached straight from the start. Returns the merit: the
-// squared out-of-balance forces, each over the stiffness against which it acts.
-double Engine::evaluate(Assembly& assembly, const State& start)
+// squared unbalanced forces, each over the stiffness against which it acts.
+double Solver::evaluate(Assembly& assembly, const State& start)
 {
     assembly.contacts.state = start.joint;
     for (std::size_t c = 0; c < breaks_.size(); ++c)
@@ -42,7 +42,7 @@ double Engine::evaluate(Assembly& assembly, const State& start)
 // Takes over what contacts do now: sliding back only by way of sticking, unless this is the `first` time. A
 // bond that breaks for the second time stays broken: with cohesion back at every closing it might flicker for
 // ever.
-void Engine::take_states(const Assembly& assembly, const State& start, bool first)
+void Solver::take_states(const Assembly& assembly, const State& start, bool first)
 {
     const mechanics::Contacts& contacts = assembly.contacts;
     for (std::size_t c = 0; c < active_.size(); ++c) {
@@ -65,7 +65,7 @@ void Engine::take_states(const Assembly& assembly, const State& start, bool firs
 
 // Of the contacts as they are active; where they hold nothing they keep the share `softness` of their
 // springs.
-std::vector<Tangent> Engine::tangents(const Assembly& assembly, double softness) const
+std::vector<Tangent> Solver::tangents(const Assembly& assembly, double softness) const
 {
     const mechanics::Contacts& contacts = assembly.contacts;
     std::vector<Tangent> all(active_.size());
@@ -95,7 +95,7 @@ std::vector<Tangent> Engine::tangents(const Assembly& assembly, double softness)
 
 // The displacement that balances `force` to `enough` [N/m], if contacts that slip or are open keep the share
 // `hold` of their springs.
-VectorXd Engine::correction(const Assembly& assembly, const VectorXd& force, double enough, double hold)
+VectorXd Solver::correction(const Assembly& assembly, const VectorXd& force, double enough, double hold)
 {
     const std::vector<Tangent> acting = tangents(assembly, std::max(soft, hold));
     const auto product = [&](const VectorXd& x) { return stiffness_.times(assembly, acting, x); };
@@ -124,7 +124,7 @@ VectorXd Engine::correction(const Assembly& assembly, const VectorXd& force, dou
 // Moves along a correction, at most too far, and as far as forces come nearer to balance: all the way,
 // or to where they do no more work along it (a block on its way to where it touches loses no force before,
 // and its balance there is narrow), or else part of the way.
-Engine::Way Engine::go_along(Assembly& assembly, const State& start, const VectorXd& correction, double merit)
+Solver::Way Solver::go_along(Assembly& assembly, const State& start, const VectorXd& correction, double merit)
 {
     const std::vector<Vector2d> from = assembly.displacement;
     const double work = force_.dot(correction);
@@ -176,7 +176,7 @@ Engine::Way Engine::go_along(Assembly& assembly, const State& start, const Vecto
 
 // Breaks the bonds of contacts that have opened, or closed, or weakened, since states were taken: with
 // cohesion coming and going there may be no equilibrium between. True if there are any.
-bool Engine::break_bonds(const Assembly& assembly, const State& start)
+bool Solver::break_bonds(const Assembly& assembly, const State& start)
 {
     bool breaks = false;
     for (std::size_t c = 0; c < breaks_.size(); ++c) {
@@ -196,7 +196,7 @@ bool Engine::break_bonds(const Assembly& assembly, const State& start)
 
 // Bonds of contacts that opened on the way and have closed again: where they make no difference they are as
 // they were at the start; elsewhere they get another chance. True if that changes forces.
-bool Engine::mend_bonds(const Assembly& assembly)
+bool Solver::mend_bonds(const Assembly& assembly)
 {
     bool changes = false;
     for (std::size_t c = 0; c < breaks_.size(); ++c)
@@ -209,7 +209,7 @@ bool Engine::mend_bonds(const Assembly& assembly)
 }
 
 // The largest change of a contact's force that a displacement would bring [N/m].
-double Engine::force_change(const Assembly& assembly, const VectorXd& displacement) const
+double Solver::force_change(const Assembly& assembly, const VectorXd& displacement) const
 {
     std::vector<Vector2d> u(assembly.position.size(), Vector2d::Zero());
     stiffness_.add_to(u, displacement, 1);
@@ -218,8 +218,8 @@ double Engine::force_change(const Assembly& assembly, const VectorXd& displaceme
     double largest = 0;
     for (std::size_t c = 0; c < acting.size(); ++c) {
         const auto& [a, b] = contacts.gridpoint[c];
-        const Vector2d jump = u[b] - u[a], &normal = contacts.normal[c];
-        const Vector2d change = acting[c].times({normal.dot(jump), along(normal).dot(jump)});
+        const Vector2d relative = u[b] - u[a], &normal = contacts.normal[c];
+        const Vector2d change = acting[c].times({normal.dot(relative), along(normal).dot(relative)});
         largest = std::max(largest, contacts.length[c] * std::hypot(change.x(), change.y()));
     }
     return largest;
@@ -227,8 +227,8 @@ double Engine::force_change(const Assembly& assembly, const VectorXd& displaceme
 
 // Looks for equilibrium from the present displacements in at most so many corrections. False if it finds
 // none: reason_.
-bool Engine::converge(Assembly& assembly, const State& start, const Equilibrium& settings,
-                      int most_corrections, Certificate& certificate)
+bool Solver::converge(Assembly& assembly, const State& start, const Equilibrium& settings,
+                      int most_corrections, Convergence& convergence)
 {
     const Index first = corrections_;
     double merit = evaluate(assembly, start), least_merit = merit;
@@ -236,9 +236,9 @@ bool Engine::converge(Assembly& assembly, const State& start, const Equilibrium&
     int since_least = 0, leaps_done = 0;
     for (;;) {
         const Balance balance = balance_of(assembly, stiffest_, 0, settings.tolerance);
-        certificate.out_of_balance_ratio = balance.ratio();
+        convergence.unbalanced_force_ratio = balance.ratio();
         const bool is_balanced = balance.ratio() <= settings.tolerance;
-        if (is_balanced && is_at_rest(assembly, start, balance.mean, settings.tolerance, certificate))
+        if (is_balanced && is_at_rest(assembly, start, balance.mean, settings.tolerance, convergence))
             return true;
         if (corrections_ - first == most_corrections || since_least == 15) {
             reason_ = unborne_ < 0 ? "forces do not come into balance"
@@ -305,42 +305,43 @@ bool Engine::converge(Assembly& assembly, const State& start, const Equilibrium&
 
 // Whether one more correction would leave contact forces as they are, and contacts bear every piece of rock.
 // A rough correction says that first: too much rather than too little, but where contacts are open.
-bool Engine::is_at_rest(const Assembly& assembly, const State& start, double mean_force, double tolerance,
-                        Certificate& certificate)
+bool Solver::is_at_rest(const Assembly& assembly, const State& start, double mean_force, double tolerance,
+                        Convergence& convergence)
 {
     unborne_ = -1;
     if (mean_force == 0) { // no force anywhere
-        certificate.contact_force_change = certificate.to_go = 0;
+        convergence.contact_force_change = convergence.remaining_displacement = 0;
         return true;
     }
     const auto take = [&](const VectorXd& du) {
-        certificate.contact_force_change = force_change(assembly, du) / mean_force;
+        convergence.contact_force_change = force_change(assembly, du) / mean_force;
         std::vector<Vector2d> u(assembly.position.size(), Vector2d::Zero());
         stiffness_.add_to(u, du, 1);
-        certificate.to_go = 0;
+        convergence.remaining_displacement = 0;
         for (const Vector2d& one : u)
-            certificate.to_go = std::max(certificate.to_go, one.norm());
+            convergence.remaining_displacement = std::max(convergence.remaining_displacement, one.norm());
     };
     ++solves_;
     take(stiffness_.solve(force_));
-    if (certificate.contact_force_change > tolerance) {
+    if (convergence.contact_force_change > tolerance) {
         const VectorXd du = correction(assembly, force_, 0.1 * force_.norm(), 0);
         if (du.size() > 0)
             take(du);
     }
-    if (certificate.contact_force_change > tolerance)
+    if (convergence.contact_force_change > tolerance)
         return false;
     // The share of their springs that open contacts keep in the factor may bear rock that nothing else does.
     const double farthest = farthest_displacement(assembly).first, enough = mechanics::enough(tolerance);
-    const mechanics::ToGo left = farthest_to_go(assembly, enough, 1e-15 * stiffest_ * farthest);
+    const mechanics::RemainingDisplacement left =
+        largest_remaining_displacement(assembly, enough, 1e-15 * stiffest_ * farthest);
     const double way =
         std::max(mechanics::farthest_move(start.displacement, assembly.displacement).first, farthest / 10);
-    unborne_ = left.way > enough * way ? left.gridpoint : -1;
-    certificate.to_go = std::max(certificate.to_go, left.way);
+    unborne_ = left.displacement > enough * way ? left.gridpoint : -1;
+    convergence.remaining_displacement = std::max(convergence.remaining_displacement, left.displacement);
     return unborne_ < 0;
 }
 
-std::optional<Certificate> Engine::equilibrate(Assembly& assembly, const Equilibrium& settings,
+std::optional<Convergence> Solver::equilibrate(Assembly& assembly, const Equilibrium& settings,
                                                const std::vector<Vector2d>& guess)
 {
     mechanics::Contacts& contacts = assembly.contacts;
@@ -350,8 +351,8 @@ std::optional<Certificate> Engine::equilibrate(Assembly& assembly, const Equilib
         return std::nullopt;
     };
     prepare(assembly);
-    Certificate certificate;
-    certificate.is_implicit = true;
+    Convergence convergence;
+    convergence.is_implicit = true;
     const double merit = evaluate(assembly, start);
     if (!std::isfinite(merit)) {
         reason_ = "forces are no finite numbers";
@@ -379,40 +380,40 @@ std::optional<Certificate> Engine::equilibrate(Assembly& assembly, const Equilib
             return give_up();
         }
     }
-    if (!converge(assembly, start, settings, most_corrections, certificate))
+    if (!converge(assembly, start, settings, most_corrections, convergence))
         return give_up();
     if (is_balanced && corrections_ == 0)
-        return certificate;
+        return convergence;
     for (;;) { // without the bonds that broke in vain, if there is equilibrium without
         const std::vector<Vector2d> displacement = assembly.displacement;
         const std::vector<char> breaks = breaks_;
-        const Certificate with_them = certificate;
+        const Convergence with_them = convergence;
         if (!mend_bonds(assembly))
             break;
-        if (!converge(assembly, start, settings, most_corrections_to_mend, certificate)) {
+        if (!converge(assembly, start, settings, most_corrections_to_mend, convergence)) {
             assembly.displacement = displacement;
             breaks_ = breaks;
-            certificate = with_them;
+            convergence = with_them;
             break;
         }
     }
 
-    certificate.steps = corrections_;
+    convergence.steps = corrections_;
     evaluate(assembly, start);
-    certificate.stored = stored_energy(assembly) - stored_at_start;
+    convergence.stored = stored_energy(assembly) - stored_at_start;
     for (std::size_t c = 0; c < contacts.status.size(); ++c)
         if (contacts.status[c] == ContactStatus::slipping)
-            certificate.dissipated +=
+            convergence.dissipated +=
                 contacts.length[c] *
                 (contacts.traction[c].y() * (contacts.state[c].slip - start.joint[c].slip) +
                  contacts.traction[c].x() * (contacts.state[c].dilation - start.joint[c].dilation));
-    certificate.work_of_loads = work_of_loads(assembly, start.displacement);
-    certificate.damped = certificate.work_of_loads - certificate.stored - certificate.dissipated;
-    return certificate;
+    convergence.work_of_loads = work_of_loads(assembly, start.displacement);
+    convergence.damped = convergence.work_of_loads - convergence.stored - convergence.dissipated;
+    return convergence;
 }
 
 // What a search needs to know of the assembly.
-void Engine::prepare(const Assembly& assembly)
+void Solver::prepare(const Assembly& assembly)
 {
     stiffness_.follow(assembly);
     const std::vector<double> row_sums = stiffness_row_sums(assembly);

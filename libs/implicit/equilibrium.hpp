@@ -1,11 +1,11 @@
-// Implicit equilibrium: Newton's method over the contacts' states, instead of motion.
+// Implicit equilibrium: Newton's method over the contacts' states, in place of dynamic relaxation.
 //
 // Between changes of contact state the assembly is linear, so one factor of its stiffness serves one
-// equilibrium after another. Each correction solves K du = out-of-balance force by GCR, preconditioned with
+// equilibrium after another. Each correction solves K du = unbalanced force by GCR, preconditioned with
 // the last factor; the factor is renewed once that costs less than going on with the old one. Contacts open,
-// close, stick and slip by the same law as in motion, each from its state at the start of the equilibrium
-// straight to the one at its end (backward Euler). A contact goes from slip one way to slip the other way
-// only through sticking.
+// close, stick and slip by the same law as in dynamic relaxation, each from its state at the start of the
+// equilibrium straight to the one at its end (backward Euler). A contact goes from slip one way to slip the
+// other way only through sticking.
 //
 // The account of energy is that of backward Euler, too: a contact slips under the traction it ends with. What
 // neither is stored nor goes there counts as damped.
@@ -24,17 +24,17 @@
 namespace jointcreep::implicit
 {
 
-class Engine
+class Solver
 {
 public:
-    // Moves the assembly to equilibrium: the out-of-balance ratio is at most the tolerance, and one more
+    // Moves the assembly to equilibrium: the unbalanced force ratio is at most the tolerance, and one more
     // correction would change no contact force by more than the tolerance times the mean force on a
     // gridpoint. A state that is in balance already is left as it is, after 0 steps. `guess` is how far
     // gridpoints may be expected to move [m]; none, or a bad one, costs time only.
     //
     // Nothing if it finds no equilibrium; reason() says why. The assembly is then as it was: bonds that broke
     // on a way that led nowhere are not broken for what comes after.
-    std::optional<mechanics::Certificate> equilibrate(Assembly& assembly, const Equilibrium& settings,
+    std::optional<mechanics::Convergence> equilibrate(Assembly& assembly, const Equilibrium& settings,
                                                       const std::vector<Vector2d>& guess = {});
     const std::string& reason() const { return reason_; }
 
@@ -65,9 +65,9 @@ private:
     Way go_along(Assembly& assembly, const State& start, const VectorXd& correction, double merit);
     void prepare(const Assembly& assembly);
     bool converge(Assembly& assembly, const State& start, const Equilibrium& settings, int most_corrections,
-                  mechanics::Certificate& certificate);
+                  mechanics::Convergence& convergence);
     bool is_at_rest(const Assembly& assembly, const State& start, double mean_force, double tolerance,
-                    mechanics::Certificate& certificate);
+                    mechanics::Convergence& convergence);
     bool break_bonds(const Assembly& assembly, const State& start);
     bool mend_bonds(const Assembly& assembly);
     double force_change(const Assembly& assembly, const VectorXd& displacement) const;
@@ -84,7 +84,7 @@ private:
     double stiffest_ = 0;      // row sum [Pa]
     Index unborne_ = -1;       // gridpoint of rock that forces in balance leave out; -1: none
     double too_far_ = 0;       // to look for equilibrium [m]
-    VectorXd force_;           // out of balance, at the last evaluation
+    VectorXd force_;           // unbalanced, at the last evaluation
     Index corrections_ = 0, factorisations_ = 0, solves_ = 0;
     std::string reason_;
 };

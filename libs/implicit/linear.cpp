@@ -5,7 +5,7 @@
 namespace jointcreep::implicit
 {
 
-VectorXd Engine::solve_linear(const Assembly& assembly, const std::vector<Tangent>& tangents,
+VectorXd Solver::solve_linear(const Assembly& assembly, const std::vector<Tangent>& tangents,
                               const VectorXd& right)
 {
     constexpr double exact = 1e-10, hardly = 1e-6; // residuals over the right side

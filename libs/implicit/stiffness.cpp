@@ -197,9 +197,9 @@ void Stiffness::add_contact(const Assembly& assembly, Index contact, const Tange
     const auto value = [&](int unknown) { return unknown >= 0 ? x[unknown] : 0.0; };
     const auto& [a, b] = contacts.gridpoint[contact];
     const auto &from = unknown_[a], &to = unknown_[b];
-    const Vector2d jump(value(to[0]) - value(from[0]), value(to[1]) - value(from[1]));
+    const Vector2d relative(value(to[0]) - value(from[0]), value(to[1]) - value(from[1]));
     const Vector2d &normal = contacts.normal[contact], shear = along(normal);
-    const Vector2d change = tangent.times({normal.dot(jump), shear.dot(jump)});
+    const Vector2d change = tangent.times({normal.dot(relative), shear.dot(relative)});
     const Vector2d force = contacts.length[contact] * (change.x() * normal + change.y() * shear);
     for (int i = 0; i < 2; ++i) {
         if (to[i] >= 0)

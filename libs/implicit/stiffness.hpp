@@ -29,17 +29,18 @@ using Eigen::VectorXd;
 using mechanics::Assembly;
 using mechanics::Vector2d;
 
-// Change of a contact's traction over change of its jump [Pa/m]: {normal over normal, shear over shear, shear
-// over normal, normal over shear}.
+// Change of a contact's traction over change of its relative displacement [Pa/m]: {normal over normal, shear
+// over shear, shear over normal, normal over shear}.
 struct Tangent {
     double normal, shear, friction, dilation;
 
     bool operator==(const Tangent&) const = default;
 
-    // Change of {normal, shear} traction [Pa] for one of the {normal, shear} jump [m].
-    Vector2d times(const Vector2d& jump) const
+    // Change of {normal, shear} traction [Pa] for one of the {normal, shear} relative displacement [m].
+    Vector2d times(const Vector2d& relative) const
     {
-        return {normal * jump.x() + dilation * jump.y(), shear * jump.y() + friction * jump.x()};
+        return {normal * relative.x() + dilation * relative.y(),
+                shear * relative.y() + friction * relative.x()};
     }
 };
 

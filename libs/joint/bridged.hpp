@@ -54,12 +54,12 @@ double staggered_stiffness(double persistence, double spacing, double stiffness,
 // What acts along one direction of a joint: a spring, and in series Kelvin units and a Maxwell dashpot. All
 // are those of JointMaterial; a viscosity of 0 is no dashpot.
 struct JointChain {
-    struct Unit {
+    struct KelvinUnit {
         double stiffness; // [Pa/m]
         double viscosity; // [Pa s/m]
     };
     double spring; // [Pa/m]
-    std::vector<Unit> units;
+    std::vector<KelvinUnit> units;
     double maxwell_viscosity; // [Pa s/m]
 };
 

@@ -123,7 +123,8 @@ Pieces pieces_of(const Joints& joints, const Polygon& outline, const std::vector
     return pieces;
 }
 
-double persistence_error(const Law& length, double persistence, const std::vector<double>& line_length)
+double persistence_error(const ProbabilityLaw& length, double persistence,
+                         const std::vector<double>& line_length)
 {
     const double k = persistence, trace = length.mean, bridge = trace * (1 - k) / k;
     const double spread =

@@ -19,6 +19,7 @@ Pieces pieces_of(const Joints& joints, const Polygon& outline, const std::vector
 // process, and so the variance on a line of length T tends to
 //     (Var L E[G]^2 + Var G E[L]^2) / ((E[L] + E[G])^3 T)        (Cox, Renewal Theory, 1962, ch. 7)
 // and never exceeds k (1 - k), which it has on a line that is short beside them. 0 < persistence < 1.
-double persistence_error(const Law& length, double persistence, const std::vector<double>& line_length);
+double persistence_error(const ProbabilityLaw& length, double persistence,
+                         const std::vector<double>& line_length);
 
 } // namespace jointcreep

@@ -20,7 +20,7 @@ namespace jointcreep::joint
 EquivalentJoints with_strength_divided(EquivalentJoints joints, double factor);
 
 // The scene with the strength of rock divided, for rock that yields, and the friction of joint materials,
-// which contacts have that come about in motion.
+// which contacts have that form in a dynamic analysis.
 Scene with_strength_divided(Scene scene, double factor);
 
 } // namespace jointcreep::joint

@@ -87,7 +87,7 @@ void add_contacts(Assembly& assembly, const Scene& scene, const EquivalentJoints
     contacts.state.resize(n);
     contacts.offset.assign(n, Vector2d::Zero());
     contacts.traction = contacts.initial_traction;
-    contacts.jump.assign(n, Vector2d::Zero());
+    contacts.relative_displacement.assign(n, Vector2d::Zero());
     contacts.status.assign(n, ContactStatus::stuck);
     contacts.work.assign(n, 0.0);
 }
@@ -246,15 +246,16 @@ void pull_contacts(Assembly& assembly)
             continue;
         const auto [a, b] = contacts.gridpoint[c];
         const Vector2d normal = contacts.normal[c], tangent = along(normal);
-        const Vector2d apart = u[b] - u[a], jump(apart.dot(normal), apart.dot(tangent));
-        const Vector2d sprung = jump - contacts.offset[c];
+        const Vector2d apart = u[b] - u[a], relative_displacement(apart.dot(normal), apart.dot(tangent));
+        const Vector2d sprung = relative_displacement - contacts.offset[c];
         const joint::Response response =
             joint::respond(contacts.law[c], contacts.state[c], contacts.initial_traction[c].x(),
                            contacts.initial_traction[c].y(), sprung.x(), sprung.y());
         const Vector2d traction(response.sigma_n, response.tau), last = contacts.traction[c];
         const double length = contacts.length[c];
-        contacts.work[c] += length / 2 * (last + traction).dot(jump - contacts.jump[c]);
-        contacts.jump[c] = jump;
+        contacts.work[c] +=
+            length / 2 * (last + traction).dot(relative_displacement - contacts.relative_displacement[c]);
+        contacts.relative_displacement[c] = relative_displacement;
         contacts.traction[c] = traction;
         contacts.status[c] = response.status;
         Vector2d acting = traction;
@@ -585,8 +586,8 @@ void start_from_here(Assembly& assembly)
     for (std::size_t c = 0; c < contacts.gridpoint.size(); ++c) {
         // An open contact keeps its gap as the tension its spring would have.
         const double normal = joint::normal_traction(contacts.law[c], contacts.initial_traction[c].x(),
-                                                     contacts.jump[c].x() - contacts.offset[c].x() -
-                                                         contacts.state[c].dilation);
+                                                     contacts.relative_displacement[c].x() -
+                                                         contacts.offset[c].x() - contacts.state[c].dilation);
         contacts.initial_traction[c] = {normal, contacts.traction[c].y()};
         contacts.state[c].slip = contacts.state[c].dilation = 0;
         contacts.offset[c].setZero();
@@ -603,7 +604,7 @@ void start_from_here(Assembly& assembly)
 State state_of(const Assembly& assembly)
 {
     const Contacts& contacts = assembly.contacts;
-    return {assembly.displacement, contacts.offset, contacts.traction,     contacts.jump,
+    return {assembly.displacement, contacts.offset, contacts.traction,     contacts.relative_displacement,
             contacts.state,        contacts.status, assembly.zones.stress, assembly.zones.yielding};
 }
 
@@ -613,7 +614,7 @@ void go_back(Assembly& assembly, const State& state)
     assembly.displacement = state.displacement;
     contacts.offset = state.offset;
     contacts.traction = state.traction;
-    contacts.jump = state.jump;
+    contacts.relative_displacement = state.relative_displacement;
     contacts.state = state.joint;
     contacts.status = state.status;
     assembly.zones.stress = state.stress;
@@ -645,12 +646,12 @@ void transfer(const Transfer& to, Assembly& assembly, Checkpoint& kept)
     to.values(yielding, kept.stress_zz, &YieldingZone::stress_zz);
     to.values(yielding, kept.initial_zz, &YieldingZone::initial_zz);
 
-    auto& [contact_gridpoint, normal, length, law, state, initial_traction, offset, traction, jump, status,
-           work] = contacts;
+    auto& [contact_gridpoint, normal, length, law, state, initial_traction, offset, traction,
+           relative_displacement, status, work] = contacts;
     to.values(status, kept.contact_status);
     to.values(traction, kept.traction);
     to.values(initial_traction, kept.initial_traction);
-    to.values(jump, kept.jump);
+    to.values(relative_displacement, kept.relative_displacement);
     to.values(offset, kept.offset);
     for (joint::CoulombState& one : state)
         [[maybe_unused]] auto& [slip, dilation, is_broken] = one;

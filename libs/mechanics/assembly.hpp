@@ -1,5 +1,5 @@
 // A zoned section in mechanical terms: what moves, what resists, and how far from equilibrium it is. Both the
-// explicit engine and any other work on this.
+// dynamic relaxation and the implicit engine work on this.
 
 #pragma once
 
@@ -49,11 +49,11 @@ struct Contacts {
     std::vector<joint::Law> law;
     std::vector<joint::CoulombState> state;
     std::vector<Vector2d>
-        initial_traction;              // at zero displacement; where open, the normal part is k_n x gap [Pa]
-    std::vector<Vector2d> offset;      // displacement at which the springs are as at the start: creep [m]
-    std::vector<Vector2d> traction;    // now [Pa]
-    std::vector<Vector2d> jump;        // displacement of b minus that of a, now [m]
-    std::vector<ContactStatus> status; // now; removed once a side is gone
+        initial_traction;           // at zero displacement; where open, the normal part is k_n x gap [Pa]
+    std::vector<Vector2d> offset;   // displacement at which the springs are as at the start: creep [m]
+    std::vector<Vector2d> traction; // now [Pa]
+    std::vector<Vector2d> relative_displacement; // displacement of b minus that of a, now [m]
+    std::vector<ContactStatus> status;           // now; removed once a side is gone
     std::vector<double> work; // done on it since this was last set to 0, by the trapezoidal rule [J/m]
 };
 
@@ -83,7 +83,7 @@ struct Assembly {
     std::vector<Vector2d> is_free;        // 1 or 0 in {x, y}: nor tied to one that is held
     std::vector<Vector2d> load;           // weight, and what excavation still holds [N/m]
     std::vector<Vector2d> applied;        // from tractions on the outline [N/m]
-    std::vector<Vector2d> force;          // out of balance, also where held; filled by find_forces [N/m]
+    std::vector<Vector2d> force;          // unbalanced, also where fixed; filled by find_forces [N/m]
 
     // Gridpoints that move as one with another until a stage; force and load of {one, other} act on the
     // other.
@@ -144,7 +144,7 @@ double stored_energy(const Assembly& assembly);
 double energy_stored_in_contacts(const Assembly& assembly);
 
 struct Balance {
-    double largest; // out-of-balance force on a free gridpoint [N/m]
+    double largest; // unbalanced force on a free gridpoint [N/m]
     Index worst;    // that gridpoint
     double mean;    // over gridpoints: summed magnitudes of the forces of zones, contacts and load [N/m]
     double ratio() const { return mean == 0 ? 0.0 : largest / mean; } // not a number if a force is not
@@ -181,7 +181,7 @@ void start_from_here(Assembly& assembly);
 
 // What equilibria and creep change, for going back to it.
 struct State {
-    std::vector<Vector2d> displacement, offset, traction, jump;
+    std::vector<Vector2d> displacement, offset, traction, relative_displacement;
     std::vector<joint::CoulombState> joint;
     std::vector<ContactStatus> status;
     std::vector<Vector3d> stress;
@@ -205,18 +205,18 @@ std::vector<double> lumped_masses(const Assembly& assembly);
 // What an equilibrium has cost, with what was found and rejected or sought in vain before it.
 struct Effort {
     Index searches = 0;                   // for equilibrium, by either engine
-    Index steps = 0;                      // of motion, and corrections
+    Index steps = 0;                      // of dynamic relaxation, and corrections
     Index factorisations = 0, solves = 0; // of the implicit engine; solves are back-substitutions
 };
 
-// How an equilibrium was reached.
-struct Certificate {
+// How an equilibrium was reached, and how well: the convergence report.
+struct Convergence {
     bool is_implicit = false;
-    Index steps = 0; // of motion, or corrections
-    double out_of_balance_ratio = 0;
+    Index steps = 0; // of dynamic relaxation, or corrections
+    double unbalanced_force_ratio = 0;
     // Largest over the last 100 steps, or by one more correction; over the mean force on a gridpoint [-].
     double contact_force_change = 0;
-    double to_go = 0; // estimate of the farthest way to rest that is left [m]
+    double remaining_displacement = 0; // largest, by estimate [m]
     // On the way: work of loads = what zones and contacts store + what contacts dissipate + what damping
     // takes [J/m].
     double work_of_loads = 0, stored = 0, dissipated = 0, damped = 0;

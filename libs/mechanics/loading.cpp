@@ -20,7 +20,8 @@ void Loading::apply(Assembly& assembly, double time)
         const Boundary& boundary = boundary_[side.boundary];
         if (!boundary.displacement || !assembly.zones.is_present[side.zone])
             continue;
-        const Vector2d u = (boundary.course.at(time) - boundary.course.at(0)) * *boundary.displacement;
+        const Vector2d u =
+            (boundary.load_history.at(time) - boundary.load_history.at(0)) * *boundary.displacement;
         for (const Index g : side.gridpoint) {
             if (boundary.fix_x)
                 assembly.displacement[g].x() = u.x();
@@ -43,7 +44,7 @@ void Loading::leave_removed(Assembly& assembly) const
         if (!boundary.traction || !assembly.zones.is_present[side.zone])
             continue;
         for (const Index g : side.gridpoint)
-            assembly.applied[g] += boundary.course.at(time_) * side.length / 2 * *boundary.traction;
+            assembly.applied[g] += boundary.load_history.at(time_) * side.length / 2 * *boundary.traction;
     }
 }
 
@@ -51,7 +52,7 @@ bool Loading::changes(double from, double to) const
 {
     for (const Boundary& boundary : boundary_)
         if ((boundary.traction || boundary.displacement) &&
-            boundary.course.at(from) != boundary.course.at(to))
+            boundary.load_history.at(from) != boundary.load_history.at(to))
             return true;
     return false;
 }
@@ -60,7 +61,7 @@ std::set<double> Loading::corners() const
 {
     std::set<double> times;
     for (const Boundary& boundary : boundary_)
-        for (const auto& [time, factor] : boundary.course.points)
+        for (const auto& [time, factor] : boundary.load_history.points)
             times.insert(time);
     return times;
 }

@@ -24,7 +24,7 @@ public:
     // Whether anything changes between two times [s].
     bool changes(double from, double to) const;
 
-    // The times at which a course has a corner [s].
+    // The times at which a load history has a corner [s].
     std::set<double> corners() const;
 
 private:

@@ -31,7 +31,7 @@ Recorder::Recorder(const Scene& scene, const Blocks& blocks, const Mesh& mesh)
     const double size = (high - low).norm();
     const double reach = std::max(1e-6 * size, scene.cutting.shortest_edge);
 
-    for (const MeasuringPoint& point : scene.points) {
+    for (const MonitoringPoint& point : scene.points) {
         std::optional<Place> found = find(point.at, 1e-9 * size, blocks, mesh);
         if (!found)
             found = find(point.at, reach, blocks, mesh);
@@ -156,7 +156,7 @@ void Recorder::record_state(Result& result, double time, const std::string& even
     append(states.stress, assembly.zones.stress);
     append(states.zone_present, assembly.zones.is_present);
     append(states.traction, assembly.contacts.traction);
-    append(states.jump, assembly.contacts.jump);
+    append(states.relative_displacement, assembly.contacts.relative_displacement);
     for (const ContactStatus status : assembly.contacts.status)
         states.contact_status.push_back(static_cast<Index>(status));
     states.yielding_zone.clear();
@@ -169,34 +169,34 @@ void Recorder::record_state(Result& result, double time, const std::string& even
     states.reset_state.push_back(states.reset_state.empty() ? 0 : states.reset_state.back());
 }
 
-void Recorder::record_equilibrium(Result& result, double time, const Certificate& certificate,
+void Recorder::record_equilibrium(Result& result, double time, const Convergence& convergence,
                                   const Effort& effort) const
 {
     result.equilibria.time.push_back(time / unit::day);
-    result.equilibria.is_implicit.push_back(certificate.is_implicit ? 1 : 0);
+    result.equilibria.is_implicit.push_back(convergence.is_implicit ? 1 : 0);
     result.equilibria.searches.push_back(effort.searches);
     result.equilibria.steps.push_back(effort.steps);
     result.equilibria.factorisations.push_back(effort.factorisations);
     result.equilibria.solves.push_back(effort.solves);
-    result.equilibria.out_of_balance_ratio.push_back(certificate.out_of_balance_ratio);
-    result.equilibria.contact_force_change.push_back(certificate.contact_force_change);
-    result.equilibria.to_go.push_back(certificate.to_go);
-    result.equilibria.work_of_loads.push_back(certificate.work_of_loads);
-    result.equilibria.stored_energy.push_back(certificate.stored);
-    result.equilibria.dissipated_energy.push_back(certificate.dissipated);
-    result.equilibria.damped_energy.push_back(certificate.damped);
+    result.equilibria.unbalanced_force_ratio.push_back(convergence.unbalanced_force_ratio);
+    result.equilibria.contact_force_change.push_back(convergence.contact_force_change);
+    result.equilibria.remaining_displacement.push_back(convergence.remaining_displacement);
+    result.equilibria.work_of_loads.push_back(convergence.work_of_loads);
+    result.equilibria.stored_energy.push_back(convergence.stored);
+    result.equilibria.dissipated_energy.push_back(convergence.dissipated);
+    result.equilibria.damped_energy.push_back(convergence.damped);
 }
 
-void Recorder::record_trace(Result& result, double time, double solver_time, const Assembly& assembly) const
+void Recorder::record_step(Result& result, double time, double solver_time, const Assembly& assembly) const
 {
-    Trace& trace = result.trace;
-    trace.gauge = gauge_name_;
-    trace.gauge_contact = gauge_contact_;
-    trace.time.push_back(time / unit::day);
-    trace.solver_time.push_back(solver_time);
-    append(trace.displacement, result.history.displacement, assembly.displacement, assembly);
+    StepHistory& step_history = result.step_history;
+    step_history.gauge = gauge_name_;
+    step_history.gauge_contact = gauge_contact_;
+    step_history.time.push_back(time / unit::day);
+    step_history.solver_time.push_back(solver_time);
+    append(step_history.displacement, result.history.displacement, assembly.displacement, assembly);
     for (const Index c : gauge_contact_)
-        trace.traction.push_back(assembly.contacts.traction[c]);
+        step_history.traction.push_back(assembly.contacts.traction[c]);
 }
 
 } // namespace jointcreep::mechanics

@@ -1,4 +1,4 @@
-// Writes down what happens at the measuring points, in the whole section, and between steps of the solver.
+// Writes down what happens at the monitoring points, in the whole section, and between steps of the solver.
 
 #pragma once
 
@@ -14,7 +14,7 @@ namespace jointcreep::mechanics
 class Recorder
 {
 public:
-    // Finds every measuring point's zone; on a border between blocks, that of the block removed last. The
+    // Finds every monitoring point's zone; on a border between blocks, that of the block removed last. The
     // nearest contact to every gauge. Throws input_error for a point outside the rock, and a gauge where
     // there is no joint.
     Recorder(const Scene& scene, const Blocks& blocks, const Mesh& mesh);
@@ -29,7 +29,7 @@ public:
     // Counts displacements from the last recorded row and state on.
     static void reset(Result& result);
 
-    // Appends a row of what the measuring points are given by the values of gridpoints; a removed point has
+    // Appends a row of what the monitoring points are given by the values of gridpoints; a removed point has
     // what it had in the row before.
     void append_at_points(std::vector<Vector2d>& rows, const std::vector<Vector2d>& of_gridpoints,
                           const Assembly& assembly) const
@@ -39,10 +39,10 @@ public:
 
     void record_state(Result& result, double time, const std::string& event, const Assembly& assembly) const;
 
-    void record_equilibrium(Result& result, double time, const Certificate& certificate,
+    void record_equilibrium(Result& result, double time, const Convergence& convergence,
                             const Effort& effort) const;
 
-    void record_trace(Result& result, double time, double solver_time, const Assembly& assembly) const;
+    void record_step(Result& result, double time, double solver_time, const Assembly& assembly) const;
 
 private:
     struct Place {

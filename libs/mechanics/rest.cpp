@@ -23,7 +23,7 @@ struct Piece {
     Index first = -1; // gridpoint
     Vector2d middle{0, 0};
     double radius = 0;                // farthest gridpoint from the middle [m]
-    Vector3d out_of_balance{0, 0, 0}; // force, moment over radius [N/m]
+    Vector3d unbalanced{0, 0, 0};     // force, moment over radius [N/m]
     double loads = 0, gridpoints = 0; // sum of magnitudes of weight and tractions [N/m]; count
 
     // How a place of it moves.
@@ -85,8 +85,8 @@ std::vector<Piece> pieces_of(const Assembly& assembly, std::vector<Index>& piece
     for (std::size_t g = 0; g < n; ++g)
         if (piece_of[g] >= 0) {
             Piece& piece = pieces[piece_of[g]];
-            piece.out_of_balance += piece.moves(assembly.position[g]).transpose() *
-                                    assembly.force[g].cwiseProduct(assembly.is_free[g]);
+            piece.unbalanced += piece.moves(assembly.position[g]).transpose() *
+                                assembly.force[g].cwiseProduct(assembly.is_free[g]);
             piece.loads += (assembly.load[g] + assembly.applied[g]).norm();
         }
     return pieces;
@@ -147,25 +147,25 @@ double enough(double tolerance)
     return std::min(1000 * tolerance, 0.1);
 }
 
-ToGo farthest_to_go(const Assembly& assembly, double share, double rounding)
+RemainingDisplacement largest_remaining_displacement(const Assembly& assembly, double share, double rounding)
 {
-    ToGo farthest;
+    RemainingDisplacement farthest;
     if (is_plain(assembly, share, rounding))
         return farthest;
     std::vector<Index> piece_of;
     const std::vector<Piece> pieces = pieces_of(assembly, piece_of);
     Eigen::VectorXd push = Eigen::VectorXd::Zero(3 * static_cast<Eigen::Index>(pieces.size()));
     for (std::size_t p = 0; p < pieces.size(); ++p)
-        if (const double force = pieces[p].out_of_balance.norm();
+        if (const double force = pieces[p].unbalanced.norm();
             pieces[p].loads > 0 && force > share * pieces[p].loads && force > rounding)
-            push.segment<3>(3 * static_cast<Eigen::Index>(p)) = pieces[p].out_of_balance;
+            push.segment<3>(3 * static_cast<Eigen::Index>(p)) = pieces[p].unbalanced;
     if (push.isZero(0))
         return farthest;
     const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(stiffness_of(assembly, pieces, piece_of));
     const Eigen::VectorXd way = factor.solve(push);
     for (std::size_t p = 0; p < pieces.size(); ++p)
         if (const double moved = way.segment<3>(3 * static_cast<Eigen::Index>(p)).norm();
-            !(moved <= farthest.way))
+            !(moved <= farthest.displacement))
             farthest = {std::isfinite(moved) ? moved : size_of(assembly), pieces[p].first};
     return farthest;
 }

@@ -14,8 +14,8 @@
 namespace jointcreep
 {
 
-// Rock that may move far, beside the rest; pairs of faces that may touch.
-struct MovedRock {
+// Of a dynamic analysis with large displacements, beside the rest; pairs of faces that may touch.
+struct DynamicsState {
     std::vector<Eigen::Vector2d> origin, place;  // of gridpoints: that displacements count from; now [m]
     std::vector<Eigen::Vector4d> inverse;        // of zones: of their edges without stress [1/m]
     std::vector<double> area;                    // of zones, without stress [m2]
@@ -33,8 +33,8 @@ struct MovedRock {
     std::vector<Eigen::Vector2d> normal;                       // [-]
     std::vector<double> length;                                // [m]
     std::vector<double> pressed_in, sheared_in;                // by springs [J/m]
-    double fastest = 0;                                        // in the last motion [m/s]
-    double out_of_balance_ratio = 0;                           // at its end [-]
+    double fastest = 0;                                        // in the last dynamic analysis [m/s]
+    double unbalanced_force_ratio = 0;                         // at its end [-]
     double largest_mean_force = 0;                             // on a gridpoint, so far [N/m]
 };
 
@@ -57,9 +57,9 @@ struct Checkpoint {
 
     // Contacts; {normal, shear}.
     std::vector<Index> contact_status;
-    std::vector<Eigen::Vector2d> traction, initial_traction; // [Pa]
-    std::vector<Eigen::Vector2d> jump, offset;               // [m]
-    std::vector<double> slip, dilation;                      // [m]
+    std::vector<Eigen::Vector2d> traction, initial_traction;    // [Pa]
+    std::vector<Eigen::Vector2d> relative_displacement, offset; // [m]
+    std::vector<double> slip, dilation;                         // [m]
     std::vector<Index> is_broken;
 
     // Creep: a direction of a contact, and its units; a zone, and its units.
@@ -70,14 +70,14 @@ struct Checkpoint {
     double creep_step = 0;                       // wanted next, 0 without creep [s]
 
     // What has been counted.
-    Index steps_since_trace = 0;    // solver steps
-    double solver_time = 0;         // of motion [s]
+    Index steps_since_record = 0;   // solver steps
+    double solver_time = 0;         // of dynamic relaxation [s]
     Index steps_since_state = 0;    // creep steps
     std::vector<Index> remark_kind; // as in Analysis: beyond strength, yielded in situ, given up, energy off
     std::vector<std::string> remark;
     std::vector<Index> remark_count;
 
-    MovedRock moved;
+    DynamicsState dynamics;
 };
 
 // Takes state into a checkpoint, or gives it back. So a list of what is state is written once, for both.

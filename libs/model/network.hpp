@@ -18,7 +18,7 @@ namespace jointcreep
 enum class EdgeKind : Index {
     boundary = 0, // on the section's outline: rock on one side only
     joint = 1,
-    welded = 2 // a stage outline or a border between rocks: no joint, the blocks hold together
+    bonded = 2 // a stage outline or a border between rocks: no joint, the blocks hold together
 };
 
 // Where the rows of other arrays that name something by index find its name.
@@ -74,14 +74,14 @@ enum class JointFate : Index {
 // The same in lengths; rows are joints. The lengths but the last sum to the length of the joint's line,
 // traces and bridges together [m].
 struct JointFates {
-    std::vector<Index> fate;        // JointFate
-    std::vector<double> kept;       // on block edges that have its properties
-    std::vector<double> shared;     // on block edges that have another joint's
-    std::vector<double> on_outline; // along the section's outline
-    std::vector<double> outside;    // of the section: clipped
-    std::vector<double> dead_end;   // inside a block: cut back
-    std::vector<double> merged;     // on edges that vanished
-    std::vector<double> extended;   // carried on beyond its ends, to the next block edge
+    std::vector<Index> fate;          // JointFate
+    std::vector<double> kept;         // on block edges that have its properties
+    std::vector<double> shared;       // on block edges that have another joint's
+    std::vector<double> on_outline;   // along the section's outline
+    std::vector<double> outside;      // of the section: clipped
+    std::vector<double> dangling_end; // inside a block: cut back
+    std::vector<double> merged;       // on edges that vanished
+    std::vector<double> extended;     // carried on beyond its ends, to the next block edge
 };
 
 // The cut section: a planar map whose faces are the blocks.
@@ -101,7 +101,7 @@ struct Blocks {
     std::vector<Index> share_joint;
     std::vector<double> share_fraction; // of the edge that is joint trace of this one [-]
 
-    // Blocks. Several blocks on welded edges hold together as one.
+    // Blocks. Several blocks on bonded edges hold together as one.
     std::vector<Index> block_rock;  // into Names::rock
     std::vector<Index> block_stage; // that removes it, into Names::stage; -1 stays
     std::vector<double> block_area; // [m2]

@@ -1,5 +1,5 @@
-// What demsolve adds: the zoned section, its histories, its states, and a trace of the solver on request.
-// Arrays with several dimensions are flat, the last dimension running fastest.
+// What demsolve adds: the zoned section, its histories, its states, and the history of the solver's steps on
+// request. Arrays with several dimensions are flat, the last dimension running fastest.
 
 #pragma once
 
@@ -36,7 +36,7 @@ struct Mesh {
     std::vector<Eigen::Vector2d> contact_centre;         // where a traction linear in space has its mean [m]
 };
 
-// Displacements of the measuring points, one row a recorded time: the start, the two sides of every stage,
+// Displacements of the monitoring points, one row a recorded time: the start, the two sides of every stage,
 // every creep step and every first reading.
 struct History {
     std::vector<double> time;                    // since start [day], the one unit in files that is not SI
@@ -59,7 +59,7 @@ struct States {
     std::vector<Index> zone_present;           // [state, zone] 0 or 1
     std::vector<Eigen::Vector2d> traction;     // [state, contact] {normal, shear} [Pa]
     std::vector<Eigen::Vector2d>
-        jump; // [state, contact] displacement of side b minus side a {normal, shear} [m]
+        relative_displacement; // [state, contact] displacement of side b minus side a {normal, shear} [m]
     std::vector<Index> contact_status; // [state, contact] ContactStatus
     std::vector<Index> yielding_zone;  // zones of rock that yields
     std::vector<Eigen::Vector3d>
@@ -70,21 +70,21 @@ struct States {
 // How every equilibrium was reached, one row each.
 struct Equilibria {
     std::vector<double> time;       // since start [day]
-    std::vector<Index> is_implicit; // 1 by factorisation, 0 by motion
+    std::vector<Index> is_implicit; // 1 by the implicit engine, 0 by dynamic relaxation
     // What it has cost, with what was found and rejected or sought in vain before it.
-    std::vector<Index> searches;               // for equilibrium, by either engine
-    std::vector<Index> steps;                  // of motion, and corrections of the implicit engine
-    std::vector<Index> factorisations, solves; // of the implicit engine; solves are back-substitutions
-    std::vector<double> out_of_balance_ratio;  // [-]
+    std::vector<Index> searches; // for equilibrium, by either engine
+    std::vector<Index> steps;    // of dynamic relaxation, and corrections of the implicit engine
+    std::vector<Index> factorisations, solves;  // of the implicit engine; solves are back-substitutions
+    std::vector<double> unbalanced_force_ratio; // [-]
     std::vector<double>
-        contact_force_change;  // over the last 100 steps or by one more correction, over the mean force [-]
-    std::vector<double> to_go; // estimate of the farthest way to rest that is left [m]
+        contact_force_change; // over the last 100 steps or by one more correction, over the mean force [-]
+    std::vector<double> remaining_displacement; // largest, by estimate [m]
     // On the way there, in balance: work_of_loads = stored + dissipated (by contacts) + damped [J/m].
     std::vector<double> work_of_loads, stored_energy, dissipated_energy, damped_energy;
 };
 
 // Every n-th step of the solver, on request.
-struct Trace {
+struct StepHistory {
     std::vector<double> time;                  // since start [day]
     std::vector<double> solver_time;           // accumulated over all equilibria [s]
     std::vector<Eigen::Vector2d> displacement; // [row, point] as in History [m]
@@ -93,15 +93,15 @@ struct Trace {
     std::vector<Eigen::Vector2d> traction;     // [row, gauge] {normal, shear} [Pa]
 };
 
-// Motions on the way, a row whenever a state is recorded during one; large displacements only. Energies since
-// the motion's start: work_of_loads = kinetic + stored + friction + damped, but for the error of time steps.
-struct Motions {
-    std::vector<double> time;        // of the stage, since start [day]
-    std::vector<double> motion_time; // since the motion's start [s]
-    std::vector<Index> state;        // into States
+// Dynamic analyses with large displacements, a row whenever a state is recorded during one. Energies since
+// its start: work_of_loads = kinetic + stored + friction + damped, but for the error of time steps.
+struct DynamicsHistory {
+    std::vector<double> time;         // of the stage, since start [day]
+    std::vector<double> dynamic_time; // since the dynamic analysis began [s]
+    std::vector<Index> state;         // into States
     std::vector<double> work_of_loads, kinetic_energy, stored_energy, friction_energy, damped_energy; // [J/m]
-    std::vector<double> fastest;              // gridpoint's speed [m/s]
-    std::vector<double> out_of_balance_ratio; // [-]
+    std::vector<double> fastest;                // gridpoint's speed [m/s]
+    std::vector<double> unbalanced_force_ratio; // [-]
 
     // What touches what at these moments, row m having the contacts from first_contact[m] on.
     std::vector<Index> first_contact{0};                   // [moment + 1]
@@ -121,7 +121,7 @@ struct Failure {
     double time = 0;                       // since start [day]
     Index moves_on = 0;                    // 1 blocks slide or fall, 0 the search ended without an answer
     double seconds = 0;                    // that the next stand for with real masses, or 0 [s]
-    Index steps = 0;                       // of motion, the last ones
+    Index steps = 0;                       // of the engine, the last ones
     std::vector<Index> block{};            // the fastest first
     std::vector<Eigen::Vector2d> place{};  // centroid, at the start [m]
     std::vector<Eigen::Vector2d> motion{}; // in these steps [m]
@@ -139,8 +139,8 @@ struct Result {
     History history;
     States states;
     Equilibria equilibria;
-    Trace trace;
-    Motions motions;
+    StepHistory step_history;
+    DynamicsHistory dynamics;
     Failure failure{};
 };
 

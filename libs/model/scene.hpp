@@ -4,7 +4,7 @@
 
 #pragma once
 
-#include "model/law.hpp"
+#include "model/probability_law.hpp"
 
 #include <Eigen/Core>
 
@@ -143,17 +143,20 @@ struct JointSet {
     std::vector<MaterialInRock> material_in{}; // these
     SetKind kind = SetKind::lines;
     // One of four:
-    std::optional<Law> trace_angle{};   // of the trace in the section, counter-clockwise from +x [rad]
-    std::optional<Law> dip{};           // below the horizontal [rad], with
-    std::optional<Law> dip_direction{}; // clockwise from north [rad]
+    std::optional<ProbabilityLaw>
+        trace_angle{};                   // of the trace in the section, counter-clockwise from +x [rad]
+    std::optional<ProbabilityLaw> dip{}; // below the horizontal [rad], with
+    std::optional<ProbabilityLaw> dip_direction{}; // clockwise from north [rad]
     std::optional<FisherLaw> orientation{};
     std::vector<MeasuredPole> poles{}; // drawn from by weight
 
     std::optional<Density> density{}; // with lines it sets the mean of `spacing`, which gives the shape alone
-    Law spacing{Law::Kind::negative_exponential, 1, 1}; // of lines, along the set's mean normal in space [m]
-    std::optional<Law> length{};   // of traces [m]; of lines it is needed unless persistence is 0 or 1
-    std::optional<Law> diameter{}; // of discs [m]
-    double persistence = 0;        // of lines: fraction of a line that is joint [-]
+    ProbabilityLaw spacing{ProbabilityLaw::Kind::negative_exponential, 1,
+                           1}; // of lines, along the set's mean normal in space [m]
+    std::optional<ProbabilityLaw>
+        length{}; // of traces [m]; of lines it is needed unless persistence is 0 or 1
+    std::optional<ProbabilityLaw> diameter{}; // of discs [m]
+    double persistence = 0;                   // of lines: fraction of a line that is joint [-]
 
     std::vector<std::string> terminates_at{}; // sets, single joints or mapped sets, sampled before this one
     double termination_probability = 1;       // at each crossing of a trace with one of these [-]
@@ -214,7 +217,7 @@ struct InSituStress {
 
 // A factor that goes piecewise straight through (time since start [s], factor) pairs, and stays what it is at
 // the ends. Without pairs it is 1.
-struct Course {
+struct LoadHistory {
     std::vector<std::pair<double, double>> points; // in order of time
 
     double at(double time) const
@@ -236,10 +239,10 @@ struct Boundary {
     bool fix_x = false, fix_y = false;
     std::string joint{}; // or: rests on fixed ground through a joint of this material
 
-    // On top of the in-situ stress, both times the factor of the course:
+    // On top of the in-situ stress, both times the factor of the load history:
     std::optional<Eigen::Vector2d> traction{};     // force on the rock per area, {x, y} [Pa]
     std::optional<Eigen::Vector2d> displacement{}; // where fixed, the displacement it is held at, {x, y} [m]
-    Course course{};
+    LoadHistory load_history{};
 };
 
 // One excavation step.
@@ -251,13 +254,13 @@ struct Stage {
 };
 
 // A place whose displacement is recorded.
-struct MeasuringPoint {
+struct MonitoringPoint {
     std::string name;
     Eigen::Vector2d at;       // [m]
     double first_reading = 0; // since start [s]
 };
 
-// A place on a joint whose traction is recorded in the trace: the nearest contact.
+// A place on a joint whose traction is recorded in the step history: the nearest contact.
 struct Gauge {
     std::string name;
     Eigen::Vector2d at; // [m]
@@ -266,7 +269,7 @@ struct Gauge {
 // What a creep step takes the force to be during the step (libs/creep/scheme.hpp).
 enum class CreepScheme { published, backward, linear_force, fitted };
 
-struct Creep {
+struct CreepSettings {
     std::optional<double> step;      // fixed, between dates [s]; or else
     std::optional<double> tolerance; // of the error of one step, by which its length is chosen [m]
     // With a tolerance:
@@ -279,12 +282,12 @@ struct Creep {
 
 enum class Damping { adaptive, kinetic, local, combined, mass };
 enum class Masses { scaled, real };
-enum class Engine { automatic, explicit_engine, implicit_engine };
+enum class EngineChoice { automatic, relaxation, implicit };
 
 // How equilibrium is found. Numerical, so it has defaults; they are declared with the keys.
 struct Equilibrium {
-    Engine engine = Engine::automatic;
-    double tolerance = 0; // of the out-of-balance ratio [-]
+    EngineChoice engine = EngineChoice::automatic;
+    double tolerance = 0; // of the unbalanced force ratio [-]
     Masses masses = Masses::scaled;
     Damping damping = Damping::adaptive;
     double mass_damping = 0;      // alpha of the paper's Eq. 1, with damping "mass" [1/s]
@@ -295,14 +298,15 @@ struct Equilibrium {
     std::int32_t most_steps = 0; // without equilibrium after so many, the program gives up
 };
 
-// Rock that may move far: Newton's law with real masses, in place of the search for equilibrium nearby.
-struct Motion {
-    std::string new_contacts;               // name of the JointMaterial of contacts that come about
+// Dynamic analysis with large displacements: Newton's law with real masses, in place of the search for
+// equilibrium nearby.
+struct LargeDisplacements {
+    std::string new_contacts;               // name of the JointMaterial of contacts that form
     std::vector<std::string> rigid_rocks{}; // names of Rocks whose blocks do not deform then
     double stiffness_damping = 0;           // dashpots of zones and closed joints over their springs [s]
     double mass_damping = 0;                // [1/s]
     double release = 0;                     // time in which the forces of a stage's rock fade away [s]
-    double longest = 0;                     // of one motion [s]
+    double longest = 0;                     // of one dynamic analysis [s]
     double record_every = 0;                // [s]
 };
 
@@ -319,7 +323,7 @@ struct Averaging {
 };
 
 // What is done with a joint that ends inside a block.
-enum class DeadEnds {
+enum class DanglingEnds {
     prune, // it is cut back to the last block edge it met
     extend // it is carried on to the next one, as rock bridge
 };
@@ -327,7 +331,7 @@ enum class DeadEnds {
 struct Cutting {
     double shortest_edge = 0;  // vertices closer than this, or than half of it to an edge, are merged [m]
     double smallest_angle = 0; // narrower wedges between edges are closed where that moves nothing far [rad]
-    DeadEnds dead_ends = DeadEnds::prune;
+    DanglingEnds dangling_ends = DanglingEnds::prune;
 };
 
 struct Scene {
@@ -350,11 +354,11 @@ struct Scene {
 
     double end = 0; // since start [s]
     std::vector<Stage> stages;
-    std::vector<MeasuringPoint> points;
+    std::vector<MonitoringPoint> points;
     std::vector<Gauge> gauges;
 
     std::uint64_t seed = 0; // needed by joint sets only
-    std::optional<Creep> creep;
+    std::optional<CreepSettings> creep;
     double zone_size = 0;                // longest zone side aimed at [m]
     std::optional<Polygon> fine_zones{}; // where zones have that size, or else everywhere
     double zone_coarsening = 0;          // distance from there in which the size grows by `zone_size` [m]
@@ -363,7 +367,7 @@ struct Scene {
     Cutting cutting;
     Averaging averaging;
     Equilibrium equilibrium;
-    std::optional<Motion> motion;
+    std::optional<LargeDisplacements> large_displacements;
 };
 
 } // namespace jointcreep

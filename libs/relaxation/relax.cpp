@@ -16,8 +16,8 @@ namespace jointcreep::relaxation
 using Eigen::Vector2d;
 using mechanics::Assembly;
 using mechanics::Balance;
-using mechanics::Certificate;
 using mechanics::chunk;
+using mechanics::Convergence;
 using mechanics::enough;
 using mechanics::no_equilibrium;
 
@@ -28,7 +28,7 @@ constexpr Index check_every = 20, window = 100; // [steps]
 constexpr Index patience = 5000;                // between looks at what moves on [steps]
 constexpr Index looks_enough = 3;               // in a row, that see it slide or fall
 constexpr double safety = 0.9;                  // of the largest stable step
-constexpr double rounding = 1e-11;              // of the out-of-balance ratio: nothing is nearer to balance
+constexpr double rounding = 1e-11;              // of the unbalanced force ratio: nothing is nearer to balance
 
 std::string shown_length(double length)
 {
@@ -37,8 +37,8 @@ std::string shown_length(double length)
     return text.data();
 }
 
-// With the way still to go, once forces are in balance: it ends where in a third of all steps, and in 5000,
-// the way has not shrunk by a tenth. What is left then is rounding.
+// With the remaining displacement, once forces are in balance: it ends where in a third of all steps, and in
+// 5000, it has not shrunk by a tenth. What is left then is rounding.
 class Patience
 {
 public:
@@ -185,10 +185,10 @@ public:
     // By estimate, how far the rock still is from rest: over the way it has gone since this began, or a tenth
     // of its whole displacement if that is more, as roots of sums over mass times length squared. Of two
     // moments, the quotient of how forces have answered to the motion between them shows the softest w^2 in
-    // this motion, and w^2 times the way to rest is the force left over mass. Stiffer modes in the force make
-    // it too much. In the motion they make it too little, so the moments are a quarter of all steps apart or
-    // more, in which these modes come to nothing.
-    double share_to_go() const
+    // this motion, and w^2 times the remaining displacement is the force left over mass. Stiffer modes in the
+    // force make it too much. In the motion they make it too little, so the moments are a quarter of all
+    // steps apart or more, in which these modes come to nothing.
+    double remaining_share() const
     {
         double force = 0, answer = 0, between = 0, gone = 0, whole = 0;
         for (std::size_t g = 0; g < mass_.size(); ++g) {
@@ -207,7 +207,7 @@ public:
                                       : std::numeric_limits<double>::infinity();
     }
 
-    // Keeps the present moment for share_to_go if it is time.
+    // Keeps the present moment for remaining_share if it is time.
     void remember(Index steps)
     {
         if (3 * steps < 4 * newer_.steps)
@@ -237,26 +237,27 @@ public:
     }
 
     // Ends the motion and settles the account of energy.
-    void finish(Certificate& certificate)
+    void finish(Convergence& convergence)
     {
         a_.stiffness_damping_rate = 0;
         find_forces(a_);
-        certificate.stored = stored_energy(a_) - stored_at_start_;
-        certificate.dissipated = in_contacts_at_start_ + work_on_contacts(a_) -
+        convergence.stored = stored_energy(a_) - stored_at_start_;
+        convergence.dissipated = in_contacts_at_start_ + work_on_contacts(a_) -
                                  energy_stored_in_contacts(a_) + dissipated_in_zones(a_);
-        certificate.work_of_loads = work_of_loads(a_, start_);
+        convergence.work_of_loads = work_of_loads(a_, start_);
         // Stiffness damping works inside zones and contacts, unseen by the gridpoints' motion: it takes what
         // is missing.
-        certificate.damped = settings_.stiffness_damping > 0
-                                 ? certificate.work_of_loads - certificate.stored - certificate.dissipated
+        convergence.damped = settings_.stiffness_damping > 0
+                                 ? convergence.work_of_loads - convergence.stored - convergence.dissipated
                                  : work_ + work_of_changes_ - energy_of_motion();
     }
 
 private:
     // What comes to rest does so as springs take up the force that drives it; what slides or falls finds none
-    // that do. Since the older moment the forces out of balance have done work, and over the same way they
-    // have fallen off by `answer`: carried on, they come to nothing within a tenth of the section, or not. Of
-    // springs `answer` is twice the energy that the way would store in them, which no trembling makes less.
+    // that do. Since the older moment the unbalanced forces have done work, and over the same displacement
+    // they have fallen off by `answer`: carried on, they come to nothing within a tenth of the section, or
+    // not. Of springs `answer` is twice the energy that the way would store in them, which no trembling makes
+    // less.
     bool slides_or_falls() const
     {
         const double work = work_ - older_.work;
@@ -330,13 +331,13 @@ private:
     struct Moment {
         Index steps;
         std::vector<Vector2d> displacement, force;
-        double work = 0; // of the forces out of balance, since the start [J/m]
+        double work = 0; // of the unbalanced forces, since the start [J/m]
     };
 
     // Over gridpoints, in one step.
     struct Sums {
         double energy = 0, answer = 0; // of the Rayleigh quotient: of motion, and how forces answer to it
-        double work = 0;               // of the forces out of balance [J/m]
+        double work = 0;               // of the unbalanced forces [J/m]
     };
 
     void step_in_team(double alpha, bool starts_from_rest)
@@ -424,10 +425,10 @@ private:
 
 } // namespace
 
-Certificate relax(Assembly& assembly, const Equilibrium& settings, const StepObserver& observe)
+Convergence relax(Assembly& assembly, const Equilibrium& settings, const StepObserver& observe)
 {
     find_forces(assembly);
-    Certificate certificate;
+    Convergence convergence;
     const std::vector<double> row_sums = stiffness_row_sums(assembly);
     const double stiffest = *std::max_element(row_sums.begin(), row_sums.end());
     double farthest = 0; // displacement on the way [m]
@@ -437,69 +438,73 @@ Certificate relax(Assembly& assembly, const Equilibrium& settings, const StepObs
         return balance_of(assembly, stiffest, farthest, tolerance);
     };
     const auto is_rounding = [&] { return balance_for(rounding).ratio() <= rounding; };
-    certificate.out_of_balance_ratio = balance_for(settings.tolerance).ratio();
+    convergence.unbalanced_force_ratio = balance_for(settings.tolerance).ratio();
     if (is_rounding())
-        return certificate;
+        return convergence;
 
     Relaxation relaxation(assembly, settings, row_sums);
     ForceMemory memory;
     memory.change_since_window(assembly);
     Index steps_in_balance = 0;
-    std::array<double, window / check_every> to_go{}; // shares, at the last looks in balance
+    std::array<double, window / check_every> remaining_displacement{}; // shares, at the last looks in balance
     Patience with_the_way;
-    mechanics::ToGo unborne; // at the last look at pieces
-    Index look_again = 0;    // at them [steps]
-    while (certificate.steps < settings.most_steps) {
+    mechanics::RemainingDisplacement unborne; // at the last look at pieces
+    Index look_again = 0;                     // at them [steps]
+    while (convergence.steps < settings.most_steps) {
         const Index steps = observe ? 1
-                                    : std::min(check_every - certificate.steps % check_every,
-                                               settings.most_steps - certificate.steps);
+                                    : std::min(check_every - convergence.steps % check_every,
+                                               settings.most_steps - convergence.steps);
         relaxation.move(steps);
-        certificate.steps += steps;
+        convergence.steps += steps;
         if (observe)
             observe(relaxation.time());
-        if (certificate.steps % check_every != 0)
+        if (convergence.steps % check_every != 0)
             continue;
-        relaxation.check_motion(certificate.steps);
+        relaxation.check_motion(convergence.steps);
         const Balance balance = balance_for(settings.tolerance);
-        certificate.out_of_balance_ratio = balance.ratio();
-        certificate.contact_force_change = memory.change_since_window(assembly) / balance.mean;
-        if (!std::isfinite(certificate.out_of_balance_ratio))
+        convergence.unbalanced_force_ratio = balance.ratio();
+        convergence.contact_force_change = memory.change_since_window(assembly) / balance.mean;
+        if (!std::isfinite(convergence.unbalanced_force_ratio))
             throw no_equilibrium("forces are no longer finite numbers after " +
-                                 std::to_string(certificate.steps) + " steps");
-        const bool is_balanced = certificate.out_of_balance_ratio <= settings.tolerance;
+                                 std::to_string(convergence.steps) + " steps");
+        const bool is_balanced = convergence.unbalanced_force_ratio <= settings.tolerance;
         steps_in_balance = is_balanced ? steps_in_balance + check_every : 0;
         if (is_balanced)
-            to_go[certificate.steps / check_every % to_go.size()] = relaxation.share_to_go();
-        relaxation.remember(certificate.steps);
-        if (steps_in_balance < window || certificate.contact_force_change > settings.tolerance)
+            remaining_displacement[convergence.steps / check_every % remaining_displacement.size()] =
+                relaxation.remaining_share();
+        relaxation.remember(convergence.steps);
+        if (steps_in_balance < window || convergence.contact_force_change > settings.tolerance)
             continue;
-        const double share = *std::max_element(to_go.begin(), to_go.end());
-        certificate.to_go = (std::isfinite(share) ? share : 1) * relaxation.farthest_way();
+        const double share = *std::max_element(remaining_displacement.begin(), remaining_displacement.end());
+        convergence.remaining_displacement = (std::isfinite(share) ? share : 1) * relaxation.farthest_way();
         const bool is_near = share <= enough(settings.tolerance) || is_rounding() ||
-                             with_the_way.ends(share, certificate.steps);
-        if (!is_near || certificate.steps < look_again)
+                             with_the_way.ends(share, convergence.steps);
+        if (!is_near || convergence.steps < look_again)
             continue;
-        unborne = farthest_to_go(assembly, enough(settings.tolerance), 1e-15 * stiffest * farthest);
-        if (unborne.way <= enough(settings.tolerance) * relaxation.farthest_way()) {
-            certificate.to_go = std::max(certificate.to_go, unborne.way);
-            relaxation.finish(certificate);
-            return certificate;
+        unborne =
+            largest_remaining_displacement(assembly, enough(settings.tolerance), 1e-15 * stiffest * farthest);
+        if (unborne.displacement <= enough(settings.tolerance) * relaxation.farthest_way()) {
+            convergence.remaining_displacement =
+                std::max(convergence.remaining_displacement, unborne.displacement);
+            relaxation.finish(convergence);
+            return convergence;
         }
-        look_again = certificate.steps + certificate.steps / 10;
+        look_again = convergence.steps + convergence.steps / 10;
     }
     const Balance balance = balance_of(assembly);
     relaxation.give_up(
-        "after " + std::to_string(certificate.steps) + " steps the out-of-balance ratio is " +
-            shown(certificate.out_of_balance_ratio) + ", wanted " + shown(settings.tolerance) +
-            (certificate.to_go > 0
-                 ? ", and by estimate " + shown_length(certificate.to_go) + " are still to go, wanted " +
+        "after " + std::to_string(convergence.steps) + " steps the unbalanced force ratio is " +
+            shown(convergence.unbalanced_force_ratio) + ", wanted " + shown(settings.tolerance) +
+            (convergence.remaining_displacement > 0
+                 ? ", and by estimate " + shown_length(convergence.remaining_displacement) +
+                       " of displacement remain, wanted " +
                        shown_length(enough(settings.tolerance) * relaxation.farthest_way())
                  : "") +
-            (unborne.way > 0 ? "; what the rock at " + shown(assembly.position[unborne.gridpoint]) +
-                                   " weighs, or bears, its contacts do not bear"
-                             : "") +
+            (unborne.displacement > 0 ? "; what the rock at " + shown(assembly.position[unborne.gridpoint]) +
+                                            " weighs, or bears, its contacts do not bear"
+                                      : "") +
             "; farthest from balance is the rock at " + shown(assembly.position[balance.worst]),
-        false, certificate.steps);
+        false, convergence.steps);
 }
 
 } // namespace jointcreep::relaxation

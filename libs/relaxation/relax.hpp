@@ -1,4 +1,4 @@
-// Explicit equilibrium: gridpoints move by the central difference of the paper's Eqs. 1 and 2 until forces
+// Dynamic relaxation: gridpoints move by the central difference of the paper's Eqs. 1 and 2 until forces
 // balance.
 //
 //     v <- (v (1 - alpha dt / 2) + F / m dt) / (1 + alpha dt / 2),    u <- u + v dt
@@ -6,11 +6,11 @@
 // Masses are the real ones or scaled: for a state of rest only the forces matter, so every gridpoint may have
 // the mass that just allows the common step (dt = 1 s then; solver time means nothing). Damping is one of
 //   adaptive  alpha = 2 w, critical for the lowest frequency w that the present motion shows (Rayleigh
-//   quotient) kinetic   none, but everything is stopped whenever the kinetic energy has passed a peak
-//   (Cundall 1976) local     a fraction of the out-of-balance force, against the velocity (Cundall 1987)
-//   combined  half of that against the velocity, half along the change of force: it also damps what swings
-//   about a
-//             steady motion
+//             quotient)
+//   kinetic   none, but all motion is stopped whenever the kinetic energy has passed a peak (Cundall 1976)
+//   local     a fraction of the unbalanced force, against the velocity (Cundall 1987)
+//   combined  half of that against the velocity, half along the change of force: it also damps vibration
+//             about a steady motion
 //   mass      alpha as given: the paper's way
 
 #pragma once
@@ -25,7 +25,7 @@ namespace jointcreep::relaxation
 // Called after every step with the solver time since this equilibrium began [s].
 using StepObserver = std::function<void(double solver_time)>;
 
-// Moves the assembly to equilibrium: every 20 steps in 100 the out-of-balance ratio was at most the
+// Moves the assembly to equilibrium: every 20 steps in 100 the unbalanced force ratio was at most the
 // tolerance, and over these 100 steps no contact force changed by more than the tolerance times the mean
 // force on a gridpoint; and by estimate it is at most 1000 times the tolerance, or a tenth, short of the
 // displacement of this equilibrium, or of a tenth of the whole displacement if that is more, unless that is
@@ -33,7 +33,7 @@ using StepObserver = std::function<void(double solver_time)>;
 // no_equilibrium when a gridpoint has moved by a tenth of the section's size, in this or since the in-situ
 // state, or moves on while what drives it does not fall off, when forces are no longer numbers, and after
 // settings.most_steps.
-mechanics::Certificate relax(mechanics::Assembly& assembly, const Equilibrium& settings,
+mechanics::Convergence relax(mechanics::Assembly& assembly, const Equilibrium& settings,
                              const StepObserver& observe = {});
 
 } // namespace jointcreep::relaxation

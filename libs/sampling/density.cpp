@@ -20,7 +20,7 @@ constexpr double least_along = 1e-3; // of a scanline: it runs next to along all
     throw input_error(quoted(set) + ": " + what);
 }
 
-double of_size(const JointSet& set, const std::optional<Law>& law, int order)
+double of_size(const JointSet& set, const std::optional<ProbabilityLaw>& law, int order)
 {
     if (!law)
         refuse(set, set.kind == SetKind::discs ? "discs need a diameter" : "segments need a length");

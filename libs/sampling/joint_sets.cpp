@@ -172,7 +172,7 @@ void Sampler::add_lines(const JointSet& set, Index index)
 void Sampler::add_traces(const JointSet& set, Index index, const TraceIndex& stops)
 {
     const bool discs = set.kind == SetKind::discs;
-    const std::optional<Law>& law = discs ? set.diameter : set.length;
+    const std::optional<ProbabilityLaw>& law = discs ? set.diameter : set.length;
     if (!law)
         throw input_error(quoted(set) + (discs ? " is of discs, and needs a diameter"
                                                : " is of segments, and needs a length"));

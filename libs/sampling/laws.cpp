@@ -32,14 +32,14 @@ struct LogParameters {
     double mean, deviation;
 };
 
-LogParameters log_parameters(const Law& law)
+LogParameters log_parameters(const ProbabilityLaw& law)
 {
     const double ratio = law.deviation / law.mean;
     const double variance = std::log1p(ratio * ratio);
     return {std::log(law.mean) - variance / 2, std::sqrt(variance)};
 }
 
-[[noreturn]] void refuse(const Law& law)
+[[noreturn]] void refuse(const ProbabilityLaw& law)
 {
     throw input_error("a law of mean " + shown(law.mean) + " and deviation " + shown(law.deviation) +
                       " has next to no values above 0, which a length or spacing has to be");
@@ -65,7 +65,7 @@ double draw_power(double exponent, double least, double most, Stream& stream)
 // The density x^n exp(-(x - mean)^2 / (2 deviation^2)) has its mode at the positive root m of
 // m^2 - mean m - n deviation^2 = 0. Because x <= m exp(x/m - 1) it lies under a multiple of the normal
 // density of mean m, from which values are taken with probability (x/m exp(1 - x/m))^n.
-double draw_biased_normal(const Law& law, int order, Stream& stream)
+double draw_biased_normal(const ProbabilityLaw& law, int order, Stream& stream)
 {
     const double mode = (law.mean + std::hypot(law.mean, 2 * std::sqrt(order) * law.deviation)) / 2;
     if (mode > 0)
@@ -95,22 +95,22 @@ std::int64_t draw_poisson(double mean, Stream& stream)
     return mean > 0 ? boost::random::poisson_distribution<std::int64_t, double>(mean)(stream) : 0;
 }
 
-double draw(const Law& law, Stream& stream)
+double draw(const ProbabilityLaw& law, Stream& stream)
 {
     switch (law.kind) {
-    case Law::Kind::constant:
+    case ProbabilityLaw::Kind::constant:
         break;
-    case Law::Kind::normal:
+    case ProbabilityLaw::Kind::normal:
         return draw_normal(law.mean, law.deviation, stream);
-    case Law::Kind::lognormal: {
+    case ProbabilityLaw::Kind::lognormal: {
         const LogParameters log = log_parameters(law);
         return std::exp(draw_normal(log.mean, log.deviation, stream));
     }
-    case Law::Kind::negative_exponential:
+    case ProbabilityLaw::Kind::negative_exponential:
         return draw_exponential(law.mean, stream);
-    case Law::Kind::uniform:
+    case ProbabilityLaw::Kind::uniform:
         return law.least + uniform(stream) * (law.most - law.least);
-    case Law::Kind::power:
+    case ProbabilityLaw::Kind::power:
         return draw_power(law.exponent, law.least, law.most, stream);
     }
     return law.mean;
@@ -131,7 +131,7 @@ Eigen::Vector3d draw_fisher(const Eigen::Vector3d& mean, double concentration, S
     return (1 - w) * mean + sine * (std::cos(turn) * first + std::sin(turn) * second);
 }
 
-double draw_positive(const Law& law, Stream& stream)
+double draw_positive(const ProbabilityLaw& law, Stream& stream)
 {
     for (int i = 0; i < most_tries; ++i)
         if (const double x = draw(law, stream); x > 0)
@@ -139,9 +139,9 @@ double draw_positive(const Law& law, Stream& stream)
     refuse(law);
 }
 
-double mean_of_positive(const Law& law)
+double mean_of_positive(const ProbabilityLaw& law)
 {
-    if (law.kind != Law::Kind::normal || law.deviation == 0)
+    if (law.kind != ProbabilityLaw::Kind::normal || law.deviation == 0)
         return law.mean;
     const double a = law.mean / law.deviation;
     const double density = std::exp(-a * a / 2) / std::sqrt(2 * std::numbers::pi);
@@ -149,12 +149,13 @@ double mean_of_positive(const Law& law)
     return law.mean + law.deviation * density / above;
 }
 
-double moment_of_positive(const Law& law, int order)
+double moment_of_positive(const ProbabilityLaw& law, int order)
 {
     switch (law.kind) {
-    case Law::Kind::constant:
+    case ProbabilityLaw::Kind::constant:
         break;
-    case Law::Kind::normal: { // by parts: E[x^n] = mean E[x^(n-1)] + (n - 1) deviation^2 E[x^(n-2)], n > 1
+    case ProbabilityLaw::Kind::
+        normal: { // by parts: E[x^n] = mean E[x^(n-1)] + (n - 1) deviation^2 E[x^(n-2)], n > 1
         double before = 1, moment = mean_of_positive(law);
         if (order == 0)
             return 1;
@@ -163,55 +164,55 @@ double moment_of_positive(const Law& law, int order)
                 std::exchange(moment, law.mean * moment + (n - 1) * law.deviation * law.deviation * before);
         return moment;
     }
-    case Law::Kind::lognormal: {
+    case ProbabilityLaw::Kind::lognormal: {
         const LogParameters log = log_parameters(law);
         return std::exp(order * (log.mean + order * log.deviation * log.deviation / 2));
     }
-    case Law::Kind::negative_exponential:
+    case ProbabilityLaw::Kind::negative_exponential:
         return power(law.mean, order) * std::tgamma(order + 1);
-    case Law::Kind::uniform: { // (b^(n+1) - a^(n+1)) / (b - a) = sum of a^i b^(n-i)
+    case ProbabilityLaw::Kind::uniform: { // (b^(n+1) - a^(n+1)) / (b - a) = sum of a^i b^(n-i)
         double sum = 0;
         for (int i = 0; i <= order; ++i)
             sum += power(law.least, i) * power(law.most, order - i);
         return sum / (order + 1);
     }
-    case Law::Kind::power:
+    case ProbabilityLaw::Kind::power:
         return power(law.least, order) * power_moment(law.exponent, law.least, law.most, order);
     }
     return power(law.mean, order);
 }
 
-double draw_size_biased(const Law& law, Stream& stream)
+double draw_size_biased(const ProbabilityLaw& law, Stream& stream)
 {
     return draw_biased(law, 1, stream);
 }
 
-double draw_biased(const Law& law, int order, Stream& stream)
+double draw_biased(const ProbabilityLaw& law, int order, Stream& stream)
 {
     if (order == 0)
         return draw_positive(law, stream);
     switch (law.kind) {
-    case Law::Kind::constant:
+    case ProbabilityLaw::Kind::constant:
         break;
-    case Law::Kind::normal:
+    case ProbabilityLaw::Kind::normal:
         return draw_biased_normal(law, order, stream);
-    case Law::Kind::lognormal: {
+    case ProbabilityLaw::Kind::lognormal: {
         const LogParameters log = log_parameters(law);
         return std::exp(
             draw_normal(log.mean + order * (log.deviation * log.deviation), log.deviation, stream));
     }
-    case Law::Kind::negative_exponential: { // gamma of shape order + 1
+    case ProbabilityLaw::Kind::negative_exponential: { // gamma of shape order + 1
         double sum = 0;
         for (int i = 0; i <= order; ++i)
             sum += draw_exponential(law.mean, stream);
         return sum;
     }
-    case Law::Kind::uniform: {
+    case ProbabilityLaw::Kind::uniform: {
         const double least = power(law.least, order + 1), most = power(law.most, order + 1);
         const double x = least + uniform(stream) * (most - least);
         return order == 1 ? std::sqrt(x) : std::pow(x, 1. / (order + 1));
     }
-    case Law::Kind::power:
+    case ProbabilityLaw::Kind::power:
         return draw_power(law.exponent - order, law.least, law.most, stream);
     }
     return law.mean;

@@ -1,8 +1,8 @@
-// Draws from the probability laws of a scene (model/law.hpp).
+// Draws from the probability laws of a scene (model/probability_law.hpp).
 
 #pragma once
 
-#include "model/law.hpp"
+#include "model/probability_law.hpp"
 #include "sampling/streams.hpp"
 
 #include <Eigen/Core>
@@ -20,18 +20,18 @@ double draw_exponential(double mean, Stream& stream);
 std::int64_t draw_poisson(double mean, Stream& stream);
 
 // From the law as it is; in the law's unit.
-double draw(const Law& law, Stream& stream);
+double draw(const ProbabilityLaw& law, Stream& stream);
 
 // From the law's values above 0, as lengths and spacings have to be: the lower tail of a normal law is drawn
 // again. Throws input_error if the law has next to no values above 0.
-double draw_positive(const Law& law, Stream& stream);
+double draw_positive(const ProbabilityLaw& law, Stream& stream);
 
 // E[x^order] of draw_positive; order 0 to 4.
-double moment_of_positive(const Law& law, int order);
+double moment_of_positive(const ProbabilityLaw& law, int order);
 
 // Mean of draw_positive. It is the law's own but for a normal law, which loses its lower tail: it is 1e-4
 // higher where the deviation is 0.27 times the mean, 3 percent at 0.5.
-double mean_of_positive(const Law& law);
+double mean_of_positive(const ProbabilityLaw& law);
 
 // A unit vector by Fisher's law about the unit vector `mean`; every turn about it is as likely as another.
 // concentration > 0.
@@ -39,9 +39,9 @@ Eigen::Vector3d draw_fisher(const Eigen::Vector3d& mean, double concentration, S
 
 // From the values above 0, of density f, as a point sees them that falls anywhere on a line laid out with
 // such intervals: of density x f(x) / mean.
-double draw_size_biased(const Law& law, Stream& stream);
+double draw_size_biased(const ProbabilityLaw& law, Stream& stream);
 
 // From the density x^order f(x) / E[x^order]; order 0 is draw_positive, order 1 draw_size_biased.
-double draw_biased(const Law& law, int order, Stream& stream);
+double draw_biased(const ProbabilityLaw& law, int order, Stream& stream);
 
 } // namespace jointcreep

@@ -65,7 +65,7 @@ struct Node {
     double value, weight;
 };
 
-std::vector<Node> laid_out(const Law& law)
+std::vector<Node> laid_out(const ProbabilityLaw& law)
 {
     const int steps = 120;
     std::vector<Node> nodes;
@@ -73,7 +73,7 @@ std::vector<Node> laid_out(const Law& law)
         return {{law.mean, 1}};
     for (int i = 0; i < steps; ++i) {
         const double at = (i + .5) / steps;
-        if (law.kind == Law::Kind::uniform) {
+        if (law.kind == ProbabilityLaw::Kind::uniform) {
             nodes.push_back({law.least + at * (law.most - law.least), 1.0 / steps});
         } else { // normal: the trapezoidal rule is exact but for what lies past 7 deviations
             const double z = 7 * (2 * at - 1), step = 14.0 / steps;

@@ -115,7 +115,7 @@ double Csv::number(const Row& row, std::string_view name, const Range& range) co
     const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
     if (error != std::errc{} || end != digits.data() + digits.size() || !range.holds(value))
         refuse_line(row.line, std::string(name) + " is \"" + std::string(field) + "\"; wanted a number in " +
-                                  shown(range, Unit{""}));
+                                  shown(range, KeyUnit{""}));
     return value;
 }
 

@@ -1,6 +1,7 @@
 #include "scene/keys.hpp"
 
 #include "model/error.hpp"
+#include "scene/renamed.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -67,11 +68,6 @@ std::string TableInfo::shown() const
     return "[[" + name.substr(0, dot) + "]]" + inner;
 }
 
-bool Range::holds(double value) const
-{
-    return (least_open ? value > least : value >= least) && (most_open ? value < most : value <= most);
-}
-
 std::string lower_bound(const Range& range)
 {
     return (range.least_open ? "(" : "[") + shown(range.least);
@@ -82,10 +78,18 @@ std::string upper_bound(const Range& range)
     return shown(range.most) + (range.most_open ? ")" : "]");
 }
 
-std::string shown(const Range& range, const Unit& unit)
+std::string shown(const Range& range, const KeyUnit& unit)
 {
     const auto text = lower_bound(range) + ", " + upper_bound(range);
     return unit.symbol.empty() ? text : text + " " + std::string(unit.symbol);
+}
+
+std::string renamed_value(const std::string& given, const std::string& choice)
+{
+    const std::string now(new_name_of(given));
+    if (now.empty() || choice.find('"' + now + '"') == std::string::npos)
+        return "";
+    return '"' + given + "\" is now called \"" + now + '"';
 }
 
 std::string KeyInfo::wanted() const
@@ -99,7 +103,7 @@ std::string KeyInfo::wanted() const
         return "a text of 1 to " + std::to_string(longest_text) + " bytes without control characters";
     if (kind == "date")
         return "a date such as 1994-06-15, or a number" + in_range;
-    if (kind == "course")
+    if (kind == "load history")
         return "pairs of a date and a number, [[date, factor], ...]";
     if (kind == "point")
         return "a point [x, y] of numbers" + in_range;
@@ -218,24 +222,24 @@ Eigen::Vector2d read_point(const KeyInfo& key, const TomlValue& value, const Pla
     return {read_number(key, list->front(), place), read_number(key, list->back(), place)};
 }
 
-Course read_course(const KeyInfo& key, const TomlValue& value, const Place& place)
+LoadHistory read_load_history(const KeyInfo& key, const TomlValue& value, const Place& place)
 {
     const auto* const list = as_list(value);
     if (!list || list->empty())
         place.refuse(key, value);
     KeyInfo when = key;
     when.unit = days;
-    Course course;
+    LoadHistory load_history;
     for (const TomlValue& pair : *list) {
         const auto* const both = as_list(pair);
         if (!both || both->size() != 2)
             place.refuse(key, value);
         const double time = read_date(when, both->front(), place);
-        if (!course.points.empty() && time <= course.points.back().first)
+        if (!load_history.points.empty() && time <= load_history.points.back().first)
             place.refuse(key, value, "dates in increasing order");
-        course.points.emplace_back(time, read_number(key, both->back(), place));
+        load_history.points.emplace_back(time, read_number(key, both->back(), place));
     }
-    return course;
+    return load_history;
 }
 
 std::vector<Eigen::Vector2d> read_polyline(const KeyInfo& key, const TomlValue& value, const Place& place)
@@ -289,6 +293,12 @@ void check_keys(const TomlValue& value, const std::vector<const KeyInfo*>& known
     for (const TomlEntry& entry : *entries) {
         if (std::find(names.begin(), names.end(), entry.key) != names.end())
             continue;
+        const std::string now(new_name_of(entry.key));
+        if (std::find(names.begin(), names.end(), now) != names.end()) {
+            const TomlValue before{.content = entry.key};
+            place.refuse(entry.value.line, place.table + " has no key " + shown(before) +
+                                               ": it is now called " + now + ". Rename it in the scene");
+        }
         const auto meant = nearest(entry.key, names);
         const auto advice = meant.empty() ? "" : "; did you mean " + meant + "?";
         std::string all;

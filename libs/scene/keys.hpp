@@ -9,6 +9,7 @@
 
 #include "model/scene.hpp"
 #include "model/units.hpp"
+#include "scene/shared_settings.hpp"
 #include "scene/toml_text.hpp"
 
 #include <algorithm>
@@ -24,37 +25,15 @@ namespace jointcreep
 {
 
 // A key's unit as the user sees it, and what one of it is in SI units.
-struct Unit {
+struct KeyUnit {
     std::string_view symbol; // "" without unit
     double in_si = 1;
 };
 
-// Allowed values, in the key's unit: from(0) and above(0), then .to(1) or .below(1). Every range is finite.
-struct Range {
-    double least = 0, most = 0;
-    bool least_open = false, most_open = false;
-
-    constexpr Range to(double bound) const { return {least, bound, least_open, false}; }
-    constexpr Range below(double bound) const { return {least, bound, least_open, true}; }
-    bool holds(double value) const; // false for NaN
-};
-constexpr Range from(double bound)
-{
-    return {bound, bound, false, false};
-}
-constexpr Range above(double bound)
-{
-    return {bound, bound, true, false};
-}
-constexpr Range within(double bound)
-{
-    return from(-bound).to(bound);
-}
-
 // "[0", "0.5)" and both with the unit, "[0, 0.5) MPa".
 std::string lower_bound(const Range& range);
 std::string upper_bound(const Range& range);
-std::string shown(const Range& range, const Unit& unit);
+std::string shown(const Range& range, const KeyUnit& unit);
 
 enum class Need { required, optional, together }; // together: all keys of one group of a table, or none
 
@@ -63,7 +42,7 @@ struct KeyInfo {
     std::string name;
     std::string kind{}; // number, integer, text, date, point, polyline, polygon, polygons, law, Kelvin units,
                         // levels, names, poles, file text, density or the allowed words
-    Unit unit{};
+    KeyUnit unit{};
     std::optional<Range> range{};
     std::string doc{};
     Need need = Need::required;
@@ -106,7 +85,7 @@ std::vector<std::string> read_names(const KeyInfo& key, const TomlValue& value, 
 double read_date(const KeyInfo& key, const TomlValue& value, const Place& place); // since start [s]
 Calendar read_start(const KeyInfo& key, const TomlValue& value, const Place& place);
 Eigen::Vector2d read_point(const KeyInfo& key, const TomlValue& value, const Place& place);
-Course read_course(const KeyInfo& key, const TomlValue& value, const Place& place);
+LoadHistory read_load_history(const KeyInfo& key, const TomlValue& value, const Place& place);
 // From left to right: x increases.
 std::vector<Eigen::Vector2d> read_polyline(const KeyInfo& key, const TomlValue& value, const Place& place);
 Polygon read_polygon(const KeyInfo& key, const TomlValue& value, const Place& place);
@@ -162,10 +141,10 @@ struct Table {
     std::vector<Key<Record>> keys;
 };
 
-// --- Declaring keys
-// ------------------------------------------------------------------------------------------- `member` is a
-// pointer to the member of Record that the key fills, an optional one included, or a function Record& ->
-// reference to what it fills; then Record is named: number<Rock>(...).
+// --- Declaring keys ---------------------------------------------------------------------------------------
+
+// `member` is a pointer to the member of Record that the key fills, an optional one included, or a function
+// Record& -> reference to what it fills; then Record is named: number<Rock>(...).
 
 template <class Record, class Member, class Read>
 Key<Record> key_of(KeyInfo info, Member member, Read read)
@@ -182,12 +161,12 @@ template <class Member, class Record>
 concept MemberOf = std::invocable<Member, Record&>;
 
 template <class Record, MemberOf<Record> Member>
-Key<Record> number(std::string name, Member member, Unit unit, Range range, std::string doc)
+Key<Record> number(std::string name, Member member, KeyUnit unit, Range range, std::string doc)
 {
     return key_of<Record>({std::move(name), "number", unit, range, std::move(doc)}, member, read_number);
 }
 template <class Record, class Value>
-Key<Record> number(std::string name, Value Record::*member, Unit unit, Range range, std::string doc)
+Key<Record> number(std::string name, Value Record::*member, KeyUnit unit, Range range, std::string doc)
 {
     return number<Record, Value Record::*>(std::move(name), member, unit, range, std::move(doc));
 }
@@ -210,9 +189,8 @@ Key<Record> names(std::string name, std::vector<std::string> Record::*member, st
     return key_of<Record>({std::move(name), "names", {}, {}, std::move(doc)}, member, read_names);
 }
 
-inline constexpr Unit days{"days", unit::day};
-inline constexpr Unit metres{"m", unit::m};
-constexpr double farthest_day = 1e6, farthest_metre = 1e6; // from the start, from the origin
+inline constexpr KeyUnit days{"days", unit::day};
+inline constexpr KeyUnit metres{"m", unit::m};
 
 template <class Record>
 Key<Record> date(std::string name, double Record::*member, std::string doc)
@@ -230,17 +208,17 @@ Key<Record> point(std::string name, Eigen::Vector2d Record::*member, std::string
 
 // Two numbers, {x, y}.
 template <class Record, class Value>
-Key<Record> vector(std::string name, Value Record::*member, Unit unit, Range range, std::string doc)
+Key<Record> vector(std::string name, Value Record::*member, KeyUnit unit, Range range, std::string doc)
 {
     return key_of<Record>({std::move(name), "point", unit, range, std::move(doc)}, member, read_point);
 }
 
 // Pairs of a date and a factor.
 template <class Record>
-Key<Record> course(std::string name, Course Record::*member, std::string doc)
+Key<Record> load_history(std::string name, LoadHistory Record::*member, std::string doc)
 {
-    return key_of<Record>({std::move(name), "course", {}, within(farthest_day), std::move(doc)}, member,
-                          read_course);
+    return key_of<Record>({std::move(name), "load history", {}, within(farthest_day), std::move(doc)}, member,
+                          read_load_history);
 }
 
 template <class Record>
@@ -264,10 +242,12 @@ Key<Record> polygons(std::string name, std::vector<Polygon> Record::*member, std
                           member, read_polygons);
 }
 
+// Advice for a word of earlier versions whose new name is among the words of a choice, or "".
+std::string renamed_value(const std::string& given, const std::string& choice);
+
 // One of some words, each standing for a value, which assign(record, value) stores.
 template <class Record, class Value, std::invocable<Record&, Value> Assign>
-Key<Record> choice(std::string name, Assign assign, std::vector<std::pair<std::string_view, Value>> words,
-                   std::string doc)
+Key<Record> choice(std::string name, Assign assign, Words<Value> words, std::string doc)
 {
     std::string kind;
     for (const auto& [word, meaning] : words)
@@ -279,21 +259,19 @@ Key<Record> choice(std::string name, Assign assign, std::vector<std::pair<std::s
                     return given && word.first == *given;
                 });
                 if (found == words.end())
-                    place.refuse(key, value);
+                    place.refuse(key, value, given ? renamed_value(*given, key.kind) : "");
                 assign(record, found->second);
             },
             {}};
 }
 template <class Record, class Value>
-Key<Record> choice(std::string name, Value Record::*member,
-                   std::vector<std::pair<std::string_view, Value>> words, std::string doc)
+Key<Record> choice(std::string name, Value Record::*member, Words<Value> words, std::string doc)
 {
     const auto assign = [member](Record& record, Value value) { record.*member = value; };
     return choice<Record, Value>(std::move(name), assign, std::move(words), std::move(doc));
 }
 
-// --- Reading a table
-// -------------------------------------------------------------------------------------------
+// --- Reading a table --------------------------------------------------------------------------------------
 
 // Throws unless `value` is a table whose keys are all among `known`.
 void check_keys(const TomlValue& value, const std::vector<const KeyInfo*>& known, const Place& place);

@@ -108,7 +108,7 @@ std::vector<Measurement> listed(const Csv& csv, const Scene& scene)
         const std::string_view name = row.field[csv.column("point")],
                                component = row.field[csv.column("component")];
         const auto point = std::find_if(scene.points.begin(), scene.points.end(),
-                                        [&](const MeasuringPoint& p) { return p.name == name; });
+                                        [&](const MonitoringPoint& p) { return p.name == name; });
         if (point == scene.points.end())
             refuse_line(row.line, "point is \"" + std::string(name) + "\"; the scene has no such point");
         if (component != "x" && component != "y")
@@ -157,11 +157,11 @@ std::vector<Measurement> tabled(const Csv& csv, const Scene& scene)
         if (!known.contains(column))
             refuse_line(csv.head(),
                         "has a column \"" + std::string(column) +
-                            "\", which is none of a measuring point of the scene; wanted POINT_x_mm, "
+                            "\", which is none of a monitoring point of the scene; wanted POINT_x_mm, "
                             "POINT_y_mm, POINT_x_sigma_mm, POINT_y_sigma_mm or POINT_present");
     if (places.empty())
         refuse_line(csv.head(),
-                    "has no column of a measuring point; wanted POINT_x_mm, say, or the columns point, "
+                    "has no column of a monitoring point; wanted POINT_x_mm, say, or the columns point, "
                     "component and displacement_mm");
     if (any_sigma && !all_sigma)
         refuse_line(csv.head(), "has sigma of some displacements only; wanted it of all or of none");

@@ -229,10 +229,10 @@ Scene parse_scene(std::string_view text, const std::string& name)
     scene.points = read_list(tables.point, root, reading);
     scene.gauges = read_list(tables.gauge, root, reading);
 
-    if (Creep creep; read_once(tables.creep, root, reading, creep))
+    if (CreepSettings creep; read_once(tables.creep, root, reading, creep))
         scene.creep = creep;
-    if (Motion motion; read_once(tables.motion, root, reading, motion))
-        scene.motion = motion;
+    if (LargeDisplacements settings; read_once(tables.large_displacements, root, reading, settings))
+        scene.large_displacements = settings;
     read_once(tables.zones, root, reading, scene);
     scene.cutting.shortest_edge = usual_shortest_edge * scene.zone_size;
     read_once(tables.cutting, root, reading, scene.cutting);

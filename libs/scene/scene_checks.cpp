@@ -61,7 +61,7 @@ public:
         check_places();
         check_numbers();
         check_creep();
-        check_motion();
+        check_large_displacements();
     }
 
 private:
@@ -82,8 +82,7 @@ private:
         return {reading_, table, "[[" + name + "]]" + (own_name ? " " + shown(*own_name) : "")};
     }
 
-    // --- Names and references
-    // ----------------------------------------------------------------------------------
+    // --- Names and references ------------------------------------------------------------------------------
 
     template <class Record>
     void check_unique(const std::string& table, const std::vector<Record>& records,
@@ -182,16 +181,15 @@ private:
             if (!scene_.boundaries[i].joint.empty())
                 check_reference(in_list("boundary", i), "joint", scene_.boundaries[i].joint, materials,
                                 "[[joint_material]]");
-        if (scene_.motion)
-            check_reference(once("motion"), "new_contacts", scene_.motion->new_contacts, materials,
-                            "[[joint_material]]");
-        if (scene_.motion)
-            for (const std::string& rock : scene_.motion->rigid_rocks)
-                check_reference(once("motion"), "rigid_rocks", rock, rocks, "[[rock]]");
+        if (scene_.large_displacements)
+            check_reference(once("large_displacements"), "new_contacts",
+                            scene_.large_displacements->new_contacts, materials, "[[joint_material]]");
+        if (scene_.large_displacements)
+            for (const std::string& rock : scene_.large_displacements->rigid_rocks)
+                check_reference(once("large_displacements"), "rigid_rocks", rock, rocks, "[[rock]]");
     }
 
-    // --- Geometry
-    // ----------------------------------------------------------------------------------------------
+    // --- Geometry ------------------------------------------------------------------------------------------
 
     static void check_polygon(const Given& given, const std::string& key, const Polygon& polygon)
     {
@@ -380,16 +378,16 @@ private:
                                     "traction_MPa");
             if (given.find("joint") && (all[i].traction || all[i].displacement))
                 given.refuse("joint", "wanted no traction_MPa or displacement_mm beside joint");
-            if (all[i].displacement && (!given.find("fix") || !given.find("course")))
-                given.refuse("displacement_mm", "wanted fix and course beside it");
+            if (all[i].displacement && (!given.find("fix") || !given.find("load_history")))
+                given.refuse("displacement_mm", "wanted fix and load_history beside it");
             if (all[i].displacement && ((!all[i].fix_x && all[i].displacement->x() != 0) ||
                                         (!all[i].fix_y && all[i].displacement->y() != 0)))
                 given.refuse("displacement_mm", "wanted 0 in the direction that is not fixed");
             if (all[i].traction &&
                 ((all[i].fix_x && all[i].traction->x() != 0) || (all[i].fix_y && all[i].traction->y() != 0)))
                 given.refuse("traction_MPa", "wanted 0 in a direction that is fixed");
-            if (given.find("course") && !all[i].traction && !all[i].displacement)
-                given.refuse("course", "wanted traction_MPa or displacement_mm beside it");
+            if (given.find("load_history") && !all[i].traction && !all[i].displacement)
+                given.refuse("load_history", "wanted traction_MPa or displacement_mm beside it");
             if (given.find("fix") && given.find("joint"))
                 given.refuse("fix", "wanted either fix or joint, not both");
             const double length = (all[i].to - all[i].from).norm();
@@ -428,8 +426,7 @@ private:
         check("gauge", scene_.gauges);
     }
 
-    // --- Joint sets
-    // --------------------------------------------------------------------------------------------
+    // --- Joint sets ----------------------------------------------------------------------------------------
 
     void check_orientation(const JointSet& set, const Given& given) const
     {
@@ -558,8 +555,7 @@ private:
                                        "the scene has no [random] seed: [[joint_set]] needs it");
     }
 
-    // --- Time, and numbers that depend on others
-    // ---------------------------------------------------------------
+    // --- Time, and numbers that depend on others -----------------------------------------------------------
 
     static std::string days(double time) { return shown(time / unit::day) + " days since the start"; }
 
@@ -600,10 +596,10 @@ private:
             once("zones").refuse("size_at_faces_m",
                                  "wanted at most size_m, " + shown(scene_.zone_size) + " m");
 
-        if (scene_.cutting.dead_ends == DeadEnds::extend)
+        if (scene_.cutting.dangling_ends == DanglingEnds::extend)
             for (const Rock& rock : scene_.rocks)
                 if (!rock.strength)
-                    cutting.refuse("dead_ends",
+                    cutting.refuse("dangling_ends",
                                    "the rock bridges it makes need cohesion_MPa, friction_angle_deg and "
                                    "tensile_strength_MPa of [[rock]] \"" +
                                        rock.name + "\"");
@@ -626,7 +622,7 @@ private:
     {
         if (!scene_.creep)
             return;
-        const Creep& creep = *scene_.creep;
+        const CreepSettings& creep = *scene_.creep;
         const Given given = once("creep");
         if (creep.step && creep.tolerance)
             given.refuse("tolerance_m", "wanted either it or step_days, not both");
@@ -644,25 +640,28 @@ private:
             given.refuse("first_step_days", "wanted at most longest_step_days");
     }
 
-    void check_motion() const
+    void check_large_displacements() const
     {
-        if (!scene_.motion)
+        if (!scene_.large_displacements)
             return;
         if (scene_.creep)
-            once("motion").refuse("new_contacts", "a scene with [motion] has no [creep]");
-        if (scene_.motion->release >= scene_.motion->longest)
-            once("motion").refuse("release_s", "wanted less than longest_s, " +
-                                                   shown(scene_.motion->longest) +
-                                                   " s: before that there is no rest");
+            once("large_displacements")
+                .refuse("new_contacts", "a scene with [large_displacements] has no [creep]");
+        if (scene_.large_displacements->release >= scene_.large_displacements->longest)
+            once("large_displacements")
+                .refuse("release_s", "wanted less than longest_s, " +
+                                         shown(scene_.large_displacements->longest) +
+                                         " s: before that there is no rest");
         if (scene_.equilibrium.unloading_increments > 1)
             once("equilibrium")
                 .refuse("unloading_increments",
-                        "with [motion] a stage takes its rock away at once; wanted 1, and [motion] release_s "
-                        "for forces that fade away in time");
+                        "with [large_displacements] a stage takes its rock away at once; wanted 1, and "
+                        "[large_displacements] release_s for forces that fade away in time");
         for (std::size_t i = 0; i < scene_.boundaries.size(); ++i)
-            for (const char* key : {"displacement_mm", "course"})
+            for (const char* key : {"displacement_mm", "load_history"})
                 if (const Given boundary = in_list("boundary", i); boundary.find(key))
-                    boundary.refuse(key, "with [motion], boundaries neither move nor change their traction");
+                    boundary.refuse(
+                        key, "with [large_displacements], boundaries neither move nor change their traction");
     }
 };
 

@@ -11,24 +11,24 @@ namespace
 using enum Need;
 using enum Written;
 
-constexpr Unit none{""};
-constexpr Unit degrees{"deg", unit::deg};
-constexpr Unit kg_per_m3{"kg/m3", unit::kg / (unit::m * unit::m * unit::m)};
-constexpr Unit m_per_s2{"m/s2", unit::m / (unit::s * unit::s)};
-constexpr Unit per_s{"1/s", 1 / unit::s};
-constexpr Unit seconds{"s", unit::s};
-constexpr Unit millimetres{"mm", unit::mm};
-constexpr Unit GPa{"GPa", unit::GPa};
-constexpr Unit MPa{"MPa", unit::MPa};
-constexpr Unit MPa_per_m{"MPa/m", unit::MPa / unit::m};
-constexpr Unit MPa_day_per_m{"MPa day/m", unit::MPa* unit::day / unit::m};
-constexpr Unit GPa_day{"GPa day", unit::GPa* unit::day};
-constexpr Unit mm_per_day{"mm/day", unit::mm / unit::day};
+constexpr KeyUnit none{""};
+constexpr KeyUnit degrees{"deg", unit::deg};
+constexpr KeyUnit kg_per_m3{"kg/m3", unit::kg / (unit::m * unit::m * unit::m)};
+constexpr KeyUnit m_per_s2{"m/s2", unit::m / (unit::s * unit::s)};
+constexpr KeyUnit per_s{"1/s", 1 / unit::s};
+constexpr KeyUnit seconds{"s", unit::s};
+constexpr KeyUnit millimetres{"mm", unit::mm};
+constexpr KeyUnit GPa{"GPa", unit::GPa};
+constexpr KeyUnit MPa{"MPa", unit::MPa};
+constexpr KeyUnit MPa_per_m{"MPa/m", unit::MPa / unit::m};
+constexpr KeyUnit MPa_day_per_m{"MPa day/m", unit::MPa* unit::day / unit::m};
+constexpr KeyUnit GPa_day{"GPa day", unit::GPa* unit::day};
+constexpr KeyUnit mm_per_day{"mm/day", unit::mm / unit::day};
 
 // Upper bounds far above any rock: they catch slips of unit, and keep all products finite.
 constexpr Range strength = from(0).to(1e4);           // [MPa]
 constexpr Range friction = from(0).below(90);         // [deg]
-constexpr Range stiffness = above(0).to(1e9);         // [MPa/m]
+constexpr Range stiffness = joint_stiffnesses;        // [MPa/m]
 constexpr Range viscosity = from(1e-9).to(1e12);      // [MPa day/m]
 constexpr Range rock_viscosity = from(1e-9).to(1e12); // [GPa day]
 constexpr Range length = above(0).to(farthest_metre); // [m]
@@ -72,11 +72,9 @@ Table<Rock> rock()
     return {
         {"rock", in_list, required,
          "Intact rock: plane strain, elastic or yielding. Its strength is that of the rock bridges, and is "
-         "needed where "
-         "a joint set has a persistence below 1, where dead ends are extended, and where the rock yields. "
-         "With a Kelvin unit or a "
-         "Maxwell dashpot it creeps, in shear "
-         "only: its volume stays elastic."},
+         "needed where a joint set has a persistence below 1, where dangling ends are extended, and where "
+         "the rock yields. With a Kelvin unit or a Maxwell dashpot it creeps, in shear only: its volume "
+         "stays elastic."},
         {text("name", &Rock::name, "Name, once among the rocks."),
          number("density_kg_per_m3", &Rock::density, kg_per_m3, above(0).to(3e4), "Density."),
          number("youngs_modulus_GPa", &Rock::youngs_modulus, GPa, above(0).to(1e4), "Young's modulus."),
@@ -94,9 +92,9 @@ Table<Rock> rock()
                 "Dilation angle of rock bridges and of rock that yields, at most the friction angle.")
              .or_else(std::int64_t{0}),
          choice("law", &Rock::law, {{"elastic", RockLaw::elastic}, {"Mohr-Coulomb", RockLaw::mohr_coulomb}},
-                "elastic; or Mohr-Coulomb: it yields where its strength is reached, in shear and in tension, "
-                "without "
-                "softening. That needs the strength, and does not go with creep of the rock.")
+                "elastic; or Mohr-Coulomb: it yields where its strength is reached, in shear and in "
+                "tension, without softening. That needs the strength, and does not go with creep of the "
+                "rock.")
              .or_else(std::string("elastic")),
          number<Rock>("kelvin_shear_modulus_GPa", part<&Rock::kelvin, &ShearKelvin::modulus>, GPa,
                       above(0).to(1e6), "Kelvin spring, in shear.")
@@ -166,9 +164,8 @@ Table<JointMaterial> joint_material(const Table<Kelvin>& chain)
         {"joint_material", in_list, optional,
          "What joints are made of: springs of stress per displacement, Coulomb friction, and in series what "
          "creeps: Kelvin units (spring beside dashpot) and a Maxwell dashpot. One Kelvin unit has keys of "
-         "its "
-         "own; several are a kelvin_chain. A Kelvin unit and a Maxwell dashpot make a Burgers joint. Without "
-         "them the joint does not creep."},
+         "its own; several are a kelvin_chain. A Kelvin unit and a Maxwell dashpot make a Burgers joint. "
+         "Without them the joint does not creep."},
         {text("name", &JointMaterial::name, "Name, once among the joint materials."),
          number("normal_stiffness_MPa_per_m", &JointMaterial::normal_stiffness, MPa_per_m, stiffness,
                 "Normal stiffness."),
@@ -245,21 +242,19 @@ Table<SingleJoint> joint()
 {
     return {{"joint", in_list, optional,
              "One joint or fault given by its ends: all of it joint, no rock bridges. Where one lies on an "
-             "earlier one, "
-             "the later one counts: that gives a part of a joint its own material."},
+             "earlier one, the later one counts: that gives a part of a joint its own material."},
             {text("name", &SingleJoint::name, "Name, once among the joints, joint sets and mapped sets."),
              text("material", &SingleJoint::material, "Name of its joint material."),
              point("from_m", &SingleJoint::from, "One end."),
              point("to_m", &SingleJoint::to, "The other end.")}};
 }
 
-// --- Laws
-// -------------------------------------------------------------------------------------------------------
+// --- Laws -------------------------------------------------------------------------------------------------
 
 constexpr double fewest_deviations = 3; // in the mean of a normal law of a length
 constexpr double widest_range = 1e6;    // of the lengths of a power law: longest over shortest
 
-using Kind = Law::Kind;
+using Kind = ProbabilityLaw::Kind;
 
 // The words of a scene for a law, and the keys it needs; it takes no others.
 struct LawWords {
@@ -325,14 +320,12 @@ Table<WrittenLaw> length_law(const std::string& name, Need need, const std::stri
              "are drawn again, and that must hardly move the mean.")
              .optional(),
          number("shortest_m", &WrittenLaw::shortest, metres, from(0).to(farthest_metre),
-                "Least value, a cut-off: needed by the uniform and power laws, refused by the others. With a "
-                "power "
-                "law at least 1e-6 of longest_m.")
+                "Least value, a cut-off: needed by the uniform and power laws, refused by the others. With "
+                "a power law at least 1e-6 of longest_m.")
              .optional(),
          number("longest_m", &WrittenLaw::longest, metres, length,
-                "Largest value, a cut-off above shortest_m: needed by the uniform and power laws, refused by "
-                "the "
-                "others.")
+                "Largest value, a cut-off above shortest_m: needed by the uniform and power laws, refused "
+                "by the others.")
              .optional(),
          number("exponent", &WrittenLaw::exponent, none, from(0).to(20),
                 "Of the power law, whose density falls as the value to the minus this exponent (and the "
@@ -376,16 +369,12 @@ Table<WrittenOrientation> orientation_law()
     return {
         {"joint_set.orientation", inside, optional,
          "Law of the poles (normals) of the joint planes in space, with section.azimuth_deg. Of lines, "
-         "Fisher's "
-         "law is that of the planes that a scanline along the mean trace's normal meets in the section, and "
-         "the "
-         "bootstrap that of all planes of the set; of segments and discs both are laws of all joints in "
-         "space, "
-         "which the section meets the sooner the larger their angle to it."},
+         "Fisher's law is that of the planes that a scanline along the mean trace's normal meets in the "
+         "section, and the bootstrap that of all planes of the set; of segments and discs both are laws of "
+         "all joints in space, which the section meets the sooner the larger their angle to it."},
         {choice("law", &W::bootstrap, {{"Fisher", false}, {"bootstrap", true}},
                 "Probability law. Fisher's: symmetric about the mean pole. Bootstrap: measured poles, drawn "
-                "with "
-                "replacement."),
+                "with replacement."),
          number<W>("mean_dip_deg", dip, degrees, from(0).to(90),
                    "Dip below the horizontal of the plane of the mean pole" + fisher_only)
              .optional(),
@@ -407,8 +396,7 @@ Table<WrittenOrientation> orientation_law()
              .optional(),
          text("poles", &W::file,
               "File beside the scene with the measured planes: CSV with the columns dip_deg, "
-              "dip_direction_deg "
-              "and, if wanted, weight." +
+              "dip_direction_deg and, if wanted, weight." +
                   bootstrap_only)
              .optional(),
          number<W>(
@@ -456,7 +444,7 @@ void check_range(const WrittenLaw& law, const TomlValue& value, const Place& pla
                                      shown(law.longest / widest_range) + " m");
 }
 
-Law law_of(const WrittenLaw& law)
+ProbabilityLaw law_of(const WrittenLaw& law)
 {
     switch (law.kind) {
     case Kind::uniform:
@@ -474,8 +462,8 @@ Law law_of(const WrittenLaw& law)
     return {law.kind, law.mean, law.deviation};
 }
 
-Law read_law(const Table<WrittenLaw>& table, const std::vector<LawWords>& laws, const TomlValue& value,
-             const Place& outer)
+ProbabilityLaw read_law(const Table<WrittenLaw>& table, const std::vector<LawWords>& laws,
+                        const TomlValue& value, const Place& outer)
 {
     const Place place{outer.reading, table.info.shown()};
     WrittenLaw law;
@@ -575,7 +563,7 @@ Key<JointSet> orientation(const Table<WrittenOrientation>& table)
 Table<WrittenDensity> density_table()
 {
     using W = WrittenDensity;
-    constexpr Unit per_m{"1/m", 1 / unit::m}, per_m2{"1/m2", 1 / (unit::m * unit::m)},
+    constexpr KeyUnit per_m{"1/m", 1 / unit::m}, per_m2{"1/m2", 1 / (unit::m * unit::m)},
         per_m3{"1/m3", 1 / (unit::m * unit::m * unit::m)};
     const auto angle = [](W& all) -> std::optional<double>& { return all.scanline.angle; };
     const auto trend = [](W& all) -> double& { return all.scanline.trend; };
@@ -583,10 +571,9 @@ Table<WrittenDensity> density_table()
     const Range dense = from(1e-9).to(1e6);
     return {
         {"joint_set.density", inside, optional,
-         "How much of a set there is, measured otherwise than by the spacing: one of five densities of joint "
-         "traces, before they end at others. Of lines it sets the mean spacing. Scatter of the orientation "
-         "is "
-         "taken into account."},
+         "How much of a set there is, measured otherwise than by the spacing: one of five densities of "
+         "joint traces, before they end at others. Of lines it sets the mean spacing. Scatter of the "
+         "orientation is taken into account."},
         {number("P10_per_m", &W::p10, per_m, dense,
                 "Joint traces that a scanline meets per metre, with its direction: scanline_angle_deg, or "
                 "scanline_trend_deg and scanline_plunge_deg. Corrected by Terzaghi.")
@@ -664,8 +651,7 @@ Table<JointSet> joint_set(const SceneTables& laws)
     return {
         {"joint_set", in_list, optional,
          "Joints sharing their statistics. How they lie is given by one of trace_angle, orientation, or dip "
-         "and "
-         "dip_direction."},
+         "and dip_direction."},
         {text("name", &JointSet::name, "Name, once among the joints, joint sets and mapped sets."),
          text("material", &JointSet::material, "Name of the joint material of its traces."),
          key_of<JointSet>(
@@ -694,9 +680,8 @@ Table<JointSet> joint_set(const SceneTables& laws)
          orientation(laws.orientation),
          law("spacing", &JointSet::spacing, laws.spacing, laws_of_lengths(),
              "Of lines: distance between neighbouring joint planes. Lines need it or a density. With both "
-             "the "
-             "density sets the mean, and all of the law is stretched to it; with a density alone the law is "
-             "negative exponential.")
+             "the density sets the mean, and all of the law is stretched to it; with a density alone the "
+             "law is negative exponential.")
              .optional(),
          key_of<JointSet>({"density", "density", {}, {}, "How much there is. Segments and discs need it."},
                           &JointSet::density, read_amount)
@@ -731,13 +716,12 @@ Table<WrittenMapped> mapped()
          "bridges."},
         {text("name", &W::name, "Name, once among the joints, joint sets and mapped sets."),
          text("material", &W::material, "Name of the joint material."),
-         text(
-             "file", &W::file,
-             "File beside the scene, with coordinates in metres of the section. GeoJSON of LineString and "
-             "MultiLineString; or CSV with the columns x1_m, y1_m, x2_m, y2_m and, if wanted, id; or CSV "
-             "with the columns id, x_m, y_m, a row a place, those of a trace together. Where every id is a "
-             "whole "
-             "number from 0 to 2097151 it becomes the joint's number; elsewhere the place in the file does."),
+         text("file", &W::file,
+              "File beside the scene, with coordinates in metres of the section. GeoJSON of LineString and "
+              "MultiLineString; or CSV with the columns x1_m, y1_m, x2_m, y2_m and, if wanted, id; or CSV "
+              "with the columns id, x_m, y_m, a row a place, those of a trace together. Where every id is a "
+              "whole number from 0 to 2097151 it becomes the joint's number; elsewhere the place in the file "
+              "does."),
          text("property", &W::property,
               "Takes only the traces whose property of this name, in CSV a column, has the value below.")
              .together("property"),
@@ -754,7 +738,7 @@ Table<HeldFile> held_file()
          key_of<HeldFile>({"text", "file text", {}, {}, "What is in it."}, &HeldFile::text, read_file_text)}};
 }
 
-// ----------------------------------------------------------------------------------------------------------------
+// --- Stress, boundaries, stages, numerical settings -------------------------------------------------------
 
 Table<InSituStress::Level> stress_profile()
 {
@@ -789,9 +773,8 @@ Table<InSituStress> in_situ_stress(const Table<InSituStress::Level>& profile)
     return {
         {"in_situ_stress", once, required,
          "Stress before excavation, by depth: below elevation_m, or vertically below ground_m. Either "
-         "linear, "
-         "compression(depth) = compression + gradient x depth, or by a profile. Compression is positive "
-         "here; shear_xy is the stress component sigma_xy itself."},
+         "linear, compression(depth) = compression + gradient x depth, or by a profile. Compression is "
+         "positive here; shear_xy is the stress component sigma_xy itself."},
         {number("elevation_m", &S::elevation, metres, coordinate, "Elevation y where the depth is 0.")
              .optional(),
          polyline("ground_m", &S::ground,
@@ -830,8 +813,7 @@ Table<Boundary> boundary()
     return {
         {"boundary", in_list, required,
          "What holds or loads a straight piece of the outline: fix or joint, traction, or fix and "
-         "displacement. "
-         "Elsewhere the outline is free."},
+         "displacement. Elsewhere the outline is free."},
         {point("from_m", &Boundary::from, "One end, on the outline."),
          point("to_m", &Boundary::to, "The other end, on the same straight piece of the outline."),
          choice<Boundary, Fixed>("fix", fix,
@@ -844,14 +826,13 @@ Table<Boundary> boundary()
                 "Force on the rock per area {x, y}, on top of the in-situ stress.")
              .optional(),
          vector("displacement_mm", &Boundary::displacement, millimetres, within(1e6),
-                "Displacement {x, y} it is held at, 0 where it is not fixed; with fix and course.")
+                "Displacement {x, y} it is held at, 0 where it is not fixed; with fix and load_history.")
              .optional(),
-         course("course", &Boundary::course,
-                "Factor of traction and displacement over time: pairs of a date and a factor with straight "
-                "lines "
-                "between them, as for a ramp or cycles. Without it a traction acts from the start, and the "
-                "in-situ "
-                "equilibrium is found under it.")
+         load_history(
+             "load_history", &Boundary::load_history,
+             "Factor of traction and displacement over time: pairs of a date and a factor with straight "
+             "lines between them, as for a ramp or cycles. Without it a traction acts from the start, "
+             "and the in-situ equilibrium is found under it.")
              .optional()}};
 }
 
@@ -881,51 +862,48 @@ Table<Stage> stage()
              .or_else(std::string("go on"))}};
 }
 
-Table<MeasuringPoint> measuring_point()
+Table<MonitoringPoint> monitoring_point()
 {
     return {{"point", in_list, optional, "A place whose displacement is recorded."},
-            {text("name", &MeasuringPoint::name, "Name, once among the points."),
-             point("at_m", &MeasuringPoint::at, "Where, inside the section."),
-             date("first_reading", &MeasuringPoint::first_reading, "When its own readings begin.")
+            {text("name", &MonitoringPoint::name, "Name, once among the points."),
+             point("at_m", &MonitoringPoint::at, "Where, inside the section."),
+             date("first_reading", &MonitoringPoint::first_reading, "When its own readings begin.")
                  .optional("the start")}};
 }
 
 Table<Gauge> gauge()
 {
     return {{"gauge", in_list, optional,
-             "A place on a joint whose traction demsolve --trace records: the nearest contact."},
+             "A place on a joint whose traction demsolve --step-history records: the nearest contact."},
             {text("name", &Gauge::name, "Name, once among the gauges."),
              point("at_m", &Gauge::at, "Where, inside the section.")}};
 }
 
-Table<Creep> creep()
+Table<CreepSettings> creep()
 {
-    const Range step = above(0).to(farthest_day);
+    const Range step = creep_steps;
     return {
         {"creep", once, optional,
          "Creep of joints and rock. Without this table nothing creeps. Either step_days or tolerance_m is "
          "given."},
-        {choice("scheme", &Creep::scheme,
-                {{"published", CreepScheme::published},
-                 {"backward", CreepScheme::backward},
-                 {"linear force", CreepScheme::linear_force},
-                 {"fitted", CreepScheme::fitted}},
+        {choice("scheme", &CreepSettings::scheme, creep_scheme_words(),
                 "Time scheme: what the force on a joint is taken to be during a step. Fitted is the most "
                 "accurate; the published one is stable only below a limit.")
              .or_else(std::string("fitted")),
-         number("step_days", &Creep::step, days, step, "Time step.").optional(),
-         number("tolerance_m", &Creep::tolerance, metres, above(0).to(1),
+         number("step_days", &CreepSettings::step, days, step, "Time step.").optional(),
+         number("tolerance_m", &CreepSettings::tolerance, metres, creep_tolerances,
                 "Error that a step may make, by estimate; the time steps are chosen by it.")
              .optional(),
-         number("first_step_days", &Creep::first_step, days, step,
+         number("first_step_days", &CreepSettings::first_step, days, step,
                 "First step tried after the start, stages and dates; with tolerance_m.")
              .optional("by the fastest joint"),
-         number("shortest_step_days", &Creep::shortest_step, days, step,
+         number("shortest_step_days", &CreepSettings::shortest_step, days, step,
                 "Steps are not made shorter than this for the tolerance; with tolerance_m.")
              .optional(),
-         number("longest_step_days", &Creep::longest_step, days, step, "Longest step; with tolerance_m.")
+         number("longest_step_days", &CreepSettings::longest_step, days, step,
+                "Longest step; with tolerance_m.")
              .optional(),
-         number("stop_rate_mm_per_day", &Creep::stop_rate, mm_per_day, above(0).to(1e6),
+         number("stop_rate_mm_per_day", &CreepSettings::stop_rate, mm_per_day, above(0).to(1e6),
                 "Ends creep after the last stage once no point moves faster.")
              .optional()}};
 }
@@ -934,7 +912,7 @@ Table<Scene> zones()
 {
     return {
         {"zones", once, required, "Zones: the constant-strain triangles inside the blocks."},
-        {number("size_m", &Scene::zone_size, metres, length, "Longest zone side aimed at."),
+        {number("size_m", &Scene::zone_size, metres, zone_sizes, "Longest zone side aimed at."),
          polygon("fine_m", &Scene::fine_zones,
                  "Where they are of that size; outside they are larger. Without it they are of that "
                  "size everywhere.")
@@ -960,7 +938,8 @@ Table<Cutting> cutting()
          number("smallest_angle_deg", &Cutting::smallest_angle, degrees, from(0).to(30),
                 "Narrower wedges between edges are closed where that moves nothing far.")
              .or_else(std::int64_t{1}),
-         choice("dead_ends", &Cutting::dead_ends, {{"prune", DeadEnds::prune}, {"extend", DeadEnds::extend}},
+         choice("dangling_ends", &Cutting::dangling_ends,
+                {{"prune", DanglingEnds::prune}, {"extend", DanglingEnds::extend}},
                 "What becomes of a joint that ends inside a block: it is cut back to the last block edge it "
                 "met, or carried on in its own direction to the line it meets next, as rock bridge, which "
                 "needs the strength of every rock.")
@@ -974,8 +953,7 @@ Table<Averaging> averaging()
         {choice("over", &Averaging::over,
                 {{"edge", AverageOver::edge}, {"line", AverageOver::line}, {"set", AverageOver::set}},
                 "Over what joint and bridges are averaged: each edge between two blocks, each joint's whole "
-                "line, "
-                "or all lines of a set.")
+                "line, or all lines of a set.")
              .or_else(std::string("edge")),
          choice(
              "stiffness", &Averaging::stiffness,
@@ -994,15 +972,13 @@ Table<Equilibrium> equilibrium()
     using E = Equilibrium;
     return {
         {"equilibrium", once, optional, "How equilibrium is found."},
-        {choice("engine", &E::engine,
-                {{"auto", Engine::automatic},
-                 {"explicit", Engine::explicit_engine},
-                 {"implicit", Engine::implicit_engine}},
-                "Marching in time, or solving for the state of rest at once; auto takes the implicit one "
-                "unless the masses are real, by which the scene asks for motion.")
+        {choice("engine", &E::engine, engine_words(),
+                "Dynamic relaxation, or the implicit engine, which solves for the equilibrium at once; auto "
+                "takes the implicit one unless the masses are real.")
              .or_else(std::string("auto")),
-         number("tolerance", &E::tolerance, none, from(1e-12).to(1e-2),
-                "Of the out-of-balance ratio; motion also ends within 1000 times it of its displacement.")
+         number("tolerance", &E::tolerance, none, equilibrium_tolerances,
+                "Of the unbalanced force ratio; dynamic relaxation also ends within 1000 times it of its "
+                "displacement.")
              .or_else(1e-6),
          choice("masses", &E::masses, {{"scaled", Masses::scaled}, {"real", Masses::real}},
                 "Nodal masses: scaled for a fast way to the same equilibrium, or the real ones.")
@@ -1013,7 +989,7 @@ Table<Equilibrium> equilibrium()
                  {"local", Damping::local},
                  {"combined", Damping::combined},
                  {"mass", Damping::mass}},
-                "How motion is damped.")
+                "Damping of dynamic relaxation.")
              .or_else(std::string("adaptive")),
          number("mass_damping_per_s", &E::mass_damping, per_s, above(0).to(1e12),
                 "Mass-proportional damping; with damping = \"mass\", and only then.")
@@ -1023,47 +999,46 @@ Table<Equilibrium> equilibrium()
                 "open; with damping = \"mass\".")
              .optional(),
          number("local_damping", &E::local_damping, none, above(0).below(1),
-                "Fraction of the out-of-balance force; with damping = \"local\" or \"combined\" only.")
+                "Fraction of the unbalanced force; with damping = \"local\" or \"combined\" only.")
              .optional("0.8"),
          integer("unloading_increments", &E::unloading_increments, from(1).to(1000),
-                 "In which the rock of a stage is taken away, and in which loads change between dates. With "
-                 "[motion] 1; there release_s does it.")
+                 "In which the rock of a stage is excavated, and in which loads change between dates. With "
+                 "[large_displacements] 1; there release_s does it.")
              .or_else(std::int64_t{1}),
          integer("most_steps", &E::most_steps, from(1).to(2147483647),
-                 "Without equilibrium after so many steps of the explicit engine the program gives up. With "
-                 "[motion] this is so in situ alone; longest_s bounds motion.")
+                 "Without equilibrium after so many steps of dynamic relaxation the program gives up. With "
+                 "[large_displacements] this holds in situ alone; longest_s limits the dynamic analysis.")
              .or_else(std::int64_t{1000000})}};
 }
 
-Table<Motion> motion()
+Table<LargeDisplacements> large_displacements()
 {
     return {
-        {"motion", once, optional,
-         "Lets rock move far after each stage: with real masses and large displacements, contacts found "
-         "anew, until "
-         "it is at rest. Without this table displacements are small. Not with [creep]."},
-        {text("new_contacts", &Motion::new_contacts,
-              "Joint material of contacts that come about, and of what slides off its joint: its stiffnesses "
+        {"large_displacements", once, optional,
+         "Dynamic analysis with large displacements after each stage: real masses, contacts found anew, "
+         "until the rock is at rest. Without this table displacements are small. Not with [creep]."},
+        {text("new_contacts", &LargeDisplacements::new_contacts,
+              "Joint material of contacts that form, and of what slides off its joint: its stiffnesses "
               "and friction angle, the residual one if it has one, without cohesion, tensile strength and "
               "dilation."),
-         names("rigid_rocks", &Motion::rigid_rocks,
-               "Rocks whose blocks do not deform in motion; they do before it.")
+         names("rigid_rocks", &LargeDisplacements::rigid_rocks,
+               "Rocks whose blocks do not deform in the dynamic analysis; they do before it.")
              .optional("none"),
-         number("stiffness_damping_s", &Motion::stiffness_damping, seconds, from(0).to(10),
+         number("stiffness_damping_s", &LargeDisplacements::stiffness_damping, seconds, from(0).to(10),
                 "Dashpots of zones and closed joints, over their springs. Takes the energy of impacts and of "
                 "vibration; shortens the time step.")
              .or_else(1e-4),
-         number("mass_damping_per_s", &Motion::mass_damping, per_s, from(0).to(1e6),
+         number("mass_damping_per_s", &LargeDisplacements::mass_damping, per_s, from(0).to(1e6),
                 "Force over mass and velocity. It also brakes rock that slides or falls.")
              .or_else(0.0),
-         number("release_s", &Motion::release, seconds, from(0).to(1e6),
+         number("release_s", &LargeDisplacements::release, seconds, from(0).to(1e6),
                 "Time in which the forces of a stage's rock fade away.")
              .or_else(0.0),
-         number("longest_s", &Motion::longest, seconds, above(0).to(1e6),
-                "A motion that has not come to rest by then is given up.")
+         number("longest_s", &LargeDisplacements::longest, seconds, above(0).to(1e6),
+                "A dynamic analysis that has not come to rest by then is given up.")
              .or_else(60.0),
-         number("record_every_s", &Motion::record_every, seconds, above(0).to(1e6),
-                "The section and the balance of energy are recorded that often on the way.")
+         number("record_every_s", &LargeDisplacements::record_every, seconds, above(0).to(1e6),
+                "The section and the balance of energy are recorded that often.")
              .or_else(1.0)}};
 }
 
@@ -1103,14 +1078,14 @@ SceneTables all_tables()
     all.boundary = boundary();
     all.schedule = schedule();
     all.stage = stage();
-    all.point = measuring_point();
+    all.point = monitoring_point();
     all.gauge = gauge();
     all.creep = creep();
     all.zones = zones();
     all.cutting = cutting();
     all.averaging = averaging();
     all.equilibrium = equilibrium();
-    all.motion = motion();
+    all.large_displacements = large_displacements();
     all.random = random_numbers();
     all.file = held_file();
     return all;

@@ -14,7 +14,7 @@ struct Schedule {
 
 // A law as a scene writes it. Every law has its own keys; the others stay 0.
 struct WrittenLaw {
-    Law::Kind kind = Law::Kind::constant;
+    ProbabilityLaw::Kind kind = ProbabilityLaw::Kind::constant;
     double mean = 0, deviation = 0;
     double half_width = 0;            // of a uniform law of angles
     double shortest = 0, longest = 0; // of a uniform law of lengths, and of a power law
@@ -67,10 +67,10 @@ struct SceneTables {
     Table<Boundary> boundary;
     Table<Schedule> schedule;
     Table<Stage> stage;
-    Table<MeasuringPoint> point;
+    Table<MonitoringPoint> point;
     Table<Gauge> gauge;
-    Table<Creep> creep;
-    Table<Motion> motion;
+    Table<CreepSettings> creep;
+    Table<LargeDisplacements> large_displacements;
     Table<Scene> zones;
     Table<Cutting> cutting;
     Table<Averaging> averaging;
@@ -88,8 +88,8 @@ struct SceneTables {
             visit(diameter), visit(density), visit(mapped);
         visit(in_situ_stress), visit(profile), visit(boundary), visit(schedule), visit(stage), visit(point),
             visit(gauge);
-        visit(creep), visit(zones), visit(cutting), visit(averaging), visit(equilibrium), visit(motion),
-            visit(random), visit(file);
+        visit(creep), visit(zones), visit(cutting), visit(averaging), visit(equilibrium),
+            visit(large_displacements), visit(random), visit(file);
     }
 };
 

@@ -27,7 +27,7 @@ struct ContactNow {
     joint::Coulomb law; // its friction that of now, also where its bonds are broken
     Branch branch;
     double sign;           // of the slip
-    Vector2d spring;       // u_n, u_s: the jump less the offset [m]
+    Vector2d spring;       // u_n, u_s: the relative displacement less the offset [m]
     double initial_shear;  // tau_0 [Pa]
     double slip, dilation; // at the start [m]
     double slipped;        // delta [m]
@@ -78,7 +78,7 @@ inline ResponseChange respond(const ContactNow& now, const ContactChange& by)
             by.dilation + slipped * law.tan_psi};
 }
 
-// Change of its traction over change of its jump.
+// Change of its traction over change of its relative displacement.
 inline implicit::Tangent tangent_of(const ContactNow& now)
 {
     const joint::Coulomb& law = now.law;

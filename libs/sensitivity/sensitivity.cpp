@@ -114,7 +114,7 @@ creep::Chain Sensitivity::change_of(const creep::Chain& chain, Parameter paramet
 {
     const bool all = parameter == Parameter::joint_stiffness;
     creep::Chain change{all ? chain.spring : 0.0, {}};
-    for (const creep::Unit& unit : chain.units)
+    for (const creep::KelvinUnit& unit : chain.units)
         change.units.push_back({all || parameter == Parameter::kelvin_stiffness ? unit.stiffness : 0.0,
                                 all || parameter == Parameter::kelvin_viscosity ? unit.viscosity : 0.0});
     return change;
@@ -131,7 +131,7 @@ ContactNow Sensitivity::contact(const Assembly& assembly, std::size_t c) const
     return {law,
             contacts.status[c] == ContactStatus::removed ? Branch::removed : branch_[c],
             slipped < 0 ? -1.0 : 1.0,
-            contacts.jump[c] - contacts.offset[c],
+            contacts.relative_displacement[c] - contacts.offset[c],
             contacts.initial_traction[c].y(),
             start_slip_[c],
             has_dilated(assembly, c) ? contacts.state[c].dilation : start_dilation_[c],
@@ -145,8 +145,8 @@ ResponseChange Sensitivity::response(const Assembly& assembly, const Change& cha
     const Vector2d& normal = assembly.contacts.normal[c];
     Vector2d spring = -change.offset[c];
     if (with_displacement) {
-        const Vector2d jump = change.displacement[b] - change.displacement[a];
-        spring += Vector2d(normal.dot(jump), along(normal).dot(jump));
+        const Vector2d relative = change.displacement[b] - change.displacement[a];
+        spring += Vector2d(normal.dot(relative), along(normal).dot(relative));
     }
     return respond(contact(assembly, c),
                    {change.stiffness[c], change.initial_traction[c], spring, change.slip[c],
@@ -209,7 +209,7 @@ std::vector<Vector2d> Sensitivity::forces(const Assembly& assembly, const Change
     return force;
 }
 
-void Sensitivity::settle(const Assembly& assembly, implicit::Engine& engine, double time, double held)
+void Sensitivity::settle(const Assembly& assembly, implicit::Solver& engine, double time, double held)
 {
     const mechanics::Contacts& contacts = assembly.contacts;
     const std::size_t n = contacts.law.size();
@@ -263,12 +263,12 @@ void Sensitivity::start_from_here(const Assembly& assembly)
     for (Change& change : changes_) {
         for (std::size_t c = 0; c < change.slip.size(); ++c) {
             const auto [a, b] = contacts.gridpoint[c];
-            const Vector2d jump = change.displacement[b] - change.displacement[a];
+            const Vector2d relative = change.displacement[b] - change.displacement[a];
             const double normal =
                 change.initial_traction[c].x() +
-                change.stiffness[c].x() *
-                    (contacts.jump[c].x() - contacts.offset[c].x() - contacts.state[c].dilation) +
-                coulomb(assembly, c).k_n * (contacts.normal[c].dot(jump) - change.dilation[c]);
+                change.stiffness[c].x() * (contacts.relative_displacement[c].x() - contacts.offset[c].x() -
+                                           contacts.state[c].dilation) +
+                coulomb(assembly, c).k_n * (contacts.normal[c].dot(relative) - change.dilation[c]);
             change.initial_traction[c] = {normal, change.traction[c].y()};
             change.slip[c] = change.dilation[c] = 0;
         }
@@ -296,7 +296,7 @@ void Sensitivity::start_creep(const creep::Creep& creep)
 }
 
 void Sensitivity::creep_step(const creep::Creep& creep, double duration, const Assembly& assembly,
-                             implicit::Engine& engine, double time)
+                             implicit::Solver& engine, double time)
 {
     const mechanics::Contacts& contacts = assembly.contacts;
     const auto& springs = creep.springs();
@@ -316,7 +316,7 @@ void Sensitivity::creep_step(const creep::Creep& creep, double duration, const A
             const creep::Chain change = change_of(chain, parameters_[p]);
             creep::Chain none = change;
             none.spring = 0;
-            std::fill(none.units.begin(), none.units.end(), creep::Unit{0, 0});
+            std::fill(none.units.begin(), none.units.end(), creep::KelvinUnit{0, 0});
             chain_changes[p].push_back(change);
             step_changes[p].push_back(creep::change_of_step(chain, change, creep.scheme(), duration, by));
             rock_changes[p].push_back(creep::change_of_step(chain, none, creep.scheme(), duration, by));
@@ -462,7 +462,7 @@ void Sensitivity::shorten(double share)
 }
 
 void Sensitivity::cut(const creep::Closing::Cut& cut, const creep::Creep& creep, double duration,
-                      const Assembly& assembly, implicit::Engine& engine, double time)
+                      const Assembly& assembly, implicit::Solver& engine, double time)
 {
     if (cut.is_by_rate) {
         for (Change& change : changes_)

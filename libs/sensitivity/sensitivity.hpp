@@ -45,7 +45,7 @@ public:
     // After an equilibrium in which `held` is the share of the last stage's forces that still act; `time` [s]
     // is for messages. Throws equilibrium_error where there is none nearby for other parameters: rock that
     // only slip holds.
-    void settle(const mechanics::Assembly& assembly, implicit::Engine& engine, double time, double held = 0);
+    void settle(const mechanics::Assembly& assembly, implicit::Solver& engine, double time, double held = 0);
 
     // Before mechanics::start_from_here.
     void start_from_here(const mechanics::Assembly& assembly);
@@ -58,16 +58,16 @@ public:
     // `duration` [s].
     void shorten(double share);
     void cut(const creep::Closing::Cut& cut, const creep::Creep& creep, double duration,
-             const mechanics::Assembly& assembly, implicit::Engine& engine, double time);
+             const mechanics::Assembly& assembly, implicit::Solver& engine, double time);
     // It stands, up to where it was to end if it `is_whole`.
     void finish_step(const creep::Closing& closing, double duration, bool is_whole,
                      const mechanics::Assembly& assembly);
-    // After a jump of loads.
+    // After a sudden change of loads.
     void start_afresh();
 
     // Before Creep::end, at the equilibrium of a step of `duration` [s].
     void creep_step(const creep::Creep& creep, double duration, const mechanics::Assembly& assembly,
-                    implicit::Engine& engine, double time);
+                    implicit::Solver& engine, double time);
 
     // Before and after a stage's rock is taken away.
     void before_excavation(const mechanics::Assembly& assembly);

@@ -24,7 +24,7 @@ double power_share(double exponent, double x, double r)
     return q == 0 ? std::log(x) / std::log(r) : std::expm1(q * std::log(x)) / std::expm1(q * std::log(r));
 }
 
-double lognormal_distribution(const Law& law, double x)
+double lognormal_distribution(const ProbabilityLaw& law, double x)
 {
     const double ratio = law.deviation / law.mean, variance = std::log1p(ratio * ratio);
     const boost::math::lognormal normal_logarithm(std::log(law.mean) - variance / 2, std::sqrt(variance));
@@ -38,7 +38,7 @@ Moments from_moments(double first, double second, double third)
     return {first, std::max(0.0, second / (first * first) - 1), central / (first * first * first)};
 }
 
-Moments of_normal_above_zero(const Law& law)
+Moments of_normal_above_zero(const ProbabilityLaw& law)
 {
     // E[X^k] = mean E[X^(k-1)] + (k - 1) deviation^2 E[X^(k-2)] for k >= 2: what integration by parts leaves
     // at 0 vanishes.
@@ -57,65 +57,65 @@ double two_sided(double lower, double upper)
 
 } // namespace
 
-double distribution(const Law& law, double x)
+double distribution(const ProbabilityLaw& law, double x)
 {
     switch (law.kind) {
-    case Law::Kind::constant:
+    case ProbabilityLaw::Kind::constant:
         break;
-    case Law::Kind::normal:
+    case ProbabilityLaw::Kind::normal:
         return law.deviation > 0 ? cdf(boost::math::normal(law.mean, law.deviation), x) : x >= law.mean;
-    case Law::Kind::lognormal:
+    case ProbabilityLaw::Kind::lognormal:
         return law.deviation > 0 ? lognormal_distribution(law, x) : x >= law.mean;
-    case Law::Kind::negative_exponential:
+    case ProbabilityLaw::Kind::negative_exponential:
         return x > 0 ? -std::expm1(-x / law.mean) : 0;
-    case Law::Kind::uniform:
+    case ProbabilityLaw::Kind::uniform:
         return law.most > law.least ? std::clamp((x - law.least) / (law.most - law.least), 0.0, 1.0)
                                     : x >= law.mean;
-    case Law::Kind::power:
+    case ProbabilityLaw::Kind::power:
         return power_share(law.exponent, std::clamp(x, law.least, law.most) / law.least,
                            law.most / law.least);
     }
     return x >= law.mean ? 1 : 0;
 }
 
-double positive_distribution(const Law& law, double x)
+double positive_distribution(const ProbabilityLaw& law, double x)
 {
-    if (law.kind != Law::Kind::normal || law.deviation == 0)
+    if (law.kind != ProbabilityLaw::Kind::normal || law.deviation == 0)
         return distribution(law, x);
     const double at_zero = distribution(law, 0);
     return std::max(0.0, (distribution(law, x) - at_zero) / (1 - at_zero));
 }
 
-double quantile(const Law& law, double p)
+double quantile(const ProbabilityLaw& law, double p)
 {
-    if (law.kind == Law::Kind::normal && law.deviation > 0)
+    if (law.kind == ProbabilityLaw::Kind::normal && law.deviation > 0)
         return boost::math::quantile(boost::math::normal(law.mean, law.deviation), p);
-    if (law.kind == Law::Kind::uniform)
+    if (law.kind == ProbabilityLaw::Kind::uniform)
         return law.least + p * (law.most - law.least);
     return law.mean;
 }
 
-double kurtosis(const Law& law)
+double kurtosis(const ProbabilityLaw& law)
 {
-    return law.kind == Law::Kind::uniform ? 1.8 : 3;
+    return law.kind == ProbabilityLaw::Kind::uniform ? 1.8 : 3;
 }
 
-Moments positive_moments(const Law& law)
+Moments positive_moments(const ProbabilityLaw& law)
 {
     switch (law.kind) {
-    case Law::Kind::constant:
+    case ProbabilityLaw::Kind::constant:
         break;
-    case Law::Kind::normal:
+    case ProbabilityLaw::Kind::normal:
         return law.deviation > 0 ? of_normal_above_zero(law) : Moments{law.mean, 0, 0};
-    case Law::Kind::lognormal: {
+    case ProbabilityLaw::Kind::lognormal: {
         const double c = law.deviation * law.deviation / (law.mean * law.mean);
         return {law.mean, c, c * c * (c + 3)};
     }
-    case Law::Kind::negative_exponential:
+    case ProbabilityLaw::Kind::negative_exponential:
         return {law.mean, 1, 2};
-    case Law::Kind::uniform:
+    case ProbabilityLaw::Kind::uniform:
         return {law.mean, law.deviation * law.deviation / (law.mean * law.mean), 0};
-    case Law::Kind::power: {
+    case ProbabilityLaw::Kind::power: {
         const auto moment = [&law](double order) {
             return std::pow(law.least, order) * power_moment(law.exponent, law.least, law.most, order);
         };

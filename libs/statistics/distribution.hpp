@@ -3,7 +3,7 @@
 
 #pragma once
 
-#include "model/law.hpp"
+#include "model/probability_law.hpp"
 
 #include <cstddef>
 #include <vector>
@@ -12,17 +12,17 @@ namespace jointcreep::statistics
 {
 
 // P(X <= x) of the law as it is: angles.
-double distribution(const Law& law, double x);
+double distribution(const ProbabilityLaw& law, double x);
 
 // P(X <= x) of the law's values above 0, as lengths and spacings are drawn.
-double positive_distribution(const Law& law, double x);
+double positive_distribution(const ProbabilityLaw& law, double x);
 
 // The value below which X lies with the probability p, 0 < p < 1; of the laws of angles: constant, normal and
 // uniform.
-double quantile(const Law& law, double p);
+double quantile(const ProbabilityLaw& law, double p);
 
 // Fourth central moment over the square of the second; of the laws of angles: normal and uniform.
-double kurtosis(const Law& law);
+double kurtosis(const ProbabilityLaw& law);
 
 // Of the law's values above 0.
 struct Moments {
@@ -30,7 +30,7 @@ struct Moments {
     double squared_variation; // variance / mean^2
     double third;             // third central moment / mean^3
 };
-Moments positive_moments(const Law& law);
+Moments positive_moments(const ProbabilityLaw& law);
 
 // How well a sample fits that by its law is uniform in [0, 1], by Kolmogorov and Smirnov; and one on a circle
 // of circumference 1, by Kuiper. Limit distributions with the correction of Stephens 1970 for small samples.

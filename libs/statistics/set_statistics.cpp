@@ -204,13 +204,13 @@ Seen look_at(const JointSet& set, const Window& window, const MeanTrace& mean, c
 }
 
 // Mean, deviation and law of angles.
-void add_angles(Statistics& statistics, const std::string& subject, const std::string& name, const Law& law,
-                const std::vector<double>& values)
+void add_angles(Statistics& statistics, const std::string& subject, const std::string& name,
+                const ProbabilityLaw& law, const std::vector<double>& values)
 {
     const std::size_t count = values.size();
     const bool is_enough = count >= least_sample;
     const double mean = count > 0 ? mean_of(values) : 0;
-    if (law.kind == Law::Kind::constant || law.deviation == 0) {
+    if (law.kind == ProbabilityLaw::Kind::constant || law.deviation == 0) {
         const bool all = std::all_of(values.begin(), values.end(),
                                      [&](double x) { return std::abs(x - law.mean) < rounding; });
         if (count > 0)
@@ -338,8 +338,8 @@ void add_poles(Statistics& statistics, const std::string& subject, const FisherL
 
 // Of dip and dip direction as drawn. A pole has two such pairs, {dip, direction} and {-dip, direction + pi},
 // and its opposite two more; the one nearest to the mean dip direction, then to the mean dip, is meant.
-void add_planes(Statistics& statistics, const std::string& subject, const Law& dip_law,
-                const Law& direction_law, double azimuth, const std::vector<Crossing>& crossings)
+void add_planes(Statistics& statistics, const std::string& subject, const ProbabilityLaw& dip_law,
+                const ProbabilityLaw& direction_law, double azimuth, const std::vector<Crossing>& crossings)
 {
     std::vector<double> dips, directions;
     for (const Crossing& crossing : crossings) {
@@ -430,7 +430,7 @@ void add_spacing(Statistics& statistics, const JointSet& set, const MeanTrace& m
 
     Row of_law{
         .quantity = "spacing, law", .unit = "1", .sample_size = seen.spacings.size(), .is_judged = true};
-    if (set.spacing.kind == Law::Kind::constant || set.spacing.deviation == 0) {
+    if (set.spacing.kind == ProbabilityLaw::Kind::constant || set.spacing.deviation == 0) {
         of_law.is_exact = std::all_of(seen.spacings.begin(), seen.spacings.end(), [&](double spacing) {
             return std::abs(spacing / moments.mean - 1) < rounding;
         });
@@ -544,7 +544,7 @@ void add_lengths(Statistics& statistics, const JointSet& set, const Seen& seen)
 
     Row of_law{
         .quantity = "trace length, law", .unit = "1", .sample_size = seen.lengths.size(), .is_judged = true};
-    if (set.length->kind == Law::Kind::constant || set.length->deviation == 0) {
+    if (set.length->kind == ProbabilityLaw::Kind::constant || set.length->deviation == 0) {
         of_law.is_exact = std::all_of(seen.lengths.begin(), seen.lengths.end(), [&](double length) {
             return std::abs(length / target - 1) < rounding;
         });
@@ -651,7 +651,7 @@ void add_poisson(Statistics& statistics, const std::string& subject, Row row, do
 // Of the chords that a section makes of discs whose diameters D it meets by their size: P(chord > l) is the
 // integral of (1 - F(sqrt(l^2 + v^2))) / E[D] over v from 0 (from Warburton's 1980 by parts, v^2 = D^2 -
 // l^2).
-std::vector<double> chords_as_uniform(const Law& diameter, const std::vector<double>& chords)
+std::vector<double> chords_as_uniform(const ProbabilityLaw& diameter, const std::vector<double>& chords)
 {
     const double longest = chords.empty() ? 0 : *std::max_element(chords.begin(), chords.end());
     const double mean = positive_moments(diameter).mean;
@@ -793,7 +793,7 @@ void add_traces(Statistics& statistics, const Scene& scene, const JointSet& set,
                                      : expected_p10(set, scene, {across.x(), across.y(), 0})},
                 scanline.reach.high - scanline.reach.low);
 
-    const Law& size = are_discs ? *set.diameter : *set.length;
+    const ProbabilityLaw& size = are_discs ? *set.diameter : *set.length;
     const Moments moments = positive_moments(size);
     const double c = moments.squared_variation, second = 1 + c, third = moments.third + 3 * c + 1;
     const double target = moments.mean * (are_discs ? pi / 4 * second : 1);
@@ -811,7 +811,7 @@ void add_traces(Statistics& statistics, const Scene& scene, const JointSet& set,
             off += std::pow(length - of_mean.achieved, 2);
         Row of_law{
             .quantity = "trace length, law", .unit = "1", .sample_size = lengths.size(), .is_judged = true};
-        if (!are_discs && (size.kind == Law::Kind::constant || size.deviation == 0)) {
+        if (!are_discs && (size.kind == ProbabilityLaw::Kind::constant || size.deviation == 0)) {
             of_mean.is_exact = of_law.is_exact =
                 std::all_of(lengths.begin(), lengths.end(),
                             [&](double length) { return std::abs(length / target - 1) < rounding; });
@@ -852,7 +852,7 @@ void add_traces(Statistics& statistics, const Scene& scene, const JointSet& set,
          .target = wanted.p21});
 }
 
-Law times(Law law, double factor)
+ProbabilityLaw times(ProbabilityLaw law, double factor)
 {
     law.mean *= factor;
     law.deviation *= factor;

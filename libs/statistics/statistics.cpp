@@ -53,7 +53,7 @@ std::optional<Expected> expected_of(const Scene& scene)
         const MeanTrace mean = mean_trace(scene, set);
         const Moments spacing = positive_moments(set.spacing);
         Lines lines{mean.normal_part / spacing.mean, set.persistence, {}, turns_by_law(scene, set)};
-        const bool is_exponential = set.spacing.kind == Law::Kind::negative_exponential;
+        const bool is_exponential = set.spacing.kind == ProbabilityLaw::Kind::negative_exponential;
         if (set.region || (lines.turns.size() > 1 && !is_exponential))
             return {};
         const double angle = std::atan2(mean.along.y(), mean.along.x());
@@ -104,8 +104,8 @@ void add_sizes(Statistics& statistics, const Scene& scene, const Blocks& blocks,
     const std::size_t count = area.size();
     const double total = std::accumulate(area.begin(), area.end(), 0.0);
     const std::vector<double> ones(count, 1.0);
-    const bool is_welded = std::count(blocks.edge_kind.begin(), blocks.edge_kind.end(),
-                                      static_cast<Index>(EdgeKind::welded)) > 0;
+    const bool is_bonded = std::count(blocks.edge_kind.begin(), blocks.edge_kind.end(),
+                                      static_cast<Index>(EdgeKind::bonded)) > 0;
 
     // Euler: lines that a section cuts into p pieces with c crossings make 1 + p + c blocks of it.
     Row number{
@@ -114,7 +114,7 @@ void add_sizes(Statistics& statistics, const Scene& scene, const Blocks& blocks,
              .unit = "m2",
              .achieved = total / static_cast<double>(count),
              .sample_size = count};
-    if (expected && expected->is_cut_through && !is_welded) {
+    if (expected && expected->is_cut_through && !is_bonded) {
         const double area_of_section = Window(scene.outline).area();
         number.target = 1 + expected->pieces + expected->line_crossings * area_of_section;
         mean.target = area_of_section / *number.target;

@@ -52,22 +52,22 @@ struct Contents {
         append(fields, fields_of(reading(equivalent)));
         append(invariants, invariants_of(equivalent));
     }
-    void add(const Result& result, bool with_trace, bool with_motions, bool with_failure)
+    void add(const Result& result, bool with_step_history, bool with_dynamics, bool with_failure)
     {
         append(fields, fields_of(reading(result)));
         append(invariants, invariants_of(result.mesh));
-        if (with_trace)
-            append(fields, fields_of(reading(result.trace)));
-        if (with_motions)
-            append(fields, fields_of(reading(result.motions)));
+        if (with_step_history)
+            append(fields, fields_of(reading(result.step_history)));
+        if (with_dynamics)
+            append(fields, fields_of(reading(result.dynamics)));
         if (with_failure)
             append(fields, fields_of(reading(result.failure)));
     }
-    void add(const Checkpoint& checkpoint, bool with_motion)
+    void add(const Checkpoint& checkpoint, bool with_dynamics)
     {
         append(fields, fields_of(reading(checkpoint)));
-        if (with_motion)
-            append(fields, fields_of(reading(checkpoint.moved)));
+        if (with_dynamics)
+            append(fields, fields_of(reading(checkpoint.dynamics)));
     }
     void add(const Safety& safety) { append(fields, fields_of(reading(safety))); }
 };
@@ -101,7 +101,7 @@ FileKind checked_kind(const hdf5::Source& source)
     const Index major = source.integers("format_version", 2)[0];
     if (!type.starts_with("jointcreep "))
         throw input_error("this is a \"" + type + "\" file; wanted one of jointcreep's");
-    if (major > schema::major_version || major < 1)
+    if (major != schema::major_version)
         throw input_error("the file has format version " + std::to_string(major) +
                           "; this program reads version " + std::to_string(schema::major_version));
     for (const FileKind kind : {FileKind::network, FileKind::joints, FileKind::result, FileKind::checkpoint})
@@ -129,7 +129,7 @@ Contents contents_of(const ResultFile& file, const hdf5::Source& source)
 {
     Contents contents(file.provenance, file.network);
     contents.add(file.equivalent);
-    contents.add(file.result, source.has_group("/trace"), source.has_group("/motions"),
+    contents.add(file.result, source.has_group("/step_history"), source.has_group("/dynamics"),
                  source.has_group("/failure"));
     if (source.has_group("/safety"))
         contents.add(file.safety);
@@ -205,7 +205,7 @@ CheckpointFile read_checkpoint(const std::string& path)
         const hdf5::Source source = open(path, FileKind::checkpoint);
         CheckpointFile file;
         Contents contents = contents_of(file, source);
-        contents.add(file.checkpoint, source.has_group("/moved"));
+        contents.add(file.checkpoint, source.has_group("/dynamics_state"));
         fill(source, file.provenance, contents);
         return file;
     });
@@ -229,7 +229,7 @@ void write_result(const std::string& path, const Provenance& provenance, const N
 {
     Contents contents(provenance, network);
     contents.add(equivalent);
-    contents.add(result, !result.trace.time.empty(), !result.motions.time.empty(),
+    contents.add(result, !result.step_history.time.empty(), !result.dynamics.time.empty(),
                  !result.failure.reason.empty());
     if (!safety.factor.empty())
         contents.add(safety);
@@ -241,8 +241,8 @@ void write_checkpoint(const std::string& path, const Provenance& provenance, con
 {
     Contents contents(provenance, network);
     contents.add(equivalent);
-    contents.add(so_far, !so_far.trace.time.empty(), !so_far.motions.time.empty(), false);
-    contents.add(checkpoint, !checkpoint.moved.place.empty());
+    contents.add(so_far, !so_far.step_history.time.empty(), !so_far.dynamics.time.empty(), false);
+    contents.add(checkpoint, !checkpoint.dynamics.place.empty());
     write(path, FileKind::checkpoint, provenance, contents);
 }
 

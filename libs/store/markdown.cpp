@@ -81,7 +81,7 @@ The programs hand each other HDF5 files. A file holds all that later programs ne
 |---|---|---|
 | `jointcreep network` | jointgen | provenance, network |
 | `jointcreep joints` | strength-averaging | the same, and equivalent joints |
-| `jointcreep result` | demsolve | the same, and mesh, history, states, equilibria; a trace if asked for; motions of scenes with [motion] |
+| `jointcreep result` | demsolve | the same, and mesh, history, states, equilibria; the step history if asked for; dynamics of scenes with [large_displacements] |
 | `jointcreep checkpoint` | demsolve | the same up to a stage, and what the stage begins with |
 
 This is format version )"
@@ -122,20 +122,19 @@ with h5py.File("result.h5") as file:
     list(page, "Equivalent joints", schema::fields_of(equivalent), schema::invariants_of(equivalent));
     page << "\nRows of edges that are neither a joint nor rest on one are 0.\n";
     list(page, "Result", schema::fields_of(result), schema::invariants_of(result.mesh));
-    list(page, "Trace", schema::fields_of(result.trace));
-    page << "\nThe group `/trace` is there only if a trace was asked for.\n";
-    list(page, "Motions", schema::fields_of(result.motions));
-    page << "\nThe group `/motions` is there only if the scene has [motion] and a stage.\n";
+    list(page, "Step history", schema::fields_of(result.step_history));
+    page << "\nThe group `/step_history` is there only if a step history was asked for.\n";
+    list(page, "Dynamics", schema::fields_of(result.dynamics));
+    page << "\nThe group `/dynamics` is there only if the scene has [large_displacements] and a stage.\n";
     list(page, "Failure", schema::fields_of(result.failure));
     page << "\nThe group `/failure` is there only in `NAME.failed.h5`, of a run that found no equilibrium. "
-            "All else in "
-            "such a file goes up to the last one.\n";
+            "All else in such a file goes up to the last one.\n";
     list(page, "Factor of safety", schema::fields_of(safety));
     page << "\nThe group `/safety` is there only if a factor of safety was asked for.\n";
     list(page, "Checkpoint", schema::fields_of(checkpoint));
     page << "\nOnly in files of `--checkpoint`, for a run to go on from.\n";
-    list(page, "Moved rock", schema::fields_of(checkpoint.moved));
-    page << "\nBeside it, in scenes with [motion].\n";
+    list(page, "State of a dynamic analysis", schema::fields_of(checkpoint.dynamics));
+    page << "\nBeside it, in scenes with [large_displacements].\n";
     return page.str();
 }
 

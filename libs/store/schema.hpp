@@ -16,7 +16,7 @@
 namespace jointcreep::schema
 {
 
-inline constexpr Index major_version = 1, minor_version = 0;
+inline constexpr Index major_version = 2, minor_version = 0;
 
 // Which values a dataset may hold. Real numbers are always finite.
 struct Limits {
@@ -62,13 +62,13 @@ struct Described {
 std::vector<Field> fields_of(Provenance& provenance);
 std::vector<Field> fields_of(Network& network);
 std::vector<Field> fields_of(EquivalentJoints& equivalent);
-std::vector<Field> fields_of(Result& result); // without its trace, motions and failure
-std::vector<Field> fields_of(Trace& trace);
-std::vector<Field> fields_of(Motions& motions);
+std::vector<Field> fields_of(Result& result); // without its step history, dynamics and failure
+std::vector<Field> fields_of(StepHistory& step_history);
+std::vector<Field> fields_of(DynamicsHistory& dynamics);
 std::vector<Field> fields_of(Failure& failure);
 std::vector<Field> fields_of(Safety& safety);
-std::vector<Field> fields_of(Checkpoint& checkpoint); // without moved rock
-std::vector<Field> fields_of(MovedRock& moved);
+std::vector<Field> fields_of(Checkpoint& checkpoint); // without the state of a dynamic analysis
+std::vector<Field> fields_of(DynamicsState& state);
 
 // To be asked only once the fields are within their limits. They refer to the record.
 std::vector<Invariant> invariants_of(const Network& network);

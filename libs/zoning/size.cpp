@@ -49,7 +49,7 @@ ZoneSize::ZoneSize(const Scene& scene, const Blocks& blocks) : scene_(scene)
             fine.push_back(
                 {blocks.vertex[blocks.edge_vertex[e][0]], blocks.vertex[blocks.edge_vertex[e][1]]});
     }
-    for (const MeasuringPoint& point : scene.points)
+    for (const MonitoringPoint& point : scene.points)
         fine.push_back({point.at, point.at});
     for (const Gauge& gauge : scene.gauges)
         fine.push_back({gauge.at, gauge.at});

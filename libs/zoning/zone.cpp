@@ -60,7 +60,7 @@ public:
                     for (const Index v : {t.triangle[z][(i + 1) % 3], t.triangle[z][(i + 2) % 3]})
                         link(z, other, v);
         for (const Side& side : t.side)
-            if (blocks.edge_kind[side.edge] == static_cast<Index>(EdgeKind::welded))
+            if (blocks.edge_kind[side.edge] == static_cast<Index>(EdgeKind::bonded))
                 for (const Index v : side.vertex)
                     link(side.triangle[0], side.triangle[1], v);
         std::stable_sort(links.begin(), links.end(),

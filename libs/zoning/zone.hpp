@@ -12,7 +12,7 @@ namespace jointcreep::zoning
 // Zones, gridpoints and contacts of the section.
 //
 // All blocks are triangulated together, so the zones on the two sides of any edge match. Then every gridpoint
-// on a joint is split into one for each piece of rock around it; blocks on a welded edge share theirs. Pieces
+// on a joint is split into one for each piece of rock around it; blocks on a bonded edge share theirs. Pieces
 // that only rock to be removed holds together at a gridpoint get one each, tied until then. A contact joins
 // two gridpoints that were one, carrying half of each piece of the block edge beside them. A boundary edge
 // that rests on a joint gets contacts to gridpoints of the fixed ground, which no zone uses and which are

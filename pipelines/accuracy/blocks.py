@@ -9,8 +9,8 @@ so that a block has about as many everywhere. Writes OUT/blocks.csv, OUT/blocks.
 tables/block-memory.md and tables/block-powers.md.
 
 Processor times of one thread, with reading and writing; each the least of three, or one where a run takes 3 s or more.
-The explicit engine and motion go up to MOST blocks. The explicit engine's error is its largest difference of a
-gridpoint's displacement to that by the implicit engine, over the largest displacement. Motion, with rigid rock, makes STEPS steps from the stress given,
+Dynamic relaxation and the dynamic analysis go up to MOST blocks. The error of dynamic relaxation is its largest difference of a
+gridpoint's displacement to that by the implicit engine, over the largest displacement. The dynamic analysis, with rigid rock, makes STEPS steps from the stress given,
 less what a run of one step costs.
 """
 
@@ -30,10 +30,10 @@ from scaling import measured
 from speed_against_error import number, table
 
 GROWTH = [0.6, 1, 1.7, 3, 5.3, 9.5, 16.5]  # over the slope's section
-MOST, STEPS = {"explicit": 1e5, "motion": 4e4}, 2000
-PROGRAMS = ["jointgen", "strength-averaging", "implicit", "explicit"]
+MOST, STEPS = {"relaxation": 1e5, "dynamics": 4e4}, 2000
+PROGRAMS = ["jointgen", "strength-averaging", "implicit", "relaxation"]
 NAMES = {"jointgen": "jointgen", "strength-averaging": "strength-averaging", "implicit": "demsolve, implicit",
-         "explicit": "demsolve, explicit", "motion": f"motion, {STEPS} steps"}
+         "relaxation": "demsolve, relaxation", "dynamics": f"dynamic, {STEPS} steps"}
 
 
 def scene_of(slope, growth, added=""):
@@ -49,8 +49,8 @@ def scene_of(slope, growth, added=""):
     return text + f'\n[[stage]]\nname = "bench"\ndate = 2001-04-01\nremove_m = [{bench}]\n' + added
 
 
-def motion_for(seconds):
-    return ('\n[motion]\nnew_contacts = "joint"\nrigid_rocks = ["granite"]\nrecord_every_s = 1000\n'
+def dynamics_for(seconds):
+    return ('\n[large_displacements]\nnew_contacts = "joint"\nrigid_rocks = ["granite"]\nrecord_every_s = 1000\n'
             f"longest_s = {seconds:.17g}\n")
 
 
@@ -69,9 +69,9 @@ class Chain:
     def solve(self, *options):
         return measured([self.programs / "demsolve", self.joints, "-q", "-o", self.result, *options])
 
-    def motion(self, growth, seconds):
-        """Time and memory [s, MB] of so many seconds of motion, which end before there is rest; and a step [s]."""
-        self.scene.write_text(scene_of(self.slope, growth, motion_for(seconds)))
+    def dynamics(self, growth, seconds):
+        """Time and memory [s, MB] of so many seconds of dynamic analysis, which end before there is rest; and a step [s]."""
+        self.scene.write_text(scene_of(self.slope, growth, dynamics_for(seconds)))
         subprocess.run([self.programs / "jointgen", self.scene, "-q", "-o", self.network], check=True)
         subprocess.run([self.programs / "strength-averaging", self.network, "-q", "-o", self.joints], check=True)
         taken = measured(["sh", "-c", '"$0" "$@"; [ $? = 3 ]', self.programs / "demsolve", self.joints, "-q", "-o",
@@ -85,7 +85,7 @@ def row_of(chain, growth):
     averages = dict(zip(PROGRAMS, chain.prepare(growth)))
     with figure.opened(chain.joints) as file:
         row = {"growth": growth, "blocks": len(figure.array(file, "/blocks/area"))}
-    for engine in "implicit", "explicit":
+    for engine in "implicit", "relaxation":
         if row["blocks"] > MOST.get(engine, math.inf):
             continue
         averages[engine] = chain.solve("--engine", engine)
@@ -99,13 +99,13 @@ def row_of(chain, growth):
                 row["back_substitutions"] = int(figure.array(file, "/equilibria/solves").sum())
                 by_implicit = displacement
             else:
-                row["explicit_error"] = (np.linalg.norm(displacement - by_implicit, axis=1).max()
+                row["relaxation_error"] = (np.linalg.norm(displacement - by_implicit, axis=1).max()
                                          / np.linalg.norm(by_implicit, axis=1).max())
-    if row["blocks"] <= MOST["motion"]:
-        start, _, step = chain.motion(growth, 1e-12)
-        seconds, memory, _ = chain.motion(growth, (STEPS - 0.5) * step)
-        row["motion_step_s"] = step
-        averages["motion"] = seconds - start, memory
+    if row["blocks"] <= MOST["dynamics"]:
+        start, _, step = chain.dynamics(growth, 1e-12)
+        seconds, memory, _ = chain.dynamics(growth, (STEPS - 0.5) * step)
+        row["dynamics_step_s"] = step
+        averages["dynamics"] = seconds - start, memory
     for program, (seconds, memory) in averages.items():
         row |= {f"{program}_s": seconds, f"{program}_MB": memory}
     return row
@@ -144,10 +144,10 @@ def write(rows, out):
         writer.writerows(rows)
     tables = out / "tables"
     lines = [[row["blocks"], f"{row['zones'] / row['blocks']:.1f}", *(per_block(row, name, "s") for name in NAMES),
-              row["factorisations"], row["back_substitutions"], row.get("explicit_steps", ""),
-              number(row.get("explicit_error"))] for row in rows]
-    head = ["blocks", "zones a block", *NAMES.values(), "factorisations", "back-substitutions", "steps, explicit",
-            "error, explicit"]
+              row["factorisations"], row["back_substitutions"], row.get("relaxation_steps", ""),
+              number(row.get("relaxation_error"))] for row in rows]
+    head = ["blocks", "zones a block", *NAMES.values(), "factorisations", "back-substitutions", "steps, relaxation",
+            "error, relaxation"]
     (tables / "blocks.md").write_text("\n".join(table(head, lines)).rstrip() + "\n")
     lines = [[row["blocks"], *(per_block(row, name, "MB") for name in NAMES)] for row in rows]
     (tables / "block-memory.md").write_text("\n".join(table(["blocks", *NAMES.values()], lines)).rstrip() + "\n")

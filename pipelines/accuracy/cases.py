@@ -64,7 +64,7 @@ def offer_of(demsolve):
         after = re.search(rf"{option}\b(.*?)(?= --|$)", text)
         return [c for c in all_of_them if re.search(rf"\b{c}\b", after[1])] if after else all_of_them[:1]
 
-    return Offer(choices("--engine", ["explicit", "implicit"]),
+    return Offer(choices("--engine", ["relaxation", "implicit"]),
                  choices("--creep-scheme", ["published", "backward", "linear-force", "fitted"]),
                  "--engine" in text, "--creep-scheme" in text, "--creep-tolerance" in text)
 
@@ -186,7 +186,7 @@ def all_cases(data, offer):
 
     for kind, scene_of, name, form in (("platens", platens_scene, "platens", closed_forms.platens),
                                        ("two pillars", pillars_scene, "two-pillars", closed_forms.two_pillars)):
-        for ratio in RATIOS if kind == "platens" or offer.fastest != "explicit" else []:
+        for ratio in RATIOS if kind == "platens" or offer.fastest != "relaxation" else []:
             scene = scene_of(text(f"verification/{name}"), ratio, end=10 / RATE)
             runs = creep_runs(offer, [offer.fastest], LONG_STEPS, tolerance=TIGHT)
             cases.append(Case(f"{kind} {ratio:g}, long", f"{kind}, K/E = {ratio:g}, over lam T = 10", scene, runs,
@@ -204,18 +204,18 @@ def all_cases(data, offer):
     cases.append(Case("opening joints", "slope with opening joints", text("verification/opening-joints"), [
         *creep_runs(offer, offer.engines, [24, 12, 6, 3, 1.5], powers(4, 7), tolerance=1e-8),
         *equilibrium_runs(offer, powers(3, 8), [5, 2.5, 1.25]),
-        *([Run("zone size", offer.fastest, zone_size=0.7)] if offer.fastest != "explicit" else [])],
+        *([Run("zone size", offer.fastest, zone_size=0.7)] if offer.fastest != "relaxation" else [])],
         references=[Run("reference", "implicit", "fitted", step=0.1875, tolerance=1e-10),
-                    Run("reference", "explicit", "fitted", step=0.75, tolerance=1e-10),
-                    Run("reference", "explicit", "published", step=0.1875, tolerance=1e-10)]))
+                    Run("reference", "relaxation", "fitted", step=0.75, tolerance=1e-10),
+                    Run("reference", "relaxation", "published", step=0.1875, tolerance=1e-10)]))
     slope = [run for run in creep_runs(offer, offer.engines, [28, 14, 7, 3.5], powers(4, 7), tolerance=1e-7)
              if run.engine == offer.fastest or run.step in (28, 14) and run.scheme in ("published", "fitted")]
     cases.append(Case("slope with slip", "slope with slip", text("slope"), [
         *slope, *equilibrium_runs(offer, [1e-4, 1e-5, 1e-6, 1e-7], [6, 3]),
-        *([Run("zone size", offer.fastest, zone_size=1.5)] if offer.fastest != "explicit" else [])],
+        *([Run("zone size", offer.fastest, zone_size=1.5)] if offer.fastest != "relaxation" else [])],
         references=[Run("reference", "implicit", "fitted", step=0.875, tolerance=1e-9),
-                    Run("reference", "explicit", "fitted", step=3.5, tolerance=1e-8),
-                    Run("reference", "explicit", "published", step=1.75, tolerance=1e-8)], every_state=False))
+                    Run("reference", "relaxation", "fitted", step=3.5, tolerance=1e-8),
+                    Run("reference", "relaxation", "published", step=1.75, tolerance=1e-8)], every_state=False))
     return cases
 
 

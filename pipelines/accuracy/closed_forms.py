@@ -1,6 +1,6 @@
 """Exact answers to the scenes of data/verification, and a rigid body followed in tiny steps where there are none.
 
-A closed form takes a scene, as tomllib reads it, and gives an Answer: where the measuring points are and what the
+A closed form takes a scene, as tomllib reads it, and gives an Answer: where the monitoring points are and what the
 contacts bear, at any time. Signs are those of the files: displacements to the right and up, tension and opening
 positive. Stresses in Pa, lengths in m, times in days since the start. A load that a scene ramps within a tiny part
 of a day counts as put on at once, at the start.
@@ -82,8 +82,8 @@ def points(scene):
 
 
 def load(scene, key):
-    """The one load of that key that has a course, {x, y}; of several like it the last."""
-    return np.array([b for b in scene["boundary"] if key in b and "course" in b][-1][key], float)
+    """The one load of that key that has a load history, {x, y}; of several like it the last."""
+    return np.array([b for b in scene["boundary"] if key in b and "load_history" in b][-1][key], float)
 
 
 def column(scene):
@@ -352,7 +352,7 @@ def v_groove(scene, contacts, first_traction, days, step=0.01):
     ends = np.array([push["from_m"], push["to_m"]], float)
     whole = np.array(push["traction_MPa"]) * 1e6 * np.linalg.norm(ends[1] - ends[0])
     place = ends.mean(axis=0)
-    times, factors = np.array(push["course"], float).T
+    times, factors = np.array(push["load_history"], float).T
 
     def force_at(day):
         force = whole * np.interp(day, times, factors)
@@ -364,14 +364,14 @@ def v_groove(scene, contacts, first_traction, days, step=0.01):
 
 
 def single_contact(scene, contacts, first_traction, days, step=1e-3):
-    """data/verification/single-contact: tractions [day, contact, 2] of contacts whose jump is the top's displacement.
+    """data/verification/single-contact: tractions [day, contact, 2] of contacts whose relative displacement is the top's displacement.
 
     In tiny steps: the Kelvin parts go to the end of each with the mean of the tractions at its two ends.
     """
     law = law_of(scene, contacts)
     top = next(b for b in scene["boundary"] if "displacement_mm" in b)
-    times, factors = np.array(top["course"], float).T
-    to_jump = np.stack([contacts.normal, contacts.tangent], axis=1) @ (1e-3 * np.array(top["displacement_mm"], float))
+    times, factors = np.array(top["load_history"], float).T
+    to_relative = np.stack([contacts.normal, contacts.tangent], axis=1) @ (1e-3 * np.array(top["displacement_mm"], float))
     last = np.array(first_traction, float)
     kelvin, slip, now, found = np.zeros_like(last), np.zeros(len(last)), 0.0, [last]
     for day in days[1:]:
@@ -379,7 +379,7 @@ def single_contact(scene, contacts, first_traction, days, step=1e-3):
         dt = (day - now) / n_steps
         decay = np.exp(-law.e / law.eta * dt)
         for i in range(n_steps):
-            sprung = to_jump * np.interp(now + (i + 1) * dt, times, factors)
+            sprung = to_relative * np.interp(now + (i + 1) * dt, times, factors)
             traction = last
             for _ in range(3):
                 after = kelvin * decay + (1 - decay) * ((last + traction) / 2 - first_traction) / law.e

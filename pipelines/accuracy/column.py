@@ -87,7 +87,7 @@ def runs_of(text):
         runs.append(Run("way to equilibrium", f"real masses, mass damping {factor * damping:g} /s",
                         edited(text, f"mass_damping_per_s = {damping:g}", f"mass_damping_per_s = {factor * damping:g}")))
     for kind in ("adaptive", "local"):
-        settings = f'engine = "explicit"\nmasses = "scaled"\ndamping = "{kind}"\nmost_steps = 20000000'
+        settings = f'engine = "relaxation"\nmasses = "scaled"\ndamping = "{kind}"\nmost_steps = 20000000'
         runs.append(Run("way to equilibrium", f"scaled masses, {kind} damping", with_equilibrium(text, settings)))
     runs.append(Run("way to equilibrium", "implicit engine", with_equilibrium(text, 'engine = "implicit"')))
 

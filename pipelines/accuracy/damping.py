@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""What each way to equilibrium costs: steps of motion by each kind of damping, and the implicit engine.
+"""What each way to equilibrium costs: steps of dynamic relaxation by each kind of damping, and the implicit engine.
 
     damping.py BIN DATA OUT
 
@@ -45,7 +45,7 @@ class Load:
 
 def with_equilibrium(text, damping, masses):
     settings = f'tolerance = {TOLERANCE}\nmost_steps = {MOST_STEPS}\n'
-    settings += (f'engine = "explicit"\ndamping = "{damping}"\nmasses = "{masses}"\n' if masses
+    settings += (f'engine = "relaxation"\ndamping = "{damping}"\nmasses = "{masses}"\n' if masses
                  else 'engine = "implicit"\n')
     if damping == "mass":
         settings += f"mass_damping_per_s = {MASS_DAMPING}\n"
@@ -97,7 +97,7 @@ def row_of(section, zones_about, load, way, size, programs, scratch):
                 for name in ("steps", "factorisations", "solves")}
         row |= {"zones": len(figure.array(file, "/mesh/zone_block")),
                 "moved": figure.array(file, "/history/displacement")[-1]}
-    # Without any load the implicit engine factorises all the same, and motion does not begin.
+    # Without any load the implicit engine factorises all the same, and dynamic relaxation does not begin.
     without, _ = solve(load.without, BEST[0] if load.is_all else way, size, programs, scratch)
     return row | {"seconds": seconds - without}
 

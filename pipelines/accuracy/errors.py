@@ -29,12 +29,12 @@ class Result:
     period: np.ndarray  # of the states: how many stages there have been
     contacts: closed_forms.Contacts
     traction: np.ndarray  # [state, contact, {normal, shear}] [Pa]
-    jump: np.ndarray  # the same [m]
+    relative_displacement: np.ndarray  # the same [m]
     status: np.ndarray  # [state, contact]: 0 removed, 1 stuck, 2 slipping, 3 open
     stiffness: np.ndarray  # [contact, {normal, shear}] [Pa/m]
     zones: int
     equilibria: int  # sought in all, also with creep steps that were too long
-    steps: int  # of motion, and corrections by the implicit engine, in all of them
+    steps: int  # of dynamic relaxation, and corrections by the implicit engine, in all of them
     factorisations: int
     solves: int  # back-substitutions
     version: str
@@ -48,7 +48,7 @@ def stiffness_of(scene, materials):
 
 def slip_of(result):
     """Slip of the contacts of a run without creep, less that at the start [state, contact]; nan where removed or open."""
-    slip = result.jump[:, :, 1] - (result.traction[:, :, 1] - result.traction[0, :, 1]) / result.stiffness[:, 1]
+    slip = result.relative_displacement[:, :, 1] - (result.traction[:, :, 1] - result.traction[0, :, 1]) / result.stiffness[:, 1]
     return np.where((result.status == 0) | (result.status == 3), np.nan, slip)
 
 
@@ -72,7 +72,7 @@ def result_of(path):
         return Result(scene, figure.texts(file, "/history/point"), float(array("/history/time")[-1]),
                       displacement[-1], np.abs(displacement).max(axis=0), array("/states/time"),
                       np.cumsum([event != "" for event in events]), contacts, array("/states/traction"),
-                      array("/states/jump"), array("/states/contact_status"), stiffness_of(scene, contacts.material),
+                      array("/states/relative_displacement"), array("/states/contact_status"), stiffness_of(scene, contacts.material),
                       len(array("/mesh/zone_block")),
                       *(int(array(f"/equilibria/{what}").sum()) for what in
                         ("searches", "steps", "factorisations", "solves")),

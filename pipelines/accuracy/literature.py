@@ -5,7 +5,7 @@
 
 Writes the tables literature.md and cantilever.md into OUT/tables, for the page docs/accuracy.md. Each problem is a
 function that runs its scene of data/verification and gives Rows: a figure by closed form, the same computed, and the
-error that is to be expected, with its reason. Each is run by factorisation and by motion, where both mean something.
+error that is to be expected, with its reason. Each is run by the implicit engine and by dynamic relaxation, where both mean something.
 tests/pipeline/literature_test.py holds each row to its error.
 """
 
@@ -270,7 +270,7 @@ def weakness(programs):
     for dip in 0, 20, 30, 45, 60, 75:
         text = weakness_scene(programs.text("plane-of-weakness"), dip)
         increments = 50
-        if programs.engine == "explicit":
+        if programs.engine == "relaxation":
             increments = 1000 if dip < 30 else 400
             text = changed(text, "^unloading_increments = 50", f"unloading_increments = {increments}")
         result = programs.result(text)
@@ -278,9 +278,9 @@ def weakness(programs):
         strength, fails = closed_forms.plane_of_weakness(
             math.radians(dip), 1e6, material_of(result.scene, "joint")[2:],
             (rock["cohesion_MPa"] * 1e6, math.radians(rock["friction_angle_deg"])))
-        # Motion of rock that yields overshoots by what an increment brings, and leaves that much over 50: method,
-        # section 4. A joint slips in exact proportion. Motion from the start overshoots by all of it.
-        overshoot = 4e-3 if programs.engine == "explicit" else 3e-3, f"overshoot of rock that yields, in {increments} increments"
+        # Dynamic relaxation of rock that yields overshoots by what an increment brings, and leaves that much over 50: method,
+        # section 4. A joint slips in exact proportion. Dynamic relaxation from the start overshoots by all of it.
+        overshoot = 4e-3 if programs.engine == "relaxation" else 3e-3, f"overshoot of rock that yields, in {increments} increments"
         allowed, why = overshoot if fails == "rock" else (2e-5, BALANCE)
         rows.append(Row("plane of weakness (Jaeger 1960)", f"axial strength, joint at {dip} degrees ({fails} fails)",
                         "MPa", strength / 1e6, -result.mean_stress()[1] / 1e6, allowed, why))
@@ -298,17 +298,17 @@ def wedge_given(scene):
 def roof_wedge(programs):
     name = "roof wedge (Crawford and Bray 1983)"
     text, soft = programs.text("roof-wedge"), "rock is 1e5 times stiffer than joints"
-    if programs.engine == "explicit":
+    if programs.engine == "relaxation":
         text, soft = text + "\n[equilibrium]\nunloading_increments = 300\n", f"{soft}; 300 increments between readings"
     result = programs.result(text)
     given = wedge_given(result.scene)
     limit, reached = closed_forms.roof_wedge_limit(*given)
-    course = result.scene["boundary"][-1]["course"]
+    load_history = result.scene["boundary"][-1]["load_history"]
     sides = result.contacts_of("left") | result.contacts_of("right")
     # Its normals point from side a to side b: the wedge is side a where they point away from its middle.
     outward = ((result["/mesh/contact_centre"] - [0, 1]) * result["/mesh/contact_normal"]).sum(axis=1) > 0
     rows = []
-    for day, factor in course[1:]:
+    for day, factor in load_history[1:]:
         state = result.state_at(day)
         held = result.force(sides & outward, state)[1] - result.force(sides & ~outward, state)[1]
         rows.append(Row(name, f"force that moves the wedge {factor:g} mm down", "MN/m",
@@ -322,8 +322,8 @@ def roof_wedge(programs):
 
 
 def wedge_loaded(text, pressure):
-    return changed(text, r'^fix = "xy"\ndisplacement_mm.*\ncourse.*',
-                   f"traction_MPa = [0, {-pressure / 1e6:.12g}]\ncourse = [[0, 0], [50, 1]]")
+    return changed(text, r'^fix = "xy"\ndisplacement_mm.*\nload_history.*',
+                   f"traction_MPa = [0, {-pressure / 1e6:.12g}]\nload_history = [[0, 0], [50, 1]]")
 
 
 def stands(programs, text, *options):
@@ -435,10 +435,10 @@ def crack(programs):
     result = programs.result(text)
     k_n, k_s, _, phi = material_of(result.scene, "slipping")
     compliances = closed_forms.slipping_crack(math.pi / 4, math.sqrt(2), 0.54, k_n, k_s, phi)
-    course = result.scene["boundary"][-1]["course"][1:]
-    forces = closed_forms.cyclic_force([factor * 1e-3 for _, factor in course], compliances)
+    load_history = result.scene["boundary"][-1]["load_history"][1:]
+    forces = closed_forms.cyclic_force([factor * 1e-3 for _, factor in load_history], compliances)
     rows = []
-    for (day, factor), force, part in zip(course, forces, ("load", "load", "let go", "let go", "let go, slips back",
+    for (day, factor), force, part in zip(load_history, forces, ("load", "load", "let go", "let go", "let go, slips back",
                                                            "let go, slips back", "load again", "load again, slips",
                                                            "load again, slips")):
         found = axial_force(result, result.state_at(day))
@@ -482,9 +482,9 @@ def sheared_layers(programs):
 # Waves and falls
 
 
-def traced(programs, text):
-    """What a run of motion that ends without equilibrium has traced."""
-    path, code, message = programs.answer(text, "--trace", 1)
+def step_history(programs, text):
+    """The step history of a run of dynamic relaxation that ends without equilibrium."""
+    path, code, message = programs.answer(text, "--step-history", 1)
     if code != 3:
         raise RuntimeError(f"demsolve ended with exit code {code}, not 3: {message}")
     return Result(path)
@@ -504,16 +504,16 @@ def wave(programs):
     name = "P-wave through a joint (Schoenberg 1980)"
     text = programs.text("wave-in-a-bar")
     whole = re.sub(r"(?s)\[\[(joint|gauge)\]\]\n.*?\n\n", "", text)
-    with_joint, without = traced(programs, text), traced(programs, whole)
+    with_joint, without = step_history(programs, text), step_history(programs, whole)
     young, nu = elastic_of(without.scene)
     speed, impedance = closed_forms.p_wave(young, nu, without.scene["rock"][0]["density_kg_per_m3"])
     pressure, stiffness = 1e6, material_of(without.scene, "joint")[0]
     lag = impedance / (2 * stiffness)
     until = 140 / speed  # then the ends come in
-    time = with_joint["/trace/solver_time"]
+    time = with_joint["/step_history/solver_time"]
     seen = time < until
     time = time[seen]
-    with_joint, without = (-result["/trace/displacement"][seen, :, 0].T for result in (with_joint, without))
+    with_joint, without = (-result["/step_history/displacement"][seen, :, 0].T for result in (with_joint, without))
     # Without the joint: a straight line from the arrival on.
     lines = [np.polyfit(time[time > 1.2 * x / speed], u[time > 1.2 * x / speed], 1)
              for x, u in zip((40, 60), without)]
@@ -546,14 +546,14 @@ def free_fall(programs):
         text = programs.text("free-fall") + ('rigid_rocks = ["rock"]\n' if rigid else "")
         result = programs.result(text)
         kind = "rigid" if rigid else "zones that deform"
-        time, energy = result["/motions/motion_time"], result["/motions/kinetic_energy"]
+        time, energy = result["/dynamics/dynamic_time"], result["/dynamics/kinetic_energy"]
         falls = (time > 0.1) & (time < 0.95 * math.sqrt(2 * 5 / 9.81))
         acceleration = np.polyfit(time[falls], np.sqrt(2 * energy[falls] / (2700 * 4)), 1)[0]
         # Zones spring back when the weight that pressed them goes: p^2 / 2 E over m g^2 t^2 / 2 at 0.1 s is 3e-6.
-        rows.append(Row(f"free fall by [motion] ({kind})", "acceleration", "m/s2", 9.81, acceleration, 1e-4,
+        rows.append(Row(f"free fall by [large_displacements] ({kind})", "acceleration", "m/s2", 9.81, acceleration, 1e-4,
                         "steps of central differences; in zones, vibration"))
         # Joint and rock give way by less under the block than they did under the prop.
-        rows.append(Row(f"free fall by [motion] ({kind})", "where it comes to rest", "m", -5, result.point("block")[1], 1e-4,
+        rows.append(Row(f"free fall by [large_displacements] ({kind})", "where it comes to rest", "m", -5, result.point("block")[1], 1e-4,
                         "joints and rock close by less than 0.1 mm"))
     return rows
 
@@ -570,10 +570,10 @@ def friction(programs):
                 25, bracket(25, 0.001 / 25, falls), 1.001 * 0.001 / 25, "looked at 0.001 degree to either side")]
 
 
-# By which engines: factorisation, with motion where it gives up (auto), and motion alone.
-PROBLEMS = {kirsch: ("auto", "explicit"), cantilever: ("auto", "explicit"), weakness: ("auto", "explicit"),
-            roof_wedge: ("auto", "explicit"), toppling: ("auto",), crack: ("auto", "explicit"),
-            sheared_layers: ("auto", "explicit"), friction: ("auto", "explicit"), wave: ("explicit",),
+# By which engines: the implicit one, with dynamic relaxation where it gives up (auto), and dynamic relaxation alone.
+PROBLEMS = {kirsch: ("auto", "relaxation"), cantilever: ("auto", "relaxation"), weakness: ("auto", "relaxation"),
+            roof_wedge: ("auto", "relaxation"), toppling: ("auto",), crack: ("auto", "relaxation"),
+            sheared_layers: ("auto", "relaxation"), friction: ("auto", "relaxation"), wave: ("relaxation",),
             free_fall: ("auto",)}
 
 

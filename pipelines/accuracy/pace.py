@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The pace of motion beside a bare loop of the same arithmetic, on one thread and on two.
+"""The pace of dynamic relaxation and of the dynamic analysis beside a bare loop of the same arithmetic, on one thread and on two.
 
     pace.py BIN PACE_BENCHMARK DATA OUT
 

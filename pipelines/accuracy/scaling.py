@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Time and memory against the number of zones, and the implicit engine beside the explicit one at equal error.
+"""Time and memory against the number of zones, and the implicit engine beside dynamic relaxation at equal error.
 
     scaling.py BIN FACTOR_BENCHMARK DATA OUT
 
@@ -35,8 +35,8 @@ from speed_against_error import number, table
 
 SIZES = {"slope": [6, 3, 1.6, 1, 0.7, 0.45], "column": [1.25, 0.6, 0.3, 0.17, 0.1]}  # of zones [m]
 FINE, WEEK = 1.6, 7  # zones [m] and creep step [day] of the comparison of engines
-TIGHT = {"implicit": 1e-9, "explicit": 1e-8}
-TOLERANCES = {"implicit": [1e-3, 1e-4, 1e-5, 1e-6, 1e-7], "explicit": [1e-3, 1e-4, 1e-5, 1e-6, 1e-7]}
+TIGHT = {"implicit": 1e-9, "relaxation": 1e-8}
+TOLERANCES = {"implicit": [1e-3, 1e-4, 1e-5, 1e-6, 1e-7], "relaxation": [1e-3, 1e-4, 1e-5, 1e-6, 1e-7]}
 # In a process of its own, small: a child starts with its parent's size as the most memory that it ever had.
 MEASURE = """import json, os, subprocess, sys
 child = subprocess.Popen(sys.argv[1:], stdout=subprocess.DEVNULL, env=dict(os.environ, OMP_NUM_THREADS="1"))
@@ -226,11 +226,11 @@ def equal_error(section, out):
                 rows.append([name, engine, tolerance, seconds, error, result.equilibria, result.steps,
                              result.factorisations, result.solves, beside, least.changes, least.seconds])
         for tolerance, seconds, error, result in found["implicit"]:
-            reached = min(run[2] for run in found["explicit"]) <= error <= max(run[2] for run in found["explicit"])
-            explicit = seconds_at(found["explicit"], error) if reached else math.nan
+            reached = min(run[2] for run in found["relaxation"]) <= error <= max(run[2] for run in found["relaxation"])
+            relaxation = seconds_at(found["relaxation"], error) if reached else math.nan
             lines.append([name, f"{tolerance:g}", number(error), result.equilibria, least.changes,
                           result.factorisations, result.solves,
-                          number(explicit / seconds, ".0f"), number((explicit - beside) / (seconds - beside), ".0f"),
+                          number(relaxation / seconds, ".0f"), number((relaxation - beside) / (seconds - beside), ".0f"),
                           f"{(seconds - beside) / least.seconds:.1f}", f"{seconds / (least.seconds + beside):.1f}"])
     with open(out / "equal-error.csv", "w", newline="") as file:
         writer = csv.writer(file)
@@ -239,7 +239,7 @@ def equal_error(section, out):
         writer.writerows(rows)
     (out / "tables/equal-error.md").write_text("\n".join(table(
         ["slope, 2e4 zones", "tolerance", "error", "equilibria", "with changed contacts", "factorisations",
-         "back-substitutions", "explicit / implicit", "of equilibria only", "equilibria / least", "run / least run"],
+         "back-substitutions", "relaxation / implicit", "of equilibria only", "equilibria / least", "run / least run"],
         lines)).rstrip() + "\n")
 
 

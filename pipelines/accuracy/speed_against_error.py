@@ -11,7 +11,7 @@ runs the programs in BIN on scenes of the folder DATA and writes into OUT
     force-time.png, displacement-time.png, force-equilibria.png      every case, one panel each
 
 Time is processor time of demsolve, user and system, over that of the unit: the column as its scene says, run by the
-explicit engine. The files that demsolve writes are part of it.
+dynamic relaxation. The files that demsolve writes are part of it.
 """
 
 import csv
@@ -255,7 +255,7 @@ def slip_table(programs, data, unit):
         text = of.with_default_equilibrium((data / scene / "scene.toml").read_text())
         found = []
         for engine in reversed(programs.offer.engines):
-            for way, settings in ways if engine == "explicit" and title == "friction stack" else [("", "")]:
+            for way, settings in ways if engine == "relaxation" and title == "friction stack" else [("", "")]:
                 for increments in (most, 16, 1) if way in ("", "adaptive damping") else (16, 1):
                     joints = programs.prepare(f"{text}\n[equilibrium]\nunloading_increments = {increments}\n"
                                               f"most_steps = 20000000\n{settings}\n")
@@ -371,7 +371,7 @@ def column_line(rows, unit):
         return ""
     return (f"By the implicit engine the column's displacements are within {number(row.displacement)} of the closed form, "
             f"its tractions within {number(row.traction)}, after {unit * row.time:.2g} s with reading and writing; by "
-            f"motion, as the scene says, it takes {unit:.2g} s.")
+            f"dynamic relaxation, as the scene says, it takes {unit:.2g} s.")
 
 
 def main():
@@ -384,7 +384,7 @@ def main():
     with tempfile.TemporaryDirectory() as scratch:
         programs = Programs(binaries, data, Path(scratch))
         joints = programs.prepare((data / "column/scene.toml").read_text())
-        unit, code, message, result = programs.solve(joints, of.Run("unit", "explicit").options(programs.offer))
+        unit, code, message, result = programs.solve(joints, of.Run("unit", "relaxation").options(programs.offer))
         if code != 0:
             sys.exit(f"speed_against_error.py: the column: {message}")
         cases = (of.quick_cases if quick else of.all_cases)(data, programs.offer)

@@ -9,14 +9,14 @@ import figure
 COLORS = {"published": figure.COLORS[1], "backward": figure.COLORS[3], "linear-force": figure.COLORS[2],
           "fitted": figure.COLORS[0], "": "black"}
 MARKERS = {"published": "o", "backward": "s", "linear-force": "^", "fitted": "D"}
-LINES = {"explicit": "--", "implicit": "-", "": ""}
+LINES = {"relaxation": "--", "implicit": "-", "": ""}
 
 
 def label_of(run, offer):
     """What a line of the picture is called, and how it looks."""
     engine = f"{run.engine}: " if len(offer.engines) > 1 and run.engine else ""
     look = {"linestyle": LINES[run.engine], "markersize": 3.5,
-            "markerfacecolor": "white" if run.engine == "explicit" else None}
+            "markerfacecolor": "white" if run.engine == "relaxation" else None}
     if run.study == "creep step":
         return f"{engine}{run.scheme}, dT", look | {"color": COLORS[run.scheme], "marker": MARKERS[run.scheme]}
     if run.study == "creep tolerance":

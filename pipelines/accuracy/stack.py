@@ -5,12 +5,12 @@
 
 Cubes of 1 m on joints, the lowest one on fixed ground, under their weight. The top one is taken away, and the others
 rise: block i by i times the weight over the joints' stiffness. Both programs have real masses and rigid blocks,
-demsolve by [motion] with rigid rock; beside it its two engines of small displacements, where blocks deform, with their
+demsolve by [large_displacements] with rigid rock; beside it its two engines of small displacements, where blocks deform, with their
 closed form. Writes OUT/stack.csv and OUT/tables/stack.md. On two threads it measures wall time, so it wants an idle
 machine.
 
 YADE (Debian's package yade, yade_stack.py) is asked for `ENOUGH` and for at most LIMIT seconds, demsolve for its
-certificate, TOLERANCE.
+convergence criteria, TOLERANCE.
 """
 
 import csv
@@ -37,9 +37,9 @@ DENSITY, GRAVITY, NORMAL, SHEAR, FRICTION = 2700, 9.81, 5e9, 2e9, 40  # [kg/m3],
 YOUNG = 20e9  # of blocks that deform; their Poisson's ratio is 0 [Pa]
 TOLERANCE, ENOUGH, LIMIT = 1e-6, 1e-3, 60
 SHORTEST = 0.03  # what a difference of two runs can tell [s]
-WAYS = {"rigid, by motion": ("", '[motion]\nnew_contacts = "joint"\nrigid_rocks = ["rock"]\nlongest_s = 1000\n'
+WAYS = {"rigid, dynamic analysis": ("", '[large_displacements]\nnew_contacts = "joint"\nrigid_rocks = ["rock"]\nlongest_s = 1000\n'
                                  "record_every_s = 1000\n"),
-        "elastic, explicit engine": ('engine = "explicit"\n', ""),
+        "elastic, dynamic relaxation": ('engine = "relaxation"\n', ""),
         "elastic, implicit engine": ('engine = "implicit"\n', "")}
 
 SCENE = """
@@ -88,10 +88,10 @@ remove_m = [[[0, {below}], [1, {below}], [1, {blocks}], [0, {blocks}]]]
 
 
 def scene_of(blocks, way, with_stage):
-    equilibrium, motion = WAYS[way]
+    equilibrium, dynamics = WAYS[way]
     text = SCENE.format(blocks=blocks, gravity=GRAVITY, density=DENSITY, young=YOUNG / 1e9, normal=NORMAL / 1e6,
                         shear=SHEAR / 1e6, friction=FRICTION, gradient=DENSITY * GRAVITY / 1e6, tolerance=TOLERANCE)
-    text += equilibrium + motion
+    text += equilibrium + dynamics
     text += "".join(f'[[joint]]\nname = "{i}"\nfrom_m = [0, {i}]\nto_m = [1, {i}]\nmaterial = "joint"\n'
                     for i in range(1, blocks))
     text += "".join(f'[[point]]\nname = "{i}"\nat_m = [0.5, {i + 0.5}]\n' for i in range(blocks - 1))
@@ -122,7 +122,7 @@ def ours(programs, blocks, way, scratch):
     with figure.opened(result) as file:
         rise = figure.array(file, "/history/displacement")[-1, :, 1]
         steps = int(figure.array(file, "/equilibria/steps")[-1])
-        ratio = figure.array(file, "/equilibria/out_of_balance_ratio")[-1]
+        ratio = figure.array(file, "/equilibria/unbalanced_force_ratio")[-1]
         contacts = len(figure.array(file, "/mesh/contact_edge"))
     pull = DENSITY * GRAVITY
     exact = np.array([(i + 1) * pull / NORMAL + (0 if "rigid" in way else (i + 0.5) * pull / YOUNG)
@@ -131,7 +131,7 @@ def ours(programs, blocks, way, scratch):
         contacts = blocks  # pairs of faces
     pace = [steps * contacts / (taken[1] - taken[0]) if steps > 1 and taken[1] - taken[0] > 2 * SHORTEST else None
             for taken in (seconds, wall)]
-    return {"blocks": blocks, "way": way, "error": abs(rise - exact).max() / exact.max(), "out_of_balance": ratio,
+    return {"blocks": blocks, "way": way, "error": abs(rise - exact).max() / exact.max(), "unbalanced_force_ratio": ratio,
             "steps": steps, "seconds": seconds[1] - seconds[0], "contact_steps_per_s": pace[0],
             "on_two_threads": pace[1]}
 
@@ -150,7 +150,7 @@ def yades(yade, blocks, turns, scratch):
     alone, both = found
     steps, seconds = alone["within"] or (None, None)
     return {"blocks": blocks, "way": f"YADE, {'free in the plane' if turns else 'rotations held'}",
-            "error": alone["error"], "out_of_balance": alone["out_of_balance"], "steps": steps, "seconds": seconds,
+            "error": alone["error"], "unbalanced_force_ratio": alone["unbalanced_force_ratio"], "steps": steps, "seconds": seconds,
             "contact_steps_per_s": alone["steps_per_s"] * alone["contacts"],
             "on_two_threads": both["steps_per_s"] * both["contacts"]}
 
@@ -177,11 +177,11 @@ def write(rows, out):
         writer = csv.DictWriter(file, rows[0])
         writer.writeheader()
         writer.writerows(rows)
-    lines = [[row["blocks"], row["way"], number(row["error"]), number(row["out_of_balance"]),
+    lines = [[row["blocks"], row["way"], number(row["error"]), number(row["unbalanced_force_ratio"]),
               row["steps"] or f"not in {LIMIT} s",
               f"below {SHORTEST}" if row["seconds"] and row["seconds"] < SHORTEST else number(row["seconds"], ".2g"),
               number(row["contact_steps_per_s"]), number(row["on_two_threads"])] for row in rows]
-    head = ["blocks", "way", "error of the rise", "out-of-balance ratio", "steps", "seconds", "contact-steps per s",
+    head = ["blocks", "way", "error of the rise", "unbalanced force ratio", "steps", "seconds", "contact-steps per s",
             "on two threads"]
     (out / "tables/stack.md").write_text("\n".join(table(head, lines)).rstrip() + "\n")
 

@@ -39,8 +39,8 @@ def add_cube(middle, fixed):
     return O.bodies.append(body)
 
 
-def out_of_balance():
-    """Largest force out of balance on a cube, over the mean of the sum of the magnitudes of all."""
+def unbalanced_force_ratio():
+    """Largest unbalanced force on a cube, over the mean of the sum of the magnitudes of all."""
     sums = dict.fromkeys(ids, weight)
     for contact in O.interactions:
         for i in (contact.id1, contact.id2):
@@ -106,7 +106,7 @@ O.run()
 O.wait()
 O.engines = steps
 found = {"steps": watch.steps, "seconds": watch.seconds, "error": watch.error, "within": watch.within,
-         "out_of_balance": out_of_balance(), "steps_per_s": pace(),
+         "unbalanced_force_ratio": unbalanced_force_ratio(), "steps_per_s": pace(),
          "contacts": sum(1 for contact in O.interactions if contact.isReal)}
 with open(sys.argv[2], "w") as file:
     json.dump(found, file)

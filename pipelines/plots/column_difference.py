@@ -3,7 +3,7 @@
 
     column_difference.py RESULT.h5 [--within 1e-3]
 
-compares the rise of every measuring point at every recorded time with column_closed_form.py, from the first removal
+compares the rise of every monitoring point at every recorded time with column_closed_form.py, from the first removal
 until the point is removed itself, and prints the largest relative difference and where it is. Exit code 1 if that is
 not within the bound, or if a point moves before anything is removed.
 """
@@ -63,7 +63,7 @@ def readings(file):
             if present[row, i] and exact != 0:
                 found.append(Reading(point, row, float(time[row]), side, float(rise[row, i]), exact))
     if not found:
-        raise figure.NotWanted("no measuring point moves in this file")
+        raise figure.NotWanted("no monitoring point moves in this file")
     return found
 
 

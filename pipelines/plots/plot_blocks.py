@@ -67,7 +67,7 @@ def draw_edges(file, axes):
     few = len(vertex) < 2000
     looks = {
         JOINT: ("joint", {"color": "k", "linewidth": 0.7 if few else 0.3}),
-        WELDED: ("welded edge, no joint", {"color": "k", "linewidth": 0.5, "linestyle": (0, (4, 2))}),
+        WELDED: ("bonded edge, no joint", {"color": "k", "linewidth": 0.5, "linestyle": (0, (4, 2))}),
         BOUNDARY: ("outline", {"color": "k", "linewidth": 1.3}),
     }
     entries = []

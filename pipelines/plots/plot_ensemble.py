@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Displacement histories of many realizations: bands of quantiles, the median, and the mean with its confidence.
 
-One panel a measuring point. Needs ensemble.h5, which pipelines/slope/ensemble.py writes.
+One panel a monitoring point. Needs ensemble.h5, which pipelines/slope/ensemble.py writes.
 """
 
 import matplotlib.lines
@@ -37,7 +37,7 @@ def draw(file, arguments):
     names = figure.texts(file, "/history/point")
     chosen = [figure.name_index(names, name, "point") for name in arguments.point] or list(range(len(names)))
     if not chosen:
-        raise figure.NotWanted("there is no measuring point in this file")
+        raise figure.NotWanted("there is no monitoring point in this file")
     probabilities = figure.array(file, "/probability")
     count = figure.array(file, kind + "/count")
     component = "xy".index(arguments.component)

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Displacement histories of the measuring points against days; with --closed-form column beside the exact answer.
+"""Displacement histories of the monitoring points against days; with --closed-form column beside the exact answer.
 
 A point's history ends when it is removed. Displacements count from the in-situ equilibrium, or with --readings from
 each point's own first reading, where its curve begins.
@@ -27,7 +27,7 @@ class Histories:
         self.event = figure.texts(file, "/history/event")
         names = figure.texts(file, "/history/point")
         if not names:
-            raise figure.NotWanted("there is no measuring point in this file")
+            raise figure.NotWanted("there is no monitoring point in this file")
         chosen = [figure.name_index(names, name, "point") for name in arguments.point] or list(range(len(names)))
         self.names = [names[i] for i in chosen]
         first = figure.array(file, "/history/first_reading_row")
@@ -87,7 +87,7 @@ def draw(file, arguments):
     looks = [{"color": figure.COLORS[i % 6], "marker": figure.MARKERS[i % 6], "markerfacecolor": "white",
               "markeredgewidth": 0.8, "linewidth": 1.0,
               "linestyle": "-" if arguments.without else figure.LINES[i % 6]} for i in range(len(names))]
-    exact, title = arguments.closed_form == "column", "measuring point"
+    exact, title = arguments.closed_form == "column", "monitoring point"
     if exact:
         if arguments.component != "y" or arguments.readings or arguments.since_reset or arguments.without:
             raise figure.NotWanted("the column's closed form is vertical, with creep and since the in-situ "

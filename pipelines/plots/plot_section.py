@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The section: rocks, joints with their rock bridges, stages, boundary conditions, measuring points and gauges."""
+"""The section: rocks, joints with their rock bridges, stages, boundary conditions, monitoring points and gauges."""
 
 import matplotlib.lines
 import matplotlib.patches
@@ -57,7 +57,7 @@ def draw_joints(file, axes, inside):
 
 
 def number_place(corners, points, size):
-    """Where a stage's number goes: in the middle, or aside of it where a measuring point is there already."""
+    """Where a stage's number goes: in the middle, or aside of it where a monitoring point is there already."""
     corners = np.array(corners, float)
     middle = corners.mean(axis=0)
     for place in [middle, *(middle + corners) / 2]:
@@ -129,7 +129,7 @@ def draw_boundaries(scene, outline, axes):
 
 
 def draw_places(scene, key, label, marker, axes):
-    """Measuring points, or gauges, with their names."""
+    """Monitoring points, or gauges, with their names."""
     places = {place["name"]: place["at_m"] for place in scene.get(key, [])}
     look = {"linestyle": "none", "marker": marker, "color": "k", "markersize": 3.5}
     for name, place in places.items():
@@ -153,7 +153,7 @@ def draw(file, arguments):
     stages = draw_stages(scene, axes, inside)
     others = figure.draw_rocks(scene, axes) if "region" in scene else []
     others += draw_boundaries(scene, outline, axes)
-    others += draw_places(scene, "point", "measuring point", "o", axes)
+    others += draw_places(scene, "point", "monitoring point", "o", axes)
     others += draw_places(scene, "gauge", "gauge on a joint", "D", axes)
     if len(stages) == 1:  # no column of its own
         stages, others = [], stages + others

@@ -233,19 +233,19 @@ def contact_lines(file, section):
 
 def draw_contacts(file, state, section, axes, _):
     status = figure.array(file, "/states/contact_status")[state]
-    opening, shear = 1e3 * np.abs(figure.array(file, "/states/jump")[state].T)  # [mm]
+    opening, shear = 1e3 * np.abs(figure.array(file, "/states/relative_displacement")[state].T)  # [mm]
     lines, of_contact = contact_lines(file, section)
     draw_borders(section, axes, joints=False)
 
     stuck = {"color": "0.65", "linewidth": 0.5}
     axes.add_collection(LineCollection(lines[status[of_contact] == STUCK], zorder=2, **stuck))
     entries = [matplotlib.lines.Line2D([], [], label=f"{np.sum(status == STUCK)} contacts closed", **stuck)]
-    for code, label, jump, color in ((SLIPPING, "slipping", shear, figure.COLORS[0]),
+    for code, label, amount, color in ((SLIPPING, "slipping", shear, figure.COLORS[0]),
                                      (OPEN, "open", opening, figure.COLORS[1])):
         count = np.sum(status == code)
-        largest = jump[status == code].max() if count else 0
+        largest = amount[status == code].max() if count else 0
         chosen = status[of_contact] == code
-        width = 2.2 + 2.6 * jump[of_contact[chosen]] / (largest or 1)
+        width = 2.2 + 2.6 * amount[of_contact[chosen]] / (largest or 1)
         axes.add_collection(LineCollection(lines[chosen], color=color, linewidth=width, capstyle="round",
                                            zorder=code + 1))
         entry = matplotlib.lines.Line2D([], [], color=color, linewidth=2.5, label=f"{count} {label}")

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The lock's section with weathering, stages and measuring points (the paper's Fig. 9), or with --plan the points seen
+"""The lock's section with weathering, stages and monitoring points (the paper's Fig. 9), or with --plan the points seen
 from above (Fig. 8). FILE.h5 is any file of the chain.
 """
 
@@ -41,7 +41,7 @@ def draw_section(scene):
         axes.annotate(point["name"], (x, y), xytext=(4 * np.sign(x), 3), textcoords="offset points", zorder=5,
                       ha="left" if x > 0 else "right", path_effects=figure.HALO)
     entries.append(matplotlib.lines.Line2D([], [], linestyle="none", marker="o", color="k", markersize=3,
-                                           label="measuring point"))
+                                           label="monitoring point"))
     entries.append(matplotlib.lines.Line2D([], [], color="0.25", linewidth=0.6, linestyle=(0, (5, 2)),
                                            label="excavation stage"))
     axes.annotate("south", (WINDOW[0], WINDOW[1]), xytext=(5, 5), textcoords="offset points", fontsize=7)

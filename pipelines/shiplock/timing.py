@@ -3,7 +3,7 @@
 
     timing.py PROGRAMS SCENE.toml [--zone-size M] -o OUT
 
-writes OUT/timing.md. With creep the explicit engine takes some minutes.
+writes OUT/timing.md. With creep dynamic relaxation takes some minutes.
 """
 
 import argparse
@@ -52,7 +52,7 @@ def main():
             timed([programs / "jointgen", scene, "--quiet", "-o", network])
             timed([programs / "strength-averaging", network, "--quiet", "-o", joints])
             for computed, what in (("excavation", ["--no-creep"]), ("excavation and creep", [])):
-                for engine in "implicit", "explicit":
+                for engine in "implicit", "relaxation":
                     seconds, zones, equilibria = solved(programs, joints, result, *size, *what, "--engine", engine)
                     lines.append(f"| {words} | {computed} | {engine} | {zones} | {equilibria} | {seconds:.1f} |")
     path = arguments.output / "timing.md"

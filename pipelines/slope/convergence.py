@@ -4,7 +4,7 @@
     convergence.py PROGRAMS JOINTS.h5 [--engine ENGINE] [--component x] [--readings] -o OUT
 
 runs demsolve with the scene's own choices and with each of the three halved, and compares the displacements of every
-measuring point on every recorded day, from the first row on which the point is there to the last: vectors, or one component of
+monitoring point on every recorded day, from the first row on which the point is there to the last: vectors, or one component of
 them; with --readings also those since each point's first reading, from there on. In OUT it writes
     convergence.md    the largest change of each point, and what the runs cost, as tables
     convergence.csv   the same changes, and where each is largest

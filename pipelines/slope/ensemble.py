@@ -49,10 +49,10 @@ OF_EACH = [
     ("shortest_edge", "m", "shortest\nedge (m)", ".4g", "Its shortest edge between blocks."),
     ("smallest_zone_altitude", "m", "smallest zone\naltitude (m)", ".4g", "Its smallest zone altitude."),
     ("equilibria", "1", "equi-\nlibria", "d", "Equilibria found."),
-    ("by_motion", "1", "by\nmotion", "d", "Those of them that motion found, and not factorisation."),
-    ("solver_steps", "1", "solver\nsteps", "d", "Steps of motion, and corrections by factorisation."),
-    ("largest_out_of_balance_ratio", "1", "out-of-balance\nratio", ".1e",
-     "Largest out-of-balance ratio that an equilibrium ended with."),
+    ("by_relaxation", "1", "by\nrelaxation", "d", "Those of them that dynamic relaxation found, and not the implicit engine."),
+    ("solver_steps", "1", "solver\nsteps", "d", "Steps of dynamic relaxation, and corrections by the implicit engine."),
+    ("largest_unbalanced_force_ratio", "1", "unbalanced\nforce ratio", ".1e",
+     "Largest unbalanced force ratio that an equilibrium ended with."),
     ("energy_error", "1", "energy\nbalance", ".1e",
      "Largest error of work = stored + dissipated + damped of all equilibria, over the largest of the four."),
     ("area_error", "1", "area\nbalance", ".1e", "Area of all blocks over the section's, less 1; without its sign."),
@@ -89,7 +89,7 @@ def smallest_altitude(position, zone):
 def energy_error(file):
     """Largest error of work = stored + dissipated + damped of all equilibria, over the largest of the four [-].
 
-    Motion finds each of the four by itself. By factorisation the damped energy is what the others leave, so the sum says
+    Dynamic relaxation finds each of the four by itself. By the implicit engine the damped energy is what the others leave, so the sum says
     nothing; but loads that change at once cannot set free less than nothing, and below 0 it counts as an error.
     """
     terms = np.stack([file[f"/equilibria/{name}"][()] for name in
@@ -134,9 +134,9 @@ def read(path, number):
                     "smallest_zone_altitude": smallest_altitude(
                         file["/mesh/gridpoint_position"][()], file["/mesh/zone_gridpoint"][()]),
                     "equilibria": len(file["/equilibria/steps"]),
-                    "by_motion": int((file["/equilibria/is_implicit"][()] == 0).sum()),
+                    "by_relaxation": int((file["/equilibria/is_implicit"][()] == 0).sum()),
                     "solver_steps": int(file["/equilibria/steps"][()].sum()),
-                    "largest_out_of_balance_ratio": float(file["/equilibria/out_of_balance_ratio"][()].max()),
+                    "largest_unbalanced_force_ratio": float(file["/equilibria/unbalanced_force_ratio"][()].max()),
                     "energy_error": energy_error(file),
                     "area_error": area_error(file),
                     **{name: file[f"/cutting/{name}"][0].item() for name in CUTTING},
@@ -325,10 +325,10 @@ def summary(found, failed, statistics=None):
                                   for name, _, _, shown, _ in OF_EACH)])
         headings = ["number", *(heading for _, _, heading, _, _ in OF_EACH)]
         lines += ["", *in_columns(headings, rows), "",
-                  "out-of-balance ratio: the largest that an equilibrium ended with",
+                  "unbalanced force ratio: the largest that an equilibrium ended with",
                   "energy balance: largest error of work = stored + dissipated + damped of all equilibria, over the "
                   "largest of the four;",
-                  "    by factorisation damped is what the others leave, and counts as an error where it is below 0",
+                  "    by the implicit engine damped is what the others leave, and counts as an error where it is below 0",
                   "area balance: area of all blocks over that of the section, less 1",
                   "merged, moved, cut back: what cutting did to edges too short, angles too small and loose joint ends"]
     if statistics:

@@ -9,7 +9,7 @@
 # It ends with one of two files in FOLDER, each of which appears whole or not at all:
 #   NUMBER.h5      the result: every equilibrium was found
 #   NUMBER.failed  which program gave up, with what exit code, and its message
-# and NUMBER.log has the closing screens. With KEEP=1 in the environment NUMBER-network.h5 and NUMBER-joints.h5 stay;
+# and NUMBER.log has the summaries. With KEEP=1 in the environment NUMBER-network.h5 and NUMBER-joints.h5 stay;
 # SOLVE has options of demsolve.
 #
 # Exit code 0 if it has ended, either way. A program that was stopped from outside, or that could not write (exit

@@ -151,20 +151,20 @@ TEST(analysis, something_happens_in_this_section)
                   numbers[static_cast<Index>(ContactStatus::open)],
               0);
     EXPECT_GT(largest_last(result), 1e-4);
-    for (const double ratio : result.equilibria.out_of_balance_ratio)
+    for (const double ratio : result.equilibria.unbalanced_force_ratio)
         EXPECT_LE(ratio, 1e-8);
     EXPECT_EQ(sum(result.equilibria.is_implicit), static_cast<Index>(result.equilibria.is_implicit.size()));
 }
 
-// By motion, which keeps no memory, to the last bit: a first step of 9 days that is rejected for one of 1.8
-// days is the same as beginning with that. Rock creeps, too, and a boundary moves.
+// By relaxation, which keeps no memory, to the last bit: a first step of 9 days that is rejected for one of
+// 1.8 days is the same as beginning with that. Rock creeps, too, and a boundary moves.
 TEST(analysis, rejected_steps_leave_no_trace)
 {
     Study study(false);
     study.scene.rocks[0].kelvin = ShearKelvin{1e10, 1e10 * day};
     study.scene.boundaries[2].displacement = Vector2d(-2e-3, 0);
-    study.scene.boundaries[2].course = {{{0, 0}, {30 * day, 1}}};
-    study.scene.equilibrium.engine = Engine::explicit_engine;
+    study.scene.boundaries[2].load_history = {{{0, 0}, {30 * day, 1}}};
+    study.scene.equilibrium.engine = EngineChoice::relaxation;
     study.scene.equilibrium.tolerance = 1e-6;
     study.choose_steps(3e-7, 9 * day);
     study.scene.creep->shortest_step = 1e-3 * day;
@@ -265,11 +265,11 @@ TEST(analysis, both_engines_agree)
         std::fill(strength, strength + study.joints.cohesion.size(), 1e12);
     study.scene.end = 4 * day;
     const Result implicit = study.run();
-    study.scene.equilibrium.engine = Engine::explicit_engine;
-    const Result motion = study.run();
-    EXPECT_EQ(implicit.history.time, motion.history.time);
-    EXPECT_EQ(sum(motion.equilibria.is_implicit), 0);
-    EXPECT_LT(largest_difference(implicit, motion), 1e-5 * largest_last(motion));
+    study.scene.equilibrium.engine = EngineChoice::relaxation;
+    const Result relaxation = study.run();
+    EXPECT_EQ(implicit.history.time, relaxation.history.time);
+    EXPECT_EQ(sum(relaxation.equilibria.is_implicit), 0);
+    EXPECT_LT(largest_difference(implicit, relaxation), 1e-5 * largest_last(relaxation));
 }
 
 TEST(analysis, threads_do_not_change_the_result)
@@ -284,12 +284,12 @@ TEST(analysis, threads_do_not_change_the_result)
     EXPECT_EQ(one.states.traction, two.states.traction);
 }
 
-TEST(analysis, factorisation_has_no_motion_to_trace)
+TEST(analysis, the_implicit_engine_has_no_step_history)
 {
     Study study;
-    study.scene.equilibrium.engine = Engine::implicit_engine;
-    study.recording.trace_every = 10;
+    study.scene.equilibrium.engine = EngineChoice::implicit;
+    study.recording.step_history_every = 10;
     EXPECT_NE(refusal_of(study), "");
-    study.scene.equilibrium.engine = Engine::automatic;
-    EXPECT_EQ(study.analysis().engine(), Engine::explicit_engine);
+    study.scene.equilibrium.engine = EngineChoice::automatic;
+    EXPECT_EQ(study.analysis().engine(), EngineChoice::relaxation);
 }

@@ -168,7 +168,7 @@ TEST(check, blocks_cross_nowhere_with_every_edge_compared)
         scene.regions.resize(1);
         scene.regions[0].rock = "other";
         scene.regions[0].outline = {{-3, 42}, {80, 38}, {120, 60}, {0, 60}};
-        scene.cutting.dead_ends = i / 4 % 2 == 0 ? DeadEnds::prune : DeadEnds::extend;
+        scene.cutting.dangling_ends = i / 4 % 2 == 0 ? DanglingEnds::prune : DanglingEnds::extend;
         Joints joints;
         for (int j = 0; j < 20 + 2 * i; ++j) {
             const Vector2d from(x(random), x(random));

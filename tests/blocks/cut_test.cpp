@@ -117,7 +117,7 @@ TEST(cut, an_edge_knows_how_much_of_it_is_joint)
     EXPECT_NEAR(fractions[1], 4.0 / 6, 1e-12); // x 4..10: trace 6..10
 }
 
-TEST(cut, stage_outlines_and_rock_borders_are_welded)
+TEST(cut, stage_outlines_and_rock_borders_are_bonded)
 {
     Scene scene = section(square, 0.1);
     scene.rocks.push_back({"weak", 2600, 1e10, 0.25, std::nullopt});
@@ -194,7 +194,7 @@ TEST(cut, vertices_closer_than_the_limit_are_merged_and_the_outline_keeps_its_co
 TEST(cut, a_joint_that_ends_inside_a_block_may_be_carried_on_as_rock_bridge)
 {
     Scene scene = section(square, 0.1);
-    scene.cutting.dead_ends = DeadEnds::extend;
+    scene.cutting.dangling_ends = DanglingEnds::extend;
     Joints joints;
     add_joint(joints, {0, 5}, {10, 5});
     add_joint(joints, {4, 0}, {4, 8}); // 2 m on to the outline
@@ -203,7 +203,7 @@ TEST(cut, a_joint_that_ends_inside_a_block_may_be_carried_on_as_rock_bridge)
     EXPECT_EQ(faults(scene, blocks), "");
     EXPECT_EQ(blocks.block_area.size(), 5u);
     const JointFates& fates = blocks.fates;
-    EXPECT_EQ(fates.dead_end, std::vector<double>(3, 0.0));
+    EXPECT_EQ(fates.dangling_end, std::vector<double>(3, 0.0));
     EXPECT_NEAR(fates.extended[0], 0, 1e-12);
     EXPECT_NEAR(fates.extended[1], 2, 1e-12);
     EXPECT_NEAR(fates.extended[2], 2 * std::sqrt(2.0) + std::sqrt(2.0), 1e-12); // to (4, 5) and to (9, 10)
@@ -223,7 +223,7 @@ TEST(cut, a_joint_that_ends_inside_a_block_may_be_carried_on_as_rock_bridge)
 TEST(cut, a_joint_that_meets_another_is_not_carried_on)
 {
     Scene scene = section(square, 0.1);
-    scene.cutting.dead_ends = DeadEnds::extend;
+    scene.cutting.dangling_ends = DanglingEnds::extend;
     Joints joints;
     add_joint(joints, {0, 5}, {10, 5});
     add_joint(joints, {4, 0}, {4, 5 - 1e-9}); // but for a hair
@@ -240,8 +240,8 @@ TEST(cut, what_becomes_of_each_joint_is_told_in_metres)
     const Scene scene = section(square, 0.1);
     Joints joints;
     add_joint(joints, {-2, 5}, {13, 5});      // 5 m outside
-    add_joint(joints, {4, 0}, {4, 8});        // 3 m dead end
-    add_joint(joints, {6, 7}, {8, 9});        // nothing but dead end
+    add_joint(joints, {4, 0}, {4, 8});        // 3 m dangling end
+    add_joint(joints, {6, 7}, {8, 9});        // nothing but dangling end
     add_joint(joints, {2, 5}, {4, 5});        // on the first
     add_joint(joints, {3, 10}, {9, 10});      // on the outline
     add_joint(joints, {11, 1}, {12, 3});      // outside
@@ -264,7 +264,7 @@ TEST(cut, what_becomes_of_each_joint_is_told_in_metres)
     expect_near(fates.shared, {0, 0, 0, 2, 0, 0, 10, 0});
     expect_near(fates.outside, {5, 0, 0, 0, 0, std::sqrt(5.0), 0, 0});
     expect_near(fates.on_outline, {0, 0, 0, 0, 6, 0, 0, 0});
-    expect_near(fates.dead_end, {0, 3, std::sqrt(8.0), 0, 0, 0, 0, 0});
+    expect_near(fates.dangling_end, {0, 3, std::sqrt(8.0), 0, 0, 0, 0, 0});
     expect_near(fates.merged, {0, 0, 0, 0, 0, 0, 0, 0});
     EXPECT_EQ(fates.extended, std::vector<double>(8, 0.0));
 
@@ -306,7 +306,7 @@ TEST(cut, a_section_may_have_holes)
     Joints across;
     add_joint(across, {2, 5}, {5, 5}); // from nowhere into a hole: no edge
     EXPECT_EQ(blocks::cut(scene, across).block_area.size(), 1u);
-    scene.cutting.dead_ends = DeadEnds::extend; // carried on to the outline, it alone parts nothing
+    scene.cutting.dangling_ends = DanglingEnds::extend; // carried on to the outline, it alone parts nothing
     EXPECT_EQ(blocks::cut(scene, across).block_area.size(), 1u);
 }
 

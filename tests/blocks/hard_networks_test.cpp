@@ -114,7 +114,7 @@ TEST(hard_networks, joints_along_both_sides_of_a_sharp_notch)
                                left(tip.x() - wide, 100), right(tip.x() + wide, 100);
                 Scene scene =
                     section({{0, 0}, {100, 0}, {100, 100}, right, tip, left, {0, 100}}, shortest_edge);
-                scene.cutting.dead_ends = i % 2 == 0 ? DeadEnds::prune : DeadEnds::extend;
+                scene.cutting.dangling_ends = i % 2 == 0 ? DanglingEnds::prune : DanglingEnds::extend;
                 Joints joints;
                 add_joint(joints, tip, left);
                 add_joint(joints, right, tip);
@@ -178,7 +178,7 @@ RC_GTEST_PROP(hard_networks, no_metre_of_a_joint_is_lost, ())
 {
     Scene scene = section(slope, 1e-6);
     scene.cutting.smallest_angle = 0;
-    scene.cutting.dead_ends = *rc::gen::element(DeadEnds::prune, DeadEnds::extend);
+    scene.cutting.dangling_ends = *rc::gen::element(DanglingEnds::prune, DanglingEnds::extend);
     const int n = *rc::gen::inRange(1, 40);
     std::mt19937 random(*rc::gen::arbitrary<unsigned>());
     std::uniform_real_distribution<double> x(-10, 110);
@@ -193,8 +193,8 @@ RC_GTEST_PROP(hard_networks, no_metre_of_a_joint_is_lost, ())
     for (std::size_t j = 0; j < fates.fate.size(); ++j) {
         RC_ASSERT(fates.merged[j] < 1e-4);
         on_edges += fates.kept[j] + fates.extended[j];
-        if (scene.cutting.dead_ends == DeadEnds::extend)
-            RC_ASSERT(fates.dead_end[j] < 1e-4);
+        if (scene.cutting.dangling_ends == DanglingEnds::extend)
+            RC_ASSERT(fates.dangling_end[j] < 1e-4);
     }
     double edges = 0;
     for (std::size_t e = 0; e < blocks.edge_vertex.size(); ++e)

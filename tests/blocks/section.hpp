@@ -138,7 +138,7 @@ inline std::string lost_length(const Joints& joints, const Blocks& blocks)
     for (std::size_t j = 0; j < joints.set.size(); ++j) {
         const double length = (joints.to[j] - joints.from[j]).norm();
         const double sum = fates.kept[j] + fates.shared[j] + fates.on_outline[j] + fates.outside[j] +
-                           fates.dead_end[j] + fates.merged[j];
+                           fates.dangling_end[j] + fates.merged[j];
         if (!(std::abs(sum - length) <= 1e-9 * length))
             return "of joint " + std::to_string(j) + " with " + std::to_string(length) + " m there are " +
                    std::to_string(sum);

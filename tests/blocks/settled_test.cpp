@@ -39,7 +39,7 @@ void expect_same(const Graph& a, const blocks::Sources& of_a, const Graph& b, co
     }
 }
 
-// A square with a welded line in it, and short joints.
+// A square with a bonded line in it, and short joints.
 struct Lines {
     Polygon outline{{0, 0}, {100, 0}, {100, 100}, {0, 100}};
     Graph graph;
@@ -49,7 +49,7 @@ struct Lines {
     {
         for (Index i = 0; i < 4; ++i)
             add(outline[i], outline[(i + 1) % 4], {Source::Kind::outline, i});
-        add({0, 47}, {100, 51}, {Source::Kind::welded, 0});
+        add({0, 47}, {100, 51}, {Source::Kind::bonded, 0});
         std::uniform_real_distribution<double> place(0, 100), reach(-15, 15);
         for (Index j = 0; j < joints; ++j) {
             const Vector2d from(place(random), place(random)), along(reach(random), reach(random));

@@ -23,13 +23,13 @@ struct Gaps {
         contacts.law.assign(n, joint::Coulomb{k_n, 1e9, 0, 0.6, 0});
         contacts.initial_traction.assign(n, {-1e6, 0});
         contacts.offset.assign(n, {2e-4, 0}); // crept
-        contacts.jump.resize(n);
+        contacts.relative_displacement.resize(n);
         contacts.state.resize(n);
         contacts.status.resize(n);
     }
     void put(double gap, double shear, std::size_t c = 0)
     {
-        rock.contacts.jump[c] = {gap + 1e6 / k_n + 2e-4, shear};
+        rock.contacts.relative_displacement[c] = {gap + 1e6 / k_n + 2e-4, shear};
         rock.contacts.status[c] = gap > 0 ? ContactStatus::open : ContactStatus::stuck;
     }
 };
@@ -84,7 +84,7 @@ TEST(closing, is_sought_halfway_where_no_rate_is_known)
     closing.start(gaps.rock);
     gaps.put(-1e-3, 1e-3); // as far below: it touches in the middle of the step, or before
     EXPECT_NEAR(closing.longest_step(gaps.rock, 8), 0.99 * 2, 1e-9);
-    // A jump of loads makes it forget.
+    // A sudden change of loads makes it forget.
     gaps.put(5e-4, 0);
     closing.finish(gaps.rock, 1);
     closing.start_afresh();

@@ -46,7 +46,7 @@ struct Contact {
         contacts.state.resize(1);
         contacts.initial_traction = {traction};
         contacts.traction = {traction};
-        contacts.offset = contacts.jump = {{0, 0}};
+        contacts.offset = contacts.relative_displacement = {{0, 0}};
         contacts.status = {ContactStatus::stuck};
         contacts.work = {0};
         rock.displacement[1].y() = gap;

@@ -1,5 +1,6 @@
-// Sets of creeping joints that need no zones: jumps j = B u + g with any u, tractions F with B^T F = f.
-//   B = 1: every traction is given;  no u: every jump is given (platens);  between: redundant.
+// Sets of creeping joints that need no zones: displacements j = B u + g with any u, tractions F with B^T F =
+// f.
+//   B = 1: every traction is given;  no u: every displacement is given (platens);  between: redundant.
 // In closed form: F = K (j - sum of d), every unit d' = (F - E d) / eta, a linear system of the d.
 
 #pragma once
@@ -33,7 +34,7 @@ inline EquivalentJoints joints_of(const std::vector<Chain>& chains)
         joints.normal_stiffness.push_back(chain.spring);
         joints.normal_maxwell_viscosity.push_back(0);
         for (std::size_t u = 0; u < units; ++u) {
-            const creep::Unit unit = u < chain.units.size() ? chain.units[u] : creep::Unit{0, 0};
+            const creep::KelvinUnit unit = u < chain.units.size() ? chain.units[u] : creep::KelvinUnit{0, 0};
             joints.normal_kelvin_stiffness.push_back(unit.stiffness);
             joints.normal_kelvin_viscosity.push_back(unit.stiffness > 0 ? unit.viscosity : 0);
             if (unit.stiffness == 0 && unit.viscosity > 0)
@@ -66,7 +67,7 @@ public:
         given_ = VectorXd::Zero(n);
         load_ = VectorXd::Zero(B_.cols());
         for (Eigen::Index c = 0; c < n; ++c)
-            for (const creep::Unit& unit : chains_[c].units) {
+            for (const creep::KelvinUnit& unit : chains_[c].units) {
                 joint_.push_back(c);
                 units_.push_back(unit);
             }
@@ -78,9 +79,9 @@ public:
         load_ = std::move(load);
         return *this;
     }
-    CreepingJoints& give(VectorXd jumps)
+    CreepingJoints& give(VectorXd displacements)
     {
-        given_ = std::move(jumps);
+        given_ = std::move(displacements);
         return *this;
     }
 
@@ -88,20 +89,20 @@ public:
     double rate() const
     {
         double most = 0;
-        for (const creep::Unit& unit : units_)
+        for (const creep::KelvinUnit& unit : units_)
             most = std::max(most, unit.stiffness / unit.viscosity);
         return most;
     }
 
-    // Tractions with springs of stiffness k that are at rest at the jumps `offset`.
+    // Tractions with springs of stiffness k that are at rest at the displacements `offset`.
     VectorXd tractions(const VectorXd& k, const VectorXd& offset) const
     {
-        VectorXd jump = given_;
+        VectorXd displacement = given_;
         if (B_.cols() > 0)
-            jump += B_ * (B_.transpose() * k.asDiagonal() * B_)
-                             .ldlt()
-                             .solve(load_ - B_.transpose() * k.cwiseProduct(given_ - offset));
-        return k.cwiseProduct(jump - offset);
+            displacement += B_ * (B_.transpose() * k.asDiagonal() * B_)
+                                     .ldlt()
+                                     .solve(load_ - B_.transpose() * k.cwiseProduct(given_ - offset));
+        return k.cwiseProduct(displacement - offset);
     }
 
     // F = first - S sum(d).
@@ -147,7 +148,7 @@ private:
     MatrixXd B_;
     VectorXd given_, load_;
     std::vector<Eigen::Index> joint_; // of every unit
-    std::vector<creep::Unit> units_;
+    std::vector<creep::KelvinUnit> units_;
 };
 
 // Such joints in time steps.

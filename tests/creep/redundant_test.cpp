@@ -1,5 +1,5 @@
-// Creep steps over joints whose equilibrium is in closed form: given tractions, given jumps (platens), two
-// pillars under a rigid cap, and random redundant systems. Reference: the matrix exponential.
+// Creep steps over joints whose equilibrium is in closed form: given tractions, given displacements
+// (platens), two pillars under a rigid cap, and random redundant systems. Reference: the matrix exponential.
 
 #include "joints.hpp"
 
@@ -69,7 +69,7 @@ TEST(given_tractions, are_exact_by_every_scheme_whatever_the_steps)
                 for (int i = 0; i < n; ++i)
                     error = std::max(error, marching.step(T / n));
                 double wanted = 0;
-                for (const creep::Unit& unit : chain.units)
+                for (const creep::KelvinUnit& unit : chain.units)
                     wanted += unit.stiffness > 0
                                   ? F / unit.stiffness * -std::expm1(-unit.stiffness / unit.viscosity * T)
                                   : F * T / unit.viscosity;
@@ -261,9 +261,10 @@ TEST(two_pillars, shares_cross_over)
     EXPECT_FALSE(crosses(kelvin(2e9, 2, 1), kelvin(1e9, 1, 1))); // .67 and .5
 }
 
-// Largest estimate over largest error of a step, over 8 steps after a jump; the error of a step is that of
-// the creep displacements, any joint's, against tiny steps from the same state. The estimate of a single step
-// can be far too small where all tractions turn at the same time, so it is the largest that is asked for.
+// Largest estimate over largest error of a step, over 8 steps after a sudden change of load; the error of a
+// step is that of the creep displacements, any joint's, against tiny steps from the same state. The estimate
+// of a single step can be far too small where all tractions turn at the same time, so it is the largest that
+// is asked for.
 TEST(redundant, the_error_estimate_is_of_the_size_of_the_error)
 {
     const auto quotients = [](CreepScheme scheme, double ratio, double x) {

@@ -15,16 +15,16 @@ namespace
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
-Creep fixed(double step)
+CreepSettings fixed(double step)
 {
-    Creep settings;
+    CreepSettings settings;
     settings.step = step;
     return settings;
 }
 
-Creep tolerant(CreepScheme scheme = CreepScheme::fitted)
+CreepSettings tolerant(CreepScheme scheme = CreepScheme::fitted)
 {
-    Creep settings;
+    CreepSettings settings;
     settings.tolerance = 1e-5;
     settings.first_step = 1;
     settings.shortest_step = 0.01;
@@ -114,7 +114,7 @@ TEST(step_length, a_step_cut_by_a_date_says_nothing_against_a_longer_one)
 
 TEST(step_length, without_settings_begins_with_a_tenth_of_the_fastest_time)
 {
-    Creep settings;
+    CreepSettings settings;
     settings.tolerance = 1e-5;
     EXPECT_DOUBLE_EQ(StepLength(settings, 4, infinite).next(1000, infinite), 0.1 / 4);
 }
@@ -122,7 +122,7 @@ TEST(step_length, without_settings_begins_with_a_tenth_of_the_fastest_time)
 // The published scheme's stable length is never reached, whatever the scene says.
 TEST(step_length, stays_below_what_is_stable)
 {
-    Creep settings = tolerant(CreepScheme::published);
+    CreepSettings settings = tolerant(CreepScheme::published);
     StepLength length(settings, 1, 20);
     for (int i = 0; i < 20; ++i)
         length.stands(length.next(1e6, infinite), 0);

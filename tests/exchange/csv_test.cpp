@@ -80,7 +80,7 @@ TEST(edges_csv, names_sides_joint_and_kind)
     ASSERT_EQ(rows.size(), 12u);
     EXPECT_EQ(rows[1], (Row{"0", "0", "0", "10", "0", "1", "", "boundary", "", "", ""}));
     EXPECT_EQ(rows[3], (Row{"2", "0", "5", "10", "5", "0", "1", "joint", "the \"other\" set", "7", "0.7"}));
-    EXPECT_EQ(rows[8][7], "welded");
+    EXPECT_EQ(rows[8][7], "bonded");
 }
 
 TEST(edges_csv, adds_the_equivalent_joints)

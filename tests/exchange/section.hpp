@@ -107,7 +107,7 @@ inline Result small_result()
         result.states.stress.emplace_back(i * 1e6 / 3, -i * 1e5, i * 10.0);
     result.states.zone_present = {1, 1, 1, 1, 0, 0, 1, 1};
     result.states.traction = {{-1e6, 2e5}, {-2e6, 0}, {0, 0}, {-1e6, 3e5}};
-    result.states.jump = {{-1e-3, 2e-4}, {-3e-3, 0}, {0, 0}, {-1e-3, 5e-4}};
+    result.states.relative_displacement = {{-1e-3, 2e-4}, {-3e-3, 0}, {0, 0}, {-1e-3, 5e-4}};
     result.states.contact_status = {1, 1, 0, 2};
     result.history.reset_row = {0, 0, 0};
     result.states.reset_state = {0, 0};

@@ -201,8 +201,8 @@ TEST(contacts_vtu, leaves_out_removed_contacts)
     EXPECT_EQ(array_of(after, "length"), Numbers{5});
     EXPECT_EQ(array_of(after, "normal_traction"), Numbers{-1e6});
     EXPECT_EQ(array_of(after, "shear_traction"), Numbers{3e5});
-    EXPECT_EQ(array_of(after, "normal_jump"), Numbers{-1e-3});
-    EXPECT_EQ(array_of(after, "shear_jump"), Numbers{5e-4});
+    EXPECT_EQ(array_of(after, "normal_relative_displacement"), Numbers{-1e-3});
+    EXPECT_EQ(array_of(after, "shear_relative_displacement"), Numbers{5e-4});
     EXPECT_EQ(array_of(after, "status"), Numbers{2});
     EXPECT_EQ(array_of(after, "types"), Numbers{1});
 }

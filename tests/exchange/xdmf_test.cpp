@@ -69,7 +69,7 @@ std::map<std::string, Dataset> datasets_of(const Result& result)
         {"/states/displacement", {{2, 9, 2}, flat(states.displacement)}},
         {"/states/stress", {{2, 4, 3}, flat(states.stress)}},
         {"/states/traction", {{2, 2, 2}, flat(states.traction)}},
-        {"/states/jump", {{2, 2, 2}, flat(states.jump)}},
+        {"/states/relative_displacement", {{2, 2, 2}, flat(states.relative_displacement)}},
         {"/states/zone_present", {{2, 4}, {states.zone_present.begin(), states.zone_present.end()}}},
         {"/states/contact_status", {{2, 2}, {states.contact_status.begin(), states.contact_status.end()}}}};
 }
@@ -183,13 +183,13 @@ TEST(zones_xdmf, names_the_result_file)
     EXPECT_NE(file.find(">../a &amp; b.h5:/mesh/gridpoint_position<"), std::string::npos);
 }
 
-TEST(contacts_xdmf, finds_tractions_jumps_and_status_of_each_state)
+TEST(contacts_xdmf, finds_tractions_displacements_and_status_of_each_state)
 {
     const std::string file = contacts_xdmf(small_result(), "result.h5");
     EXPECT_EQ(read(file, 0, "normal_traction"), (Numbers{-1e6, -2e6}));
     EXPECT_EQ(read(file, 0, "shear_traction"), (Numbers{2e5, 0}));
-    EXPECT_EQ(read(file, 1, "normal_jump"), (Numbers{0, -1e-3}));
-    EXPECT_EQ(read(file, 1, "shear_jump"), (Numbers{0, 5e-4}));
+    EXPECT_EQ(read(file, 1, "normal_relative_displacement"), (Numbers{0, -1e-3}));
+    EXPECT_EQ(read(file, 1, "shear_relative_displacement"), (Numbers{0, 5e-4}));
     EXPECT_EQ(read(file, 1, "status"), (Numbers{0, 2}));
     EXPECT_EQ(ghosts(file, 0), (Numbers{0, 0}));
     EXPECT_EQ(ghosts(file, 1), (Numbers{32, 0}));

@@ -72,7 +72,7 @@ VectorXd random_vector(Eigen::Index n)
     return VectorXd::NullaryExpr(n, [&] { return u(random); });
 }
 
-// The out-of-balance force after a move from where the assembly is.
+// The unbalanced force after a move from where the assembly is.
 VectorXd force_at(const Stiffness& stiffness, Assembly assembly, const VectorXd& move, double factor)
 {
     stiffness.add_to(assembly.displacement, move, factor);

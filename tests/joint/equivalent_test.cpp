@@ -21,7 +21,7 @@ constexpr Strength joint{.1 * MPa, 30 * deg, 0, 4 * deg};
 constexpr Strength rock{2 * MPa, 50 * deg, 1 * MPa, 12 * deg};
 
 // Two unit squares of two rocks on top of each other, the joint between them the first edge; the second edge
-// is the lower one's base, the third its left side, the fourth a welded one.
+// is the lower one's base, the third its left side, the fourth a bonded one.
 struct Section {
     Scene scene;
     Network network;
@@ -73,7 +73,7 @@ struct Lines {
         JointSet set;
         set.name = "bedding";
         set.persistence = .5;
-        set.length = Law{Law::Kind::constant, 2, 0};
+        set.length = ProbabilityLaw{ProbabilityLaw::Kind::constant, 2, 0};
         scene.joint_sets = {set};
         network.names = {{"rock", "soft"}, {"rough"}, {"bedding"}, {}};
         Blocks& blocks = network.blocks;

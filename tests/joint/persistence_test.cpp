@@ -14,7 +14,7 @@ namespace
 {
 
 // Mean and mean square over realizations of (persistence found - wanted) / its standard error.
-std::pair<double, double> deviations(const Law& length, double persistence, int realizations)
+std::pair<double, double> deviations(const ProbabilityLaw& length, double persistence, int realizations)
 {
     Scene scene;
     scene.outline = {{0, 0}, {90, 0}, {90, 40}, {50, 60}, {0, 60}};
@@ -22,8 +22,8 @@ std::pair<double, double> deviations(const Law& length, double persistence, int 
     JointSet set;
     set.name = "set";
     set.material = "joint";
-    set.trace_angle = Law{Law::Kind::normal, .4, .05};
-    set.spacing = {Law::Kind::negative_exponential, 6, 6};
+    set.trace_angle = ProbabilityLaw{ProbabilityLaw::Kind::normal, .4, .05};
+    set.spacing = {ProbabilityLaw::Kind::negative_exponential, 6, 6};
     set.length = length;
     set.persistence = persistence;
     scene.joint_sets = {set};
@@ -50,8 +50,9 @@ std::pair<double, double> deviations(const Law& length, double persistence, int 
 // of their traces.
 TEST(Persistence, OfSampledJointsIsWithinItsError)
 {
-    const Law lognormal{Law::Kind::lognormal, 3, 1.5}, exponential{Law::Kind::negative_exponential, 3, 3};
-    for (const Law& length : {lognormal, exponential})
+    const ProbabilityLaw lognormal{ProbabilityLaw::Kind::lognormal, 3, 1.5},
+        exponential{ProbabilityLaw::Kind::negative_exponential, 3, 3};
+    for (const ProbabilityLaw& length : {lognormal, exponential})
         for (const double persistence : {.4, .8}) {
             const auto [mean, square] = deviations(length, persistence, 400);
             EXPECT_NEAR(mean, 0, 4. / 20) << persistence;

@@ -106,10 +106,10 @@ TEST(Pieces, OfALineWithoutTracesAreOneBridge)
 TEST(PersistenceError, IsWhatAHandFinds)
 {
     // Constant traces of 2 m, bridges with mean and deviation 1 m: variance (0 + 1 * 4) / (27 * 300).
-    const Law two{Law::Kind::constant, 2, 0};
+    const ProbabilityLaw two{ProbabilityLaw::Kind::constant, 2, 0};
     EXPECT_NEAR(persistence_error(two, 2. / 3, {100, 200}), std::sqrt(4. / (27 * 300)), 1e-12);
     // Exponential both: 2 * 4 * 1 / (27 * 300).
-    const Law exponential{Law::Kind::negative_exponential, 2, 2};
+    const ProbabilityLaw exponential{ProbabilityLaw::Kind::negative_exponential, 2, 2};
     EXPECT_NEAR(persistence_error(exponential, 2. / 3, {300}), std::sqrt(8. / (27 * 300)), 1e-12);
     // On lines shorter than anything, all joint or all bridge.
     EXPECT_NEAR(persistence_error(exponential, 2. / 3, {1e-6, 1e-6}), std::sqrt(2. / 9 / 2), 1e-9);
@@ -141,8 +141,8 @@ TEST(PersistenceError, IsWhatManyLinesShow)
     double squares = 0;
     for (const double persistence : found)
         squares += (persistence - mean) * (persistence - mean);
-    const double wanted =
-        persistence_error({Law::Kind::negative_exponential, trace, trace}, k, std::vector<double>(5, 60.0));
+    const double wanted = persistence_error({ProbabilityLaw::Kind::negative_exponential, trace, trace}, k,
+                                            std::vector<double>(5, 60.0));
     EXPECT_NEAR(mean, k, 4 * wanted / std::sqrt(4000));
     EXPECT_NEAR(std::sqrt(squares / 3999) / wanted, 1, .055);
 }

@@ -1,4 +1,4 @@
-// Measuring points: where they are found, and what is held once they are gone.
+// Monitoring points: where they are found, and what is held once they are gone.
 
 #include "sections.hpp"
 
@@ -15,7 +15,7 @@ using namespace jointcreep::mechanics;
 namespace
 {
 
-Section benched(std::vector<MeasuringPoint> points)
+Section benched(std::vector<MonitoringPoint> points)
 {
     Scene scene = section({{0, 0}, {20, 0}, {20, 10}, {0, 10}}, 0.05);
     scene.zone_size = 1.5;

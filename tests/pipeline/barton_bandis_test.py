@@ -47,20 +47,20 @@ from_m = [0, 0]
 to_m = [0, 1]
 fix = "x"
 displacement_mm = [3, 0]
-course = [[0, 0], [10, 0], [20, 1]]
+load_history = [[0, 0], [10, 0], [20, 1]]
 
 [[boundary]]
 from_m = [2, 0]
 to_m = [2, 1]
 fix = "x"
 displacement_mm = [3, 0]
-course = [[0, 0], [10, 0], [20, 1]]
+load_history = [[0, 0], [10, 0], [20, 1]]
 
 [[boundary]]
 from_m = [0, 1]
 to_m = [2, 1]
 traction_MPa = [0, -1]
-course = [[0, 1], [10, LOAD], [20, LOAD]]
+load_history = [[0, 1], [10, LOAD], [20, LOAD]]
 
 [schedule]
 end = 20
@@ -96,7 +96,7 @@ class BartonBandis(ChainTest):
     def test_it_closes_and_slips_by_the_formulas(self):
         """Loaded to 5 and to 60 MPa, where it is 900 times as stiff as without load, and unloaded to 0.2 MPa; then moved."""
         for load in 5, 60, 0.2:
-            for engine, delta in ("explicit", 3e-2), ("implicit", 1e-3), ("auto", 1e-3):
+            for engine, delta in ("relaxation", 3e-2), ("implicit", 1e-3), ("auto", 1e-3):
                 with self.subTest(load=load, engine=engine):
                     data = self.pressed(load, engine)
                     days = data["/history/time"].tolist()
@@ -111,7 +111,7 @@ class BartonBandis(ChainTest):
 
     def test_the_account_of_energy_closes_where_it_stiffens_at_once(self):
         scene = changed(SCENE, "^unloading_increments = 40", "unloading_increments = 1")
-        data = self.pressed(60, "explicit", changed(scene, "^displacement_mm = .*", "displacement_mm = [0, 0]", 2))
+        data = self.pressed(60, "relaxation", changed(scene, "^displacement_mm = .*", "displacement_mm = [0, 0]", 2))
         work, *parts = (data[f"/equilibria/{name}_energy"] if name != "work" else data["/equilibria/work_of_loads"]
                         for name in ("work", "stored", "dissipated", "damped"))
         self.assertLess(abs(work - sum(parts)).max(), 1e-6 * abs(work).max())

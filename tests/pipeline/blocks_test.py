@@ -74,7 +74,7 @@ class Blocks(ChainTest):
         self.assertLess(numpy.abs(found / areas - 1).max(), 1e-12)
 
     def check_edges(self, network, scene):
-        """Every edge is a boundary, a joint with its id, or welded, and is twice in rings: once for each side."""
+        """Every edge is a boundary, a joint with its id, or bonded, and is twice in rings: once for each side."""
         kind, joint, block = (network["/edges/" + name] for name in ("kind", "joint", "block"))
         self.assertTrue(numpy.isin(kind, [BOUNDARY, JOINT, WELDED]).all())
         self.assertTrue(((joint >= 0) == (kind == JOINT)).all())

@@ -1,7 +1,7 @@
 """Lines of real joints and rock bridges, zoned, against what strength-averaging makes of them.
 
 A cell of half a period stands between planes of symmetry (normal load) or antisymmetry (shear load). Each line is cut
-as a welded border, with a joint along a part of it, so that the rest is bridge: gridpoints are shared there, and rock
+as a bonded border, with a joint along a part of it, so that the rest is bridge: gridpoints are shared there, and rock
 holds together. What the lines add to the displacement is sigma / K_eq.
 """
 
@@ -47,7 +47,7 @@ fix = "{base}"
 from_m = [0, {high}]
 to_m = [1, {high}]
 traction_MPa = {load}
-course = [[0, 0], [1e-6, 1]]
+load_history = [[0, 0], [1e-6, 1]]
 
 [[boundary]]
 from_m = [0, {low}]

@@ -37,11 +37,11 @@ WITH_PROFILE = (LINEAR_STRESS, """elevation_m = 20
 profile = [{ depth_m = 0, compression_xx_MPa = 1, compression_yy_MPa = 0, shear_xy_MPa = 0 }, \
 { depth_m = 20, compression_xx_MPa = 1.3, compression_yy_MPa = 0.5, shear_xy_MPa = 0.1 }]
 """)
-WITH_MOTION = ("""[creep]
+WITH_LARGE_DISPLACEMENTS = ("""[creep]
 step_days = 5
 scheme = "published"
 stop_rate_mm_per_day = 0.001
-""", """[motion]
+""", """[large_displacements]
 new_contacts = "gouge"
 rigid_rocks = ["hard"]
 stiffness_damping_s = 1e-3
@@ -50,7 +50,7 @@ release_s = 0.5
 longest_s = 20
 record_every_s = 0.5
 """)
-OTHERWISE = {"motion": WITH_MOTION, "ground_m": WITH_GROUND, "profile": WITH_PROFILE,
+OTHERWISE = {"large_displacements": WITH_LARGE_DISPLACEMENTS, "ground_m": WITH_GROUND, "profile": WITH_PROFILE,
              "in_situ_stress.profile": WITH_PROFILE,
              "local_damping": WITH_LOCAL_DAMPING, "tolerance_m": WITH_TOLERANCE, "first_step_days": WITH_TOLERANCE,
              "shortest_step_days": WITH_TOLERANCE, "longest_step_days": WITH_TOLERANCE}  # keys not in every_key.toml
@@ -78,7 +78,7 @@ def find(lines, table, key):
 def wrap(kind, number):
     """The number where a value of this kind has one."""
     corners = f"[[{number}, 0], [1, 0], [0, 1]]"
-    lists = {"point": f"[0, {number}]", "polyline": f"[[0, {number}], [1, 0]]", "course": f"[[1, 0], [2, {number}]]", "polygon": corners,
+    lists = {"point": f"[0, {number}]", "polyline": f"[[0, {number}], [1, 0]]", "load history": f"[[1, 0], [2, {number}]]", "polygon": corners,
              "polygons": f"[{corners}]"}
     return lists.get(kind, number)
 
@@ -92,7 +92,7 @@ def outside(bound, step):
 def broken_values(key):
     kind = key["kind"]
     wrong_type = {"text": "1", "file text": "1", "names": '"flat"', "number": '"1"', "integer": "1.5", "date": '"1994-06-05"', "point": "[1, 2, 3]",
-                  "course": "[[1, 2, 3]]", "polygon": "[[0, 0], [1, 1]]",
+                  "load history": "[[1, 2, 3]]", "polygon": "[[0, 0], [1, 1]]",
                   "polygons": "[[0, 0], [1, 0], [1, 1]]"}
     yield "wrong type", wrong_type.get(kind, "1")
     yield "a flag", "true"
@@ -182,8 +182,8 @@ def fault(jointgen, folder, number, text, line, name):
 
 
 def at_rest(text):
-    """Without boundaries that move and unloading increments, which do not go together with [motion]."""
-    text = text.replace("displacement_mm = [-0.1, 0]\ncourse = [[1, 0], [4, 1]]\n", "")
+    """Without boundaries that move and unloading increments, which do not go together with [large_displacements]."""
+    text = text.replace("displacement_mm = [-0.1, 0]\nload_history = [[1, 0], [4, 1]]\n", "")
     return text.replace("unloading_increments = 2\n", "")
 
 
@@ -194,7 +194,7 @@ def main():
     for key in keys_of(jointgen):
         otherwise = OTHERWISE.get(key["table"]) or OTHERWISE.get(key["key"])
         base = text.replace(*otherwise) if otherwise else text
-        if otherwise is WITH_MOTION:
+        if otherwise is WITH_LARGE_DISPLACEMENTS:
             base = at_rest(base)
         where = f"{key['table']} {key['key']}"
         broken += [(f"{where}, {what}", *rest) for what, *rest in variants(key, base)]
@@ -206,7 +206,7 @@ def main():
         for name, valid in (("every_key.toml", text), ("local.toml", text.replace(*WITH_LOCAL_DAMPING)),
                             ("tolerance.toml", text.replace(*WITH_TOLERANCE)),
                             ("ground.toml", text.replace(*WITH_GROUND)),
-                            ("motion.toml", at_rest(text).replace(*WITH_MOTION)),
+                            ("large_displacements.toml", at_rest(text).replace(*WITH_LARGE_DISPLACEMENTS)),
                             ("profile.toml", text.replace(*WITH_PROFILE))):
             scene = pathlib.Path(folder) / name
             scene.write_text(valid)

@@ -12,7 +12,7 @@ from chain import ChainTest, changed, datasets, main
 sys.path.append(sys.argv[2] + "/pipelines/plots")
 import column_closed_form  # noqa: E402
 
-# Relative. Out-of-balance forces of 1e-6, the default tolerance, leave 5e-6 at most; 1e-3 is asked for.
+# Relative. Unbalanced forces of 1e-6, the default tolerance, leave 5e-6 at most; 1e-3 is asked for.
 REACHED = 2e-5
 
 # (point, day, before what happens on that day): rise [mm], with g = 9.81 m/s2. Worked out by hand.
@@ -132,7 +132,7 @@ class Column(ChainTest):
 
 
 class UnderItsWeight(ChainTest):
-    """The column without stress in situ settles on its way to the first equilibrium, which the trace of motion shows."""
+    """The column without stress in situ settles on its way to the first equilibrium, which the step history of dynamic relaxation shows."""
 
     BLOCK, WEIGHT, STIFFNESS = 10, 2750 * 9.81, 6.9e8  # [m], [N/m3], [Pa/m]
     # Of the centres, from the lowest: by CalculiX 2.20 [mm], with a joint under the lowest block.
@@ -148,8 +148,8 @@ class UnderItsWeight(ChainTest):
         text += '[[point]]\nname = "top block"\nat_m = [5, 35]\n'
         if base == "fixed":
             text = changed(text, '^joint = "base joint"', 'fix = "y"')
-        trace = datasets(self.chain.result(text, "--no-creep", "--trace", 20, "--tolerance", "1e-8"))
-        settled = -trace["/trace/displacement"][-1, [2, 1, 0, 3], 1]
+        steps = datasets(self.chain.result(text, "--no-creep", "--step-history", 20, "--tolerance", "1e-8"))
+        settled = -steps["/step_history/displacement"][-1, [2, 1, 0, 3], 1]
         young = 40e9 / (1 - poisson**2)
         wanted = []
         for n in range(4):

@@ -107,7 +107,7 @@ class Creepfit(ChainTest):
 
     def test_stress_for_the_scene(self):
         """A bench held at its sides: its horizontal stress is found, and how to write it, be it a law or a profile."""
-        law = self.chain.text("tests/pipeline/welded.toml")
+        law = self.chain.text("tests/pipeline/bonded.toml")
         for rule in "joint", "lower bound":
             with_rule = law + f'\n[averaging]\nstiffness = "{rule}"\n'
             cut_at = with_rule.index("[in_situ_stress]"), with_rule.index("[[boundary]]")
@@ -220,7 +220,7 @@ class Creepfit(ChainTest):
             path.write_text("\n".join([head, line, *good, ""]))
             with self.subTest(line):
                 self.refused([self.joints, "--measurements", path, "--fit", "joint-stiffness"], str(path), *wanted)
-        for text, wanted in [("time_day,C_z_mm\n1,2\n", '"C_z_mm"'), ("time_day,event\n1,\n", "no column of a measuring"),
+        for text, wanted in [("time_day,C_z_mm\n1,2\n", '"C_z_mm"'), ("time_day,event\n1,\n", "no column of a monitoring"),
                              ("", "wanted a line of column names"), (f"{head}\n{good[0]}\n", "wanted more readings"),
                              ("time_day,C_x_mm,C_y_mm,C_y_sigma_mm\n1,2,3,4\n", "sigma of some")]:
             path = self.chain.new_folder() / "readings.csv"
@@ -257,10 +257,10 @@ class Creepfit(ChainTest):
         self.refused([self.joints, "--measurements", path, "--fit", "joint-stiffness, kelvin-stiffness"],
                      "no factor changes any of the readings")
 
-    def test_motion_has_no_sensitivities(self):
-        text = changed(self.chain.text("data/column/scene.toml"), r"^\[equilibrium\]", '[equilibrium]\nengine = "explicit"')
+    def test_dynamic_relaxation_has_no_sensitivities(self):
+        text = changed(self.chain.text("data/column/scene.toml"), r"^\[equilibrium\]", '[equilibrium]\nengine = "relaxation"')
         self.refused([self.chain.joints(text), "--measurements", self.readings(), "--fit", "joint-stiffness"],
-                     "sensitivities are found by factorisation")
+                     "sensitivities are found by the implicit engine")
 
     def test_picture(self):
         """Of both tables of readings."""

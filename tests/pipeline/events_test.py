@@ -92,7 +92,7 @@ class Events(ChainTest):
 
     def test_creep_does_not_end_before_the_last_load(self):
         text = self.column((r"^joint = \"base joint\"", 'joint = "base joint"\n\n[[boundary]]\nfrom_m = [0, 40]\n'
-                            "to_m = [10, 40]\ntraction_MPa = [0, -1]\ncourse = [[30, 0], [32, 1]]"),
+                            "to_m = [10, 40]\ntraction_MPa = [0, -1]\nload_history = [[30, 0], [32, 1]]"),
                            (r'^scheme = "published"', 'scheme = "published"\nstop_rate_mm_per_day = 100'))
         text = text[: text.index("[[stage]]")] + text[text.index("[[point]]"):]
         history = datasets(self.chain.result(text))
@@ -102,12 +102,12 @@ class Events(ChainTest):
     def test_a_point_in_rock_that_goes_goes_with_it(self):
         """0.05 m above a joint, inside the block that is removed on day 20."""
         text = self.column((r"^at_m = \[5, 15\]", "at_m = [5, 10.02]"))
-        values = datasets(self.chain.result(text, "--trace", "2000"))
+        values = datasets(self.chain.result(text, "--step-history", "2000"))
         self.assertEqual(values["/history/present"][-1].tolist(), [0, 0, 1])
-        # Both in the histories and in the trace it keeps its last displacement.
+        # Both in the histories and in the step history it keeps its last displacement.
         last = values["/history/displacement"][-1, 1]
         self.assertGreater(last[1], 1e-3)
-        self.assertEqual(values["/trace/displacement"][-1, 1].tolist(), last.tolist())
+        self.assertEqual(values["/step_history/displacement"][-1, 1].tolist(), last.tolist())
 
     def test_displacements_count_anew_from_a_stage_that_resets_them(self):
         text = self.column((r'^name = "block 2 removed"', 'name = "block 2 removed"\ndisplacements = "reset"'))

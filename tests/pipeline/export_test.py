@@ -8,7 +8,7 @@ import numpy
 
 from chain import ChainTest, datasets, main
 
-KINDS = ["boundary", "joint", "welded"]
+KINDS = ["boundary", "joint", "bonded"]
 LINE, POLYGON, TRIANGLE, VERTEX = 3, 7, 5, 1  # cell types of VTK
 EQUIVALENT = {"normal_stiffness": "Pa_per_m", "shear_stiffness": "Pa_per_m", "cohesion": "Pa", "friction_angle": "rad",
               "tensile_strength": "Pa", "dilation_angle": "rad", "law": "", "residual_cohesion": "Pa",
@@ -195,7 +195,7 @@ class Export(ChainTest):
                 self.assert_same(grid.point["length"], data["/mesh/contact_length"][contact])
                 self.assert_same(grid.point["status"], status[contact])
                 for component, direction in enumerate(["normal", "shear"]):
-                    for name in "traction", "jump":
+                    for name in "traction", "relative_displacement":
                         wanted = data["/states/" + name][state][contact, component]
                         self.assert_same(grid.point[f"{direction}_{name}"], wanted)
 

@@ -1,4 +1,4 @@
-"""What the implicit engine gives up goes to motion, and comes to a state that the scene has.
+"""What the implicit engine gives up goes to dynamic relaxation, and comes to a state that the scene has.
 
 The scene is the random slope with joints so weak that blocks come to rest only after they have slid; there Newton's
 method finds no way."""
@@ -19,21 +19,21 @@ class Fallback(ChainTest):
         output = self.chain.new_folder() / "result.h5"
         return output, self.chain.answer("demsolve", self.joints, "-o", output, *arguments)
 
-    def test_motion_takes_over(self):
+    def test_dynamic_relaxation_takes_over(self):
         output, done = self.solve()
         self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertRegex(done.stdout, "factorisation gave up +1 times: forces do not come into balance")
+        self.assertRegex(done.stdout, "implicit engine gave up +1 times: forces do not come into balance")
         data = datasets(output)
         implicit, searches = data["/equilibria/is_implicit"], data["/equilibria/searches"]
         self.assertEqual((implicit == 0).sum(), 1)
         self.assertGreater(len(implicit), 5)
         # Every equilibrium is one, whoever found it.
-        self.assertLessEqual(data["/equilibria/out_of_balance_ratio"].max(), 1e-6)
+        self.assertLessEqual(data["/equilibria/unbalanced_force_ratio"].max(), 1e-6)
         self.assertLessEqual(data["/equilibria/contact_force_change"].max(), 1e-6)
         # It is the in-situ one, which there is nothing to take in smaller increments of.
         self.assertEqual((implicit[0], searches[0]), (0, 2))
-        # Motion all the way slides about as far: what slips does not come to one state alone.
-        output, done = self.solve("--engine", "explicit")
+        # Dynamic relaxation all the way slides about as far: what slips does not come to one state alone.
+        output, done = self.solve("--engine", "relaxation")
         self.assertEqual(done.returncode, 0, done.stderr)
         found, wanted = (d["/history/displacement"][-1] for d in (data, datasets(output)))
         self.assertLess(abs(found - wanted).max(), 0.1 * abs(wanted).max())
@@ -41,7 +41,7 @@ class Fallback(ChainTest):
     def test_the_implicit_engine_alone_says_so(self):
         output, done = self.solve("--engine", "implicit")
         self.assertEqual(done.returncode, 3)
-        self.assertIn("--engine auto would go on by motion", done.stderr)
+        self.assertIn("--engine auto would continue by dynamic relaxation", done.stderr)
         self.assertFalse(output.exists())
 
 

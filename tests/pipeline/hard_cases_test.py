@@ -1,18 +1,18 @@
 """Cases that break solvers: slivers, joints through one point, stiffnesses far apart, blocks that barely hold. Each by both
-engines, and by motion where it means something, against a closed form or an account of forces; or it ends with a reason."""
+engines, and by a dynamic analysis where it means something, against a closed form or an account of forces; or it ends with a reason."""
 
 import math
 
 import numpy as np
 
 from chain import ChainTest, changed, datasets, main
-from motion_test import RIGID, incline
+from large_displacements_test import RIGID, incline
 from small_scene import (GRAVITY, OPEN, STUCK, contacts_between, forces_on, held, joint, material, scene, solved)
 
-ENGINES = "implicit", "explicit"
-FALLING = f'[motion]\nnew_contacts = "joint"\n{RIGID}\nrecord_every_s = 0.05\nstiffness_damping_s = 0.005\n'
+ENGINES = "implicit", "relaxation"
+FALLING = f'[large_displacements]\nnew_contacts = "joint"\n{RIGID}\nrecord_every_s = 0.05\nstiffness_damping_s = 0.005\n'
 SWINGS = "mass_damping_per_s = 100"
-RIGID_SWINGS = f"{SWINGS}\n{RIGID}"  # zones of a sliver are too small for steps of motion; as a rigid body it has no zones
+RIGID_SWINGS = f"{SWINGS}\n{RIGID}"  # zones of a sliver are too small for dynamic steps; as a rigid body it has no zones
 FINE = "[cutting]\nshortest_edge_m = 1e-6\nsmallest_angle_deg = 0\n"
 CORNER = np.array([-5.0, -5.0])
 LOAD = 0.1e6  # [Pa]
@@ -31,7 +31,7 @@ def patch(lines, normal, shear, zone=5.0, nub=False, more="", turn=np.eye(2)):
     def at(*places):
         return [turn @ np.array(place, float) for place in places]
 
-    course = {} if nub else {"course": [[0, 0], [1, 1]]}
+    load_history = {} if nub else {"load_history": [[0, 0], [1, 1]]}
     joints = [joint(f"line {i}", *at(*ends)) for i, ends in enumerate(lines)]
     outline, stages = [[-5, -5], [5, -5], [5, 5], [-5, 5]], []
     if nub:
@@ -40,8 +40,8 @@ def patch(lines, normal, shear, zone=5.0, nub=False, more="", turn=np.eye(2)):
         stages = [[at([-5, 5], [-4, 5], [-4, 6], [-5, 6])]]
     held_at, left, right = at([-5, -4], [-5, -5]), at([-5, 5], [-5, -4]), at([5, -5], [5, 5])
     boundaries = [held(*held_at),
-                  {"from_m": left[0], "to_m": left[1], "traction_MPa": turn @ [LOAD / 1e6, 0], **course},
-                  {"from_m": right[0], "to_m": right[1], "traction_MPa": turn @ [-LOAD / 1e6, 0], **course}]
+                  {"from_m": left[0], "to_m": left[1], "traction_MPa": turn @ [LOAD / 1e6, 0], **load_history},
+                  {"from_m": right[0], "to_m": right[1], "traction_MPa": turn @ [-LOAD / 1e6, 0], **load_history}]
     return scene(at(*outline), joints, boundaries, [material("joint", normal, shear, cohesion=100, tension=100)], gravity=0,
                  stages=stages, points=at([4.9, 4.9], [4.9, -4.9]), zone=zone, more=more)
 
@@ -75,16 +75,16 @@ class UniformStress(ChainTest):
     """Lines that go right through leave a uniform stress uniform, wherever they cross: opposite rays of a line open
     alike. So zones hold it exactly, every contact bears its part of it, and blocks move by the openings on the way."""
 
-    # Balance to 1e-8 of the mean force on a gridpoint; motion of the softest of some hundred gridpoints in a row adds up to
+    # Balance to 1e-8 of the mean force on a gridpoint; movement of the softest of some hundred gridpoints in a row adds up to
     # 1e4 of these at most.
     FORCE, MOVE = 1e-6, 1e-4
-    # Motion stops at 1e-6, and follows large strains; those here are LOAD / E = 1e-5, and openings over a face's length,
+    # The dynamic analysis stops at 1e-6, and follows large strains; those here are LOAD / E = 1e-5, and openings over a face's length,
     # `more`, change what faces what.
     MOTION = 1e-3
 
     def check(self, lines, normal=1000, shear=500, blocks=None, zone=5.0, more="", kept=None, engines=ENGINES,
-              motion=SWINGS):
-        """Of all lines, or of those that cutting keeps. Without `motion` that is left out; otherwise its keys."""
+              dynamic=SWINGS):
+        """Of all lines, or of those that cutting keeps. Without `dynamic` that is left out; otherwise its keys."""
         for engine in engines:
             with self.subTest(engine=engine):
                 data = solved(self.chain, patch(lines, normal, shear, zone, more=more), "--engine", engine, "--tolerance",
@@ -98,9 +98,9 @@ class UniformStress(ChainTest):
                                    for place in data["/history/point_position"]])
                 found = data["/history/displacement"][-1]
                 self.assertLess(np.abs(found - wanted).max() / np.abs(wanted).max(), self.MOVE)
-        if motion:
-            with self.subTest(engine="motion"):
-                text = patch(lines, normal, shear, zone, nub=True, more=f'{more}[motion]\nnew_contacts = "joint"\n{motion}\n')
+        if dynamic:
+            with self.subTest(engine="dynamic"):
+                text = patch(lines, normal, shear, zone, nub=True, more=f'{more}[large_displacements]\nnew_contacts = "joint"\n{dynamic}\n')
                 data = solved(self.chain, text)
                 wide = LOAD / min(normal, shear) / 1e6  # what joints open or shear
                 self.assertLess(error_of_forces(data, -1), self.MOTION + wide)
@@ -114,15 +114,15 @@ class UniformStress(ChainTest):
         one, close = line((1, 0.5), 100), line((1.00001, 0.5), 100)
         data = self.check([one, close], blocks=2, kept=[one])
         self.assertLess(data["/cutting/largest_move"][0], 2e-5)
-        self.check([one, line((1.01, 0.5), 100)], blocks=3, more=FINE, motion=RIGID_SWINGS)
+        self.check([one, line((1.01, 0.5), 100)], blocks=3, more=FINE, dynamic=RIGID_SWINGS)
 
     def test_a_block_of_a_millionth_of_the_section_beside_large_ones(self):
         lines = [line((1, 0.5), 100), line((1, 0.50001), 160), line((1, 0.5), 70)]
-        self.check(lines, blocks=7, more=FINE, motion="")
+        self.check(lines, blocks=7, more=FINE, dynamic="")
         merged = self.chain.network(patch(lines, 1000, 500))
         self.assertEqual(len(datasets(merged)["/blocks/area"]), 6)
-        # Motion would need steps of 1e-15 s there, in which dashpots multiply rounding errors: it says so.
-        joints = self.chain.joints(patch(lines, 1000, 500, nub=True, more=FINE + '[motion]\nnew_contacts = "joint"\n'))
+        # A dynamic analysis would need steps of 1e-15 s there, in which dashpots multiply rounding errors: it says so.
+        joints = self.chain.joints(patch(lines, 1000, 500, nub=True, more=FINE + '[large_displacements]\nnew_contacts = "joint"\n'))
         done = self.chain.answer("demsolve", joints, "-o", joints.with_name("result.h5"))
         self.assertEqual(done.returncode, 3)
         self.assertRegex(done.stderr, r"a step takes .*e-1[0-9] s.* rounding errors .* stiffest is at \[")
@@ -130,7 +130,7 @@ class UniformStress(ChainTest):
     def test_joints_nearly_parallel(self):
         one = line((1, 0.5), 100)
         self.check([one, line((1, 0.5), 100.0001)], blocks=2, kept=[one])
-        self.check([one, line((1, 0.5), 100.5)], blocks=4, more=FINE, motion=RIGID_SWINGS)
+        self.check([one, line((1, 0.5), 100.5)], blocks=4, more=FINE, dynamic=RIGID_SWINGS)
 
     def test_stiffness_of_joints_from_1e6_to_1e13(self):
         for exponent in range(6, 14):
@@ -139,7 +139,7 @@ class UniformStress(ChainTest):
                 # Damping by which the square swings to rest on the joint: twice its frequency.
                 swing = min(1000.0, 2 * math.sqrt(normal * 1e6 * 10 / (2500 * 50)))
                 self.check([line((1, 0.5), 100), line((1, 0.5), 160)], normal, normal / 2,
-                           motion=f"mass_damping_per_s = {swing}" if exponent % 3 == 0 else "")
+                           dynamic=f"mass_damping_per_s = {swing}" if exponent % 3 == 0 else "")
 
     def test_normal_and_shear_stiffness_apart_by_1e4(self):
         for normal, shear in (1e6, 1e2), (1e2, 1e6):
@@ -150,7 +150,7 @@ class UniformStress(ChainTest):
 def pressed(outline, joints, base, top, more="", of=(), **keys):
     """Rock on a joint on the ground, from base to base, pressed by LOAD on its top."""
     boundaries = [{"from_m": base[0], "to_m": base[1], "joint": "joint"},
-                  {"from_m": top[0], "to_m": top[1], "traction_MPa": [0, -LOAD / 1e6], "course": [[0, 0], [1, 1]]}]
+                  {"from_m": top[0], "to_m": top[1], "traction_MPa": [0, -LOAD / 1e6], "load_history": [[0, 0], [1, 1]]}]
     return scene(outline, joints, boundaries, of or [material("joint", 1000, cohesion=1, tension=1)], gravity=0, more=more,
                  **keys)
 
@@ -183,13 +183,13 @@ class Stacks(ChainTest):
                     self.assertAlmostEqual(data["/history/displacement"][-1, point, 1] / self.rise(height, number), 1,
                                            delta=1e-6)
 
-    def test_bricks_in_motion(self):
+    def test_bricks_in_a_dynamic_analysis(self):
         """Every level carries the weight above, before and after the upper row has gone."""
         outline, joints = self.wall()
         stage = [[[0, 3], [6, 3], [6, 4], [0, 4]]]
         text = scene(outline, joints, [{"from_m": [0, 0], "to_m": [6, 0], "joint": "joint"}], [material("joint", 1000)],
                      stages=[stage], zone=2.0,
-                     more='[motion]\nnew_contacts = "joint"\nmass_damping_per_s = 300\n')
+                     more='[large_displacements]\nnew_contacts = "joint"\nmass_damping_per_s = 300\n')
         data = solved(self.chain, text)
         row = 2500 * GRAVITY * 6
         for state, rows in (0, 4), (-1, 3):
@@ -200,7 +200,7 @@ class Stacks(ChainTest):
 
     def test_many_blocks(self):
         self.check_grid(100, "implicit")
-        self.check_grid(40, "explicit")
+        self.check_grid(40, "relaxation")
 
     def check_grid(self, n, engine):
         joints = [joint(f"{name} {i}", *ends) for i in range(1, n)
@@ -216,7 +216,7 @@ class Stacks(ChainTest):
     def test_one_block_and_no_joint(self):
         """Plane strain, free to the right: q (1 - nu^2) / E down, q nu (1 + nu) / E to the side."""
         boundaries = [held([0, 0], [3, 0], "y"), held([0, 5], [0, 0], "x"),
-                      {"from_m": [3, 5], "to_m": [0, 5], "traction_MPa": [0, -LOAD / 1e6], "course": [[0, 0], [1, 1]]}]
+                      {"from_m": [3, 5], "to_m": [0, 5], "traction_MPa": [0, -LOAD / 1e6], "load_history": [[0, 0], [1, 1]]}]
         text = scene([[0, 0], [3, 0], [3, 5], [0, 5]], [], boundaries, [], gravity=0, poisson=0.25, points=[[2.5, 4]])
         for engine in ENGINES:
             data = solved(self.chain, text, "--engine", engine, "--tolerance", "1e-8")
@@ -224,18 +224,18 @@ class Stacks(ChainTest):
             found = data["/history/displacement"][-1, 0] / (LOAD / 10e9)
             self.assertLess(np.abs(found - [2.5 * 0.25 * 1.25, -4 * (1 - 0.25**2)]).max(), 1e-6)
 
-    def test_one_block_and_no_joint_in_motion(self):
+    def test_one_block_and_no_joint_in_a_dynamic_analysis(self):
         """The upper half of it goes: what is left rises by the weight off it, which presses alike on all of it."""
         text = scene([[0, 0], [3, 0], [3, 6], [0, 6]], [], [held([0, 0], [3, 0])], [material("joint", 1000)],
                      stages=[[[[0, 3], [3, 3], [3, 6], [0, 6]]]], points=[[1.5, 1]], zone=0.5,
-                     more='[motion]\nnew_contacts = "joint"\nmass_damping_per_s = 500\n')
+                     more='[large_displacements]\nnew_contacts = "joint"\nmass_damping_per_s = 500\n')
         data = solved(self.chain, text)
         rise = 2500 * GRAVITY * 3 * 1 / 10e9
         # Lumped weights press on the cut with the unevenness of half a zone, which is gone a width below (Saint-Venant).
         self.assertAlmostEqual(data["/history/displacement"][-1, 0, 1] / rise, 1, delta=0.01)
 
     def persistent(self, persistence, tension, more=""):
-        """A bar of 3 m x 6 m, pulled by `tension` [MPa] times the course, across a set of level joints."""
+        """A bar of 3 m x 6 m, pulled by `tension` [MPa] times the load history, across a set of level joints."""
         set_of_joints = f"""
 [[joint_set]]
 name = "level"
@@ -248,7 +248,7 @@ persistence = {persistence}
 seed = 1
 """
         boundaries = [held([0, 0], [3, 0], "y"), held([0, 6], [0, 0], "x"),
-                      {"from_m": [3, 6], "to_m": [0, 6], "traction_MPa": [0, tension], "course": [[0, 0], [1, 1]]}]
+                      {"from_m": [3, 6], "to_m": [0, 6], "traction_MPa": [0, tension], "load_history": [[0, 0], [1, 1]]}]
         text = scene([[0, 0], [3, 0], [3, 6], [0, 6]], [], boundaries,
                      [material("joint", 1000, friction=20, cohesion=0.05, tension=0.01)], gravity=0, points=[[1, 5.9]],
                      more=set_of_joints)
@@ -265,7 +265,7 @@ seed = 1
             self.assertTrue((data["/edges/joint_fraction"][edges] == persistence).all())
             for name, wanted in zip(("cohesion", "friction_angle", "tensile_strength"), strength):
                 self.assertLess(np.abs(data[f"/equivalent/{name}"][edges] / wanted - 1).max(), 1e-12)
-            for engine in "auto", "explicit":
+            for engine in "auto", "relaxation":
                 output = joints.with_name(f"{engine}.h5")
                 done = self.chain.answer("demsolve", joints, "-o", output, "--engine", engine, "--tolerance", "1e-8")
                 with self.subTest(persistence=persistence, engine=engine):
@@ -283,7 +283,7 @@ seed = 1
         outline = [[0, 0], [7, 0], [6.1, 5.3], [0, 6]]
         through = joint("through", [-1, 2.2], [8, 3.1])
         sides = [joint(f"side {i}", a, b) for i, (a, b) in enumerate(zip(outline, outline[1:] + outline[:1]))]
-        for more, stages in ("", ()), ('[motion]\nnew_contacts = "joint"\nmass_damping_per_s = 300\n',
+        for more, stages in ("", ()), ('[large_displacements]\nnew_contacts = "joint"\nmass_damping_per_s = 300\n',
                                        ([[[3, 1], [4, 1], [3.5, 1.5]]],)):
             for engine in (ENGINES if not stages else ["auto"]):
                 one, other = (
@@ -330,7 +330,7 @@ class BarelyHeld(ChainTest):
     def assert_falls(self, text, height):
         """By g t^2 / 2 to 1e-3 of the height; it comes to rest on the floor."""
         data = solved(self.chain, text)
-        time, state = data["/motions/motion_time"], data["/motions/state"]
+        time, state = data["/dynamics/dynamic_time"], data["/dynamics/state"]
         gridpoints = np.unique(data["/mesh/zone_gridpoint"][data["/mesh/zone_block"] == self.block_at(data, height)])
         fallen = -data["/states/displacement"][state][:, gridpoints, 1].mean(axis=1)
         falling = 0.5 * GRAVITY * time**2 < 0.95 * height
@@ -346,7 +346,7 @@ class BarelyHeld(ChainTest):
         return data["/mesh/zone_block"][np.flatnonzero(stays)[centre[stays, 1].argmax()]]
 
     def test_a_block_falls_when_its_support_goes(self):
-        """Without motion it is named before any step: safety_test.py."""
+        """Without a dynamic analysis it is named before any step: safety_test.py."""
         text = scene([[0, 0], [4, 0], [4, 9], [0, 9]], [joint("low", [-1, 3], [5, 3]), joint("high", [-1, 6], [5, 6])],
                      [held([0, 0], [4, 0])], [material("joint", 1000)],
                      stages=[[[[0, 3], [4, 3], [4, 6], [0, 6]]]], points=[[2, 7.5]], zone=3.0,
@@ -363,21 +363,21 @@ class BarelyHeld(ChainTest):
     def test_a_light_block_that_falls_beside_a_large_force(self):
         weight = 2500 * GRAVITY * 0.05**2
         for tolerance in 1e-6, 1e-5:
-            for engine, damping in (("auto", "adaptive"), ("explicit", "adaptive"), ("explicit", "local"),
-                                    ("explicit", "combined")):
+            for engine, damping in (("auto", "adaptive"), ("relaxation", "adaptive"), ("relaxation", "local"),
+                                    ("relaxation", "combined")):
                 with self.subTest(tolerance=tolerance, engine=engine, damping=damping):
                     settings = f'[equilibrium]\ntolerance = {tolerance}\nengine = "{engine}"\ndamping = "{damping}"\n'
                     left, message = self.failed(self.beside_a_column(0, settings))
                     self.assertEqual((left["/failure/block"].tolist(), left["/failure/moves_on"].tolist()), ([1], [1]),
                                      message)
-            # One that its joint bears stays; what it still has to go is a thousand times the tolerance of what the column
+            # One that its joint bears stays; what displacement remains for it is a thousand times the tolerance of what the column
             # went down.
             settings = f"[equilibrium]\ntolerance = {tolerance}\n"
-            explicit, implicit = (solved(self.chain, self.beside_a_column(10, settings), "--engine", engine)
-                                  for engine in ("explicit", "implicit"))
-            for data in explicit, implicit:
+            relaxation, implicit = (solved(self.chain, self.beside_a_column(10, settings), "--engine", engine)
+                                  for engine in ("relaxation", "implicit"))
+            for data in relaxation, implicit:
                 self.assertTrue((data["/states/contact_status"][-1] == STUCK).all())
-            self.assertLess(explicit["/equilibria/to_go"].max(), 1000 * tolerance * 50e6 / 10e9 * 6)
+            self.assertLess(relaxation["/equilibria/remaining_displacement"].max(), 1000 * tolerance * 50e6 / 10e9 * 6)
             force = forces_on(implicit, np.arange(2)).sum(axis=0)
             self.assertLess(np.abs(np.abs(force) - [0, weight]).max() / weight, 1e-4)
         left, message = self.failed(self.beside_a_column(0), "--factor-of-safety")
@@ -413,11 +413,11 @@ class BarelyHeld(ChainTest):
                 data = solved(self.chain, self.sloping(near[0]), "--engine", engine)
                 force = forces_on(data, np.arange(len(data["/mesh/contact_length"]))).sum(axis=0)
                 self.assertLess(np.abs(force - [0, -weight]).max() / weight, 1e-5)
-        for engine in "auto", "explicit":
+        for engine in "auto", "relaxation":
             left, message = self.failed(self.sloping(near[1]), "--engine", engine)
             self.assertEqual((left["/failure/block"].tolist(), left["/failure/moves_on"].tolist()), ([0], [1]), message)
 
-    def test_friction_within_a_thousandth_of_the_limit_in_motion(self):
+    def test_friction_within_a_thousandth_of_the_limit_in_a_dynamic_analysis(self):
         for factor in 1.001, 0.999:
             friction = math.degrees(math.atan(math.tan(math.radians(30)) * factor))
             data = solved(self.chain, incline(30, friction, length=8, more=RIGID))
@@ -427,10 +427,10 @@ class BarelyHeld(ChainTest):
                 self.assertLess(abs(moved), 1e-3)
                 continue
             self.assertAlmostEqual(moved, 3, delta=0.01)  # to the wall
-            time = data["/motions/motion_time"]
+            time = data["/dynamics/dynamic_time"]
             acceleration = 0.001 * GRAVITY * math.sin(math.radians(30))
             sliding = (time > 1) & (time < 0.95 * math.sqrt(6 / acceleration))
-            speed = np.sqrt(2 * data["/motions/kinetic_energy"][sliding] / (2700 * 2.0))
+            speed = np.sqrt(2 * data["/dynamics/kinetic_energy"][sliding] / (2700 * 2.0))
             # A thousandth of what pulls is left; rounding and the joint's swinging may take a hundredth of that.
             self.assertAlmostEqual(np.polyfit(time[sliding], speed, 1)[0] / acceleration, 1, delta=0.01)
 
@@ -448,7 +448,7 @@ class Creep(ChainTest):
                   "shear_kelvin_viscosity_MPa_day_per_m": 1000 / ratio / rate}
         at_once = 1e-6
         top = held([1, 2], [0, 2], "y", displacement_mm=[0, -1e3 * u],
-                   course=[[0, 0], [at_once, 1], [2, 1], [2 + at_once, -1], [5, -1], [5 + at_once, 1]])
+                   load_history=[[0, 0], [at_once, 1], [2, 1], [2 + at_once, -1], [5, -1], [5 + at_once, 1]])
         text = scene([[0, 0], [1, 0], [1, 2], [0, 2]], [],
                      [top, held([0, 2], [0, 0], "x"), {"from_m": [0, 0], "to_m": [1, 0], "joint": "joint"}],
                      [material("joint", 1000, **creeps)], gravity=0, end=8, zone=2.0, modulus=10000,
@@ -488,7 +488,7 @@ class ThickBlock(ChainTest):
     joint all along."""
 
     LENGTH, WEIGHT, NORMAL, SHEAR = 10, 0.1e6, 100e6, 40e6
-    CASES = ("implicit", 1), ("implicit", 5), ("implicit", 8), ("explicit", 5)
+    CASES = ("implicit", 1), ("implicit", 5), ("implicit", 8), ("relaxation", 5)
 
     def solved(self, height, slope, engine, tension):
         c, s = math.cos(slope), math.sin(slope)
@@ -500,7 +500,7 @@ class ThickBlock(ChainTest):
         corners = at([0, 0], [length, 0], [length, height], [0, height])
         push = weight * s * length / height
         loaded = [{"from_m": corners[i], "to_m": corners[j], "traction_MPa": [float(t) for t in traction],
-                   "course": [[0, 0], [1, 1]]}
+                   "load_history": [[0, 0], [1, 1]]}
                   for i, j, traction in ((1, 2, [-push * c, -push * s]), (2, 3, [weight * c * s, -weight * c * c]))]
         text = scene(corners, [], [{"from_m": corners[0], "to_m": corners[1], "joint": "joint"}, *loaded],
                      [material("joint", self.NORMAL / 1e6, self.SHEAR / 1e6, cohesion=100, tension=tension)], gravity=0, modulus=1e4,

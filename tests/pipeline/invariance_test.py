@@ -1,5 +1,5 @@
-"""The same section turned, mirrored, written in another order, in other units: the same answer. And what motion keeps:
-momentum and energy, where nothing acts from outside. (Threads: same_bytes_test.py and motion_test.py.)"""
+"""The same section turned, mirrored, written in another order, in other units: the same answer. And what a dynamic analysis keeps:
+momentum and energy, where nothing acts from outside. (Threads: same_bytes_test.py and large_displacements_test.py.)"""
 
 import math
 import random
@@ -9,7 +9,7 @@ import numpy as np
 
 from chain import ChainTest, changed, datasets, main
 from hard_cases_test import error_of_forces, line, moved, patch
-from motion_test import RIGID, missing_energy
+from large_displacements_test import RIGID, missing_energy
 from small_scene import OPEN, SLIPPING, held, joint, material, scene, solved
 
 IDENTITY = np.eye(2)
@@ -40,7 +40,7 @@ def plate(length=1.0, stress=1.0, bonded=False, order=None):
     joints = [joint(f"joint {i}", *at(ends), of=("stiff", "soft")[i % 2]) for i, ends in enumerate(JOINTS)]
     low, high = at(OUTLINE[:2]), at(OUTLINE[2:])
     load = LOAD * stress
-    boundaries = [held(*low), {"from_m": high[0], "to_m": high[1], "traction_MPa": list(load), "course": [[0, 0], [1, 1]]}]
+    boundaries = [held(*low), {"from_m": high[0], "to_m": high[1], "traction_MPa": list(load), "load_history": [[0, 0], [1, 1]]}]
     in_situ = np.array([-0.6, -0.4, 0.1]) * (stress if bonded else 0)
     gone, named = [at(polygon) for polygon in GONE], [at([place])[0] for place in POINTS]
     if order:
@@ -59,25 +59,25 @@ class Turned(ChainTest):
     def test_uniform_stress(self):
         for name, turn in (("37", turned(37)), ("90", turned(90)), ("200", turned(200)), ("mirror", MIRROR),
                            ("mirror and 63", turned(63) @ MIRROR)):
-            for engine in "implicit", "explicit", "motion":
+            for engine in "implicit", "relaxation", "dynamic":
                 with self.subTest(turn=name, engine=engine):
                     self.check(turn, engine)
 
     def check(self, turn, engine):
-        is_motion = engine == "motion"
-        text = patch(self.LINES, 1000, 500, nub=is_motion, turn=turn, more=(
-            '[motion]\nnew_contacts = "joint"\nmass_damping_per_s = 100\n' if is_motion else ""))
-        data = solved(self.chain, text, *([] if is_motion else ["--engine", engine, "--tolerance", "1e-8"]))
-        # As in UniformStress there: balance times gridpoints in a row; strains of 1e-5 and openings of 1e-4 m in motion.
-        self.assertLess(error_of_forces(data, -1, turn), 1e-3 if is_motion else 1e-6)
-        if not is_motion:
+        is_dynamic = engine == "dynamic"
+        text = patch(self.LINES, 1000, 500, nub=is_dynamic, turn=turn, more=(
+            '[large_displacements]\nnew_contacts = "joint"\nmass_damping_per_s = 100\n' if is_dynamic else ""))
+        data = solved(self.chain, text, *([] if is_dynamic else ["--engine", engine, "--tolerance", "1e-8"]))
+        # As in UniformStress there: balance times gridpoints in a row; strains of 1e-5 and openings of 1e-4 m in a dynamic analysis.
+        self.assertLess(error_of_forces(data, -1, turn), 1e-3 if is_dynamic else 1e-6)
+        if not is_dynamic:
             wanted = np.array([moved(place, self.LINES, 1000, 500, turn) for place in data["/history/point_position"]])
             self.assertLess(np.abs(data["/history/displacement"][-1] - wanted).max() / np.abs(wanted).max(), 1e-4)
 
 
 class Plate(ChainTest):
     """A section without symmetry. Balanced to 1e-9, forces in a row of some hundred gridpoints leave 1e-6 of the
-    displacements: by the implicit engine where joints slip, by motion where none does, as slip remembers the way."""
+    displacements: by the implicit engine where joints slip, by dynamic relaxation where none does, as slip is path dependent."""
 
     def found(self, text, engine):
         return solved(self.chain, text, "--engine", engine, "--tolerance", "1e-9")
@@ -98,7 +98,7 @@ class Plate(ChainTest):
     def test_other_units(self):
         """Times powers of two no digit changes: what does is a length, a stress or a force that the programs take for small
         or large. Displacements and tractions are the same to the last bit but for what is converted in decimal units."""
-        for engine, bonded in ("implicit", False), ("explicit", True):
+        for engine, bonded in ("implicit", False), ("relaxation", True):
             one = self.found(plate(bonded=bonded), engine)
             for length, stress in (2**-10, 1), (2**10, 1), (1, 2**-10), (1, 2**6), (2**-7, 2**-7), (2**7, 2**3):
                 with self.subTest(engine=engine, length=length, stress=stress):
@@ -109,11 +109,11 @@ class Plate(ChainTest):
 
     def test_order_in_the_scene(self):
         """The same blocks to the bit, whatever the order; the same answer but for rounding."""
-        for engine in "implicit", "explicit":
-            one = self.found(plate(bonded=engine == "explicit"), engine)
+        for engine in "implicit", "relaxation":
+            one = self.found(plate(bonded=engine == "relaxation"), engine)
             for seed in 1, 2, 3:
                 with self.subTest(engine=engine, seed=seed):
-                    other = self.found(plate(bonded=engine == "explicit", order=random.Random(seed)), engine)
+                    other = self.found(plate(bonded=engine == "relaxation", order=random.Random(seed)), engine)
                     for name in "/vertices/position", "/blocks/area", "/rings/vertex", "/mesh/gridpoint_position":
                         np.testing.assert_array_equal(one[name], other[name], name)
                     self.assert_same(one, other)
@@ -130,13 +130,13 @@ class Plate(ChainTest):
             np.testing.assert_array_equal(one[name], other[name], name)
 
     def test_what_work_the_loads_do_is_accounted_for(self):
-        for engine in "implicit", "explicit":
+        for engine in "implicit", "relaxation":
             data = self.found(plate(), engine)
             parts = sum(data[f"/equilibria/{part}_energy"] for part in ("stored", "dissipated", "damped"))
             work = data["/equilibria/work_of_loads"]
             turned_over = np.abs(work) + np.abs(data["/equilibria/stored_energy"])
             self.assertGreater(data["/equilibria/dissipated_energy"].sum(), 0)
-            # The account by motion is by the trapezoidal rule, step by step: what is left is the last motion.
+            # The energy balance of dynamic relaxation is by the trapezoidal rule, step by step: what is left is the last movement.
             self.assertLess(np.abs(work - parts).max() / turned_over.max(), 1e-6)
 
 
@@ -148,8 +148,8 @@ def notched(mirrored, moved=0, more=""):
         return [[10 - x if mirrored else x, y] for x, y in places]
 
     outline = at([0, 0], [10, 0], [10, 5], [0, 5])
-    course = {"displacement_mm": [0, moved], "course": [[0, 0], [0.5, 1]]} if moved else {}
-    return scene(outline[::-1] if mirrored else outline, [], [held(*at([0, 0], [5, 0]), **course), held(*at([10, 0], [10, 5]))],
+    load_history = {"displacement_mm": [0, moved], "load_history": [[0, 0], [0.5, 1]]} if moved else {}
+    return scene(outline[::-1] if mirrored else outline, [], [held(*at([0, 0], [5, 0]), **load_history), held(*at([10, 0], [10, 5]))],
                  [material("joint", 1000)], points=at([5.2, 0.3], [4.8, 0.3], [5.4, 1.5]),
                  more=more, stages=[[at([5, 0], [4.5, 5.5], [5.5, 5.5])], [at([0, 4], [1, 4], [1, 5], [0, 5])]])
 
@@ -157,7 +157,7 @@ def notched(mirrored, moved=0, more=""):
 class Notch(ChainTest):
     """What is parted from rock that is held is held no longer, whichever of the two the scene has first."""
 
-    RESTS = '[motion]\nnew_contacts = "joint"\nmass_damping_per_s = 300\n'
+    RESTS = '[large_displacements]\nnew_contacts = "joint"\nmass_damping_per_s = 300\n'
 
     def both(self, **given):
         engine = ["--tolerance", "1e-8"] + (["--engine", given.pop("engine")] if "engine" in given else [])
@@ -166,8 +166,8 @@ class Notch(ChainTest):
         return one["/history/displacement"], other["/history/displacement"] * [-1, 1]
 
     def test_parts_alike(self):
-        for name, given in (("implicit", {"engine": "implicit"}), ("explicit", {"engine": "explicit"}),
-                            ("motion", {"more": self.RESTS})):
+        for name, given in (("implicit", {"engine": "implicit"}), ("relaxation", {"engine": "relaxation"}),
+                            ("dynamic", {"more": self.RESTS})):
             with self.subTest(engine=name):
                 one, other = self.both(**given)
                 self.assertLess(one[-1, 0, 1], -9e-5)  # the tip, 5 m from where it is clamped, goes down
@@ -198,7 +198,7 @@ def pushed(turn=IDENTITY, length=1.0, rigid=True, more=""):
     root = math.sqrt(length)
     return scene(at(*outline), joints, boundaries, [material("joint", 200, 100, 20)], gravity=0, modulus=5 * length,
                  stages=[[at([4, 2], [6, 2], [6, 3.3], [4, 3.3])]], points=at([2.5, 3], [3.5, 3.7]), zone=2 * length,
-                 more=f"""[motion]
+                 more=f"""[large_displacements]
 new_contacts = "joint"
 {RIGID if rigid else ""}
 stiffness_damping_s = {0.001 * root}
@@ -247,7 +247,7 @@ def in_another_order(text, seed):
     return "".join(tables)
 
 
-class Motion(ChainTest):
+class Dynamics(ChainTest):
     def test_order_in_the_scene(self):
         """The same blocks to the bit; they slide, bump and rest alike, but for rounding."""
         text = changed(pushed(more=IN_TWO), r"^rigid_rocks = .*", 'rigid_rocks = ["rock", "heavy"]')
@@ -293,7 +293,7 @@ class Motion(ChainTest):
                          [joint("low", *at((-4, 1.75), (8, 2.5))), joint("high", *at((-4, 4.25), (8, 3.5)))],
                          [held(*at((0, 0), (4, 0)))], [material("joint", 1000)], points=at((2, 3), (2, 4.5)),
                          stages=[[at((-1, 5), (5, 5), (5, 7), (-1, 7))]],
-                         more=f'[motion]\nnew_contacts = "joint"\nmass_damping_per_s = 200\n{more}')
+                         more=f'[large_displacements]\nnew_contacts = "joint"\nmass_damping_per_s = 200\n{more}')
 
         for more in "", RIGID:
             one = solved(self.chain, section(0, 0, more))
@@ -322,7 +322,7 @@ class FreeCollision(ChainTest):
     between them; the moment of momentum, too; energy to the error of steps."""
 
     def flight(self, rigid, damping):
-        text = scene(**COLLISION, zone=0.5, more=f"""[motion]
+        text = scene(**COLLISION, zone=0.5, more=f"""[large_displacements]
 new_contacts = "joint"
 {RIGID if rigid else ""}
 stiffness_damping_s = {damping}
@@ -338,7 +338,7 @@ longest_s = 4
 
     def momenta(self, data):
         """Of each block, at the middles between recorded moments: momentum over density, and place [m]; times."""
-        state, time = data["/motions/state"], data["/motions/motion_time"]
+        state, time = data["/dynamics/state"], data["/dynamics/dynamic_time"]
         corners = data["/mesh/zone_gridpoint"]
         x = data["/mesh/gridpoint_position"][corners]
         edge = x[:, 1:] - x[:, :1]
@@ -369,7 +369,7 @@ longest_s = 4
         self.assertGreater(np.abs(momentum[0][0]), 0.1)
         # Places add up 4e5 moves without rounding, and are given to 1e-16 of 5 m, over a way of half a metre.
         self.assertLess(np.abs(momentum[1] - momentum[0]).max() / np.abs(momentum[0]).max(), 1e-13)
-        energy = data["/motions/kinetic_energy"]
+        energy = data["/dynamics/kinetic_energy"]
         self.assertLess(np.abs(missing_energy(data)).max() / energy.max(), 0.01)
         return data, time, place, before, after
 

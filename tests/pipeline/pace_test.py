@@ -1,4 +1,4 @@
-"""Motion and a bare loop of the same arithmetic move a slope alike, on one thread and on two; how fast is not asked."""
+"""Both dynamic engines and a bare loop of the same arithmetic move a slope alike, on one thread and on two; how fast is not asked."""
 
 import csv
 import subprocess

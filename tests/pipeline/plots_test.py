@@ -21,16 +21,16 @@ class Plots(ChainTest):
         return subprocess.run(command, capture_output=True, text=True, timeout=300)
 
     def column(self):
-        """Path of a result file of the column, which is short and has every solver step traced."""
+        """Path of a result file of the column, which is short and has every solver step recorded."""
         text = changed(self.chain.text("data/column/scene.toml"), r"^size_m = \S+", "size_m = 10")
-        return self.chain.result(text, "--tolerance", "1e-3", "--trace", "1")
+        return self.chain.result(text, "--tolerance", "1e-3", "--step-history", "1")
 
     def test_pictures(self):
         result = self.column()
         wanted = {
             "section": ([],), "strength": ([], ["--compression", "3"]), "histories": ([], ["--closed-form", "column"], ["--readings"]),
             "blocks": (["--by", "size"], ["--by", "set"], ["--by", "rock"], ["--by", "stage"]),
-            "trace": ([], ["--point", "B"]),
+            "step_history": ([], ["--point", "B"]),
             "state": (["--field", "displacement"], ["--field", "stress"], ["--field", "contacts"],
                       ["--state", "block-1-removed"], ["--state", "block 1 removed"], ["--state", "0"]),
         }
@@ -43,15 +43,15 @@ class Plots(ChainTest):
                     self.assertEqual([path.name for path in picture.parent.iterdir()], ["picture.png"])
                     self.assertEqual(picture.read_bytes()[:8], PNG)
 
-    def test_picture_of_a_motion(self):
+    def test_picture_of_a_dynamic_analysis(self):
         result = self.chain.result(self.chain.text("data/collapse/toppling.toml"))
         picture = result.with_name("picture.png")
-        done = self.plot("motion", result, picture)
+        done = self.plot("dynamics", result, picture)
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         self.assertEqual(picture.read_bytes()[:8], PNG)
-        done = self.plot("motion", self.column(), result.with_name("none.png"))
+        done = self.plot("dynamics", self.column(), result.with_name("none.png"))
         self.assertEqual(done.returncode, 2)
-        self.assertIn("its scene has no [motion]", done.stderr)
+        self.assertIn("its scene has no [large_displacements]", done.stderr)
 
     def test_pictures_of_joint_sets(self):
         scenes = {"data/slope/scene.toml": ["stereonet", "rose", "distributions"],
@@ -118,13 +118,13 @@ class Plots(ChainTest):
     def test_stages_in_the_trace(self):
         """Each begins after the solver steps of all equilibria before it."""
         import figure
-        import plot_trace
+        import plot_step_history
 
         result = self.column()
         found = datasets(result)
         before = numpy.concatenate([[0], numpy.cumsum(found["/equilibria/steps"])])
         with figure.opened(result) as file:
-            rows = plot_trace.stage_rows(file)
+            rows = plot_step_history.stage_rows(file)
         self.assertEqual(len(rows), 3)
         for day, row in zip((1, 10, 20), rows.values()):
             last = numpy.flatnonzero(found["/equilibria/time"] == day)[-1]

@@ -91,8 +91,8 @@ class Residual(ChainTest):
             scene = scene.replace(word, text)
         return datasets(self.chain.result(scene))
 
-    def moved(self, course, engine, increments, scene=SCENE):
-        side = f'fix = "x"\ndisplacement_mm = [4, 0]\ncourse = {course}'
+    def moved(self, load_history, engine, increments, scene=SCENE):
+        side = f'fix = "x"\ndisplacement_mm = [4, 0]\nload_history = {load_history}'
         return self.run_with(side, side, engine, increments, scene)
 
     def assert_shear(self, data, wanted, delta):
@@ -101,26 +101,26 @@ class Residual(ChainTest):
 
     def test_sheared_it_falls_from_the_peak_to_the_residual_strength(self):
         just_below, just_above = 0.98 * PEAK / K_S / 4e-3, 1.02 * PEAK / K_S / 4e-3
-        for engine, increments, delta in ("explicit", 200, 5e-3), ("implicit", 20, 1e-3), ("implicit", 1, 1e-3):
-            for course, wanted in ((f"[[0, 0], [20, {just_below}]]", 0.98 * PEAK),
+        for engine, increments, delta in ("relaxation", 200, 5e-3), ("implicit", 20, 1e-3), ("implicit", 1, 1e-3):
+            for load_history, wanted in ((f"[[0, 0], [20, {just_below}]]", 0.98 * PEAK),
                                    (f"[[0, 0], [20, {just_above}]]", LEFT),
                                    ("[[0, 0], [10, 1], [20, 0.9]]", LEFT - K_S * 0.4e-3),
                                    ("[[0, 0], [10, 1], [20, 0.1]]", -LEFT)):
-                with self.subTest(engine=engine, increments=increments, course=course):
-                    data = self.moved(course, engine, increments)
+                with self.subTest(engine=engine, increments=increments, load_history=load_history):
+                    data = self.moved(load_history, engine, increments)
                     self.assert_shear(data, wanted, delta * LEFT / abs(wanted))
 
     def test_without_the_keys_slip_weakens_nothing(self):
         scene = changed(changed(SCENE, "^residual_cohesion.*\n", ""), "^residual_friction.*\n", "")
-        for engine, increments, delta in ("explicit", 200, 5e-3), ("implicit", 20, 1e-3):
+        for engine, increments, delta in ("relaxation", 200, 5e-3), ("implicit", 20, 1e-3):
             with self.subTest(engine=engine):
                 self.assert_shear(self.moved("[[0, 0], [20, 1]]", engine, increments, scene), PEAK, delta)
 
     def test_a_buffer_takes_what_it_no_longer_bears(self):
-        """3 MPa on the side: nine tenths of it would come to the joint, which bears 0.6 and then 0.3 of it. By motion,
+        """3 MPa on the side: nine tenths of it would come to the joint, which bears 0.6 and then 0.3 of it. By dynamic relaxation,
         which follows the fall, the joint dissipates what is under its curve, less what its spring holds in the end."""
-        loaded = "traction_MPa = [3, 0]\ncourse = [[0, 0], [20, 1]]"
-        for engine in "explicit", "implicit", "auto":
+        loaded = "traction_MPa = [3, 0]\nload_history = [[0, 0], [20, 1]]"
+        for engine in "relaxation", "implicit", "auto":
             with self.subTest(engine=engine):
                 data = self.run_with(loaded, 'joint = "buffer"', engine, 20)
                 u = data["/history/displacement"][-1, 0, 0]
@@ -130,7 +130,7 @@ class Residual(ChainTest):
                     for name in ("work_of_loads", "stored_energy", "dissipated_energy", "damped_energy"))
                 self.assertLess(abs(work - stored - dissipated - damped).max(), 1e-6 * abs(work).max())
                 self.assertGreater(dissipated.sum(), 0)
-                if engine == "explicit":
+                if engine == "relaxation":
                     wanted = PEAK**2 / K_S / 2 + LEFT * (u - PEAK / K_S) - LEFT**2 / K_S / 2
                     self.assertAlmostEqual(dissipated.sum() / (2 * wanted), 1, delta=0.02)
                 self.assertGreaterEqual(dissipated.min(), -1e-6 * dissipated.max())

@@ -12,7 +12,7 @@ import h5py
 import numpy as np
 
 from chain import ChainTest, changed, datasets, main
-from motion_test import incline
+from large_displacements_test import incline
 from small_scene import held, joint, material, scene
 
 # A face that is dug in three benches: joints that weaken, dilate, close by Barton and Bandis and creep by chains; rock
@@ -123,7 +123,7 @@ from_m = [0, 0]
 to_m = [0, 24]
 fix = "x"
 displacement_mm = [1, 0]
-course = [[4, 0], [40, 1]]
+load_history = [[4, 0], [40, 1]]
 
 [[boundary]]
 from_m = [40, 0]
@@ -134,7 +134,7 @@ fix = "x"
 from_m = [0, 24]
 to_m = [14, 24]
 traction_MPa = [0, -0.08]
-course = [[2, 0], [12, 1], [24, 0.5]]
+load_history = [[2, 0], [12, 1], [24, 0.5]]
 
 [schedule]
 end = 40
@@ -199,7 +199,7 @@ def sliding_block(more):
 
 class Restart(ChainTest):
     def run_all(self, text, days, *arguments, threads=()):
-        """Bytes of the result, of the last checkpoint, and the closing screen: in one go, and in runs that end on these
+        """Bytes of the result, of the last checkpoint, and the summary: in one go, and in runs that end on these
         days and a last one, each of which goes on from where the one before had its last stage."""
         joints = self.chain.joints(text)
 
@@ -222,7 +222,7 @@ class Restart(ChainTest):
 
     def assert_same(self, text, days, *arguments, threads=()):
         whole, parts = self.run_all(text, days, *arguments, threads=threads)
-        for what, one, other in zip(("result", "checkpoint", "closing screen"), whole, parts):
+        for what, one, other in zip(("result", "checkpoint", "summary"), whole, parts):
             self.assertTrue(one == other, f"{what} of a run in parts differs, {arguments}")
         return whole
 
@@ -230,7 +230,7 @@ class Restart(ChainTest):
         """The run stops after each stage. Steps of creep are cut at first and grow, are fixed, are recorded."""
         slow_start = changed(SCENE, "^tolerance_m = 1e-5", "tolerance_m = 2e-6\nfirst_step_days = 3")
         for text, *arguments in ((SCENE, "--states", 3),
-                                 (SCENE, "--engine", "explicit", "--creep-scheme", "linear-force", "--trace", 300),
+                                 (SCENE, "--engine", "relaxation", "--creep-scheme", "linear-force", "--step-history", 300),
                                  (slow_start, "--creep-scheme", "backward"),
                                  (SCENE, "--creep-scheme", "published", "--creep-step", 1)):
             with self.subTest(arguments=arguments):
@@ -256,7 +256,7 @@ class Restart(ChainTest):
         path.write_bytes(result)
         self.assertGreater(len(datasets(path)["/mesh/zone_block"]), 2000)  # fewer are one thread's
 
-    def test_motion(self):
+    def test_dynamic_analysis(self):
         for more, psi in (('rigid_rocks = ["rock"]', 0), ("stiffness_damping_s = 3e-5\nrelease_s = 0.05", 0),
                           ('rigid_rocks = ["rock"]', 5)):
             with self.subTest(more=more, psi=psi):  # dilation ends beyond the ledge
@@ -269,7 +269,7 @@ class Restart(ChainTest):
                 self.assertAlmostEqual(moved.max(), 4, delta=0.05)
                 self.assertLess(abs(moved - 2).min(), 0.05)  # at rest on the ledge
 
-    def test_motion_of_rock_that_yields(self):
+    def test_dynamic_analysis_of_rock_that_yields(self):
         """It is crushed a little where it comes down on the ledge, before the last stage, and again at the wall."""
         text = changed(sliding_block("stiffness_damping_s = 3e-5"), '^name = "rock"$',
                        'name = "rock"\nlaw = "Mohr-Coulomb"\ncohesion_MPa = 1\nfriction_angle_deg = 30\n'
@@ -287,7 +287,7 @@ class Restart(ChainTest):
         text = scene([[0, 0], [6, 0], [6, 2], [0, 2]], [joint("flat", [-1, 1.2], [7, 1.3])], [held([0, 0], [6, 0])],
                      [material("joint", 1000)], stages=[[[[3, 0], [4, 2], [2, 2]]], [[[5, 0], [6, 0], [6, 2], [5, 2]]]],
                      points=[[1.5, 1.9]], end=4)
-        for engine in "implicit", "explicit":
+        for engine in "implicit", "relaxation":
             result = self.assert_same(text, (1, 2), "--engine", engine)[0]
             path = self.chain.new_folder() / "result.h5"
             path.write_bytes(result)
@@ -298,9 +298,9 @@ class Restart(ChainTest):
 
     def test_a_run_that_is_killed_goes_on(self):
         joints = self.chain.joints(SCENE)
-        whole = self.chain.run("demsolve", joints, joints.with_name("whole.h5"), "--engine", "explicit")
+        whole = self.chain.run("demsolve", joints, joints.with_name("whole.h5"), "--engine", "relaxation")
         kept, result = joints.with_name("kept.h5"), joints.with_name("result.h5")
-        command = [self.chain.programs / "demsolve", joints, "-o", result, "--checkpoint", kept, "--engine", "explicit"]
+        command = [self.chain.programs / "demsolve", joints, "-o", result, "--checkpoint", kept, "--engine", "relaxation"]
         running = subprocess.Popen(command, stdout=subprocess.DEVNULL)
         while not kept.exists() and running.poll() is None:
             time.sleep(0.01)

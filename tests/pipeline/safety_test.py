@@ -175,7 +175,7 @@ class Safety(ChainTest):
 
     def test_refusals(self):
         joints = self.chain.joints(HANGING)
-        for options, said in ((("--strength-factor", "0"), "must be between"),
+        for options, said in ((("--strength-factor", "0"), "must be at least"),
                               (("--strength-factor", "2", "--factor-of-safety"), "do not go together"),
                               (("--safety-width", "0.1"), "goes with --factor-of-safety only"),
                               (("--factor-of-safety", "--safety-width", "1e-4", "--tolerance", "1e-5"), "100 times"),
@@ -210,7 +210,7 @@ class Safety(ChainTest):
                     "dilation_angle_deg = 0\n")
         text = scene([[0, 0], [1, 0], [1, 2], [0, 2]], [],
                      [held([0, 0], [1, 0], "y"), held([0, 0], [0, 2], "x"),
-                      {"from_m": [1, 2], "to_m": [0, 2], "traction_MPa": [0, -load], "course": [[0, 0], [1, 1]]}],
+                      {"from_m": [1, 2], "to_m": [0, 2], "traction_MPa": [0, -load], "load_history": [[0, 0], [1, 1]]}],
                      [material("joint", 1000)], gravity=0, poisson=0.2)
         text = changed(text, r"^poissons_ratio = 0.2\n", "poissons_ratio = 0.2\n" + strength)
         factor = 2 * cohesion * math.sqrt(1 + load * friction / cohesion) / load
@@ -230,8 +230,8 @@ class NoEquilibrium(ChainTest):
         self.assertEqual(output.read_text(), "what was here before")
         return done.stderr, output.with_name("result.failed.h5")
 
-    def test_a_wedge_that_slides_is_named_with_its_motion(self):
-        for engine in "auto", "explicit":
+    def test_a_wedge_that_slides_is_named_with_its_displacement(self):
+        for engine in "auto", "relaxation":
             message, path = self.failed(WEDGE.format(end="[21, 14]") + '[[point]]\nname = "A"\nat_m = [20, 22]\n',
                                         "--engine", engine)
             left = datasets(path)
@@ -286,11 +286,11 @@ class NoEquilibrium(ChainTest):
 
     def test_small_displacements_end_at_a_tenth_of_the_section(self):
         """A joint would close by 10 m in a section of 6 m. No increment is large where they are halved."""
-        loaded = {"from_m": [2, 6], "to_m": [0, 6], "traction_MPa": [0, -0.1], "course": [[0, 0], [1, 1]]}
+        loaded = {"from_m": [2, 6], "to_m": [0, 6], "traction_MPa": [0, -0.1], "load_history": [[0, 0], [1, 1]]}
         text = scene([[0, 0], [2, 0], [2, 6], [0, 6]], [joint("soft", [-1, 2], [3, 2])], [held([0, 0], [2, 0]), loaded],
                      [material("joint", 0.01)], gravity=0)
         for engine, said in (("auto", "since the in-situ state, by more than a tenth of the section"),
-                             ("implicit", "more than a tenth of the section"), ("explicit", "is still moving")):
+                             ("implicit", "more than a tenth of the section"), ("relaxation", "is still moving")):
             message, path = self.failed(text, "--engine", engine)
             self.assertIn(said, message)
             found = abs(datasets(path)["/states/displacement"]).max()
@@ -302,7 +302,7 @@ class NoEquilibrium(ChainTest):
     def test_rock_that_comes_to_rest_slowly_is_not_said_to_fall(self):
         """The first quarter of a slow swing; next to no motion for damping; joints of 1 and 1e9 MPa/m in one stack."""
         stack = [[0, 0], [2, 0], [2, 6], [0, 6]]
-        loaded = {"from_m": [2, 6], "to_m": [0, 6], "traction_MPa": [0, -0.1], "course": [[0, 0], [1, 1]]}
+        loaded = {"from_m": [2, 6], "to_m": [0, 6], "traction_MPa": [0, -0.1], "load_history": [[0, 0], [1, 1]]}
         two = scene(stack, [joint("one", [-1, 2], [3, 2], "soft"), joint("other", [-1, 4], [3, 4], "hard")],
                     [held([0, 0], [2, 0]), loaded], [material("soft", 1), material("hard", 1e9)], gravity=0)
         corner = scene([[0, 0], [10, 0], [10, 10], [0, 10]], [joint("corner", [9.98, 10.01], [10.01, 9.98])],
@@ -311,7 +311,7 @@ class NoEquilibrium(ChainTest):
                        more="[cutting]\nshortest_edge_m = 1e-4\n")
         column = re.sub(r"(?s)^\[(equilibrium|creep)\].*?(?=^\[|\Z)", "", self.chain.text("data/column/scene.toml"),
                         flags=re.MULTILINE)
-        steps = "[equilibrium]\nengine = \"explicit\"\nmost_steps = 60000\n"
+        steps = "[equilibrium]\nengine = \"relaxation\"\nmost_steps = 60000\n"
         damped = steps + 'masses = "real"\ndamping = "mass"\nmass_damping_per_s = '
         for name, text in (("swing", corner + damped + "20\n"), ("damped", column + damped + "1e6\n"),
                            ("soft and hard", two + steps)):
@@ -321,7 +321,7 @@ class NoEquilibrium(ChainTest):
                 self.assertEqual(datasets(path)["/failure/moves_on"].tolist(), [0])
 
     def test_what_ends_without_an_answer_says_so(self):
-        _, path = self.failed(WEDGE.format(end="[21, 14]") + '[equilibrium]\nengine = "explicit"\nmost_steps = 3000\n')
+        _, path = self.failed(WEDGE.format(end="[21, 14]") + '[equilibrium]\nengine = "relaxation"\nmost_steps = 3000\n')
         self.assertEqual(datasets(path)["/failure/moves_on"].tolist(), [0])
 
 

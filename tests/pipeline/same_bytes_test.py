@@ -44,7 +44,7 @@ class SameBytes(ChainTest):
         joints = self.chain.run("strength-averaging", network, network.with_name("joints.h5"))
         self.assertEqual(self.run_to("other name.h5", "strength-averaging", network, "-q"), joints.read_bytes())
 
-        for engine, fewest_steps in ("explicit", 500), ("implicit", 5):
+        for engine, fewest_steps in ("relaxation", 500), ("implicit", 5):
             with self.subTest(engine=engine):
                 self.same_for_names_and_threads(joints, fewest_steps, *QUICK, "--engine", engine)
 

@@ -123,7 +123,7 @@ class Shiplock(ChainTest):
 
     def test_section_b_comes_to_rest(self):
         result = datasets(self.coarse("--section-b"))
-        self.assertTrue((result["/equilibria/out_of_balance_ratio"] <= 1e-6).all())
+        self.assertTrue((result["/equilibria/unbalanced_force_ratio"] <= 1e-6).all())
         self.assertTrue((-numpy.sign(result["/history/point_position"][:, 0]) * result["/history/displacement"][-1, :, 0]
                          > 0.01).all())
 

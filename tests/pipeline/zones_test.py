@@ -1,7 +1,7 @@
-"""Zones that are small at faces and measuring points: with no more zones, points are nearer the answer of small zones
+"""Zones that are small at faces and monitoring points: with no more zones, points are nearer the answer of small zones
 everywhere.
 
-A bench in rock with two joints (welded.toml); compared is what its four points have moved in the end.
+A bench in rock with two joints (bonded.toml); compared is what its four points have moved in the end.
 """
 
 import numpy
@@ -13,7 +13,7 @@ FINEST = 0.25  # m
 
 class Zones(ChainTest):
     def setUp(self):
-        self.even = self.chain.text("tests/pipeline/welded.toml")
+        self.even = self.chain.text("tests/pipeline/bonded.toml")
 
     def graded(self, size, at_faces):
         return changed(self.even, "^size_m = 4$", f"size_m = {size}\nsize_at_faces_m = {at_faces}")

@@ -133,9 +133,9 @@ TEST(invariance, turned_by_quarters)
     }
 }
 
-// Another turn does, as masses are scaled by the larger of the row sums in x and y. The way to rest is
-// another one then, and slip remembers it, by some 1e-4 here; so the joints are bonded, and hold whatever
-// comes.
+// Another turn does, as masses are scaled by the larger of the row sums in x and y. The displacement until
+// rest is another one then, and slip remembers it, by some 1e-4 here; so the joints are bonded, and hold
+// whatever comes.
 TEST(invariance, turned)
 {
     const Assembly bonded = at_rest(plate().mesh, weight, bond);

@@ -1,4 +1,4 @@
-// pace_benchmark: how fast motion goes beside a bare loop of the same arithmetic.
+// pace_benchmark: how fast the dynamic engines go beside a bare loop of the same arithmetic.
 //
 //   pace_benchmark joints.h5 ZONE_SIZE_M [STEPS] [ROUNDS]
 //
@@ -6,18 +6,18 @@
 // 200) with real masses and damping in proportion to them: by the engine (relaxation/relax.hpp), and by the
 // plainest loop over flat arrays that does the same to the same mesh. Both must arrive at the same
 // displacements, to rounding. A third way is the engine with its own masses and damping, scaled and adaptive,
-// held to the same bare loop. The last two are motion with large displacements (motion/motion.hpp), of rock
-// that deforms and of rigid blocks, which finds out what touches what, and so is about other springs with a
-// step of its own: that all of them come to the same bits on two threads is all that is asked. Prints CSV, a
-// line for each way, on one thread and on two. `s_per_step` is the least of ROUNDS (default 5) runs [s],
-// processor time on one thread and wall time on two; all ways take turns, so that what else goes on in the
-// machine falls on all. What a run takes before its first steps is left out. `over_bare` is the pace over
-// that of the bare loop on as many threads, the median over the rounds, and `gain` that on two threads over
-// that on one.
+// held to the same bare loop. The last two are the dynamic analysis with large displacements
+// (large_displacements/dynamics.hpp), of rock that deforms and of rigid blocks, which finds out what touches
+// what, and so is about other springs with a step of its own: that all of them come to the same bits on two
+// threads is all that is asked. Prints CSV, a line for each way, on one thread and on two. `s_per_step` is
+// the least of ROUNDS (default 5) runs [s], processor time on one thread and wall time on two; all ways take
+// turns, so that what else goes on in the machine falls on all. What a run takes before its first steps is
+// left out. `over_bare` is the pace over that of the bare loop on as many threads, the median over the
+// rounds, and `gain` that on two threads over that on one.
 
+#include "large_displacements/dynamics.hpp"
 #include "mechanics/excavation.hpp"
 #include "model/error.hpp"
-#include "motion/motion.hpp"
 #include "relaxation/relax.hpp"
 #include "scene/scene.hpp"
 #include "store/files.hpp"
@@ -194,7 +194,7 @@ double seconds(int threads)
     return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-enum class Kind { bare, relaxation, motion, rigid_motion };
+enum class Kind { bare, relaxation, dynamics, rigid_dynamics };
 
 struct Way {
     const char* name;
@@ -211,18 +211,18 @@ double run(const Assembly& section, const Mesh& mesh, Way& way, int steps)
     Assembly moving = section;
     moving.threads = way.threads;
     double start = 0, end = 0;
-    if (way.kind == Kind::motion || way.kind == Kind::rigid_motion) {
+    if (way.kind == Kind::dynamics || way.kind == Kind::rigid_dynamics) {
         joint::Coulomb found = std::get<joint::Coulomb>(moving.contacts.law.at(0));
         found.cohesion = found.tensile_strength = 0;
-        motion::Motion motion(
+        large_displacements::Dynamics dynamics(
             moving, mesh, std::vector<Index>(mesh.contact_edge.size(), 0),
-            std::vector<char>(mesh.zone_gridpoint.size(), way.kind == Kind::rigid_motion ? 1 : 0), found,
+            std::vector<char>(mesh.zone_gridpoint.size(), way.kind == Kind::rigid_dynamics ? 1 : 0), found,
             {.mass_damping = alpha});
         start = seconds(way.threads);
         for (int i = 0; i < steps; ++i)
-            motion.step();
+            dynamics.step();
         end = seconds(way.threads);
-        motion.put_back();
+        dynamics.put_back();
         way.u = moving.displacement;
     } else if (way.kind == Kind::relaxation) {
         Equilibrium settings{.tolerance = 1e-300, .damping = way.damping, .mass_damping = alpha};
@@ -278,8 +278,8 @@ void measure(const std::string& path, double zone_size, int steps, int rounds)
         ways.push_back({"bare loop", Kind::bare, Damping::mass, threads});
         ways.push_back({"engine", Kind::relaxation, Damping::mass, threads});
         ways.push_back({"engine as by default", Kind::relaxation, Damping::adaptive, threads});
-        ways.push_back({"motion, deformable", Kind::motion, Damping::mass, threads});
-        ways.push_back({"motion, rigid", Kind::rigid_motion, Damping::mass, threads});
+        ways.push_back({"dynamics, deformable", Kind::dynamics, Damping::mass, threads});
+        ways.push_back({"dynamics, rigid", Kind::rigid_dynamics, Damping::mass, threads});
     }
     const std::size_t n = ways.size() / 2; // on each number of threads
     for (Way& way : ways)
@@ -297,8 +297,8 @@ void measure(const std::string& path, double zone_size, int steps, int rounds)
         const Way& alone = ways[i % n]; // the same on one thread
         if (ways[i].kind != Kind::bare && ways[i].u != alone.u)
             throw std::runtime_error(std::string(ways[i].name) + ": the bits are others on two threads");
-        const bool is_in_motion = ways[i].kind == Kind::motion || ways[i].kind == Kind::rigid_motion;
-        const Way& same = is_in_motion ? alone : ways[ways[i].damping == Damping::mass ? 0 : 2];
+        const bool is_dynamic = ways[i].kind == Kind::dynamics || ways[i].kind == Kind::rigid_dynamics;
+        const Way& same = is_dynamic ? alone : ways[ways[i].damping == Damping::mass ? 0 : 2];
         const double apart = mechanics::farthest_move(same.u, ways[i].u).first;
         if (!(apart <= 1e-9 * farthest))
             throw std::runtime_error(std::string(ways[i].name) + ", " + std::to_string(ways[i].threads) +

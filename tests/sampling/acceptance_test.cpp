@@ -27,7 +27,7 @@ using Eigen::Vector2d, Eigen::Vector3d;
 namespace
 {
 
-using Kind = Law::Kind;
+using Kind = ProbabilityLaw::Kind;
 using Measure = Density::Measure;
 constexpr double pi = std::numbers::pi;
 
@@ -37,10 +37,10 @@ int realizations()
     return given ? std::atoi(given) : 200;
 }
 
-const Law lognormal{Kind::lognormal, 8, 5}, exponential{Kind::negative_exponential, 8, 8},
+const ProbabilityLaw lognormal{Kind::lognormal, 8, 5}, exponential{Kind::negative_exponential, 8, 8},
     constant{Kind::constant, 8, 0}, even = uniform_law(2, 14), power = power_law(3, 3, 60),
                                     bell{Kind::normal, 8, 2.5};
-const std::vector<Law> sizes{lognormal, exponential, constant, even, power, bell};
+const std::vector<ProbabilityLaw> sizes{lognormal, exponential, constant, even, power, bell};
 
 // A window of 60 m by 40 m, off the origin.
 const double width = 60, height = 40;
@@ -67,7 +67,8 @@ Scene square(double side, const std::vector<JointSet>& sets)
     return scene;
 }
 
-JointSet segments(const Law& trace_angle, const Law& length, Measure measure, double value)
+JointSet segments(const ProbabilityLaw& trace_angle, const ProbabilityLaw& length, Measure measure,
+                  double value)
 {
     JointSet set;
     set.name = "segments";
@@ -79,7 +80,7 @@ JointSet segments(const Law& trace_angle, const Law& length, Measure measure, do
     return set;
 }
 
-JointSet lines(const Law& trace_angle, const Law& spacing)
+JointSet lines(const ProbabilityLaw& trace_angle, const ProbabilityLaw& spacing)
 {
     JointSet set;
     set.name = "lines";
@@ -93,7 +94,7 @@ JointSet lines(const Law& trace_angle, const Law& spacing)
 const FisherLaw slanting{60 * deg, 110 * deg, 15}, flat{10 * deg, 300 * deg, 60},
     beside{85 * deg, 150 * deg, 8}; // its mean plane is 17 degrees off the section
 
-JointSet discs(const FisherLaw& law, const Law& diameter, Measure measure, double value)
+JointSet discs(const FisherLaw& law, const ProbabilityLaw& diameter, Measure measure, double value)
 {
     JointSet set;
     set.name = "discs";
@@ -105,14 +106,15 @@ JointSet discs(const FisherLaw& law, const Law& diameter, Measure measure, doubl
     return set;
 }
 
-Law isotropic()
+ProbabilityLaw isotropic()
 {
     return uniform_law(-90 * deg, 90 * deg);
 }
 
-Law about(double angle, double deviation)
+ProbabilityLaw about(double angle, double deviation)
 {
-    return deviation == 0 ? Law{Kind::constant, angle, 0} : Law{Kind::normal, angle, deviation};
+    return deviation == 0 ? ProbabilityLaw{Kind::constant, angle, 0}
+                          : ProbabilityLaw{Kind::normal, angle, deviation};
 }
 
 // Traces of one realization.
@@ -321,7 +323,7 @@ Samples lengths_hit(const Sampling& network)
     });
 }
 
-bool is_size_biased(const Samples& hit, const Law& law)
+bool is_size_biased(const Samples& hit, const ProbabilityLaw& law)
 {
     return follow(hit, size_biased_distribution(law));
 }
@@ -343,7 +345,7 @@ bool has_crossings(const Sampling& network, double per_area)
 
 // --- Closed forms -----------------------------------------------------------------------------------------
 
-double moment(const Law& law, int order)
+double moment(const ProbabilityLaw& law, int order)
 {
     // By the trapezoidal rule, apart from sampling/laws.cpp.
     if (law.kind == Kind::constant)
@@ -361,7 +363,7 @@ double moment(const Law& law, int order)
 
 // Of traces of discs: P(trace < l) = 1 - E[sqrt(D^2 - l^2); D > l] / E[D], from g(l) = (l / E[D]) times the
 // integral of f(D) / sqrt(D^2 - l^2) over D > l (Warburton 1980).
-Distribution disc_trace_distribution(const Law& law)
+Distribution disc_trace_distribution(const ProbabilityLaw& law)
 {
     if (law.kind == Kind::constant)
         return [d = law.mean](double l) { return l >= d ? 1 : 1 - std::sqrt(1 - l * l / (d * d)); };
@@ -475,7 +477,7 @@ Distribution angles_in_section(const FisherLaw& law, bool biased)
 }
 
 // E|sin| of the angle between two directions of a law, and E|cos| to a scanline.
-double mean_over(const Law& angle, const std::function<double(double)>& value)
+double mean_over(const ProbabilityLaw& angle, const std::function<double(double)>& value)
 {
     double sum = 0, total = 0;
     const int steps = 2000;
@@ -494,14 +496,14 @@ double mean_over(const Law& angle, const std::function<double(double)>& value)
     return sum / total;
 }
 
-double mean_sine(const Law& angle)
+double mean_sine(const ProbabilityLaw& angle)
 {
     return mean_over(angle, [&](double a) {
         return mean_over(angle, [&](double b) { return std::abs(std::sin(a - b)); });
     });
 }
 
-double mean_sine_to(const Law& angle, double scanline_angle)
+double mean_sine_to(const ProbabilityLaw& angle, double scanline_angle)
 {
     return mean_over(angle, [&](double a) { return std::abs(std::sin(a - scanline_angle)); });
 }
@@ -513,8 +515,8 @@ double mean_sine_to(const Law& angle, double scanline_angle)
 TEST(Segments, HaveTheirDensitiesToTheEdge)
 {
     const double p21 = .4;
-    for (const Law& length : sizes)
-        for (const Law& angle : {about(30 * deg, 10 * deg), isotropic()}) {
+    for (const ProbabilityLaw& length : sizes)
+        for (const ProbabilityLaw& angle : {about(30 * deg, 10 * deg), isotropic()}) {
             const Sampling network = sampled(scene_of({segments(angle, length, Measure::p21, p21)}));
             const double p20 = p21 / moment(length, 1);
             EXPECT_TRUE(has_p21(network, p21)) << int(length.kind);
@@ -531,7 +533,7 @@ TEST(Segments, HaveTheirDensitiesToTheEdge)
 
 TEST(Segments, CrossAsOftenAsTheyShould)
 {
-    for (const Law& angle : {about(30 * deg, 20 * deg), isotropic()}) {
+    for (const ProbabilityLaw& angle : {about(30 * deg, 20 * deg), isotropic()}) {
         const Sampling network = sampled(scene_of({segments(angle, lognormal, Measure::p21, .4)}));
         EXPECT_TRUE(has_crossings(network, .5 * .4 * .4 * mean_sine(angle)));
         EXPECT_FALSE(has_crossings(network, .4 * .4 * mean_sine(angle)));
@@ -542,7 +544,7 @@ TEST(Segments, CrossAsOftenAsTheyShould)
 
 TEST(Segments, HaveTheirLengthsAndAreMetBySize)
 {
-    for (const Law& length : sizes) {
+    for (const ProbabilityLaw& length : sizes) {
         if (length.kind == Kind::constant)
             continue;
         const Sampling network =
@@ -558,7 +560,7 @@ TEST(Segments, HaveSemiTracesAsPriestAndHudson)
     // Beyond a scanline, by h(x) = (1 - F(x)) / E[l]; of exponential lengths the share below c is 1 -
     // e^-c/E[l].
     const Trace line = scanline(0);
-    for (const Law& length : {lognormal, exponential, even}) {
+    for (const ProbabilityLaw& length : {lognormal, exponential, even}) {
         const Samples beyond =
             pooled(sampled(scene_of({segments(about(80 * deg, 0), length, Measure::p21, .4)})),
                    [&](const Traces& traces, Samples& lengths) {
@@ -618,7 +620,7 @@ TEST(Segments, WouldBeCaughtWithLogParametersTakenForTheLengths)
 
 TEST(Segments, WouldBeCaughtWithoutSizeBias)
 {
-    for (const Law& length : {lognormal, exponential, even, power}) {
+    for (const ProbabilityLaw& length : {lognormal, exponential, even, power}) {
         Stream stream({1, 0, 0}, 0, Purpose::size);
         Samples plain;
         for (int i = 0; i < 20 * realizations(); ++i)
@@ -643,7 +645,7 @@ TEST(Discs, HaveTheirDensitiesInTheSection)
 {
     const double p32 = .4;
     for (const FisherLaw& law : {slanting, flat, beside})
-        for (const Law& diameter : sizes) {
+        for (const ProbabilityLaw& diameter : sizes) {
             const Sampling network = sampled(scene_of({discs(law, diameter, Measure::p32, p32)}));
             const Poles all = poles_of(law);
             const double met = all.mean([](const Vector3d& n) { return sine_to_section(n, azimuth); });
@@ -663,7 +665,7 @@ TEST(Discs, HaveTheirDensitiesInTheSection)
 
 TEST(Discs, HaveTheTraceLengthsOfWarburton)
 {
-    for (const Law& diameter : sizes) {
+    for (const ProbabilityLaw& diameter : sizes) {
         const Sampling network = sampled(scene_of({discs(slanting, diameter, Measure::p32, .4)}));
         EXPECT_TRUE(has_lengths(network, disc_trace_distribution(diameter))) << int(diameter.kind);
         const Samples lengths = pooled(network, [](const Traces& traces, Samples& all) {
@@ -678,7 +680,7 @@ TEST(Discs, HaveTheTraceLengthsOfWarburton)
 TEST(Discs, HaveTheTracesOfDiscsCutInSpace)
 {
     // The second method: discs in a box of space, cut by the plane z = 0 one by one.
-    const Law diameter = even;
+    const ProbabilityLaw diameter = even;
     const double side = 40, p30 = 2e-3;
     const FisherLaw law = slanting;
     const Vector3d mean = Vector3d(.5, .3, .8).normalized();
@@ -722,7 +724,7 @@ TEST(Discs, LieAsPolesThatTheSectionMeets)
 
 TEST(Discs, WouldBeCaughtWithMeanChordsOrPlainDiameters)
 {
-    for (const Law& diameter : {lognormal, exponential, even}) {
+    for (const ProbabilityLaw& diameter : {lognormal, exponential, even}) {
         const Sampling network = sampled(scene_of({discs(slanting, diameter, Measure::p32, .4)}));
         const auto with_length = [&](const std::function<double(Stream&)>& length) {
             return changed(network, [length](const Trace& trace, Stream& stream) {
@@ -762,8 +764,9 @@ TEST(Rose, HasTheMeansOfItsLaw)
 TEST(DensityTarget, GivesLinesTheirTracesPerScanlineAndArea)
 {
     const double angle = 35 * deg;
-    for (const Law& spacing : {Law{Kind::negative_exponential, 1, 1}, Law{Kind::lognormal, 70, 50},
-                               uniform_law(1, 2), power_law(2.5, 1, 20)})
+    for (const ProbabilityLaw& spacing :
+         {ProbabilityLaw{Kind::negative_exponential, 1, 1}, ProbabilityLaw{Kind::lognormal, 70, 50},
+          uniform_law(1, 2), power_law(2.5, 1, 20)})
         for (const double scatter : {0.0, 12 * deg})
             for (const double persistence : {1.0, .6}) {
                 JointSet set = lines(about(angle, scatter), spacing);
@@ -900,7 +903,7 @@ TEST(RockQuality, IsThatOfPriestAndHudson)
 {
     // The share of a scanline in pieces longer than t: e^-(f t) (1 + f t) for exponential spacings.
     const double t = 1, f = 1 / 1.5;
-    const auto quality = [&](const Law& spacing) {
+    const auto quality = [&](const ProbabilityLaw& spacing) {
         return measured(sampled(scene_of({lines(about(90 * deg, 0), spacing)})), [&](const Traces& traces) {
             std::vector<double> places;
             for (const Trace& trace : traces)
@@ -1007,7 +1010,7 @@ double area_at_centre(const std::vector<Cell>& cells)
 const double plane = 100, intensity = .3;
 
 // Poisson lines but for a length: segments so long that next to none ends in the window.
-Scene poisson_lines(const Law& angle)
+Scene poisson_lines(const ProbabilityLaw& angle)
 {
     return square(plane, {segments(angle, {Kind::constant, 5e4, 0}, Measure::p21, intensity)});
 }
@@ -1061,7 +1064,7 @@ TEST(Lines, MakeAsManyCellsAsTheyShould)
 {
     // E[faces] = 1 + sum of f_i w_i + X A for stationary sets that are independent, whatever their spacing.
     const std::vector<double> angle{15 * deg, 75 * deg, 130 * deg};
-    const std::vector<Law> spacing{
+    const std::vector<ProbabilityLaw> spacing{
         {Kind::lognormal, 6, 3}, {Kind::negative_exponential, 8, 8}, uniform_law(2, 12)};
     std::vector<JointSet> sets;
     double expected = 1;
@@ -1083,12 +1086,12 @@ TEST(Lines, MakeTheParallelogramsOfTheirSpacings)
     // The cell at a point: A = S1 S2 / sin g with both spacings by size. Exponential: of mean 4 E[A], and
     // P(A < a) from two gammas of shape 2; lognormal: lognormal, the variances of the logarithms add.
     const double g = 70 * deg;
-    const auto at_centre = [&](const Law& first, const Law& second) {
+    const auto at_centre = [&](const ProbabilityLaw& first, const ProbabilityLaw& second) {
         JointSet a = lines(about(10 * deg, 0), first), b = lines(about(10 * deg + g, 0), second);
         b.name = "others";
         return over_cells(square(120, {a, b}), area_at_centre);
     };
-    const Law spacing{Kind::negative_exponential, 4, 4}, other{Kind::negative_exponential, 5, 5};
+    const ProbabilityLaw spacing{Kind::negative_exponential, 4, 4}, other{Kind::negative_exponential, 5, 5};
     const double mean_area = 20 / std::sin(g);
     const Distribution two_gammas = [&](double a) {
         double sum = 0;
@@ -1101,7 +1104,7 @@ TEST(Lines, MakeTheParallelogramsOfTheirSpacings)
     EXPECT_TRUE(follow(exponential_cells, two_gammas));
     EXPECT_TRUE(have_mean(exponential_cells, 4 * mean_area));
 
-    const Law narrow{Kind::lognormal, 4, 2};
+    const ProbabilityLaw narrow{Kind::lognormal, 4, 2};
     const double variance = std::log(1 + .25);
     const auto lognormal_cells = [&](double bias) {
         // Size bias moves the mean of each logarithm by its variance.
@@ -1121,7 +1124,7 @@ namespace
 
 // Level lines of exponential spacing, and upright segments that end at them. A trace grown from its midpoint
 // goes half its length at most, and is ended at the rate p f |sin|.
-Scene ended(double probability, const Law& length, double angle)
+Scene ended(double probability, const ProbabilityLaw& length, double angle)
 {
     JointSet beds = lines(about(0, 0), {Kind::negative_exponential, 5, 5});
     beds.name = "beds";
@@ -1160,7 +1163,7 @@ Samples upper_halves(const Scene& scene)
     return halves;
 }
 
-bool is_ended(const Samples& halves, const Law& length, double probability, double angle)
+bool is_ended(const Samples& halves, const ProbabilityLaw& length, double probability, double angle)
 {
     const double rate = probability / 5 * std::abs(std::sin(angle));
     const Distribution whole = positive_distribution(length);
@@ -1171,7 +1174,7 @@ bool is_ended(const Samples& halves, const Law& length, double probability, doub
 
 TEST(Terminations, EndTracesAtTheirRate)
 {
-    const Law length{Kind::negative_exponential, 20, 20};
+    const ProbabilityLaw length{Kind::negative_exponential, 20, 20};
     for (const double probability : {1.0, .4}) {
         const Samples halves = upper_halves(ended(probability, length, 60 * deg));
         EXPECT_TRUE(is_ended(halves, length, probability, 60 * deg)) << probability;

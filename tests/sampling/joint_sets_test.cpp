@@ -20,16 +20,16 @@ using Eigen::Vector2d, Eigen::Vector3d;
 namespace
 {
 
-using Kind = Law::Kind;
+using Kind = ProbabilityLaw::Kind;
 
 JointSet joint_set(const std::string& name, double angle, double scatter, double spacing, double persistence)
 {
     JointSet set;
     set.name = name;
     set.material = "clay";
-    set.trace_angle = Law{Kind::normal, angle, scatter};
+    set.trace_angle = ProbabilityLaw{Kind::normal, angle, scatter};
     set.spacing = {Kind::negative_exponential, spacing, spacing};
-    set.length = Law{Kind::lognormal, 5, 2};
+    set.length = ProbabilityLaw{Kind::lognormal, 5, 2};
     set.persistence = persistence;
     return set;
 }
@@ -38,8 +38,8 @@ JointSet spatial_set(double dip, double dip_direction)
 {
     JointSet set = joint_set("spatial", 0, 0, 2, 1);
     set.trace_angle.reset();
-    set.dip = Law{Kind::constant, dip, 0};
-    set.dip_direction = Law{Kind::constant, dip_direction, 0};
+    set.dip = ProbabilityLaw{Kind::constant, dip, 0};
+    set.dip_direction = ProbabilityLaw{Kind::constant, dip_direction, 0};
     return set;
 }
 
@@ -244,7 +244,7 @@ TEST(SampleJoints, KeepsPurposesApart)
     JointSet set = joint_set("a", .3, .1, 4, .5);
     const Joints plain = sample_joints(scene_of({set}), 1, 0);
     // Other traces, same lines.
-    set.length = Law{Kind::negative_exponential, 2, 2};
+    set.length = ProbabilityLaw{Kind::negative_exponential, 2, 2};
     set.persistence = .8;
     EXPECT_EQ(rows(plain, 0, false), rows(sample_joints(scene_of({set}), 1, 0), 0, false));
     EXPECT_NE(rows(plain, 0), rows(sample_joints(scene_of({set}), 1, 0), 0));
@@ -398,7 +398,7 @@ JointSet disc_set(const std::string& name, double p32)
     set.trace_angle.reset();
     set.orientation = FisherLaw{60 * deg, 100 * deg, 20};
     set.density = Density{Density::Measure::p32, p32};
-    set.diameter = Law{Kind::lognormal, 6, 3};
+    set.diameter = ProbabilityLaw{Kind::lognormal, 6, 3};
     return set;
 }
 
@@ -591,7 +591,7 @@ TEST(SampleJoints, RefusesTooManyJointsOrTraces)
     expect_refusal(scene_of({joint_set("a", .3, .1, 1e-6, 1)}),
                    {"\"a\"", "spacing is too small, or density too large, for the section"});
     JointSet set = joint_set("a", .3, .1, 1, .5);
-    set.length = Law{Kind::constant, 1e-6, 0};
+    set.length = ProbabilityLaw{Kind::constant, 1e-6, 0};
     expect_refusal(scene_of({set}), {"\"a\"", "length (mean 1e-06 m) is too small for the section"});
 }
 

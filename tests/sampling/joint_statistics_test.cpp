@@ -17,14 +17,15 @@ using Eigen::Vector2d;
 namespace
 {
 
-using Kind = Law::Kind;
+using Kind = ProbabilityLaw::Kind;
 
-const Law exponential_spacing{Kind::negative_exponential, 4, 4}, lognormal_spacing{Kind::lognormal, 4, 3},
-    constant_spacing{Kind::constant, 4, 0}, normal_spacing{Kind::normal, 4, 3},
-    uniform_spacing = uniform_law(1, 7), power_spacing = power_law(2.5, 1.5, 40);
+const ProbabilityLaw exponential_spacing{Kind::negative_exponential, 4, 4},
+    lognormal_spacing{Kind::lognormal, 4, 3}, constant_spacing{Kind::constant, 4, 0},
+    normal_spacing{Kind::normal, 4, 3}, uniform_spacing = uniform_law(1, 7),
+                                        power_spacing = power_law(2.5, 1.5, 40);
 
-Scene scene_of(const Law& trace_angle, const Law& spacing, double persistence, const Law& length, double left,
-               double bottom, double right, double top)
+Scene scene_of(const ProbabilityLaw& trace_angle, const ProbabilityLaw& spacing, double persistence,
+               const ProbabilityLaw& length, double left, double bottom, double right, double top)
 {
     JointSet set;
     set.name = "bedding";
@@ -40,7 +41,7 @@ Scene scene_of(const Law& trace_angle, const Law& spacing, double persistence, c
     return scene;
 }
 
-Scene wide_scene(const Law& trace_angle, const Law& spacing, double persistence = 1)
+Scene wide_scene(const ProbabilityLaw& trace_angle, const ProbabilityLaw& spacing, double persistence = 1)
 {
     return scene_of(trace_angle, spacing, persistence, {Kind::lognormal, 6, 4}, 20, -70, 120, -10);
 }
@@ -106,7 +107,7 @@ struct Anchor {
     Samples spacing, place;
 };
 
-Anchor anchors(const Law& spacing)
+Anchor anchors(const ProbabilityLaw& spacing)
 {
     const Scene scene = scene_of({Kind::constant, 0, 0}, spacing, 1, spacing, -1, -400, 1, 400);
     Anchor anchor;
@@ -125,7 +126,7 @@ Anchor anchors(const Law& spacing)
     return anchor;
 }
 
-bool is_stationary_anchor(const Samples& spacing, const Law& law)
+bool is_stationary_anchor(const Samples& spacing, const ProbabilityLaw& law)
 {
     return follow(spacing, size_biased_distribution(law));
 }
@@ -136,7 +137,8 @@ struct Traces {
     std::vector<std::pair<double, double>> traces;
 };
 
-std::vector<Traces> long_lines(const Law& length, double persistence, double width, int realizations)
+std::vector<Traces> long_lines(const ProbabilityLaw& length, double persistence, double width,
+                               int realizations)
 {
     const Scene scene = scene_of({Kind::constant, 0, 0}, {Kind::constant, 20, 0}, persistence, length, 100, 0,
                                  100 + width, 20);
@@ -163,12 +165,13 @@ double joint_fraction(const Traces& line)
     return sum / line.line;
 }
 
-const Law lognormal_length{Kind::lognormal, 6, 4}, exponential_length{Kind::negative_exponential, 6, 6},
-    normal_length{Kind::normal, 6, 5}, constant_length{Kind::constant, 6, 0},
-    uniform_length = uniform_law(1, 11), power_length = power_law(2.5, 2, 60);
+const ProbabilityLaw lognormal_length{Kind::lognormal, 6, 4},
+    exponential_length{Kind::negative_exponential, 6, 6}, normal_length{Kind::normal, 6, 5},
+    constant_length{Kind::constant, 6, 0}, uniform_length = uniform_law(1, 11),
+                                           power_length = power_law(2.5, 2, 60);
 
 // One set of planes with poles by Fisher's law, in the wide scene.
-Scene fisher_scene(const FisherLaw& law, double azimuth, const Law& spacing)
+Scene fisher_scene(const FisherLaw& law, double azimuth, const ProbabilityLaw& spacing)
 {
     Scene scene = wide_scene({}, spacing);
     scene.azimuth = azimuth;
@@ -282,8 +285,8 @@ bool has_persistence(const std::vector<Traces>& lines, double persistence)
 
 // Lines by a wrong sampler: one that begins in a trace takes a uniform part of a plain length, not of a
 // size-biased one.
-std::vector<Traces> lines_begun_without_size_bias(const Law& length, double persistence, double width,
-                                                  int lines)
+std::vector<Traces> lines_begun_without_size_bias(const ProbabilityLaw& length, double persistence,
+                                                  double width, int lines)
 {
     const double bridge = mean_of_positive(length) * (1 - persistence) / persistence;
     std::vector<Traces> begun;
@@ -308,8 +311,8 @@ std::vector<Traces> lines_begun_without_size_bias(const Law& length, double pers
 
 TEST(Frequency, OnAScanlineAlongTheMeanNormalIsOneOverTheSpacing)
 {
-    for (const Law& spacing : {exponential_spacing, lognormal_spacing, constant_spacing, normal_spacing,
-                               uniform_spacing, power_spacing})
+    for (const ProbabilityLaw& spacing : {exponential_spacing, lognormal_spacing, constant_spacing,
+                                          normal_spacing, uniform_spacing, power_spacing})
         for (const double scatter : {0.0, 8.0}) {
             const Scene scene = wide_scene({Kind::normal, 20 * deg, scatter * deg}, spacing);
             EXPECT_TRUE(
@@ -329,8 +332,8 @@ TEST(Frequency, OfPlanesIsOneOverTheSpacingInTheSection)
     Scene scene = wide_scene({Kind::constant, 0, 0}, exponential_spacing);
     scene.azimuth = 40 * deg;
     scene.joint_sets[0].trace_angle.reset();
-    scene.joint_sets[0].dip = Law{Kind::normal, 70 * deg, 3 * deg};
-    scene.joint_sets[0].dip_direction = Law{Kind::normal, 100 * deg, 3 * deg};
+    scene.joint_sets[0].dip = ProbabilityLaw{Kind::normal, 70 * deg, 3 * deg};
+    scene.joint_sets[0].dip_direction = ProbabilityLaw{Kind::normal, 100 * deg, 3 * deg};
     const double n_p = section_normal(70 * deg, 100 * deg, 40 * deg).norm(); // .58
     const Samples counts = scanline_counts(scene, normal_at(trace_angle(70 * deg, 100 * deg, 40 * deg)));
     EXPECT_TRUE(have_mean(counts, 50 / 4. * n_p));
@@ -340,7 +343,7 @@ TEST(Frequency, OfPlanesIsOneOverTheSpacingInTheSection)
 TEST(Frequency, OfPlanesByFishersLawIsOneOverTheSpacingInTheSection)
 {
     for (const auto& [law, azimuth] : fisher_cases)
-        for (const Law& spacing : {exponential_spacing, power_spacing}) {
+        for (const ProbabilityLaw& spacing : {exponential_spacing, power_spacing}) {
             const Scene scene = fisher_scene(law, azimuth, spacing);
             const double n_p = section_normal(law.dip, law.dip_direction, azimuth).norm();
             const Samples counts =
@@ -417,7 +420,7 @@ TEST(TraceAngle, IsThatOfPolesByFishersLaw)
 
 TEST(Anchor, SeesSpacingsBySizeAndTakesAUniformPlaceInThem)
 {
-    for (const Law& spacing :
+    for (const ProbabilityLaw& spacing :
          {exponential_spacing, lognormal_spacing, normal_spacing, uniform_spacing, power_spacing}) {
         const Anchor anchor = anchors(spacing);
         EXPECT_TRUE(is_stationary_anchor(anchor.spacing, spacing));
@@ -427,7 +430,7 @@ TEST(Anchor, SeesSpacingsBySizeAndTakesAUniformPlaceInThem)
 
 TEST(Anchor, WouldBeCaughtWithoutSizeBias)
 {
-    for (const Law& spacing : {lognormal_spacing, uniform_spacing, power_spacing}) {
+    for (const ProbabilityLaw& spacing : {lognormal_spacing, uniform_spacing, power_spacing}) {
         Stream stream({1, 0, 0}, 0, Purpose::spacing);
         Samples plain;
         for (int i = 0; i < 5000; ++i)
@@ -438,7 +441,7 @@ TEST(Anchor, WouldBeCaughtWithoutSizeBias)
 
 TEST(Persistence, IsTheWantedOneOnAnyStretchOfLine)
 {
-    for (const Law& length :
+    for (const ProbabilityLaw& length :
          {lognormal_length, exponential_length, normal_length, constant_length, uniform_length, power_length})
         for (const double persistence : {.1, .5, .9})
             for (const double width : {2.0, 50.0}) { // short of a trace, and many
@@ -453,14 +456,14 @@ TEST(Persistence, IsTheWantedOneOnAnyStretchOfLine)
 
 TEST(Persistence, WouldBeCaughtWithoutSizeBiasAtTheStartOfALine)
 {
-    for (const Law& length : {lognormal_length, power_length})
+    for (const ProbabilityLaw& length : {lognormal_length, power_length})
         EXPECT_FALSE(has_persistence(lines_begun_without_size_bias(length, .5, 5, 4000), .5));
 }
 
 TEST(Persistence, VariesOnLongLinesAsAnAlternatingRenewalProcess)
 {
     // Var(k_T) = (Var L E[G]^2 + Var G E[L]^2) / ((E[L] + E[G])^3 T), asymptotically
-    for (const Law& length :
+    for (const ProbabilityLaw& length :
          {lognormal_length, exponential_length, constant_length, uniform_length, power_length}) {
         const double k = .6, width = 3000, bridge = length.mean * (1 - k) / k;
         Samples squares;
@@ -475,7 +478,7 @@ TEST(Persistence, VariesOnLongLinesAsAnAlternatingRenewalProcess)
 
 TEST(TraceLength, FollowsTheLawWhereNoWindowEndsIt)
 {
-    for (const Law& length :
+    for (const ProbabilityLaw& length :
          {lognormal_length, exponential_length, normal_length, uniform_length, power_length}) {
         // The first ten traces that begin on a line long enough to hold them whole.
         Samples lengths, bridges;
@@ -494,7 +497,7 @@ TEST(TraceLength, FollowsTheLawWhereNoWindowEndsIt)
 
 TEST(TraceLength, IsSizeBiasedWhereAScanlineMeetsIt)
 {
-    for (const Law& length :
+    for (const ProbabilityLaw& length :
          {lognormal_length, exponential_length, normal_length, uniform_length, power_length}) {
         Samples hit, beyond;
         for (const Traces& line : long_lines(length, .6, 400, 5000))

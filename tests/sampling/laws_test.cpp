@@ -12,7 +12,7 @@ using namespace jointcreep::statistics;
 namespace
 {
 
-using Kind = Law::Kind;
+using Kind = ProbabilityLaw::Kind;
 using Draw = std::function<double(Stream&)>;
 
 constexpr int draws = 100000;
@@ -31,7 +31,7 @@ double normal_distribution(double z)
     return std::erfc(-z / std::numbers::sqrt2) / 2;
 }
 
-Distribution closed_form(const Law& law)
+Distribution closed_form(const ProbabilityLaw& law)
 {
     return [law](double x) {
         const double s2 = std::log(1 + std::pow(law.deviation / law.mean, 2));
@@ -56,33 +56,34 @@ Distribution closed_form(const Law& law)
     };
 }
 
-bool obeys(const Law& law, const Draw& draw)
+bool obeys(const ProbabilityLaw& law, const Draw& draw)
 {
     const Samples samples = sample(draw);
     return follow(samples, closed_form(law)) && have_mean(samples, law.mean) &&
            have_deviation(samples, law.deviation);
 }
 
-bool obeys_size_biased(const Law& law, const Draw& draw)
+bool obeys_size_biased(const ProbabilityLaw& law, const Draw& draw)
 {
     return follow(sample(draw), size_biased_distribution(law));
 }
 
-const Law normal{Kind::normal, 5, 1.5}, wide_normal{Kind::normal, 2, 2}, lognormal{Kind::lognormal, 5, 3},
-    exponential{Kind::negative_exponential, 4, 4}, constant{Kind::constant, 3, 0},
-    uniform_lengths = uniform_law(2, 7), uniform_angles = uniform_law(-.3, .1),
-    uniform_from_0 = uniform_law(0, 3);
+const ProbabilityLaw normal{Kind::normal, 5, 1.5}, wide_normal{Kind::normal, 2, 2},
+    lognormal{Kind::lognormal, 5, 3}, exponential{Kind::negative_exponential, 4, 4},
+    constant{Kind::constant, 3, 0}, uniform_lengths = uniform_law(2, 7),
+                                    uniform_angles = uniform_law(-.3, .1), uniform_from_0 = uniform_law(0, 3);
 
-const std::vector<Law> power_laws{power_law(0, 1, 4),     power_law(1, 1, 20),   power_law(2, 1, 20),
-                                  power_law(2.5, .5, 40), power_law(3, 2, 1000), power_law(20, 1, 1e6)};
+const std::vector<ProbabilityLaw> power_laws{power_law(0, 1, 4),    power_law(1, 1, 20),
+                                             power_law(2, 1, 20),   power_law(2.5, .5, 40),
+                                             power_law(3, 2, 1000), power_law(20, 1, 1e6)};
 
-std::vector<Law> with_power_laws(std::vector<Law> laws)
+std::vector<ProbabilityLaw> with_power_laws(std::vector<ProbabilityLaw> laws)
 {
     laws.insert(laws.end(), power_laws.begin(), power_laws.end());
     return laws;
 }
 
-const std::vector<Law> positive_laws =
+const std::vector<ProbabilityLaw> positive_laws =
     with_power_laws({normal, wide_normal, lognormal, exponential, uniform_lengths, uniform_from_0});
 
 using DrawPole = std::function<Eigen::Vector3d(const Eigen::Vector3d& mean, double concentration, Stream&)>;
@@ -125,7 +126,7 @@ Eigen::Vector3d pole_at(double angle, const Eigen::Vector3d& mean_pole, Stream& 
 
 TEST(Draw, FollowsTheLaw)
 {
-    for (const Law& law :
+    for (const ProbabilityLaw& law :
          with_power_laws({normal, wide_normal, lognormal, exponential, uniform_lengths, uniform_angles}))
         EXPECT_TRUE(obeys(law, [&](Stream& stream) { return draw(law, stream); }));
     EXPECT_EQ(sample([](Stream& stream) { return draw(constant, stream); }), Samples(draws, 3.0));
@@ -133,16 +134,18 @@ TEST(Draw, FollowsTheLaw)
 
 TEST(Draw, WouldBeCaughtTakingALognormalsParametersForThoseOfItsLogarithm)
 {
-    const Law of_logarithm{Kind::normal, std::log(lognormal.mean), lognormal.deviation / lognormal.mean};
+    const ProbabilityLaw of_logarithm{Kind::normal, std::log(lognormal.mean),
+                                      lognormal.deviation / lognormal.mean};
     EXPECT_FALSE(obeys(lognormal, [&](Stream& stream) { return std::exp(draw(of_logarithm, stream)); }));
-    const Law median_for_mean{Kind::normal, std::log(lognormal.mean), std::sqrt(std::log(1 + .36))};
+    const ProbabilityLaw median_for_mean{Kind::normal, std::log(lognormal.mean),
+                                         std::sqrt(std::log(1 + .36))};
     EXPECT_FALSE(obeys(lognormal, [&](Stream& stream) { return std::exp(draw(median_for_mean, stream)); }));
 }
 
 TEST(Draw, WouldBeCaughtTakingAUniformLawsDeviationForItsHalfWidth)
 {
-    const Law narrow = uniform_law(uniform_angles.mean - uniform_angles.deviation,
-                                   uniform_angles.mean + uniform_angles.deviation);
+    const ProbabilityLaw narrow = uniform_law(uniform_angles.mean - uniform_angles.deviation,
+                                              uniform_angles.mean + uniform_angles.deviation);
     EXPECT_FALSE(obeys(uniform_angles, [&](Stream& stream) { return draw(narrow, stream); }));
 }
 
@@ -153,15 +156,15 @@ TEST(Draw, WouldBeCaughtOnePercentOff)
 
 TEST(Draw, WouldBeCaughtTakingAPowerLawsExponentForThatOfTheNumberOfLongerOnes)
 {
-    for (const Law& law : power_laws) {
-        const Law steeper = power_law(law.exponent + 1, law.least, law.most);
+    for (const ProbabilityLaw& law : power_laws) {
+        const ProbabilityLaw steeper = power_law(law.exponent + 1, law.least, law.most);
         EXPECT_FALSE(obeys(law, [&](Stream& stream) { return draw(steeper, stream); }));
     }
 }
 
 TEST(Draw, WouldBeCaughtWithoutAPowerLawsUpperCutOff)
 {
-    const Law law = power_law(2.5, .5, 40);
+    const ProbabilityLaw law = power_law(2.5, .5, 40);
     EXPECT_FALSE(obeys(law, [&](Stream& stream) { return .5 * std::pow(1 - uniform(stream), -1 / 1.5); }));
     EXPECT_FALSE(obeys(law, [&](Stream& stream) {
         return std::min(40., .5 * std::pow(1 - uniform(stream), -1 / 1.5)); // put on the cut-off
@@ -170,7 +173,7 @@ TEST(Draw, WouldBeCaughtWithoutAPowerLawsUpperCutOff)
 
 TEST(PowerLaw, HasItsMomentsInClosedForm)
 {
-    for (const Law& law : power_laws) {
+    for (const ProbabilityLaw& law : power_laws) {
         // Simpson's rule in y = log(x), with dx = x dy.
         const int steps = 20000;
         const double step = std::log(law.most / law.least) / steps;
@@ -191,7 +194,7 @@ TEST(PowerLaw, HasItsMomentsInClosedForm)
     EXPECT_NEAR(power_law(5, 1, 1e6).mean, 4 / 3., 1e-12);
     // Through the exponents at which an integral is a logarithm.
     for (const double exponent : {1., 2., 3.}) {
-        const Law at = power_law(exponent, 1, 50), beside = power_law(exponent + 1e-9, 1, 50);
+        const ProbabilityLaw at = power_law(exponent, 1, 50), beside = power_law(exponent + 1e-9, 1, 50);
         EXPECT_NEAR(at.mean, beside.mean, 1e-7);
         EXPECT_NEAR(at.deviation, beside.deviation, 1e-7);
     }
@@ -208,7 +211,7 @@ TEST(DrawFisher, WouldBeCaughtWithoutTheSineOfTheAngle)
 {
     // The density exp(-kappa t^2 / 2) of the angle itself.
     const DrawPole wrong = [](const Eigen::Vector3d& mean_pole, double concentration, Stream& stream) {
-        const Law angle{Kind::normal, 0, 1 / std::sqrt(concentration)};
+        const ProbabilityLaw angle{Kind::normal, 0, 1 / std::sqrt(concentration)};
         return pole_at(std::abs(draw(angle, stream)), mean_pole, stream);
     };
     EXPECT_FALSE(obeys_fisher(mean_poles[2], 60, wrong));
@@ -240,7 +243,7 @@ TEST(DrawFisher, WouldBeCaughtTwoPercentOffOrTurnedOneSidedly)
 
 TEST(DrawPositive, CutsOffTheLowerTail)
 {
-    for (const Law& law : positive_laws) {
+    for (const ProbabilityLaw& law : positive_laws) {
         const Samples samples = sample([&](Stream& stream) { return draw_positive(law, stream); });
         EXPECT_TRUE(follow(samples, positive_distribution(law)));
         EXPECT_TRUE(have_mean(samples, mean_of_positive(law)));
@@ -259,27 +262,28 @@ TEST(DrawPositive, MovesTheMeanOfANormalAsStated)
 TEST(DrawPositive, RefusesALawWithoutPositiveValues)
 {
     Stream stream({1, 0, 0}, 0, Purpose::spacing);
-    for (const Law& law : {Law{Kind::normal, -10, 1}, Law{Kind::constant, 0, 0}}) {
+    for (const ProbabilityLaw& law :
+         {ProbabilityLaw{Kind::normal, -10, 1}, ProbabilityLaw{Kind::constant, 0, 0}}) {
         EXPECT_THROW(draw_positive(law, stream), input_error);
     }
 }
 
 TEST(DrawSizeBiased, FollowsXTimesTheDensity)
 {
-    for (const Law& law : positive_laws)
+    for (const ProbabilityLaw& law : positive_laws)
         EXPECT_TRUE(obeys_size_biased(law, [&](Stream& stream) { return draw_size_biased(law, stream); }));
     EXPECT_EQ(sample([](Stream& stream) { return draw_size_biased(constant, stream); }), Samples(draws, 3.0));
 }
 
 TEST(DrawSizeBiased, WouldBeCaughtWithoutTheBias)
 {
-    for (const Law& law : positive_laws)
+    for (const ProbabilityLaw& law : positive_laws)
         EXPECT_FALSE(obeys_size_biased(law, [&](Stream& stream) { return draw_positive(law, stream); }));
 }
 
 TEST(DrawBiased, FollowsAPowerOfXTimesTheDensity)
 {
-    for (const Law& law : positive_laws)
+    for (const ProbabilityLaw& law : positive_laws)
         for (const int order : {0, 1, 2, 3}) {
             const Distribution right =
                 integrated([&](double x) { return std::pow(x, order) * density(law, x); }, grid(law));
@@ -294,7 +298,7 @@ TEST(DrawBiased, FollowsAPowerOfXTimesTheDensity)
 
 TEST(MomentOfPositive, IsTheIntegral)
 {
-    for (const Law& law : positive_laws)
+    for (const ProbabilityLaw& law : positive_laws)
         for (const int order : {0, 1, 2, 3, 4}) {
             const std::vector<double> places = grid(law);
             double sum = 0, total = 0; // by the trapezoidal rule

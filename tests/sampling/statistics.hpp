@@ -64,23 +64,23 @@ inline bool have_deviation(const Samples& samples, double expected)
 }
 
 // Density of a law, not normalised.
-inline double density(const Law& law, double x)
+inline double density(const ProbabilityLaw& law, double x)
 {
     const auto bell = [](double z) { return std::exp(-z * z / 2); };
     switch (law.kind) {
-    case Law::Kind::normal:
+    case ProbabilityLaw::Kind::normal:
         return bell((x - law.mean) / law.deviation);
-    case Law::Kind::lognormal: {
+    case ProbabilityLaw::Kind::lognormal: {
         const double s2 = std::log(1 + law.deviation * law.deviation / (law.mean * law.mean));
         return x > 0 ? bell((std::log(x) - std::log(law.mean) + s2 / 2) / std::sqrt(s2)) / x : 0;
     }
-    case Law::Kind::negative_exponential:
+    case ProbabilityLaw::Kind::negative_exponential:
         return x >= 0 ? std::exp(-x / law.mean) : 0;
-    case Law::Kind::uniform:
+    case ProbabilityLaw::Kind::uniform:
         return x >= law.least && x <= law.most ? 1 : 0;
-    case Law::Kind::power:
+    case ProbabilityLaw::Kind::power:
         return x >= law.least && x <= law.most ? std::pow(x, -law.exponent) : 0;
-    case Law::Kind::constant:
+    case ProbabilityLaw::Kind::constant:
         break;
     }
     return 0;
@@ -104,17 +104,17 @@ inline double fisher_resultant(double concentration)
 
 // Where densities of a law's positive values are integrated: evenly from 0, but for the power law evenly by
 // the logarithm from its sharp lower cut-off.
-inline std::vector<double> grid(const Law& law)
+inline std::vector<double> grid(const ProbabilityLaw& law)
 {
     const int steps = 40000;
     std::vector<double> places;
-    if (law.kind == Law::Kind::power) {
+    if (law.kind == ProbabilityLaw::Kind::power) {
         places = {0, law.least * (1 - 1e-12)};
         for (int i = 0; i <= steps; ++i)
             places.push_back(law.least * std::pow(law.most / law.least, double(i) / steps));
         return places;
     }
-    const double end = law.kind == Law::Kind::uniform ? law.most : law.mean + 40 * law.deviation;
+    const double end = law.kind == ProbabilityLaw::Kind::uniform ? law.most : law.mean + 40 * law.deviation;
     for (int i = 0; i <= steps; ++i)
         places.push_back(end * i / steps);
     return places;
@@ -139,19 +139,19 @@ inline Distribution integrated(const std::function<double(double)>& density, con
 }
 
 // Of a law's values above 0.
-inline Distribution positive_distribution(const Law& law)
+inline Distribution positive_distribution(const ProbabilityLaw& law)
 {
     return integrated([law](double x) { return density(law, x); }, grid(law));
 }
 
 // Of density x f(x) / m: intervals as a point sees them.
-inline Distribution size_biased_distribution(const Law& law)
+inline Distribution size_biased_distribution(const ProbabilityLaw& law)
 {
     return integrated([law](double x) { return x * density(law, x); }, grid(law));
 }
 
 // Of density (1 - F(x)) / m: what is left of an interval beyond a point.
-inline Distribution residual_distribution(const Law& law)
+inline Distribution residual_distribution(const ProbabilityLaw& law)
 {
     const Distribution cdf = positive_distribution(law);
     return integrated([cdf](double x) { return 1 - cdf(x); }, grid(law));

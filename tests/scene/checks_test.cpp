@@ -54,6 +54,19 @@ TEST(checks, an_unknown_key_is_refused_with_the_nearest)
     expect_refused("[zones]", "[zone]", "the scene has no key \"zone\"; did you mean zones?");
 }
 
+TEST(checks, a_word_of_earlier_versions_is_refused_with_its_new_name)
+{
+    expect_refused("load_history = [[1, 0]", "course = [[1, 0]",
+                   "[[boundary]] has no key \"course\": it is now called load_history");
+    expect_refused("dangling_ends = ", "dead_ends = ",
+                   "[cutting] has no key \"dead_ends\": it is now called dangling_ends");
+    expect_refused("[zones]\n", "[motion]\nrelease_s = 0\n\n[zones]\n",
+                   "the scene has no key \"motion\": it is now called large_displacements");
+    expect_refused("engine = \"relaxation\"", "engine = \"explicit\"",
+                   "[equilibrium] engine = \"explicit\": wanted \"auto\" | \"relaxation\" | \"implicit\"; "
+                   "\"explicit\" is now called \"relaxation\"");
+}
+
 TEST(checks, a_missing_key_is_refused_at_its_table)
 {
     expect_refused("[zones]\nsize_m = 4\n", "[zones]\n", "[zones] has no size_m: wanted a number");
@@ -329,16 +342,17 @@ TEST(checks, numbers_that_depend_on_others)
 TEST(checks, loads)
 {
     expect_refused("traction_MPa = [0, -0.01]", "", "wanted fix = ", "[[boundary]]\nfrom_m = [0, 20]");
-    expect_refused("course = [[1, 0], [4, 1]]", "", "wanted fix and course", "displacement_mm = [-0.1, 0]");
+    expect_refused("load_history = [[1, 0], [4, 1]]", "", "wanted fix and load_history",
+                   "displacement_mm = [-0.1, 0]");
     expect_refused("displacement_mm = [-0.1, 0]", "displacement_mm = [-0.1, 1]", "wanted 0 in the direction",
                    "displacement_mm = [-0.1, 1]");
-    expect_refused("course = [[1, 0], [4, 1]]", "course = [[4, 0], [1, 1]]", "dates in increasing order",
-                   "course = [[4, 0]");
+    expect_refused("load_history = [[1, 0], [4, 1]]", "load_history = [[4, 0], [1, 1]]",
+                   "dates in increasing order", "load_history = [[4, 0]");
     expect_refused("joint = \"joint\"\n\n[[boundary]]",
                    "joint = \"joint\"\ntraction_MPa = [1, 0]\n\n[[boundary]]", "beside joint",
                    "joint = \"joint\"\ntraction_MPa");
-    expect_refused("traction_MPa = [0, -0.01]", "fix = \"x\"\ncourse = [[0, 1]]", "beside it",
-                   "course = [[0, 1]]");
+    expect_refused("traction_MPa = [0, -0.01]", "fix = \"x\"\nload_history = [[0, 1]]", "beside it",
+                   "load_history = [[0, 1]]");
 }
 
 TEST(checks, files)

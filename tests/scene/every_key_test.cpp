@@ -18,11 +18,11 @@ TEST(every_key, sets_and_laws)
 
     EXPECT_FALSE(steep.trace_angle);
     ASSERT_TRUE(steep.dip && steep.dip_direction);
-    EXPECT_EQ(steep.dip->kind, Law::Kind::normal);
+    EXPECT_EQ(steep.dip->kind, ProbabilityLaw::Kind::normal);
     EXPECT_EQ(steep.dip->mean, 70 * deg);
     EXPECT_EQ(steep.dip->deviation, 3 * deg);
     EXPECT_EQ(steep.dip_direction->mean, 20 * deg);
-    EXPECT_EQ(steep.spacing.kind, Law::Kind::lognormal);
+    EXPECT_EQ(steep.spacing.kind, ProbabilityLaw::Kind::lognormal);
     EXPECT_EQ(steep.spacing.mean, 5);
     EXPECT_EQ(steep.spacing.deviation, 1);
     EXPECT_EQ(steep.persistence, 0.6);
@@ -34,8 +34,8 @@ TEST(every_key, sets_and_laws)
 
     ASSERT_TRUE(flat.trace_angle && flat.length && flat.region);
     EXPECT_EQ(flat.trace_angle->mean, 10 * deg);
-    EXPECT_EQ(flat.spacing.kind, Law::Kind::normal);
-    EXPECT_EQ(flat.length->kind, Law::Kind::negative_exponential);
+    EXPECT_EQ(flat.spacing.kind, ProbabilityLaw::Kind::normal);
+    EXPECT_EQ(flat.length->kind, ProbabilityLaw::Kind::negative_exponential);
     EXPECT_EQ(flat.length->mean, 8);
     EXPECT_EQ(flat.length->deviation, 8) << "the mean, by its law";
     EXPECT_EQ(flat.region->size(), 4u);
@@ -47,9 +47,9 @@ TEST(every_key, uniform_and_fisher_laws)
     const Scene scene = parse_scene(every_key_text(), "scene.toml");
     const JointSet &even = scene.joint_sets.at(2), &in_space = scene.joint_sets.at(3),
                    &about = scene.joint_sets.at(4);
-    const auto expect_uniform = [](const std::optional<Law>& law, double least, double most) {
+    const auto expect_uniform = [](const std::optional<ProbabilityLaw>& law, double least, double most) {
         ASSERT_TRUE(law);
-        EXPECT_EQ(law->kind, Law::Kind::uniform);
+        EXPECT_EQ(law->kind, ProbabilityLaw::Kind::uniform);
         EXPECT_DOUBLE_EQ(law->least, least);
         EXPECT_DOUBLE_EQ(law->most, most);
         EXPECT_DOUBLE_EQ(law->mean, (least + most) / 2);
@@ -64,7 +64,7 @@ TEST(every_key, uniform_and_fisher_laws)
     EXPECT_EQ(about.orientation->dip, 50 * deg);
     EXPECT_EQ(about.orientation->dip_direction, 30 * deg);
     EXPECT_EQ(about.orientation->concentration, 60);
-    EXPECT_EQ(about.spacing.kind, Law::Kind::power);
+    EXPECT_EQ(about.spacing.kind, ProbabilityLaw::Kind::power);
     EXPECT_EQ(about.spacing.exponent, 2);
     EXPECT_EQ(about.spacing.least, 10);
     EXPECT_EQ(about.spacing.most, 30);
@@ -103,7 +103,7 @@ TEST(every_key, kinds_densities_and_terminations)
     EXPECT_EQ(coins.diameter->deviation, 3);
     EXPECT_EQ(scene.joint_sets.at(7).density->measure, Measure::p10);
     EXPECT_EQ(scene.joint_sets.at(7).density->scanline.angle, 0);
-    EXPECT_EQ(scene.joint_sets.at(7).spacing.kind, Law::Kind::negative_exponential);
+    EXPECT_EQ(scene.joint_sets.at(7).spacing.kind, ProbabilityLaw::Kind::negative_exponential);
     EXPECT_FALSE(scene.joint_sets.at(8).density->scanline.angle);
     EXPECT_EQ(scene.joint_sets.at(8).density->scanline.trend, 25 * deg);
     EXPECT_EQ(scene.joint_sets.at(8).density->scanline.plunge, 5 * deg);
@@ -152,7 +152,7 @@ TEST(every_key, all_else)
     EXPECT_EQ(scene.creep->step, 5 * day);
     EXPECT_EQ(scene.creep->scheme, CreepScheme::published);
     EXPECT_FALSE(scene.creep->tolerance);
-    EXPECT_EQ(scene.equilibrium.engine, Engine::explicit_engine);
+    EXPECT_EQ(scene.equilibrium.engine, EngineChoice::relaxation);
     ASSERT_TRUE(scene.fine_zones);
     EXPECT_EQ((*scene.fine_zones)[1], Eigen::Vector2d(35, 5));
     EXPECT_EQ(scene.zone_coarsening, 10);
@@ -161,7 +161,7 @@ TEST(every_key, all_else)
     EXPECT_EQ(scene.cutting.smallest_angle, 3 * deg);
     EXPECT_EQ(scene.averaging.over, AverageOver::line);
     EXPECT_EQ(scene.averaging.stiffness, StiffnessRule::lower_bound);
-    EXPECT_EQ(scene.cutting.dead_ends, DeadEnds::extend);
+    EXPECT_EQ(scene.cutting.dangling_ends, DanglingEnds::extend);
     ASSERT_EQ(scene.holes.size(), 1u);
     EXPECT_EQ(scene.holes[0][2], Eigen::Vector2d(5, 16));
     EXPECT_EQ(scene.equilibrium.tolerance, 1e-5);
@@ -215,7 +215,7 @@ TEST(every_key, optional_tables_may_be_left_out)
     EXPECT_EQ(scene.equilibrium.tolerance, 1e-6);
     EXPECT_EQ(scene.equilibrium.damping, Damping::adaptive);
     EXPECT_EQ(scene.equilibrium.masses, Masses::scaled);
-    EXPECT_EQ(scene.equilibrium.engine, Engine::automatic);
+    EXPECT_EQ(scene.equilibrium.engine, EngineChoice::automatic);
 }
 
 TEST(every_key, a_fully_persistent_set_needs_neither_length_nor_strength)
@@ -223,7 +223,7 @@ TEST(every_key, a_fully_persistent_set_needs_neither_length_nor_strength)
     auto text = every_key_text();
     for (const char* key :
          {"cohesion_MPa = 1.5\n", "friction_angle_deg = 45\n", "tensile_strength_MPa = 1\n",
-          "length = { law = \"lognormal\", mean_m = 6, deviation_m = 2 }\n", "dead_ends = \"extend\"\n"})
+          "length = { law = \"lognormal\", mean_m = 6, deviation_m = 2 }\n", "dangling_ends = \"extend\"\n"})
         text = replaced(text, key, "");
     text = replaced(text, "persistence = 0.6", "persistence = 1");
     text = replaced(text, "persistence = 0.8", "persistence = 1");

@@ -195,7 +195,7 @@ TEST(sensitivity, of_loads_over_time_is_that_of_whole_runs)
 {
     Study study;
     study.scene.boundaries[2].displacement = Vector2d(-1e-3, 0);
-    study.scene.boundaries[2].course = {{{0, 0}, {7.3 * day, 1}, {12 * day, 0.5}}};
+    study.scene.boundaries[2].load_history = {{{0, 0}, {7.3 * day, 1}, {12 * day, 0.5}}};
     EXPECT_LT(study.largest_error(3e-4), 1e-7);
 }
 
@@ -216,9 +216,9 @@ TEST(sensitivity, of_chosen_steps_is_nearly_that_of_whole_runs)
     }
 }
 
-TEST(sensitivity, motion_has_none)
+TEST(sensitivity, dynamic_relaxation_has_none)
 {
     Study study;
-    study.scene.equilibrium.engine = Engine::explicit_engine;
+    study.scene.equilibrium.engine = EngineChoice::relaxation;
     EXPECT_THROW(study.run(true), input_error);
 }

@@ -14,9 +14,9 @@ using namespace jointcreep::statistics;
 namespace
 {
 
-using Kind = Law::Kind;
+using Kind = ProbabilityLaw::Kind;
 
-const std::vector<Law> positive_laws = {
+const std::vector<ProbabilityLaw> positive_laws = {
     {Kind::negative_exponential, 4, 4},
     {Kind::lognormal, 4, 3},
     {Kind::normal, 4, 3},
@@ -26,7 +26,7 @@ const std::vector<Law> positive_laws = {
 };
 
 // Moments from the distribution alone: E[X^p] = integral of p x^(p-1) (1 - F(x)).
-double moment(const Law& law, double order)
+double moment(const ProbabilityLaw& law, double order)
 {
     const int steps = 400000;
     const double end = law.kind == Kind::power || law.kind == Kind::uniform ? law.most : 60 * law.mean;
@@ -42,7 +42,7 @@ double moment(const Law& law, double order)
 
 TEST(Distribution, HasTheMomentsOfItsLaw)
 {
-    for (const Law& law : positive_laws) {
+    for (const ProbabilityLaw& law : positive_laws) {
         const double first = moment(law, 1), second = moment(law, 2), third = moment(law, 3);
         const Moments closed = positive_moments(law);
         EXPECT_NEAR(closed.mean / first, 1, 1e-4);
@@ -54,7 +54,7 @@ TEST(Distribution, HasTheMomentsOfItsLaw)
 
 TEST(Distribution, IsTheInverseOfTheQuantile)
 {
-    for (const Law& law : {Law{Kind::normal, -.3, .2}, uniform_law(-1, 2)})
+    for (const ProbabilityLaw& law : {ProbabilityLaw{Kind::normal, -.3, .2}, uniform_law(-1, 2)})
         for (const double p : {.001, .3, .5, .99})
             EXPECT_NEAR(distribution(law, quantile(law, p)), p, 1e-12);
 }

@@ -8,7 +8,7 @@
 namespace jointcreep::statistics
 {
 
-using Kind = Law::Kind;
+using Kind = ProbabilityLaw::Kind;
 
 inline Scene scene_of(const JointSet& set, const Polygon& outline)
 {
@@ -90,8 +90,8 @@ inline std::vector<Example> other_kinds()
     set.material = "clay";
 
     set.kind = SetKind::segments;
-    set.trace_angle = Law{Kind::normal, 20 * deg, 15 * deg};
-    set.length = Law{Kind::lognormal, 6, 4};
+    set.trace_angle = ProbabilityLaw{Kind::normal, 20 * deg, 15 * deg};
+    set.length = ProbabilityLaw{Kind::lognormal, 6, 4};
     set.density = Density{Measure::p21, .25};
     all.push_back({"segments", scene_of(set, slope())});
 
@@ -103,14 +103,14 @@ inline std::vector<Example> other_kinds()
 
     set.kind = SetKind::discs;
     set.length.reset();
-    set.diameter = Law{Kind::negative_exponential, 8, 8};
+    set.diameter = ProbabilityLaw{Kind::negative_exponential, 8, 8};
     set.density = Density{Measure::p32, .3};
     all.push_back({"discs", scene_of(set, slope())});
 
     set.kind = SetKind::lines;
     set.diameter.reset();
     set.spacing = {Kind::lognormal, 1, .5};
-    set.length = Law{Kind::lognormal, 6, 4};
+    set.length = ProbabilityLaw{Kind::lognormal, 6, 4};
     set.persistence = .7;
     set.density = Density{Measure::p21, .25};
     all.push_back({"lines by P21", scene_of(set, box())});

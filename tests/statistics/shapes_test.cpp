@@ -170,7 +170,7 @@ TEST(Blocks, AreAsManyAsExpected)
     scene.joint_sets[0].persistence = 1;
     scene.joint_sets.push_back(scene.joint_sets[0]);
     scene.joint_sets[1].name = "others";
-    scene.joint_sets[1].trace_angle = Law{Kind::normal, 30 * deg, 8 * deg};
+    scene.joint_sets[1].trace_angle = ProbabilityLaw{Kind::normal, 30 * deg, 8 * deg};
     scene.joint_sets[1].spacing = {Kind::negative_exponential, 5, 5};
     const int realizations = 200;
     double number = 0, number_target = 0, square = 0, crossings = 0, crossings_target = 0;

@@ -51,7 +51,7 @@ struct Tally {
     int intervals = 0, holding = 0;
 };
 
-void stretch(Law& law, double factor)
+void stretch(ProbabilityLaw& law, double factor)
 {
     law.mean *= factor;
     law.deviation *= factor;
@@ -131,11 +131,12 @@ TEST(Verdicts, OfWrongNetworksAreFail)
         std::function<void(JointSet&)> make;
         std::vector<double> flagged; // at least, in the order of the examples; -1 where it is none
     };
-    const auto other_law = [](Law& law) {
-        law = law.kind == Kind::negative_exponential ? Law{Kind::lognormal, law.mean, law.mean * .5}
-                                                     : Law{Kind::negative_exponential, law.mean, law.mean};
+    const auto other_law = [](ProbabilityLaw& law) {
+        law = law.kind == Kind::negative_exponential
+                  ? ProbabilityLaw{Kind::lognormal, law.mean, law.mean * .5}
+                  : ProbabilityLaw{Kind::negative_exponential, law.mean, law.mean};
     };
-    const auto wider = [](Law& law, double factor) {
+    const auto wider = [](ProbabilityLaw& law, double factor) {
         const double more = (law.most - law.least) / 2 * (factor - 1);
         law.deviation *= factor;
         law.least -= more;
@@ -202,7 +203,7 @@ TEST(Verdicts, OfWrongSegmentsAndDiscsAreFail)
         expect_flagged("a size 1.3 times as large",
                        [](JointSet& set) { stretch(set.length ? *set.length : *set.diameter, 1.3); });
         expect_flagged("a constant size", [](JointSet& set) {
-            Law& size = set.length ? *set.length : *set.diameter;
+            ProbabilityLaw& size = set.length ? *set.length : *set.diameter;
             size = {Kind::constant, size.mean, 0};
         });
         expect_flagged("more scatter", [](JointSet& set) {
@@ -272,7 +273,7 @@ TEST(Verdicts, OfConstantsAreExact)
     }
     Scene constant = example.scene;
     constant.joint_sets[0].spacing = {Kind::constant, 3, 0};
-    constant.joint_sets[0].length = Law{Kind::constant, 5, 0};
+    constant.joint_sets[0].length = ProbabilityLaw{Kind::constant, 5, 0};
     EXPECT_FALSE(fails(report_of(constant, constant, 0)));
     Scene other = constant;
     other.joint_sets[0].spacing.mean = 3.001;

@@ -70,7 +70,7 @@ public:
         fill(schema::fields_of(file.equivalent));
         fill(schema::fields_of(file.result));
         if (with_trace) {
-            fill(schema::fields_of(file.result.trace));
+            fill(schema::fields_of(file.result.step_history));
             fill(schema::fields_of(file.result.failure));
             file.result.failure.reason += '!'; // without one it is none
             fill(schema::fields_of(file.safety));
@@ -86,7 +86,7 @@ public:
         file.safety = {};
         fill(schema::fields_of(file.checkpoint));
         if (with_motion)
-            fill(schema::fields_of(file.checkpoint.moved));
+            fill(schema::fields_of(file.checkpoint.dynamics));
         return file;
     }
 
@@ -233,14 +233,15 @@ inline bool same(const JointsFile& left, const JointsFile& right)
 inline bool same(const ResultFile& left, const ResultFile& right)
 {
     return same(static_cast<const JointsFile&>(left), static_cast<const JointsFile&>(right)) &&
-           same(left.result, right.result) && same(left.result.trace, right.result.trace) &&
+           same(left.result, right.result) && same(left.result.step_history, right.result.step_history) &&
            same(left.result.failure, right.result.failure) && same(left.safety, right.safety);
 }
 
 inline bool same(const CheckpointFile& left, const CheckpointFile& right)
 {
     return same(static_cast<const ResultFile&>(left), static_cast<const ResultFile&>(right)) &&
-           same(left.checkpoint, right.checkpoint) && same(left.checkpoint.moved, right.checkpoint.moved);
+           same(left.checkpoint, right.checkpoint) &&
+           same(left.checkpoint.dynamics, right.checkpoint.dynamics);
 }
 
 inline void write(const std::string& path, const ResultFile& file)

@@ -14,11 +14,12 @@ namespace
 std::vector<schema::Field> all_fields(CheckpointFile& file)
 {
     std::vector<schema::Field> all;
-    for (const auto& fields : {schema::fields_of(file.provenance), schema::fields_of(file.network),
-                               schema::fields_of(file.equivalent), schema::fields_of(file.result),
-                               schema::fields_of(file.result.trace), schema::fields_of(file.result.failure),
-                               schema::fields_of(file.result.motions), schema::fields_of(file.safety),
-                               schema::fields_of(file.checkpoint), schema::fields_of(file.checkpoint.moved)})
+    for (const auto& fields :
+         {schema::fields_of(file.provenance), schema::fields_of(file.network),
+          schema::fields_of(file.equivalent), schema::fields_of(file.result),
+          schema::fields_of(file.result.step_history), schema::fields_of(file.result.failure),
+          schema::fields_of(file.result.dynamics), schema::fields_of(file.safety),
+          schema::fields_of(file.checkpoint), schema::fields_of(file.checkpoint.dynamics)})
         all.insert(all.end(), fields.begin(), fields.end());
     return all;
 }

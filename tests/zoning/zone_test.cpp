@@ -1,4 +1,4 @@
-// Zones cover the blocks, joints split gridpoints, welded edges do not.
+// Zones cover the blocks, joints split gridpoints, bonded edges do not.
 
 #include "zoning/zone.hpp"
 
@@ -88,7 +88,7 @@ TEST(zone, blocks_on_joints_share_no_gridpoint)
     }
 }
 
-TEST(zone, welded_blocks_share_their_gridpoints)
+TEST(zone, bonded_blocks_share_their_gridpoints)
 {
     Scene scene = section({{0, 0}, {10, 0}, {10, 10}, {0, 10}}, 0.1);
     scene.zone_size = 2;
@@ -101,7 +101,7 @@ TEST(zone, welded_blocks_share_their_gridpoints)
     EXPECT_TRUE(mesh.contact_edge.empty());
 }
 
-TEST(zone, a_joint_that_ends_on_a_weld_leaves_its_tip_whole)
+TEST(zone, a_joint_that_ends_on_a_bonded_edge_leaves_its_tip_whole)
 {
     // A level joint from the left side to the middle of a stage outline: the outline holds the two sides
     // together.

@@ -32,7 +32,7 @@
 #include <utility>
 #include <vector>
 
-namespace jointcreep::motion
+namespace jointcreep::large_displacements
 {
 
 using mechanics::Vector2d;
@@ -45,7 +45,7 @@ struct Faces {
 };
 
 // What two faces that may touch remember.
-struct Pair {
+struct FacePair {
     Index a, b; // faces, a < b
     std::size_t law = 0;
     std::array<double, 2> lead{0, 0}; // closing without a gap, at the first and the second end of a [m]
@@ -100,17 +100,17 @@ struct PairEnergy {
     }
 };
 
-class Contacts
+class FaceContacts
 {
 public:
     // `laws`: those of the pairs; new contacts have the last one. `material`: numbers of what the joints of
     // the others are made of. Places are counted from `origin` [m].
-    explicit Contacts(std::vector<joint::Law> laws, std::vector<Index> material = {},
-                      const Vector2d& origin = Vector2d::Zero());
+    explicit FaceContacts(std::vector<joint::Law> laws, std::vector<Index> material = {},
+                          const Vector2d& origin = Vector2d::Zero());
 
     // Takes these faces instead; pairs of before are forgotten but for `known`, in any order. Faces without
     // laws are walls of no joint.
-    void set_faces(Faces faces, std::vector<Pair> known, const std::vector<Vector2d>& place);
+    void set_faces(Faces faces, std::vector<FacePair> known, const std::vector<Vector2d>& place);
 
     // Tractions and forces of all pairs after gridpoints have moved by `move` to `place` [m] within `dt` [s]:
     // springs, and dashpots of `viscosity` times the springs [s]. Throws equilibrium_error where two faces
@@ -125,10 +125,10 @@ public:
     const PairEnergy& energy() const { return energy_; }
 
     // What set_faces(), with what is known of before, and update() need.
-    void transfer(const Transfer& to, MovedRock& kept);
+    void transfer(const Transfer& to, DynamicsState& kept);
 
     const Faces& faces() const { return faces_; }
-    const std::vector<Pair>& pairs() const { return pairs_; }
+    const std::vector<FacePair>& pairs() const { return pairs_; }
     const std::vector<joint::Law>& laws() const { return laws_; }
     // Of any spring: while nothing closes, and in the last update [Pa/m].
     double stiffest() const { return stiffest_; }
@@ -143,9 +143,9 @@ private:
     void take_forces(Index active);
     void find_corners(const std::vector<Vector2d>& place);
     void dilate(const std::vector<Vector2d>& place, const std::vector<Vector2d>& move);
-    std::size_t law_slid_on_to(const Pair& pair, const Pair& before) const;
-    const Pair* contact_before(const Pair& pair, const Vector2d& normal,
-                               const std::vector<Vector2d>& place) const;
+    std::size_t law_slid_on_to(const FacePair& pair, const FacePair& before) const;
+    const FacePair* contact_before(const FacePair& pair, const Vector2d& normal,
+                                   const std::vector<Vector2d>& place) const;
 
     std::vector<joint::Law> laws_;
     std::vector<Index> material_; // of laws; -1 of new contacts
@@ -155,7 +155,7 @@ private:
     double stiffest_open_ = 0, stiffest_ = 0; // [Pa/m]
     Faces faces_;
     std::vector<FaceShape> shapes_;
-    std::vector<Pair> pairs_;                 // in order of {a, b}
+    std::vector<FacePair> pairs_;             // in order of {a, b}
     std::vector<std::vector<Index>> of_face_; // pairs of each face
     std::vector<Index> side_;                 // of each face: the lowest one of its straight side
     std::vector<std::vector<Index>> joints_;  // pairs between the same two sides, if any law dilates
@@ -178,4 +178,4 @@ private:
     Index searches_ = 0;
 };
 
-} // namespace jointcreep::motion
+} // namespace jointcreep::large_displacements

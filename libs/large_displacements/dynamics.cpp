@@ -1,9 +1,9 @@
-#include "motion/motion.hpp"
+#include "large_displacements/dynamics.hpp"
 
+#include "large_displacements/in_chunks.hpp"
 #include "model/disjoint_sets.hpp"
 #include "model/error.hpp"
 #include "model/signs.hpp"
-#include "motion/in_chunks.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
@@ -13,7 +13,7 @@
 #include <map>
 #include <numeric>
 
-namespace jointcreep::motion
+namespace jointcreep::large_displacements
 {
 
 using Eigen::Matrix2d;
@@ -105,8 +105,8 @@ Matrix2d edges_of(const std::array<Index, 3>& g, const std::vector<Vector2d>& pl
 
 } // namespace
 
-Motion::Motion(mechanics::Assembly& rock, const Mesh& mesh, const std::vector<Index>& material,
-               std::vector<char> is_rigid, const joint::Law& found, const Settings& settings)
+Dynamics::Dynamics(mechanics::Assembly& rock, const Mesh& mesh, const std::vector<Index>& material,
+                   std::vector<char> is_rigid, const joint::Law& found, const Settings& settings)
     : rock_(rock), mesh_(mesh), settings_(settings), contacts_({}), is_rigid_(std::move(is_rigid))
 {
     // One law for every edge with contacts.
@@ -133,7 +133,7 @@ Motion::Motion(mechanics::Assembly& rock, const Mesh& mesh, const std::vector<In
         high_ = high_.cwiseMax(p);
     }
     middle_ = (low_ + high_) / 2;
-    contacts_ = Contacts(std::move(laws), std::move(material_of_law), middle_);
+    contacts_ = FaceContacts(std::move(laws), std::move(material_of_law), middle_);
 
     origin_ = rock.position;
     for (Vector2d& p : origin_)
@@ -168,7 +168,7 @@ Motion::Motion(mechanics::Assembly& rock, const Mesh& mesh, const std::vector<In
     start();
 }
 
-void Motion::start()
+void Dynamics::start()
 {
     released_.assign(place_.size(), Vector2d::Zero());
     lost_.assign(place_.size(), Vector2d::Zero());
@@ -188,14 +188,14 @@ void Motion::start()
     find_forces(velocity_);
     if (contacts_.stiffest() > stiffest_allowed_)
         find_time_step();
-    if (settings_.release > 0) // what is out of balance now, the rock that has gone has held
+    if (settings_.release > 0) // what is unbalanced now, the excavated rock has held
         for (std::size_t g = 0; g < place_.size(); ++g)
             released_[g] = -force_[g];
     find_forces(velocity_);
     stored_at_start_ = stored();
 }
 
-Motion::Yielding* Motion::yielding(std::size_t z)
+Dynamics::Yielding* Dynamics::yielding(std::size_t z)
 {
     if (yielding_.empty() || rock_.zones.yielding_number[z] < 0)
         return nullptr;
@@ -203,7 +203,7 @@ Motion::Yielding* Motion::yielding(std::size_t z)
 }
 
 // The gridpoint that each one moves with: itself, but for those that are tied.
-std::vector<Index> Motion::leaders() const
+std::vector<Index> Dynamics::leaders() const
 {
     std::vector<Index> leader(place_.size());
     std::iota(leader.begin(), leader.end(), 0);
@@ -213,7 +213,7 @@ std::vector<Index> Motion::leaders() const
 }
 
 // The fixed ground that boundaries rest on through a joint, along all of them, whatever rock there is.
-void Motion::find_ground()
+void Dynamics::find_ground()
 {
     const mechanics::Contacts& contacts = rock_.contacts;
     std::map<Index, std::vector<std::size_t>> on_ground; // contacts of a gridpoint
@@ -238,7 +238,7 @@ void Motion::find_ground()
 }
 
 // The laws of the joints that sides of zones and of the ground lie on, whatever rock there is.
-void Motion::find_walls()
+void Dynamics::find_walls()
 {
     std::map<std::array<Index, 2>, std::vector<std::size_t>> between; // gridpoints {lower, higher}
     for (std::size_t c = 0; c < mesh_.contact_gridpoint.size(); ++c) {
@@ -284,7 +284,7 @@ void Motion::find_walls()
 
 // The faces of what rock there is, and of the ground. Where both of two faces were not there before, a joint
 // of the mesh between them makes them a pair; other pairs stay what they are.
-void Motion::find_faces()
+void Dynamics::find_faces()
 {
     std::vector<Index> leader = leaders();
     std::map<std::array<double, 2>, Index> ground_at; // every side has its own gridpoints there
@@ -325,12 +325,12 @@ void Motion::find_faces()
     for (const auto& [from, to] : ground_)
         add(from, to, -1, (mesh_.gridpoint[to] - mesh_.gridpoint[from]).norm());
 
-    std::vector<Pair> known;
-    for (const Pair& pair : contacts_.pairs()) {
+    std::vector<FacePair> known;
+    for (const FacePair& pair : contacts_.pairs()) {
         const auto a = face_of.find(face_of_mesh_[pair.a]), b = face_of.find(face_of_mesh_[pair.b]);
         if (!pair.is_known || a == face_of.end() || b == face_of.end())
             continue;
-        Pair kept = pair;
+        FacePair kept = pair;
         kept.a = a->second;
         kept.b = b->second;
         if (kept.a > kept.b) {
@@ -357,7 +357,7 @@ void Motion::find_faces()
         const auto opposite = new_at.find({q.x(), q.y(), p.x(), p.y()});
         if (opposite == new_at.end())
             continue;
-        Pair pair{.a = opposite->second, .b = static_cast<Index>(f), .is_known = true};
+        FacePair pair{.a = opposite->second, .b = static_cast<Index>(f), .is_known = true};
         const Vector2d normal = normal_of(tangent_of(p, q));
         int n = 0;
         std::array<bool, 2> has_lead{};
@@ -394,7 +394,7 @@ void Motion::find_faces()
     contacts_.set_faces(std::move(faces), std::move(known), place_);
 }
 
-void Motion::find_bodies()
+void Dynamics::find_bodies()
 {
     const std::vector<Index> leader = leaders();
     const std::vector<double> masses = lumped_masses(rock_);
@@ -435,7 +435,7 @@ void Motion::find_bodies()
         for (const Index g : body.gridpoint)
             body.arm.emplace_back(place_[g] - body.centre);
     }
-    // Deformable rock that is welded to a body is lumped into gridpoints that the two share.
+    // Deformable rock that is bonded to a body is lumped into gridpoints that the two share.
     std::vector<double> lumped = masses;
     for (std::size_t z = 0; z < zones_.size(); ++z) {
         if (!is_rigid_[z] || !rock_.zones.is_present[z])
@@ -456,7 +456,7 @@ void Motion::find_bodies()
 }
 
 // Force and moment about the centre [N/m], [N].
-std::pair<Vector2d, double> Motion::load_on(const Body& body) const
+std::pair<Vector2d, double> Dynamics::load_on(const Body& body) const
 {
     Vector2d force(0, 0);
     double moment = 0;
@@ -471,7 +471,7 @@ std::pair<Vector2d, double> Motion::load_on(const Body& body) const
 }
 
 // One step; returns the kinetic energy before it [J/m].
-double Motion::move(Body& body, double keep, double gain)
+double Dynamics::move(Body& body, double keep, double gain)
 {
     if (body.is_held())
         return 0;
@@ -495,7 +495,7 @@ double Motion::move(Body& body, double keep, double gain)
 
 // From the sums of the magnitudes of all blocks of the stiffness in a gridpoint's rows (Gershgorin), which
 // turning does not change.
-void Motion::find_time_step()
+void Dynamics::find_time_step()
 {
     std::vector<double> sums(place_.size(), 0.0);
     for (std::size_t z = 0; z < zones_.size(); ++z)
@@ -540,17 +540,17 @@ void Motion::find_time_step()
 
 // Of a step's time, by which the force at its beginning counts beside the velocity before: half of this step
 // and half of the last one.
-double Motion::first_half() const
+double Dynamics::first_half() const
 {
     return starts_from_rest_ ? 0.5 : (last_dt_ + dt_) / (2 * dt_);
 }
 
-double Motion::release_factor() const
+double Dynamics::release_factor() const
 {
     return settings_.release > 0 ? std::max(0.0, 1 - time_ / settings_.release) : 0.0;
 }
 
-void Motion::find_forces(const std::vector<Vector2d>& move)
+void Dynamics::find_forces(const std::vector<Vector2d>& move)
 {
     for (const auto& [follower, leader] : rock_.tied)
         place_[follower] = place_[leader];
@@ -620,12 +620,12 @@ void Motion::find_forces(const std::vector<Vector2d>& move)
     }
 }
 
-double Motion::stored() const
+double Dynamics::stored() const
 {
     return in_zones_.stored + contacts_.energy().stored;
 }
 
-void Motion::step()
+void Dynamics::step()
 {
     const auto n = static_cast<Index>(place_.size());
     const double alpha = settings_.mass_damping;
@@ -710,7 +710,7 @@ void Motion::step()
     });
     energy_.work += worked.work;
     if (!std::isfinite(fastest_) || !std::isfinite(kinetic))
-        throw equilibrium_error("motion: the velocity of rock is no number; it was at " +
+        throw equilibrium_error("dynamic analysis: the velocity of rock is no number; it was at " +
                                 shown(rock_.position[fastest_gridpoint_]));
     if (worked.is_gone)
         throw moves_on("rock has left the section, and is as far from it as the section is large");
@@ -718,7 +718,7 @@ void Motion::step()
     last_dt_ = dt_;
     find_forces(move_);
     if (in_zones_.torn >= 0)
-        throw equilibrium_error("motion: rock that yields at " +
+        throw equilibrium_error("dynamic analysis: rock that yields at " +
                                 shown(Vector2d(middle_ + place_[zones_[in_zones_.torn].gridpoint[0]])) +
                                 " is strained by more than " + shown(100 * most_strain) +
                                 " percent, more than a zone can be");
@@ -743,7 +743,7 @@ void Motion::step()
         find_time_step();
 }
 
-void Motion::transfer(const Transfer& to, MovedRock& kept)
+void Dynamics::transfer(const Transfer& to, DynamicsState& kept)
 {
     // All members, lest a new one is forgotten.
     auto& [rock, mesh, settings, contacts, bodies, is_rigid, body_of, zones, corner_force, yielding, place,
@@ -782,12 +782,12 @@ void Motion::transfer(const Transfer& to, MovedRock& kept)
     to.values(face_of_mesh, kept.face);
     contacts.transfer(to, kept);
     to.value(fastest, kept.fastest);
-    to.value(ratio, kept.out_of_balance_ratio);
+    to.value(ratio, kept.unbalanced_force_ratio);
     to.value(largest_mean, kept.largest_mean_force);
 }
 
 // Of the velocities as they are, half a step ago [J/m].
-double Motion::half_step_energy() const
+double Dynamics::half_step_energy() const
 {
     auto sum =
         sum_in_chunks<double>(static_cast<Index>(place_.size()), rock_.threads, [&](Index g, double& some) {
@@ -801,7 +801,7 @@ double Motion::half_step_energy() const
 
 // Velocities are known half a step before and after now; with their product as the square, work of forces is
 // kinetic energy to the last digit.
-Energy Motion::energy() const
+Energy Dynamics::energy() const
 {
     Energy energy = energy_;
     const double alpha = settings_.mass_damping;
@@ -829,7 +829,7 @@ Energy Motion::energy() const
     return energy;
 }
 
-mechanics::no_equilibrium Motion::moves_on(const std::string& why) const
+mechanics::no_equilibrium Dynamics::moves_on(const std::string& why) const
 {
     mechanics::no_equilibrium error(why);
     error.moves_on = true;
@@ -840,7 +840,7 @@ mechanics::no_equilibrium Motion::moves_on(const std::string& why) const
     return error;
 }
 
-void Motion::count_from_here()
+void Dynamics::count_from_here()
 {
     origin_ = place_;
     for (std::size_t g = 0; g < place_.size(); ++g)
@@ -848,7 +848,7 @@ void Motion::count_from_here()
     put_back();
 }
 
-bool Motion::is_at_rest()
+bool Dynamics::is_at_rest()
 {
     std::vector<Vector2d> contact_force(place_.size(), Vector2d::Zero());
     contacts_.add_forces(contact_force, rock_.threads);
@@ -886,11 +886,12 @@ bool Motion::is_at_rest()
             "; what is stiffest is at " + shown(rock_.position[stiffest_gridpoint_]) + ": wanted ";
         if (of_springs > most_rounding * largest_mean_)
             throw equilibrium_error(
-                "motion: rounding errors of places, times stiffness, are not small beside the "
+                "dynamic analysis: rounding errors of places, times stiffness, are not small beside the "
                 "mean force on a gridpoint, " +
                 shown(largest_mean_) + " N/m" + where + "more load, softer joints, or no zones so small");
         throw equilibrium_error(
-            "motion: a step takes " + shown(dt_) + " s, and what " + shown(settings_.stiffness_damping) +
+            "dynamic analysis: a step takes " + shown(dt_) + " s, and what " +
+            shown(settings_.stiffness_damping) +
             " s of stiffness damping makes of rounding errors is no longer small beside the "
             "forces" +
             where + "less damping there, or no zones so small");
@@ -906,10 +907,10 @@ bool Motion::is_at_rest()
     return checks_in_balance_ >= 2;
 }
 
-std::vector<Touching> Motion::touching() const
+std::vector<Touching> Dynamics::touching() const
 {
     std::vector<Touching> found;
-    for (const Pair& pair : contacts_.pairs()) {
+    for (const FacePair& pair : contacts_.pairs()) {
         if (!pair.is_closed)
             continue;
         const auto &a = contacts_.faces().gridpoint[pair.a], &b = contacts_.faces().gridpoint[pair.b];
@@ -928,7 +929,7 @@ std::vector<Touching> Motion::touching() const
     return found;
 }
 
-void Motion::put_back()
+void Dynamics::put_back()
 {
     for (std::size_t g = 0; g < place_.size(); ++g)
         rock_.displacement[g] = place_[g] - origin_[g];
@@ -964,7 +965,7 @@ void Motion::put_back()
         double length = 0, slipping = 0; // of all, and of what slips [m]
     };
     std::map<std::array<Index, 2>, Borne> borne; // by gridpoints {lower, higher}
-    for (const Pair& pair : contacts_.pairs())
+    for (const FacePair& pair : contacts_.pairs())
         if (pair.is_closed && pair.length > 0)
             for (const Index a : face_of_mesh_[pair.a])
                 for (const Index b : face_of_mesh_[pair.b]) {
@@ -977,8 +978,9 @@ void Motion::put_back()
         if (contacts.status[c] == ContactStatus::removed)
             continue;
         const auto [a, b] = contacts.gridpoint[c];
-        const Vector2d jump = rock_.displacement[b] - rock_.displacement[a];
-        contacts.jump[c] = {jump.dot(contacts.normal[c]), jump.dot(along(contacts.normal[c]))};
+        const Vector2d relative = rock_.displacement[b] - rock_.displacement[a];
+        contacts.relative_displacement[c] = {relative.dot(contacts.normal[c]),
+                                             relative.dot(along(contacts.normal[c]))};
         const auto found = borne.find({std::min(a, b), std::max(a, b)});
         if (found == borne.end()) {
             if (leader[a] == leader[b]) // held together so far: as it was
@@ -993,4 +995,4 @@ void Motion::put_back()
     }
 }
 
-} // namespace jointcreep::motion
+} // namespace jointcreep::large_displacements

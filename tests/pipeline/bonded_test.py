@@ -17,7 +17,7 @@ def before(result, day):
     return result["/history/displacement"][result["/history/time"] < day]
 
 
-class Welded(ChainTest):
+class Bonded(ChainTest):
     def with_stage(self, text, end, corners):
         """The scene with a stage on its last day that takes away the polygon."""
         stage = f'[[stage]]\nname = "{LAST}"\ndate = {end}\nremove_m = [{corners}]\n\n'
@@ -25,7 +25,7 @@ class Welded(ChainTest):
         return text[:first_point] + stage + text[first_point:]
 
     def assert_cut(self, result, length):
-        """The stage's outline is there, as welded edges of this length, and takes something away in the end."""
+        """The stage's outline is there, as bonded edges of this length, and takes something away in the end."""
         vertex = result["/vertices/position"][result["/edges/vertex"]]
         lengths = numpy.linalg.norm(vertex[:, 1] - vertex[:, 0], axis=1)
         self.assertAlmostEqual(lengths[result["/edges/kind"] == WELDED].sum(), length, delta=0.01)
@@ -52,7 +52,7 @@ class Welded(ChainTest):
                 self.assertLess(difference, 1e-5)  # 4e-7 seen
 
     def test_bending(self):
-        text = self.chain.text("tests/pipeline/welded.toml")
+        text = self.chain.text("tests/pipeline/bonded.toml")
         cut_text = self.with_stage(text, 10, "[[36, 25], [60, 25], [60, 14], [41, 14]]")
         differences = {}
         for size in 4, 2, 1:
@@ -67,7 +67,7 @@ class Welded(ChainTest):
 
     def test_a_joint_would_show(self):
         """What is compared would differ if the outline were a joint."""
-        text = self.chain.text("tests/pipeline/welded.toml")
+        text = self.chain.text("tests/pipeline/bonded.toml")
         joint = '[[joint]]\nname = "wrong"\nmaterial = "joint"\nfrom_m = [36, 25]\nto_m = [42, 0]\n\n'
         plain = datasets(self.chain.result(text))
         cut = datasets(self.chain.result(text.replace("[in_situ_stress]", joint + "[in_situ_stress]")))

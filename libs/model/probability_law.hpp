@@ -10,7 +10,7 @@
 namespace jointcreep
 {
 
-struct Law {
+struct ProbabilityLaw {
     enum class Kind { constant, normal, lognormal, negative_exponential, uniform, power };
     Kind kind = Kind::constant;
     double mean = 0;
@@ -20,9 +20,10 @@ struct Law {
 };
 
 // Every value from `least` to `most` as likely as another.
-inline Law uniform_law(double least, double most)
+inline ProbabilityLaw uniform_law(double least, double most)
 {
-    return {Law::Kind::uniform, (least + most) / 2, (most - least) / (2 * std::numbers::sqrt3), least, most};
+    return {ProbabilityLaw::Kind::uniform, (least + most) / 2, (most - least) / (2 * std::numbers::sqrt3),
+            least, most};
 }
 
 // E[(x / least)^order] by the power law, from the integral of t^q / t over t from 1 to most / least, which is
@@ -36,12 +37,12 @@ inline double power_moment(double exponent, double least, double most, double or
 
 // A density that falls as x^-exponent from `least` to `most`, cut off at both; 0 < least < most. (The number
 // of values above x then falls as x^(1 - exponent), far from the cut-offs.)
-inline Law power_law(double exponent, double least, double most)
+inline ProbabilityLaw power_law(double exponent, double least, double most)
 {
     const double first = power_moment(exponent, least, most, 1),
                  second = power_moment(exponent, least, most, 2);
     const double variance = std::max(0.0, second - first * first);
-    return {Law::Kind::power, least * first, least * std::sqrt(variance), least, most, exponent};
+    return {ProbabilityLaw::Kind::power, least * first, least * std::sqrt(variance), least, most, exponent};
 }
 
 // Poles of planes about a mean pole: the density per solid angle at the angle t from it falls as

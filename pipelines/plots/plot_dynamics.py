@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""Rock in motion: the blocks at moments spread over a motion, with dots where they touch, in colour where they slip, and
-its energies over time. For results of scenes with [motion]; of several stages, the last one that moved."""
+"""A dynamic analysis: the blocks at moments spread over it, with dots where they touch, in colour where they slip, and
+its energies over time. For results of scenes with [large_displacements]; of several stages, the last one that moved."""
 
 import matplotlib.tri
 import numpy as np
@@ -12,15 +12,15 @@ PARTS = (("kinetic", "kinetic"), ("stored", "stored"), ("friction", "lost to sli
 
 
 def moments_of(file):
-    """Rows of /motions of the last motion."""
-    if "/motions/motion_time" not in file:
-        raise figure.NotWanted("there is no motion in this file; its scene has no [motion], or no stage")
-    time = figure.array(file, "/motions/motion_time")
+    """Rows of /dynamics of the last dynamic analysis."""
+    if "/dynamics/dynamic_time" not in file:
+        raise figure.NotWanted("this file has no dynamic analysis; its scene has no [large_displacements], or no stage")
+    time = figure.array(file, "/dynamics/dynamic_time")
     return np.arange(np.flatnonzero(time == 0)[-1], len(time))
 
 
 def draw_blocks(axes, file, row):
-    state = figure.array(file, "/motions/state")[row]
+    state = figure.array(file, "/dynamics/state")[row]
     place = figure.array(file, "/mesh/gridpoint_position") + figure.array(file, "/states/displacement")[state]
     there = figure.array(file, "/states/zone_present")[state] == 1
     zones = figure.array(file, "/mesh/zone_gridpoint")[there]
@@ -32,13 +32,13 @@ def draw_blocks(axes, file, row):
     both, count = np.unique(np.column_stack([sides, np.tile(block, 3)]), axis=0, return_counts=True)
     for from_, to in both[count == 1][:, :2]:
         axes.plot(*place[[from_, to]].T, color="black", linewidth=0.5)
-    of_moment = slice(*figure.array(file, "/motions/first_contact")[row:row + 2].astype(int))
-    middle = (figure.array(file, "/motions/contact_from") + figure.array(file, "/motions/contact_to"))[of_moment] / 2
-    slips = figure.array(file, "/motions/contact_slips")[of_moment] == 1
+    of_moment = slice(*figure.array(file, "/dynamics/first_contact")[row:row + 2].astype(int))
+    middle = (figure.array(file, "/dynamics/contact_from") + figure.array(file, "/dynamics/contact_to"))[of_moment] / 2
+    slips = figure.array(file, "/dynamics/contact_slips")[of_moment] == 1
     axes.scatter(*middle[~slips].T, s=3, color="black", zorder=3)
     axes.scatter(*middle[slips].T, s=5, color=figure.COLORS[1], zorder=3)
     axes.set_aspect("equal")
-    axes.set_title(f"{figure.array(file, '/motions/motion_time')[row]:.2f} s")
+    axes.set_title(f"{figure.array(file, '/dynamics/dynamic_time')[row]:.2f} s")
 
 
 def draw(file, arguments):
@@ -55,11 +55,11 @@ def draw(file, arguments):
     above.supylabel("y (m)", fontsize=8)
 
     axes = below.subplots()
-    time = figure.array(file, "/motions/motion_time")[rows]
-    work = figure.array(file, "/motions/work_of_loads")[rows]
+    time = figure.array(file, "/dynamics/dynamic_time")[rows]
+    work = figure.array(file, "/dynamics/work_of_loads")[rows]
     axes.plot(time, work / 1e6, color="black", linewidth=1.6, label="work of weight")
     for (part, label), color, line in zip(PARTS, figure.COLORS, figure.LINES):
-        axes.plot(time, figure.array(file, f"/motions/{part}_energy")[rows] / 1e6, color=color, linestyle=line, label=label)
+        axes.plot(time, figure.array(file, f"/dynamics/{part}_energy")[rows] / 1e6, color=color, linestyle=line, label=label)
     axes.set_xlabel("time since the stage (s)")
     axes.set_ylabel("energy (MJ/m)")
     axes.legend(loc="center right")

@@ -1,9 +1,9 @@
-#include "motion/contacts.hpp"
+#include "large_displacements/face_contacts.hpp"
 
+#include "large_displacements/in_chunks.hpp"
 #include "model/disjoint_sets.hpp"
 #include "model/error.hpp"
 #include "model/signs.hpp"
-#include "motion/in_chunks.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -14,7 +14,7 @@
 #include <tuple>
 #include <unordered_map>
 
-namespace jointcreep::motion
+namespace jointcreep::large_displacements
 {
 
 namespace
@@ -73,7 +73,7 @@ std::array<Vector2d, 2> ends_of(const std::array<Index, 2>& face, const std::vec
 }
 
 // Seen in the plane of the contact; none where the faces do not look at each other or nothing overlaps.
-[[gnu::flatten]] std::optional<Overlap> overlap_of(const Pair& pair, const Faces& faces,
+[[gnu::flatten]] std::optional<Overlap> overlap_of(const FacePair& pair, const Faces& faces,
                                                    const std::vector<FaceShape>& shapes,
                                                    const std::vector<Vector2d>& place)
 {
@@ -97,7 +97,7 @@ std::array<Vector2d, 2> ends_of(const std::array<Index, 2>& face, const std::vec
 
 // Whether two faces do not look at each other, or do not overlap by more than rounding: then there is no
 // overlap_of() them. Most pairs that are near each other are like that.
-bool are_apart(const Pair& pair, const Faces& faces, const std::vector<FaceShape>& shapes,
+bool are_apart(const FacePair& pair, const Faces& faces, const std::vector<FaceShape>& shapes,
                const std::vector<Vector2d>& place)
 {
     const Vector2d along_a = shapes[pair.a].along, along_b = -shapes[pair.b].along;
@@ -195,7 +195,7 @@ private:
 
 } // namespace
 
-Contacts::Contacts(std::vector<joint::Law> laws, std::vector<Index> material, const Vector2d& origin)
+FaceContacts::FaceContacts(std::vector<joint::Law> laws, std::vector<Index> material, const Vector2d& origin)
     : laws_(std::move(laws)), material_(std::move(material)), origin_(origin)
 {
     material_.resize(laws_.size(), -1);
@@ -207,21 +207,21 @@ Contacts::Contacts(std::vector<joint::Law> laws, std::vector<Index> material, co
     stiffest_ = stiffest_open_;
 }
 
-void Contacts::set_faces(Faces faces, std::vector<Pair> known, const std::vector<Vector2d>& place)
+void FaceContacts::set_faces(Faces faces, std::vector<FacePair> known, const std::vector<Vector2d>& place)
 {
     faces_ = std::move(faces);
     faces_.law.resize(faces_.gridpoint.size(), laws_.size() - 1);
     std::sort(known.begin(), known.end(),
-              [](const Pair& p, const Pair& q) { return std::pair(p.a, p.b) < std::pair(q.a, q.b); });
+              [](const FacePair& p, const FacePair& q) { return std::pair(p.a, p.b) < std::pair(q.a, q.b); });
     pairs_ = std::move(known);
-    for (Pair& pair : pairs_)
+    for (FacePair& pair : pairs_)
         pair.sigma = 0; // of the last update, which a checkpoint does not have
     std::vector<double> lengths;
     for (const auto& [from, to] : faces_.gridpoint)
         lengths.push_back((place[to] - place[from]).norm());
     stiffest_ = stiffest_open_;
     most_lead_ = 0;
-    for (const Pair& pair : pairs_)
+    for (const FacePair& pair : pairs_)
         if (pair.is_closed)
             most_lead_ = std::max({most_lead_, pair.lead[0], pair.lead[1]});
     skin_ = 0;
@@ -234,7 +234,7 @@ void Contacts::set_faces(Faces faces, std::vector<Pair> known, const std::vector
     seek(place, std::vector<Vector2d>(place.size(), Vector2d::Zero()));
 }
 
-void Contacts::find_shapes(const std::vector<Vector2d>& place, int threads)
+void FaceContacts::find_shapes(const std::vector<Vector2d>& place, int threads)
 {
     shapes_.resize(faces_.gridpoint.size());
     for_each(static_cast<Index>(shapes_.size()), threads, [&](Index f) {
@@ -244,7 +244,7 @@ void Contacts::find_shapes(const std::vector<Vector2d>& place, int threads)
     });
 }
 
-void Contacts::find_corners(const std::vector<Vector2d>& place)
+void FaceContacts::find_corners(const std::vector<Vector2d>& place)
 {
     constexpr double corner = 0.35; // a turn by that much, 20 degrees, and more is a corner [rad]
     std::unordered_multimap<Index, Index> starting; // faces, by their first gridpoint
@@ -283,7 +283,7 @@ void Contacts::find_corners(const std::vector<Vector2d>& place)
 // of cells; what pairs of before remember stays. A box covers the way of the last step, and reaches as far
 // again as its face is in another one, or off one that it is bonded to: there lies the next one to slide on
 // to.
-void Contacts::seek(const std::vector<Vector2d>& place, const std::vector<Vector2d>& move)
+void FaceContacts::seek(const std::vector<Vector2d>& place, const std::vector<Vector2d>& move)
 {
     ++searches_;
     sought_at_ = place;
@@ -292,7 +292,7 @@ void Contacts::seek(const std::vector<Vector2d>& place, const std::vector<Vector
     farthest_ = raised_ = 0;
     reach_.assign(faces_.gridpoint.size(), skin_ / 2);
     std::vector<std::pair<Index, Index>> near;
-    for (const Pair& pair : pairs_) {
+    for (const FacePair& pair : pairs_) {
         if (!pair.is_closed && !pair.is_bonded())
             continue;
         near.emplace_back(pair.a, pair.b);
@@ -336,7 +336,7 @@ void Contacts::seek(const std::vector<Vector2d>& place, const std::vector<Vector
     std::sort(near.begin(), near.end());
     near.erase(std::unique(near.begin(), near.end()), near.end());
 
-    std::vector<Pair> pairs;
+    std::vector<FacePair> pairs;
     auto old = pairs_.begin();
     for (const auto& [a, b] : near) {
         while (old != pairs_.end() && std::pair(old->a, old->b) < std::pair(a, b))
@@ -378,14 +378,14 @@ void Contacts::seek(const std::vector<Vector2d>& place, const std::vector<Vector
 // Raises the joints that dilate, for the slip of this step: by x = sum of F tan(psi) slip(x) over sum of F,
 // with the forces F that press the pairs of a joint, and the slip of each that leaves it the shear that it
 // bears once it is raised. The right side falls with x.
-void Contacts::dilate(const std::vector<Vector2d>& place, const std::vector<Vector2d>& move)
+void FaceContacts::dilate(const std::vector<Vector2d>& place, const std::vector<Vector2d>& move)
 {
     struct Sheared {
         double share;         // of the work, F tan(psi) [N/m]
         double trial, bears;  // without slip, and the strength, where it is not raised [N/m]
         double rises, shears; // the strength by x, the shear by slip [Pa]
     };
-    for (Pair& pair : pairs_)
+    for (FacePair& pair : pairs_)
         pair.raised = 0;
     std::vector<Sheared> sheared;
     double most = 0;
@@ -393,7 +393,7 @@ void Contacts::dilate(const std::vector<Vector2d>& place, const std::vector<Vect
         sheared.clear();
         double all = 0, left = 0;
         for (const Index p : joint) {
-            const Pair& pair = pairs_[p];
+            const FacePair& pair = pairs_[p];
             const double pressed = -pair.sigma * pair.length;
             if (!pair.is_closed || pressed <= 0)
                 continue;
@@ -468,16 +468,16 @@ void Contacts::dilate(const std::vector<Vector2d>& place, const std::vector<Vect
 // little, and come no nearer than by twice the way; and where one is in another, or comes to be, others come
 // out no farther than that. The pairs that are left out have been seen once, are open, and would stay as they
 // are.
-void Contacts::find_active()
+void FaceContacts::find_active()
 {
     double most_lead = 0; // that an unknown pair may inherit
-    for (const Pair& pair : pairs_)
+    for (const FacePair& pair : pairs_)
         if (pair.is_known)
             most_lead = std::max({most_lead, pair.lead[0], pair.lead[1]});
     const auto turn = [&](const Vector2d& way) { // of a face, at most
         return std::asin(std::min(1.0, skin_ / way.norm()));
     };
-    const auto way_to = [&](const Pair& pair) {
+    const auto way_to = [&](const FacePair& pair) {
         constexpr double never = std::numeric_limits<double>::infinity();
         const auto a = ends_of(faces_.gridpoint[pair.a], sought_at_),
                    b = ends_of(faces_.gridpoint[pair.b], sought_at_);
@@ -537,18 +537,18 @@ void Contacts::find_active()
 
 // The longest closed contact from which a face of this pair slides on to the next one, pressing in about the
 // same direction; none if there is none. The pair's normal is given.
-const Pair* Contacts::contact_before(const Pair& pair, const Vector2d& normal,
-                                     const std::vector<Vector2d>& place) const
+const FacePair* FaceContacts::contact_before(const FacePair& pair, const Vector2d& normal,
+                                             const std::vector<Vector2d>& place) const
 {
     const auto is_next_to = [&](Index f, Index g) {
         const auto p = ends_of(faces_.gridpoint[f], place), q = ends_of(faces_.gridpoint[g], place);
         const double reach = 1e-3 * std::min((p[1] - p[0]).norm(), (q[1] - q[0]).norm());
         return (p[1] - q[0]).norm() <= reach || (p[0] - q[1]).norm() <= reach;
     };
-    const Pair* from = nullptr;
+    const FacePair* from = nullptr;
     for (const Index own : {pair.a, pair.b})
         for (const Index p : of_face_[own]) {
-            const Pair& other = pairs_[p];
+            const FacePair& other = pairs_[p];
             if (&other == &pair || !other.is_closed)
                 continue;
             const Index partner = other.a == own ? other.b : other.a, next = own == pair.a ? pair.b : pair.a;
@@ -561,7 +561,7 @@ const Pair* Contacts::contact_before(const Pair& pair, const Vector2d& normal,
     return from;
 }
 
-std::size_t Contacts::law_slid_on_to(const Pair& pair, const Pair& before) const
+std::size_t FaceContacts::law_slid_on_to(const FacePair& pair, const FacePair& before) const
 {
     const std::size_t of_a = faces_.law[pair.a], of_b = faces_.law[pair.b];
     if (material_[of_a] < 0 || material_[of_a] != material_[of_b])
@@ -571,8 +571,8 @@ std::size_t Contacts::law_slid_on_to(const Pair& pair, const Pair& before) const
     return pair.a == before.a || pair.a == before.b ? of_b : of_a; // of the face that is next
 }
 
-void Contacts::update(const std::vector<Vector2d>& place, const std::vector<Vector2d>& move, double dt,
-                      double viscosity, int threads)
+void FaceContacts::update(const std::vector<Vector2d>& place, const std::vector<Vector2d>& move, double dt,
+                          double viscosity, int threads)
 {
     struct Farthest {
         double squared = 0; // [m2]
@@ -593,7 +593,7 @@ void Contacts::update(const std::vector<Vector2d>& place, const std::vector<Vect
     const auto n = static_cast<Index>(pairs_.size());
     Index too_deep = n;
     const double most_lead = most_lead_;
-    const auto depth_of = [&](const Pair& pair) {
+    const auto depth_of = [&](const FacePair& pair) {
         return std::min(faces_.depth[pair.a], faces_.depth[pair.b]);
     };
     // Gaps at these ends a step before, and how far the faces have slid since.
@@ -601,7 +601,7 @@ void Contacts::update(const std::vector<Vector2d>& place, const std::vector<Vect
         std::array<double, 2> gap;
         double slid;
     };
-    const auto gaps_before = [&](const Pair& pair, const Overlap& found) {
+    const auto gaps_before = [&](const FacePair& pair, const Overlap& found) {
         const auto move_a = ends_of(faces_.gridpoint[pair.a], move),
                    move_b = ends_of(faces_.gridpoint[pair.b], move);
         Gaps before{found.gap, 0};
@@ -613,11 +613,11 @@ void Contacts::update(const std::vector<Vector2d>& place, const std::vector<Vect
         return before;
     };
     // Whether faces are too far in each other to have come to touch in this step.
-    const auto is_deep = [&](const Pair& pair, const Overlap& found) {
+    const auto is_deep = [&](const FacePair& pair, const Overlap& found) {
         const auto before = gaps_before(pair, found).gap;
         return std::min(found.sunk(), -std::min(before[0], before[1])) > deepest_new * depth_of(pair);
     };
-    const auto evaluate = [&](Pair& pair, Index index, bool may_close) {
+    const auto evaluate = [&](FacePair& pair, Index index, bool may_close) {
         pair.is_slipping = false;
         pair.friction = pair.damped = 0;
         const auto move_a = ends_of(faces_.gridpoint[pair.a], move),
@@ -780,7 +780,7 @@ void Contacts::update(const std::vector<Vector2d>& place, const std::vector<Vect
         pair.sheared_in = sheared_in(shear, pair.length);
     };
     // An open pair that has been seen as such, and whose faces do not face each other: nothing more happens.
-    const auto is_idle = [&](const Pair& pair) {
+    const auto is_idle = [&](const FacePair& pair) {
         return !is_sought_ && !pair.is_closed && !pair.is_bonded() && are_apart(pair, faces_, shapes_, place);
     };
     struct Sum {
@@ -788,7 +788,7 @@ void Contacts::update(const std::vector<Vector2d>& place, const std::vector<Vect
         double stiffest = 0, most_lead = 0;
         bool closes = false;
 
-        void take(const Pair& pair)
+        void take(const FacePair& pair)
         {
             energy += {pair.stored(), pair.friction, pair.damped};
             if (!pair.is_closed)
@@ -808,7 +808,7 @@ void Contacts::update(const std::vector<Vector2d>& place, const std::vector<Vect
         if (!is_sought_ && farthest_ + raised_ < way_to_[i])
             return;
         const Index p = active_[i];
-        Pair& pair = pairs_[p];
+        FacePair& pair = pairs_[p];
         if (is_idle(pair)) {
             pair.is_slipping = false;
             pair.friction = pair.damped = 0;
@@ -827,7 +827,7 @@ void Contacts::update(const std::vector<Vector2d>& place, const std::vector<Vect
             shown(Vector2d(origin_ + place[faces_.gridpoint[pairs_[too_deep].a][0]])) +
             " by more than half the depth of a zone; the joint's normal stiffness is too small "
             "for what presses on it");
-    const auto sunk_of = [&](const Pair& pair) {
+    const auto sunk_of = [&](const FacePair& pair) {
         const auto found = overlap_of(pair, faces_, shapes_, place);
         return found ? found->sunk() : 0.0;
     };
@@ -837,12 +837,12 @@ void Contacts::update(const std::vector<Vector2d>& place, const std::vector<Vect
             const Index p = active_[i];
             if (!closes_[p])
                 continue;
-            Pair& pair = pairs_[p];
+            FacePair& pair = pairs_[p];
             const auto found = overlap_of(pair, faces_, shapes_, place);
             if (found->is_behind() != is_behind)
                 continue;
             closes_[p] = 0;
-            const Pair* const before = contact_before(pair, found->normal(), place);
+            const FacePair* const before = contact_before(pair, found->normal(), place);
             if (is_deep(pair, *found) &&
                 (before == nullptr || found->sunk() > sunk_of(*before) + deepest_new * depth_of(pair)))
                 continue; // another face behind
@@ -876,40 +876,40 @@ void Contacts::update(const std::vector<Vector2d>& place, const std::vector<Vect
     is_sought_ = false;
 }
 
-void Contacts::transfer(const Transfer& to, MovedRock& kept)
+void FaceContacts::transfer(const Transfer& to, DynamicsState& kept)
 {
     to.size(pairs_, kept.pair);
-    for (Pair& pair :
+    for (FacePair& pair :
          pairs_) // all members, lest a new one is forgotten; those not passed on are of one update alone
         [[maybe_unused]] auto& [a, b, law, lead, dilation, tau, is_known, is_new, is_closed, is_broken,
                                 is_slipping, on_a, on_b, force, normal, raised, way, length, sigma, stiffest,
                                 held, pressed_in, sheared_in, friction, damped] = pair;
     std::vector<std::array<Index, 2>> faces;
-    for (const Pair& pair : pairs_)
+    for (const FacePair& pair : pairs_)
         faces.push_back({pair.a, pair.b});
     to.values(faces, kept.pair);
     for (std::size_t p = 0; p < pairs_.size(); ++p) {
         pairs_[p].a = faces[p][0];
         pairs_[p].b = faces[p][1];
     }
-    to.values(pairs_, kept.law, &Pair::law);
-    to.values(pairs_, kept.first_lead, [](Pair& pair) -> double& { return pair.lead[0]; });
-    to.values(pairs_, kept.second_lead, [](Pair& pair) -> double& { return pair.lead[1]; });
-    to.values(pairs_, kept.dilation, &Pair::dilation);
-    to.values(pairs_, kept.tau, &Pair::tau);
-    to.values(pairs_, kept.is_known, &Pair::is_known);
-    to.values(pairs_, kept.is_new, &Pair::is_new);
-    to.values(pairs_, kept.is_closed, &Pair::is_closed);
-    to.values(pairs_, kept.is_broken, &Pair::is_broken);
-    to.values(pairs_, kept.normal, &Pair::normal);
-    to.values(pairs_, kept.length, &Pair::length);
-    to.values(pairs_, kept.pressed_in, &Pair::pressed_in);
-    to.values(pairs_, kept.sheared_in, &Pair::sheared_in);
+    to.values(pairs_, kept.law, &FacePair::law);
+    to.values(pairs_, kept.first_lead, [](FacePair& pair) -> double& { return pair.lead[0]; });
+    to.values(pairs_, kept.second_lead, [](FacePair& pair) -> double& { return pair.lead[1]; });
+    to.values(pairs_, kept.dilation, &FacePair::dilation);
+    to.values(pairs_, kept.tau, &FacePair::tau);
+    to.values(pairs_, kept.is_known, &FacePair::is_known);
+    to.values(pairs_, kept.is_new, &FacePair::is_new);
+    to.values(pairs_, kept.is_closed, &FacePair::is_closed);
+    to.values(pairs_, kept.is_broken, &FacePair::is_broken);
+    to.values(pairs_, kept.normal, &FacePair::normal);
+    to.values(pairs_, kept.length, &FacePair::length);
+    to.values(pairs_, kept.pressed_in, &FacePair::pressed_in);
+    to.values(pairs_, kept.sheared_in, &FacePair::sheared_in);
 }
 
-void Contacts::take_forces(Index active)
+void FaceContacts::take_forces(Index active)
 {
-    const Pair& pair = pairs_[active_[active]];
+    const FacePair& pair = pairs_[active_[active]];
     const Index* const at = corner_place_.data() + 4 * static_cast<std::ptrdiff_t>(active);
     for (int end = 0; end < 2; ++end) {
         const Vector2d force = pair.is_closed ? pair.force[end] : Vector2d(Vector2d::Zero());
@@ -920,7 +920,7 @@ void Contacts::take_forces(Index active)
     }
 }
 
-void Contacts::add_forces(std::vector<Vector2d>& force, int threads) const
+void FaceContacts::add_forces(std::vector<Vector2d>& force, int threads) const
 {
     for_each(static_cast<Index>(touched_.size()), threads, [&](Index i) {
         Vector2d sum = force[touched_[i]];
@@ -931,4 +931,4 @@ void Contacts::add_forces(std::vector<Vector2d>& force, int threads) const
     });
 }
 
-} // namespace jointcreep::motion
+} // namespace jointcreep::large_displacements

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
-"""The solver's own course: displacement of a point and normal stress at a gauge against accumulated solver time.
+"""The history of the solver's steps: displacement of a point and normal stress at a gauge against accumulated solver time.
 
-Needs a result file whose solver was asked for a trace. Every equilibrium (in situ, stage, creep step) is one piece
+Needs a result file whose solver was asked for the step history (demsolve --step-history). Every equilibrium (in situ, stage, creep step) is one piece
 of solver time; the axis between the curves says which day it belongs to, and dark lines are where stages begin. A curve
 ends when its point or joint is removed.
 """
@@ -13,7 +13,7 @@ import figure
 
 def is_removed(file, point, gauge):
     """Whether the point, and whether the gauge's joint, is gone in the end."""
-    contact = figure.array(file, "/trace/gauge_contact")[gauge]
+    contact = figure.array(file, "/step_history/gauge_contact")[gauge]
     return (figure.array(file, "/history/present")[-1, point] == 0,
             figure.array(file, "/states/contact_status")[-1, contact] == 0)
 
@@ -27,11 +27,11 @@ def draw_until_removed(axes, solver_time, values, removed):
 
 
 def stage_rows(file):
-    """Row of the trace in which each stage begins, by the stage's name. Equilibria share the rows in proportion to
+    """Row of the step history in which each stage begins, by the stage's name. Equilibria share the rows in proportion to
     their solver steps; a stage's are the last ones of its day."""
     steps, at = figure.array(file, "/equilibria/steps"), figure.array(file, "/equilibria/time")
     before = np.concatenate([[0], np.cumsum(steps)])
-    rows = len(figure.array(file, "/trace/time"))
+    rows = len(figure.array(file, "/step_history/time"))
     increments = figure.scene_of(file).get("equilibrium", {}).get("unloading_increments", 1)
     of_day = {}
     for day, name in zip(figure.array(file, "/history/time"), figure.texts(file, "/history/event")):
@@ -56,18 +56,18 @@ def spread(places, apart):
 
 
 def draw(file, arguments):
-    if "/trace" not in file:
-        raise figure.NotWanted("there is no trace in this file; demsolve writes one on request")
-    day = figure.array(file, "/trace/time")
-    solver_time = figure.array(file, "/trace/solver_time")
-    points, gauges = figure.texts(file, "/history/point"), figure.texts(file, "/trace/gauge")
+    if "/step_history" not in file:
+        raise figure.NotWanted("this file has no step history; demsolve --step-history N writes one")
+    day = figure.array(file, "/step_history/time")
+    solver_time = figure.array(file, "/step_history/solver_time")
+    points, gauges = figure.texts(file, "/history/point"), figure.texts(file, "/step_history/gauge")
     point = figure.name_index(points, arguments.point, "point")
     gauge = figure.name_index(gauges, arguments.gauge, "gauge")
     shown = (day >= arguments.days[0]) & (day <= arguments.days[1])
     if not np.any(shown):
-        raise figure.NotWanted(f"the trace has no row from day {arguments.days[0]} to {arguments.days[1]}")
-    rise = 1e3 * figure.array(file, "/trace/displacement")[shown, point, 1]
-    stress = -1e-6 * figure.array(file, "/trace/traction")[shown, gauge, 0]
+        raise figure.NotWanted(f"the step history has no row from day {arguments.days[0]} to {arguments.days[1]}")
+    rise = 1e3 * figure.array(file, "/step_history/displacement")[shown, point, 1]
+    stress = -1e-6 * figure.array(file, "/step_history/traction")[shown, gauge, 0]
     stages = {name: solver_time[row] for name, row in stage_rows(file).items() if shown[row]}
     day, solver_time = day[shown], solver_time[shown]
 

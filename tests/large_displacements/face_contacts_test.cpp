@@ -1,7 +1,7 @@
 // Contacts between two rows of faces, against closed forms.
 
+#include "large_displacements/face_contacts.hpp"
 #include "model/error.hpp"
-#include "motion/contacts.hpp"
 
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
@@ -11,8 +11,8 @@
 
 using namespace jointcreep;
 using Eigen::Vector2d;
-using motion::Contacts;
-using motion::Faces;
+using large_displacements::FaceContacts;
+using large_displacements::Faces;
 
 namespace
 {
@@ -43,14 +43,15 @@ struct TwoLines {
     }
 };
 
-Contacts contacts_of(const TwoLines& lines, const joint::Law& law = joint::Coulomb{k_n, k_s, 0, friction, 0})
+FaceContacts contacts_of(const TwoLines& lines,
+                         const joint::Law& law = joint::Coulomb{k_n, k_s, 0, friction, 0})
 {
-    Contacts contacts({law});
+    FaceContacts contacts({law});
     contacts.set_faces(lines.faces, {}, lines.place);
     return contacts;
 }
 
-std::vector<Vector2d> forces_of(const Contacts& contacts, std::size_t n)
+std::vector<Vector2d> forces_of(const FaceContacts& contacts, std::size_t n)
 {
     std::vector<Vector2d> force(n, Vector2d::Zero());
     contacts.add_forces(force, 1);
@@ -69,13 +70,13 @@ TwoLines rows(double sunk)
 
 // Uniform closing gives uniform traction: every gridpoint has half of the loaded sides beside it, although
 // none has a partner.
-TEST(contacts, a_uniform_traction_passes_between_faces_that_do_not_match)
+TEST(face_contacts, a_uniform_traction_passes_between_faces_that_do_not_match)
 {
     for (const double angle : {0.0, 0.7, 2.5}) {
         const double sunk = 1e-4;
         TwoLines lines = rows(sunk);
         lines.turn(angle);
-        Contacts contacts = contacts_of(lines);
+        FaceContacts contacts = contacts_of(lines);
         const std::vector<Vector2d> still(lines.place.size(), Vector2d::Zero());
         contacts.update(lines.place, still, 1, 0, 1);
         const std::vector<Vector2d> force = forces_of(contacts, lines.place.size());
@@ -93,12 +94,12 @@ TEST(contacts, a_uniform_traction_passes_between_faces_that_do_not_match)
     }
 }
 
-TEST(contacts, forces_and_moments_balance)
+TEST(face_contacts, forces_and_moments_balance)
 {
     TwoLines lines = rows(1e-4);
     for (std::size_t g = 5; g < lines.place.size(); ++g) // tilted, so that a part is open
         lines.place[g].y() += 2e-4 * (lines.place[g].x() - 1.5);
-    Contacts contacts = contacts_of(lines);
+    FaceContacts contacts = contacts_of(lines);
     std::vector<Vector2d> move(lines.place.size(), Vector2d::Zero());
     contacts.update(lines.place, move, 1, 0, 1);
     for (std::size_t g = 5; g < lines.place.size(); ++g)
@@ -118,11 +119,11 @@ TEST(contacts, forces_and_moments_balance)
 }
 
 // Shear turns with the rock, and slips at its limit.
-TEST(contacts, shear_goes_along_and_is_limited)
+TEST(face_contacts, shear_goes_along_and_is_limited)
 {
     for (const double angle : {0.0, 1.2}) {
         TwoLines lines = rows(1e-4);
-        Contacts contacts = contacts_of(lines);
+        FaceContacts contacts = contacts_of(lines);
         std::vector<Vector2d> move(lines.place.size(), Vector2d::Zero());
         contacts.update(lines.place, move, 1, 0, 1);
         const auto total = [&] {
@@ -137,7 +138,7 @@ TEST(contacts, shear_goes_along_and_is_limited)
             lines.place[g] += move[g] = {slid, 0};
         contacts.update(lines.place, move, 1, 0, 1);
         EXPECT_NEAR(total().x(), -k_s * slid * 3.25, 1e-4 * k_s * slid * 3.25);
-        // Turned as a whole, in small steps as in a motion: the forces turn.
+        // Turned as a whole, in small steps as in a dynamic analysis: the forces turn.
         for (int step = 0; step < 100; ++step) {
             const std::vector<Vector2d> before = lines.place;
             lines.turn(angle / 100);
@@ -159,7 +160,7 @@ TEST(contacts, shear_goes_along_and_is_limited)
 
 // A corner of 90 degrees, d deep in a face, closes d cot t of one of its faces and d tan t of the other: the
 // force is k d^2 (cot t + tan t) / 2 along the face's normal, wherever gridpoints of the face are.
-TEST(contacts, a_corner_presses_along_the_normal_of_the_face)
+TEST(face_contacts, a_corner_presses_along_the_normal_of_the_face)
 {
     const double sunk = 1e-3;
     for (const double turn : {0.1, 0.7, 1.3})
@@ -167,7 +168,7 @@ TEST(contacts, a_corner_presses_along_the_normal_of_the_face)
             const Vector2d corner(at, -sunk), one(std::cos(turn), std::sin(turn)), other(-one.y(), one.x());
             const TwoLines lines({{4, 0}, {2.7, 0}, {1.9, 0}, {-1, 0}},
                                  {corner + other, corner, corner + one});
-            Contacts contacts = contacts_of(lines);
+            FaceContacts contacts = contacts_of(lines);
             const std::vector<Vector2d> still(lines.place.size(), Vector2d::Zero());
             contacts.update(lines.place, still, 1, 0, 1);
             const std::vector<Vector2d> force = forces_of(contacts, lines.place.size());
@@ -179,10 +180,10 @@ TEST(contacts, a_corner_presses_along_the_normal_of_the_face)
 }
 
 // What slides on keeps its shear and its closing on the next face.
-TEST(contacts, history_goes_on_to_the_next_face)
+TEST(face_contacts, history_goes_on_to_the_next_face)
 {
     TwoLines lines({{4, 0}, {3, 0}, {2, 0}, {1, 0}, {0, 0}}, {{0.2, -1e-4}, {0.8, -1e-4}});
-    Contacts contacts = contacts_of(lines);
+    FaceContacts contacts = contacts_of(lines);
     std::vector<Vector2d> move(lines.place.size(), Vector2d::Zero());
     contacts.update(lines.place, move, 1, 0, 1);
     for (int step = 0; step < 300; ++step) {
@@ -195,7 +196,7 @@ TEST(contacts, history_goes_on_to_the_next_face)
         EXPECT_NEAR(sum.y(), pressed, 1e-9 * pressed) << step;
         EXPECT_NEAR(sum.x(), -friction * pressed, 1e-9 * pressed) << step;
         double lost = 0;
-        for (const motion::Pair& pair : contacts.pairs())
+        for (const large_displacements::FacePair& pair : contacts.pairs())
             lost += pair.friction;
         if (step > 0) {
             EXPECT_NEAR(lost, friction * pressed * 0.01, 2e-2 * friction * pressed * 0.01) << step;
@@ -204,10 +205,10 @@ TEST(contacts, history_goes_on_to_the_next_face)
     EXPECT_GT(contacts.searches(), 5);
 }
 
-TEST(contacts, faces_far_apart_are_not_sought_again_while_nothing_moves_far)
+TEST(face_contacts, faces_far_apart_are_not_sought_again_while_nothing_moves_far)
 {
     TwoLines lines = rows(1e-4);
-    Contacts contacts = contacts_of(lines);
+    FaceContacts contacts = contacts_of(lines);
     std::vector<Vector2d> move(lines.place.size(), Vector2d(1e-5, 0));
     for (int step = 0; step < 100; ++step) {
         for (std::size_t g = 0; g < move.size(); ++g)
@@ -220,12 +221,12 @@ TEST(contacts, faces_far_apart_are_not_sought_again_while_nothing_moves_far)
 // A mass falls flat on a row and jumps up again. With steps of 0.45 over the frequency what the first and the
 // last step of the impact miss is of the order of 0.45^4 / 8 of its energy each, 1 percent together, wherever
 // in a step it begins; with forces of the whole first and last step it would be 0.45^2 / 8 each, 5 percent.
-TEST(contacts, an_impact_gives_back_what_it_took)
+TEST(face_contacts, an_impact_gives_back_what_it_took)
 {
     const double dt = 1e-4, length = 3.25, mass = k_n * length * dt * dt / (0.45 * 0.45), speed = 3;
     for (double start = 0; start < 1; start += 0.05) {
         TwoLines lines = rows(-start * speed * dt);
-        Contacts contacts = contacts_of(lines);
+        FaceContacts contacts = contacts_of(lines);
         std::vector<Vector2d> move(lines.place.size(), Vector2d::Zero());
         double velocity = -speed;
         for (int step = 0; step < 20; ++step) {
@@ -241,19 +242,19 @@ TEST(contacts, an_impact_gives_back_what_it_took)
 }
 
 // What dashpots take is the work of their forces, each force being the mean over a step.
-TEST(contacts, what_is_damped_is_what_is_missing)
+TEST(face_contacts, what_is_damped_is_what_is_missing)
 {
     const double dt = 1e-4, length = 3.25, mass = k_n * length * dt * dt / (0.2 * 0.2), speed = 3,
                  viscosity = 1e-4;
     TwoLines lines = rows(-0.5 * speed * dt);
-    Contacts contacts = contacts_of(lines);
+    FaceContacts contacts = contacts_of(lines);
     std::vector<Vector2d> move(lines.place.size(), Vector2d::Zero());
     double velocity = -speed, damped = 0;
     for (int step = 0; step < 40; ++step) {
         for (std::size_t g = 5; g < lines.place.size(); ++g)
             lines.place[g] += move[g] = {0, velocity * dt};
         contacts.update(lines.place, move, dt, viscosity, 1);
-        for (const motion::Pair& pair : contacts.pairs())
+        for (const large_displacements::FacePair& pair : contacts.pairs())
             damped += pair.damped;
         const std::vector<Vector2d> force = forces_of(contacts, lines.place.size());
         for (std::size_t g = 5; g < lines.place.size(); ++g)
@@ -266,12 +267,12 @@ TEST(contacts, what_is_damped_is_what_is_missing)
 }
 
 // The first slip takes cohesion and friction down to what is left of them, on whatever face it goes on.
-TEST(contacts, slip_weakens)
+TEST(face_contacts, slip_weakens)
 {
     TwoLines lines = rows(1e-4);
     const double pressed = k_n * 1e-4, cohesion = 5e4, left = 1e4, friction_left = 0.2;
-    Contacts contacts({joint::Coulomb{k_n, k_s, cohesion, friction, 0, 0, true, left, friction_left}});
-    std::vector<motion::Pair> bonded; // those that look at each other
+    FaceContacts contacts({joint::Coulomb{k_n, k_s, cohesion, friction, 0, 0, true, left, friction_left}});
+    std::vector<large_displacements::FacePair> bonded; // those that look at each other
     for (Index a = 0; a < 4; ++a)
         for (Index b = 4; b < 7; ++b)
             bonded.push_back({.a = a, .b = b, .is_known = true, .is_broken = false});
@@ -298,18 +299,18 @@ TEST(contacts, slip_weakens)
 }
 
 // Barton and Bandis's law over a contact that closes evenly: its formulas times the length.
-TEST(contacts, an_even_closing_presses_by_barton_and_bandiss_formulas)
+TEST(face_contacts, an_even_closing_presses_by_barton_and_bandiss_formulas)
 {
     const joint::BartonBandis law{1e10, k_s, 2e-4, 0.5, 10, 1e8};
     const double p_at[] = {1e5, 5e6, 6e7, 2e8}, length = 3.25;
     for (const double p : p_at) {
         TwoLines lines = rows(law.closure(p));
-        Contacts contacts = contacts_of(lines, law);
+        FaceContacts contacts = contacts_of(lines, law);
         std::vector<Vector2d> move(lines.place.size(), Vector2d::Zero());
         contacts.update(lines.place, move, 1, 0, 1);
         EXPECT_NEAR(contacts.stiffest() / law.stiffness(p), 1, 1e-9);
         double stored = 0;
-        for (const motion::Pair& pair : contacts.pairs())
+        for (const large_displacements::FacePair& pair : contacts.pairs())
             stored += pair.stored();
         EXPECT_NEAR(stored / (law.stored(p) * length), 1, 1e-9);
         for (std::size_t g = 5; g < lines.place.size(); ++g)
@@ -326,7 +327,7 @@ TEST(contacts, an_even_closing_presses_by_barton_and_bandiss_formulas)
 
 // Wedged open, over a face 3 m long that goes from no closing to that at the pressure p: against the integral
 // by a million points. Five points miss least where the curve is nearly straight.
-TEST(contacts, an_uneven_closing_is_summed_up_at_five_points)
+TEST(face_contacts, an_uneven_closing_is_summed_up_at_five_points)
 {
     const joint::BartonBandis law{1e10, k_s, 2e-4, 0.5, 10, 1e8};
     struct Case {
@@ -335,7 +336,7 @@ TEST(contacts, an_uneven_closing_is_summed_up_at_five_points)
     for (const auto& [p, off] : {Case{1e6, 1e-5}, Case{5e6, 1e-3}, Case{2e7, 2e-2}}) {
         const double deepest = law.closure(p);
         TwoLines lines({{4, 0}, {-1, 0}}, {{0, -deepest}, {3, 0}});
-        Contacts contacts = contacts_of(lines, law);
+        FaceContacts contacts = contacts_of(lines, law);
         const std::vector<Vector2d> still(lines.place.size(), Vector2d::Zero());
         contacts.update(lines.place, still, 1, 0, 1);
         const std::vector<Vector2d> force = forces_of(contacts, lines.place.size());
@@ -352,13 +353,13 @@ TEST(contacts, an_uneven_closing_is_summed_up_at_five_points)
 }
 
 // A corner that goes past another one, far below it, does not touch the face above: its side does.
-TEST(contacts, faces_far_behind_do_not_touch)
+TEST(face_contacts, faces_far_behind_do_not_touch)
 {
     // Blocks side by side, 1e-3 m into each other, the upper edge of the right one 0.05 m below that of the
     // left one.
     const TwoLines lines({{-1, 1}, {-1, 0}, {0, 0}, {0, 1}, {-1, 1}},
                          {{-0.001, 0.95}, {-0.001, -0.05}, {1, -0.05}, {1, 0.95}, {-0.001, 0.95}});
-    Contacts contacts = contacts_of(lines);
+    FaceContacts contacts = contacts_of(lines);
     const std::vector<Vector2d> still(lines.place.size(), Vector2d::Zero());
     contacts.update(lines.place, still, 1, 0, 1);
     for (const Vector2d& force : forces_of(contacts, lines.place.size()))
@@ -367,10 +368,10 @@ TEST(contacts, faces_far_behind_do_not_touch)
 
 // However soft the joint: what sinks deeper than faces are sought (a quarter of the median face, here 0.2 m)
 // goes on to press, down to half the depth of a zone, where it is refused.
-TEST(contacts, what_sinks_deep_goes_on_to_press)
+TEST(face_contacts, what_sinks_deep_goes_on_to_press)
 {
     TwoLines lines({{4, 0}, {3, 0}, {2, 0}, {1, 0}, {0, 0}}, {{0.2, 0}, {1, 0}, {1.8, 0}});
-    Contacts contacts = contacts_of(lines);
+    FaceContacts contacts = contacts_of(lines);
     std::vector<Vector2d> move(lines.place.size(), Vector2d::Zero());
     const auto sink = [&](double by) {
         for (std::size_t g = 5; g < lines.place.size(); ++g)
@@ -391,11 +392,11 @@ TEST(contacts, what_sinks_deep_goes_on_to_press)
 }
 
 // The same while it slides from face to face, and back; and where it came from outside within one step.
-TEST(contacts, what_has_sunk_deep_slides_on)
+TEST(face_contacts, what_has_sunk_deep_slides_on)
 {
     const double sunk = 0.3;
     TwoLines lines({{5, 0}, {4, 0}, {3, 0}, {2, 0}, {1, 0}, {0, 0}}, {{0.2, 0.01}, {0.8, 0.01}});
-    Contacts contacts = contacts_of(lines);
+    FaceContacts contacts = contacts_of(lines);
     std::vector<Vector2d> move(lines.place.size(), Vector2d::Zero());
     const auto go = [&](const Vector2d& way) {
         for (std::size_t g = 6; g < lines.place.size(); ++g)
@@ -416,7 +417,7 @@ TEST(contacts, what_has_sunk_deep_slides_on)
 
 // On the walls of joints of its own material it keeps its law, and finds one again; elsewhere it has that of
 // new contacts.
-TEST(contacts, what_slides_has_the_law_of_a_joint_of_which_both_faces_were_walls)
+TEST(face_contacts, what_slides_has_the_law_of_a_joint_of_which_both_faces_were_walls)
 {
     const std::vector<double> tan_phi{0.1, 0.2, 0.3,
                                       0.4}; // two edges of a joint, another joint, new contacts
@@ -426,7 +427,7 @@ TEST(contacts, what_slides_has_the_law_of_a_joint_of_which_both_faces_were_walls
     TwoLines lines({{5, 0}, {4, 0}, {3, 0}, {2, 0}, {1, 0}, {0, 0}}, {{0.2, 0}, {0.8, 0}});
     lines.faces.law = {2, 1, 3, 1, 0, 0};
     const std::vector<double> expected{0.1, 0.1, 0.4, 0.2, 0.4}; // on the lower faces, from the left
-    Contacts contacts(laws, {0, 0, 1});
+    FaceContacts contacts(laws, {0, 0, 1});
     contacts.set_faces(lines.faces, {{.a = 4, .b = 5, .law = 0, .is_known = true}}, lines.place);
     std::vector<Vector2d> move(lines.place.size(), Vector2d::Zero());
     const auto go = [&](const Vector2d& way) {
@@ -452,11 +453,11 @@ TEST(contacts, what_slides_has_the_law_of_a_joint_of_which_both_faces_were_walls
 }
 
 // A bond is not forgotten however far it stretches; where it tears it is gone.
-TEST(contacts, bonds_stretch_beyond_the_skin)
+TEST(face_contacts, bonds_stretch_beyond_the_skin)
 {
     TwoLines lines({{2, 0}, {1, 0}, {0, 0}}, {{0, 0}, {1, 0}, {2, 0}});
-    Contacts contacts({joint::Coulomb{k_n, k_s, 1e9, friction, 0.7 * k_n}});
-    std::vector<motion::Pair> bonded;
+    FaceContacts contacts({joint::Coulomb{k_n, k_s, 1e9, friction, 0.7 * k_n}});
+    std::vector<large_displacements::FacePair> bonded;
     for (const auto& [a, b] : {std::pair(0, 3), std::pair(1, 2)})
         bonded.push_back({.a = a, .b = b, .is_known = true, .is_broken = false});
     contacts.set_faces(lines.faces, bonded, lines.place);
@@ -483,7 +484,7 @@ constexpr double psi = 0.2; // its tangent
 struct Dilatant {
     TwoLines lines;
     std::size_t lower; // gridpoints of the lower row
-    Contacts contacts;
+    FaceContacts contacts;
     std::vector<Vector2d> move, force;
     double work = 0, friction = 0, damped = 0; // of the contacts on the rows; lost [J/m]
 
@@ -508,7 +509,7 @@ struct Dilatant {
         for (std::size_t g = 0; g < move.size(); ++g)
             work += (force[g] + now[g]).dot(move[g]) / 2;
         force = now;
-        for (const motion::Pair& pair : contacts.pairs()) {
+        for (const large_displacements::FacePair& pair : contacts.pairs()) {
             friction += pair.friction;
             damped += pair.damped;
         }
@@ -516,7 +517,7 @@ struct Dilatant {
     double stored() const
     {
         double sum = 0;
-        for (const motion::Pair& pair : contacts.pairs())
+        for (const large_displacements::FacePair& pair : contacts.pairs())
             sum += pair.stored();
         return sum;
     }
@@ -531,7 +532,7 @@ struct Dilatant {
     double dilation() const
     {
         double least = 1e9, most = -1e9;
-        for (const motion::Pair& pair : contacts.pairs())
+        for (const large_displacements::FacePair& pair : contacts.pairs())
             if (pair.is_closed) {
                 least = std::min(least, pair.dilation);
                 most = std::max(most, pair.dilation);
@@ -550,7 +551,7 @@ joint::Coulomb dilatant(double until = 0)
 
 // Held at its height it is pressed by k_n tan(psi) slip, and bears friction of that, at once as in many
 // steps; dilation ends, also within a step.
-TEST(contacts, slip_raises_what_dilates)
+TEST(face_contacts, slip_raises_what_dilates)
 {
     const double sunk = 1e-4, length = 3.25, slid = 2e-3;
     for (const double until : {0.0, 1e-3})
@@ -587,7 +588,7 @@ TEST(contacts, slip_raises_what_dilates)
 }
 
 // One that is pressed unevenly, partly open, and tilts on its way.
-TEST(contacts, all_of_a_joint_is_raised_by_one_amount)
+TEST(face_contacts, all_of_a_joint_is_raised_by_one_amount)
 {
     Dilatant tilted({{{4, 0}, {2.7, 0}, {1.9, 0}, {0.4, 0}, {-3, 0}},
                      {{0.25, -1e-3}, {1, -0.7e-3}, {2.2, -0.2e-3}, {3.5, 0.3e-3}}},
@@ -617,7 +618,7 @@ TEST(contacts, all_of_a_joint_is_raised_by_one_amount)
 }
 
 // What turns as a whole does not slip, also at the limit of its strength and raised far.
-TEST(contacts, what_turns_does_not_dilate)
+TEST(face_contacts, what_turns_does_not_dilate)
 {
     Dilatant far(rows(1e-4), 5, dilatant());
     for (int step = 0; step < 1000; ++step)
@@ -636,7 +637,7 @@ TEST(contacts, what_turns_does_not_dilate)
 }
 
 // It goes on from face to face: rising by tan(psi) it bears the same all the way, to the end of dilation.
-TEST(contacts, dilation_goes_on_to_the_next_face)
+TEST(face_contacts, dilation_goes_on_to_the_next_face)
 {
     const double sunk = 1e-4, until = 1.5;
     Dilatant slider({{{4, 0}, {3, 0}, {2, 0}, {1, 0}, {0, 0}}, {{0.2, -sunk}, {0.8, -sunk}}}, 5,
@@ -656,7 +657,7 @@ TEST(contacts, dilation_goes_on_to_the_next_face)
 
 // Raised by 0.06 m, lifted off and put down tilted where its faces have not touched: all of it touches as far
 // up, and no energy comes from nowhere.
-TEST(contacts, what_lands_beside_is_raised_as_its_joint_is)
+TEST(face_contacts, what_lands_beside_is_raised_as_its_joint_is)
 {
     Dilatant slider({{{8, 0}, {7, 0}, {6, 0}, {5, 0}, {4, 0}, {3, 0}, {2, 0}, {1, 0}, {0, 0}},
                      {{0.2, -1e-4}, {1.2, -1e-4}, {2.2, -1e-4}}},

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <vector>
 
-namespace jointcreep::motion
+namespace jointcreep::large_displacements
 {
 
 constexpr Index chunk = 128;
@@ -55,4 +55,4 @@ Sum sum_in_chunks(Index n, int threads, const Function& one)
     return all;
 }
 
-} // namespace jointcreep::motion
+} // namespace jointcreep::large_displacements

@@ -1,22 +1,24 @@
-// Rock in motion: Newton's law for gridpoints, large displacements and rotations, on to rest.
+// Dynamic analysis with large displacements: Newton's law for gridpoints, large displacements and rotations,
+// until rest.
 //
 // Zones are elastic in the frame that turns with them (Biot's stress over Biot's strain, from a shape without
 // stress that has the in-situ stress in the shape they start from), so turning costs nothing and the forces
 // have a potential. Rock that yields has its plastic strain taken off Biot's strain there. Joints are
-// libs/motion/contacts. Real masses; velocities are half a step behind displacements.
+// libs/large_displacements/face_contacts. Real masses; velocities are half a step behind displacements.
 
 #pragma once
 
+#include "large_displacements/face_contacts.hpp"
 #include "mechanics/failure.hpp"
 #include "model/network.hpp"
-#include "motion/contacts.hpp"
 
 #include <map>
 
-namespace jointcreep::motion
+namespace jointcreep::large_displacements
 {
 
-// Since the start of a motion [J/m]: work = kinetic + stored + friction + damped, but for the error of steps.
+// Since the start of a dynamic analysis [J/m]: work = kinetic + stored + friction + damped, but for the error
+// of steps.
 struct Energy {
     double work = 0; // of weight, tractions on the outline and what excavation still holds
     double kinetic = 0;
@@ -41,25 +43,26 @@ struct Settings {
     double stiffness_damping = 0; // dashpots of zones and closed contacts over their springs [s]
     double mass_damping = 0;      // force over mass and velocity [1/s]
     double release = 0;           // time in which excavation's forces fade away [s]
-    double tolerance = 1e-5;      // of the out-of-balance ratio at rest [-]
+    double tolerance = 1e-5;      // of the unbalanced force ratio at rest [-]
 };
 
 // A section that moves. Works on an assembly whose displacements count from the start; takes its zones' and
 // contacts' state from there, and puts displacements, stresses and contacts back.
-class Motion
+class Dynamics
 {
 public:
     // `material` numbers what the joint of each contact of the mesh is made of; `found` is the law of
     // contacts that come about. Zones of rigid rock form bodies that do not deform.
-    Motion(mechanics::Assembly& rock, const Mesh& mesh, const std::vector<Index>& material,
-           std::vector<char> is_rigid, const joint::Law& found, const Settings& settings);
+    Dynamics(mechanics::Assembly& rock, const Mesh& mesh, const std::vector<Index>& material,
+             std::vector<char> is_rigid, const joint::Law& found, const Settings& settings);
 
-    // Begins anew after the assembly has lost rock, or gained loads. What is out of balance then fades away
+    // Begins anew after the assembly has lost rock, or gained loads. The unbalanced forces then fade away
     // within the time of release.
     void start();
 
-    // What differs from a new motion of the same section, to be asked between motions: start() does the rest.
-    void transfer(const Transfer& to, MovedRock& kept);
+    // What differs from a new analysis of the same section, to be asked between analyses: start() does the
+    // rest.
+    void transfer(const Transfer& to, DynamicsState& kept);
 
     // Makes the present places those that displacements count from.
     void count_from_here();
@@ -77,13 +80,13 @@ public:
     static constexpr Index check_every = 50;
     bool is_at_rest();
 
-    double time() const { return time_; } // since the start of this motion [s]
+    double time() const { return time_; } // since the start of this dynamic analysis [s]
     double dt() const { return dt_; }     // [s]
     Energy energy() const;
-    double out_of_balance_ratio() const { return ratio_; }
+    double unbalanced_force_ratio() const { return ratio_; }
     double contact_force_change() const { return force_change_; }
     double fastest() const { return fastest_; } // [m/s]
-    // Faster than where motion is stopped at its peaks, since the start of this motion.
+    // Faster than where motion is stopped at its peaks, since the start of this dynamic analysis.
     bool has_moved() const { return has_moved_; }
     std::vector<Touching> touching() const;
 
@@ -156,7 +159,7 @@ private:
     mechanics::Assembly& rock_;
     const Mesh& mesh_;
     Settings settings_;
-    Contacts contacts_;
+    FaceContacts contacts_;
     std::vector<Body> bodies_;
     std::vector<char> is_rigid_;         // zones
     std::vector<Index> body_of_;         // of gridpoints; -1 none
@@ -188,4 +191,4 @@ private:
     std::vector<Vector2d> last_contact_force_;
 };
 
-} // namespace jointcreep::motion
+} // namespace jointcreep::large_displacements
