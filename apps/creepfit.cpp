@@ -152,7 +152,7 @@ auto of_lines_of_file(const std::string& path, const Read& read)
 void write(const std::string& path, const std::string& text)
 {
     try {
-        save(path, std::as_bytes(std::span(text)));
+        store::save(path, std::as_bytes(std::span(text)));
     } catch (const file_error& error) {
         throw file_error(path + ": " + error.what());
     }
@@ -184,7 +184,7 @@ std::optional<std::string> readings_file(const Arguments& arguments)
          {arguments.input(), arguments.output(), arguments.text("measurements").value_or("")})
         if (is_same_file(*path, other))
             throw input_error("--readings: " + *path + " is used already; give it another name");
-    check_writable(*path);
+    store::check_writable(*path);
     return path;
 }
 
@@ -245,20 +245,21 @@ void fit_curve(const Arguments& arguments)
     refuse_options(arguments, "joints.h5 and --measurements",
                    {"fit", "since-first-reading", "runs", "threads"});
     const std::string& input = arguments.input();
-    const std::optional<double> stiffness = arguments.number("stiffness", joint_stiffnesses, "MPa/m");
+    const std::optional<double> stiffness = arguments.number("stiffness", scene::joint_stiffnesses, "MPa/m");
     const std::optional<std::string> readings_path = readings_file(arguments);
-    check_writable(arguments.output());
+    store::check_writable(arguments.output());
     const std::string text = text_of(input);
     if (text.starts_with("\x89HDF"))
         throw input_error("--measurements is not given, and " + input + " is no curve");
-    const std::vector<Measurement> measurements = of_file(input, [&] { return creep_curve_in_csv(text); });
+    const std::vector<scene::Measurement> measurements =
+        of_file(input, [&] { return scene::creep_curve_in_csv(text); });
 
     const double load =
         arguments.number("load-day").value_or(measurements.front().time / unit::day) * unit::day;
     // The mean of what was read before the load changed is where displacements count from.
     std::size_t before = 0;
     double zero = 0, weights = 0;
-    for (const Measurement& m : measurements)
+    for (const scene::Measurement& m : measurements)
         if (m.time < load) {
             const double weight = m.deviation ? 1 / (*m.deviation * *m.deviation) : 1.0;
             zero += weight * m.displacement;
@@ -268,7 +269,7 @@ void fit_curve(const Arguments& arguments)
     if (before > 0)
         zero /= weights;
     estimation::CreepCurve curve;
-    for (const Measurement& m : measurements) {
+    for (const scene::Measurement& m : measurements) {
         if (m.time < load)
             continue;
         curve.time.push_back(m.time - load);
@@ -491,15 +492,15 @@ std::string in_quotes(const std::string& name)
     return quoted + '"';
 }
 
-std::string readings_table(const back_analysis::Found& found, const std::vector<Measurement>& measurements,
-                           const Scene& scene)
+std::string readings_table(const back_analysis::Found& found,
+                           const std::vector<scene::Measurement>& measurements, const Scene& scene)
 {
     const bool knows = measurements.front().deviation.has_value();
     std::string table =
         "time_day,stages,point,component,measured_mm,computed_mm,residual_mm,computed_at_start_mm";
     table += knows ? ",sigma_mm\n" : "\n";
     for (std::size_t m = 0; m < measurements.size(); ++m) {
-        const Measurement& measured = measurements[m];
+        const scene::Measurement& measured = measurements[m];
         const auto& [at_start, at_end] = found.computed[m];
         const auto stages = std::count_if(scene.stages.begin(), scene.stages.end(), [&](const Stage& stage) {
             return measured.is_before_stage ? stage.time < measured.time : stage.time <= measured.time;
@@ -516,7 +517,8 @@ std::string readings_table(const back_analysis::Found& found, const std::vector<
 }
 
 void report_points(Summary& summary, const back_analysis::Found& found,
-                   const std::vector<Measurement>& measurements, const Scene& scene, bool share_an_error)
+                   const std::vector<scene::Measurement>& measurements, const Scene& scene,
+                   bool share_an_error)
 {
     for (std::size_t p = 0; p < scene.points.size(); ++p)
         for (const int component : {0, 1}) {
@@ -651,7 +653,7 @@ std::string why_not_converged(const back_analysis::Found& found,
                                       : "\nwanted more --runs");
 }
 
-void report(const back_analysis::Found& found, const std::vector<Measurement>& measurements,
+void report(const back_analysis::Found& found, const std::vector<scene::Measurement>& measurements,
             const Scene& scene, const back_analysis::Settings& settings)
 {
     const Confidence& confidence = found.confidence;
@@ -736,15 +738,15 @@ void fit_section(const Arguments& arguments)
     settings.threads = static_cast<int>(arguments.whole_number("threads", 1, 1024).value_or(1));
     settings.most_runs = static_cast<int>(arguments.whole_number("runs", 1, 100000).value_or(60));
     const std::optional<std::string> readings_path = readings_file(arguments);
-    check_writable(arguments.output());
+    store::check_writable(arguments.output());
     for (const std::string& path : {arguments.output(), readings_path.value_or(arguments.output())})
         refuse_loss(failed_name(path), {input, measured, arguments.output(), readings_path.value_or("")});
 
-    const JointsFile file = read_joints(input);
-    const Scene scene = parse_scene(file.provenance.scene, input + ": /scene");
+    const store::JointsFile file = store::read_joints(input);
+    const Scene scene = scene::parse_scene(file.provenance.scene, input + ": /scene");
     const std::string text = text_of(measured);
-    const std::vector<Measurement> measurements =
-        of_file(measured, [&] { return measurements_in_csv(text, scene); });
+    const std::vector<scene::Measurement> measurements =
+        of_file(measured, [&] { return scene::measurements_in_csv(text, scene); });
     if (measurements.size() <= settings.factors.size())
         throw input_error(measured + ": " + std::to_string(measurements.size()) + " readings for " +
                           std::to_string(settings.factors.size()) + " factors; wanted more readings");

@@ -32,6 +32,11 @@
 #include <vector>
 
 using namespace jointcreep;
+using analysis::Analysis;
+using analysis::Bracket;
+using analysis::Ending;
+using analysis::Observer;
+using analysis::Recording;
 
 namespace
 {
@@ -78,7 +83,7 @@ std::string as_option(std::string_view word)
 }
 
 template <class Choice>
-Choice chosen_from(const Words<Choice>& words, const std::string& option, const std::string& name)
+Choice chosen_from(const scene::Words<Choice>& words, const std::string& option, const std::string& name)
 {
     std::string all;
     for (const auto& [word, choice] : words) {
@@ -91,7 +96,7 @@ Choice chosen_from(const Words<Choice>& words, const std::string& option, const 
 
 std::string named(EngineChoice engine)
 {
-    for (const auto& [word, choice] : engine_words())
+    for (const auto& [word, choice] : scene::engine_words())
         if (choice == engine)
             return std::string(word);
     return "";
@@ -104,18 +109,18 @@ std::string choose(const Arguments& arguments, Scene& scene)
     const auto note = [&](const char* name, const std::string& value) {
         chosen += (chosen.empty() ? "--" : " --") + std::string(name) + (value.empty() ? "" : " " + value);
     };
-    if (const auto size = arguments.number("zone-size", zone_sizes, "m")) {
+    if (const auto size = arguments.number("zone-size", scene::zone_sizes, "m")) {
         if (scene.zone_size_at_faces)
             *scene.zone_size_at_faces *= *size / scene.zone_size;
         scene.zone_size = *size;
         note("zone-size", shown(*size));
     }
-    if (const auto tolerance = arguments.number("tolerance", equilibrium_tolerances, "(ratio)")) {
+    if (const auto tolerance = arguments.number("tolerance", scene::equilibrium_tolerances, "(ratio)")) {
         scene.equilibrium.tolerance = *tolerance;
         note("tolerance", shown(*tolerance));
     }
     if (const auto engine = arguments.text("engine")) {
-        scene.equilibrium.engine = chosen_from(engine_words(), "engine", *engine);
+        scene.equilibrium.engine = chosen_from(scene::engine_words(), "engine", *engine);
         note("engine", *engine);
     }
     for (const char* option : {"creep-scheme", "creep-step", "creep-tolerance"}) {
@@ -127,17 +132,17 @@ std::string choose(const Arguments& arguments, Scene& scene)
             throw input_error("--" + std::string(option) + ": the scene has no [creep]");
     }
     if (const auto scheme = arguments.text("creep-scheme")) {
-        scene.creep->scheme = chosen_from(creep_scheme_words(), "creep-scheme", *scheme);
+        scene.creep->scheme = chosen_from(scene::creep_scheme_words(), "creep-scheme", *scheme);
         note("creep-scheme", *scheme);
     }
-    if (const auto step = arguments.number("creep-step", creep_steps, "day")) {
+    if (const auto step = arguments.number("creep-step", scene::creep_steps, "day")) {
         if (arguments.has("creep-tolerance"))
             throw input_error("--creep-step and --creep-tolerance do not go together");
         scene.creep->step = *step * unit::day;
         scene.creep->tolerance.reset();
         note("creep-step", shown(*step));
     }
-    if (const auto tolerance = arguments.number("creep-tolerance", creep_tolerances, "m")) {
+    if (const auto tolerance = arguments.number("creep-tolerance", scene::creep_tolerances, "m")) {
         scene.creep->step.reset();
         scene.creep->tolerance = *tolerance;
         note("creep-tolerance", shown(*tolerance));
@@ -232,8 +237,8 @@ void report(const Network& network, const Scene& scene, const Analysis& analysis
 
 // A run with strengths divided by a factor.
 struct Run {
-    Run(const Scene& given, const JointsFile& file, double divisor, int threads, const Recording& recording,
-        const Observer& observe, std::optional<CheckpointFile> from = {})
+    Run(const Scene& given, const store::JointsFile& file, double divisor, int threads,
+        const Recording& recording, const Observer& observe, std::optional<store::CheckpointFile> from = {})
         : factor(divisor), scene(divisor == 1 ? given : joint::with_strength_divided(given, divisor)),
           joints(divisor == 1 ? file.equivalent : joint::with_strength_divided(file.equivalent, divisor)),
           analysis(scene, file.network, joints, threads, recording, observe)
@@ -274,17 +279,17 @@ class Writer
 {
 public:
     // A run that ends on another day may go on from the same checkpoint: `end` is no part of `options`.
-    Writer(const Arguments& arguments, const JointsFile& file, std::string options, std::string end)
+    Writer(const Arguments& arguments, const store::JointsFile& file, std::string options, std::string end)
         : input_(arguments.input()), output_(arguments.output()), failed_(failed_name(output_)), file_(file),
           provenance_(file.provenance), options_(std::move(options)), end_(std::move(end))
     {
-        check_writable(output_);
+        store::check_writable(output_);
         if (std::error_code absent; std::filesystem::equivalent(arguments.input(), failed_, absent))
             throw input_error(arguments.input() + ": a run without equilibrium would be written there; " +
                               "wanted another name than " + output_);
         provenance_.program.push_back(program.name);
         provenance_.version.emplace_back(version());
-        provenance_.input_sha256.push_back(sha256_of(arguments.input()));
+        provenance_.input_sha256.push_back(store::sha256_of(arguments.input()));
     }
 
     void write(const Run& run, const Safety& safety = {}) const { write(run, safety, output_); }
@@ -292,12 +297,12 @@ public:
     void write_checkpoint(const std::string& path, double factor, const Result& so_far,
                           const Checkpoint& checkpoint) const
     {
-        jointcreep::write_checkpoint(path, provenance(options_of(factor)), file_.network, file_.equivalent,
-                                     so_far, checkpoint);
+        store::write_checkpoint(path, provenance(options_of(factor)), file_.network, file_.equivalent, so_far,
+                                checkpoint);
     }
 
     // Throws if this run would not have come by where the checkpoint is, bit by bit.
-    void check_same_run(const std::string& path, double factor, const CheckpointFile& kept) const
+    void check_same_run(const std::string& path, double factor, const store::CheckpointFile& kept) const
     {
         const Provenance here = provenance(options_of(factor));
         const auto check = [&](const char* dataset, const std::vector<std::string>& of_kept,
@@ -334,8 +339,8 @@ private:
         std::string options = options_of(run.factor);
         if (!end_.empty())
             options += (options.empty() ? "" : " ") + end_;
-        write_result(path, provenance(options), file_.network, file_.equivalent, run.analysis.result(),
-                     safety);
+        store::write_result(path, provenance(options), file_.network, file_.equivalent, run.analysis.result(),
+                            safety);
     }
 
     std::string options_of(double factor) const
@@ -354,14 +359,15 @@ private:
     }
 
     std::string input_, output_, failed_;
-    const JointsFile& file_;
+    const store::JointsFile& file_;
     Provenance provenance_;
     std::string options_, end_;
 };
 
 double wanted_factor(const Arguments& arguments)
 {
-    const double factor = arguments.number("strength-factor", from(1e-3).to(1e3), "(ratio)").value_or(1);
+    const double factor =
+        arguments.number("strength-factor", scene::from(1e-3).to(1e3), "(ratio)").value_or(1);
     if (arguments.has("strength-factor") && arguments.has("factor-of-safety"))
         throw input_error("--strength-factor and --factor-of-safety do not go together");
     return factor;
@@ -369,7 +375,7 @@ double wanted_factor(const Arguments& arguments)
 
 double wanted_width(const Arguments& arguments, const Scene& scene)
 {
-    const double width = arguments.number("safety-width", from(1e-4).to(1), "(ratio)").value_or(0.01);
+    const double width = arguments.number("safety-width", scene::from(1e-4).to(1), "(ratio)").value_or(0.01);
     if (!arguments.has("factor-of-safety")) {
         if (arguments.has("safety-width"))
             throw input_error("--safety-width goes with --factor-of-safety only");
@@ -416,7 +422,7 @@ void add_safety(Summary& summary, const Bracket& bracket, const std::string& why
 // Lets the scene end on the day of --until, if given; returns that option as the result file records it.
 std::string end_scene(const Arguments& arguments, Scene& scene)
 {
-    const auto day = arguments.number("until", above(0).to(farthest_day), "day");
+    const auto day = arguments.number("until", scene::above(0).to(scene::farthest_day), "day");
     if (!day)
         return "";
     scene.end = *day * unit::day;
@@ -427,19 +433,19 @@ std::string end_scene(const Arguments& arguments, Scene& scene)
 }
 
 // What --checkpoint has kept before, if anything.
-std::optional<CheckpointFile> kept_before(const Arguments& arguments, const Scene& scene,
-                                          const Writer& writer, double factor)
+std::optional<store::CheckpointFile> kept_before(const Arguments& arguments, const Scene& scene,
+                                                 const Writer& writer, double factor)
 {
     const auto path = arguments.text("checkpoint");
     if (!path)
         return {};
-    check_writable(*path);
+    store::check_writable(*path);
     for (const std::string& other : {arguments.input(), arguments.output(), failed_name(arguments.output())})
         if (std::filesystem::weakly_canonical(*path) == std::filesystem::weakly_canonical(other))
             throw input_error("--checkpoint " + *path + " is " + other + ", too; give it another name");
     if (!std::filesystem::exists(*path))
         return {};
-    CheckpointFile kept = read_checkpoint(*path);
+    store::CheckpointFile kept = store::read_checkpoint(*path);
     writer.check_same_run(*path, factor, kept);
     if (kept.checkpoint.time > scene.end)
         throw input_error(*path + ": /checkpoint/time is day " + shown(kept.checkpoint.time / unit::day) +
@@ -450,9 +456,9 @@ std::optional<CheckpointFile> kept_before(const Arguments& arguments, const Scen
 void solve_and_write(const Arguments& arguments)
 {
     const std::string& input = arguments.input();
-    check_writable(arguments.output());
-    const JointsFile file = read_joints(input);
-    Scene scene = parse_scene(file.provenance.scene, input + ": /scene");
+    store::check_writable(arguments.output());
+    const store::JointsFile file = store::read_joints(input);
+    Scene scene = scene::parse_scene(file.provenance.scene, input + ": /scene");
     const std::string end = end_scene(arguments, scene);
     const Writer writer(arguments, file, choose(arguments, scene), end);
     const double factor = wanted_factor(arguments), width = wanted_width(arguments, scene);
@@ -463,7 +469,7 @@ void solve_and_write(const Arguments& arguments)
     const auto threads = static_cast<int>(arguments.whole_number("threads", 1, 1024).value_or(1));
     Recording recording{arguments.whole_number("states", 1, 1000000000).value_or(0),
                         arguments.whole_number("step-history", 1, 1000000000).value_or(0)};
-    std::optional<CheckpointFile> kept = kept_before(arguments, scene, writer, factor);
+    std::optional<store::CheckpointFile> kept = kept_before(arguments, scene, writer, factor);
     if (const auto path = arguments.text("checkpoint"))
         recording.keep = [&writer, path, factor](const Result& so_far, const Checkpoint& checkpoint) {
             writer.write_checkpoint(*path, factor, so_far, checkpoint);
@@ -484,7 +490,7 @@ void solve_and_write(const Arguments& arguments)
                                         shown(kept->checkpoint.time / unit::day));
     std::unique_ptr<Run> run, failed; // the one with the largest factor that stands, and the one above
     if (arguments.has("factor-of-safety")) {
-        const Bracket bracket = bracket_of(
+        const Bracket bracket = analysis::bracket_of(
             [&](double divisor) {
                 std::unique_ptr<Run> made = run_with(divisor);
                 const Ending ending = made->ending();

@@ -46,16 +46,16 @@ constexpr std::array<View, 6> views = {{
     {"histories", ".csv", true},
 }};
 
-bool is_offered(const View& view, FileKind kind, const std::string& format)
+bool is_offered(const View& view, store::FileKind kind, const std::string& format)
 {
     return view.formats.find(format) != std::string_view::npos &&
-           (!view.of_result || kind >= FileKind::result);
+           (!view.of_result || kind >= store::FileKind::result);
 }
 
 // What is meant when --what is not given.
-std::string_view usual(FileKind kind, const std::string& format)
+std::string_view usual(store::FileKind kind, const std::string& format)
 {
-    if (kind >= FileKind::result)
+    if (kind >= store::FileKind::result)
         return format == ".csv" ? "histories" : "zones";
     return format == ".csv" ? "joints" : "blocks";
 }
@@ -72,7 +72,7 @@ std::string format_of(const std::string& output)
     return extension;
 }
 
-std::string chosen(const Arguments& arguments, FileKind kind, const std::string& format)
+std::string chosen(const Arguments& arguments, store::FileKind kind, const std::string& format)
 {
     const std::string what = arguments.text("what").value_or(std::string(usual(kind, format)));
     std::string offered;
@@ -122,41 +122,43 @@ std::string path_between(const std::string& output, const std::string& input)
     return std::filesystem::relative(input, std::filesystem::absolute(output).parent_path()).string();
 }
 
-std::string text_of(const Arguments& arguments, FileKind kind, const std::string& what,
+std::string text_of(const Arguments& arguments, store::FileKind kind, const std::string& what,
                     const std::string& format)
 {
     const std::string& input = arguments.input();
     const bool vtu = format == ".vtu";
     if (what == "blocks") {
-        const Network network = read_network(input).network;
-        return vtu ? blocks_vtu(network) : blocks_csv(network);
+        const Network network = store::read_network(input).network;
+        return vtu ? exchange::blocks_vtu(network) : exchange::blocks_csv(network);
     }
     if (what == "joints" && !vtu)
-        return joints_csv(read_network(input).network);
+        return exchange::joints_csv(store::read_network(input).network);
     if (what == "joints" || what == "edges") {
-        if (kind == FileKind::network) {
-            const Network network = read_network(input).network;
-            return vtu ? joints_vtu(network, nullptr) : edges_csv(network, nullptr);
+        if (kind == store::FileKind::network) {
+            const Network network = store::read_network(input).network;
+            return vtu ? exchange::joints_vtu(network, nullptr) : exchange::edges_csv(network, nullptr);
         }
-        const JointsFile file = read_joints(input);
-        return vtu ? joints_vtu(file.network, &file.equivalent) : edges_csv(file.network, &file.equivalent);
+        const store::JointsFile file = store::read_joints(input);
+        return vtu ? exchange::joints_vtu(file.network, &file.equivalent)
+                   : exchange::edges_csv(file.network, &file.equivalent);
     }
-    const ResultFile file = read_result(input);
+    const store::ResultFile file = store::read_result(input);
     if (what == "histories")
-        return histories_csv(file.result.history);
+        return exchange::histories_csv(file.result.history);
     if (format == ".xdmf") {
         const std::string result_file = path_between(arguments.output(), input);
-        return what == "zones" ? zones_xdmf(file.result, result_file)
-                               : contacts_xdmf(file.result, result_file);
+        return what == "zones" ? exchange::zones_xdmf(file.result, result_file)
+                               : exchange::contacts_xdmf(file.result, result_file);
     }
     const std::size_t state = chosen_state(arguments, file.result.states);
-    return what == "zones" ? zones_vtu(file.network, file.result, state) : contacts_vtu(file.result, state);
+    return what == "zones" ? exchange::zones_vtu(file.network, file.result, state)
+                           : exchange::contacts_vtu(file.result, state);
 }
 
 void write(const std::string& path, const std::string& text)
 {
     try {
-        save(path, std::as_bytes(std::span(text)));
+        store::save(path, std::as_bytes(std::span(text)));
     } catch (const file_error& error) {
         throw file_error(path + ": " + error.what());
     }
@@ -165,14 +167,14 @@ void write(const std::string& path, const std::string& text)
 void export_file(const Arguments& arguments)
 {
     if (arguments.has("file-format")) {
-        std::cout << schema_markdown();
+        std::cout << store::schema_markdown();
         return;
     }
     const std::string& input = arguments.input();
     const std::string& output = arguments.output();
     const std::string format = format_of(output);
-    check_writable(output);
-    const FileKind kind = kind_of(input);
+    store::check_writable(output);
+    const store::FileKind kind = store::kind_of(input);
     if (std::error_code absent; std::filesystem::equivalent(input, output, absent))
         throw input_error(output + ": this is the file to read; it is not overwritten");
 
@@ -186,7 +188,7 @@ void export_file(const Arguments& arguments)
     if (!arguments.quiet()) {
         Summary summary;
         summary.add(what, output);
-        if (const std::string reason = reason_of_failure(input); !reason.empty())
+        if (const std::string reason = store::reason_of_failure(input); !reason.empty())
             summary.add("warning: ended early", reason);
         summary.print();
     }

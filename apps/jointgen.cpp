@@ -96,17 +96,17 @@ void report(const Network& network)
 void generate(const Arguments& arguments)
 {
     if (arguments.has("scene-keys") || arguments.has("scene-keys-markdown")) {
-        std::cout << (arguments.has("scene-keys") ? scene_keys_tsv() : scene_keys_markdown());
+        std::cout << (arguments.has("scene-keys") ? scene::scene_keys_tsv() : scene::scene_keys_markdown());
         return;
     }
     const std::string& input = arguments.input();
     const bool check = arguments.has("check");
     if (!check)
-        check_writable(arguments.output());
+        store::check_writable(arguments.output());
 
     // 1. The scene.
-    const std::string text = read_scene_text(input);
-    const Scene scene = parse_scene(text, input);
+    const std::string text = scene::read_scene_text(input);
+    const Scene scene = scene::parse_scene(text, input);
     const std::uint64_t seed =
         arguments.whole_number("seed", 0, std::numeric_limits<std::uint64_t>::max()).value_or(scene.seed);
     const auto realization = static_cast<std::int32_t>(
@@ -116,7 +116,7 @@ void generate(const Arguments& arguments)
     Network network;
     network.names = names_of(scene);
     try {
-        network.joints = sample_joints(scene, seed, realization);
+        network.joints = sampling::sample_joints(scene, seed, realization);
 
         // 3. Its blocks.
         network.blocks = blocks::cut(scene, network.joints);
@@ -129,15 +129,15 @@ void generate(const Arguments& arguments)
         network.statistics = statistics::statistics_of(scene, network);
 
     if (!check)
-        write_network(arguments.output(),
-                      {.scene = text,
-                       .seed = seed,
-                       .realization = realization,
-                       .program = {program.name},
-                       .version = {std::string(version())},
-                       .input_sha256 = {sha256_of(input)},
-                       .options = {arguments.has("report") ? "--report" : ""}},
-                      network);
+        store::write_network(arguments.output(),
+                             {.scene = text,
+                              .seed = seed,
+                              .realization = realization,
+                              .program = {program.name},
+                              .version = {std::string(version())},
+                              .input_sha256 = {store::sha256_of(input)},
+                              .options = {arguments.has("report") ? "--report" : ""}},
+                             network);
     if (!arguments.quiet())
         report(network);
     if (!arguments.quiet() && arguments.has("report"))

@@ -99,21 +99,21 @@ void report(const Network& network, const EquivalentJoints& joints)
 void average_and_write(const Arguments& arguments)
 {
     const std::string& input = arguments.input();
-    check_writable(arguments.output());
+    store::check_writable(arguments.output());
 
     // 1. Joints, blocks, and the scene they were made from.
-    NetworkFile file = read_network(input);
-    const Scene scene = parse_scene(file.provenance.scene, input + ": /scene");
+    store::NetworkFile file = store::read_network(input);
+    const Scene scene = scene::parse_scene(file.provenance.scene, input + ": /scene");
 
     // 2. The equivalent joint of every edge.
-    const EquivalentJoints joints = average_strength(scene, file.network);
+    const EquivalentJoints joints = joint::average_strength(scene, file.network);
 
     Provenance provenance = file.provenance;
     provenance.program.push_back(program.name);
     provenance.version.emplace_back(version());
-    provenance.input_sha256.push_back(sha256_of(input));
+    provenance.input_sha256.push_back(store::sha256_of(input));
     provenance.options.emplace_back();
-    write_joints(arguments.output(), provenance, file.network, joints);
+    store::write_joints(arguments.output(), provenance, file.network, joints);
     if (!arguments.quiet())
         report(file.network, joints);
 }

@@ -12,7 +12,7 @@
 #include <limits>
 #include <set>
 
-namespace jointcreep
+namespace jointcreep::analysis
 {
 
 using mechanics::Vector2d;
@@ -131,8 +131,9 @@ std::vector<Index> material_of_contacts(const Scene& scene, const Network& netwo
 {
     std::vector<Index> number;
     for (const Index edge : mesh.contact_edge)
-        number.push_back(static_cast<Index>(&material_of(scene, network, static_cast<std::size_t>(edge)) -
-                                            scene.joint_materials.data()));
+        number.push_back(
+            static_cast<Index>(&joint::material_of(scene, network, static_cast<std::size_t>(edge)) -
+                               scene.joint_materials.data()));
     return number;
 }
 
@@ -761,4 +762,4 @@ void Analysis::record(const std::string& event, bool with_state)
         recorder_.record_state(result_, now_, event, rock_);
 }
 
-} // namespace jointcreep
+} // namespace jointcreep::analysis

@@ -20,7 +20,7 @@
 #include <optional>
 #include <string>
 
-namespace jointcreep
+namespace jointcreep::analysis
 {
 
 // What is to be recorded besides histories and the states at dates; 0 is never.
@@ -148,4 +148,4 @@ private:
     double largest_energy_ = 0; // of its parts
 };
 
-} // namespace jointcreep
+} // namespace jointcreep::analysis

@@ -1,6 +1,6 @@
 #include "analysis/safety.hpp"
 
-namespace jointcreep
+namespace jointcreep::analysis
 {
 
 Bracket bracket_of(const std::function<Ending(double factor)>& trial, double width)
@@ -25,4 +25,4 @@ Bracket bracket_of(const std::function<Ending(double factor)>& trial, double wid
     return found;
 }
 
-} // namespace jointcreep
+} // namespace jointcreep::analysis

@@ -8,7 +8,7 @@
 #include <functional>
 #include <optional>
 
-namespace jointcreep
+namespace jointcreep::analysis
 {
 
 // How a run ends: every equilibrium found; rock seen to slide or fall; or the search for one given up.
@@ -24,4 +24,4 @@ struct Bracket {
 // than `width` times its lower end. What is undecided counts as not standing.
 Bracket bracket_of(const std::function<Ending(double factor)>& trial, double width);
 
-} // namespace jointcreep
+} // namespace jointcreep::analysis

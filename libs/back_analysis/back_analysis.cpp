@@ -21,7 +21,7 @@ constexpr double usual_deviation = 1e-3; // where none is given: all alike [m]
 // Shares of rows of the history in a value.
 using Rows = std::vector<std::pair<std::size_t, double>>;
 
-[[noreturn]] void refuse(const Scene& scene, const Measurement& measurement, const std::string& why)
+[[noreturn]] void refuse(const Scene& scene, const scene::Measurement& measurement, const std::string& why)
 {
     throw input_error("line " + std::to_string(measurement.line) + ": point \"" +
                       scene.points[measurement.point].name + "\" on day " +
@@ -59,7 +59,7 @@ double bend(const History& history, const Rows& rows, std::size_t point, int com
     return std::abs(second) / 2 * rows[0].second * rows[1].second * after * after;
 }
 
-double deviation_of(const Measurement& measurement)
+double deviation_of(const scene::Measurement& measurement)
 {
     return measurement.deviation.value_or(usual_deviation);
 }
@@ -73,11 +73,12 @@ double deviation_of(const Measurement& measurement)
 class Whitening
 {
 public:
-    Whitening(const Scene& scene, const std::vector<Measurement>& measurements, bool since_first_reading)
+    Whitening(const Scene& scene, const std::vector<scene::Measurement>& measurements,
+              bool since_first_reading)
     {
         std::map<std::pair<std::size_t, int>, std::vector<std::size_t>> places;
         for (std::size_t m = 0; m < measurements.size(); ++m) {
-            const Measurement& measurement = measurements[m];
+            const scene::Measurement& measurement = measurements[m];
             if (!since_first_reading) {
                 readings_.push_back(m);
                 continue;
@@ -128,7 +129,7 @@ public:
     }
 
 private:
-    static bool is_first(const Scene& scene, const Measurement& measurement)
+    static bool is_first(const Scene& scene, const scene::Measurement& measurement)
     {
         constexpr double rounding = 1e-3; // [s]
         return std::abs(measurement.time - scene.points[measurement.point].first_reading) < rounding &&
@@ -147,14 +148,14 @@ private:
 
 Prediction predict(const Scene& scene, const History& history,
                    const std::vector<std::vector<Eigen::Vector2d>>& sensitivities,
-                   const std::vector<Measurement>& measurements, bool since_first_reading)
+                   const std::vector<scene::Measurement>& measurements, bool since_first_reading)
 {
     const std::size_t points = history.point.size();
     Prediction found;
     found.sensitivity.resize(static_cast<Eigen::Index>(measurements.size()),
                              static_cast<Eigen::Index>(sensitivities.size()));
     for (std::size_t m = 0; m < measurements.size(); ++m) {
-        const Measurement& measurement = measurements[m];
+        const scene::Measurement& measurement = measurements[m];
         const double day = measurement.time / unit::day;
         Rows rows = rows_at(history, day, measurement.is_before_stage);
         for (const auto& [row, share] : rows)
@@ -184,11 +185,12 @@ Prediction predict(const Scene& scene, const History& history,
 }
 
 Found fit(const Scene& scene, const Network& network, const EquivalentJoints& joints,
-          const std::vector<Measurement>& measurements, const Settings& settings, const RunObserver& observe)
+          const std::vector<scene::Measurement>& measurements, const Settings& settings,
+          const RunObserver& observe)
 {
     const auto n = static_cast<Eigen::Index>(settings.factors.size());
     VectorXd start(n), low(n), high(n);
-    Recording recording;
+    analysis::Recording recording;
     for (Eigen::Index i = 0; i < n; ++i) {
         const Factor& factor = settings.factors[static_cast<std::size_t>(i)];
         recording.parameters.push_back(factor.parameter);
@@ -226,8 +228,8 @@ Found fit(const Scene& scene, const Network& network, const EquivalentJoints& jo
         for (std::size_t i = 0; i < factors.size(); ++i)
             sensitivity::scale(stiffer, changed.in_situ_stress, settings.factors[i].parameter, factors[i]);
         try {
-            Analysis analysis(changed, network, stiffer, settings.threads, recording,
-                              [](double, const std::string&) {});
+            analysis::Analysis analysis(changed, network, stiffer, settings.threads, recording,
+                                        [](double, const std::string&) {});
             analysis.run();
             Prediction found = predict(scene, analysis.result().history, analysis.sensitivities(),
                                        measurements, settings.since_first_reading);
@@ -250,7 +252,7 @@ Found fit(const Scene& scene, const Network& network, const EquivalentJoints& jo
             if (is_first)
                 throw;
             without_answer.push_back({factors, error.what()});
-        } catch (const unstable_step& error) {
+        } catch (const analysis::unstable_step& error) {
             if (is_first)
                 throw;
             without_answer.push_back({factors, error.what()});

@@ -56,7 +56,7 @@ using RunObserver = std::function<void(int run, const std::vector<double>& facto
 // where there is no equilibrium at the start. Elsewhere in the search factors without an equilibrium, or with
 // which the scene's creep step is not stable, are kept away from; anything else that a run refuses ends it.
 Found fit(const Scene& scene, const Network& network, const EquivalentJoints& joints,
-          const std::vector<Measurement>& measurements, const Settings& settings,
+          const std::vector<scene::Measurement>& measurements, const Settings& settings,
           const RunObserver& observe = {});
 
 // What an analysis has for the measurements [m], and their sensitivities, [measurement, parameter].
@@ -67,6 +67,6 @@ struct Prediction {
 };
 Prediction predict(const Scene& scene, const History& history,
                    const std::vector<std::vector<Eigen::Vector2d>>& sensitivities,
-                   const std::vector<Measurement>& measurements, bool since_first_reading);
+                   const std::vector<scene::Measurement>& measurements, bool since_first_reading);
 
 } // namespace jointcreep::back_analysis

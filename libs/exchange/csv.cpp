@@ -5,7 +5,7 @@
 #include <array>
 #include <string_view>
 
-namespace jointcreep
+namespace jointcreep::exchange
 {
 
 namespace
@@ -188,4 +188,4 @@ std::string histories_csv(const History& history)
     return table;
 }
 
-} // namespace jointcreep
+} // namespace jointcreep::exchange

@@ -10,7 +10,7 @@
 
 #include <string>
 
-namespace jointcreep
+namespace jointcreep::exchange
 {
 
 // One row a joint trace: set, number (of its joint within the set), x1_m, y1_m, x2_m, y2_m.
@@ -27,4 +27,4 @@ std::string edges_csv(const Network& network, const EquivalentJoints* equivalent
 // in-situ equilibrium), A_present (0 once removed).
 std::string histories_csv(const History& history);
 
-} // namespace jointcreep
+} // namespace jointcreep::exchange

@@ -9,7 +9,7 @@
 #include <numeric>
 #include <string_view>
 
-namespace jointcreep
+namespace jointcreep::exchange
 {
 
 namespace
@@ -401,4 +401,4 @@ std::string contacts_vtu(const Result& result, std::size_t state)
     return grid.finish();
 }
 
-} // namespace jointcreep
+} // namespace jointcreep::exchange

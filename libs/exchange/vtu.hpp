@@ -13,7 +13,7 @@
 #include <cstddef>
 #include <string>
 
-namespace jointcreep
+namespace jointcreep::exchange
 {
 
 // One polygon a block; cell i is block i. A hole is joined to the outer ring by a bridge without width, there
@@ -40,4 +40,4 @@ std::string zones_vtu(const Network& network, const Result& result, std::size_t 
 // status (ContactStatus).
 std::string contacts_vtu(const Result& result, std::size_t state);
 
-} // namespace jointcreep
+} // namespace jointcreep::exchange

@@ -8,7 +8,7 @@
 #include <string_view>
 #include <utility>
 
-namespace jointcreep
+namespace jointcreep::exchange
 {
 
 namespace
@@ -265,4 +265,4 @@ std::string contacts_xdmf(const Result& result, const std::string& result_file)
     return text.finish();
 }
 
-} // namespace jointcreep
+} // namespace jointcreep::exchange

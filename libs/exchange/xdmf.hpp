@@ -15,7 +15,7 @@
 
 #include <string>
 
-namespace jointcreep
+namespace jointcreep::exchange
 {
 
 // The zones, at their positions at the start. `result_file` is where readers find result.h5: a path relative
@@ -28,4 +28,4 @@ std::string zones_xdmf(const Result& result, const std::string& result_file);
 // vtkGhostType. A result without contacts throws input_error too.
 std::string contacts_xdmf(const Result& result, const std::string& result_file);
 
-} // namespace jointcreep
+} // namespace jointcreep::exchange

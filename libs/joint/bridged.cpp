@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace jointcreep
+namespace jointcreep::joint
 {
 
 namespace
@@ -193,4 +193,4 @@ JointChain bridged(const JointChain& joint, const Bridging& bridging)
     return chain;
 }
 
-} // namespace jointcreep
+} // namespace jointcreep::joint

@@ -18,7 +18,7 @@
 
 #include <vector>
 
-namespace jointcreep
+namespace jointcreep::joint
 {
 
 enum class Direction { normal, shear };
@@ -68,4 +68,4 @@ struct JointChain {
 // unit for every one of the joint, and one for its Maxwell dashpot, whose flow the bridges bring to an end.
 JointChain bridged(const JointChain& joint, const Bridging& bridging);
 
-} // namespace jointcreep
+} // namespace jointcreep::joint

@@ -12,7 +12,7 @@
 #include <map>
 #include <tuple>
 
-namespace jointcreep
+namespace jointcreep::joint
 {
 
 namespace
@@ -537,4 +537,4 @@ EquivalentJoints average_strength(const Scene& scene, const Network& network)
     return joints;
 }
 
-} // namespace jointcreep
+} // namespace jointcreep::joint

@@ -7,7 +7,7 @@
 #include "model/network.hpp"
 #include "model/scene.hpp"
 
-namespace jointcreep
+namespace jointcreep::joint
 {
 
 struct Strength {
@@ -50,4 +50,4 @@ EquivalentJoints average_strength(const Scene& scene, const Network& network);
 // between two rocks the softer of both in normal direction; or what a boundary rests on.
 const JointMaterial& material_of(const Scene& scene, const Network& network, std::size_t edge);
 
-} // namespace jointcreep
+} // namespace jointcreep::joint

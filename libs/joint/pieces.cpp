@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace jointcreep
+namespace jointcreep::joint
 {
 
 namespace
@@ -137,4 +137,4 @@ double persistence_error(const ProbabilityLaw& length, double persistence,
     return total > 0 ? std::sqrt(variance) / total : 0.0;
 }
 
-} // namespace jointcreep
+} // namespace jointcreep::joint

@@ -5,7 +5,7 @@
 #include "model/network.hpp"
 #include "model/scene.hpp"
 
-namespace jointcreep
+namespace jointcreep::joint
 {
 
 // The pieces of all joints inside the section, its outline without its holes, in the joints' order and along
@@ -22,4 +22,4 @@ Pieces pieces_of(const Joints& joints, const Polygon& outline, const std::vector
 double persistence_error(const ProbabilityLaw& length, double persistence,
                          const std::vector<double>& line_length);
 
-} // namespace jointcreep
+} // namespace jointcreep::joint

@@ -7,7 +7,7 @@
 
 #include <numbers>
 
-namespace jointcreep
+namespace jointcreep::sampling
 {
 
 namespace
@@ -102,4 +102,4 @@ double expected_p10(const JointSet& set, const Scene& scene, const Eigen::Vector
     return density_of(set, scene).p21 / rose.in_section() * rose.along(direction);
 }
 
-} // namespace jointcreep
+} // namespace jointcreep::sampling

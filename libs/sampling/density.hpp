@@ -17,7 +17,7 @@
 
 #include <Eigen/Core>
 
-namespace jointcreep
+namespace jointcreep::sampling
 {
 
 // Expected densities of a set's joint traces in the section and, where the set has an orientation in space,
@@ -37,4 +37,4 @@ SetDensity density_of(const JointSet& set, const Scene& scene);
 // Joint traces that a scanline along a unit vector of the section's frame meets, per length [1/m].
 double expected_p10(const JointSet& set, const Scene& scene, const Eigen::Vector3d& direction);
 
-} // namespace jointcreep
+} // namespace jointcreep::sampling

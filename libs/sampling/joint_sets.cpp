@@ -14,7 +14,7 @@
 #include <functional>
 #include <limits>
 
-namespace jointcreep
+namespace jointcreep::sampling
 {
 
 namespace
@@ -489,4 +489,4 @@ Joints sample_joints(const Scene& scene, std::uint64_t seed, std::int32_t realiz
     return joints;
 }
 
-} // namespace jointcreep
+} // namespace jointcreep::sampling

@@ -50,7 +50,7 @@
 
 #include <cstdint>
 
-namespace jointcreep
+namespace jointcreep::sampling
 {
 
 // A set's region may cut a line into pieces, each a joint of its own: number = line + piece * this, pieces
@@ -72,4 +72,4 @@ std::vector<std::size_t> sampling_order(const std::vector<JointSet>& sets);
 // too large, the origin is too many spacings away, or sets end at each other in a circle.
 Joints sample_joints(const Scene& scene, std::uint64_t seed, std::int32_t realization);
 
-} // namespace jointcreep
+} // namespace jointcreep::sampling

@@ -14,7 +14,7 @@
 #include <numbers>
 #include <utility>
 
-namespace jointcreep
+namespace jointcreep::sampling
 {
 
 namespace
@@ -218,4 +218,4 @@ double draw_biased(const ProbabilityLaw& law, int order, Stream& stream)
     return law.mean;
 }
 
-} // namespace jointcreep
+} // namespace jointcreep::sampling

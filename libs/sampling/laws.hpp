@@ -7,7 +7,7 @@
 
 #include <Eigen/Core>
 
-namespace jointcreep
+namespace jointcreep::sampling
 {
 
 // Uniform in [0, 1).
@@ -44,4 +44,4 @@ double draw_size_biased(const ProbabilityLaw& law, Stream& stream);
 // From the density x^order f(x) / E[x^order]; order 0 is draw_positive, order 1 draw_size_biased.
 double draw_biased(const ProbabilityLaw& law, int order, Stream& stream);
 
-} // namespace jointcreep
+} // namespace jointcreep::sampling

@@ -13,7 +13,7 @@
 #include <numbers>
 #include <numeric>
 
-namespace jointcreep
+namespace jointcreep::sampling
 {
 
 using Eigen::Vector2d, Eigen::Vector3d;
@@ -276,4 +276,4 @@ Rose Orientations::rose() const
     return rose;
 }
 
-} // namespace jointcreep
+} // namespace jointcreep::sampling

@@ -21,7 +21,7 @@
 
 #include <vector>
 
-namespace jointcreep
+namespace jointcreep::sampling
 {
 
 // The part in the section of a joint plane's upward unit normal: n_p = n - (n . e_z) e_z, in the section's x
@@ -89,4 +89,4 @@ private:
     Eigen::Vector2d mean_trace_;
 };
 
-} // namespace jointcreep
+} // namespace jointcreep::sampling

@@ -6,7 +6,7 @@
 
 #include <string>
 
-namespace jointcreep
+namespace jointcreep::sampling
 {
 
 inline std::string quoted(const JointSet& set)
@@ -14,4 +14,4 @@ inline std::string quoted(const JointSet& set)
     return "joint set \"" + set.name + "\"";
 }
 
-} // namespace jointcreep
+} // namespace jointcreep::sampling

@@ -4,7 +4,7 @@
 
 #include <cassert>
 
-namespace jointcreep
+namespace jointcreep::sampling
 {
 
 namespace
@@ -51,4 +51,4 @@ Stream::result_type Stream::operator()()
     return static_cast<result_type>(words[1]) << 32U | words[0];
 }
 
-} // namespace jointcreep
+} // namespace jointcreep::sampling

@@ -14,7 +14,7 @@
 #include <limits>
 #include <string_view>
 
-namespace jointcreep
+namespace jointcreep::sampling
 {
 
 // What a stream is drawn for. The numbers are part of every network ever made: never change one.
@@ -64,4 +64,4 @@ private:
     bool has_waiting_ = false;
 };
 
-} // namespace jointcreep
+} // namespace jointcreep::sampling

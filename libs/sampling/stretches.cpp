@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace jointcreep
+namespace jointcreep::sampling
 {
 
 using Eigen::Vector2d;
@@ -111,4 +111,4 @@ std::vector<Interval> turned_round(const std::vector<Interval>& stretches)
     return turned;
 }
 
-} // namespace jointcreep
+} // namespace jointcreep::sampling

@@ -6,7 +6,7 @@
 
 #include <vector>
 
-namespace jointcreep
+namespace jointcreep::sampling
 {
 
 // By which joints go past where they are to end: 1e-6 of the polygon's size [m].
@@ -25,4 +25,4 @@ std::vector<Interval> overlap(const std::vector<Interval>& stretches, const Inte
 // Stretches as the line's other direction counts.
 std::vector<Interval> turned_round(const std::vector<Interval>& stretches);
 
-} // namespace jointcreep
+} // namespace jointcreep::sampling

@@ -11,7 +11,7 @@
 #include <cmath>
 #include <iterator>
 
-namespace jointcreep
+namespace jointcreep::sampling
 {
 
 namespace bg = boost::geometry;
@@ -93,4 +93,4 @@ double TraceIndex::end_of(const Line& line, double reach, double probability,
     return reach;
 }
 
-} // namespace jointcreep
+} // namespace jointcreep::sampling

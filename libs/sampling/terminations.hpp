@@ -8,7 +8,7 @@
 
 #include <memory>
 
-namespace jointcreep
+namespace jointcreep::sampling
 {
 
 // Joint traces, found by place.
@@ -31,4 +31,4 @@ private:
     std::unique_ptr<Tree> tree_;
 };
 
-} // namespace jointcreep
+} // namespace jointcreep::sampling

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <charconv>
 
-namespace jointcreep
+namespace jointcreep::scene
 {
 
 namespace
@@ -119,4 +119,4 @@ double Csv::number(const Row& row, std::string_view name, const Range& range) co
     return value;
 }
 
-} // namespace jointcreep
+} // namespace jointcreep::scene

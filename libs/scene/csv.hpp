@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-namespace jointcreep
+namespace jointcreep::scene
 {
 
 [[noreturn]] void refuse_line(std::size_t line, const std::string& what);
@@ -42,4 +42,4 @@ private:
     std::size_t head_ = 0;
 };
 
-} // namespace jointcreep
+} // namespace jointcreep::scene

@@ -11,7 +11,7 @@
 #include <cmath>
 #include <set>
 
-namespace jointcreep
+namespace jointcreep::scene
 {
 
 namespace
@@ -228,4 +228,4 @@ void correct_for_scanline(std::vector<MeasuredPole>& poles, const Scanline& scan
     }
 }
 
-} // namespace jointcreep
+} // namespace jointcreep::scene

@@ -12,7 +12,7 @@
 #include <string>
 #include <string_view>
 
-namespace jointcreep
+namespace jointcreep::scene
 {
 
 // Columns dip_deg, dip_direction_deg and, if wanted, weight.
@@ -33,4 +33,4 @@ std::vector<MappedTrace> mapped_traces(std::string_view text, const TraceFilter&
 // [rad] as if they were just that near.
 void correct_for_scanline(std::vector<MeasuredPole>& poles, const Scanline& scanline, double blind_zone);
 
-} // namespace jointcreep
+} // namespace jointcreep::scene

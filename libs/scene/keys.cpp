@@ -8,7 +8,7 @@
 #include <map>
 #include <numeric>
 
-namespace jointcreep
+namespace jointcreep::scene
 {
 namespace
 {
@@ -346,4 +346,4 @@ std::string nearest(const std::string& name, const std::vector<std::string>& kno
     return best;
 }
 
-} // namespace jointcreep
+} // namespace jointcreep::scene

@@ -21,7 +21,7 @@
 #include <type_traits>
 #include <utility>
 
-namespace jointcreep
+namespace jointcreep::scene
 {
 
 // A key's unit as the user sees it, and what one of it is in SI units.
@@ -312,4 +312,4 @@ void read_table(const Table<Record>& table, const TomlValue& value, const Place&
 // The name among `known` that is most like `name`, or "" if none is near; for "did you mean".
 std::string nearest(const std::string& name, const std::vector<std::string>& known);
 
-} // namespace jointcreep
+} // namespace jointcreep::scene

@@ -10,7 +10,7 @@
 #include <set>
 #include <tuple>
 
-namespace jointcreep
+namespace jointcreep::scene
 {
 
 namespace
@@ -51,7 +51,7 @@ double length_of(const Csv& csv, const Csv::Row& row, const Column& column, cons
 
 const Range deviations = above(0).to(farthest);
 
-std::string names(const std::string& name)
+std::string column_names(const std::string& name)
 {
     return name + "_m, " + name + "_cm or " + name + "_mm";
 }
@@ -98,7 +98,7 @@ std::vector<Measurement> listed(const Csv& csv, const Scene& scene)
 {
     const Column displacement = column_of(csv, "displacement"), sigma = column_of(csv, "sigma");
     if (displacement.name.empty())
-        refuse_line(csv.head(), "wanted a column " + names("displacement"));
+        refuse_line(csv.head(), "wanted a column " + column_names("displacement"));
     for (const char* needed : {"time_day", "component"})
         csv.column(needed);
     csv.allow_only({"time_day", "event", "point", "component", displacement.name,
@@ -201,7 +201,7 @@ std::vector<Measurement> creep_curve_in_csv(std::string_view text)
     const Csv csv(text);
     const Column displacement = column_of(csv, "displacement"), sigma = column_of(csv, "sigma");
     if (displacement.name.empty())
-        refuse_line(csv.head(), "wanted a column " + names("displacement"));
+        refuse_line(csv.head(), "wanted a column " + column_names("displacement"));
     csv.allow_only({"time_day", displacement.name, sigma.name.empty() ? "sigma_mm" : sigma.name});
     std::vector<Measurement> measurements;
     for (const Csv::Row& row : csv.rows) {
@@ -223,4 +223,4 @@ std::vector<Measurement> creep_curve_in_csv(std::string_view text)
     return measurements;
 }
 
-} // namespace jointcreep
+} // namespace jointcreep::scene

@@ -8,7 +8,7 @@
 #include <optional>
 #include <string_view>
 
-namespace jointcreep
+namespace jointcreep::scene
 {
 
 struct Measurement {
@@ -33,4 +33,4 @@ std::vector<Measurement> measurements_in_csv(std::string_view text, const Scene&
 // Times rise.
 std::vector<Measurement> creep_curve_in_csv(std::string_view text);
 
-} // namespace jointcreep
+} // namespace jointcreep::scene

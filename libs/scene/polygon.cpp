@@ -6,7 +6,7 @@
 #include <limits>
 #include <numeric>
 
-namespace jointcreep
+namespace jointcreep::scene
 {
 namespace
 {
@@ -166,4 +166,4 @@ double length_on_sides(const Polygon& polygon, const Point& from, const Point& t
     return sum;
 }
 
-} // namespace jointcreep
+} // namespace jointcreep::scene

@@ -4,7 +4,7 @@
 
 #include "model/scene.hpp"
 
-namespace jointcreep
+namespace jointcreep::scene
 {
 
 // What is wrong with a polygon, in words, or "": it wants three corners at least, none twice, and sides that
@@ -29,4 +29,4 @@ double length_on_sides(const Polygon& polygon, const Eigen::Vector2d& from, cons
 double common_length(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c,
                      const Eigen::Vector2d& d, double tolerance);
 
-} // namespace jointcreep
+} // namespace jointcreep::scene

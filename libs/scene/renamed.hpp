@@ -6,7 +6,7 @@
 #include <array>
 #include <string_view>
 
-namespace jointcreep
+namespace jointcreep::scene
 {
 
 struct Renamed {
@@ -28,4 +28,4 @@ inline std::string_view new_name_of(std::string_view word)
     return found == renamed_words.end() ? std::string_view() : found->now;
 }
 
-} // namespace jointcreep
+} // namespace jointcreep::scene

@@ -12,7 +12,7 @@
 #include <filesystem>
 #include <memory>
 
-namespace jointcreep
+namespace jointcreep::scene
 {
 namespace
 {
@@ -256,4 +256,4 @@ std::string read_scene_text(const std::string& path)
     return text;
 }
 
-} // namespace jointcreep
+} // namespace jointcreep::scene

@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-namespace jointcreep
+namespace jointcreep::scene
 {
 
 // Reads and checks a whole scene. `name` is what messages call the text: a file, or a file and its dataset.
@@ -29,4 +29,4 @@ std::string scene_keys_markdown();
 // written joint_set.spacing; required is yes, no or together (all keys marked so in one table, or none).
 std::string scene_keys_tsv();
 
-} // namespace jointcreep
+} // namespace jointcreep::scene

@@ -8,7 +8,7 @@
 #include <map>
 #include <set>
 
-namespace jointcreep
+namespace jointcreep::scene
 {
 namespace
 {
@@ -672,4 +672,4 @@ void check_scene(const Scene& scene, const TomlValue& root, const Reading& readi
     Checker(scene, root, reading).check();
 }
 
-} // namespace jointcreep
+} // namespace jointcreep::scene

@@ -5,10 +5,10 @@
 
 #include "scene/keys.hpp"
 
-namespace jointcreep
+namespace jointcreep::scene
 {
 
 // `root` is the text the scene was read from: it knows lines, and which keys were given. Throws input_error.
 void check_scene(const Scene& scene, const TomlValue& root, const Reading& reading);
 
-} // namespace jointcreep
+} // namespace jointcreep::scene

@@ -3,7 +3,7 @@
 #include "scene/scene.hpp"
 #include "scene/scene_keys.hpp"
 
-namespace jointcreep
+namespace jointcreep::scene
 {
 namespace
 {
@@ -197,4 +197,4 @@ std::string scene_keys_tsv()
     return rows;
 }
 
-} // namespace jointcreep
+} // namespace jointcreep::scene

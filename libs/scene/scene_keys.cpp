@@ -3,7 +3,7 @@
 #include "model/error.hpp"
 #include "scene/field_data.hpp"
 
-namespace jointcreep
+namespace jointcreep::scene
 {
 namespace
 {
@@ -1110,4 +1110,4 @@ MappedSet mapped_set(const WrittenMapped& written, const TomlValue& table, const
     }
 }
 
-} // namespace jointcreep
+} // namespace jointcreep::scene

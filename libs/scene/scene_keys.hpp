@@ -4,7 +4,7 @@
 
 #include "scene/keys.hpp"
 
-namespace jointcreep
+namespace jointcreep::scene
 {
 
 struct Schedule {
@@ -98,4 +98,4 @@ const SceneTables& scene_tables();
 // The mapped set that a table of the scene, at `place`, stands for, from the file that it names.
 MappedSet mapped_set(const WrittenMapped& written, const TomlValue& table, const Place& place);
 
-} // namespace jointcreep
+} // namespace jointcreep::scene

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-namespace jointcreep
+namespace jointcreep::scene
 {
 
 // Allowed values, in the unit that the user writes: from(0) and above(0), then .to(1) or .below(1). Every range
@@ -65,4 +65,4 @@ inline Words<CreepScheme> creep_scheme_words()
             {"fitted", CreepScheme::fitted}};
 }
 
-} // namespace jointcreep
+} // namespace jointcreep::scene

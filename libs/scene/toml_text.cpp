@@ -37,7 +37,7 @@ thread_local std::string text_name;
 #include <toml++/toml.h>
 #pragma GCC diagnostic pop
 
-namespace jointcreep
+namespace jointcreep::scene
 {
 namespace
 {
@@ -317,4 +317,4 @@ TomlValue parse_toml(std::string_view text, const std::string& name)
     }
 }
 
-} // namespace jointcreep
+} // namespace jointcreep::scene

@@ -2,6 +2,8 @@
 
 #pragma once
 
+#include "model/error.hpp"
+
 #include <chrono>
 #include <cstdint>
 #include <string>
@@ -9,7 +11,7 @@
 #include <variant>
 #include <vector>
 
-namespace jointcreep
+namespace jointcreep::scene
 {
 
 struct TomlEntry;
@@ -35,8 +37,9 @@ struct TomlEntry {
 
 // The value as messages show it: short, on one line.
 std::string shown(const TomlValue& value);
+using jointcreep::shown; // of numbers
 
 // Throws input_error naming the line on anything that is not TOML; see also parse_scene.
 TomlValue parse_toml(std::string_view text, const std::string& name);
 
-} // namespace jointcreep
+} // namespace jointcreep::scene

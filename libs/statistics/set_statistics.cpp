@@ -47,7 +47,7 @@ double mean_of(const std::vector<double>& values)
 // The pole of a plane in the section's frame, as in the file.
 Vector3d pole_of(double dip, double dip_direction, double azimuth)
 {
-    const Vector2d in_section = section_normal(dip, dip_direction, azimuth);
+    const Vector2d in_section = sampling::section_normal(dip, dip_direction, azimuth);
     return {in_section.x(), in_section.y(), std::sin(dip) * std::sin(dip_direction - azimuth)};
 }
 
@@ -104,9 +104,9 @@ Scanline scanline_of(const Window& window, const MeanTrace& mean)
 // Number of the line, without that of its piece.
 Index line_of(Index number)
 {
-    const std::int64_t half = piece_step / 2;
-    const std::int64_t within = (static_cast<std::int64_t>(number) + half) % piece_step;
-    return static_cast<Index>((within < 0 ? within + piece_step : within) - half);
+    const std::int64_t half = sampling::piece_step / 2;
+    const std::int64_t within = (static_cast<std::int64_t>(number) + half) % sampling::piece_step;
+    return static_cast<Index>((within < 0 ? within + sampling::piece_step : within) - half);
 }
 
 struct InCircle {
@@ -574,7 +574,7 @@ void add_densities(Statistics& statistics, const Scene& scene, const JointSet& s
                 1 / std::cos(std::min(std::abs(turn), 85 * pi / 180)) / static_cast<double>(turns.size());
         p21 = k * mean.normal_part / positive_moments(set.spacing).mean * stretched;
     } else {
-        p21 = density_of(set, scene).p21;
+        p21 = sampling::density_of(set, scene).p21;
     }
     const double mean_length = set.length ? positive_moments(*set.length).mean : 0;
     const double area = window.area();
@@ -680,10 +680,10 @@ std::vector<double> chords_as_uniform(const ProbabilityLaw& diameter, const std:
 }
 
 // Angles from the mean trace by a set's law in space, which a section meets by |n_p|.
-std::vector<double> turns_as_uniform(const Orientations& orientations, const MeanTrace& mean,
+std::vector<double> turns_as_uniform(const sampling::Orientations& orientations, const MeanTrace& mean,
                                      const std::vector<double>& turns)
 {
-    const Rose rose = orientations.rose();
+    const sampling::Rose rose = orientations.rose();
     std::vector<std::pair<double, double>> law; // angle, share
     double total = 0;
     for (std::size_t i = 0; i < rose.pole.size(); ++i) {
@@ -712,7 +712,7 @@ void add_traces(Statistics& statistics, const Scene& scene, const JointSet& set,
 {
     const bool are_discs = set.kind == SetKind::discs, are_whole = !set.region && set.terminates_at.empty();
     const Scanline scanline = scanline_of(window, mean);
-    const SetDensity wanted = density_of(set, scene);
+    const sampling::SetDensity wanted = sampling::density_of(set, scene);
     std::map<Index, double> inside; // length of each trace [m]
     std::map<Index, bool> has_point;
     std::vector<double> turns, lengths;
@@ -754,7 +754,8 @@ void add_traces(Statistics& statistics, const Scene& scene, const JointSet& set,
             row.is_exact = std::all_of(turns.begin(), turns.end(),
                                        [](double turn) { return std::abs(turn) < rounding; });
         } else if (is_enough) {
-            const Fit fit = kolmogorov_smirnov(turns_as_uniform(Orientations(set, scene), mean, turns));
+            const Fit fit =
+                kolmogorov_smirnov(turns_as_uniform(sampling::Orientations(set, scene), mean, turns));
             row.achieved = fit.distance;
             row.p_value = fit.p_value;
         }
@@ -790,7 +791,7 @@ void add_traces(Statistics& statistics, const Scene& scene, const JointSet& set,
                  .unit = "1/m",
                  .sample_size = crossings,
                  .target = are_ended ? std::optional<double>()
-                                     : expected_p10(set, scene, {across.x(), across.y(), 0})},
+                                     : sampling::expected_p10(set, scene, {across.x(), across.y(), 0})},
                 scanline.reach.high - scanline.reach.low);
 
     const ProbabilityLaw& size = are_discs ? *set.diameter : *set.length;
@@ -878,7 +879,7 @@ TraceRows trace_rows(const Joints& joints)
 
 MeanTrace mean_trace(const Scene& scene, const JointSet& set)
 {
-    const Vector2d trace = Orientations(set, scene).mean_trace();
+    const Vector2d trace = sampling::Orientations(set, scene).mean_trace();
     return {trace.normalized(), trace.norm()};
 }
 
@@ -915,8 +916,9 @@ std::vector<double> turns_by_law(const Scene& scene, const JointSet& set)
     }
     for (int i = 0; i < steps; ++i)
         for (int j = 0; j < steps; ++j)
-            add_plane(section_normal(quantile(*set.dip, share(i, steps)),
-                                     quantile(*set.dip_direction, share(j, steps)), *scene.azimuth));
+            add_plane(sampling::section_normal(quantile(*set.dip, share(i, steps)),
+                                               quantile(*set.dip_direction, share(j, steps)),
+                                               *scene.azimuth));
     return turns;
 }
 
@@ -937,11 +939,11 @@ void add_set(Statistics& statistics, const Scene& scene, const Joints& joints, c
     if (!set.poles.empty()) {
         JointSet plain = set;
         plain.density.reset();
-        mean.normal_part = positive_moments(set.spacing).mean / density_of(plain, scene).spacing;
+        mean.normal_part = positive_moments(set.spacing).mean / sampling::density_of(plain, scene).spacing;
     }
     if (set.density) {
         // The spacing's law is one of shape; its mean follows from the density.
-        const double in_section = density_of(set, scene).spacing;
+        const double in_section = sampling::density_of(set, scene).spacing;
         set.spacing = times(set.spacing, in_section * mean.normal_part / positive_moments(set.spacing).mean);
         set.density.reset();
     }

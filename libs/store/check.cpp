@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace jointcreep::schema
+namespace jointcreep::store::schema
 {
 
 namespace
@@ -155,4 +155,4 @@ Fault fault_in(const std::vector<Field>& fields, const std::vector<Invariant>& i
     return {};
 }
 
-} // namespace jointcreep::schema
+} // namespace jointcreep::store::schema

@@ -7,7 +7,7 @@
 #include <map>
 #include <optional>
 
-namespace jointcreep::schema
+namespace jointcreep::store::schema
 {
 
 // What is wrong, as a message without the file's name; nothing if all is well.
@@ -30,4 +30,4 @@ private:
 Fault fault_in(const std::vector<Field>& fields, const std::vector<Invariant>& invariants,
                Dimensions& dimensions);
 
-} // namespace jointcreep::schema
+} // namespace jointcreep::store::schema

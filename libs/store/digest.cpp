@@ -9,7 +9,7 @@
 #include <fstream>
 #include <memory>
 
-namespace jointcreep
+namespace jointcreep::store
 {
 
 std::string sha256_of(const std::string& path)
@@ -34,4 +34,4 @@ std::string sha256_of(const std::string& path)
     return text;
 }
 
-} // namespace jointcreep
+} // namespace jointcreep::store

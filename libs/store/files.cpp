@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-namespace jointcreep
+namespace jointcreep::store
 {
 
 using schema::Dimensions;
@@ -246,4 +246,4 @@ void write_checkpoint(const std::string& path, const Provenance& provenance, con
     write(path, FileKind::checkpoint, provenance, contents);
 }
 
-} // namespace jointcreep
+} // namespace jointcreep::store

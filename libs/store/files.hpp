@@ -16,7 +16,7 @@
 
 #include <string>
 
-namespace jointcreep
+namespace jointcreep::store
 {
 
 enum class FileKind { network, joints, result, checkpoint }; // each holds all of the one before
@@ -70,4 +70,4 @@ std::string sha256_of(const std::string& path);
 // docs/file-format.md, made from the schema.
 std::string schema_markdown();
 
-} // namespace jointcreep
+} // namespace jointcreep::store

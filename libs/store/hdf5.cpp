@@ -10,7 +10,7 @@
 #include <unistd.h>
 #include <zlib.h>
 
-namespace jointcreep::hdf5
+namespace jointcreep::store::hdf5
 {
 
 using schema::Dimensions;
@@ -483,4 +483,4 @@ std::uint64_t Source::natural(const std::string& attribute) const
     return value;
 }
 
-} // namespace jointcreep::hdf5
+} // namespace jointcreep::store::hdf5

@@ -11,7 +11,7 @@
 #include <set>
 #include <utility>
 
-namespace jointcreep::hdf5
+namespace jointcreep::store::hdf5
 {
 
 // An HDF5 object that is closed when this goes.
@@ -77,4 +77,4 @@ private:
     Object file_;
 };
 
-} // namespace jointcreep::hdf5
+} // namespace jointcreep::store::hdf5

@@ -2,7 +2,7 @@
 
 #include <sstream>
 
-namespace jointcreep
+namespace jointcreep::store
 {
 
 using schema::Field;
@@ -138,4 +138,4 @@ with h5py.File("result.h5") as file:
     return page.str();
 }
 
-} // namespace jointcreep
+} // namespace jointcreep::store

@@ -15,7 +15,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-namespace jointcreep
+namespace jointcreep::store
 {
 
 namespace
@@ -142,4 +142,4 @@ void check_writable(const std::string& path)
     }
 }
 
-} // namespace jointcreep
+} // namespace jointcreep::store

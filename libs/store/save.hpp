@@ -6,7 +6,7 @@
 #include <span>
 #include <string>
 
-namespace jointcreep
+namespace jointcreep::store
 {
 
 // Writes the bytes to PATH.partial-<random> beside `path`, syncs them, and renames that to `path`. On failure
@@ -14,4 +14,4 @@ namespace jointcreep
 // `path`. Only a killed program can leave a partial file behind.
 void save(const std::string& path, std::span<const std::byte> bytes);
 
-} // namespace jointcreep
+} // namespace jointcreep::store

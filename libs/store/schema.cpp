@@ -7,7 +7,7 @@
 #include <iterator>
 #include <numbers>
 
-namespace jointcreep::schema
+namespace jointcreep::store::schema
 {
 
 namespace
@@ -921,4 +921,4 @@ void resize(const Values& values, std::size_t count)
     std::visit([count](auto* place) { resize_array(*place, count); }, values);
 }
 
-} // namespace jointcreep::schema
+} // namespace jointcreep::store::schema

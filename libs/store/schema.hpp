@@ -13,7 +13,7 @@
 #include <span>
 #include <variant>
 
-namespace jointcreep::schema
+namespace jointcreep::store::schema
 {
 
 inline constexpr Index major_version = 2, minor_version = 0;
@@ -102,4 +102,4 @@ std::size_t components(const Values& values); // of one row: 1 to 4
 std::size_t rows(const Values& values);
 void resize(const Values& values, std::size_t rows); // of an array
 
-} // namespace jointcreep::schema
+} // namespace jointcreep::store::schema

@@ -11,6 +11,8 @@
 #include <numeric>
 
 using namespace jointcreep;
+using analysis::Analysis;
+using analysis::Recording;
 using namespace jointcreep::test;
 using Eigen::Vector2d;
 

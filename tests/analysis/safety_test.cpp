@@ -8,6 +8,7 @@
 #include <cmath>
 
 using namespace jointcreep;
+using namespace jointcreep::analysis;
 
 namespace
 {

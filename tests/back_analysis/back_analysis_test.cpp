@@ -12,6 +12,9 @@
 #include <random>
 
 using namespace jointcreep;
+using analysis::Analysis;
+using analysis::Recording;
+using scene::Measurement;
 using namespace jointcreep::test;
 using back_analysis::Found;
 using sensitivity::Parameter;

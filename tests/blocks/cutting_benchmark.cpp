@@ -149,8 +149,8 @@ try {
     if (argc != 3)
         throw std::runtime_error("usage: cutting_benchmark subdivision|cgal|geos SCENE.toml");
     const std::string method = argv[1];
-    const Scene scene = parse_scene(read_scene_text(argv[2]), argv[2]);
-    const blocks::Graph lines = lines_of(scene, sample_joints(scene, scene.seed, 0));
+    const Scene scene = scene::parse_scene(scene::read_scene_text(argv[2]), argv[2]);
+    const blocks::Graph lines = lines_of(scene, sampling::sample_joints(scene, scene.seed, 0));
     const double memory = most_memory();
     const std::clock_t start = std::clock();
     const std::size_t faces = method == "subdivision" ? by_subdivision(lines)

@@ -10,7 +10,7 @@
 
 #include <cstdlib>
 
-namespace jointcreep
+namespace jointcreep::exchange
 {
 namespace
 {
@@ -158,4 +158,4 @@ TEST(histories_csv, counts_anew_from_a_stage_that_resets)
 }
 
 } // namespace
-} // namespace jointcreep
+} // namespace jointcreep::exchange

@@ -15,7 +15,7 @@
 #include "model/network.hpp"
 #include "model/result.hpp"
 
-namespace jointcreep
+namespace jointcreep::exchange
 {
 
 inline Network small_network()
@@ -114,4 +114,4 @@ inline Result small_result()
     return result;
 }
 
-} // namespace jointcreep
+} // namespace jointcreep::exchange

@@ -107,8 +107,8 @@ Matrix matrix_of(const Assembly& assembly, const std::vector<implicit::Tangent>&
 
 void measure(const std::string& path, double zone_size)
 {
-    const JointsFile file = read_joints(path);
-    Scene scene = parse_scene(file.provenance.scene, path + ": /scene");
+    const store::JointsFile file = store::read_joints(path);
+    Scene scene = scene::parse_scene(file.provenance.scene, path + ": /scene");
     scene.zone_size = zone_size;
     const Mesh mesh = zoning::zone(scene, file.network.blocks);
     const Assembly assembly = mechanics::assemble(scene, file.network, file.equivalent, mesh);

@@ -13,6 +13,7 @@
 #include <numbers>
 
 using namespace jointcreep;
+using namespace jointcreep::joint;
 using namespace jointcreep::unit;
 
 namespace

@@ -12,12 +12,13 @@
 #include <numbers>
 
 using namespace jointcreep;
+using namespace jointcreep::joint;
 using namespace jointcreep::unit;
 
 namespace
 {
 
-constexpr Strength joint{.1 * MPa, 30 * deg, 0, 4 * deg};
+constexpr Strength open_joint{.1 * MPa, 30 * deg, 0, 4 * deg};
 constexpr Strength rock{2 * MPa, 50 * deg, 1 * MPa, 12 * deg};
 
 // Two unit squares of two rocks on top of each other, the joint between them the first edge; the second edge
@@ -174,10 +175,10 @@ TEST(equivalent, a_set_has_another_material_in_another_rock)
 
 TEST(Average, IsTheJointAtPersistence1AndTheRockAt0)
 {
-    const Strength whole = average(joint, rock, 1), none = average(joint, rock, 0);
-    EXPECT_DOUBLE_EQ(whole.cohesion, joint.cohesion);
-    EXPECT_DOUBLE_EQ(whole.friction_angle, joint.friction_angle);
-    EXPECT_DOUBLE_EQ(whole.tensile_strength, joint.tensile_strength);
+    const Strength whole = average(open_joint, rock, 1), none = average(open_joint, rock, 0);
+    EXPECT_DOUBLE_EQ(whole.cohesion, open_joint.cohesion);
+    EXPECT_DOUBLE_EQ(whole.friction_angle, open_joint.friction_angle);
+    EXPECT_DOUBLE_EQ(whole.tensile_strength, open_joint.tensile_strength);
     EXPECT_DOUBLE_EQ(none.cohesion, rock.cohesion);
     EXPECT_DOUBLE_EQ(none.friction_angle, rock.friction_angle);
     EXPECT_DOUBLE_EQ(none.tensile_strength, rock.tensile_strength);
@@ -186,7 +187,7 @@ TEST(Average, IsTheJointAtPersistence1AndTheRockAt0)
 TEST(Average, IsWhatAHandFinds)
 {
     // k = 0.25: c = .025 + 1.5, T = .75 MPa, tan(phi) = .25 * .577350 + .75 * 1.191754 = 1.038153
-    const Strength quarter = average(joint, rock, .25);
+    const Strength quarter = average(open_joint, rock, .25);
     EXPECT_NEAR(quarter.cohesion, 1.525 * MPa, 1e-6);
     EXPECT_NEAR(std::tan(quarter.friction_angle), 1.038153, 1e-6);
     EXPECT_NEAR(quarter.tensile_strength, .75 * MPa, 1e-6);
@@ -197,14 +198,14 @@ TEST(Average, IsWhatAHandFinds)
 // The bridges' cohesion goes, and friction is the joint's; but never more than before.
 TEST(Average, LeavesTheJointsResidualStrength)
 {
-    EXPECT_FALSE(average(joint, rock, .25).residual);
-    Strength brittle = joint;
+    EXPECT_FALSE(average(open_joint, rock, .25).residual);
+    Strength brittle = open_joint;
     brittle.residual = ResidualStrength{.04 * MPa, 20 * deg};
     const Strength quarter = average(brittle, rock, .25);
     ASSERT_TRUE(quarter.residual);
     EXPECT_DOUBLE_EQ(quarter.residual->cohesion, .01 * MPa);
     EXPECT_DOUBLE_EQ(quarter.residual->friction_angle, 20 * deg);
-    EXPECT_DOUBLE_EQ(quarter.cohesion, average(joint, rock, .25).cohesion);
+    EXPECT_DOUBLE_EQ(quarter.cohesion, average(open_joint, rock, .25).cohesion);
     Strength soft = rock;
     soft.friction_angle = 5 * deg;
     const Strength weaker = average(brittle, soft, .25);
@@ -214,9 +215,9 @@ TEST(Average, LeavesTheJointsResidualStrength)
 
 TEST(Average, FallsWithPersistenceUnderAWeakerJoint)
 {
-    Strength last = average(joint, rock, 0);
+    Strength last = average(open_joint, rock, 0);
     for (int i = 1; i <= 100; ++i) {
-        const Strength next = average(joint, rock, i / 100.0);
+        const Strength next = average(open_joint, rock, i / 100.0);
         EXPECT_LT(next.cohesion, last.cohesion);
         EXPECT_LT(next.friction_angle, last.friction_angle);
         EXPECT_LT(next.tensile_strength, last.tensile_strength);

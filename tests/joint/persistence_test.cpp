@@ -9,6 +9,7 @@
 #include <numbers>
 
 using namespace jointcreep;
+using namespace jointcreep::joint;
 
 namespace
 {
@@ -29,7 +30,8 @@ std::pair<double, double> deviations(const ProbabilityLaw& length, double persis
     scene.joint_sets = {set};
     double sum = 0, squares = 0;
     for (int realization = 0; realization < realizations; ++realization) {
-        const Pieces pieces = pieces_of(sample_joints(scene, 20260501, realization), scene.outline, {});
+        const Pieces pieces =
+            pieces_of(sampling::sample_joints(scene, 20260501, realization), scene.outline, {});
         double joint = 0, all = 0;
         for (std::size_t line = 0; line < pieces.line_length.size(); ++line) {
             joint += pieces.line_length[line] * pieces.line_persistence[line];

@@ -9,6 +9,7 @@
 #include <random>
 
 using namespace jointcreep;
+using namespace jointcreep::joint;
 
 namespace
 {

@@ -264,8 +264,8 @@ double median_ratio(const Way& slow, const Way& quick)
 
 void measure(const std::string& path, double zone_size, int steps, int rounds)
 {
-    const JointsFile file = read_joints(path);
-    Scene scene = parse_scene(file.provenance.scene, path + ": /scene");
+    const store::JointsFile file = store::read_joints(path);
+    Scene scene = scene::parse_scene(file.provenance.scene, path + ": /scene");
     scene.zone_size = zone_size;
     const Mesh mesh = zoning::zone(scene, file.network.blocks);
     Assembly section = mechanics::assemble(scene, file.network, file.equivalent, mesh);

@@ -20,6 +20,7 @@
 #include <memory>
 
 using namespace jointcreep;
+using namespace jointcreep::sampling;
 using namespace jointcreep::statistics;
 using namespace jointcreep::unit;
 using Eigen::Vector2d, Eigen::Vector3d;
@@ -870,7 +871,7 @@ TEST(MeasuredPoles, AreWeighedByTerzaghi)
                  b = sine_to_section(upward(families[1].dip, families[1].dip_direction), azimuth);
     const double share = a / (a + b);
     EXPECT_FALSE(has_first_family(sampled(scene_of({set})), share)); // as they were counted
-    correct_for_scanline(set.poles, hole, 10 * deg);
+    scene::correct_for_scanline(set.poles, hole, 10 * deg);
     EXPECT_TRUE(has_first_family(sampled(scene_of({set})), share));
     EXPECT_TRUE(has_p21(sampled(scene_of({set})), .5 * (a + b) / 2));
 }

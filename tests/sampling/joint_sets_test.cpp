@@ -14,6 +14,7 @@
 #include <set>
 
 using namespace jointcreep;
+using namespace jointcreep::sampling;
 using namespace jointcreep::unit;
 using Eigen::Vector2d, Eigen::Vector3d;
 

@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 using namespace jointcreep;
+using namespace jointcreep::sampling;
 using namespace jointcreep::statistics;
 using namespace jointcreep::unit;
 using Eigen::Vector2d;

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 using namespace jointcreep;
+using namespace jointcreep::sampling;
 using namespace jointcreep::statistics;
 
 namespace

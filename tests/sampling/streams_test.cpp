@@ -8,6 +8,7 @@
 #include <set>
 
 using namespace jointcreep;
+using namespace jointcreep::sampling;
 
 using Words = std::array<std::uint32_t, 4>;
 

@@ -6,6 +6,7 @@
 #include <fstream>
 
 using namespace jointcreep;
+using namespace jointcreep::scene;
 
 namespace
 {

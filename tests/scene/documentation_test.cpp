@@ -5,6 +5,7 @@
 #include <sstream>
 
 using namespace jointcreep;
+using namespace jointcreep::scene;
 
 namespace
 {

@@ -4,6 +4,7 @@
 #include "text.hpp"
 
 using namespace jointcreep;
+using namespace jointcreep::scene;
 using namespace jointcreep::unit;
 
 namespace

@@ -8,6 +8,7 @@
 #include <functional>
 
 using namespace jointcreep;
+using namespace jointcreep::scene;
 using namespace jointcreep::unit;
 using Eigen::Vector2d;
 

@@ -3,6 +3,7 @@
 #include "text.hpp"
 
 using namespace jointcreep;
+using namespace jointcreep::scene;
 
 namespace
 {

@@ -9,6 +9,7 @@
 #include <numbers>
 
 using namespace jointcreep;
+using namespace jointcreep::scene;
 
 namespace
 {

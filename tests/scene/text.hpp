@@ -9,7 +9,7 @@
 
 #include <algorithm>
 
-namespace jointcreep
+namespace jointcreep::scene
 {
 
 inline std::string every_key_text()
@@ -50,4 +50,4 @@ inline void expect_part(const std::string& message, const std::string& part)
     EXPECT_NE(message.find(part), std::string::npos) << "message: " << message << "\nwanted in it: " << part;
 }
 
-} // namespace jointcreep
+} // namespace jointcreep::scene

@@ -8,6 +8,7 @@
 #include <numbers>
 
 using namespace jointcreep;
+using namespace jointcreep::scene;
 
 namespace
 {

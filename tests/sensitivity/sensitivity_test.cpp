@@ -9,6 +9,8 @@
 #include <gtest/gtest.h>
 
 using namespace jointcreep;
+using analysis::Analysis;
+using analysis::Recording;
 using namespace jointcreep::test;
 using Eigen::Vector2d;
 using sensitivity::Parameter;

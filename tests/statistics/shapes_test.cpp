@@ -177,7 +177,7 @@ TEST(Blocks, AreAsManyAsExpected)
     int holding = 0;
     for (int r = 0; r < realizations; ++r) {
         Network network;
-        network.joints = sample_joints(scene, 3, r);
+        network.joints = sampling::sample_joints(scene, 3, r);
         network.blocks = blocks::cut(scene, network.joints);
         const Statistics rows = statistics_of(scene, network);
         const std::size_t i = row_of(rows, "blocks", "number"), x = row_of(rows, "nodes", "X, crossings");

@@ -22,7 +22,7 @@ namespace
 Statistics report_of(const Scene& drawn_from, const Scene& held_against, int realization)
 {
     Network network;
-    network.joints = sample_joints(drawn_from, 20061212, realization);
+    network.joints = sampling::sample_joints(drawn_from, 20061212, realization);
     return statistics_of(held_against, network);
 }
 
@@ -223,7 +223,7 @@ TEST(Verdicts, LeaveOutTheEdge)
     const int realizations = 300;
     for (int r = 0; r < realizations; ++r) {
         Network network;
-        network.joints = sample_joints(scene, 5, r);
+        network.joints = sampling::sample_joints(scene, 5, r);
         double sum = 0;
         int count = 0;
         for (std::size_t t = 0; t < network.joints.trace_joint.size(); ++t) {

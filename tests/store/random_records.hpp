@@ -18,7 +18,7 @@
 
 #include <stdlib.h>
 
-namespace jointcreep
+namespace jointcreep::store
 {
 
 class TemporaryFolder
@@ -249,4 +249,4 @@ inline void write(const std::string& path, const ResultFile& file)
     write_result(path, file.provenance, file.network, file.equivalent, file.result, file.safety);
 }
 
-} // namespace jointcreep
+} // namespace jointcreep::store

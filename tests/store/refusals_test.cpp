@@ -6,7 +6,7 @@
 
 #include <hdf5.h>
 
-namespace jointcreep
+namespace jointcreep::store
 {
 
 namespace
@@ -260,4 +260,4 @@ TEST_F(Refusal, NotOfDatasetsOfLaterMinorVersions)
               "");
 }
 
-} // namespace jointcreep
+} // namespace jointcreep::store

@@ -5,7 +5,7 @@
 
 #include <set>
 
-namespace jointcreep
+namespace jointcreep::store
 {
 
 namespace
@@ -115,4 +115,4 @@ TEST(Schema, IsDescribedInDocs)
         << "The page is out of date; make it again: jointexport --file-format > docs/file-format.md";
 }
 
-} // namespace jointcreep
+} // namespace jointcreep::store
