@@ -366,8 +366,7 @@ private:
 
 double wanted_factor(const Arguments& arguments)
 {
-    const double factor =
-        arguments.number("strength-factor", scene::from(1e-3).to(1e3), "(ratio)").value_or(1);
+    const double factor = arguments.number("strength-factor", from(1e-3).to(1e3), "(ratio)").value_or(1);
     if (arguments.has("strength-factor") && arguments.has("factor-of-safety"))
         throw input_error("--strength-factor and --factor-of-safety do not go together");
     return factor;
@@ -375,7 +374,7 @@ double wanted_factor(const Arguments& arguments)
 
 double wanted_width(const Arguments& arguments, const Scene& scene)
 {
-    const double width = arguments.number("safety-width", scene::from(1e-4).to(1), "(ratio)").value_or(0.01);
+    const double width = arguments.number("safety-width", from(1e-4).to(1), "(ratio)").value_or(0.01);
     if (!arguments.has("factor-of-safety")) {
         if (arguments.has("safety-width"))
             throw input_error("--safety-width goes with --factor-of-safety only");
@@ -422,7 +421,7 @@ void add_safety(Summary& summary, const Bracket& bracket, const std::string& why
 // Lets the scene end on the day of --until, if given; returns that option as the result file records it.
 std::string end_scene(const Arguments& arguments, Scene& scene)
 {
-    const auto day = arguments.number("until", scene::above(0).to(scene::farthest_day), "day");
+    const auto day = arguments.number("until", above(0).to(scene::farthest_day), "day");
     if (!day)
         return "";
     scene.end = *day * unit::day;

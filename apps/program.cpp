@@ -50,7 +50,7 @@ void refuse_renamed(const Program& program, std::string_view option, std::string
 }
 
 // A range in words: "above 0 and at most 1".
-std::string in_words(const scene::Range& range)
+std::string in_words(const Range& range)
 {
     return std::string(range.least_open ? "above " : "at least ") + shown(range.least) + " and " +
            (range.most_open ? "below " : "at most ") + shown(range.most);
@@ -233,7 +233,7 @@ std::optional<double> Arguments::number(const std::string& option) const
     return value;
 }
 
-std::optional<double> Arguments::number(const std::string& option, const scene::Range& range,
+std::optional<double> Arguments::number(const std::string& option, const Range& range,
                                         std::string_view unit) const
 {
     const std::optional<double> value = number(option);

@@ -15,6 +15,7 @@
 
 #pragma once
 
+#include "model/quantity.hpp"
 #include "scene/shared_settings.hpp"
 
 #include <chrono>
@@ -83,8 +84,7 @@ public:
     std::optional<std::uint64_t> whole_number(const std::string& option, std::uint64_t least,
                                               std::uint64_t most) const;
     std::optional<double> number(const std::string& option) const; // finite
-    std::optional<double> number(const std::string& option, const scene::Range& range,
-                                 std::string_view unit) const;
+    std::optional<double> number(const std::string& option, const Range& range, std::string_view unit) const;
 
 private:
     friend int run(const Program&, int, char**, const std::function<void(const Arguments&)>&);

@@ -143,16 +143,7 @@ joint::Law law_of_new_contacts(const Scene& scene)
     const auto material =
         std::find_if(scene.joint_materials.begin(), scene.joint_materials.end(),
                      [&](const auto& m) { return m.name == scene.large_displacements->new_contacts; });
-    static_assert(joint::number_of_laws == 2);
-    if (material->walls)
-        return joint::BartonBandis{material->normal_stiffness,       material->shear_stiffness,
-                                   material->walls->largest_closure, material->friction_angle,
-                                   material->walls->roughness,       material->walls->strength,
-                                   material->walls->strength_divisor};
-    const double friction_angle =
-        material->residual ? material->residual->friction_angle : material->friction_angle;
-    return joint::Coulomb{material->normal_stiffness, material->shear_stiffness, 0, std::tan(friction_angle),
-                          0};
+    return joint::unbonded(joint::law_of(*material));
 }
 
 } // namespace
@@ -170,10 +161,6 @@ Analysis::Analysis(const Scene& scene, const Network& network, const EquivalentJ
       rock_(mechanics::assemble(scene, network, joints, result_.mesh)), loading_(scene, result_.mesh),
       recorder_(scene, network.blocks, result_.mesh)
 {
-    static_assert(joint::number_of_laws == 2); // the strength of Coulomb's has been divided
-    for (joint::Law& law : rock_.contacts.law)
-        if (auto* barton_bandis = std::get_if<joint::BartonBandis>(&law))
-            barton_bandis->divisor = joints.strength_divisor;
     stable_limit_ = limit_of_published(scene, network, joints);
     rock_.threads =
         std::min(threads, 1 + static_cast<int>(result_.mesh.zone_gridpoint.size()) / zones_per_thread);

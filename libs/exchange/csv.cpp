@@ -1,5 +1,6 @@
 #include "exchange/csv.hpp"
 
+#include "joint/law.hpp"
 #include "model/error.hpp"
 
 #include <array>
@@ -103,6 +104,16 @@ std::string blocks_csv(const Network& network)
     return table;
 }
 
+// What a column's name says of its unit: "_Pa_per_m", or nothing of a plain number.
+static std::string suffix(std::string unit)
+{
+    if (unit == "1")
+        return "";
+    if (const auto slash = unit.find('/'); slash != std::string::npos)
+        unit.replace(slash, 1, "_per_");
+    return "_" + unit;
+}
+
 std::string edges_csv(const Network& network, const EquivalentJoints* equivalent)
 {
     constexpr std::array kinds = {"boundary", "joint", "bonded"}; // by EdgeKind
@@ -110,8 +121,8 @@ std::string edges_csv(const Network& network, const EquivalentJoints* equivalent
     const Joints& joints = network.joints;
     std::string table = "edge,x1_m,y1_m,x2_m,y2_m,left_block,right_block,kind,set,number,joint_fraction";
     if (equivalent)
-        table += ",normal_stiffness_Pa_per_m,shear_stiffness_Pa_per_m,cohesion_Pa,friction_angle_rad,"
-                 "tensile_strength_Pa,dilation_angle_rad";
+        for (const joint::Parameter& parameter : joint::all_parameters())
+            table.append(",").append(parameter.name).append(suffix(parameter.si_unit()));
     const std::size_t units = equivalent ? equivalent->kelvin_units() : 0;
     for (std::size_t unit = 0; unit < units; ++unit) {
         const std::string number = units == 1 ? "" : "_" + std::to_string(unit + 1);
@@ -121,9 +132,7 @@ std::string edges_csv(const Network& network, const EquivalentJoints* equivalent
                     quantity[0] == 's' ? "_Pa_per_m" : "_Pa_s_per_m");
     }
     if (equivalent)
-        table += ",normal_maxwell_viscosity_Pa_s_per_m,shear_maxwell_viscosity_Pa_s_per_m,law,"
-                 "residual_cohesion_Pa,residual_friction_angle_rad,roughness,wall_strength_Pa,"
-                 "largest_closure_m,dilation_until_m";
+        table += ",normal_maxwell_viscosity_Pa_s_per_m,shear_maxwell_viscosity_Pa_s_per_m,law";
     table += '\n';
     for (std::size_t edge = 0; edge < blocks.edge_vertex.size(); ++edge) {
         const auto [first, second] = blocks.edge_vertex[edge];
@@ -136,10 +145,11 @@ std::string edges_csv(const Network& network, const EquivalentJoints* equivalent
                 joint < 0 ? "" : field(blocks.edge_joint_fraction[edge]));
         if (equivalent) {
             table.back() = ',';
-            add_row(table, field(equivalent->normal_stiffness[edge]),
-                    field(equivalent->shear_stiffness[edge]), field(equivalent->cohesion[edge]),
-                    field(equivalent->friction_angle[edge]), field(equivalent->tensile_strength[edge]),
-                    field(equivalent->dilation_angle[edge]));
+            std::string parameters;
+            for (const joint::Parameter& parameter : joint::all_parameters())
+                parameters.append(parameters.empty() ? "" : ",")
+                    .append(field(parameter.of(*equivalent, edge)));
+            table += parameters + '\n';
             for (std::size_t unit = edge * units; unit < (edge + 1) * units; ++unit) {
                 table.back() = ',';
                 add_row(table, field(equivalent->normal_kelvin_stiffness[unit]),
@@ -149,11 +159,7 @@ std::string edges_csv(const Network& network, const EquivalentJoints* equivalent
             }
             table.back() = ',';
             add_row(table, field(equivalent->normal_maxwell_viscosity[edge]),
-                    field(equivalent->shear_maxwell_viscosity[edge]), field(equivalent->law[edge]),
-                    field(equivalent->residual_cohesion[edge]),
-                    field(equivalent->residual_friction_angle[edge]), field(equivalent->roughness[edge]),
-                    field(equivalent->wall_strength[edge]), field(equivalent->largest_closure[edge]),
-                    field(equivalent->dilation_until[edge]));
+                    field(equivalent->shear_maxwell_viscosity[edge]), field(equivalent->law[edge]));
         }
     }
     return table;

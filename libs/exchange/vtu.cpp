@@ -1,5 +1,6 @@
 #include "exchange/vtu.hpp"
 
+#include "joint/law.hpp"
 #include "model/error.hpp"
 
 #include <algorithm>
@@ -253,13 +254,12 @@ std::string joints_vtu(const Network& network, const EquivalentJoints* equivalen
     grid.add("set", looked_up(network.joints.set, joint));
     grid.add("joint_fraction", picked(blocks.edge_joint_fraction, edges));
     if (equivalent) {
-        grid.add("normal_stiffness", picked(equivalent->normal_stiffness, edges));
-        grid.add("shear_stiffness", picked(equivalent->shear_stiffness, edges));
-        grid.add("cohesion", picked(equivalent->cohesion, edges));
-        grid.add("friction_angle", picked(equivalent->friction_angle, edges));
-        grid.add("tensile_strength", picked(equivalent->tensile_strength, edges));
-        grid.add("dilation_angle", picked(equivalent->dilation_angle, edges));
-        grid.add("dilation_until", picked(equivalent->dilation_until, edges));
+        for (const joint::Parameter& parameter : joint::all_parameters()) {
+            std::vector<double> values;
+            for (const Index edge : edges)
+                values.push_back(parameter.of(*equivalent, static_cast<std::size_t>(edge)));
+            grid.add(std::string(parameter.name), values);
+        }
         const std::size_t units = equivalent->kelvin_units();
         for (std::size_t unit = 0; unit < units; ++unit) {
             const std::string number = units == 1 ? "" : "_" + std::to_string(unit + 1);
@@ -277,11 +277,6 @@ std::string joints_vtu(const Network& network, const EquivalentJoints* equivalen
         grid.add("normal_maxwell_viscosity", picked(equivalent->normal_maxwell_viscosity, edges));
         grid.add("shear_maxwell_viscosity", picked(equivalent->shear_maxwell_viscosity, edges));
         grid.add("law", picked(equivalent->law, edges));
-        grid.add("residual_cohesion", picked(equivalent->residual_cohesion, edges));
-        grid.add("residual_friction_angle", picked(equivalent->residual_friction_angle, edges));
-        grid.add("roughness", picked(equivalent->roughness, edges));
-        grid.add("wall_strength", picked(equivalent->wall_strength, edges));
-        grid.add("largest_closure", picked(equivalent->largest_closure, edges));
     }
     grid.open("Points");
     grid.add("position", blocks.vertex);

@@ -402,7 +402,7 @@ std::optional<Convergence> Solver::equilibrate(Assembly& assembly, const Equilib
     evaluate(assembly, start);
     convergence.stored = stored_energy(assembly) - stored_at_start;
     for (std::size_t c = 0; c < contacts.status.size(); ++c)
-        if (contacts.status[c] == ContactStatus::slipping)
+        if (contacts.status[c] != ContactStatus::removed)
             convergence.dissipated +=
                 contacts.length[c] *
                 (contacts.traction[c].y() * (contacts.state[c].slip - start.joint[c].slip) +

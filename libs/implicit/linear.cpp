@@ -36,11 +36,11 @@ VectorXd Solver::solve_linear(const Assembly& assembly, const std::vector<Tangen
     };
     std::vector<Tangent> firm = tangents; // a Cholesky factor does not know slip
     for (std::size_t c = 0; c < firm.size(); ++c) {
-        const auto& law = std::get<joint::Coulomb>(assembly.contacts.law[c]); // sensitivities know no other
+        const joint::Law& law = assembly.contacts.law[c];
         if (firm[c].normal == 0)
-            firm[c].normal = soft * law.k_n;
+            firm[c].normal = soft * joint::k_n(law);
         if (firm[c].shear == 0)
-            firm[c].shear = soft * (law.k_s > 0 ? law.k_s : law.k_n);
+            firm[c].shear = soft * (joint::k_s(law) > 0 ? joint::k_s(law) : joint::k_n(law));
     }
     const bool is_own = stiffness_.has_factor_of(firm);
     if (stiffness_.has_factor())

@@ -5,7 +5,7 @@
 //     |tau| <= p tan(phi_r + JRC log10(JCS / p)),  the angle at most 70 degrees and at least phi_r
 //                                                                         (Barton, Choubey 1977)
 //
-// with the pressure p = -sigma_n and the closure v, counted from where it bears nothing. k_ni is the
+// with the pressure p = -sigma_n and the closure v, counted from where it carries no load. k_ni is the
 // stiffness there, V_m the largest closure, JRC the roughness and JCS the strength of the walls, both for
 // joints as long as those of the section. It unloads along the curve it was loaded along: that of the first
 // cycle. At p = JCS the walls are crushed; from there on the curve goes straight on, as stiff as it is there.
@@ -14,6 +14,7 @@
 
 #pragma once
 
+#include "joint/along_overlap.hpp"
 #include "joint/coulomb.hpp"
 
 #include <numbers>
@@ -21,52 +22,87 @@
 namespace jointcreep::joint
 {
 
-struct BartonBandis {
-    double k_n, k_s;        // k_ni and k_s [Pa/m]
+namespace parameters
+{
+
+inline const Parameter roughness{
+    "roughness",
+    "joint_roughness_coefficient",
+    no_unit,
+    from(0).to(30),
+    WithBridges::refused,
+    WithStrengthDivided::same,
+    "JRC. With it and the next two keys the joint has Barton and Bandis's law: normal_stiffness is that without "
+    "pressure, friction_angle the residual one, and cohesion, tensile strength and dilation angle are 0."};
+inline const Parameter wall_strength{"wall_strength",
+                                     "joint_wall_strength_MPa",
+                                     MPa,
+                                     above(0).to(1e4),
+                                     WithBridges::refused,
+                                     WithStrengthDivided::same,
+                                     "JCS, the compressive strength of its walls."};
+inline const Parameter largest_closure{"largest_closure",
+                                       "largest_closure_mm",
+                                       millimetres,
+                                       above(0).to(1000),
+                                       WithBridges::refused,
+                                       WithStrengthDivided::same,
+                                       "V_m, which it never closes beyond."};
+
+} // namespace parameters
+
+template <class T = double>
+struct BartonBandisOf {
+    T k_n, k_s;             // k_ni and k_s [Pa/m]
     double largest_closure; // V_m [m]
     double residual_angle;  // phi_r [rad]
     double roughness;       // JRC [-]
     double wall_strength;   // JCS [Pa]
     double divisor = 1;     // of the shear strength, above 0 [-]
 
+    static constexpr double deg = std::numbers::pi / 180, steepest = 70 * deg;
+
     // dp/dv at a pressure p [Pa/m].
-    double stiffness(double p) const
+    T stiffness(const T& p) const
     {
-        const double growth = 1 + std::clamp(p, 0.0, wall_strength) / (k_n * largest_closure);
+        const T growth = 1 + std::clamp<T>(p, 0, wall_strength) / (k_n * largest_closure);
         return k_n * growth * growth;
     }
     // Closure at a pressure; a negative one is a gap, which counts as k_n times that [m].
-    double closure(double p) const
+    T closure(const T& p) const
     {
         if (p < 0)
             return p / k_n;
-        const double on_curve = std::min(p, wall_strength);
+        const T on_curve = std::min<T>(p, wall_strength);
         return on_curve * largest_closure / (k_n * largest_closure + on_curve) +
                (p - on_curve) / stiffness(wall_strength);
     }
-    double pressure(double v) const
+    T pressure(const T& v) const
     {
         if (v < 0)
             return k_n * v;
-        const double crushed = closure(wall_strength);
+        const T crushed = closure(wall_strength);
         return v < crushed ? k_n * v / (1 - v / largest_closure)
                            : wall_strength + stiffness(wall_strength) * (v - crushed);
     }
     // The friction angle at a pressure above 0, of the undivided strength [rad].
-    double friction_angle(double p) const
+    T friction_angle(const T& p) const
     {
-        constexpr double deg = std::numbers::pi / 180, steepest = 70 * deg;
-        return std::min(residual_angle + roughness * deg * std::max(0.0, std::log10(wall_strength / p)),
-                        std::max(steepest, residual_angle));
+        using std::log10;
+        return std::min<T>(residual_angle + roughness * deg * std::max<T>(0, log10(wall_strength / p)),
+                           std::max(steepest, residual_angle));
     }
-    double strength(double p) const { return p > 0 ? p * std::tan(friction_angle(p)) / divisor : 0.0; }
+    T strength(const T& p, const State& = {}) const
+    {
+        using std::tan;
+        return p > 0 ? p * tan(friction_angle(p)) / divisor : T(0);
+    }
     // d(strength)/dp [-].
     double friction(double p) const
     {
-        constexpr double deg = std::numbers::pi / 180, steepest = 70 * deg;
         if (!(p > 0))
             return std::tan(std::max(steepest, residual_angle)) / divisor;
-        const double angle = friction_angle(p), tan = std::tan(angle);
+        const double angle = value_of(friction_angle(p)), tan = std::tan(angle);
         const bool changes = p < wall_strength && angle < steepest;
         return (tan - (changes ? roughness * deg / std::numbers::ln10 * (1 + tan * tan) : 0.0)) / divisor;
     }
@@ -79,25 +115,96 @@ struct BartonBandis {
         return -k_n * largest_closure * (v + largest_closure * std::log1p(-v / largest_closure)) +
                beyond * (on_curve + beyond / 2) / stiffness(wall_strength);
     }
-};
 
-// As for Coulomb's law.
-inline Response respond(const BartonBandis& law, CoulombState& state, double sigma_0, double tau_0,
-                        double u_n, double u_s)
+    template <class U>
+    BartonBandisOf<U> with_springs(const U& normal, const U& shear) const
+    {
+        return {normal, shear, largest_closure, residual_angle, roughness, wall_strength, divisor};
+    }
+
+    static BartonBandisOf from(const ValueOf& value, double divisor)
+    {
+        using namespace parameters;
+        return {value(normal_stiffness),
+                value(shear_stiffness),
+                value(parameters::largest_closure),
+                value(parameters::friction_angle),
+                value(parameters::roughness),
+                value(parameters::wall_strength),
+                divisor};
+    }
+    static const LawInfo& info()
+    {
+        using namespace parameters;
+        // The friction angle phi_r alone says nothing: the strength as a whole is divided.
+        static const LawInfo info{
+            .name = "Barton-Bandis",
+            .about =
+                "Barton-Bandis, whose friction angle is phi_r and whose normal stiffness is that without pressure",
+            .parameters = {normal_stiffness, shear_stiffness, parameters::cohesion,
+                           changed(parameters::friction_angle, WithBridges::refused,
+                                   WithStrengthDivided::same),
+                           parameters::tensile_strength, dilation_angle, dilation_until,
+                           parameters::roughness, parameters::wall_strength, parameters::largest_closure},
+            .own = {"roughness", "wall_strength", "largest_closure"},
+            .creeps = false,
+            .check = [](const ValueOf& value) -> std::optional<Complaint> {
+                for (const Parameter& none :
+                     {parameters::cohesion, parameters::tensile_strength, dilation_angle, dilation_until})
+                    if (value(none) != 0)
+                        return Complaint{none, "wanted 0 of a Barton-Bandis joint, which has none"};
+                if (value(parameters::friction_angle) >= steepest)
+                    return Complaint{parameters::friction_angle,
+                                     "wanted less than 70 of a Barton-Bandis joint"};
+                return {};
+            }};
+        return info;
+    }
+};
+using BartonBandis = BartonBandisOf<>;
+
+template <class T>
+ResponseOf<T> respond(const BartonBandisOf<T>& law, StateOf<T>& state, const Value<T>& sigma_0,
+                      const Value<T>& tau_0, const Value<T>& u_n, const Value<T>& u_s)
 {
-    const double p = law.pressure(law.closure(-sigma_0) - u_n);
-    const double tau_trial = tau_0 + law.k_s * (u_s - state.slip);
-    const double give = law.k_s > 0 ? 1 / law.k_s : 0.0;
+    using std::abs, std::copysign;
+    const T p = law.pressure(law.closure(-sigma_0) - u_n);
+    const T tau_trial = tau_0 + law.k_s * (u_s - state.slip);
+    const T give = law.k_s > 0 ? 1 / law.k_s : T(0);
     if (p < 0) {
         state.slip += tau_trial * give; // the joint closes again without shear
         return {0, 0, ContactStatus::open};
     }
-    const double limit = law.strength(p);
-    if (std::abs(tau_trial) < (1 - 1e-6) * limit || tau_trial == 0)
+    const T limit = law.strength(p);
+    if (abs(tau_trial) < (1 - 1e-6) * limit || tau_trial == 0)
         return {-p, tau_trial, ContactStatus::stuck};
-    const double tau = std::copysign(std::min(limit, std::abs(tau_trial)), tau_trial);
+    const T tau = copysign(std::min<T>(limit, abs(tau_trial)), tau_trial);
     state.slip += (tau_trial - tau) * give;
     return {-p, tau, ContactStatus::slipping};
+}
+inline Slopes slopes(const BartonBandis& law, const State&, double sigma_n)
+{
+    const double p = -sigma_n, friction = law.friction(p);
+    return {law.stiffness(p), law.k_s, friction, 0, law.strength(p) - friction * p};
+}
+template <class T>
+T normal_traction(const BartonBandisOf<T>& law, const Value<T>& sigma_0, const Value<T>& u)
+{
+    return -law.pressure(law.closure(-sigma_0) - u);
+}
+template <class T>
+T opening(const BartonBandisOf<T>& law, const Value<T>& sigma_0)
+{
+    return -law.closure(-sigma_0);
+}
+inline double stored(const BartonBandis& law, double sigma_n, double tau)
+{
+    return law.stored(-sigma_n) + (law.k_s > 0 ? tau * tau / law.k_s / 2 : 0.0);
+}
+inline AlongOverlap along_overlap(const BartonBandis& law, const State& state,
+                                  const std::array<double, 2>& closing, double length)
+{
+    return along_by_quadrature(law, state, closing, length);
 }
 
 inline bool is_linear(const BartonBandis&)
@@ -119,6 +226,23 @@ inline bool weakens_by_slip(const BartonBandis&)
 inline bool dilates(const BartonBandis&)
 {
     return false;
+}
+
+inline double dilation_end(const BartonBandis&)
+{
+    return 0;
+}
+inline bool remembers(const BartonBandis&)
+{
+    return false;
+}
+inline double shear(const BartonBandis& law, State&, double last, double slid, double strength)
+{
+    return std::clamp(last + law.k_s * slid, -strength, strength);
+}
+inline BartonBandis unbonded(const BartonBandis& law)
+{
+    return law;
 }
 
 } // namespace jointcreep::joint

@@ -1,23 +1,24 @@
-// A joint's instantaneous law: springs along the normal and along the joint, no tension beyond the strength
-// of its bonds, Coulomb friction, and dilation by slip.
+// Coulomb's joint: springs along the normal and along the joint, no tension beyond the strength of its bonds,
+// Coulomb friction, and dilation by slip.
 //
 //     sigma_n = sigma_0 + k_n (u_n - dilation)   up to the tensile strength; beyond, the joint opens
 //     tau     = tau_0   + k_s (u_s - slip)       with |tau| <= c - sigma_n tan(phi)
 //     d(dilation) = tan(psi) |d(slip)|           whichever way it slips
 //
-// with psi at most phi, or slip would give energy. That is the plastic flow of Coulomb's law with a potential
-// of its own, psi in place of phi. A joint that is open shears without dilating. Where an end is given, the
-// slip that has dilated, dilation / tan(psi), goes up to it and no farther; beyond it slip dilates no more.
+// psi is at most phi, or slip would give energy. That is the plastic flow of Coulomb's law with a potential
+// of its own, psi in place of phi. A joint that is open shears without dilating. Where an end is given, slip
+// dilates until dilation / tan(psi) has reached it, and no farther.
 //
 // Opening breaks the joint's bonds: its cohesion and tensile strength are lost for good. (A cohesion that
 // came back on closing would let a contact flicker between open and closed.) Slip alone leaves them, but
-// where the joint `weakens`: then the first slip breaks them too, and what is left at once, by either way, is
-// the residual cohesion and friction, c_r <= c and tan(phi_r) <= tan(phi), with tan(psi) <= tan(phi_r). Signs
-// as in model/signs.hpp: tension and opening positive.
+// where the joint `weakens` (joint/residual_strength.hpp): then the first slip breaks them too, and what is
+// left at once, by either way, is the residual cohesion and friction, c_r <= c and tan(phi_r) <= tan(phi),
+// with tan(psi) <= tan(phi_r). Signs as in model/signs.hpp: tension and opening positive.
 
 #pragma once
 
-#include "model/result.hpp"
+#include "joint/parameter.hpp"
+#include "joint/response.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -26,13 +27,137 @@
 namespace jointcreep::joint
 {
 
-struct Coulomb {
-    double k_n, k_s;         // [Pa/m]
-    double cohesion;         // [Pa]
-    double tan_phi;          // [-]
-    double tensile_strength; // [Pa]
-    double tan_psi = 0;      // of the dilation angle [-]
-    bool weakens = false;    // by slip; without it a broken joint has no cohesion, and the friction it had
+// What all joints have (their values are members of JointMaterial and EquivalentJoints).
+namespace parameters
+{
+
+inline constexpr Range strengths = from(0).to(1e4), frictions = from(0).below(90); // [MPa], [deg]
+
+inline const Parameter normal_stiffness{"normal_stiffness",
+                                        "normal_stiffness_MPa_per_m",
+                                        MPa_per_m,
+                                        above(0).to(1e9),
+                                        WithBridges::spring,
+                                        WithStrengthDivided::same,
+                                        "Normal stiffness.",
+                                        {},
+                                        &JointMaterial::normal_stiffness,
+                                        &EquivalentJoints::normal_stiffness};
+inline const Parameter shear_stiffness{"shear_stiffness",
+                                       "shear_stiffness_MPa_per_m",
+                                       MPa_per_m,
+                                       from(0).to(1e9),
+                                       WithBridges::spring,
+                                       WithStrengthDivided::same,
+                                       "Shear stiffness; 0 is a smooth joint.",
+                                       {},
+                                       &JointMaterial::shear_stiffness,
+                                       &EquivalentJoints::shear_stiffness};
+inline const Parameter cohesion{"cohesion",
+                                "cohesion_MPa",
+                                MPa,
+                                strengths,
+                                WithBridges::mean,
+                                WithStrengthDivided::value,
+                                "Cohesion.",
+                                {},
+                                &JointMaterial::cohesion,
+                                &EquivalentJoints::cohesion};
+inline const Parameter friction_angle{"friction_angle",
+                                      "friction_angle_deg",
+                                      degrees,
+                                      frictions,
+                                      WithBridges::mean,
+                                      WithStrengthDivided::tangent,
+                                      "Friction angle.",
+                                      {},
+                                      &JointMaterial::friction_angle,
+                                      &EquivalentJoints::friction_angle};
+inline const Parameter tensile_strength{"tensile_strength",
+                                        "tensile_strength_MPa",
+                                        MPa,
+                                        strengths,
+                                        WithBridges::mean,
+                                        WithStrengthDivided::value,
+                                        "Tensile strength, a positive number.",
+                                        {},
+                                        &JointMaterial::tensile_strength,
+                                        &EquivalentJoints::tensile_strength};
+inline const Parameter dilation_angle{
+    "dilation_angle",
+    "dilation_angle_deg",
+    degrees,
+    frictions,
+    WithBridges::mean,
+    WithStrengthDivided::tangent,
+    "Dilation angle, at most the friction angle: a joint that slips opens by its tangent times the slip.",
+    0.0,
+    &JointMaterial::dilation_angle,
+    &EquivalentJoints::dilation_angle};
+inline const Parameter dilation_until{
+    "dilation_until",
+    "dilation_until_m",
+    metres,
+    from(0).to(1000),
+    WithBridges::own,
+    WithStrengthDivided::same,
+    "Slip at which dilation ends, also that of rock bridges in the joint; 0 if it does not.",
+    0.0,
+    &JointMaterial::dilation_until,
+    &EquivalentJoints::dilation_until};
+
+inline std::vector<Parameter> of_all_joints()
+{
+    return {normal_stiffness, shear_stiffness, cohesion,      friction_angle,
+            tensile_strength, dilation_angle,  dilation_until};
+}
+inline std::vector<Parameter> of_all_joints_and(std::vector<Parameter> own)
+{
+    std::vector<Parameter> all = of_all_joints();
+    all.insert(all.end(), own.begin(), own.end());
+    return all;
+}
+
+} // namespace parameters
+
+// How slip dilates: in proportion, by tan(psi), up to an end.
+template <class T>
+struct DilationInProportion {
+    double tan_psi; // [-]
+    double end;     // of the dilation [m]
+    T left;         // until there [m]
+
+    bool dilates() const { return tan_psi > 0 && left > 0; }
+
+    // Slip that leaves no shear traction above the strength, where `excess` was above it: slip x presses the
+    // joint together, and leaves excess - k_s x - tan(phi) press(x); at most `most` [m].
+    T slip(const T& excess, const T& most, const T& k_n, const T& k_s, double tan_phi) const
+    {
+        const T slip = std::clamp<T>(excess / (k_s + k_n * tan_psi * tan_phi), 0, most);
+        if (slip * tan_psi <= left)
+            return slip;
+        return std::clamp<T>((excess - k_n * left * tan_phi) / k_s, 0, most); // dilation ends on the way
+    }
+    // Normal traction that slip to the shear traction tau brings [Pa].
+    T press(const T& slip, const T& /*tau*/, const T& k_n) const
+    {
+        return slip * tan_psi <= left ? k_n * tan_psi * slip : k_n * left;
+    }
+    // Takes what slip to the shear traction tau has raised into `state`.
+    void raise(StateOf<T>& state, const T& slip, const T& /*tau*/) const
+    {
+        state.dilation = std::min<T>(state.dilation + slip * tan_psi, end);
+    }
+};
+
+template <class T = double>
+struct CoulombOf {
+    T k_n, k_s;                   // [Pa/m]
+    double cohesion;              // [Pa]
+    double tan_phi;               // [-]
+    double tensile_strength;      // [Pa]
+    double tan_psi = 0;           // of the dilation angle [-]
+    bool weakens = false;         // by slip; else a broken joint has no cohesion, and the friction it had
     double residual_cohesion = 0; // [Pa]
     double residual_tan_phi = 0;  // [-]
     double dilation_until = 0;    // slip at which dilation ends; 0: it does not [m]
@@ -43,50 +168,84 @@ struct Coulomb {
     {
         return dilation_until > 0 ? tan_psi * dilation_until : std::numeric_limits<double>::infinity();
     }
-};
+    DilationInProportion<T> dilation(const StateOf<T>& state) const
+    {
+        const double end = dilation_end();
+        return {tan_psi, end, std::max<T>(0, end - state.dilation)};
+    }
+    // tan(psi) of now [-], and the dilation still to come at most [m].
+    double tan_psi_at(const State& state) const { return state.dilation < dilation_end() ? tan_psi : 0.0; }
 
-// What the joint remembers.
-struct CoulombState {
-    double slip = 0;     // [m]
-    double dilation = 0; // opening by slip [m]
-    bool is_broken = false;
-};
+    static CoulombOf from(const ValueOf& value, double)
+    {
+        using namespace parameters;
+        return {.k_n = value(normal_stiffness),
+                .k_s = value(shear_stiffness),
+                .cohesion = value(parameters::cohesion),
+                .tan_phi = std::tan(value(friction_angle)),
+                .tensile_strength = value(parameters::tensile_strength),
+                .tan_psi = std::tan(value(dilation_angle)),
+                .dilation_until = value(parameters::dilation_until)};
+    }
+    static const LawInfo& info()
+    {
+        static const LawInfo info{.name = "Coulomb",
+                                  .about = "Coulomb, whose bonds break by opening",
+                                  .parameters = parameters::of_all_joints(),
+                                  .own = {},
+                                  .check = check};
+        return info;
+    }
+    // Of any law with Coulomb's strength.
+    static std::optional<Complaint> check(const ValueOf& value)
+    {
+        using namespace parameters;
+        if (value(dilation_angle) > value(friction_angle))
+            return Complaint{dilation_angle, "wanted at most friction_angle_deg"};
+        if (value(dilation_angle) > 0 && value(shear_stiffness) == 0)
+            return Complaint{dilation_angle, "wanted 0 of a smooth joint, which has no shear stiffness"};
+        return {};
+    }
 
-struct Response {
-    double sigma_n, tau; // [Pa]
-    ContactStatus status;
+    template <class U>
+    CoulombOf<U> with_springs(const U& normal, const U& shear) const
+    {
+        return {normal,  shear,   cohesion,          tan_phi,          tensile_strength,
+                tan_psi, weakens, residual_cohesion, residual_tan_phi, dilation_until};
+    }
 };
+using Coulomb = CoulombOf<>;
 
 // The traction at displacements u_n, u_s [m] from a state of traction sigma_0, tau_0 [Pa]; takes slip,
 // dilation and breaking into `state`. The slip is found at once, with the traction it ends with (backward
-// Euler). sigma_0 may be above the tensile strength: the joint is open then, by sigma_0 / k_n.
-inline Response respond(const Coulomb& law, CoulombState& state, double sigma_0, double tau_0, double u_n,
-                        double u_s)
+// Euler). sigma_0 may be above the tensile strength: the joint is open then, by sigma_0 / k_n. For any law
+// with Coulomb's strength, whose dilation() says how slip dilates.
+template <class T, class Law>
+ResponseOf<T> respond_by_coulomb(const Law& law, StateOf<T>& state, const Value<T>& sigma_0,
+                                 const Value<T>& tau_0, const Value<T>& u_n, const Value<T>& u_s)
 {
-    const double sigma_trial = sigma_0 + law.k_n * (u_n - state.dilation);
-    const double tau_trial = tau_0 + law.k_s * (u_s - state.slip);
-    const double give = law.k_s > 0 ? 1 / law.k_s : 0.0;
-    // Slip presses a joint that dilates together, by this times itself, and its strength grows with that;
-    // where it has none to begin with, under tension, it slips until no shear is left at most.
-    const double left = std::max(0.0, law.dilation_end() - state.dilation);
-    const double pressing = law.k_s > 0 && left > 0 ? law.k_n * law.tan_psi : 0.0;
+    using std::abs, std::copysign;
+    const T sigma_trial = sigma_0 + law.k_n * (u_n - state.dilation);
+    const T tau_trial = tau_0 + law.k_s * (u_s - state.slip);
+    const T give = law.k_s > 0 ? 1 / law.k_s : T(0);
+    // Slip presses a joint that dilates together, and its strength grows with that; where it has none to
+    // begin with, under tension, it slips until no shear is left at most.
+    const auto dilation = law.dilation(state);
+    const bool dilates = law.k_s > 0 && dilation.dilates();
     double cohesion = law.cohesion_of(state.is_broken), tan_phi = law.tan_phi_of(state.is_broken);
-    const auto slipped = [&] {
-        const double excess = std::abs(tau_trial) - (cohesion - sigma_trial * tan_phi),
-                     most = std::abs(tau_trial) * give;
-        const double slip = std::clamp(excess / (law.k_s + pressing * tan_phi), 0.0, most);
-        if (slip * law.tan_psi <= left)
-            return slip;
-        return std::clamp((excess - law.k_n * left * tan_phi) / law.k_s, 0.0,
-                          most); // dilation ends on the way
+    const auto slipped = [&]() -> T {
+        return dilation.slip(T(abs(tau_trial) - (cohesion - sigma_trial * tan_phi)), T(abs(tau_trial) * give),
+                             law.k_n, law.k_s, tan_phi);
     };
-    const auto pressed_by = [&](double slip) {
-        return sigma_trial - (slip * law.tan_psi <= left ? pressing * slip : law.k_n * left);
+    const auto pressed = [&]() -> T {
+        if (!dilates)
+            return sigma_trial;
+        const T slip = slipped();
+        return sigma_trial - dilation.press(slip, abs(tau_trial) - law.k_s * slip, law.k_n);
     };
-    const auto pressed = [&] { return pressing > 0 ? pressed_by(slipped()) : sigma_trial; };
 
     const bool opens = pressed() > (state.is_broken ? 0.0 : law.tensile_strength);
-    const bool weakens = law.weakens && std::abs(tau_trial) > std::max(0.0, cohesion - sigma_trial * tan_phi);
+    const bool weakens = law.weakens && abs(tau_trial) > std::max<T>(0, cohesion - sigma_trial * tan_phi);
     if (opens || weakens) {
         state.is_broken = true;
         cohesion = law.cohesion_of(true);
@@ -96,20 +255,71 @@ inline Response respond(const Coulomb& law, CoulombState& state, double sigma_0,
             return {0, 0, ContactStatus::open};
         }
     }
-    const double limit = std::max(0.0, cohesion - sigma_trial * tan_phi);
+    const T limit = std::max<T>(0, cohesion - sigma_trial * tan_phi);
     // A joint at its limit counts as slipping, also while it stands still there.
-    if (std::abs(tau_trial) < (1 - 1e-6) * limit || tau_trial == 0)
+    if (abs(tau_trial) < (1 - 1e-6) * limit || tau_trial == 0)
         return {sigma_trial, tau_trial, ContactStatus::stuck};
-    if (pressing == 0) {
-        const double tau = std::copysign(std::min(limit, std::abs(tau_trial)), tau_trial);
+    if (!dilates) {
+        const T tau = copysign(std::min<T>(limit, abs(tau_trial)), tau_trial);
         state.slip += (tau_trial - tau) * give;
         return {sigma_trial, tau, ContactStatus::slipping};
     }
-    const double slip = slipped();
-    state.slip += std::copysign(slip, tau_trial);
-    state.dilation = std::min(state.dilation + slip * law.tan_psi, law.dilation_end());
-    return {pressed_by(slip), std::copysign(std::abs(tau_trial) - law.k_s * slip, tau_trial),
+    const T slip = slipped(), size = abs(tau_trial) - law.k_s * slip;
+    state.slip += copysign(slip, tau_trial);
+    dilation.raise(state, slip, size);
+    return {sigma_trial - dilation.press(slip, size, law.k_n), copysign(size, tau_trial),
             ContactStatus::slipping};
+}
+
+template <class T>
+ResponseOf<T> respond(const CoulombOf<T>& law, StateOf<T>& state, const Value<T>& sigma_0,
+                      const Value<T>& tau_0, const Value<T>& u_n, const Value<T>& u_s)
+{
+    return respond_by_coulomb(law, state, sigma_0, tau_0, u_n, u_s);
+}
+
+inline Slopes slopes(const Coulomb& law, const State& state, double)
+{
+    return {law.k_n, law.k_s, law.tan_phi_of(state.is_broken), law.tan_psi_at(state),
+            law.cohesion_of(state.is_broken)};
+}
+
+// Normal traction at an opening u [m] since it was sigma_0; positive where the joint is open, by it / k_n.
+template <class T>
+T normal_traction(const CoulombOf<T>& law, const Value<T>& sigma_0, const Value<T>& u)
+{
+    return sigma_0 + law.k_n * u;
+}
+
+// The opening at which a contact of the traction sigma_0 would just touch: below 0 where it is closed [m].
+template <class T>
+T opening(const CoulombOf<T>& law, const Value<T>& sigma_0)
+{
+    return sigma_0 / law.k_n;
+}
+
+// What the springs hold, per area [J/m2].
+inline double stored(const Coulomb& law, double sigma_n, double tau)
+{
+    return (sigma_n * sigma_n / law.k_n + (law.k_s > 0 ? tau * tau / law.k_s : 0.0)) / 2;
+}
+
+// Along an overlap on which the closing goes straight from closing[0] to closing[1] [m]: exactly.
+inline AlongOverlap along_overlap(const Coulomb& law, const State&, const std::array<double, 2>& closing,
+                                  double length)
+{
+    const double deep = (closing[0] + closing[1]) / 2, force = law.k_n * length * deep;
+    const auto on_end = [&](int end) { return law.k_n * length * (2 * closing[end] + closing[1 - end]) / 6; };
+    const auto strength = [&](bool is_broken) {
+        return std::max(0.0, law.cohesion_of(is_broken) * length + force * law.tan_phi_of(is_broken));
+    };
+    return {force,
+            {on_end(0), on_end(1)},
+            {strength(false), strength(true)},
+            law.k_n * length * (closing[0] * closing[0] + closing[0] * closing[1] + closing[1] * closing[1]) /
+                6,
+            law.k_n,
+            law.k_n};
 }
 
 // Whether its stiffness is that of its springs, whatever the traction; its bonds [Pa]; what slip does to it.
@@ -132,6 +342,22 @@ inline bool weakens_by_slip(const Coulomb& law)
 inline bool dilates(const Coulomb& law)
 {
     return law.tan_psi > 0;
+}
+inline double dilation_end(const Coulomb& law)
+{
+    return law.dilation_end();
+}
+inline bool remembers(const Coulomb&)
+{
+    return false;
+}
+inline double shear(const Coulomb& law, State&, double last, double slid, double strength)
+{
+    return std::clamp(last + law.k_s * slid, -strength, strength);
+}
+inline Coulomb unbonded(const Coulomb& law)
+{
+    return {law.k_n, law.k_s, 0, law.weakens ? law.residual_tan_phi : law.tan_phi, 0};
 }
 
 } // namespace jointcreep::joint

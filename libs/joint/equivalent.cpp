@@ -1,6 +1,7 @@
 #include "joint/equivalent.hpp"
 
 #include "joint/bridged.hpp"
+#include "joint/law.hpp"
 #include "joint/pieces.hpp"
 #include "model/error.hpp"
 #include "model/polygon.hpp"
@@ -34,8 +35,7 @@ const Named& by_name(const std::vector<Named>& all, const std::string& name, con
 
 Strength strength_of(const JointMaterial& material)
 {
-    return {material.cohesion, material.friction_angle, material.tensile_strength, material.dilation_angle,
-            material.residual};
+    return {material.cohesion, material.friction_angle, material.tensile_strength, material.dilation_angle};
 }
 
 Strength weaker(const Strength& one, const Strength& other)
@@ -86,19 +86,6 @@ Strength bridge_strength(const Scene& scene, const Network& network, std::size_t
         weakest = weakest ? weaker(*weakest, strength) : strength;
     }
     return *weakest;
-}
-
-// With bridges that dilate the mean may be steeper than the joint's residual friction: slip would give
-// energy.
-void refuse_steep_dilation(const Network& network, std::size_t edge, const Strength& strength)
-{
-    if (strength.residual && strength.dilation_angle > strength.residual->friction_angle)
-        throw input_error("joint set \"" + set_name(network, edge) + "\" on " +
-                          place_of(network.blocks, edge) + " would dilate by " +
-                          shown(strength.dilation_angle / unit::deg) +
-                          " deg with its rock bridges; wanted at most the "
-                          "residual friction angle of its joint, " +
-                          shown(strength.residual->friction_angle / unit::deg) + " deg");
 }
 
 // What averages of an edge are taken with.
@@ -308,16 +295,15 @@ private:
 EquivalentJoints without_joints(std::size_t edges, std::size_t kelvin_units)
 {
     EquivalentJoints joints;
+    for (const Parameter& parameter : all_parameters())
+        parameter.in(joints).assign(edges, 0.0);
     for (std::vector<double>* const list :
-         {&joints.normal_stiffness, &joints.shear_stiffness, &joints.cohesion, &joints.friction_angle,
-          &joints.tensile_strength, &joints.dilation_angle, &joints.dilation_until, &joints.residual_cohesion,
-          &joints.residual_friction_angle, &joints.roughness, &joints.wall_strength, &joints.largest_closure,
-          &joints.normal_maxwell_viscosity, &joints.shear_maxwell_viscosity, &joints.persistence})
+         {&joints.normal_maxwell_viscosity, &joints.shear_maxwell_viscosity, &joints.persistence})
         list->assign(edges, 0.0);
     for (std::vector<double>* const list : {&joints.normal_kelvin_stiffness, &joints.shear_kelvin_stiffness,
                                             &joints.normal_kelvin_viscosity, &joints.shear_kelvin_viscosity})
         list->assign(edges * kelvin_units, 0.0);
-    joints.law.assign(edges, static_cast<Index>(JointLaw::coulomb));
+    joints.law.assign(edges, 0);
     return joints;
 }
 
@@ -332,22 +318,34 @@ std::size_t most_kelvin_units(const Scene& scene)
     return most;
 }
 
+// A value of the joint beside bridges of the share 1 - k; a mean with rock is in `strength` already.
+double with_bridges(const Parameter& parameter, double own, const Strength& strength, double k)
+{
+    switch (parameter.with_bridges) {
+    case WithBridges::share:
+        return k * own;
+    case WithBridges::weaker:
+        return std::min(own, strength.friction_angle);
+    default:
+        return own;
+    }
+}
+
 void set_joint(EquivalentJoints& joints, std::size_t edge, const Stiffnesses::Found& found,
-               const Strength& strength, double dilation_until, double persistence)
+               const Strength& strength, const JointMaterial& material, double persistence)
 {
     const JointChain &normal = found.chain[0], &shear = found.chain[1];
+    joints.law[edge] = material.law;
+    for (const Parameter& parameter : laws()[static_cast<std::size_t>(material.law)].parameters)
+        parameter.in(joints)[edge] = with_bridges(parameter, parameter.of(material), strength, persistence);
     joints.normal_stiffness[edge] = normal.spring;
     joints.shear_stiffness[edge] = shear.spring;
     joints.cohesion[edge] = strength.cohesion;
     joints.friction_angle[edge] = strength.friction_angle;
     joints.tensile_strength[edge] = strength.tensile_strength;
     joints.dilation_angle[edge] = strength.dilation_angle;
-    joints.dilation_until[edge] = strength.dilation_angle > 0 ? dilation_until : 0.0;
-    if (strength.residual) {
-        joints.law[edge] = static_cast<Index>(JointLaw::residual);
-        joints.residual_cohesion[edge] = strength.residual->cohesion;
-        joints.residual_friction_angle[edge] = strength.residual->friction_angle;
-    }
+    if (!(strength.dilation_angle > 0))
+        joints.dilation_until[edge] = 0;
     joints.persistence[edge] = persistence;
     const std::size_t row = edge * joints.kelvin_units();
     for (std::size_t unit = 0; unit < normal.units.size(); ++unit) {
@@ -362,14 +360,33 @@ void set_joint(EquivalentJoints& joints, std::size_t edge, const Stiffnesses::Fo
     joints.shear_maxwell_viscosity[edge] = shear.maxwell_viscosity;
 }
 
-void set_walls(EquivalentJoints& joints, std::size_t edge, const JointMaterial& material)
+// Bridges may make a joint that its law does not allow: one that dilates more than it rubs once it has slipped
+// would give energy.
+void check(const Network& network, const EquivalentJoints& joints, std::size_t edge)
 {
-    if (!material.walls)
-        return;
-    joints.law[edge] = static_cast<Index>(JointLaw::barton_bandis);
-    joints.roughness[edge] = material.walls->roughness;
-    joints.wall_strength[edge] = material.walls->strength;
-    joints.largest_closure[edge] = material.walls->largest_closure;
+    const LawInfo& law = laws()[static_cast<std::size_t>(joints.law[edge])];
+    if (law.own.empty())
+        return; // means of joint and rock
+    const auto complaint = law.check([&](const Parameter& parameter) { return parameter.of(joints, edge); });
+    if (complaint)
+        throw input_error("joint set \"" + set_name(network, edge) + "\" on " +
+                          place_of(network.blocks, edge) + " would have, with its rock bridges, " +
+                          std::string(complaint->parameter.key) + " = " +
+                          shown(complaint->parameter.of(joints, edge) / complaint->parameter.unit.in_si) +
+                          ": " + complaint->wanted);
+}
+
+void refuse_bridges(const Network& network, std::size_t edge, const JointMaterial& material,
+                    double persistence)
+{
+    const LawInfo& law = laws()[static_cast<std::size_t>(material.law)];
+    if (std::ranges::any_of(law.parameters,
+                            [](const Parameter& one) { return one.with_bridges == WithBridges::refused; }))
+        throw input_error("joint set \"" + set_name(network, edge) + "\" leaves rock bridges, " +
+                          shown(1 - persistence) + " of " + place_of(network.blocks, edge) +
+                          ", and its joint material \"" + material.name + "\" is one of " +
+                          std::string(law.name) +
+                          ", which has no average with rock; wanted a persistence of 1");
 }
 
 // Sums of strengths times lengths.
@@ -478,9 +495,6 @@ Strength average(const Strength& joint, const Strength& rock, double persistence
                   std::atan(k * std::tan(joint.friction_angle) + (1 - k) * std::tan(rock.friction_angle)),
                   k * joint.tensile_strength + (1 - k) * rock.tensile_strength,
                   std::atan(k * std::tan(joint.dilation_angle) + (1 - k) * std::tan(rock.dilation_angle))};
-    if (joint.residual)
-        mean.residual = {k * joint.residual->cohesion,
-                         std::min(joint.residual->friction_angle, mean.friction_angle)};
     return mean;
 }
 
@@ -505,7 +519,6 @@ EquivalentJoints average_strength(const Scene& scene, const Network& network)
                 const Strength rock = bridge_strength(scene, network, edge, share.persistence);
                 sum.bridge.add(length, rock);
                 strength = average(strength, rock, share.persistence);
-                refuse_steep_dilation(network, edge, strength);
             }
             sum.equivalent.add(length, strength);
             const Stiffnesses::Found found = stiffnesses.of(edge, material, share);
@@ -514,14 +527,11 @@ EquivalentJoints average_strength(const Scene& scene, const Network& network)
                 length * Eigen::Vector2d(material.normal_stiffness, material.shear_stiffness);
             sum.stiffness += length * Eigen::Vector2d(found.chain[0].spring, found.chain[1].spring);
             sum.limited += found.is_limited ? length : 0.0;
-            if (material.walls && share.persistence < 1 - rounding)
-                throw input_error("joint set \"" + set_name(network, edge) + "\" leaves rock bridges, " +
-                                  shown(1 - share.persistence) + " of " + place_of(network.blocks, edge) +
-                                  ", and its joint material \"" + material.name +
-                                  "\" is one of Barton-Bandis, which has no average with rock; wanted a "
-                                  "persistence of 1");
-            set_joint(joints, edge, found, strength, material.dilation_until, share.persistence);
-            set_walls(joints, edge, material);
+            if (share.persistence < 1 - rounding)
+                refuse_bridges(network, edge, material, share.persistence);
+            set_joint(joints, edge, found, strength, material, share.persistence);
+            if (share.persistence < 1 - rounding)
+                check(network, joints, edge);
         } else if (blocks.edge_kind[edge] == static_cast<Index>(EdgeKind::boundary) &&
                    blocks.edge_boundary[edge] >= 0) {
             const std::string& name = scene.boundaries[blocks.edge_boundary[edge]].joint;
@@ -529,8 +539,7 @@ EquivalentJoints average_strength(const Scene& scene, const Network& network)
                 continue;
             const JointMaterial& material = material_of(scene, network, edge);
             set_joint(joints, edge, stiffnesses.of(edge, material, {1, 0, 0}), strength_of(material),
-                      material.dilation_until, 1);
-            set_walls(joints, edge, material);
+                      material, 1);
         }
     }
     joints.sets = averages_of(scene, network, joints.pieces, lines, sums);

@@ -1,11 +1,15 @@
-// The joint laws: this is the one list of them. Each has a file of its own, with its parameters, respond()
-// and what is asked of any law. A law that lacks one of these functions does not compile; nor do, until it is
-// thought of there, the places that pick laws by hand (number_of_laws).
+// The joint laws: this is the one list of them. Each has a header of its own: its parameters in a table, its
+// response to a displacement at a point, and what else is asked of any law. A law that lacks one of these
+// functions does not compile.
+//
+// To add a law: write its header, and add it to the list. Scene keys, datasets, columns of exports, strength
+// averaging, strength reduction, checkpoints, the engines and sensitivities follow.
 
 #pragma once
 
 #include "joint/barton_bandis.hpp"
 #include "joint/coulomb.hpp"
+#include "joint/residual_strength.hpp"
 
 #include <concepts>
 #include <variant>
@@ -13,70 +17,41 @@
 namespace jointcreep::joint
 {
 
-using Law = std::variant<Coulomb, BartonBandis>;
-// To be asserted where laws are picked by hand.
-inline constexpr std::size_t number_of_laws = std::variant_size_v<Law>;
+// Files name a law by its place here: new ones come last.
+using Law = std::variant<Coulomb, ResidualStrength, BartonBandis>;
+
+// All of them, in that order.
+const std::vector<LawInfo>& laws();
+
+// The parameters of all laws, each once.
+const std::vector<Parameter>& all_parameters();
+
+// The law of a joint, by its place in the list, with its parameters [SI] and the divisor of all strengths.
+Law law_of(Index law, const ValueOf& value, double strength_divisor);
+Law law_of(const JointMaterial& material);
+Law law_of(const EquivalentJoints& joints, std::size_t edge);
+
 // The list itself, and not one of the laws: that would turn into it where a function of its own is missing,
 // which would call itself for ever.
 template <class Any>
 concept AnyLaw = std::same_as<Any, Law>;
 
-// What a contact would do for a small displacement from where it is: its springs; and where it slips, the
-// change of strength over that of pressure, and of dilation over slip.
-struct Slopes {
-    double k_n, k_s;         // [Pa/m]
-    double tan_phi, tan_psi; // [-]
-};
-
-inline Slopes slopes(const Coulomb& law, const CoulombState& state, double)
-{
-    return {law.k_n, law.k_s, law.tan_phi_of(state.is_broken),
-            state.dilation < law.dilation_end() ? law.tan_psi : 0.0};
-}
-inline Slopes slopes(const BartonBandis& law, const CoulombState&, double sigma_n)
-{
-    return {law.stiffness(-sigma_n), law.k_s, law.friction(-sigma_n), 0};
-}
-
-// Normal traction at an opening u [m] since it was sigma_0; positive where the joint is open, by it / k_n.
-inline double normal_traction(const Coulomb& law, double sigma_0, double u)
-{
-    return sigma_0 + law.k_n * u;
-}
-inline double normal_traction(const BartonBandis& law, double sigma_0, double u)
-{
-    return -law.pressure(law.closure(-sigma_0) - u);
-}
-
-// The opening at which a contact of the traction sigma_0 would just touch: below 0 where it is closed [m].
-inline double opening(const Coulomb& law, double sigma_0)
-{
-    return sigma_0 / law.k_n;
-}
-inline double opening(const BartonBandis& law, double sigma_0)
-{
-    return -law.closure(-sigma_0);
-}
-
-// What the springs hold, per area [J/m2].
-inline double stored(const Coulomb& law, double sigma_n, double tau)
-{
-    return (sigma_n * sigma_n / law.k_n + (law.k_s > 0 ? tau * tau / law.k_s : 0.0)) / 2;
-}
-inline double stored(const BartonBandis& law, double sigma_n, double tau)
-{
-    return law.stored(-sigma_n) + (law.k_s > 0 ? tau * tau / law.k_s / 2 : 0.0);
-}
-
 // Of any of them; Coulomb's first, as nearly all are.
-inline Response respond(const AnyLaw auto& law, CoulombState& state, double sigma_0, double tau_0, double u_n,
+inline Response respond(const AnyLaw auto& law, State& state, double sigma_0, double tau_0, double u_n,
                         double u_s)
 {
     if (const auto* const coulomb = std::get_if<Coulomb>(&law))
         return respond(*coulomb, state, sigma_0, tau_0, u_n, u_s);
     return std::visit([&](const auto& one) { return respond(one, state, sigma_0, tau_0, u_n, u_s); }, law);
 }
-inline Slopes slopes(const AnyLaw auto& law, const CoulombState& state, double sigma_n)
+// What `ask` says of the law in numbers with derivatives, for springs that change: k_n and k_s in place of its
+// own.
+template <class Ask>
+auto with_derivatives(const AnyLaw auto& law, const Dual& k_n, const Dual& k_s, const Ask& ask)
+{
+    return std::visit([&](const auto& one) { return ask(one.template with_springs<Dual>(k_n, k_s)); }, law);
+}
+inline Slopes slopes(const AnyLaw auto& law, const State& state, double sigma_n)
 {
     return std::visit([&](const auto& one) { return slopes(one, state, sigma_n); }, law);
 }
@@ -93,6 +68,13 @@ inline double stored(const AnyLaw auto& law, double sigma_n, double tau)
     if (const auto* const coulomb = std::get_if<Coulomb>(&law))
         return stored(*coulomb, sigma_n, tau);
     return std::visit([&](const auto& one) { return stored(one, sigma_n, tau); }, law);
+}
+inline AlongOverlap along_overlap(const AnyLaw auto& law, const State& state,
+                                  const std::array<double, 2>& closing, double length)
+{
+    if (const auto* const coulomb = std::get_if<Coulomb>(&law))
+        return along_overlap(*coulomb, state, closing, length);
+    return std::visit([&](const auto& one) { return along_overlap(one, state, closing, length); }, law);
 }
 
 // A spring as given, normal or shear; the normal one of Barton and Bandis is that without pressure [Pa/m].
@@ -129,6 +111,26 @@ inline bool weakens_by_slip(const AnyLaw auto& law)
 inline bool dilates(const AnyLaw auto& law)
 {
     return std::visit([](const auto& one) { return dilates(one); }, law);
+}
+// Whether its shear traction depends on how it got there by more than slip: then shear() finds it.
+inline bool remembers(const AnyLaw auto& law)
+{
+    return std::visit([](const auto& one) { return remembers(one); }, law);
+}
+// The mean shear traction along an overlap [Pa] after it slid by `slid` [m] from the traction `last`, with the
+// shear strength that it has now; takes what the law remembers into `state`.
+inline double shear(const AnyLaw auto& law, State& state, double last, double slid, double strength)
+{
+    return std::visit([&](const auto& one) { return shear(one, state, last, slid, strength); }, law);
+}
+// What is left of it where there are no bonds (any more): the law of contacts that form between moving blocks.
+inline Law unbonded(const AnyLaw auto& law)
+{
+    return std::visit([](const auto& one) -> Law { return unbonded(one); }, law);
+}
+inline double dilation_end(const AnyLaw auto& law) // [m]
+{
+    return std::visit([](const auto& one) { return dilation_end(one); }, law);
 }
 
 } // namespace jointcreep::joint

@@ -1,5 +1,7 @@
 #include "joint/strength_factor.hpp"
 
+#include "joint/law.hpp"
+
 #include <cmath>
 
 namespace jointcreep::joint
@@ -13,20 +15,33 @@ void divide_tangent(double& angle, double factor)
     angle = std::atan(std::tan(angle) / factor);
 }
 
+void divide(double& value, const Parameter& parameter, double factor)
+{
+    switch (parameter.with_strength_divided) {
+    case WithStrengthDivided::same:
+        break;
+    case WithStrengthDivided::value:
+        value /= factor;
+        break;
+    case WithStrengthDivided::tangent:
+        divide_tangent(value, factor);
+        break;
+    }
+}
+
 } // namespace
 
 EquivalentJoints with_strength_divided(EquivalentJoints joints, double factor)
 {
-    for (std::vector<double>* strength :
-         {&joints.cohesion, &joints.tensile_strength, &joints.residual_cohesion})
-        for (double& value : *strength)
-            value /= factor;
-    for (std::vector<double>* angle : {&joints.dilation_angle, &joints.residual_friction_angle})
-        for (double& value : *angle)
-            divide_tangent(value, factor);
-    for (std::size_t e = 0; e < joints.friction_angle.size(); ++e)
-        if (joints.law[e] != static_cast<Index>(JointLaw::barton_bandis))
-            divide_tangent(joints.friction_angle[e], factor);
+    for (std::size_t law = 0; law < laws().size(); ++law)
+        for (const Parameter& parameter : laws()[law].parameters) {
+            if (parameter.with_strength_divided == WithStrengthDivided::same)
+                continue;
+            std::vector<double>& values = parameter.in(joints);
+            for (std::size_t e = 0; e < values.size(); ++e)
+                if (joints.law[e] == static_cast<Index>(law))
+                    divide(values[e], parameter, factor);
+        }
     joints.strength_divisor *= factor;
     return joints;
 }
@@ -42,12 +57,10 @@ Scene with_strength_divided(Scene scene, double factor)
         divide_tangent(rock.dilation_angle, factor);
     }
     for (JointMaterial& material : scene.joint_materials) {
-        if (material.walls)
-            material.walls->strength_divisor *= factor;
-        else
-            divide_tangent(material.friction_angle, factor);
-        if (material.residual)
-            divide_tangent(material.residual->friction_angle, factor);
+        for (const Parameter& parameter : laws()[static_cast<std::size_t>(material.law)].parameters)
+            if (parameter.with_strength_divided != WithStrengthDivided::same)
+                divide(parameter.in(material), parameter, factor);
+        material.strength_divisor *= factor;
     }
     return scene;
 }

@@ -115,84 +115,6 @@ Vector2d at(const std::array<Vector2d, 2>& ends, double fraction)
     return ends[0] + fraction * (ends[1] - ends[0]);
 }
 
-// A joint law over the closed part of a contact, per depth of the section. Closing goes straight from one end
-// to the other; what does not go with it, Barton and Bandis's law, is summed up at five points (Gauss).
-class Part
-{
-public:
-    Part(const joint::Law& law, const std::array<double, 2>& closing, double length)
-        : coulomb_(std::get_if<joint::Coulomb>(&law)), closing_(closing), length_(length)
-    {
-        static_assert(joint::number_of_laws == 2);
-        if (coulomb_ == nullptr)
-            add_up(std::get<joint::BartonBandis>(law));
-    }
-
-    double deep() const { return (closing_[0] + closing_[1]) / 2; } // mean closing [m]
-    // That presses [N/m].
-    double force() const { return coulomb_ != nullptr ? coulomb_->k_n * length_ * deep() : sums_.force; }
-    // On one end, of a given share of the force: forces on both are as the traction between them [N/m].
-    double force_on(int end, double share) const
-    {
-        if (coulomb_ != nullptr)
-            return share * coulomb_->k_n * length_ * (2 * closing_[end] + closing_[1 - end]) / 6;
-        return share * sums_.force_on[end];
-    }
-    // Shear force it bears [N/m].
-    double strength(bool is_broken) const
-    {
-        if (coulomb_ != nullptr)
-            return std::max(0.0, coulomb_->cohesion_of(is_broken) * length_ +
-                                     force() * coulomb_->tan_phi_of(is_broken));
-        return sums_.strength;
-    }
-    // In the normal springs [J/m].
-    double stored() const
-    {
-        if (coulomb_ != nullptr)
-            return coulomb_->k_n * length_ *
-                   (closing_[0] * closing_[0] + closing_[0] * closing_[1] + closing_[1] * closing_[1]) / 6;
-        return sums_.stored;
-    }
-    // Of the normal springs, in the middle and where it is largest [Pa/m].
-    double stiffness() const { return coulomb_ != nullptr ? coulomb_->k_n : sums_.stiffness; }
-    double stiffest() const { return coulomb_ != nullptr ? coulomb_->k_n : sums_.stiffest; }
-
-private:
-    // Apart from Coulomb's law, which nearly all have, and which would be slower with this in its way.
-    [[gnu::noinline]] void add_up(const joint::BartonBandis& law)
-    {
-        constexpr std::array<std::array<double, 2>, 5> points{{{0.046910077030668, 0.118463442528095},
-                                                               {0.230765344947158, 0.239314335249683},
-                                                               {0.5, 0.284444444444444},
-                                                               {0.769234655052842, 0.239314335249683},
-                                                               {0.953089922969332, 0.118463442528095}}};
-        sums_ = {};
-        for (const auto& [at, weight] : points) {
-            const double p = law.pressure(closing_[0] + at * (closing_[1] - closing_[0]));
-            sums_.force += weight * p;
-            sums_.force_on[0] += weight * ((1 - at) * p);
-            sums_.force_on[1] += weight * (at * p);
-            sums_.strength += weight * law.strength(p);
-            sums_.stored += weight * law.stored(p);
-        }
-        for (double* const sum :
-             {&sums_.force, &sums_.force_on[0], &sums_.force_on[1], &sums_.strength, &sums_.stored})
-            *sum *= length_;
-        sums_.stiffness = law.stiffness(law.pressure(deep()));
-        sums_.stiffest = law.stiffness(law.pressure(std::max(closing_[0], closing_[1])));
-    }
-
-    struct Sums {
-        double force, strength, stored, stiffness, stiffest;
-        std::array<double, 2> force_on;
-    };
-    const joint::Coulomb* coulomb_; // none: Barton and Bandis's law
-    std::array<double, 2> closing_;
-    double length_;
-    Sums sums_; // of Barton and Bandis's law alone
-};
-
 } // namespace
 
 FaceContacts::FaceContacts(std::vector<joint::Law> laws, std::vector<Index> material, const Vector2d& origin)
@@ -398,11 +320,11 @@ void FaceContacts::dilate(const std::vector<Vector2d>& place, const std::vector<
             if (!pair.is_closed || pressed <= 0)
                 continue;
             all += pressed;
-            static_assert(joint::number_of_laws == 2); // only Coulomb's dilates
-            const auto* const law = std::get_if<joint::Coulomb>(&laws_[pair.law]);
-            if (law == nullptr || law->tan_psi == 0 || law->k_s == 0 || pair.dilation >= law->dilation_end())
+            const joint::Law& law = laws_[pair.law];
+            const joint::Slopes slopes = joint::slopes(law, pair.state(), pair.sigma);
+            if (slopes.tan_psi == 0 || slopes.k_s == 0)
                 continue;
-            left = std::max(left, law->dilation_end() - pair.dilation);
+            left = std::max(left, joint::dilation_end(law) - pair.dilation);
             const auto a = ends_of(faces_.gridpoint[pair.a], place),
                        b = ends_of(faces_.gridpoint[pair.b], place),
                        move_a = ends_of(faces_.gridpoint[pair.a], move),
@@ -419,14 +341,21 @@ void FaceContacts::dilate(const std::vector<Vector2d>& place, const std::vector<
             // What turns together does not slip, as in evaluate(), where the normal turns by this.
             const double turned = -apart.dot(pair.normal) * (turn(a, move_a) + turn(b, move_b)) / 2,
                          slid = parted.dot(along(pair.normal)) - turned;
-            const double trial = std::abs(pair.tau + law->k_s * slid) * pair.length,
-                         presses = pressed - law->k_n * pair.length * parted.dot(pair.normal);
-            const auto bears = [&](bool is_broken) {
-                return law->cohesion_of(is_broken) * pair.length + presses * law->tan_phi_of(is_broken);
+            const double trial = std::abs(pair.tau + slopes.k_s * slid) * pair.length,
+                         presses = pressed - slopes.k_n * pair.length * parted.dot(pair.normal);
+            const auto slopes_if = [&](bool is_broken) {
+                joint::State state = pair.state();
+                state.is_broken = is_broken;
+                return joint::slopes(law, state, pair.sigma);
             };
-            const bool is_broken = pair.is_broken || (law->weakens && trial > std::max(0.0, bears(false)));
-            sheared.push_back({pressed * law->tan_psi, trial, bears(is_broken),
-                               law->tan_phi_of(is_broken) * law->k_n * pair.length, law->k_s * pair.length});
+            const auto strength = [&](const joint::Slopes& now) {
+                return now.cohesion * pair.length + presses * now.tan_phi;
+            };
+            const bool is_broken = pair.is_broken || (joint::weakens_by_slip(law) &&
+                                                      trial > std::max(0.0, strength(slopes_if(false))));
+            const joint::Slopes now = slopes_if(is_broken);
+            sheared.push_back({pressed * slopes.tan_psi, trial, strength(now),
+                               now.tan_phi * slopes.k_n * pair.length, slopes.k_s * pair.length});
         }
         // The right side, and how fast it falls.
         const auto raising = [&](double x) {
@@ -686,7 +615,7 @@ void FaceContacts::update(const std::vector<Vector2d>& place, const std::vector<
         };
         if (!pair.is_broken && -k_n * std::min(closing[0], closing[1]) > joint::tensile_strength(law)) {
             pair.is_broken = true;
-            in_bonds = Part(law, closing, found->length).stored();
+            in_bonds = along_overlap(law, pair.state(), closing, found->length).stored;
         }
         if (pair.is_broken) {
             if (std::max(closing[0], closing[1]) <= 0) {
@@ -708,7 +637,7 @@ void FaceContacts::update(const std::vector<Vector2d>& place, const std::vector<
             pair.on_b[i] = fraction(found->on_b, part[i]);
         }
         const Vector2d tangent = along(pair.normal);
-        const Part closed(law, closing, pair.length);
+        const joint::AlongOverlap closed = along_overlap(law, pair.state(), closing, pair.length);
 
         // Two points a gap apart that turn together move along each other, too; that is no slip.
         const double gap = fraction(found->gap, (part[0] + part[1]) / 2);
@@ -721,16 +650,16 @@ void FaceContacts::update(const std::vector<Vector2d>& place, const std::vector<
         const double trial = kept + k_s * slid * pair.length;
         const bool was_broken = pair.is_broken;
         const bool weakens =
-            !was_broken && joint::weakens_by_slip(law) && std::abs(trial) > closed.strength(false);
+            !was_broken && joint::weakens_by_slip(law) && std::abs(trial) > closed.strength[0];
         if (weakens) {
             pair.is_broken = true;
-            in_bonds = Part(law, closing, found->length).stored();
+            in_bonds = along_overlap(law, pair.state(), closing, found->length).stored;
         }
 
         // Forces on the ends that are as the traction between them. In the step in which it closes, and in
         // the one before it opens, a contact is closed for a part of the time that its force acts.
         const std::array<double, 2> opening{parted_at(0).dot(pair.normal), parted_at(1).dot(pair.normal)};
-        const double deep = closed.deep(), way = (opening[0] + opening[1]) / 2 - pair.raised;
+        const double deep = (closing[0] + closing[1]) / 2, way = (opening[0] + opening[1]) / 2 - pair.raised;
         double acts = 1;
         if (was_broken && !was_closed && deep < -way)
             acts = (1 - deep / way) / 2;
@@ -741,17 +670,24 @@ void FaceContacts::update(const std::vector<Vector2d>& place, const std::vector<
         }
         pair.way = way;
         for (int i = 0; i < 2; ++i) {
-            const double pressed = closed.force_on(i, acts);
-            double held = viscosity / dt * closed.stiffness() * pair.length / 2 * (opening[i] - pair.raised);
+            const double pressed = acts * closed.force_on_ends[i];
+            double held = viscosity / dt * closed.stiffness * pair.length / 2 * (opening[i] - pair.raised);
             if (was_broken)
                 held = std::min(held, pressed);
             pair.force[i] = (held - pressed) * pair.normal;
             pair.held[i] = held * pair.normal;
         }
-        pair.sigma = pair.length > 0 ? -closed.force() / pair.length : 0.0;
-        pair.stiffest = closed.stiffest();
+        pair.sigma = pair.length > 0 ? -closed.force / pair.length : 0.0;
+        pair.stiffest = closed.stiffest;
 
-        const double limit = closed.strength(pair.is_broken), shear = std::clamp(trial, -limit, limit);
+        const double limit = closed.strength[pair.is_broken ? 1 : 0], shear = [&] {
+            if (!joint::remembers(law) || !(pair.length > 0))
+                return std::clamp(trial, -limit, limit);
+            joint::State state = pair.state();
+            const double tau = joint::shear(law, state, kept / pair.length, slid, limit / pair.length);
+            pair.memory = state.memory;
+            return tau * pair.length;
+        }();
         pair.is_slipping = shear != trial;
         const auto sheared_in = [&](double force, double length) {
             return k_s > 0 && length > 0 ? force * force / (2 * k_s * length) : 0.0;
@@ -774,7 +710,8 @@ void FaceContacts::update(const std::vector<Vector2d>& place, const std::vector<
         if (weakens)
             leave_bonds();
         pair.pressed_in =
-            weakens ? Part(law, closing, (part[1] - part[0]) * found->length).stored() : closed.stored();
+            weakens ? along_overlap(law, pair.state(), closing, (part[1] - part[0]) * found->length).stored
+                    : closed.stored;
         if (in_bonds > 0)
             pair.friction += in_bonds - pair.pressed_in;
         pair.sheared_in = sheared_in(shear, pair.length);
@@ -860,6 +797,7 @@ void FaceContacts::update(const std::vector<Vector2d>& place, const std::vector<
                 pair.dilation = std::max(pair.dilation, std::clamp(room, 0.0, before->dilation));
                 pair.law = law_slid_on_to(pair, *before);
                 pair.tau = before->tau;
+                pair.memory = before->memory;
                 pair.lead = {unraised + pair.dilation, unraised + pair.dilation};
             }
             pair.is_known = true;
@@ -882,8 +820,8 @@ void FaceContacts::transfer(const Transfer& to, DynamicsState& kept)
     for (FacePair& pair :
          pairs_) // all members, lest a new one is forgotten; those not passed on are of one update alone
         [[maybe_unused]] auto& [a, b, law, lead, dilation, tau, is_known, is_new, is_closed, is_broken,
-                                is_slipping, on_a, on_b, force, normal, raised, way, length, sigma, stiffest,
-                                held, pressed_in, sheared_in, friction, damped] = pair;
+                                memory, is_slipping, on_a, on_b, force, normal, raised, way, length, sigma,
+                                stiffest, held, pressed_in, sheared_in, friction, damped] = pair;
     std::vector<std::array<Index, 2>> faces;
     for (const FacePair& pair : pairs_)
         faces.push_back({pair.a, pair.b});
@@ -902,6 +840,9 @@ void FaceContacts::transfer(const Transfer& to, DynamicsState& kept)
     to.values(pairs_, kept.is_closed, &FacePair::is_closed);
     to.values(pairs_, kept.is_broken, &FacePair::is_broken);
     to.values(pairs_, kept.normal, &FacePair::normal);
+    to.values(pairs_, kept.first_memory, [](FacePair& pair) -> double& { return pair.memory[0]; });
+    to.values(pairs_, kept.second_memory, [](FacePair& pair) -> double& { return pair.memory[1]; });
+    to.values(pairs_, kept.third_memory, [](FacePair& pair) -> double& { return pair.memory[2]; });
     to.values(pairs_, kept.length, &FacePair::length);
     to.values(pairs_, kept.pressed_in, &FacePair::pressed_in);
     to.values(pairs_, kept.sheared_in, &FacePair::sheared_in);

@@ -55,6 +55,7 @@ struct FacePair {
     bool is_new = true;               // has not borne a force yet
     bool is_closed = false;           // over some of its length
     bool is_broken = true;            // has no cohesion and no tensile strength (any more)
+    std::array<double, 3> memory{};   // of the law, as in joint::State
     bool is_slipping = false;
 
     // Now, if closed: the ends of the closed part, as fractions of a and of b, the force on a there, and the
@@ -77,6 +78,10 @@ struct FacePair {
             end += by;
     }
     bool is_bonded() const { return is_known && !is_broken; }
+    joint::State state() const
+    {
+        return {.slip = 0, .dilation = dilation, .is_broken = is_broken, .memory = memory};
+    }
     double stored() const { return pressed_in + sheared_in; }
 };
 

@@ -66,18 +66,7 @@ void add_contacts(Assembly& assembly, const Scene& scene, const EquivalentJoints
     contacts.length = mesh.contact_length;
     for (std::size_t c = 0; c < n; ++c) {
         const Index e = mesh.contact_edge[c];
-        static_assert(joint::number_of_laws == 2);
-        if (joints.law[e] == static_cast<Index>(JointLaw::barton_bandis))
-            contacts.law.push_back(joint::BartonBandis{joints.normal_stiffness[e], joints.shear_stiffness[e],
-                                                       joints.largest_closure[e], joints.friction_angle[e],
-                                                       joints.roughness[e], joints.wall_strength[e]});
-        else
-            contacts.law.push_back(joint::Coulomb{
-                joints.normal_stiffness[e], joints.shear_stiffness[e], joints.cohesion[e],
-                std::tan(joints.friction_angle[e]), joints.tensile_strength[e],
-                std::tan(joints.dilation_angle[e]), joints.law[e] == static_cast<Index>(JointLaw::residual),
-                joints.residual_cohesion[e], std::tan(joints.residual_friction_angle[e]),
-                joints.dilation_until[e]});
+        contacts.law.push_back(joint::law_of(joints, static_cast<std::size_t>(e)));
         const Vector3d stress = scene.in_situ_stress.at(mesh.contact_centre[c]);
         const Vector2d normal = mesh.contact_normal[c], tangent = along(normal);
         const Vector2d pull(stress[0] * normal.x() + stress[2] * normal.y(),
@@ -653,11 +642,14 @@ void transfer(const Transfer& to, Assembly& assembly, Checkpoint& kept)
     to.values(initial_traction, kept.initial_traction);
     to.values(relative_displacement, kept.relative_displacement);
     to.values(offset, kept.offset);
-    for (joint::CoulombState& one : state)
-        [[maybe_unused]] auto& [slip, dilation, is_broken] = one;
-    to.values(state, kept.slip, &joint::CoulombState::slip);
-    to.values(state, kept.dilation, &joint::CoulombState::dilation);
-    to.values(state, kept.is_broken, &joint::CoulombState::is_broken);
+    for (joint::State& one : state)
+        [[maybe_unused]] auto& [slip, dilation, is_broken, memory] = one;
+    to.values(state, kept.slip, &joint::State::slip);
+    to.values(state, kept.dilation, &joint::State::dilation);
+    to.values(state, kept.is_broken, &joint::State::is_broken);
+    to.values(state, kept.first_memory, [](joint::State& one) -> double& { return one.memory[0]; });
+    to.values(state, kept.second_memory, [](joint::State& one) -> double& { return one.memory[1]; });
+    to.values(state, kept.third_memory, [](joint::State& one) -> double& { return one.memory[2]; });
 }
 
 std::vector<double> stiffness_row_sums(const Assembly& assembly)

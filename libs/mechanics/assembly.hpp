@@ -47,7 +47,7 @@ struct Contacts {
     std::vector<Vector2d> normal;                // unit, from a to b
     std::vector<double> length;                  // [m]
     std::vector<joint::Law> law;
-    std::vector<joint::CoulombState> state;
+    std::vector<joint::State> state;
     std::vector<Vector2d>
         initial_traction;           // at zero displacement; where open, the normal part is k_n x gap [Pa]
     std::vector<Vector2d> offset;   // displacement at which the springs are as at the start: creep [m]
@@ -182,7 +182,7 @@ void start_from_here(Assembly& assembly);
 // What equilibria and creep change, for going back to it.
 struct State {
     std::vector<Vector2d> displacement, offset, traction, relative_displacement;
-    std::vector<joint::CoulombState> joint;
+    std::vector<joint::State> joint;
     std::vector<ContactStatus> status;
     std::vector<Vector3d> stress;
     std::vector<YieldingZone> yielding;

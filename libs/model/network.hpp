@@ -9,6 +9,8 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -155,13 +157,6 @@ struct SetAverages {
     std::vector<double> limited_length; // of edges that are stiffer than zones can tell [m]
 };
 
-// What a joint does at once, creep apart (libs/joint/law.hpp).
-enum class JointLaw : Index {
-    coulomb = 0,  // its bonds break by opening only
-    residual = 1, // by slip, too, and leave the residual strength
-    barton_bandis = 2
-};
-
 // The equivalent continuous joint of every joint edge, and of every boundary edge that rests on a joint;
 // rows are edges, and on all other edges every value is 0. Made by strength-averaging.
 struct EquivalentJoints {
@@ -177,15 +172,11 @@ struct EquivalentJoints {
     // Maxwell dashpot in series; 0 is none.
     std::vector<double> normal_maxwell_viscosity, shear_maxwell_viscosity; // [Pa s/m]
 
-    std::vector<Index> law{};                      // JointLaw
-    std::vector<double> residual_cohesion{};       // 0 where the law has none [Pa]
-    std::vector<double> residual_friction_angle{}; // 0 where the law has none [rad]
-    // Of Barton and Bandis, 0 elsewhere; the normal stiffness is that without pressure, the friction angle
-    // phi_r.
-    std::vector<double> roughness{};       // [-]
-    std::vector<double> wall_strength{};   // [Pa]
-    std::vector<double> largest_closure{}; // [m]
-    double strength_divisor = 1; // of their shear strength, for a run with strengths divided; in no file [-]
+    std::vector<Index> law{}; // into joint::laws() (libs/joint/law.hpp)
+    std::map<std::string, std::vector<double>, std::less<>>
+        own{};                   // parameters of single laws, by their names; 0 on
+                                 // edges of other laws [SI]
+    double strength_divisor = 1; // of all strengths, for a run with strengths divided; in no file [-]
 
     // What was averaged, and with which persistence; 0 without joint [-].
     std::vector<double> persistence{};

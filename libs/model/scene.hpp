@@ -5,11 +5,14 @@
 #pragma once
 
 #include "model/probability_law.hpp"
+#include "model/statistics.hpp"
 
 #include <Eigen/Core>
 
 #include <algorithm>
 #include <cstdint>
+#include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -65,20 +68,6 @@ struct Maxwell {
     double shear_viscosity;  // [Pa s/m]
 };
 
-// What a joint keeps of its strength after its first slip, or after opening.
-struct ResidualStrength {
-    double cohesion;       // [Pa]
-    double friction_angle; // [rad]
-};
-
-// What Barton and Bandis ask for (libs/joint/barton_bandis.hpp).
-struct JointWalls {
-    double roughness;            // JRC [-]
-    double strength;             // JCS [Pa]
-    double largest_closure;      // V_m [m]
-    double strength_divisor = 1; // of the shear strength, for a run with strengths divided; no key [-]
-};
-
 // The open part of a joint.
 struct JointMaterial {
     std::string name;
@@ -91,8 +80,10 @@ struct JointMaterial {
     std::optional<Maxwell> maxwell{}; // without either the joint does not creep
     double dilation_angle = 0;        // [rad]
     double dilation_until = 0;        // slip at which dilation ends; 0: it does not [m]
-    std::optional<ResidualStrength> residual{}; // without it slip alone weakens nothing
-    std::optional<JointWalls> walls{};          // with them the law is Barton and Bandis's
+    Index law = 0;                    // into joint::laws() (libs/joint/law.hpp)
+    std::map<std::string, double, std::less<>>
+        own{};                   // parameters of that law alone, by their names, in SI units
+    double strength_divisor = 1; // of all strengths, for a run with strengths divided; no key [-]
 };
 
 // What the joints of a set are (libs/sampling/joint_sets.hpp).

@@ -7,6 +7,7 @@
 
 #pragma once
 
+#include "model/quantity.hpp"
 #include "model/scene.hpp"
 #include "model/units.hpp"
 #include "scene/shared_settings.hpp"
@@ -23,12 +24,6 @@
 
 namespace jointcreep::scene
 {
-
-// A key's unit as the user sees it, and what one of it is in SI units.
-struct KeyUnit {
-    std::string_view symbol; // "" without unit
-    double in_si = 1;
-};
 
 // "[0", "0.5)" and both with the unit, "[0, 0.5) MPa".
 std::string lower_bound(const Range& range);
@@ -188,9 +183,6 @@ Key<Record> names(std::string name, std::vector<std::string> Record::*member, st
 {
     return key_of<Record>({std::move(name), "names", {}, {}, std::move(doc)}, member, read_names);
 }
-
-inline constexpr KeyUnit days{"days", unit::day};
-inline constexpr KeyUnit metres{"m", unit::m};
 
 template <class Record>
 Key<Record> date(std::string name, double Record::*member, std::string doc)

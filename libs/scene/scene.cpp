@@ -1,5 +1,6 @@
 #include "scene/scene.hpp"
 
+#include "joint/law.hpp"
 #include "model/error.hpp"
 #include "scene/scene_checks.hpp"
 #include "scene/scene_keys.hpp"
@@ -215,6 +216,11 @@ Scene parse_scene(std::string_view text, const std::string& name)
     scene.rocks = read_list(tables.rock, root, reading);
     scene.regions = read_list(tables.region, root, reading);
     scene.joint_materials = read_list(tables.joint_material, root, reading);
+    for (JointMaterial& material : scene.joint_materials)
+        for (std::size_t law = 0; law < joint::laws().size(); ++law) // by the keys that are given
+            if (std::ranges::any_of(joint::laws()[law].own,
+                                    [&](std::string_view own) { return material.own.contains(own); }))
+                material.law = static_cast<Index>(law);
     scene.joints = read_list(tables.joint, root, reading);
     scene.joint_sets = read_list(tables.joint_set, root, reading);
     scene.mapped = read_mapped(root, reading);

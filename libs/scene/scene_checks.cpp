@@ -1,5 +1,6 @@
 #include "scene/scene_checks.hpp"
 
+#include "joint/law.hpp"
 #include "model/error.hpp"
 #include "model/polygon.hpp"
 #include "scene/polygon.hpp"
@@ -258,39 +259,29 @@ private:
                 given.refuse("kelvin_chain",
                              "wanted either it, or the four keys of one Kelvin unit, not both");
             const JointMaterial& material = scene_.joint_materials[i];
-            if (material.dilation_angle > material.friction_angle)
-                given.refuse("dilation_angle_deg", "wanted at most friction_angle_deg");
-            if (material.dilation_angle > 0 && material.shear_stiffness == 0)
-                given.refuse("dilation_angle_deg",
-                             "wanted 0 of a smooth joint, which has no shear stiffness");
-            if (material.walls) {
-                for (const auto& [key, value] : {std::pair{"cohesion_MPa", material.cohesion},
-                                                 std::pair{"tensile_strength_MPa", material.tensile_strength},
-                                                 std::pair{"dilation_angle_deg", material.dilation_angle},
-                                                 std::pair{"dilation_until_m", material.dilation_until}})
-                    if (value != 0)
-                        given.refuse(key, "wanted 0 of a Barton-Bandis joint, which has none");
-                if (material.friction_angle >= 70 * unit::deg)
-                    given.refuse("friction_angle_deg", "wanted less than 70 of a Barton-Bandis joint");
-                for (const char* const key :
-                     {"residual_cohesion_MPa", "kelvin_chain", "normal_kelvin_stiffness_MPa_per_m",
-                      "normal_maxwell_viscosity_MPa_day_per_m"})
+            const joint::LawInfo& law = joint::laws()[static_cast<std::size_t>(material.law)];
+            for (const joint::LawInfo& other : joint::laws())
+                for (const std::string_view name : other.own)
+                    if (material.own.contains(name) && std::ranges::count(law.own, name) == 0)
+                        given.refuse(key_of(name), "wanted keys of one joint law; those of \"" +
+                                                       std::string(law.name) + "\" are given, too");
+            if (!law.creeps)
+                for (const char* const key : {"kelvin_chain", "normal_kelvin_stiffness_MPa_per_m",
+                                              "normal_maxwell_viscosity_MPa_day_per_m"})
                     if (given.find(key))
                         given.refuse(key,
-                                     "a Barton-Bandis joint has no residual strength and does not creep");
-            }
-            if (!material.residual)
-                continue;
-            if (material.residual->cohesion > material.cohesion)
-                given.refuse("residual_cohesion_MPa", "wanted at most cohesion_MPa");
-            if (material.residual->friction_angle > material.friction_angle)
-                given.refuse("residual_friction_angle_deg", "wanted at most friction_angle_deg");
-            if (material.residual->friction_angle < material.dilation_angle)
-                given.refuse("residual_friction_angle_deg", "wanted at least dilation_angle_deg");
-            if (material.shear_stiffness == 0)
-                given.refuse("residual_friction_angle_deg",
-                             "wanted none of a smooth joint, which bears no shear");
+                                     "a joint of the law \"" + std::string(law.name) + "\" does not creep");
+            const auto complaint =
+                law.check([&](const joint::Parameter& parameter) { return parameter.of(material); });
+            if (complaint)
+                given.refuse(std::string(complaint->parameter.key), complaint->wanted);
         }
+    }
+
+    static std::string key_of(std::string_view parameter)
+    {
+        return std::string(
+            std::ranges::find(joint::all_parameters(), parameter, &joint::Parameter::name)->key);
     }
 
     void check_rocks() const

@@ -1,5 +1,6 @@
 #include "scene/scene_keys.hpp"
 
+#include "joint/law.hpp"
 #include "model/error.hpp"
 #include "scene/field_data.hpp"
 
@@ -12,15 +13,11 @@ using enum Need;
 using enum Written;
 
 constexpr KeyUnit none{""};
-constexpr KeyUnit degrees{"deg", unit::deg};
 constexpr KeyUnit kg_per_m3{"kg/m3", unit::kg / (unit::m * unit::m * unit::m)};
 constexpr KeyUnit m_per_s2{"m/s2", unit::m / (unit::s * unit::s)};
 constexpr KeyUnit per_s{"1/s", 1 / unit::s};
 constexpr KeyUnit seconds{"s", unit::s};
-constexpr KeyUnit millimetres{"mm", unit::mm};
 constexpr KeyUnit GPa{"GPa", unit::GPa};
-constexpr KeyUnit MPa{"MPa", unit::MPa};
-constexpr KeyUnit MPa_per_m{"MPa/m", unit::MPa / unit::m};
 constexpr KeyUnit MPa_day_per_m{"MPa day/m", unit::MPa* unit::day / unit::m};
 constexpr KeyUnit GPa_day{"GPa day", unit::GPa* unit::day};
 constexpr KeyUnit mm_per_day{"mm/day", unit::mm / unit::day};
@@ -160,82 +157,58 @@ Table<JointMaterial> joint_material(const Table<Kelvin>& chain)
     const auto read_chain = [chain](const KeyInfo& key, const TomlValue& value, const Place& place) {
         return read_rows(chain, 1, 20, key, value, place);
     };
+    std::vector<Key<JointMaterial>> keys{
+        text("name", &JointMaterial::name, "Name, once among the joint materials.")};
+    for (const joint::Parameter& parameter : joint::all_parameters()) {
+        auto key = number<JointMaterial>(
+            std::string(parameter.key),
+            [parameter](JointMaterial& material) -> double& { return parameter.in(material); },
+            parameter.unit, parameter.range, std::string(parameter.meaning));
+        const auto law = std::ranges::find_if(joint::laws(), [&](const joint::LawInfo& one) {
+            return std::ranges::count(one.own, parameter.name) > 0;
+        });
+        if (law != joint::laws().end())
+            key = std::move(key).together(std::string(law->name));
+        else if (parameter.otherwise)
+            key = std::move(key).or_else(*parameter.otherwise);
+        keys.push_back(std::move(key));
+    }
+    std::vector<Key<JointMaterial>> creep{
+        number<JointMaterial>("normal_kelvin_stiffness_MPa_per_m", unit_part<&Kelvin::normal_stiffness>,
+                              MPa_per_m, stiffness, "Kelvin spring, normal.")
+            .together("Kelvin"),
+        number<JointMaterial>("normal_kelvin_viscosity_MPa_day_per_m", unit_part<&Kelvin::normal_viscosity>,
+                              MPa_day_per_m, viscosity, "Kelvin dashpot, normal.")
+            .together("Kelvin"),
+        number<JointMaterial>("shear_kelvin_stiffness_MPa_per_m", unit_part<&Kelvin::shear_stiffness>,
+                              MPa_per_m, stiffness, "Kelvin spring, shear.")
+            .together("Kelvin"),
+        number<JointMaterial>("shear_kelvin_viscosity_MPa_day_per_m", unit_part<&Kelvin::shear_viscosity>,
+                              MPa_day_per_m, viscosity, "Kelvin dashpot, shear.")
+            .together("Kelvin"),
+        key_of<JointMaterial>({"kelvin_chain",
+                               "Kelvin units",
+                               {},
+                               {},
+                               "Several Kelvin units in series, in place of the four keys of one."},
+                              &JointMaterial::kelvin, read_chain)
+            .optional(),
+        number<JointMaterial>("normal_maxwell_viscosity_MPa_day_per_m",
+                              part<maxwell, &Maxwell::normal_viscosity>, MPa_day_per_m, viscosity,
+                              "Maxwell dashpot, normal: it creeps without end.")
+            .together("Maxwell"),
+        number<JointMaterial>("shear_maxwell_viscosity_MPa_day_per_m",
+                              part<maxwell, &Maxwell::shear_viscosity>, MPa_day_per_m, viscosity,
+                              "Maxwell dashpot, shear.")
+            .together("Maxwell")};
+    std::ranges::move(creep, std::back_inserter(keys));
     return {
         {"joint_material", in_list, optional,
          "What joints are made of: springs of stress per displacement, Coulomb friction, and in series what "
          "creeps: Kelvin units (spring beside dashpot) and a Maxwell dashpot. One Kelvin unit has keys of "
          "its own; several are a kelvin_chain. A Kelvin unit and a Maxwell dashpot make a Burgers joint. "
          "Without them the joint does not creep."},
-        {text("name", &JointMaterial::name, "Name, once among the joint materials."),
-         number("normal_stiffness_MPa_per_m", &JointMaterial::normal_stiffness, MPa_per_m, stiffness,
-                "Normal stiffness."),
-         number("shear_stiffness_MPa_per_m", &JointMaterial::shear_stiffness, MPa_per_m, from(0).to(1e9),
-                "Shear stiffness; 0 is a smooth joint."),
-         number("cohesion_MPa", &JointMaterial::cohesion, MPa, strength, "Cohesion."),
-         number("friction_angle_deg", &JointMaterial::friction_angle, degrees, friction, "Friction angle."),
-         number("tensile_strength_MPa", &JointMaterial::tensile_strength, MPa, strength,
-                "Tensile strength, a positive number."),
-         number(
-             "dilation_angle_deg", &JointMaterial::dilation_angle, degrees, friction,
-             "Dilation angle, at most the friction angle: a joint that slips opens by its tangent times the "
-             "slip.")
-             .or_else(std::int64_t{0}),
-         number("dilation_until_m", &JointMaterial::dilation_until, metres, from(0).to(1000),
-                "Slip at which dilation ends, also that of rock bridges in the joint; 0 if it does not.")
-             .or_else(std::int64_t{0}),
-         number<JointMaterial>(
-             "residual_cohesion_MPa", part<&JointMaterial::residual, &ResidualStrength::cohesion>, MPa,
-             strength,
-             "Cohesion once the joint has slipped or opened, at most its cohesion. Without this "
-             "and the next key opening takes the cohesion, and slip alone nothing.")
-             .together("residual strength"),
-         number<JointMaterial>("residual_friction_angle_deg",
-                               part<&JointMaterial::residual, &ResidualStrength::friction_angle>, degrees,
-                               friction,
-                               "Friction angle from then on, at most the friction angle and at least the "
-                               "dilation angle.")
-             .together("residual strength"),
-         number<JointMaterial>(
-             "joint_roughness_coefficient", part<&JointMaterial::walls, &JointWalls::roughness>, none,
-             from(0).to(30),
-             "JRC. With it and the next two keys the joint has Barton and Bandis's law: "
-             "normal_stiffness is that without pressure, friction_angle the residual one, and "
-             "cohesion, tensile strength and dilation angle are 0.")
-             .together("Barton-Bandis"),
-         number<JointMaterial>("joint_wall_strength_MPa", part<&JointMaterial::walls, &JointWalls::strength>,
-                               MPa, above(0).to(1e4), "JCS, the compressive strength of its walls.")
-             .together("Barton-Bandis"),
-         number<JointMaterial>("largest_closure_mm",
-                               part<&JointMaterial::walls, &JointWalls::largest_closure>, millimetres,
-                               above(0).to(1000), "V_m, which it never closes beyond.")
-             .together("Barton-Bandis"),
-         number<JointMaterial>("normal_kelvin_stiffness_MPa_per_m", unit_part<&Kelvin::normal_stiffness>,
-                               MPa_per_m, stiffness, "Kelvin spring, normal.")
-             .together("Kelvin"),
-         number<JointMaterial>("normal_kelvin_viscosity_MPa_day_per_m", unit_part<&Kelvin::normal_viscosity>,
-                               MPa_day_per_m, viscosity, "Kelvin dashpot, normal.")
-             .together("Kelvin"),
-         number<JointMaterial>("shear_kelvin_stiffness_MPa_per_m", unit_part<&Kelvin::shear_stiffness>,
-                               MPa_per_m, stiffness, "Kelvin spring, shear.")
-             .together("Kelvin"),
-         number<JointMaterial>("shear_kelvin_viscosity_MPa_day_per_m", unit_part<&Kelvin::shear_viscosity>,
-                               MPa_day_per_m, viscosity, "Kelvin dashpot, shear.")
-             .together("Kelvin"),
-         key_of<JointMaterial>({"kelvin_chain",
-                                "Kelvin units",
-                                {},
-                                {},
-                                "Several Kelvin units in series, in place of the four keys of one."},
-                               &JointMaterial::kelvin, read_chain)
-             .optional(),
-         number<JointMaterial>("normal_maxwell_viscosity_MPa_day_per_m",
-                               part<maxwell, &Maxwell::normal_viscosity>, MPa_day_per_m, viscosity,
-                               "Maxwell dashpot, normal: it creeps without end.")
-             .together("Maxwell"),
-         number<JointMaterial>("shear_maxwell_viscosity_MPa_day_per_m",
-                               part<maxwell, &Maxwell::shear_viscosity>, MPa_day_per_m, viscosity,
-                               "Maxwell dashpot, shear.")
-             .together("Maxwell")}};
+        keys};
 }
 
 Table<SingleJoint> joint()

@@ -2,6 +2,7 @@
 
 #pragma once
 
+#include "model/quantity.hpp"
 #include "model/scene.hpp"
 
 #include <string_view>
@@ -10,32 +11,6 @@
 
 namespace jointcreep::scene
 {
-
-// Allowed values, in the unit that the user writes: from(0) and above(0), then .to(1) or .below(1). Every range
-// is finite.
-struct Range {
-    double least = 0, most = 0;
-    bool least_open = false, most_open = false;
-
-    constexpr Range to(double bound) const { return {least, bound, least_open, false}; }
-    constexpr Range below(double bound) const { return {least, bound, least_open, true}; }
-    constexpr bool holds(double value) const // false for NaN
-    {
-        return (least_open ? value > least : value >= least) && (most_open ? value < most : value <= most);
-    }
-};
-constexpr Range from(double bound)
-{
-    return {bound, bound, false, false};
-}
-constexpr Range above(double bound)
-{
-    return {bound, bound, true, false};
-}
-constexpr Range within(double bound)
-{
-    return from(-bound).to(bound);
-}
 
 constexpr double farthest_day = 1e6, farthest_metre = 1e6; // from the start, from the origin
 

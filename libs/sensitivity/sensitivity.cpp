@@ -15,16 +15,7 @@ using mechanics::Assembly;
 namespace
 {
 
-const joint::Coulomb& coulomb(const Assembly& assembly, std::size_t c)
-{
-    return std::get<joint::Coulomb>(assembly.contacts.law[c]);
-}
-
-// To the end: its dilation is that, whatever changes.
-bool has_dilated(const Assembly& assembly, std::size_t c)
-{
-    return assembly.contacts.state[c].dilation >= coulomb(assembly, c).dilation_end();
-}
+using joint::Dual;
 
 } // namespace
 
@@ -63,13 +54,12 @@ Sensitivity::Sensitivity(std::vector<Parameter> parameters, const Scene& scene, 
 {
     const mechanics::Contacts& contacts = assembly.contacts;
     for (const joint::Law& law : contacts.law)
-        if (!std::holds_alternative<joint::Coulomb>(law))
-            throw input_error("sensitivities are those of joints with Coulomb's law; wanted a scene without "
-                              "Barton-Bandis joints");
+        if (!joint::is_linear(law))
+            throw input_error(
+                "sensitivities are those of joints with constant springs; wanted a scene without "
+                "Barton-Bandis joints");
     const std::size_t n = contacts.law.size(), zones = assembly.zones.area.size();
-    branch_.assign(n, Branch::stuck);
-    start_slip_.assign(n, 0.0);
-    start_dilation_.assign(n, 0.0);
+    start_.assign(n, {});
     const std::vector<Vector2d> no_gridpoints(assembly.position.size(), Vector2d::Zero()),
         no_contacts(n, Vector2d::Zero());
     const std::vector<Vector3d> no_zones(zones, Vector3d::Zero());
@@ -82,6 +72,7 @@ Sensitivity::Sensitivity(std::vector<Parameter> parameters, const Scene& scene, 
                       .traction = no_contacts,
                       .slip = std::vector<double>(n, 0.0),
                       .dilation = std::vector<double>(n, 0.0),
+                      .memory = std::vector<std::array<double, 3>>(n),
                       .initial_stress = no_zones,
                       .stress = no_zones,
                       .shear_modulus = std::vector<double>(zones, 0.0),
@@ -96,7 +87,7 @@ Sensitivity::Sensitivity(std::vector<Parameter> parameters, const Scene& scene, 
                       .rate = std::vector<double>(n, 0.0)};
         if (parameter == Parameter::joint_stiffness)
             for (std::size_t c = 0; c < n; ++c)
-                change.stiffness[c] = {coulomb(assembly, c).k_n, coulomb(assembly, c).k_s};
+                change.stiffness[c] = {joint::k_n(contacts.law[c]), joint::k_s(contacts.law[c])};
         if (parameter == Parameter::horizontal_stress) {
             for (std::size_t z = 0; z < zones; ++z)
                 change.initial_stress[z].x() = assembly.zones.initial_stress[z].x();
@@ -120,37 +111,55 @@ creep::Chain Sensitivity::change_of(const creep::Chain& chain, Parameter paramet
     return change;
 }
 
-ContactNow Sensitivity::contact(const Assembly& assembly, std::size_t c) const
+Sensitivity::ContactResponse Sensitivity::respond(const Assembly& assembly, std::size_t c,
+                                                  const ContactChange& by) const
 {
     const mechanics::Contacts& contacts = assembly.contacts;
-    const double slipped = contacts.state[c].slip - start_slip_[c];
-    joint::Coulomb law = coulomb(assembly, c);
-    law.tan_phi = law.tan_phi_of(contacts.state[c].is_broken);
-    if (has_dilated(assembly, c))
-        law.tan_psi = 0;
-    return {law,
-            contacts.status[c] == ContactStatus::removed ? Branch::removed : branch_[c],
-            slipped < 0 ? -1.0 : 1.0,
-            contacts.relative_displacement[c] - contacts.offset[c],
-            contacts.initial_traction[c].y(),
-            start_slip_[c],
-            has_dilated(assembly, c) ? contacts.state[c].dilation : start_dilation_[c],
-            std::abs(slipped)};
+    if (contacts.status[c] == ContactStatus::removed)
+        return {Vector2d::Zero(), by.slip, by.dilation, by.memory};
+    const joint::Law& law = contacts.law[c];
+    const joint::State& start = start_[c];
+    const Vector2d &initial = contacts.initial_traction[c],
+                   stretch = contacts.relative_displacement[c] - contacts.offset[c];
+    joint::StateOf<Dual> state{{start.slip, by.slip},
+                               {start.dilation, by.dilation},
+                               contacts.state[c].is_broken, // bonds that break have done so from the start
+                               {Dual(start.memory[0], by.memory[0]), Dual(start.memory[1], by.memory[1]),
+                                Dual(start.memory[2], by.memory[2])}};
+    const auto found = joint::with_derivatives(
+        law, Dual(joint::k_n(law), by.stiffness.x()), Dual(joint::k_s(law), by.stiffness.y()),
+        [&](const auto& one) {
+            return joint::respond(one, state, Dual(initial.x(), by.initial_traction.x()),
+                                  Dual(initial.y(), by.initial_traction.y()),
+                                  Dual(stretch.x(), by.spring.x()), Dual(stretch.y(), by.spring.y()));
+        });
+    return {{found.sigma_n.slope, found.tau.slope},
+            state.slip.slope,
+            state.dilation.slope,
+            {state.memory[0].slope, state.memory[1].slope, state.memory[2].slope}};
 }
 
-ResponseChange Sensitivity::response(const Assembly& assembly, const Change& change, std::size_t c,
-                                     bool with_displacement) const
+Sensitivity::ContactResponse Sensitivity::response(const Assembly& assembly, const Change& change,
+                                                   std::size_t c, bool with_displacement) const
 {
-    const auto [a, b] = assembly.contacts.gridpoint[c];
-    const Vector2d& normal = assembly.contacts.normal[c];
     Vector2d spring = -change.offset[c];
     if (with_displacement) {
-        const Vector2d relative = change.displacement[b] - change.displacement[a];
-        spring += Vector2d(normal.dot(relative), along(normal).dot(relative));
+        const auto [a, b] = assembly.contacts.gridpoint[c];
+        const Vector2d apart = change.displacement[b] - change.displacement[a],
+                       &normal = assembly.contacts.normal[c];
+        spring += Vector2d(normal.dot(apart), along(normal).dot(apart));
     }
-    return respond(contact(assembly, c),
+    return respond(assembly, c,
                    {change.stiffness[c], change.initial_traction[c], spring, change.slip[c],
-                    has_dilated(assembly, c) ? 0.0 : change.dilation[c]});
+                    change.dilation[c], change.memory[c]});
+}
+
+// Change of a contact's traction over change of its relative displacement.
+implicit::Tangent Sensitivity::tangent(const Assembly& assembly, std::size_t c) const
+{
+    const Vector2d by_opening = respond(assembly, c, {.spring = {1, 0}}).traction,
+                   by_shear = respond(assembly, c, {.spring = {0, 1}}).traction;
+    return {by_opening.x(), by_shear.y(), by_opening.y(), by_shear.x()};
 }
 
 Vector3d Sensitivity::stress(const Assembly& assembly, const Change& change, std::size_t z,
@@ -214,20 +223,8 @@ void Sensitivity::settle(const Assembly& assembly, implicit::Solver& engine, dou
     const mechanics::Contacts& contacts = assembly.contacts;
     const std::size_t n = contacts.law.size();
     std::vector<implicit::Tangent> tangents(n);
-    for (std::size_t c = 0; c < n; ++c) {
-        // What counts as slipping may just stand still a little below its limit.
-        constexpr double rounding = 1e-9;
-        const double shear = std::abs(contacts.traction[c].y()),
-                     slipped = coulomb(assembly, c).k_s * std::abs(contacts.state[c].slip - start_slip_[c]);
-        branch_[c] = Branch::stuck;
-        if (contacts.status[c] == ContactStatus::removed)
-            branch_[c] = Branch::removed;
-        else if (contacts.status[c] == ContactStatus::open)
-            branch_[c] = Branch::open;
-        else if (contacts.status[c] == ContactStatus::slipping && slipped > rounding * shear)
-            branch_[c] = shear > rounding * slipped ? Branch::slips : Branch::slips_without_strength;
-        tangents[c] = tangent_of(contact(assembly, c));
-    }
+    for (std::size_t c = 0; c < n; ++c)
+        tangents[c] = tangent(assembly, c);
     for (Change& change : changes_) {
         std::vector<Vector2d> force = forces(assembly, change, false);
         if (held > 0)
@@ -242,19 +239,17 @@ void Sensitivity::settle(const Assembly& assembly, implicit::Solver& engine, dou
         change.displacement.assign(force.size(), Vector2d::Zero());
         stiffness.add_to(change.displacement, x, 1);
         for (std::size_t c = 0; c < n; ++c) {
-            const ResponseChange found = response(assembly, change, c, true);
+            const ContactResponse found = response(assembly, change, c, true);
             change.traction[c] = found.traction;
             change.slip[c] = found.slip;
             change.dilation[c] = found.dilation;
+            change.memory[c] = found.memory;
         }
         for (std::size_t z = 0; z < change.stress.size(); ++z)
             change.stress[z] =
                 assembly.zones.is_present[z] ? stress(assembly, change, z, true) : Vector3d(Vector3d::Zero());
     }
-    for (std::size_t c = 0; c < n; ++c) {
-        start_slip_[c] = contacts.state[c].slip;
-        start_dilation_[c] = contacts.state[c].dilation;
-    }
+    start_ = contacts.state;
 }
 
 void Sensitivity::start_from_here(const Assembly& assembly)
@@ -264,19 +259,22 @@ void Sensitivity::start_from_here(const Assembly& assembly)
         for (std::size_t c = 0; c < change.slip.size(); ++c) {
             const auto [a, b] = contacts.gridpoint[c];
             const Vector2d relative = change.displacement[b] - change.displacement[a];
-            const double normal =
-                change.initial_traction[c].x() +
-                change.stiffness[c].x() * (contacts.relative_displacement[c].x() - contacts.offset[c].x() -
-                                           contacts.state[c].dilation) +
-                coulomb(assembly, c).k_n * (contacts.normal[c].dot(relative) - change.dilation[c]);
+            // As mechanics::start_from_here() has it.
+            const Dual sigma_0(contacts.initial_traction[c].x(), change.initial_traction[c].x()),
+                u(contacts.relative_displacement[c].x() - contacts.offset[c].x() - contacts.state[c].dilation,
+                  contacts.normal[c].dot(relative) - change.offset[c].x() - change.dilation[c]);
+            const double normal = joint::with_derivatives(
+                contacts.law[c], Dual(joint::k_n(contacts.law[c]), change.stiffness[c].x()),
+                Dual(joint::k_s(contacts.law[c]), change.stiffness[c].y()),
+                [&](const auto& law) { return normal_traction(law, sigma_0, u).slope; });
             change.initial_traction[c] = {normal, change.traction[c].y()};
             change.slip[c] = change.dilation[c] = 0;
         }
         change.initial_stress = change.stress;
         change.displacement.assign(change.displacement.size(), Vector2d::Zero());
     }
-    start_slip_.assign(start_slip_.size(), 0.0);
-    start_dilation_.assign(start_dilation_.size(), 0.0);
+    for (joint::State& state : start_)
+        state.slip = state.dilation = 0;
 }
 
 void Sensitivity::start_creep(const creep::Creep& creep)
@@ -437,11 +435,14 @@ void Sensitivity::creep_step(const creep::Creep& creep, double duration, const A
 double Sensitivity::opening(const Assembly& assembly, const Change& change, std::size_t c)
 {
     const auto [a, b] = assembly.contacts.gridpoint[c];
-    const double k_n = coulomb(assembly, c).k_n;
-    return (change.initial_traction[c].x() -
-            assembly.contacts.initial_traction[c].x() / k_n * change.stiffness[c].x()) /
-               k_n +
-           assembly.contacts.normal[c].dot(change.displacement[b] - change.displacement[a]) -
+    const joint::Law& law = assembly.contacts.law[c];
+    const double at_start = joint::with_derivatives(
+        law, Dual(joint::k_n(law), change.stiffness[c].x()), Dual(joint::k_s(law)), [&](const auto& one) {
+            return joint::opening(
+                       one, Dual(assembly.contacts.initial_traction[c].x(), change.initial_traction[c].x()))
+                .slope;
+        });
+    return at_start + assembly.contacts.normal[c].dot(change.displacement[b] - change.displacement[a]) -
            change.offset[c].x() - change.dilation[c];
 }
 

@@ -4,7 +4,8 @@
 //     K du/dp = -dr/dp ,     K the tangent stiffness, from the factor that found the equilibrium,
 // and the states that contacts and creep go on with are differentiated by the formulas that made them.
 //
-// Contacts are differentiated on the branch that they are on (contact_change.hpp). Where a creep step ends
+// Contacts are differentiated by the joint law itself, in dual numbers (joint/dual.hpp), on the branch that they
+// are on: at the border between two branches there are two derivatives, and this is one of them. Where a creep step ends
 // because a contact closes, a parameter moves that moment, too. Steps chosen by their error are taken as long
 // as they are. Where loads change during a step that is cut, what they change by until then is left out.
 //
@@ -15,14 +16,14 @@
 #include "creep/closing.hpp"
 #include "creep/creep.hpp"
 #include "implicit/equilibrium.hpp"
-#include "sensitivity/contact_change.hpp"
+#include "joint/law.hpp"
 
 #include <vector>
 
 namespace jointcreep::sensitivity
 {
 
-using Eigen::Vector3d;
+using Eigen::Vector2d, Eigen::Vector3d;
 
 // Factors on what all joints have, in normal and shear direction alike.
 enum class Parameter {
@@ -86,6 +87,7 @@ private:
         std::vector<Vector2d> displacement, released;
         std::vector<Vector2d> stiffness, initial_traction, offset, traction;
         std::vector<double> slip, dilation;
+        std::vector<std::array<double, 3>> memory; // of joint::State
         std::vector<Vector3d> initial_stress, stress;
         std::vector<double> shear_modulus; // zones
         // Of creep::Creep.
@@ -98,19 +100,33 @@ private:
 
     creep::Chain change_of(const creep::Chain& chain, Parameter parameter) const;
     static double opening(const mechanics::Assembly& assembly, const Change& change, std::size_t c);
-    ContactNow contact(const mechanics::Assembly& assembly, std::size_t c) const;
+    // What a contact starts with changes by this: its springs, initial traction, the stretch of its springs, and
+    // what it remembers; pairs are {normal, shear}.
+    struct ContactChange {
+        Vector2d stiffness{0, 0}, initial_traction{0, 0}, spring{0, 0};
+        double slip = 0, dilation = 0;
+        std::array<double, 3> memory{};
+    };
+    // So its traction, and what it remembers at the end, change by this.
+    struct ContactResponse {
+        Vector2d traction;
+        double slip, dilation;
+        std::array<double, 3> memory;
+    };
+    ContactResponse respond(const mechanics::Assembly& assembly, std::size_t c,
+                            const ContactChange& by) const;
+    implicit::Tangent tangent(const mechanics::Assembly& assembly, std::size_t c) const;
     // Forces on gridpoints, as settled; or before, at displacements as they are.
     std::vector<Vector2d> forces(const mechanics::Assembly& assembly, const Change& change,
                                  bool is_settled) const;
-    ResponseChange response(const mechanics::Assembly& assembly, const Change& change, std::size_t c,
-                            bool with_displacement) const;
+    ContactResponse response(const mechanics::Assembly& assembly, const Change& change, std::size_t c,
+                             bool with_displacement) const;
     Vector3d stress(const mechanics::Assembly& assembly, const Change& change, std::size_t z,
                     bool with_displacement) const;
 
     std::vector<Parameter> parameters_;
-    std::vector<Change> changes_;                     // of the parameters
-    std::vector<Branch> branch_;                      // of the contacts, at the last equilibrium
-    std::vector<double> start_slip_, start_dilation_; // of that equilibrium; then at its end
+    std::vector<Change> changes_;     // of the parameters
+    std::vector<joint::State> start_; // of contacts, at the last equilibrium's start; then at its end
 };
 
 } // namespace jointcreep::sensitivity

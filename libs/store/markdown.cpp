@@ -96,7 +96,9 @@ This is format version )"
 - Text is UTF-8 of fixed length, padded with zero bytes.
 - Equal input gives equal bytes: a file holds no dates, paths or user names.
 - Datasets carry checksums, and are compressed, but for those that would hardly get smaller. A damaged file is refused; a file made to do harm may not be.
-- Readers ignore datasets they do not know. A file of another major version, or one that is not complete, is refused.
+- An addition to the format raises the minor version. Any other change raises the major version: another name, meaning, unit or shape, or a removal.
+- A program reads files of its own major version. It ignores datasets that it does not know, for example those that a higher minor version adds. It refuses a file that lacks a dataset that it needs, and names the dataset.
+- A program refuses a file of another major version, and says which version it reads. It refuses a file that is not complete.
 - While a file is written it is called `NAME.partial-` and a number; it is renamed when it is whole.
 
 ```python

@@ -1,5 +1,6 @@
 #include "store/schema.hpp"
 
+#include "joint/law.hpp"
 #include "model/error.hpp"
 
 #include <algorithm>
@@ -437,32 +438,19 @@ std::vector<Field> fields_of(EquivalentJoints& joints)
 {
     const std::vector<std::string> edge = {"edge"}, units = {"edge", "kelvin_unit"};
     // clang-format off
-    std::vector<Field> fields = {
-        {"/equivalent/normal_stiffness", &joints.normal_stiffness, edge, "Pa/m", at_least(0),
-         "Normal stiffness of the equivalent joint."},
-        {"/equivalent/shear_stiffness", &joints.shear_stiffness, edge, "Pa/m", at_least(0),
-         "Shear stiffness."},
-        {"/equivalent/cohesion", &joints.cohesion, edge, "Pa", at_least(0), "Cohesion."},
-        {"/equivalent/friction_angle", &joints.friction_angle, edge, "rad", between(0, std::numbers::pi / 2),
-         "Friction angle."},
-        {"/equivalent/tensile_strength", &joints.tensile_strength, edge, "Pa", at_least(0),
-         "Tensile strength."},
-        {"/equivalent/dilation_angle", &joints.dilation_angle, edge, "rad", between(0, std::numbers::pi / 2),
-         "Dilation angle."},
-        {"/equivalent/dilation_until", &joints.dilation_until, edge, "m", at_least(0),
-         "Slip at which dilation ends; 0 where it does not, or there is none."},
-        {"/equivalent/law", &joints.law, edge, "1", between(0, 2),
-         "0 Coulomb, whose bonds break by opening; 1 Coulomb with residual strength: they break by slip, too; 2 "
-         "Barton-Bandis, whose friction angle is phi_r and whose normal stiffness is that without pressure."},
-        {"/equivalent/roughness", &joints.roughness, edge, "1", at_least(0),
-         "JRC of Barton-Bandis; 0, as the next two, of other laws."},
-        {"/equivalent/wall_strength", &joints.wall_strength, edge, "Pa", at_least(0), "JCS."},
-        {"/equivalent/largest_closure", &joints.largest_closure, edge, "m", at_least(0), "V_m."},
-        {"/equivalent/residual_cohesion", &joints.residual_cohesion, edge, "Pa", at_least(0),
-         "Cohesion once its bonds are broken; 0 where the law has no residual strength."},
-        {"/equivalent/residual_friction_angle", &joints.residual_friction_angle, edge, "rad",
-         between(0, std::numbers::pi / 2),
-         "Friction angle once its bonds are broken; 0 where the law has no residual strength."},
+    std::vector<Field> fields;
+    for (const joint::Parameter& parameter : joint::all_parameters())
+        fields.push_back({"/equivalent/" + std::string(parameter.name), &parameter.in(joints), edge,
+                          parameter.si_unit(),
+                          parameter.is_angle() ? between(0, std::numbers::pi / 2) : at_least(0),
+                          std::string(parameter.meaning)});
+    std::string numbers;
+    for (std::size_t law = 0; law < joint::laws().size(); ++law)
+        numbers += (law > 0 ? "; " : "") + std::to_string(law) + " " + std::string(joint::laws()[law].about);
+    fields.push_back({"/equivalent/law", &joints.law, edge, "1",
+                      between(0, static_cast<double>(joint::laws().size() - 1)),
+                      "Joint law: " + numbers + ". Parameters that the law does not have are 0."});
+    append(fields, {
         {"/equivalent/persistence", &joints.persistence, edge, "1", between(0, 1),
          "Persistence that joint and rock bridges were averaged with: of the edge, of its line or of its set."},
         {"/equivalent/normal_kelvin_stiffness", &joints.normal_kelvin_stiffness, units, "Pa/m", at_least(0),
@@ -477,7 +465,7 @@ std::vector<Field> fields_of(EquivalentJoints& joints)
          "Normal viscosity of the Maxwell dashpot; 0 if there is none."},
         {"/equivalent/shear_maxwell_viscosity", &joints.shear_maxwell_viscosity, edge, "Pa s/m", at_least(0),
          "Shear viscosity of the Maxwell dashpot; 0 if there is none."},
-    };
+    });
     // clang-format on
     append(fields, fields_of(joints.pieces));
     append(fields, fields_of(joints.sets));
@@ -621,6 +609,10 @@ std::vector<Field> fields_of(Checkpoint& checkpoint)
         {"/checkpoint/dilation", &checkpoint.dilation, contact, "m", any(), "Opening by slip since then."},
         {"/checkpoint/is_broken", &checkpoint.is_broken, contact, "1", between(0, 1),
          "1 once the bonds of the contact are broken."},
+        {"/checkpoint/first_memory", &checkpoint.first_memory, contact, "1", any(),
+         "What the contact's law remembers beside slip, dilation and broken bonds, in SI units; 0 if nothing."},
+        {"/checkpoint/second_memory", &checkpoint.second_memory, contact, "1", any(), "The same, a second number."},
+        {"/checkpoint/third_memory", &checkpoint.third_memory, contact, "1", any(), "The same, a third number."},
         {"/checkpoint/reference", &checkpoint.reference, {"direction"}, "Pa", any(), "Traction from which creep counts."},
         {"/checkpoint/crept", &checkpoint.crept, {"direction_unit"}, "m", any(), "Displacement that has crept."},
         {"/checkpoint/rock_reference", &checkpoint.rock_reference, {"creeping_zone"}, "Pa", any(),
@@ -673,6 +665,10 @@ std::vector<Field> fields_of(DynamicsState& state)
         {"/dynamics_state/is_new", &state.is_new, pair, "1", between(0, 1), "1 if they have not borne a force yet."},
         {"/dynamics_state/is_closed", &state.is_closed, pair, "1", between(0, 1), "1 if they touch."},
         {"/dynamics_state/is_broken", &state.is_broken, pair, "1", between(0, 1), "1 if there are no bonds between them."},
+        {"/dynamics_state/first_memory", &state.first_memory, pair, "1", any(),
+         "What the law of the pair remembers beside, in SI units; 0 if nothing."},
+        {"/dynamics_state/second_memory", &state.second_memory, pair, "1", any(), "The same, a second number."},
+        {"/dynamics_state/third_memory", &state.third_memory, pair, "1", any(), "The same, a third number."},
         {"/dynamics_state/normal", &state.normal, pair, "1", any(), "Unit normal {x, y} from the first to the second, or 0."},
         {"/dynamics_state/length", &state.length, pair, "m", at_least(0), "Length on which they touch."},
         {"/dynamics_state/pressed_in", &state.pressed_in, pair, "J/m", at_least(0), "Energy of the normal springs between them."},
@@ -795,7 +791,7 @@ const std::vector<Described>& root_attributes()
         {"filetype",
          "text: `jointcreep network`, `jointcreep joints`, `jointcreep result` or `jointcreep checkpoint`"},
         {"format_version",
-         "two int32 {major, minor}; readers refuse a higher major and accept a higher minor"},
+         "two int32 {major, minor}; readers refuse another major and accept a higher minor"},
         {"program", "text: the program that wrote the file"},
         {"program_version", "text: its version"},
         {"seed", "uint64: seed of the joint sets"},

@@ -231,7 +231,7 @@ def write_hdf5(path, found, failed, statistics):
 
         common = found[0].common
         file.attrs["filetype"] = np.bytes_("jointcreep ensemble")
-        file.attrs["format_version"] = np.array([1, 0], np.int32)
+        file.attrs["format_version"] = np.array([2, 0], np.int32)
         file.attrs["seed"] = common["the seed"]
         put("/scene", [text_of(common["/scene"][0])], "1", "Text of the scene.")
         put("/realization/number", np.array([one.number for one in found]), "1",

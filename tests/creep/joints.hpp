@@ -42,10 +42,9 @@ inline EquivalentJoints joints_of(const std::vector<Chain>& chains)
         }
     }
     joints.shear_stiffness = joints.cohesion = joints.friction_angle = joints.tensile_strength =
-        joints.dilation_angle = joints.residual_cohesion = joints.residual_friction_angle = joints.roughness =
-            joints.wall_strength = joints.largest_closure = joints.dilation_until =
-                joints.shear_maxwell_viscosity = std::vector<double>(chains.size(), 0.0);
-    joints.law.assign(chains.size(), static_cast<Index>(JointLaw::coulomb));
+        joints.dilation_angle = joints.dilation_until = joints.shear_maxwell_viscosity =
+            std::vector<double>(chains.size(), 0.0);
+    joints.law.assign(chains.size(), 0);
     joints.shear_kelvin_stiffness = joints.shear_kelvin_viscosity =
         std::vector<double>(chains.size() * units, 0.0);
     return joints;

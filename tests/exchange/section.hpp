@@ -64,16 +64,19 @@ inline EquivalentJoints small_equivalent()
         values[2] = joint;
         return values;
     };
-    return {on_joints(6.9e8, 1e9 / 3), on_joints(0, 2.8e8),
-            on_joints(0, 1e5),         on_joints(0.5, 0.6),
-            on_joints(0, 1e4),         on_joints(0, 0.1),
-            on_joints(0, 0.03),        on_joints(6.9e8, 7e8),
-            on_joints(1e8, 2e8),       on_joints(5e13, 6e13),
-            on_joints(7e13, 8e13),     on_joints(0, 9e15),
-            on_joints(0, 3e15),        {0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0},
-            on_joints(0, 2e4),         on_joints(0, 0.4),
-            on_joints(0, 8),           on_joints(0, 5e7),
-            on_joints(0, 2e-4)};
+    EquivalentJoints joints{on_joints(6.9e8, 1e9 / 3), on_joints(0, 2.8e8),
+                            on_joints(0, 1e5),         on_joints(0.5, 0.6),
+                            on_joints(0, 1e4),         on_joints(0, 0.1),
+                            on_joints(0, 0.03),        on_joints(6.9e8, 7e8),
+                            on_joints(1e8, 2e8),       on_joints(5e13, 6e13),
+                            on_joints(7e13, 8e13),     on_joints(0, 9e15),
+                            on_joints(0, 3e15),        {0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0}};
+    joints.own["residual_cohesion"] = on_joints(0, 2e4);
+    joints.own["residual_friction_angle"] = on_joints(0, 0.4);
+    joints.own["roughness"] = on_joints(0, 8);
+    joints.own["wall_strength"] = on_joints(0, 5e7);
+    joints.own["largest_closure"] = on_joints(0, 2e-4);
+    return joints;
 }
 
 // Zones 0, 1 in block 0 (dug in state 1) and 2, 3 in block 1; contact 0 between the blocks, contact 1 under

@@ -149,7 +149,7 @@ struct TwoBlocks {
     int broken()
     {
         int n = 0;
-        for (const joint::CoulombState& state : assembly().contacts.state)
+        for (const joint::State& state : assembly().contacts.state)
             n += state.is_broken ? 1 : 0;
         return n;
     }
@@ -367,7 +367,7 @@ TEST(implicit_equilibrium, cohesion_is_lost_with_the_bond)
     for (const bool broken : {false, true}) {
         TwoBlocks blocks(true, {{{0, 0}, {1, 1}}}, {5e-3, -2e-4}, 0.3);
         blocks.set_strength(1e7, 1e7);
-        for (joint::CoulombState& state : blocks.assembly().contacts.state)
+        for (joint::State& state : blocks.assembly().contacts.state)
             state.is_broken = broken;
         mechanics::Loading loading(blocks.section.scene, blocks.section.mesh);
         loading.apply(blocks.assembly(), 1);
@@ -433,7 +433,7 @@ TEST(implicit_equilibrium, joints_that_weaken)
         const mechanics::Contacts& contacts = s.assembly.contacts;
         for (std::size_t c = 0; c < contacts.state.size(); ++c) {
             const auto& law = std::get<joint::Coulomb>(contacts.law[c]);
-            joint::CoulombState state;
+            joint::State state;
             const Vector2d sprung = contacts.relative_displacement[c] - contacts.offset[c];
             const joint::Response r = respond(law, state, contacts.initial_traction[c].x(),
                                               contacts.initial_traction[c].y(), sprung.x(), sprung.y());

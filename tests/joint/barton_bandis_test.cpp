@@ -61,7 +61,7 @@ TEST(barton_bandis, slope_and_energy_are_those_of_the_curves)
 
 TEST(barton_bandis, responds)
 {
-    CoulombState state;
+    State state;
     // Closed by 0.1 mm under 2 MPa, by half of that more; 44.2 degrees there.
     const double limit = 6e6 * std::tan((30 + 10 * std::log10(100. / 6)) * deg);
     const Response stuck = respond(law, state, -2e6, 0, -0.5e-4, 0.9 * limit / 1e9);
@@ -81,7 +81,7 @@ TEST(barton_bandis, responds)
     EXPECT_NEAR(closed.sigma_n, -6e6, 1e-3);
     EXPECT_NEAR(closed.tau, 0, 1e-6);
     // Open in situ by 0.03 mm, which counts as k_n times that.
-    CoulombState gaping;
+    State gaping;
     EXPECT_EQ(respond(law, gaping, 3e5, 0, -2.9e-5, 0).status, ContactStatus::open);
     EXPECT_NEAR(respond(law, gaping, 3e5, 0, -1.3e-4, 0).sigma_n, -2e6, 1e-3);
 }

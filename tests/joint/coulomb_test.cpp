@@ -17,7 +17,7 @@ const Coulomb law{.k_n = 1e9, .k_s = 5e8, .cohesion = 1e5, .tan_phi = 0.5, .tens
 
 TEST(coulomb, springs_within_its_strength)
 {
-    CoulombState state;
+    State state;
     const Response r = respond(law, state, -1e6, 2e5, -1e-4, 3e-4);
     EXPECT_DOUBLE_EQ(r.sigma_n, -1e6 - 1e5);
     EXPECT_DOUBLE_EQ(r.tau, 2e5 + 1.5e5);
@@ -27,7 +27,7 @@ TEST(coulomb, springs_within_its_strength)
 
 TEST(coulomb, slips_at_cohesion_plus_friction_and_unloads_elastically)
 {
-    CoulombState state;
+    State state;
     const double limit = 1e5 + 1e6 * 0.5;
     const Response r = respond(law, state, -1e6, 0, 0, 2e-3);
     EXPECT_DOUBLE_EQ(r.tau, limit);
@@ -40,7 +40,7 @@ TEST(coulomb, slips_at_cohesion_plus_friction_and_unloads_elastically)
 
 TEST(coulomb, opening_breaks_the_bond_for_good)
 {
-    CoulombState state;
+    State state;
     EXPECT_EQ(respond(law, state, 0, 0, 4e-5, 0).status, ContactStatus::stuck); // 40 kPa of tension
     const Response open = respond(law, state, 0, 0, 6e-5, 1e-3);
     EXPECT_EQ(open.status, ContactStatus::open);
@@ -58,7 +58,7 @@ TEST(coulomb, a_smooth_joint_without_shear_stiffness)
 {
     Coulomb smooth = law;
     smooth.k_s = 0;
-    CoulombState state;
+    State state;
     const Response r = respond(smooth, state, -1e6, 0, 0, 1);
     EXPECT_EQ(r.tau, 0);
     EXPECT_EQ(r.status, ContactStatus::stuck);
@@ -70,7 +70,7 @@ TEST(coulomb, dilates_by_slip)
 {
     Coulomb dilatant = law;
     dilatant.tan_psi = 0.1;
-    CoulombState state;
+    State state;
     const double start = 6e5, slip = 4e-3; // cohesion and friction
     const double sigma_n = -1e6 - 1e9 * 0.1 * slip, tau = start + 1e9 * 0.1 * slip * 0.5;
     const Response r = respond(dilatant, state, -1e6, 0, 0, slip + tau / 5e8);
@@ -92,7 +92,7 @@ TEST(coulomb, dilates_the_same_in_one_step_and_in_many_one_way)
 {
     Coulomb dilatant = law;
     dilatant.tan_psi = 0.2;
-    CoulombState once, often;
+    State once, often;
     const Response r = respond(dilatant, once, -1e6, 0, 1e-4, 1e-2);
     Response last{};
     for (int i = 1; i <= 1000; ++i)
@@ -109,7 +109,7 @@ TEST(coulomb, dilation_ends)
     dilatant.dilation_until = 1e-3;
     const double sigma_n = -1e6 - 1e9 * 1e-4, tau = 1e5 - 0.5 * sigma_n, slip = 4e-3;
     for (const int steps : {1, 3, 400}) { // the third of three, and the first, are on both sides of the end
-        CoulombState state;
+        State state;
         Response r{};
         for (int i = 1; i <= steps; ++i)
             r = respond(dilatant, state, -1e6, 0, 0, (slip + tau / 5e8) * i / steps);
@@ -124,7 +124,7 @@ TEST(coulomb, dilation_ends)
         EXPECT_LT(state.slip, 0.9 * slip);
         EXPECT_EQ(state.dilation, 0.1 * 1e-3);
     }
-    CoulombState before;
+    State before;
     respond(dilatant, before, -1e6, 0, 0, 1.5e-3);
     ASSERT_GT(before.slip, 0);
     EXPECT_EQ(slopes(dilatant, before, -1e6).tan_psi, 0.1);
@@ -137,7 +137,7 @@ TEST(coulomb, weakens_by_slip)
     brittle.weakens = true;
     brittle.residual_cohesion = 2e4;
     brittle.residual_tan_phi = 0.3;
-    CoulombState state;
+    State state;
     EXPECT_DOUBLE_EQ(respond(brittle, state, -1e6, 0, 0, 1.2e-3).tau, 6e5);
     EXPECT_FALSE(state.is_broken);
     for (int again = 0; again < 2; ++again) {
@@ -161,7 +161,7 @@ TEST(coulomb, weakens_by_opening)
     brittle.weakens = true;
     brittle.residual_cohesion = 2e4;
     brittle.residual_tan_phi = 0.3;
-    CoulombState state;
+    State state;
     EXPECT_EQ(respond(brittle, state, 0, 0, 6e-5, 0).status, ContactStatus::open);
     EXPECT_DOUBLE_EQ(respond(brittle, state, 0, 0, -1e-3, 1e-2).tau, 2e4 + 0.3 * 1e6);
 }
@@ -172,9 +172,9 @@ TEST(coulomb, opens_where_it_weakens_under_tension)
     Coulomb brittle = law;
     brittle.weakens = true;
     brittle.residual_tan_phi = 0.3;
-    CoulombState state;
+    State state;
     EXPECT_EQ(respond(brittle, state, 0, 0, 4e-5, 1e-3).status, ContactStatus::open);
-    CoulombState tough;
+    State tough;
     EXPECT_EQ(respond(law, tough, 0, 0, 4e-5, 1e-3).status, ContactStatus::slipping);
 }
 
@@ -185,7 +185,7 @@ TEST(coulomb, dilates_with_its_residual_strength)
     brittle.weakens = true;
     brittle.residual_tan_phi = 0.3;
     brittle.tan_psi = 0.1;
-    CoulombState state;
+    State state;
     const double slip = 4e-3, sigma_n = -1e6 - 1e9 * 0.1 * slip, tau = -0.3 * sigma_n;
     const Response r = respond(brittle, state, -1e6, 0, 0, slip + tau / 5e8);
     EXPECT_NEAR(state.slip, slip, 1e-15);
@@ -202,7 +202,7 @@ TEST(coulomb, opens_without_a_jump)
     Response last{};
     bool was_open = false, has_slipped_under_tension = false;
     for (int i = -1000; i <= 1000; ++i) {
-        CoulombState state;
+        State state;
         const double u_n = 1e-7 * i;
         const Response r = respond(dilatant, state, 0, 0, u_n, 5e-4);
         if (i > -1000) {
@@ -224,7 +224,7 @@ TEST(coulomb, keeps_its_bond_while_dilation_raises_it)
     Coulomb dilatant = law;
     dilatant.tensile_strength = 0;
     dilatant.tan_psi = 0.2;
-    CoulombState state;
+    State state;
     const double slip = 5e-3, tau = 1e5 + 1e6 * 0.5;
     const Response r = respond(dilatant, state, -1e6, 0, 0.2 * slip, slip + tau / 5e8); // at once
     EXPECT_FALSE(state.is_broken);
@@ -239,7 +239,7 @@ TEST(coulomb, dilates_under_tension_too)
     Coulomb dilatant = law;
     dilatant.cohesion = 1e4;
     dilatant.tan_psi = 0.1;
-    CoulombState state;
+    State state;
     const Response little = respond(dilatant, state, 4e4, 1e3, 0, 0); // no strength at 40 kPa: all shear goes
     EXPECT_NEAR(little.tau, 0, 1e-9);
     EXPECT_NEAR(state.slip, 1e3 / 5e8, 1e-20);
@@ -255,11 +255,11 @@ RC_GTEST_PROP(coulomb, never_beyond_its_strength_and_the_same_when_asked_twice, 
     Coulomb law = ::law;
     law.tan_psi = *rc::gen::element(0.0, 0.1, 0.5);
     law.dilation_until = *rc::gen::element(0.0, 1e-3, 1e-2);
-    CoulombState state;
+    State state;
     const auto number = [](double scale) { return scale * (*rc::gen::inRange(-1000, 1001)) / 1000.0; };
     for (int i = 0; i < 10; ++i) {
         const double u_n = number(1e-2), u_s = number(1e-2);
-        const CoulombState start = state;
+        const State start = state;
         const Response r = respond(law, state, -1e6, 1e5, u_n, u_s);
         if (r.status == ContactStatus::slipping) { // slip takes energy, never gives it
             const double slip = state.slip - start.slip, dilation = state.dilation - start.dilation;
@@ -270,7 +270,7 @@ RC_GTEST_PROP(coulomb, never_beyond_its_strength_and_the_same_when_asked_twice, 
         RC_ASSERT(r.sigma_n <= (state.is_broken ? 0.0 : law.tensile_strength));
         const double cohesion = state.is_broken ? 0 : law.cohesion;
         RC_ASSERT(std::abs(r.tau) <= std::max(0.0, cohesion - r.sigma_n * law.tan_phi) + 1e-6);
-        const CoulombState before = state;
+        const State before = state;
         const Response again = respond(law, state, -1e6, 1e5, u_n, u_s);
         RC_ASSERT(std::abs(again.tau - r.tau) <= 1e-6);
         RC_ASSERT(std::abs(again.sigma_n - r.sigma_n) <= 1e-6);

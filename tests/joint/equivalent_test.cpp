@@ -196,21 +196,21 @@ TEST(Average, IsWhatAHandFinds)
 }
 
 // The bridges' cohesion goes, and friction is the joint's; but never more than before.
-TEST(Average, LeavesTheJointsResidualStrength)
+TEST(AverageStrength, LeavesTheJointsResidualStrength)
 {
-    EXPECT_FALSE(average(open_joint, rock, .25).residual);
-    Strength brittle = open_joint;
-    brittle.residual = ResidualStrength{.04 * MPa, 20 * deg};
-    const Strength quarter = average(brittle, rock, .25);
-    ASSERT_TRUE(quarter.residual);
-    EXPECT_DOUBLE_EQ(quarter.residual->cohesion, .01 * MPa);
-    EXPECT_DOUBLE_EQ(quarter.residual->friction_angle, 20 * deg);
-    EXPECT_DOUBLE_EQ(quarter.cohesion, average(open_joint, rock, .25).cohesion);
-    Strength soft = rock;
-    soft.friction_angle = 5 * deg;
-    const Strength weaker = average(brittle, soft, .25);
-    EXPECT_LT(weaker.friction_angle, 20 * deg);
-    EXPECT_EQ(weaker.residual->friction_angle, weaker.friction_angle);
+    Section section(.25);
+    section.scene.joint_materials[1].law = 1; // residual strength
+    section.scene.joint_materials[1].own = {{"residual_cohesion", .04 * MPa},
+                                            {"residual_friction_angle", 20 * deg}};
+    EquivalentJoints joints = average_strength(section.scene, section.network);
+    EXPECT_EQ(joints.law[0], 1);
+    EXPECT_DOUBLE_EQ(joints.own["residual_cohesion"][0], .01 * MPa);
+    EXPECT_DOUBLE_EQ(joints.own["residual_friction_angle"][0], 20 * deg);
+    for (Rock& rock : section.scene.rocks)
+        rock.strength->friction_angle = 5 * deg;
+    EquivalentJoints weaker = average_strength(section.scene, section.network);
+    EXPECT_LT(weaker.friction_angle[0], 20 * deg);
+    EXPECT_EQ(weaker.own["residual_friction_angle"][0], weaker.friction_angle[0]);
 }
 
 TEST(Average, FallsWithPersistenceUnderAWeakerJoint)

@@ -17,22 +17,25 @@ using namespace jointcreep::unit;
 TEST(with_strength_divided, divides_what_the_joint_bears_and_leaves_the_rest)
 {
     EquivalentJoints joints;
-    joints.law.assign(2, static_cast<Index>(JointLaw::coulomb));
+    joints.law.assign(2, 1); // residual strength
     joints.normal_stiffness = {5e9, 1e9};
     joints.cohesion = {1e5, 0};
     joints.friction_angle = {38 * deg, 0};
     joints.tensile_strength = {3e4, 0};
     joints.dilation_angle = {38 * deg, 0};
-    joints.residual_cohesion = {4e4, 0};
-    joints.residual_friction_angle = {31 * deg, 0};
+    std::vector<double>&left_cohesion = joints.own["residual_cohesion"],
+    &left_friction = joints.own["residual_friction_angle"];
+    left_cohesion = {4e4, 0};
+    left_friction = {31 * deg, 0};
     const double F = 1.37;
-    const EquivalentJoints reduced = joint::with_strength_divided(joints, F);
+    EquivalentJoints reduced = joint::with_strength_divided(joints, F);
     for (const double sigma : {0.0, -1e5, -3e6}) {
         const double borne = joints.cohesion[0] - sigma * std::tan(joints.friction_angle[0]);
         EXPECT_NEAR(reduced.cohesion[0] - sigma * std::tan(reduced.friction_angle[0]), borne / F,
                     1e-12 * borne);
-        const double left = joints.residual_cohesion[0] - sigma * std::tan(joints.residual_friction_angle[0]);
-        EXPECT_NEAR(reduced.residual_cohesion[0] - sigma * std::tan(reduced.residual_friction_angle[0]),
+        const double left = left_cohesion[0] - sigma * std::tan(left_friction[0]);
+        EXPECT_NEAR(reduced.own["residual_cohesion"][0] -
+                        sigma * std::tan(reduced.own["residual_friction_angle"][0]),
                     left / F, 1e-12 * left);
     }
     EXPECT_DOUBLE_EQ(reduced.tensile_strength[0], 3e4 / F);
@@ -46,20 +49,21 @@ TEST(with_strength_divided, divides_what_the_joint_bears_and_leaves_the_rest)
 TEST(with_strength_divided, divides_the_strength_of_barton_and_bandis)
 {
     EquivalentJoints joints;
-    joints.law = {static_cast<Index>(JointLaw::barton_bandis)};
+    joints.law = {2}; // Barton-Bandis
     joints.friction_angle = {30 * deg};
-    joints.roughness = {10};
-    const EquivalentJoints reduced = joint::with_strength_divided(joints, 1.37);
+    joints.own["roughness"] = {10};
+    EquivalentJoints reduced = joint::with_strength_divided(joints, 1.37);
     EXPECT_DOUBLE_EQ(reduced.friction_angle[0], 30 * deg);
-    EXPECT_DOUBLE_EQ(reduced.roughness[0], 10);
+    EXPECT_DOUBLE_EQ(reduced.own["roughness"][0], 10);
     EXPECT_DOUBLE_EQ(reduced.strength_divisor, 1.37);
     Scene scene;
     scene.joint_materials.resize(1);
     scene.joint_materials[0].friction_angle = 30 * deg;
-    scene.joint_materials[0].walls = JointWalls{10, 1e8, 2e-4};
+    scene.joint_materials[0].law = 2;
+    scene.joint_materials[0].own = {{"roughness", 10}, {"wall_strength", 1e8}, {"largest_closure", 2e-4}};
     const Scene new_contacts = joint::with_strength_divided(scene, 1.37);
     EXPECT_DOUBLE_EQ(new_contacts.joint_materials[0].friction_angle, 30 * deg);
-    EXPECT_DOUBLE_EQ(new_contacts.joint_materials[0].walls->strength_divisor, 1.37);
+    EXPECT_DOUBLE_EQ(new_contacts.joint_materials[0].strength_divisor, 1.37);
 
     joint::BartonBandis law{1e10, 1e9, 2e-4, 30 * deg, 10, 1e8};
     const joint::BartonBandis whole = law;
@@ -79,7 +83,8 @@ TEST(with_strength_divided, divides_the_strength_of_rock_and_the_friction_of_new
     scene.rocks[0].dilation_angle = 40 * deg;
     scene.joint_materials.resize(1);
     scene.joint_materials[0].friction_angle = 30 * deg;
-    scene.joint_materials[0].residual = {0, 20 * deg};
+    scene.joint_materials[0].law = 1; // residual strength
+    scene.joint_materials[0].own = {{"residual_cohesion", 0}, {"residual_friction_angle", 20 * deg}};
     const double F = 1.37;
     const Scene reduced = joint::with_strength_divided(scene, F);
     const RockStrength& rock = *reduced.rocks[0].strength;
@@ -89,5 +94,6 @@ TEST(with_strength_divided, divides_the_strength_of_rock_and_the_friction_of_new
     EXPECT_DOUBLE_EQ(reduced.rocks[0].dilation_angle, rock.friction_angle);
     EXPECT_FALSE(reduced.rocks[1].strength);
     EXPECT_DOUBLE_EQ(std::tan(reduced.joint_materials[0].friction_angle), std::tan(30 * deg) / F);
-    EXPECT_DOUBLE_EQ(std::tan(reduced.joint_materials[0].residual->friction_angle), std::tan(20 * deg) / F);
+    EXPECT_DOUBLE_EQ(std::tan(reduced.joint_materials[0].own.at("residual_friction_angle")),
+                     std::tan(20 * deg) / F);
 }

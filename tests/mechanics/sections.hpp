@@ -4,6 +4,7 @@
 
 #include "../blocks/section.hpp"
 
+#include "joint/law.hpp"
 #include "mechanics/assembly.hpp"
 #include "zoning/zone.hpp"
 
@@ -27,10 +28,11 @@ inline EquivalentJoints joints_everywhere(const Scene& scene, const Blocks& bloc
         joints.tensile_strength.push_back(friction_angle ? 0 : there * 1e12);
     }
     const std::vector<double> none(blocks.edge_vertex.size(), 0.0);
-    joints.dilation_angle = joints.dilation_until = joints.residual_cohesion =
-        joints.residual_friction_angle = none;
-    joints.roughness = joints.wall_strength = joints.largest_closure = none;
-    joints.law.assign(none.size(), static_cast<Index>(JointLaw::coulomb));
+    joints.dilation_angle = joints.dilation_until = none;
+    for (const joint::Parameter& parameter : joint::all_parameters())
+        if (std::vector<double>& values = parameter.in(joints); values.empty())
+            values = none;
+    joints.law.assign(none.size(), 0);
     joints.normal_kelvin_stiffness = joints.shear_kelvin_stiffness = none;
     joints.normal_kelvin_viscosity = joints.shear_kelvin_viscosity = none;
     joints.normal_maxwell_viscosity = joints.shear_maxwell_viscosity = none;

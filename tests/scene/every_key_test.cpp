@@ -129,10 +129,10 @@ TEST(every_key, all_else)
     EXPECT_EQ(scene.joint_materials.at(1).dilation_angle, 5 * deg);
     EXPECT_EQ(scene.joint_materials.at(1).dilation_until, 0.02);
     EXPECT_EQ(scene.joint_materials.at(0).dilation_until, 0);
-    EXPECT_FALSE(scene.joint_materials.at(0).residual);
-    ASSERT_TRUE(scene.joint_materials.at(1).residual);
-    EXPECT_EQ(scene.joint_materials.at(1).residual->cohesion, 0.05 * MPa);
-    EXPECT_EQ(scene.joint_materials.at(1).residual->friction_angle, 20 * deg);
+    EXPECT_EQ(scene.joint_materials.at(0).law, 0);
+    ASSERT_EQ(scene.joint_materials.at(1).law, 1); // residual strength
+    EXPECT_EQ(scene.joint_materials.at(1).own.at("residual_cohesion"), 0.05 * MPa);
+    EXPECT_EQ(scene.joint_materials.at(1).own.at("residual_friction_angle"), 20 * deg);
     ASSERT_TRUE(scene.rocks[0].kelvin && scene.rocks[0].maxwell_viscosity);
     EXPECT_EQ(scene.rocks[0].kelvin->modulus, 20 * GPa);
     EXPECT_EQ(scene.rocks[0].kelvin->viscosity, 2000 * (GPa * day));

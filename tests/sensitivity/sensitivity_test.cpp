@@ -135,10 +135,10 @@ TEST(sensitivity, of_joints_that_weaken_is_that_of_whole_runs)
             Study study(0.8);
             study.scene.creep->scheme = scheme;
             for (std::size_t e = 0; e < study.joints.law.size(); ++e) {
-                study.joints.law[e] = static_cast<Index>(JointLaw::residual);
+                study.joints.law[e] = 1; // residual strength
                 study.joints.cohesion[e] = 1.2e4;
-                study.joints.residual_cohesion[e] = 2e3;
-                study.joints.residual_friction_angle[e] = 0.4;
+                study.joints.own["residual_cohesion"][e] = 2e3;
+                study.joints.own["residual_friction_angle"][e] = 0.4;
                 study.joints.dilation_angle[e] = dilation_angle;
             }
             const Study::Found weak = study.run(false);

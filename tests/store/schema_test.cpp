@@ -45,6 +45,9 @@ TEST(Schema, CoversEveryMember)
                 EXPECT_TRUE(places.insert(place).second) << field.path << " has the place of another field";
             },
             field.values);
+    // The parameters of single laws are in a map, and not in the record.
+    covered += sizeof file.equivalent.own;
+    covered -= file.equivalent.own.size() * sizeof(std::vector<double>);
     EXPECT_EQ(covered, sizeof(CheckpointFile));
 }
 

@@ -1,0 +1,74 @@
+// Coulomb's joint with a residual strength: the first slip, or opening, breaks its bonds, and leaves the
+// residual cohesion and friction for good.
+//
+//     |tau| <= c - sigma_n tan(phi)        until then
+//     |tau| <= c_r - sigma_n tan(phi_r)    from then on        c_r <= c,  tan(psi) <= tan(phi_r) <= tan(phi)
+//
+// The response is that of joint/coulomb.hpp.
+
+#pragma once
+
+#include "joint/coulomb.hpp"
+
+namespace jointcreep::joint
+{
+
+namespace parameters
+{
+
+inline const Parameter residual_cohesion{
+    "residual_cohesion",
+    "residual_cohesion_MPa",
+    MPa,
+    strengths,
+    WithBridges::share,
+    WithStrengthDivided::value,
+    "Cohesion once the joint has slipped or opened, at most its cohesion. Without this and the next key opening "
+    "takes the cohesion, and slip alone nothing."};
+inline const Parameter residual_friction_angle{
+    "residual_friction_angle",
+    "residual_friction_angle_deg",
+    degrees,
+    frictions,
+    WithBridges::weaker,
+    WithStrengthDivided::tangent,
+    "Friction angle from then on, at most the friction angle and at least the dilation angle."};
+
+} // namespace parameters
+
+struct ResidualStrength : Coulomb {
+    static ResidualStrength from(const ValueOf& value, double divisor)
+    {
+        ResidualStrength law{Coulomb::from(value, divisor)};
+        law.weakens = true;
+        law.residual_cohesion = value(parameters::residual_cohesion);
+        law.residual_tan_phi = std::tan(value(parameters::residual_friction_angle));
+        return law;
+    }
+    static const LawInfo& info()
+    {
+        using namespace parameters;
+        static const LawInfo info{
+            .name = "residual strength",
+            .about = "Coulomb with residual strength: bonds break by slip, too",
+            .parameters = of_all_joints_and({parameters::residual_cohesion, residual_friction_angle}),
+            .own = {"residual_cohesion", "residual_friction_angle"},
+            .check = [](const ValueOf& value) -> std::optional<Complaint> {
+                if (const auto complaint = Coulomb::check(value))
+                    return complaint;
+                if (value(parameters::residual_cohesion) > value(parameters::cohesion))
+                    return Complaint{parameters::residual_cohesion, "wanted at most cohesion_MPa"};
+                if (value(residual_friction_angle) > value(friction_angle))
+                    return Complaint{residual_friction_angle, "wanted at most friction_angle_deg"};
+                if (value(residual_friction_angle) < value(dilation_angle))
+                    return Complaint{residual_friction_angle, "wanted at least dilation_angle_deg"};
+                if (value(shear_stiffness) == 0)
+                    return Complaint{residual_friction_angle,
+                                     "wanted none of a smooth joint, which has no shear strength"};
+                return {};
+            }};
+        return info;
+    }
+};
+
+} // namespace jointcreep::joint

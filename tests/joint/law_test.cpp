@@ -1,0 +1,154 @@
+// What holds of every law in the list: its derivatives, its integral along an overlap, its table.
+
+#include "joint/along_overlap.hpp"
+#include "joint/law.hpp"
+
+#include <gtest/gtest.h>
+#include <rapidcheck/gtest.h>
+
+#include <cmath>
+#include <set>
+
+using namespace jointcreep;
+using namespace jointcreep::joint;
+
+namespace
+{
+
+// A law with parameters within their ranges, by its place in the list.
+Law some_law(Index place)
+{
+    const std::map<std::string_view, double> values{
+        {"normal_stiffness", 1e9},  {"shear_stiffness", 5e8},         {"cohesion", 1e5},
+        {"friction_angle", 0.5},    {"tensile_strength", 5e4},        {"dilation_angle", 0.1},
+        {"residual_cohesion", 2e4}, {"residual_friction_angle", 0.3}, {"roughness", 10},
+        {"wall_strength", 1e8},     {"largest_closure", 5e-3}};
+    return law_of(
+        place,
+        [&](const Parameter& parameter) {
+            const auto found = values.find(parameter.name);
+            return found == values.end() ? 0.0 : found->second;
+        },
+        1);
+}
+
+Index places()
+{
+    return static_cast<Index>(laws().size());
+}
+
+} // namespace
+
+// Forward differentiation beside central differences, on the branch that all three are on.
+RC_GTEST_PROP(law, its_derivatives_are_those_of_its_response, ())
+{
+    const Law law = some_law(*rc::gen::inRange<Index>(0, places()));
+    const auto number = [](double scale) { return scale * (*rc::gen::inRange(-1000, 1001)) / 1000.0; };
+    const double sigma_0 = -1e6, tau_0 = 1e5, u_n = number(8e-4), u_s = number(3e-3), step = 1e-9;
+    const double by_n = number(1), by_s = number(1);
+    const auto at = [&](double way, State& state) {
+        return respond(law, state, sigma_0, tau_0, u_n + way * by_n, u_s + way * by_s);
+    };
+    State before, here, after;
+    const Response low = at(-step, before), now = at(0, here), high = at(step, after);
+    RC_PRE(low.status == now.status && high.status == now.status && before.is_broken == after.is_broken);
+    StateOf<Dual> state;
+    const auto found = with_derivatives(law, Dual(k_n(law)), Dual(k_s(law)), [&](const auto& one) {
+        return joint::respond(one, state, Dual(sigma_0), Dual(tau_0), Dual(u_n, by_n), Dual(u_s, by_s));
+    });
+    RC_ASSERT(found.sigma_n.value == now.sigma_n);
+    RC_ASSERT(found.tau.value == now.tau);
+    RC_ASSERT(std::abs(found.sigma_n.slope - (high.sigma_n - low.sigma_n) / (2 * step)) < 1e5);
+    RC_ASSERT(std::abs(found.tau.slope - (high.tau - low.tau) / (2 * step)) < 1e5);
+    RC_ASSERT(std::abs(state.slip.slope - (after.slip - before.slip) / (2 * step)) < 1e-4);
+    RC_ASSERT(std::abs(state.dilation.slope - (after.dilation - before.dilation) / (2 * step)) < 1e-4);
+}
+
+// The slopes that the implicit engine takes are those of the response, where it sticks and where it slips.
+RC_GTEST_PROP(law, its_slopes_are_those_of_its_response, ())
+{
+    const Law law = some_law(*rc::gen::inRange<Index>(0, places()));
+    const double u_s = 3e-3 * (*rc::gen::inRange(-1000, 1001)) / 1000.0;
+    State state;
+    const Response now = respond(law, state, -1e6, 0, 0, u_s);
+    RC_PRE(now.status != ContactStatus::open);
+    const Slopes slopes = joint::slopes(law, state, now.sigma_n);
+    const auto slope = [&](double by_n, double by_s) {
+        StateOf<Dual> start;
+        return with_derivatives(law, Dual(k_n(law)), Dual(k_s(law)), [&](const auto& one) {
+            return joint::respond(one, start, Dual(-1e6), Dual(0), Dual(0, by_n), Dual(u_s, by_s));
+        });
+    };
+    const double sense = u_s < 0 ? -1 : 1;
+    if (now.status == ContactStatus::stuck) {
+        RC_ASSERT(std::abs(slope(1, 0).sigma_n.slope - slopes.k_n) < 1e-6 * slopes.k_n);
+        RC_ASSERT(std::abs(slope(0, 1).tau.slope - slopes.k_s) < 1e-6 * slopes.k_s);
+    } else {
+        const double k =
+            slopes.k_n * slopes.k_s / (slopes.k_s + slopes.k_n * slopes.tan_phi * slopes.tan_psi);
+        RC_ASSERT(std::abs(slope(1, 0).sigma_n.slope - k) < 1e-6 * k);
+        RC_ASSERT(std::abs(slope(1, 0).tau.slope + sense * k * slopes.tan_phi) < 1e-6 * k);
+        RC_ASSERT(std::abs(slope(0, 1).sigma_n.slope + sense * k * slopes.tan_psi) < 1e-6 * k);
+        // Where it slips, the strength is the straight line that the slopes say.
+        RC_ASSERT(std::abs(std::abs(now.tau) - (slopes.cohesion - now.sigma_n * slopes.tan_phi)) < 1e-3);
+    }
+}
+
+// Along an overlap: the integral of the response at points, of which the exact integrals of Coulomb's law are one
+// case. Five points are exact for it; Barton and Bandis's curve is near enough a polynomial where it does not start.
+RC_GTEST_PROP(law, along_an_overlap_it_is_the_sum_over_points, ())
+{
+    const Law law = some_law(*rc::gen::inRange<Index>(0, places()));
+    const std::array<double, 2> closing{1e-3 * (*rc::gen::inRange(100, 1001)) / 1000,
+                                        1e-3 * (*rc::gen::inRange(100, 1001)) / 1000};
+    const double length = 2.5;
+    const bool is_broken = *rc::gen::arbitrary<bool>();
+    State start;
+    start.is_broken = is_broken;
+    const AlongOverlap exact = along_overlap(law, start, closing, length);
+    constexpr int parts = 2000;
+    double force = 0, on_second = 0, strength = 0, energy = 0;
+    for (int i = 0; i < parts; ++i) {
+        const double at = (i + 0.5) / parts, v = closing[0] + at * (closing[1] - closing[0]);
+        State state = start;
+        // Far sheared, so that it slips, after its bonds are gone if it weakens.
+        if (weakens_by_slip(law))
+            state.is_broken = true;
+        const Response r = respond(law, state, 0, 0, -v, 0);
+        State sheared = start;
+        sheared.is_broken = is_broken || weakens_by_slip(law);
+        const double limit = dilates(law) ? joint::slopes(law, sheared, r.sigma_n).cohesion -
+                                                r.sigma_n * joint::slopes(law, sheared, r.sigma_n).tan_phi
+                                          : std::abs(respond(law, sheared, 0, 0, -v, 1).tau);
+        force -= r.sigma_n * length / parts;
+        on_second -= at * r.sigma_n * length / parts;
+        energy += stored(law, r.sigma_n, 0) * length / parts;
+        strength += limit * length / parts;
+    }
+    RC_ASSERT(std::abs(exact.force - force) < 1e-5 * force);
+    RC_ASSERT(std::abs(exact.force_on_ends[1] - on_second) < 1e-5 * force);
+    RC_ASSERT(std::abs(exact.force_on_ends[0] + exact.force_on_ends[1] - exact.force) < 1e-12 * force);
+    RC_ASSERT(std::abs(exact.stored - energy) < 1e-5 * energy);
+    RC_ASSERT(std::abs(exact.strength[is_broken || weakens_by_slip(law) ? 1 : 0] - strength) <
+              1e-3 * strength);
+}
+
+// A row of a table for each parameter; what is a law's own is in its table, and in no other's.
+TEST(laws, have_tables_that_agree)
+{
+    std::set<std::string_view> own;
+    for (const LawInfo& law : laws()) {
+        std::set<std::string_view> names, keys;
+        for (const Parameter& parameter : law.parameters) {
+            EXPECT_TRUE(names.insert(parameter.name).second) << law.name << " " << parameter.name;
+            EXPECT_TRUE(keys.insert(parameter.key).second) << law.name << " " << parameter.key;
+            EXPECT_FALSE(parameter.meaning.empty());
+            EXPECT_LT(parameter.range.least, parameter.range.most);
+        }
+        for (const std::string_view name : law.own) {
+            EXPECT_TRUE(names.contains(name)) << law.name << " " << name;
+            EXPECT_TRUE(own.insert(name).second) << law.name << " " << name;
+        }
+    }
+    EXPECT_TRUE(laws()[0].own.empty()); // a material without any has the first law
+}
