@@ -1,0 +1,62 @@
+"""The link lines are the architecture: a file includes headers of those libraries only that its own CMakeLists.txt links."""
+
+import re
+
+from chain import ChainTest, main
+
+LIBRARY = re.compile(r"add_jointcreep_library\((\w+)(.*?)\)", re.DOTALL)
+APP = re.compile(r"add_jointcreep_app\(([\w-]+) USES ([\w ]+)\)")
+INCLUDE = re.compile(r'^#include "(\w+)/', re.MULTILINE)
+
+
+def words_after(keyword, arguments):
+    """The words between a keyword and the next one."""
+    found = re.search(rf"\b{keyword}\b((?:\s+[\w.:]+)*?)(?=\s+[A-Z_]+\b|\s*$)", re.sub(r"#.*", "", arguments))
+    return found.group(1).split() if found else []
+
+
+class Links(ChainTest):
+    def setUp(self):
+        folder = self.chain.source / "libs"
+        self.links, self.public = {}, {}
+        for page in folder.glob("*/CMakeLists.txt"):
+            name, arguments = LIBRARY.search(page.read_text()).groups()
+            self.assertEqual(name, page.parent.name)
+            uses = [one for one in words_after("USES", arguments) if (folder / one).is_dir()]
+            private = [one for one in words_after("PRIVATE_USES", arguments) if (folder / one).is_dir()]
+            self.public[name], self.links[name] = uses, uses + private
+
+    def reached(self, libraries):
+        """These libraries and what they pass on."""
+        all_of_them, new = set(), set(libraries)
+        while new:
+            all_of_them |= new
+            new = {one for library in new for one in self.public[library]} - all_of_them
+        return all_of_them
+
+    def check(self, path, allowed):
+        for library in set(INCLUDE.findall(path.read_text())) & self.links.keys():
+            self.assertIn(library, allowed, f"{path} includes {library}, which its CMakeLists.txt does not link")
+
+    def test_libraries(self):
+        self.assertGreaterEqual(len(self.links), 18)
+        for library in self.links:
+            allowed = self.reached(self.links[library]) | {library}
+            for path in (self.chain.source / "libs" / library).glob("*.[ch]pp"):
+                with self.subTest(path.name):
+                    self.check(path, allowed)
+
+    def test_no_library_comes_round_to_itself(self):
+        for library in self.links:
+            self.assertNotIn(library, self.reached(self.links[library]))
+
+    def test_programs(self):
+        apps = APP.findall((self.chain.source / "apps/CMakeLists.txt").read_text())
+        self.assertEqual(len(apps), 5)
+        for app, uses in apps:
+            with self.subTest(app):
+                self.check(self.chain.source / f"apps/{app}.cpp", self.reached([*uses.split(), "model"]))
+
+
+if __name__ == "__main__":
+    main()
