@@ -10,6 +10,7 @@
 namespace jointcreep::implicit
 {
 
+using joint::Dual;
 using mechanics::Balance;
 using mechanics::Convergence;
 
@@ -63,6 +64,30 @@ void Solver::take_states(const Assembly& assembly, const State& start, bool firs
     }
 }
 
+// Of a contact whose law remembers, from the start of the equilibrium straight to where it is: what the law itself
+// gives in numbers with derivatives, as its traction goes with more than springs and a strength.
+Tangent Solver::tangent_of_response(const Assembly& assembly, std::size_t c) const
+{
+    const mechanics::Contacts& contacts = assembly.contacts;
+    const joint::Law& law = contacts.law[c];
+    const joint::State& start = start_->joint[c];
+    const Vector2d &initial = contacts.initial_traction[c],
+                   spring = contacts.relative_displacement[c] - contacts.offset[c];
+    const auto by = [&](double normal, double shear) {
+        joint::StateOf<Dual> state{start.slip,
+                                   start.dilation,
+                                   contacts.state[c].is_broken,
+                                   {start.memory[0], start.memory[1], start.memory[2]}};
+        const auto found = joint::with_derivatives(law, k_n(law), k_s(law), [&](const auto& one) {
+            return joint::respond(one, state, initial.x(), initial.y(), Dual(spring.x(), normal),
+                                  Dual(spring.y(), shear));
+        });
+        return Vector2d(found.sigma_n.slope, found.tau.slope);
+    };
+    const Vector2d by_opening = by(1, 0), by_shear = by(0, 1);
+    return {by_opening.x(), by_shear.y(), by_opening.y(), by_shear.x()};
+}
+
 // Of the contacts as they are active; where they hold nothing they keep the share `softness` of their
 // springs.
 std::vector<Tangent> Solver::tangents(const Assembly& assembly, double softness) const
@@ -72,6 +97,16 @@ std::vector<Tangent> Solver::tangents(const Assembly& assembly, double softness)
     for (std::size_t c = 0; c < all.size(); ++c) {
         const joint::Slopes law = slopes(contacts.law[c], contacts.state[c], contacts.traction[c].x());
         const double soft_shear = softness * (law.k_s > 0 ? law.k_s : law.k_n);
+        const bool slips = contacts.status[c] == ContactStatus::slipping;
+        if (remembers(contacts.law[c]) && active_[c] != Active::open &&
+            slips == (active_[c] != Active::stuck)) {
+            const double kept = slips ? softness : 0;
+            const Tangent found = tangent_of_response(assembly, c);
+            all[c] = {found.normal + kept * (law.k_n - found.normal),
+                      found.shear + kept * (law.k_s - found.shear), (1 - kept) * found.friction,
+                      (1 - kept) * found.dilation};
+            continue;
+        }
         switch (active_[c]) {
         case Active::open:
             all[c] = {softness * law.k_n, soft_shear, 0, 0};
@@ -346,6 +381,7 @@ std::optional<Convergence> Solver::equilibrate(Assembly& assembly, const Equilib
 {
     mechanics::Contacts& contacts = assembly.contacts;
     const State start = state_of(assembly);
+    start_ = &start;
     const auto give_up = [&] {
         go_back(assembly, start);
         return std::nullopt;

@@ -55,6 +55,7 @@ private:
     using State = mechanics::State; // where an equilibrium starts from
     double evaluate(Assembly& assembly, const State& start);
     void take_states(const Assembly& assembly, const State& start, bool first);
+    Tangent tangent_of_response(const Assembly& assembly, std::size_t contact) const;
     std::vector<Tangent> tangents(const Assembly& assembly, double softness) const;
     VectorXd correction(const Assembly& assembly, const VectorXd& force, double enough, double hold);
     struct Way {
@@ -72,6 +73,7 @@ private:
     bool mend_bonds(const Assembly& assembly);
     double force_change(const Assembly& assembly, const VectorXd& displacement) const;
 
+    const State* start_ = nullptr; // of the equilibrium that is sought
     Stiffness stiffness_;
     KrylovSpace space_{24};        // of the stiffness
     std::vector<Tangent> acting_;  // with these tangents

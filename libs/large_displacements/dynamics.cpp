@@ -378,6 +378,8 @@ void Dynamics::find_faces()
             pair.tau += contacts.traction[c].y();
             pair.is_broken =
                 n == 0 ? contacts.state[c].is_broken : pair.is_broken || contacts.state[c].is_broken;
+            if (n == 0)
+                pair.memory = contacts.state[c].memory;
             ++n;
         }
         if (n == 0)

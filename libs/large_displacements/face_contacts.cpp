@@ -320,6 +320,14 @@ void FaceContacts::dilate(const std::vector<Vector2d>& place, const std::vector<
     for (const std::vector<Index>& joint : joints_) {
         sheared.clear();
         double all = 0, left = 0;
+        // A joint is raised as a whole: of laws whose dilation wears, by the mean tan(psi). With one for each pair
+        // the rise would change with where the pressure is, and a block that rocks would rock more and more.
+        double worn = 0, over = 0;
+        for (const Index p : joint)
+            if (const FacePair& pair = pairs_[p]; pair.is_closed && joint::remembers(laws_[pair.law])) {
+                worn += pair.length * joint::slopes(laws_[pair.law], pair.state(), pair.sigma).tan_psi;
+                over += pair.length;
+            }
         for (const Index p : joint) {
             const FacePair& pair = pairs_[p];
             const double pressed = -pair.sigma * pair.length;
@@ -327,7 +335,9 @@ void FaceContacts::dilate(const std::vector<Vector2d>& place, const std::vector<
                 continue;
             all += pressed;
             const joint::Law& law = laws_[pair.law];
-            const joint::Slopes slopes = joint::slopes(law, pair.state(), pair.sigma);
+            joint::Slopes slopes = joint::slopes(law, pair.state(), pair.sigma);
+            if (joint::remembers(law) && over > 0)
+                slopes.tan_psi = worn / over;
             if (slopes.tan_psi == 0 || slopes.k_s == 0)
                 continue;
             left = std::max(left, joint::dilation_end(law) - pair.dilation);

@@ -168,7 +168,8 @@ Table<JointMaterial> joint_material(const Table<Kelvin>& chain)
             return std::ranges::count(one.own, parameter.name) > 0;
         });
         if (law != joint::laws().end())
-            key = std::move(key).together(std::string(law->name));
+            key = law->own.size() > 1 ? std::move(key).together(std::string(law->name))
+                                      : std::move(key).optional();
         else if (parameter.otherwise)
             key = std::move(key).or_else(*parameter.otherwise);
         keys.push_back(std::move(key));

@@ -56,8 +56,8 @@ Sensitivity::Sensitivity(std::vector<Parameter> parameters, const Scene& scene, 
     for (const joint::Law& law : contacts.law)
         if (!joint::is_linear(law))
             throw input_error(
-                "sensitivities are those of joints with constant springs; wanted a scene without "
-                "Barton-Bandis joints");
+                "sensitivities are those of joints with constant springs; wanted a scene without " +
+                std::string(joint::laws()[law.index()].name) + " joints");
     const std::size_t n = contacts.law.size(), zones = assembly.zones.area.size();
     start_.assign(n, {});
     const std::vector<Vector2d> no_gridpoints(assembly.position.size(), Vector2d::Zero()),
