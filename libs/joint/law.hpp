@@ -10,6 +10,7 @@
 #include "joint/barton_bandis.hpp"
 #include "joint/coulomb.hpp"
 #include "joint/residual_strength.hpp"
+#include "joint/wearing_dilation.hpp"
 
 #include <concepts>
 #include <variant>
@@ -18,7 +19,7 @@ namespace jointcreep::joint
 {
 
 // Files name a law by its place here: new ones come last.
-using Law = std::variant<Coulomb, ResidualStrength, BartonBandis>;
+using Law = std::variant<Coulomb, ResidualStrength, BartonBandis, WearingDilation>;
 
 // All of them, in that order.
 const std::vector<LawInfo>& laws();

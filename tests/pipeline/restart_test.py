@@ -15,8 +15,8 @@ from chain import ChainTest, changed, datasets, main
 from large_displacements_test import incline
 from small_scene import held, joint, material, scene
 
-# A face that is dug in three benches: joints that weaken, dilate, close by Barton and Bandis and creep by chains; rock
-# that creeps below rock that yields; loads and displacements on the outline that change between stages.
+# A face that is dug in three benches: joints that weaken, dilate, wear, close by Barton and Bandis and
+# creep by chains; rock that creeps below rock that yields; loads and displacements on the outline that change between stages.
 SCENE = """
 [section]
 outline_m = [[0, 0], [40, 0], [40, 24], [0, 24]]
@@ -68,6 +68,8 @@ shear_stiffness_MPa_per_m = 800
 cohesion_MPa = 0.05
 friction_angle_deg = 30
 tensile_strength_MPa = 0.02
+dilation_angle_deg = 8
+dilation_wear_m2_per_MJ = 1e3
 
 [[joint_material]]
 name = "rough"

@@ -133,6 +133,8 @@ TEST(every_key, all_else)
     ASSERT_EQ(scene.joint_materials.at(1).law, 1); // residual strength
     EXPECT_EQ(scene.joint_materials.at(1).own.at("residual_cohesion"), 0.05 * MPa);
     EXPECT_EQ(scene.joint_materials.at(1).own.at("residual_friction_angle"), 20 * deg);
+    ASSERT_EQ(scene.joint_materials.at(3).law, 3); // wearing dilation
+    EXPECT_DOUBLE_EQ(scene.joint_materials.at(3).own.at("dilation_wear"), 20e-6); // m2/J
     ASSERT_TRUE(scene.rocks[0].kelvin && scene.rocks[0].maxwell_viscosity);
     EXPECT_EQ(scene.rocks[0].kelvin->modulus, 20 * GPa);
     EXPECT_EQ(scene.rocks[0].kelvin->viscosity, 2000 * (GPa * day));
