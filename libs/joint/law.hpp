@@ -8,6 +8,7 @@
 #pragma once
 
 #include "joint/barton_bandis.hpp"
+#include "joint/continuously_yielding.hpp"
 #include "joint/coulomb.hpp"
 #include "joint/residual_strength.hpp"
 #include "joint/wearing_dilation.hpp"
@@ -19,7 +20,7 @@ namespace jointcreep::joint
 {
 
 // Files name a law by its place here: new ones come last.
-using Law = std::variant<Coulomb, ResidualStrength, BartonBandis, WearingDilation>;
+using Law = std::variant<Coulomb, ResidualStrength, BartonBandis, WearingDilation, ContinuouslyYielding>;
 
 // All of them, in that order.
 const std::vector<LawInfo>& laws();

@@ -16,7 +16,7 @@
 namespace jointcreep::store::schema
 {
 
-inline constexpr Index major_version = 2, minor_version = 1;
+inline constexpr Index major_version = 2, minor_version = 2;
 
 // Which values a dataset may hold. Real numbers are always finite.
 struct Limits {

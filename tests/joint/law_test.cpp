@@ -19,11 +19,11 @@ namespace
 Law some_law(Index place)
 {
     const std::map<std::string_view, double> values{
-        {"normal_stiffness", 1e9},  {"shear_stiffness", 5e8},         {"cohesion", 1e5},
-        {"friction_angle", 0.5},    {"tensile_strength", 5e4},        {"dilation_angle", 0.1},
-        {"residual_cohesion", 2e4}, {"residual_friction_angle", 0.3}, {"roughness", 10},
-        {"wall_strength", 1e8},     {"largest_closure", 5e-3},        {"dilation_wear", 1e-5},
-    };
+        {"normal_stiffness", 1e9},       {"shear_stiffness", 5e8},         {"cohesion", 1e5},
+        {"friction_angle", 0.5},         {"tensile_strength", 5e4},        {"dilation_angle", 0.1},
+        {"residual_cohesion", 2e4},      {"residual_friction_angle", 0.3}, {"roughness", 10},
+        {"wall_strength", 1e8},          {"largest_closure", 5e-3},        {"dilation_wear", 1e-5},
+        {"initial_friction_angle", 0.7}, {"roughness_length", 2.0371e-3}};
     return law_of(
         place,
         [&](const Parameter& parameter) {

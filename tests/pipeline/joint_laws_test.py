@@ -1,5 +1,6 @@
-"""A joint whose dilation wears off with work, through the whole chain: a rigid block is sheared on it by both engines, and
-slides down an incline; against closed forms and against the law's equations in small steps."""
+"""Two joint laws through the whole chain: a joint whose dilation wears off with work, and a continuously yielding joint. A
+rigid block is sheared on each by both engines, creeps, slides down an incline, and is brought to failure; against closed
+forms and against the laws' equations in small steps."""
 
 import csv
 import math
@@ -12,6 +13,14 @@ from large_displacements_test import ACCOUNT, GRAVITY, RIGID, error_of_energy, i
 
 WEAR = 4e-4  # m2/J
 WEARS = ("^dilation_angle_deg = 10", f"dilation_angle_deg = 10\ndilation_wear_m2_per_MJ = {WEAR * 1e6}")
+PHI, PHI_I, ROUGHNESS = math.radians(30), math.radians(45), 2e-3
+YIELDS = ("^cohesion_MPa = 0.2\nfriction_angle_deg = 35\ntensile_strength_MPa = 0\ndilation_angle_deg = 10",
+          "cohesion_MPa = 0\nfriction_angle_deg = 30\ntensile_strength_MPa = 0\ninitial_friction_angle_deg = 45\n"
+          f"roughness_length_mm = {ROUGHNESS * 1e3}")
+E_S, ETA_S = 0.8e9, 4e9  # Pa/m, Pa day/m
+KELVIN = ("^initial_friction", "normal_kelvin_stiffness_MPa_per_m = 3000\n"
+          "normal_kelvin_viscosity_MPa_day_per_m = 9000\nshear_kelvin_stiffness_MPa_per_m = 800\n"
+          "shear_kelvin_viscosity_MPa_day_per_m = 4000\ninitial_friction")
 
 
 def to_engine(text, engine, increments=1):
@@ -29,6 +38,12 @@ def down_the_plane(data, dip):
     x, y = data["/history/displacement"][-1, 0]
     sin, cos = math.sin(math.radians(dip)), math.cos(math.radians(dip))
     return x * cos - y * sin, x * sin + y * cos
+
+
+def acceleration(data, after, until):
+    time, speed = data["/dynamics/dynamic_time"], np.sqrt(2 * data["/dynamics/kinetic_energy"] / (2700 * 2.0))
+    sliding = (time > after) & (time < until)
+    return np.polyfit(time[sliding], speed[sliding], 1)[0]
 
 
 class WearingDilation(ChainTest):
@@ -116,6 +131,108 @@ class WearingDilation(ChainTest):
             done = self.chain.answer("jointgen", scene, "-o", scene.with_suffix(".h5"))
             self.assertEqual(done.returncode, 2, more)
             self.assertIn(message, done.stderr)
+
+
+def yielded(moves, pressure=1e6, steps=200000, days=0.0):
+    """Shear traction of the continuously yielding joint after these moves [m], in small steps; with its Kelvin unit if
+    they take so many days in all."""
+    tau = u_p = kelvin = r = sense = 0.0
+    far = sum(map(abs, moves))
+    for move in moves:
+        n = int(steps * abs(move) / far)
+        for _ in range(n):
+            by = move / n
+            if days:
+                crept = (tau - E_S * kelvin) / ETA_S * days * abs(move) / far / n
+                kelvin, by = kelvin + crept, by - crept
+            way = math.copysign(1, by)
+            most = pressure * math.tan(PHI + (PHI_I - PHI) * math.exp(-u_p / ROUGHNESS))
+            if way != sense:
+                r, sense = (min(0.75, way * tau / most) if sense else 0.0), way
+            share = min(1.0, (1 - sense * tau / most) / (1 - r))
+            tau += share * K_S * by
+            u_p += (1 - share) * abs(by)
+            most = pressure * math.tan(PHI + (PHI_I - PHI) * math.exp(-u_p / ROUGHNESS))
+            if abs(tau) > most:
+                u_p, tau = u_p + (abs(tau) - most) / K_S, math.copysign(most, tau)
+    return tau
+
+
+class ContinuouslyYielding(ChainTest):
+    def sheared(self, text, load_history, engine, increments=1):
+        text = text.replace("load_history = [[0, 0], [10, 1]]", f"load_history = {load_history}")
+        return datasets(self.chain.result(to_engine(changed(text, *YIELDS), engine, increments)))
+
+    def test_it_follows_its_equations(self):
+        """There, and back by a quarter. Dynamic relaxation oscillates about the path, and each time the joint turns."""
+        for load_history, moves in (("[[0, 0], [10, 0.5]]", [2e-3]), ("[[0, 0], [10, 1]]", [4e-3]),
+                                    ("[[0, 0], [5, 1], [10, 0.75]]", [4e-3, -1e-3])):
+            wanted = yielded(moves)
+            for engine, increments, delta in (("relaxation", 50, 0.1), ("implicit", 1, 2e-3), ("implicit", 20, 2e-3),
+                                              ("auto", 1, 2e-3)):
+                with self.subTest(load_history=load_history, engine=engine, increments=increments):
+                    found = mean_traction(self.sheared(SCENE, load_history, engine, increments))
+                    self.assertAlmostEqual(found[0], -1e6, delta=1e3)
+                    self.assertAlmostEqual(found[1], wanted, delta=delta * 1e6 * math.tan(PHI_I))
+                    self.assertLess(abs(found[1]), 1e6 * math.tan(PHI_I))
+
+    def test_it_creeps(self):
+        wanted, fixed = yielded([4e-3], days=10), yielded([4e-3])
+        self.assertGreater(wanted, 1.05 * fixed)  # what creeps need not yield, and wears less
+        for engine, delta in ("implicit", 1e-2), ("relaxation", 5e-2):
+            errors = []
+            for days in 0.5, 0.25:
+                text = changed(changed(SCENE, *YIELDS), *KELVIN)
+                data = datasets(self.chain.result(to_engine(text, engine) + f"\n[creep]\nstep_days = {days}\n"))
+                errors.append(abs(mean_traction(data)[1] / wanted - 1))
+            with self.subTest(engine=engine, errors=errors):
+                self.assertLess(errors[0], delta)
+                if engine == "implicit":  # by relaxation the path adds to the error of the steps
+                    self.assertLess(errors[1], 0.7 * errors[0])
+
+    def test_a_block_slides_on_the_smooth_joint(self):
+        """Rough enough at first it stands; else it slides as its smooth joint lets it."""
+        dip, friction = 30, 25
+        for initial, goes in (60, False), (28, True):
+            text = changed(incline(dip, friction, more=RIGID), "^tensile_strength_MPa = 0$",
+                           f"tensile_strength_MPa = 0\ninitial_friction_angle_deg = {initial}\nroughness_length_mm = 5")
+            data = datasets(self.chain.result(text))
+            moved = down_the_plane(data, dip)[0]
+            if not goes:
+                self.assertLess(abs(moved), 1e-3)
+                continue
+            self.assertGreater(moved, 10)
+            wanted = GRAVITY * (math.sin(math.radians(dip))
+                                - math.cos(math.radians(dip)) * math.tan(math.radians(friction)))
+            self.assertAlmostEqual(acceleration(data, 0.6, 0.95 * math.sqrt(2 * 15 / wanted)) / wanted, 1, delta=2e-3)
+            self.assertLess(error_of_energy(data), ACCOUNT)
+
+    def test_factor_of_safety(self):
+        """Of a joint that is smooth from the start: tan(35 deg) / tan(25 deg)."""
+        text = changed(self.chain.text("data/verification/incline/scene.toml"), "^tensile_strength_MPa = 0",
+                       "tensile_strength_MPa = 0\ninitial_friction_angle_deg = 35\nroughness_length_mm = 5")
+        joints = self.chain.joints(text)
+        output = joints.with_name("safe.h5")
+        done = self.chain.answer("demsolve", joints, "--no-creep", "--factor-of-safety", "-o", output)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        data = datasets(output)
+        factor, stands = data["/safety/factor"], data["/safety/stands"]
+        wanted = math.tan(math.radians(35)) / math.tan(math.radians(25))
+        self.assertLess(factor[stands == 1].max(), wanted)
+        self.assertGreater(factor[stands == 1].max(), 0.98 * wanted)
+        self.assertGreater(factor[stands != 1].min(), 0.99 * wanted)
+
+    def test_rock_bridges_are_refused(self):
+        scene = changed(self.chain.text("tests/pipeline/every_key.toml"), "^tensile_strength_MPa = 0\n"
+                        "(normal_kelvin_.*\nnormal_kelvin_.*\nshear_kelvin_.*\nshear_kelvin_.*\n)",
+                        r"tensile_strength_MPa = 0\n\1initial_friction_angle_deg = 40\nroughness_length_mm = 3\n")
+        scene = changed(scene, "^cohesion_MPa = 0.1\nfriction", "cohesion_MPa = 0\nfriction")
+        network = self.chain.network(scene)
+        done = self.chain.answer("strength-averaging", network, "-o", network.with_name("joints.h5"))
+        self.assertNotEqual(done.returncode, 0)
+        self.assertIn("continuously yielding", done.stderr)
+        self.assertIn("persistence of 1", done.stderr)
+
 
 
 if __name__ == "__main__":

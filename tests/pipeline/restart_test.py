@@ -15,7 +15,7 @@ from chain import ChainTest, changed, datasets, main
 from large_displacements_test import incline
 from small_scene import held, joint, material, scene
 
-# A face that is dug in three benches: joints that weaken, dilate, wear, close by Barton and Bandis and
+# A face that is dug in three benches: joints that weaken, dilate, wear, close by Barton and Bandis, yield continuously and
 # creep by chains; rock that creeps below rock that yields; loads and displacements on the outline that change between stages.
 SCENE = """
 [section]
@@ -72,6 +72,16 @@ dilation_angle_deg = 8
 dilation_wear_m2_per_MJ = 1e3
 
 [[joint_material]]
+name = "worn smooth"
+normal_stiffness_MPa_per_m = 2000
+shear_stiffness_MPa_per_m = 700
+cohesion_MPa = 0
+friction_angle_deg = 25
+tensile_strength_MPa = 0
+initial_friction_angle_deg = 40
+roughness_length_mm = 2
+
+[[joint_material]]
 name = "rough"
 normal_stiffness_MPa_per_m = 2000
 shear_stiffness_MPa_per_m = 900
@@ -99,6 +109,12 @@ name = "in rock that goes"
 material = "brittle"
 from_m = [34, 24]
 to_m = [35, 0]
+
+[[joint]]
+name = "low"
+material = "worn smooth"
+from_m = [0, 4]
+to_m = [40, 5]
 
 [[joint]]
 name = "flat"

@@ -135,6 +135,9 @@ TEST(every_key, all_else)
     EXPECT_EQ(scene.joint_materials.at(1).own.at("residual_friction_angle"), 20 * deg);
     ASSERT_EQ(scene.joint_materials.at(3).law, 3); // wearing dilation
     EXPECT_DOUBLE_EQ(scene.joint_materials.at(3).own.at("dilation_wear"), 20e-6); // m2/J
+    ASSERT_EQ(scene.joint_materials.at(4).law, 4); // continuously yielding
+    EXPECT_EQ(scene.joint_materials.at(4).own.at("initial_friction_angle"), 45 * deg);
+    EXPECT_EQ(scene.joint_materials.at(4).own.at("roughness_length"), 0.002);
     ASSERT_TRUE(scene.rocks[0].kelvin && scene.rocks[0].maxwell_viscosity);
     EXPECT_EQ(scene.rocks[0].kelvin->modulus, 20 * GPa);
     EXPECT_EQ(scene.rocks[0].kelvin->viscosity, 2000 * (GPa * day));
