@@ -6,6 +6,10 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
 
 namespace jointcreep::blocks
 {
@@ -165,15 +169,10 @@ void unite(std::vector<Edge>& edges, const std::vector<Vector2d>& vertex, Source
     edges.resize(count);
 }
 
-} // namespace
-
-bool merge_pass(Graph& graph, Sources& sources, const std::vector<Polygon>& outlines,
-                const MergeLimits& limits, CuttingReport& report)
+// How far each vertex may move.
+std::vector<Level> levels_of(const Graph& graph, const Sources& sources, const std::vector<Polygon>& outlines)
 {
-    const double reach = limits.shortest_edge;
-    const auto n = static_cast<Index>(graph.vertex.size());
-
-    std::vector<Level> level(n, free_vertex);
+    std::vector<Level> level(graph.vertex.size(), free_vertex);
     for (const Edge& e : graph.edge)
         if (const Level of_edge = level_of(e, sources); of_edge > free_vertex)
             for (const Index v : {e.first, e.second})
@@ -182,65 +181,92 @@ bool merge_pass(Graph& graph, Sources& sources, const std::vector<Polygon>& outl
     for (const Polygon& outline : outlines)
         corners.insert(corners.end(), outline.begin(), outline.end());
     std::sort(corners.begin(), corners.end(), is_before);
-    for (Index v = 0; v < n; ++v)
+    for (std::size_t v = 0; v < level.size(); ++v)
         if (level[v] == on_outline &&
             std::binary_search(corners.begin(), corners.end(), graph.vertex[v], is_before))
             level[v] = outline_corner;
+    return level;
+}
 
-    // 1. Vertices within reach of one that does not move join it. Those in use:
-    std::vector<char> is_used(n, 0);
+// Vertices with an edge.
+std::vector<Index> used_vertices(const Graph& graph)
+{
+    std::vector<char> is_used(graph.vertex.size(), 0);
     for (const Edge& e : graph.edge)
         is_used[e.first] = is_used[e.second] = 1;
     std::vector<Index> used;
-    for (Index v = 0; v < n; ++v)
+    for (std::size_t v = 0; v < is_used.size(); ++v)
         if (is_used[v])
-            used.push_back(v);
-    struct Pair {
-        Index vertex, other;
-        double distance;
-    };
-    std::vector<Pair> close;
-    {
-        const VertexGrid grid(graph.vertex, used, reach);
-        const Vector2d around(reach, reach);
-        for (const Index v : used)
-            grid.in_rectangle(graph.vertex[v] - around, graph.vertex[v] + around,
-                              [&](Index w, const Vector2d& place) {
-                                  if (w == v)
-                                      return;
-                                  const double squared = (place - graph.vertex[v]).squaredNorm();
-                                  if (squared >= 1.001 * reach * reach)
-                                      return;
-                                  if (const double d = std::sqrt(squared); d < reach)
-                                      close.push_back({v, w, d});
-                              });
-    }
-    // Vertices on the outline may only join a neighbour along it: two sides of the section never meet.
-    std::map<Index, std::vector<Index>> along_outline;
-    for (const Pair& pair : close)
+            used.push_back(static_cast<Index>(v));
+    return used;
+}
+
+// Two vertices within reach of each other.
+struct ClosePair {
+    Index vertex, other;
+    double distance; // [m]
+};
+
+// Every pair twice, once from either vertex.
+std::vector<ClosePair> close_pairs(const std::vector<Vector2d>& vertex, const std::vector<Index>& used,
+                                   double reach)
+{
+    std::vector<ClosePair> close;
+    const VertexGrid grid(vertex, used, reach);
+    const Vector2d around(reach, reach);
+    for (const Index v : used)
+        grid.in_rectangle(vertex[v] - around, vertex[v] + around, [&](Index w, const Vector2d& place) {
+            if (w == v)
+                return;
+            const double squared = (place - vertex[v]).squaredNorm();
+            if (squared >= 1.001 * reach * reach)
+                return;
+            if (const double d = std::sqrt(squared); d < reach)
+                close.push_back({v, w, d});
+        });
+    return close;
+}
+
+// The neighbours along the outline of those close vertices that lie on it.
+using OutlineNeighbours = std::map<Index, std::vector<Index>>;
+
+OutlineNeighbours neighbours_along_outline(const Graph& graph, const Sources& sources,
+                                           const std::vector<ClosePair>& close,
+                                           const std::vector<Level>& level)
+{
+    OutlineNeighbours along;
+    for (const ClosePair& pair : close)
         if (level[pair.vertex] >= on_outline)
-            along_outline[pair.vertex] = {};
-    if (!along_outline.empty())
-        for (const Edge& e : graph.edge)
-            if (level_of(e, sources) == on_outline)
-                for (const auto& [v, other] : {std::pair(e.first, e.second), std::pair(e.second, e.first)})
-                    if (const auto found = along_outline.find(v); found != along_outline.end())
-                        found->second.push_back(other);
+            along[pair.vertex] = {};
+    if (along.empty())
+        return along;
+    for (const Edge& e : graph.edge)
+        if (level_of(e, sources) == on_outline)
+            for (const auto& [v, other] : {std::pair(e.first, e.second), std::pair(e.second, e.first)})
+                if (const auto found = along.find(v); found != along.end())
+                    found->second.push_back(other);
+    return along;
+}
+
+// The vertex that each one joins: the nearest within reach that does not move itself, or none but itself.
+std::vector<Index> join_vertices(std::vector<ClosePair> close, const std::vector<Level>& level,
+                                 const OutlineNeighbours& along_outline, double reach, CuttingReport& report)
+{
+    // Vertices on the outline may only join a neighbour along it: two sides of the section never meet.
     const auto may_join = [&](Index v, Index target) {
         if (level[v] < on_outline)
             return true;
-        const auto& along = along_outline[v];
+        const auto& along = along_outline.at(v);
         return level[v] != outline_corner && std::find(along.begin(), along.end(), target) != along.end();
     };
-
-    std::vector<Index> joined(n);
-    std::iota(joined.begin(), joined.end(), 0);
-    bool changed = false;
-    std::stable_sort(close.begin(), close.end(),
-                     [&](const Pair& a, const Pair& b) { return level[a.vertex] > level[b.vertex]; });
     const auto comes_before = [&](Index a, Index b) { // in that order
         return level[a] != level[b] ? level[a] > level[b] : a < b;
     };
+    std::vector<Index> joined(level.size());
+    std::iota(joined.begin(), joined.end(), 0);
+    std::stable_sort(close.begin(), close.end(), [&](const ClosePair& a, const ClosePair& b) {
+        return level[a.vertex] > level[b.vertex];
+    });
     for (auto from = close.begin(); from != close.end();) {
         const Index v = from->vertex;
         Index nearest = -1;
@@ -258,9 +284,14 @@ bool merge_pass(Graph& graph, Sources& sources, const std::vector<Polygon>& outl
         joined[v] = nearest;
         ++report.merged_vertices;
         report.largest_move = std::max(report.largest_move, distance);
-        changed = true;
     }
+    return joined;
+}
 
+// The edges once vertices have joined.
+std::vector<Edge> joined_edges(const Graph& graph, const std::vector<Index>& joined, Sources& sources,
+                               CuttingReport& report)
+{
     std::vector<Edge> edges;
     edges.reserve(graph.edge.size());
     for (const Edge& e : graph.edge) {
@@ -271,205 +302,322 @@ bool merge_pass(Graph& graph, Sources& sources, const std::vector<Polygon>& outl
                              e.is_settled && joined[e.first] == e.first && joined[e.second] == e.second});
     }
     unite(edges, graph.vertex, sources, report);
+    return edges;
+}
 
-    // 2. Edges that pass within half the reach of a vertex go through it, or the vertex moves onto them.
-    // (With the whole reach all three corners of a small triangle could be close to their opposite sides, for
-    // ever.) The same for the far end of a wedge narrower than the limit.
-    const double far_reach = MergeLimits::farthest_closing * reach;
-    const Adjacency neighbours(graph.vertex.size(), edges);
-    struct Near {
-        Index edge, vertex;
-        auto operator<=>(const Near&) const = default;
-    };
-    std::vector<Near> near;
-    std::ptrdiff_t of_edges = 0; // of these, in order of edges already
-    {
-        std::erase_if(used, [&](Index v) { return joined[v] != v || neighbours[v].empty(); });
-        const VertexGrid grid(graph.vertex, used, 2 * reach);
-        const double margin = (0.5 + 1e-6) * reach, pieces_per_length = 0.5 / grid.cell();
-        for (std::size_t e = 0; e < edges.size(); ++e) {
-            const Index first = edges[e].first, second = edges[e].second;
-            const Vector2d &p = graph.vertex[first], &q = graph.vertex[second], d = q - p;
-            const double length = d.norm();
-            // In pieces of about a cell each, so that a long slanting edge looks only along itself.
-            const int pieces = static_cast<int>(length * pieces_per_length) + 1;
-            for (int i = 0; i < pieces; ++i) {
-                const Vector2d from = p + d * (static_cast<double>(i) / pieces),
-                               to = p + d * ((i + 1.0) / pieces);
-                grid.in_rectangle(from.cwiseMin(to).array() - margin, from.cwiseMax(to).array() + margin,
-                                  [&](Index v, const Vector2d& place) {
-                                      if (v == first || v == second)
-                                          return;
-                                      const Vector2d o = place - p;
-                                      if (std::abs(d.x() * o.y() - d.y() * o.x()) < margin * length)
-                                          near.push_back({static_cast<Index>(e), v});
-                                  });
-            }
+// An edge and a vertex that is perhaps close to it.
+struct NearEdge {
+    Index edge, vertex;
+    auto operator<=>(const NearEdge&) const = default;
+};
+
+// Vertices within about half the reach of an edge, in the order of edges.
+std::vector<NearEdge> vertices_near_edges(const std::vector<Vector2d>& vertex, const std::vector<Edge>& edges,
+                                          const std::vector<Index>& used, double reach)
+{
+    std::vector<NearEdge> near;
+    const VertexGrid grid(vertex, used, 2 * reach);
+    const double margin = (0.5 + 1e-6) * reach, pieces_per_length = 0.5 / grid.cell();
+    for (std::size_t e = 0; e < edges.size(); ++e) {
+        const Index first = edges[e].first, second = edges[e].second;
+        const Vector2d &p = vertex[first], &q = vertex[second], d = q - p;
+        const double length = d.norm();
+        // In pieces of about a cell each, so that a long slanting edge looks only along itself.
+        const int pieces = static_cast<int>(length * pieces_per_length) + 1;
+        for (int i = 0; i < pieces; ++i) {
+            const Vector2d from = p + d * (static_cast<double>(i) / pieces),
+                           to = p + d * ((i + 1.0) / pieces);
+            grid.in_rectangle(from.cwiseMin(to).array() - margin, from.cwiseMax(to).array() + margin,
+                              [&](Index v, const Vector2d& place) {
+                                  if (v == first || v == second)
+                                      return;
+                                  const Vector2d o = place - p;
+                                  if (std::abs(d.x() * o.y() - d.y() * o.x()) < margin * length)
+                                      near.push_back({static_cast<Index>(e), v});
+                              });
         }
-        of_edges = static_cast<std::ptrdiff_t>(near.size());
-        // Narrow wedges: neighbours of one vertex, of which one lies close to the other's edge.
-        const double sine = std::sin(limits.smallest_angle) * (1 + 1e-6);
-        std::vector<Vector2d> to; // the neighbours, from the tip
-        std::vector<double> squared;
-        for (const Index tip : used) {
-            const std::span<const Index> around = neighbours[tip], by = neighbours.edges_at(tip);
-            to.clear();
-            squared.clear();
-            for (std::size_t i = 0; i < around.size(); ++i) {
-                const Vector2d d = graph.vertex[around[i]] - graph.vertex[tip];
-                to.push_back(d);
-                squared.push_back(d.squaredNorm());
-                for (std::size_t j = 0; j < i; ++j) {
-                    const Vector2d& o = to[j];
-                    if (d.dot(o) <= 0)
-                        continue;
-                    const double across = d.x() * o.y() - d.y() * o.x();
-                    if (across * across <= sine * sine * squared[i] * squared[j]) {
-                        near.push_back({by[i], around[j]});
-                        near.push_back({by[j], around[i]});
-                    }
+    }
+    return near;
+}
+
+// Adds both sides of wedges narrower than the limit, each with the other's far end.
+void add_narrow_wedges(const std::vector<Vector2d>& vertex, const Adjacency& neighbours,
+                       const std::vector<Index>& used, double smallest_angle, std::vector<NearEdge>& near)
+{
+    const double sine = std::sin(smallest_angle) * (1 + 1e-6);
+    std::vector<Vector2d> to; // the neighbours, from the tip
+    std::vector<double> squared;
+    for (const Index tip : used) {
+        const std::span<const Index> around = neighbours[tip], by = neighbours.edges_at(tip);
+        to.clear();
+        squared.clear();
+        for (std::size_t i = 0; i < around.size(); ++i) {
+            const Vector2d d = vertex[around[i]] - vertex[tip];
+            to.push_back(d);
+            squared.push_back(d.squaredNorm());
+            for (std::size_t j = 0; j < i; ++j) {
+                const Vector2d& o = to[j];
+                if (d.dot(o) <= 0)
+                    continue;
+                const double across = d.x() * o.y() - d.y() * o.x();
+                if (across * across <= sine * sine * squared[i] * squared[j]) {
+                    near.push_back({by[i], around[j]});
+                    near.push_back({by[j], around[i]});
                 }
             }
         }
     }
-    for (auto from = near.begin(); from != near.begin() + of_edges;) {
-        const auto to = std::find_if(from, near.begin() + of_edges,
-                                     [&](const Near& other) { return other.edge != from->edge; });
+}
+
+// Sorts, and leaves each one once. The first `in_order` are in the order of edges already.
+void sort_near(std::vector<NearEdge>& near, std::ptrdiff_t in_order)
+{
+    const auto middle = near.begin() + in_order;
+    for (auto from = near.begin(); from != middle;) {
+        const auto to =
+            std::find_if(from, middle, [&](const NearEdge& other) { return other.edge != from->edge; });
         std::sort(from, to);
         from = to;
     }
-    std::sort(near.begin() + of_edges, near.end());
-    std::inplace_merge(near.begin(), near.begin() + of_edges, near.end());
-    near.erase(std::unique(near.begin(), near.end(), [](const Near& a, const Near& b) { return a == b; }),
-               near.end());
+    std::sort(middle, near.end());
+    std::inplace_merge(near.begin(), middle, near.end());
+    near.erase(
+        std::unique(near.begin(), near.end(), [](const NearEdge& a, const NearEdge& b) { return a == b; }),
+        near.end());
+}
 
-    std::vector<Vector2d> moved = graph.vertex;
-    std::vector<char> has_moved(n, 0);
-    std::map<std::pair<Index, Index>, std::vector<Index>> bent;
-    for (auto from = near.begin(); from != near.end();) {
-        const Edge& edge = edges[from->edge];
-        const Index first = edge.first, second = edge.second;
-        const Vector2d p = graph.vertex[first], q = graph.vertex[second];
-        const Level edge_level = level_of(edge, sources);
-        std::vector<std::pair<double, Index>> through;
+// What a pass does to edges that have vertices close to them.
+struct Bent {
+    std::vector<Vector2d> place; // of vertices [m]
+    std::vector<char> has_moved; // vertices, onto an edge
+    std::map<std::pair<Index, Index>, std::vector<Index>>
+        via; // vertices that an edge, by its ends, goes through
+
+    const std::vector<Index>* through(Index a, Index b) const // in order from the lower of its ends
+    {
+        const auto found = via.find(std::minmax(a, b));
+        return found == via.end() ? nullptr : &found->second;
+    }
+};
+
+// Lets edges go through the vertices close to them, and moves vertices onto edges of a higher level. Close is
+// within half the reach, or at the far end of a narrow wedge. (With the whole reach all three corners of a
+// small triangle could be close to their opposite sides, for ever.)
+class Bending
+{
+public:
+    Bending(const Graph& graph, const std::vector<Edge>& edges, const Adjacency& neighbours,
+            const std::vector<Level>& level, const Sources& sources, const MergeLimits& limits)
+        : vertex_(graph.vertex), edges_(edges), neighbours_(neighbours), level_(level), sources_(sources),
+          limits_(limits), bent_{graph.vertex, std::vector<char>(graph.vertex.size(), 0), {}}
+    {
+    }
+
+    // `near`: the vertices near one edge.
+    void bend(std::span<const NearEdge> near, CuttingReport& report)
+    {
+        const Edge& edge = edges_[near.front().edge];
+        std::vector<std::pair<double, Index>> through; // fractions of the edge, vertices
         Index closed_from =
             -1; // a tip: not both in one pass, or the diagonal of a narrow strip only turns over
-        const auto consider = [&](Index v) {
-            const Vector2d& place = graph.vertex[v];
-            const Foot foot = foot_on(p, q, place);
-            if (foot.distance >= far_reach || foot.along <= 0 || foot.along >= 1)
-                return;
-            bool is_close = foot.distance < reach / 2;
-            Index tip_of_wedge = -1;
-            if (!is_close) { // the far end of a narrow wedge
-                // Where both sides are as long, each would go through the other's end: they would change
-                // places, for ever. The first one does.
-                const auto is_closed_already = [&](Index tip, Index end) {
-                    const auto other = bent.find(std::minmax(tip, v));
-                    return other != bent.end() &&
-                           std::ranges::find(other->second, end) != other->second.end();
-                };
-                const auto is_wedge_from = [&](Index tip, Index end) {
-                    return closed_from != end &&
-                           std::ranges::find(neighbours[v], tip) != neighbours[v].end() &&
-                           foot.distance <
-                               (place - graph.vertex[tip]).norm() * std::sin(limits.smallest_angle) &&
-                           !is_closed_already(tip, end);
-                };
-                const bool from_first = is_wedge_from(first, second);
-                is_close = from_first || is_wedge_from(second, first);
-                tip_of_wedge = from_first ? first : second;
+        for (const NearEdge& one : near)
+            if (const std::optional<Foot> foot = takes(edge, one.vertex, closed_from)) {
+                report.largest_move = std::max(report.largest_move, foot->distance);
+                through.emplace_back(foot->along, one.vertex);
             }
-            if (!is_close || (level[v] >= on_outline && edge_level == on_outline))
-                return;
-            if (level[v] < edge_level) {
-                if (has_moved[v])
-                    return; // once a pass; the next one looks again
-                has_moved[v] = 1;
-                moved[v] = foot.place;
-            }
-            if (tip_of_wedge >= 0)
-                closed_from = tip_of_wedge;
-            report.largest_move = std::max(report.largest_move, foot.distance);
-            through.emplace_back(foot.along, v);
-        };
-        for (const Index e = from->edge; from != near.end() && from->edge == e; ++from)
-            consider(from->vertex);
         if (through.empty())
-            continue;
+            return;
         std::sort(through.begin(), through.end());
-        auto& via = bent[{first, second}];
+        auto& via = bent_.via[{edge.first, edge.second}];
         for (const auto& [along, v] : through)
             via.push_back(v);
         report.merged_vertices += static_cast<Index>(through.size());
-        changed = true;
     }
-    if (!changed)
-        return false;
 
-    if (!bent.empty()) {
-        std::vector<Edge> all;
-        all.reserve(edges.size() + 4 * bent.size());
-        std::vector<Edge> pieces;
-        for (const Edge& e : edges) {
-            const auto through = bent.find({e.first, e.second});
-            if (through == bent.end()) {
-                all.push_back(e);
-                continue;
-            }
-            Index from = e.first;
-            for (const Index v : through->second) {
-                pieces.push_back({from, v, e.sources});
-                from = v;
-            }
-            pieces.push_back({from, e.second, e.sources});
+    Bent result() && { return std::move(bent_); }
+
+private:
+    // The foot of a vertex on an edge that goes through it from now on. Once a pass: the next one looks again.
+    std::optional<Foot> takes(const Edge& edge, Index v, Index& closed_from)
+    {
+        const Foot foot = foot_on(vertex_[edge.first], vertex_[edge.second], vertex_[v]);
+        if (foot.distance >= MergeLimits::farthest_closing * limits_.shortest_edge || foot.along <= 0 ||
+            foot.along >= 1)
+            return {};
+        const bool is_close = foot.distance < limits_.shortest_edge / 2;
+        const Index tip = is_close ? -1 : tip_of_wedge(edge, v, foot.distance, closed_from);
+        const Level of_edge = level_of(edge, sources_);
+        if ((!is_close && tip < 0) || (level_[v] >= on_outline && of_edge == on_outline))
+            return {};
+        if (level_[v] < of_edge) {
+            if (bent_.has_moved[v])
+                return {};
+            bent_.has_moved[v] = 1;
+            bent_.place[v] = foot.place;
         }
-        all.insert(all.end(), pieces.begin(), pieces.end());
-        edges = std::move(all);
-        unite(edges, graph.vertex, sources, report);
+        if (tip >= 0)
+            closed_from = tip;
+        return foot;
     }
 
-    // What the faces of before have become: those without area have merged into their neighbours. Only faces
-    // with an edge that has changed need a look.
+    // The end of an edge from which it and another one to `v` make a narrow wedge; -1 none.
+    Index tip_of_wedge(const Edge& edge, Index v, double distance, Index closed_from) const
+    {
+        // Where both sides are as long, each would go through the other's end: they would change places, for
+        // ever. The first one does.
+        const auto is_closed_already = [&](Index tip, Index end) {
+            const std::vector<Index>* const via = bent_.through(tip, v);
+            return via != nullptr && std::ranges::find(*via, end) != via->end();
+        };
+        const auto is_wedge_from = [&](Index tip, Index end) {
+            return closed_from != end && std::ranges::find(neighbours_[v], tip) != neighbours_[v].end() &&
+                   distance < (vertex_[v] - vertex_[tip]).norm() * std::sin(limits_.smallest_angle) &&
+                   !is_closed_already(tip, end);
+        };
+        if (is_wedge_from(edge.first, edge.second))
+            return edge.first;
+        return is_wedge_from(edge.second, edge.first) ? edge.second : -1;
+    }
+
+    const std::vector<Vector2d>& vertex_;
+    const std::vector<Edge>& edges_;
+    const Adjacency& neighbours_;
+    const std::vector<Level>& level_;
+    const Sources& sources_;
+    const MergeLimits& limits_;
+    Bent bent_;
+};
+
+// Edges that pass within half the reach of a vertex go through it, or the vertex moves onto them; the same
+// for the far end of a wedge narrower than the limit. `used`: vertices that may have edges.
+Bent bend_edges(const Graph& graph, const std::vector<Edge>& edges, std::vector<Index> used,
+                const std::vector<Level>& level, const Sources& sources, const MergeLimits& limits,
+                CuttingReport& report)
+{
+    const Adjacency neighbours(graph.vertex.size(), edges);
+    std::erase_if(used, [&](Index v) { return neighbours[v].empty(); });
+    std::vector<NearEdge> near = vertices_near_edges(graph.vertex, edges, used, limits.shortest_edge);
+    const auto in_order = static_cast<std::ptrdiff_t>(near.size());
+    add_narrow_wedges(graph.vertex, neighbours, used, limits.smallest_angle, near);
+    sort_near(near, in_order);
+    Bending bending(graph, edges, neighbours, level, sources, limits);
+    for (auto from = near.begin(); from != near.end();) {
+        const auto to =
+            std::find_if(from, near.end(), [&](const NearEdge& other) { return other.edge != from->edge; });
+        bending.bend({from, to}, report);
+        from = to;
+    }
+    return std::move(bending).result();
+}
+
+// The edges in pieces from each vertex that they go through to the next.
+void split(std::vector<Edge>& edges, const Graph& graph, const Bent& bent, Sources& sources,
+           CuttingReport& report)
+{
+    if (bent.via.empty())
+        return;
+    std::vector<Edge> all;
+    all.reserve(edges.size() + 4 * bent.via.size());
+    std::vector<Edge> pieces;
+    for (const Edge& e : edges) {
+        const std::vector<Index>* const via = bent.through(e.first, e.second);
+        if (via == nullptr) {
+            all.push_back(e);
+            continue;
+        }
+        Index from = e.first;
+        for (const Index v : *via) {
+            pieces.push_back({from, v, e.sources});
+            from = v;
+        }
+        pieces.push_back({from, e.second, e.sources});
+    }
+    all.insert(all.end(), pieces.begin(), pieces.end());
+    edges = std::move(all);
+    unite(edges, graph.vertex, sources, report);
+}
+
+// A ring of before as it runs now.
+std::vector<Index> ring_now(std::span<const Index> before, const std::vector<Index>& joined, const Bent& bent)
+{
+    std::vector<Index> ring;
+    for (std::size_t i = 0; i < before.size(); ++i) {
+        const Index a = joined[before[i]], b = joined[before[(i + 1) % before.size()]];
+        if (a == b)
+            continue;
+        ring.push_back(a);
+        if (const std::vector<Index>* const via = bent.through(a, b)) {
+            if (a < b)
+                ring.insert(ring.end(), via->begin(), via->end());
+            else
+                ring.insert(ring.end(), via->rbegin(), via->rend());
+        }
+    }
+    return ring;
+}
+
+// What the faces of before have become: those without area have merged into their neighbours. Only faces with
+// an edge that has changed need a look.
+void report_merged_faces(const Graph& graph, const std::vector<Index>& joined, const Bent& bent,
+                         CuttingReport& report)
+{
     std::vector<char> has_changed(graph.edge.size(), 0);
     for (std::size_t e = 0; e < graph.edge.size(); ++e) {
         const Index a = graph.edge[e].first, b = graph.edge[e].second;
-        has_changed[e] = joined[a] != a || joined[b] != b || has_moved[a] || has_moved[b] ||
-                         (!bent.empty() && bent.contains(std::minmax(a, b)));
+        has_changed[e] = joined[a] != a || joined[b] != b || bent.has_moved[a] || bent.has_moved[b] ||
+                         (!bent.via.empty() && bent.through(a, b) != nullptr);
     }
     for_outer_rings(graph, has_changed, [&](std::span<const Index> outer, double area) {
-        std::vector<Index> ring;
-        for (std::size_t i = 0; i < outer.size(); ++i) {
-            const Index a = joined[outer[i]], b = joined[outer[(i + 1) % outer.size()]];
-            if (a == b)
-                continue;
-            ring.push_back(a);
-            if (const auto through = bent.find(std::minmax(a, b)); through != bent.end()) {
-                const bool same_way = a < b;
-                const auto& via = through->second;
-                for (std::size_t k = 0; k < via.size(); ++k)
-                    ring.push_back(same_way ? via[k] : via[via.size() - 1 - k]);
-            }
-        }
-        const double left = ring.size() < 3 ? 0.0 : ring_area(moved, ring);
+        const std::vector<Index> ring = ring_now(outer, joined, bent);
+        const double left = ring.size() < 3 ? 0.0 : ring_area(bent.place, ring);
         if (left <= 1e-9 * area)
             report.merged_block_area += area;
     });
+}
 
-    Graph merged;
-    std::vector<Index> index(n, -1);
+// Of these edges, and the vertices that they have.
+Graph graph_of(std::vector<Edge> edges, const Bent& bent)
+{
+    Graph graph;
+    std::vector<Index> index(bent.place.size(), -1);
     for (Edge& edge : edges) {
-        edge.is_settled = edge.is_settled && !has_moved[edge.first] && !has_moved[edge.second];
+        edge.is_settled = edge.is_settled && !bent.has_moved[edge.first] && !bent.has_moved[edge.second];
         for (Index* v : {&edge.first, &edge.second}) {
             if (index[*v] < 0) {
-                index[*v] = static_cast<Index>(merged.vertex.size());
-                merged.vertex.push_back(moved[*v]);
+                index[*v] = static_cast<Index>(graph.vertex.size());
+                graph.vertex.push_back(bent.place[*v]);
             }
             *v = index[*v];
         }
     }
-    merged.edge = std::move(edges);
-    graph = std::move(merged);
+    graph.edge = std::move(edges);
+    return graph;
+}
+
+} // namespace
+
+bool merge_pass(Graph& graph, Sources& sources, const std::vector<Polygon>& outlines,
+                const MergeLimits& limits, CuttingReport& report)
+{
+    const double reach = limits.shortest_edge;
+    const Index merged_before = report.merged_vertices;
+    const std::vector<Level> level = levels_of(graph, sources, outlines);
+
+    // 1. Vertices within reach of one that does not move join it.
+    std::vector<Index> used = used_vertices(graph);
+    std::vector<ClosePair> close = close_pairs(graph.vertex, used, reach);
+    const OutlineNeighbours along_outline = neighbours_along_outline(graph, sources, close, level);
+    const std::vector<Index> joined = join_vertices(std::move(close), level, along_outline, reach, report);
+    std::vector<Edge> edges = joined_edges(graph, joined, sources, report);
+
+    // 2. Edges go through vertices close to them.
+    std::erase_if(used, [&](Index v) { return joined[v] != v; });
+    const Bent bent = bend_edges(graph, edges, std::move(used), level, sources, limits, report);
+    if (report.merged_vertices == merged_before)
+        return false;
+    split(edges, graph, bent, sources, report);
+    report_merged_faces(graph, joined, bent, report);
+    graph = graph_of(std::move(edges), bent);
     return true;
 }
 

@@ -13,6 +13,10 @@
 #include "model/network.hpp"
 
 #include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace jointcreep::large_displacements
 {
@@ -45,6 +49,8 @@ struct Settings {
     double release = 0;           // time in which excavation's forces fade away [s]
     double tolerance = 1e-5;      // of the unbalanced force ratio at rest [-]
 };
+
+struct Polar; // of a zone: finite_strain.hpp
 
 // A section that moves. Works on an assembly whose displacements count from the start; takes its zones' and
 // contacts' state from there, and puts displacements, stresses and contacts back.
@@ -140,21 +146,59 @@ private:
         bool is_held() const { return is_free.maxCoeff() == 0; }
     };
 
-    Yielding* yielding(std::size_t z);
-    bool deforms(std::size_t z) const { return rock_.zones.is_present[z] && !is_rigid_[z]; }
+    // Steps and energy: dynamics.cpp.
+    struct Moved;
+    struct Work;
+    struct Leap;
+    struct Balance;
+    void make_contacts(const std::vector<Index>& material, const joint::Law& found);
     std::vector<Index> leaders() const;
-    void find_ground();
-    void find_walls();
-    void find_faces();
-    void find_bodies();
+    std::vector<double> stiffness_sums() const;
     void find_time_step();
     double first_half() const;
-    double move(Body& body, double keep, double gain);
-    std::pair<Vector2d, double> load_on(const Body& body) const;
+    Leap leap(double first_half_of_step) const;
+    Moved move_rock();
+    Work work_of_loads(double held) const;
     void find_forces(const std::vector<Vector2d>& move);
+    void stop_at_peak(double kinetic);
     double release_factor() const;
     double half_step_energy() const;
     double stored() const;
+    Balance balance(const std::vector<Vector2d>& contact_force) const;
+    void check_rounding(double of_springs, double rounding) const;
+
+    // Zones that deform: zone_forces.cpp.
+    void make_zones();
+    Yielding* yielding(std::size_t z);
+    bool deforms(std::size_t z) const { return rock_.zones.is_present[z] && !is_rigid_[z]; }
+    void find_zone_forces();
+    void find_zone_force(Index z, double viscosity, ZoneSums& sums);
+    void check_strain() const;
+    void take_corner_forces(Index z, const Polar& polar, const Eigen::Vector3d& acting, bool yields);
+    void put_back_zone(std::size_t z);
+
+    // Rock that does not deform: rigid_bodies.cpp.
+    void find_bodies();
+    void find_inertia(const std::vector<double>& masses);
+    double move(Body& body, double keep, double gain);
+    std::pair<Vector2d, double> load_on(const Body& body) const;
+
+    // Faces and what lies on them: faces_of_rock.cpp.
+    void find_ground();
+    void find_walls();
+    void find_faces();
+    Faces faces_now(std::vector<std::array<Index, 2>>& of_mesh);
+    std::vector<FacePair> known_pairs(const std::vector<std::array<Index, 2>>& of_mesh) const;
+    void add_pairs_on_joints(const std::vector<std::array<Index, 2>>& of_mesh,
+                             std::vector<FacePair>& known) const;
+    std::optional<FacePair>
+    pair_on_joint(Index f, Index g, const std::vector<std::array<Index, 2>>& of_mesh,
+                  const std::map<std::array<Index, 2>, std::vector<std::size_t>>& between) const;
+
+    // What the assembly takes back: dynamics_state.cpp.
+    struct Carried;
+    std::map<std::array<Index, 2>, Carried> carried_by_pairs() const;
+    void put_back_contacts();
 
     mechanics::Assembly& rock_;
     const Mesh& mesh_;

@@ -52,7 +52,7 @@ struct FacePair {
     double dilation = 0;              // in the lead [m]
     double tau = 0;                   // along(normal from a to b), on a [Pa]
     bool is_known = false;            // has touched since the two came near
-    bool is_new = true;               // has not borne a force yet
+    bool is_new = true;               // has not carried a force yet
     bool is_closed = false;           // over some of its length
     bool is_broken = true;            // has no cohesion and no tensile strength (any more)
     std::array<double, 3> memory{};   // of the law, as in joint::State
@@ -64,7 +64,7 @@ struct FacePair {
     std::array<Vector2d, 2> force{};
     Vector2d normal{0, 0};                 // from a to b
     double raised = 0;                     // of the dilation, in the last step [m]
-    double way = 0;                        // by which it opened in the last step, dilation aside [m]
+    double opened = 0;                     // in the last step, dilation aside [m]
     double length = 0, sigma = 0;          // [m], [Pa]
     double stiffest = 0;                   // of its normal springs [Pa/m]
     std::array<Vector2d, 2> held{};        // of the force, what dashpots add [N/m]
@@ -91,6 +91,16 @@ struct FaceShape {
     double length;                     // [m]
     std::array<double, 2> sharp{1, 1}; // of its ends: 0 where the outline runs on straight, 1 a corner
 };
+
+// A step of time, at whose end forces are found.
+struct Step {
+    const std::vector<Vector2d>& place; // of gridpoints, at its end [m]
+    const std::vector<Vector2d>& move;  // their displacements in it [m]
+    double dt;                          // [s]
+    double viscosity;                   // of dashpots over their springs [s]
+};
+
+struct Overlap; // of two faces: face_overlap.hpp
 
 // Of pairs [J/m].
 struct PairEnergy {
@@ -142,15 +152,36 @@ public:
     Index searches() const { return searches_; }
 
 private:
-    void seek(const std::vector<Vector2d>& place, const std::vector<Vector2d>& move);
-    void find_shapes(const std::vector<Vector2d>& place, int threads);
-    void find_active();
-    void take_forces(Index active);
+    struct Sum;
+    // What a pair does in a step: no more, overlaps too much for its force to have a meaning, or comes to touch.
+    enum class Touch { settled, too_deep, comes_about };
+
+    // Which faces may touch: contact_detection.cpp.
     void find_corners(const std::vector<Vector2d>& place);
-    void dilate(const std::vector<Vector2d>& place, const std::vector<Vector2d>& move);
-    std::size_t law_slid_on_to(const FacePair& pair, const FacePair& before) const;
+    void seek(const std::vector<Vector2d>& place, const std::vector<Vector2d>& move);
+    std::vector<std::pair<Index, Index>> find_reach(const std::vector<Vector2d>& place);
+    void take_pairs(const std::vector<std::pair<Index, Index>>& near);
+    void find_joints(const std::vector<Vector2d>& place);
+    void find_active();
+    double way_to_touch(const FacePair& pair, double most_lead) const;
+    void find_touched();
     const FacePair* contact_before(const FacePair& pair, const Vector2d& normal,
                                    const std::vector<Vector2d>& place) const;
+    std::size_t law_slid_on_to(const FacePair& pair, const FacePair& before) const;
+
+    // Dilation of joints: joint_dilation.cpp.
+    void dilate(const std::vector<Vector2d>& place, const std::vector<Vector2d>& move);
+
+    // The force of a pair: contact_forces.cpp.
+    Touch find_force(FacePair& pair, const Step& step, bool may_close) const;
+    bool comes_to_touch(FacePair& pair, const Overlap& found, const Step& step) const;
+
+    // Of all pairs.
+    void find_shapes(const std::vector<Vector2d>& place, int threads);
+    double farthest_since_search(const std::vector<Vector2d>& place, int threads) const;
+    Sum find_forces(const Step& step, int threads);
+    void find_forces_of_new(const Step& step, Sum& sum);
+    void take_forces(Index active);
 
     std::vector<joint::Law> laws_;
     std::vector<Index> material_; // of laws; -1 of new contacts
@@ -164,7 +195,7 @@ private:
     std::vector<std::vector<Index>> of_face_; // pairs of each face
     std::vector<Index> side_;                 // of each face: the lowest one of its straight side
     std::vector<std::vector<Index>> joints_;  // pairs between the same two sides, if any law dilates
-    std::vector<Index> active_;               // pairs that may bear anything before the next search
+    std::vector<Index> active_;               // pairs that may carry a load before the next search
     std::vector<double> way_to_;              // how far gridpoints go before they can [m]
     std::vector<char> closes_;                // pairs that may in this update
     // Of active pairs the gridpoints, and what is added to each of them [N/m]: by each corner of each pair

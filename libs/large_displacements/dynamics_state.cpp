@@ -1,0 +1,148 @@
+#include "large_displacements/dynamics.hpp"
+#include "model/signs.hpp"
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <vector>
+
+namespace jointcreep::large_displacements
+{
+
+// At two gridpoints.
+struct Dynamics::Carried {
+    Vector2d force{0, 0};            // {normal, shear} [N/m]
+    double length = 0, slipping = 0; // of all faces, and of those that slip [m]
+};
+
+void Dynamics::transfer(const Transfer& to, DynamicsState& kept)
+{
+    // All members, so that no new one is forgotten.
+    auto& [rock, mesh, settings, contacts, bodies, is_rigid, body_of, zones, corner_force, yielding, place,
+           velocity, move, force, released, lost, origin, middle, low, high, inverse_mass, law_of_edge,
+           ground, wall_law, face_of_mesh, zone_of_face, dt, last_dt, time, time_lost, stiffest_allowed,
+           starts_from_rest, has_moved, energy, stored_at_start, in_zones, last_kinetic, stiffest,
+           largest_mean, ratio, force_change, fastest, fastest_gridpoint, stiffest_gridpoint,
+           checks_in_balance, last_contact_force] = *this;
+    to.values(origin, kept.origin);
+    to.values(place, kept.place);
+    for (std::size_t g = 0; g < origin.size(); ++g)
+        rock.position[g] = middle + origin[g];
+    std::vector<Eigen::Vector4d> inverse;
+    for (const Zone& zone : zones)
+        inverse.emplace_back(zone.inverse.reshaped());
+    to.values(inverse, kept.inverse);
+    for (std::size_t z = 0; z < zones.size(); ++z)
+        zones[z].inverse = inverse[z].reshaped(2, 2);
+    for (Zone& zone : zones)
+        [[maybe_unused]] auto& [gridpoint, of_edges, area, stiffness, strain, held] = zone;
+    to.values(zones, kept.area, &Zone::area);
+    to.values(zones, kept.strain, &Zone::strain);
+    for (Yielding& one : yielding)
+        [[maybe_unused]] auto& [zone, stress] = one;
+    const auto of_zone = [](auto member) {
+        return [member](Yielding & one) -> auto&
+        {
+            return one.zone.*member;
+        };
+    };
+    to.values(yielding, kept.plastic_strain, of_zone(&mechanics::YieldingZone::plastic));
+    to.values(yielding, kept.initial_zz, of_zone(&mechanics::YieldingZone::initial_zz));
+    to.values(yielding, kept.stress_zz, of_zone(&mechanics::YieldingZone::stress_zz));
+    to.values(yielding, kept.stress, &Yielding::stress);
+    to.size(face_of_mesh, kept.face);
+    to.values(face_of_mesh, kept.face);
+    contacts.transfer(to, kept);
+    to.value(fastest, kept.fastest);
+    to.value(ratio, kept.unbalanced_force_ratio);
+    to.value(largest_mean, kept.largest_mean_force);
+}
+
+void Dynamics::count_from_here()
+{
+    origin_ = place_;
+    for (std::size_t g = 0; g < place_.size(); ++g)
+        rock_.position[g] = middle_ + place_[g];
+    put_back();
+}
+
+std::vector<Touching> Dynamics::touching() const
+{
+    std::vector<Touching> found;
+    for (const FacePair& pair : contacts_.pairs()) {
+        if (!pair.is_closed)
+            continue;
+        const auto &a = contacts_.faces().gridpoint[pair.a], &b = contacts_.faces().gridpoint[pair.b];
+        std::array<Vector2d, 2> between;
+        for (int i = 0; i < 2; ++i)
+            between[i] = middle_ + (place_[a[0]] + pair.on_a[i] * (place_[a[1]] - place_[a[0]]) +
+                                    place_[b[0]] + pair.on_b[i] * (place_[b[1]] - place_[b[0]])) /
+                                       2;
+        found.push_back({{zone_of_face_[pair.a], zone_of_face_[pair.b]},
+                         between,
+                         pair.normal,
+                         {pair.sigma, pair.tau},
+                         -joint::opening(contacts_.laws()[pair.law], pair.sigma),
+                         pair.is_slipping});
+    }
+    return found;
+}
+
+void Dynamics::put_back()
+{
+    for (std::size_t g = 0; g < place_.size(); ++g)
+        rock_.displacement[g] = place_[g] - origin_[g];
+    for (std::size_t z = 0; z < zones_.size(); ++z)
+        if (rock_.zones.is_present[z]) {
+            if (is_rigid_[z])
+                rock_.zones.stress[z].setZero(); // unknown
+            else
+                put_back_zone(z);
+        }
+    put_back_contacts();
+}
+
+// What all pairs of faces that meet at two gridpoints carry, over their length: next to the pair that faces
+// each other there are others that overlap by what the joint has sheared. By gridpoints {lower, higher}.
+std::map<std::array<Index, 2>, Dynamics::Carried> Dynamics::carried_by_pairs() const
+{
+    std::map<std::array<Index, 2>, Carried> carried;
+    for (const FacePair& pair : contacts_.pairs())
+        if (pair.is_closed && pair.length > 0)
+            for (const Index a : face_of_mesh_[pair.a])
+                for (const Index b : face_of_mesh_[pair.b]) {
+                    Carried& there = carried[{std::min(a, b), std::max(a, b)}];
+                    there.force += pair.length * Vector2d(pair.sigma, pair.tau);
+                    there.length += pair.length;
+                    there.slipping += pair.is_slipping ? pair.length : 0.0;
+                }
+    return carried;
+}
+
+void Dynamics::put_back_contacts()
+{
+    const std::vector<Index> leader = leaders();
+    mechanics::Contacts& contacts = rock_.contacts;
+    const std::map<std::array<Index, 2>, Carried> carried = carried_by_pairs();
+    for (std::size_t c = 0; c < contacts.gridpoint.size(); ++c) {
+        if (contacts.status[c] == ContactStatus::removed)
+            continue;
+        const auto [a, b] = contacts.gridpoint[c];
+        const Vector2d relative = rock_.displacement[b] - rock_.displacement[a];
+        contacts.relative_displacement[c] = {relative.dot(contacts.normal[c]),
+                                             relative.dot(along(contacts.normal[c]))};
+        const auto found = carried.find({std::min(a, b), std::max(a, b)});
+        if (found == carried.end()) {
+            if (leader[a] == leader[b]) // held together so far: as it was
+                continue;
+            contacts.traction[c].setZero();
+            contacts.status[c] = ContactStatus::open;
+            continue;
+        }
+        contacts.traction[c] = found->second.force / found->second.length;
+        contacts.status[c] = 2 * found->second.slipping > found->second.length ? ContactStatus::slipping
+                                                                               : ContactStatus::stuck;
+    }
+}
+
+} // namespace jointcreep::large_displacements

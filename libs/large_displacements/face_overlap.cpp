@@ -1,0 +1,72 @@
+#include "large_displacements/face_overlap.hpp"
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <vector>
+
+namespace jointcreep::large_displacements
+{
+
+namespace
+{
+
+constexpr double rounding_of_corners = 0.01; // of the shorter face: where two corners meet
+
+std::optional<Overlap> overlap_along(const Vector2d& tangent, const std::array<Vector2d, 2>& a,
+                                     const std::array<Vector2d, 2>& b)
+{
+    std::optional<Overlap> overlap;
+    const std::array<double, 2> along_a{0, (a[1] - a[0]).dot(tangent)},
+        along_b{(b[0] - a[0]).dot(tangent), (b[1] - a[0]).dot(tangent)}; // runs the other way
+    if (along_a[1] <= 0 || along_b[0] <= along_b[1])
+        return overlap;
+    // Each end of the overlap is one of a or of b: of the fractions only that of the other is divided for.
+    const bool starts_with_a = along_b[1] <= 0, ends_with_a = along_a[1] <= along_b[0];
+    const std::array<double, 2> at{starts_with_a ? 0 : along_b[1], ends_with_a ? along_a[1] : along_b[0]};
+    if (at[1] <= at[0])
+        return overlap;
+    Overlap& found = overlap.emplace();
+    found.tangent = tangent;
+    found.inset = {along_a[0] - along_b[1], along_b[0] - along_a[1]};
+    found.length = at[1] - at[0];
+    const Vector2d normal = found.normal();
+    const auto over = [&](bool is_of_a, double end) {
+        return (is_of_a ? end - along_b[0] : end) / (is_of_a ? along_b[1] - along_b[0] : along_a[1]);
+    };
+    const double first = over(starts_with_a, at[0]), last = over(ends_with_a, at[1]);
+    found.on_a = {starts_with_a ? 0 : first, ends_with_a ? 1 : last};
+    found.on_b = {starts_with_a ? first : 1, ends_with_a ? last : -0.0};
+    for (int i = 0; i < 2; ++i) {
+        found.gap[i] =
+            (b[0] + found.on_b[i] * (b[1] - b[0]) - a[0] - found.on_a[i] * (a[1] - a[0])).dot(normal);
+    }
+    return overlap;
+}
+
+} // namespace
+
+[[gnu::flatten]] std::optional<Overlap> overlap_of(const FacePair& pair, const Faces& faces,
+                                                   const std::vector<FaceShape>& shapes,
+                                                   const std::vector<Vector2d>& place)
+{
+    const FaceShape &shape_a = shapes[pair.a], &shape_b = shapes[pair.b];
+    const Vector2d along_a = shape_a.along, along_b = -shape_b.along;
+    if (along_a.dot(along_b) < least_facing)
+        return {};
+    const auto a = ends_of(faces.gridpoint[pair.a], place), b = ends_of(faces.gridpoint[pair.b], place);
+    const auto between = overlap_along((along_a + along_b).normalized(), a, b);
+    if (!between)
+        return {};
+    // Which of the two ends that meet at the deeper side lies inside the other face, and whether it is a
+    // corner: an end where the outline runs on straight belongs to a face that something sinks into farther
+    // on.
+    const int deep = between->gap[1] < between->gap[0] ? 1 : 0;
+    const double is_end_of_a = std::clamp(
+        0.5 + between->inset[deep] / (2 * rounding_of_corners * std::min(shape_a.length, shape_b.length)),
+        0.0, 1.0);
+    const double of_b = is_end_of_a * shape_a.sharp[deep] + (1 - is_end_of_a) * (1 - shape_b.sharp[1 - deep]);
+    return overlap_along((of_b * along_b + (1 - of_b) * along_a).normalized(), a, b);
+}
+
+} // namespace jointcreep::large_displacements

@@ -1,0 +1,121 @@
+#include "large_displacements/dynamics.hpp"
+#include "large_displacements/kahan.hpp"
+#include "model/disjoint_sets.hpp"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <map>
+#include <utility>
+#include <vector>
+
+namespace jointcreep::large_displacements
+{
+
+// The rock that does not deform, by gridpoints that its zones and ties connect.
+void Dynamics::find_bodies()
+{
+    const std::vector<double> masses = lumped_masses(rock_);
+    DisjointSets sets(place_.size());
+    std::vector<char> is_of_body(place_.size(), 0);
+    for (std::size_t z = 0; z < zones_.size(); ++z)
+        if (is_rigid_[z] && rock_.zones.is_present[z])
+            for (const Index g : zones_[z].gridpoint) {
+                is_of_body[g] = 1;
+                sets.join(g, zones_[z].gridpoint[0]);
+            }
+    for (const auto& [follower, first] : rock_.tied)
+        if (is_of_body[follower] || is_of_body[first]) {
+            sets.join(follower, first);
+            is_of_body[follower] = 0; // goes with its leader
+            is_of_body[first] = 1;
+        }
+
+    bodies_.clear();
+    body_of_.assign(place_.size(), -1);
+    std::map<Index, Index> number; // by root
+    for (std::size_t g = 0; g < place_.size(); ++g) {
+        if (!is_of_body[g])
+            continue;
+        const auto [found, is_new] =
+            number.try_emplace(sets.root(static_cast<Index>(g)), static_cast<Index>(bodies_.size()));
+        if (is_new)
+            bodies_.emplace_back();
+        Body& body = bodies_[found->second];
+        body_of_[g] = found->second;
+        body.gridpoint.push_back(static_cast<Index>(g));
+        body.mass += masses[g];
+        body.centre += masses[g] * place_[g];
+        body.is_free = body.is_free.cwiseMin(rock_.is_free[g]);
+    }
+    for (Body& body : bodies_) {
+        body.centre /= body.mass;
+        for (const Index g : body.gridpoint)
+            body.arm.emplace_back(place_[g] - body.centre);
+    }
+    find_inertia(masses);
+}
+
+// Of bodies, about their centres. Deformable rock that is bonded to a body is lumped into gridpoints that the
+// two share. `masses`: of gridpoints [kg/m].
+void Dynamics::find_inertia(const std::vector<double>& masses)
+{
+    const std::vector<Index> leader = leaders();
+    std::vector<double> lumped = masses;
+    for (std::size_t z = 0; z < zones_.size(); ++z) {
+        if (!is_rigid_[z] || !rock_.zones.is_present[z])
+            continue;
+        Body& body = bodies_[body_of_[leader[zones_[z].gridpoint[0]]]];
+        Vector2d sum(0, 0);
+        for (const Index g : zones_[z].gridpoint) {
+            const Vector2d arm = place_[g] - body.centre;
+            body.inertia += rock_.zones.mass[z] / 12 * arm.squaredNorm();
+            sum += arm;
+            lumped[leader[g]] -= rock_.zones.mass[z] / 3;
+        }
+        body.inertia += rock_.zones.mass[z] / 12 * sum.squaredNorm();
+    }
+    for (Body& body : bodies_)
+        for (std::size_t k = 0; k < body.gridpoint.size(); ++k)
+            body.inertia += std::max(0.0, lumped[body.gridpoint[k]]) * body.arm[k].squaredNorm();
+}
+
+// Force and moment about the centre [N/m], [N].
+std::pair<Vector2d, double> Dynamics::load_on(const Body& body) const
+{
+    Vector2d force(0, 0);
+    double moment = 0;
+    for (const Index g : body.gridpoint) {
+        const Vector2d arm = place_[g] - body.centre;
+        force += force_[g];
+        moment += arm.x() * force_[g].y() - arm.y() * force_[g].x();
+    }
+    if (!body.turns())
+        moment = 0;
+    return {force.cwiseProduct(body.is_free), moment};
+}
+
+// One step; returns the kinetic energy before it [J/m].
+double Dynamics::move(Body& body, double keep, double gain)
+{
+    if (body.is_held())
+        return 0;
+    const auto [force, moment] = load_on(body);
+    const Vector2d last = body.velocity;
+    const double last_spin = body.spin;
+    body.velocity = keep * body.velocity + gain / body.mass * force;
+    body.spin = keep * body.spin + gain / body.inertia * moment;
+    add<Vector2d>(dt_ * body.velocity, body.centre, body.lost);
+    body.angle += dt_ * body.spin;
+    const Eigen::Rotation2Dd turn(body.angle);
+    for (std::size_t k = 0; k < body.gridpoint.size(); ++k) {
+        const Index g = body.gridpoint[k];
+        const Vector2d to = body.centre + turn * body.arm[k];
+        move_[g] = to - place_[g];
+        velocity_[g] = move_[g] / dt_;
+        place_[g] = to;
+    }
+    return (body.mass * last.dot(body.velocity) + body.inertia * last_spin * body.spin) / 2;
+}
+
+} // namespace jointcreep::large_displacements
