@@ -200,7 +200,7 @@ void report(const Network& network, const Scene& scene, const Analysis& analysis
     summary.add("equilibria by the implicit engine", by_factor);
     summary.add("equilibria by dynamic relaxation",
                 static_cast<std::int64_t>(equilibria.is_implicit.size()) - by_factor);
-    for (const auto& [reason, n] : analysis.given_up())
+    for (const auto& [reason, n] : analysis.findings().given_up)
         summary.add("implicit engine gave up", std::to_string(n) + " times: " + reason);
     summary.add("equilibria rejected or sought in vain",
                 sum(equilibria.searches) - static_cast<std::int64_t>(equilibria.searches.size()));
@@ -222,15 +222,15 @@ void report(const Network& network, const Scene& scene, const Analysis& analysis
     summary.add("contacts stuck", contacts[static_cast<std::size_t>(ContactStatus::stuck)]);
     summary.add("contacts slipping", contacts[static_cast<std::size_t>(ContactStatus::slipping)]);
     summary.add("contacts open", contacts[static_cast<std::size_t>(ContactStatus::open)]);
-    for (const auto& [joint, n] : analysis.beyond_strength())
+    for (const auto& [joint, n] : analysis.findings().beyond_strength)
         summary.add("warning: beyond strength in situ",
                     std::to_string(n) + " contacts of joint \"" + joint + "\"");
-    for (const auto& [rock, n] : analysis.yielded_in_situ())
+    for (const auto& [rock, n] : analysis.findings().yielded_in_situ)
         summary.add("warning: beyond strength in situ",
                     std::to_string(n) + " zones of rock \"" + rock + "\"");
     for (const auto& [rock, n] : analysis.yielded())
         summary.add("zones yielded since", std::to_string(n) + " of rock \"" + rock + "\"");
-    for (const auto& [stage, percent] : analysis.energy_off())
+    for (const auto& [stage, percent] : analysis.findings().energy_off)
         summary.add("warning: account of energy", off_by(percent, stage));
     summary.print();
 }
@@ -270,7 +270,7 @@ struct Run {
 std::string warnings_of(const Run& run)
 {
     std::string lines;
-    for (const auto& [stage, percent] : run.analysis.energy_off())
+    for (const auto& [stage, percent] : run.analysis.findings().energy_off)
         lines += "\nwarning: account of energy " + off_by(percent, stage);
     return lines;
 }
