@@ -1,7 +1,43 @@
 #include "analysis/safety.hpp"
 
+#include "joint/strength_factor.hpp"
+#include "model/error.hpp"
+
 namespace jointcreep::analysis
 {
+
+Trial::Trial(const Scene& scene, const Network& network, const EquivalentJoints& joints, double factor,
+             int threads, const Recording& recording, const Observer& observe)
+    : factor_(factor), scene_(factor == 1 ? scene : joint::with_strength_divided(scene, factor)),
+      joints_(factor == 1 ? joints : joint::with_strength_divided(joints, factor)),
+      analysis_(scene_, network, joints_, threads, recording, observe)
+{
+}
+
+void Trial::run()
+{
+    try {
+        analysis_.run();
+    } catch (const equilibrium_error& error) {
+        message_ = error.what();
+    }
+}
+
+void Trial::go_on(Result so_far, Checkpoint kept)
+{
+    try {
+        analysis_.go_on(std::move(so_far), std::move(kept));
+    } catch (const equilibrium_error& error) {
+        message_ = error.what();
+    }
+}
+
+Ending Trial::ending() const
+{
+    if (message_.empty())
+        return Ending::stands;
+    return analysis_.result().failure.moves_on ? Ending::falls : Ending::undecided;
+}
 
 Bracket bracket_of(const std::function<Ending(double factor)>& trial, double width)
 {

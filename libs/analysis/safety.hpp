@@ -3,16 +3,42 @@
 
 #pragma once
 
+#include "analysis/analysis.hpp"
 #include "model/result.hpp"
 
 #include <functional>
 #include <optional>
+#include <string>
 
 namespace jointcreep::analysis
 {
 
 // How a run ends: every equilibrium found; rock seen to slide or fall; or the search for one given up.
 enum class Ending { stands, falls, undecided };
+
+// An analysis with strengths divided by a factor [-].
+class Trial
+{
+public:
+    Trial(const Scene& scene, const Network& network, const EquivalentJoints& joints, double factor,
+          int threads, const Recording& recording, const Observer& observe);
+
+    // As those of Analysis, once; where there is no equilibrium they end with a message.
+    void run();
+    void go_on(Result so_far, Checkpoint kept);
+
+    Ending ending() const;
+    const std::string& message() const { return message_; } // why there is no equilibrium; empty: there is
+    double factor() const { return factor_; }
+    const Analysis& analysis() const { return analysis_; }
+
+private:
+    double factor_;
+    Scene scene_;
+    EquivalentJoints joints_;
+    Analysis analysis_;
+    std::string message_;
+};
 
 struct Bracket {
     std::optional<double> stands;    // the largest factor that stood [-]; none if nothing stood

@@ -238,13 +238,11 @@ void Creep::cancel(mechanics::Assembly& assembly)
 
 void Creep::transfer(const Transfer& to, Checkpoint& kept)
 {
-    // All members, lest a new one is forgotten. Springs and shears are filled by begin(), but for the
-    // reference.
-    auto& [scheme, chains, steps, springs, shears, crept_displacement, crept_strain, is_under_way] = *this;
-    to.values(springs, kept.reference, &Spring::reference);
-    to.values(crept_displacement, kept.crept);
-    to.values(shears, kept.rock_reference, &Shear::reference);
-    to.values(crept_strain, kept.rock_crept);
+    // The scene has the rest, and begin() finds anew what else springs and shears hold.
+    to.values(springs_, kept.reference, &Spring::reference);
+    to.values(crept_, kept.crept);
+    to.values(shears_, kept.rock_reference, &Shear::reference);
+    to.values(crept_strain_, kept.rock_crept);
 }
 
 StepLimit longest_step(const EquivalentJoints& joints, const std::vector<Rock>& rocks)

@@ -590,66 +590,71 @@ void start_from_here(Assembly& assembly)
     find_forces(assembly);
 }
 
+namespace
+{
+
+// Each member of a State with its place in the assembly.
+template <class OfState, class OfAssembly, class Copy>
+void for_each_member(OfState& state, OfAssembly& assembly, const Copy& copy)
+{
+    copy(state.displacement, assembly.displacement);
+    copy(state.offset, assembly.contacts.offset);
+    copy(state.traction, assembly.contacts.traction);
+    copy(state.relative_displacement, assembly.contacts.relative_displacement);
+    copy(state.joint, assembly.contacts.state);
+    copy(state.status, assembly.contacts.status);
+    copy(state.stress, assembly.zones.stress);
+    copy(state.yielding, assembly.zones.yielding);
+}
+static_assert(sizeof(State) == 8 * sizeof(std::vector<double>), "for_each_member() has all of them");
+
+} // namespace
+
 State state_of(const Assembly& assembly)
 {
-    const Contacts& contacts = assembly.contacts;
-    return {assembly.displacement, contacts.offset, contacts.traction,     contacts.relative_displacement,
-            contacts.state,        contacts.status, assembly.zones.stress, assembly.zones.yielding};
+    State state;
+    for_each_member(state, assembly, [](auto& kept, const auto& live) { kept = live; });
+    return state;
 }
 
 void go_back(Assembly& assembly, const State& state)
 {
-    Contacts& contacts = assembly.contacts;
-    assembly.displacement = state.displacement;
-    contacts.offset = state.offset;
-    contacts.traction = state.traction;
-    contacts.relative_displacement = state.relative_displacement;
-    contacts.state = state.joint;
-    contacts.status = state.status;
-    assembly.zones.stress = state.stress;
-    assembly.zones.yielding = state.yielding;
+    for_each_member(state, assembly, [](const auto& kept, auto& live) { live = kept; });
 }
 
+// What is not passed on is as in a new assembly, or found anew before it is used.
 void transfer(const Transfer& to, Assembly& assembly, Checkpoint& kept)
 {
-    // All members have a name here: a new one does not compile until someone has thought whether it is state.
-    // What is not passed on is as in a new assembly, or found anew before it is used.
-    auto& [zones, contacts, incidence, position, displacement, is_free_untied, is_free, load, applied, force,
-           ties, tied, slot_force, contact_force, slot_magnitudes, stiffness_damping_rate, threads] =
-        assembly;
-    to.values(displacement, kept.displacement);
-    to.values(is_free_untied, kept.is_free);
-    to.values(load, kept.load);
+    Zones& zones = assembly.zones;
+    Contacts& contacts = assembly.contacts;
+    to.values(assembly.displacement, kept.displacement);
+    to.values(assembly.is_free_untied, kept.is_free);
+    to.values(assembly.load, kept.load);
     if (to.restores())
         part_ties(assembly, kept.stage - 1);
 
-    auto& [zone_gridpoint, gradient, area, weight, mass, stiffness, initial_stress, stress, last_stress,
-           is_present, yielding_number, yielding, holds_yield] = zones;
-    to.values(is_present, kept.zone_present);
-    to.values(stress, kept.stress);
-    to.values(initial_stress, kept.initial_stress);
-    to.values(stiffness, kept.stiffness);
-    for (YieldingZone& zone : yielding)
-        [[maybe_unused]] auto& [of_law, initial_zz, plastic, stress_zz, dissipated] = zone;
-    to.values(yielding, kept.plastic_strain, &YieldingZone::plastic);
-    to.values(yielding, kept.stress_zz, &YieldingZone::stress_zz);
-    to.values(yielding, kept.initial_zz, &YieldingZone::initial_zz);
+    to.values(zones.is_present, kept.zone_present);
+    to.values(zones.stress, kept.stress);
+    to.values(zones.initial_stress, kept.initial_stress);
+    to.values(zones.stiffness, kept.stiffness);
+    to.values(zones.yielding, kept.plastic_strain, &YieldingZone::plastic);
+    to.values(zones.yielding, kept.stress_zz, &YieldingZone::stress_zz);
+    to.values(zones.yielding, kept.initial_zz, &YieldingZone::initial_zz);
 
-    auto& [contact_gridpoint, normal, length, law, state, initial_traction, offset, traction,
-           relative_displacement, status, work] = contacts;
-    to.values(status, kept.contact_status);
-    to.values(traction, kept.traction);
-    to.values(initial_traction, kept.initial_traction);
-    to.values(relative_displacement, kept.relative_displacement);
-    to.values(offset, kept.offset);
-    for (joint::State& one : state)
-        [[maybe_unused]] auto& [slip, dilation, is_broken, memory] = one;
-    to.values(state, kept.slip, &joint::State::slip);
-    to.values(state, kept.dilation, &joint::State::dilation);
-    to.values(state, kept.is_broken, &joint::State::is_broken);
-    to.values(state, kept.first_memory, [](joint::State& one) -> double& { return one.memory[0]; });
-    to.values(state, kept.second_memory, [](joint::State& one) -> double& { return one.memory[1]; });
-    to.values(state, kept.third_memory, [](joint::State& one) -> double& { return one.memory[2]; });
+    to.values(contacts.status, kept.contact_status);
+    to.values(contacts.traction, kept.traction);
+    to.values(contacts.initial_traction, kept.initial_traction);
+    to.values(contacts.relative_displacement, kept.relative_displacement);
+    to.values(contacts.offset, kept.offset);
+    to.values(contacts.state, kept.slip, &joint::State::slip);
+    to.values(contacts.state, kept.dilation, &joint::State::dilation);
+    to.values(contacts.state, kept.is_broken, &joint::State::is_broken);
+    const auto memory = [](std::size_t i) {
+        return [i](joint::State& one) -> double& { return one.memory[i]; };
+    };
+    to.values(contacts.state, kept.first_memory, memory(0));
+    to.values(contacts.state, kept.second_memory, memory(1));
+    to.values(contacts.state, kept.third_memory, memory(2));
 }
 
 std::vector<double> stiffness_row_sums(const Assembly& assembly)

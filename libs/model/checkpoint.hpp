@@ -76,7 +76,7 @@ struct Checkpoint {
     Index steps_since_record = 0;   // solver steps
     double solver_time = 0;         // of dynamic relaxation [s]
     Index steps_since_state = 0;    // creep steps
-    std::vector<Index> remark_kind; // as in Analysis: beyond strength, yielded in situ, given up, energy off
+    std::vector<Index> remark_kind; // the place in analysis::Findings::all
     std::vector<std::string> remark;
     std::vector<Index> remark_count;
 

@@ -1,0 +1,279 @@
+#include "creepfit_curve.hpp"
+
+#include "creepfit_files.hpp"
+#include "creepfit_words.hpp"
+
+#include "estimation/creep_curve.hpp"
+#include "model/error.hpp"
+#include "model/units.hpp"
+#include "scene/measurements.hpp"
+#include "scene/shared_settings.hpp"
+#include "store/files.hpp"
+
+#include <cmath>
+#include <optional>
+#include <string>
+
+namespace jointcreep::creepfit
+{
+
+using estimation::Interval;
+
+namespace
+{
+
+// Of creep, at the end that Eq. 14 takes. With more of it the equation says nothing.
+constexpr double most_left = 0.2;
+
+// Readings from the change of load on.
+struct Curve {
+    estimation::CreepCurve readings; // from `load` and `zero`
+    double load;                     // when it changed [s]
+    double zero = 0;                 // mean of what was read before, from where displacements count [m]
+    std::size_t before = 0;          // so many readings
+};
+
+struct Fit {
+    estimation::CurveFit by_curve;
+    estimation::ClosedEstimate closed; // by Eq. 14
+    double left;                       // of creep, when Eq. 14 takes it to be over [-]
+};
+
+// A row of what was found.
+struct Row {
+    std::string quantity, unit;
+    double value;
+    std::optional<Interval> interval;
+};
+
+Curve curve_from(double load, const std::vector<scene::Measurement>& measurements)
+{
+    Curve curve{.readings = {}, .load = load};
+    double weights = 0;
+    for (const scene::Measurement& m : measurements)
+        if (m.time < load) {
+            const double weight = m.deviation ? 1 / (*m.deviation * *m.deviation) : 1.0;
+            curve.zero += weight * m.displacement;
+            weights += weight;
+            ++curve.before;
+        }
+    if (curve.before > 0)
+        curve.zero /= weights;
+    for (const scene::Measurement& m : measurements) {
+        if (m.time < load)
+            continue;
+        curve.readings.time.push_back(m.time - load);
+        curve.readings.displacement.push_back(m.displacement - curve.zero);
+        if (m.deviation)
+            curve.readings.deviation.push_back(*m.deviation);
+    }
+    return curve;
+}
+
+Curve read_curve(const Arguments& arguments)
+{
+    const std::string& input = arguments.input();
+    const std::string text = text_of(input);
+    if (text.starts_with("\x89HDF"))
+        throw input_error("--measurements is not given, and " + input + " is no curve");
+    const std::vector<scene::Measurement> measurements =
+        of_file(input, [&] { return scene::creep_curve_in_csv(text); });
+    const double load =
+        arguments.number("load-day").value_or(measurements.front().time / unit::day) * unit::day;
+    Curve curve = curve_from(load, measurements);
+    if (const auto elastic = arguments.number("elastic-mm")) {
+        require(std::abs(*elastic) > 0 && std::abs(*elastic) <= 1e6, "--elastic-mm", *elastic, "mm",
+                "must not be 0, and at most 1e6");
+        curve.readings.elastic_part = *elastic * 1e-3;
+    }
+    if (curve.readings.time.empty())
+        throw input_error("--load-day is " + shown(load / unit::day) + "; " + input +
+                          " has no reading from then on");
+    return curve;
+}
+
+Fit fit_of(const Arguments& arguments, const Curve& curve)
+{
+    const auto& [readings, load, zero, before] = curve;
+    const double end =
+        arguments.number("converged-day").value_or((load + readings.time.back()) / unit::day) * unit::day -
+        load;
+    const estimation::CurveFit by_curve =
+        of_file(arguments.input(), [&] { return estimation::fit_curve(readings); });
+    return {by_curve, of_file(arguments.input(), [&] { return estimation::closed_estimate(readings, end); }),
+            std::exp(-end / by_curve.retardation_time)};
+}
+
+Interval times(const Interval& interval, double by)
+{
+    return {interval.low * by, interval.high * by};
+}
+
+Row row_of(const std::string& quantity, const std::string& unit, const estimation::Estimate& estimate,
+           double by)
+{
+    return {quantity, unit, estimate.value * by, times(estimate.interval, by)};
+}
+
+// E and eta in MPa/m and MPa day/m, or over K where its stiffness is not given.
+std::vector<Row> rows_of(const Fit& fit, bool knows_elastic_part, std::optional<double> stiffness)
+{
+    const auto& [by_curve, closed, left] = fit;
+    const double K = stiffness.value_or(1), per_day = K / unit::day;
+    const std::string unit_E = stiffness ? "MPa/m" : "K", unit_eta = stiffness ? "MPa day/m" : "K day";
+    const auto closed_row = [&](const std::string& quantity, const std::string& unit,
+                                const estimation::Estimate& estimate, double by) {
+        Row row = row_of(quantity, unit, estimate, by);
+        if (left > most_left)
+            row.interval.reset();
+        return row;
+    };
+    return {{"elastic part", "mm", by_curve.elastic_part * 1e3,
+             knows_elastic_part ? std::nullopt : std::optional(times(by_curve.elastic_interval, 1e3))},
+            {"creep part", "mm", by_curve.creep_part * 1e3, times(by_curve.creep_interval, 1e3)},
+            row_of("retardation time", "day", by_curve.time, 1 / unit::day),
+            row_of("Kelvin stiffness E", unit_E, by_curve.stiffness, K),
+            row_of("Kelvin viscosity eta", unit_eta, by_curve.viscosity, per_day),
+            closed_row("E by Eq. 14", unit_E, closed.stiffness, K),
+            closed_row("eta by least squares with that E", unit_eta, closed.viscosity, per_day)};
+}
+
+std::string table_of(const std::vector<Row>& rows)
+{
+    std::string table = "quantity,unit,value,low_95,high_95\n";
+    for (const Row& row : rows) {
+        table += row.quantity + ',' + row.unit + ',' + shown(row.value) + ',';
+        if (row.interval)
+            table += shown(row.interval->low);
+        table += ',';
+        if (row.interval && std::isfinite(row.interval->high))
+            table += shown(row.interval->high);
+        table += '\n';
+    }
+    return table;
+}
+
+std::string readings_table(const Curve& curve, const std::vector<double>& computed)
+{
+    const auto& [readings, load, zero, before] = curve;
+    std::string table = "time_day,measured_mm,computed_mm,residual_mm\n";
+    for (std::size_t i = 0; i < readings.time.size(); ++i)
+        table += shown((load + readings.time[i]) / unit::day) + ',' +
+                 shown((readings.displacement[i] + zero) * 1e3) + ',' + shown((computed[i] + zero) * 1e3) +
+                 ',' + shown((computed[i] - readings.displacement[i]) * 1e3) + '\n';
+    return table;
+}
+
+void add_residuals(Summary& summary, const Curve& curve, const estimation::CurveFit& fit)
+{
+    std::vector<double> residuals;
+    for (std::size_t i = 0; i < fit.computed.size(); ++i)
+        residuals.push_back(fit.computed[i] - curve.readings.displacement[i]);
+    summary.add("residuals, root mean square", mm(root_mean_square(residuals)) + " mm");
+    const bool knows = !curve.readings.deviation.empty();
+    if (knows)
+        summary.add("chi squared", rounded(fit.confidence.sum_of_squares) + " of " +
+                                       std::to_string(fit.confidence.readings - fit.confidence.parameters) +
+                                       " degrees of freedom");
+    summary.add("noise taken as", noise_in_words(fit.confidence, knows));
+}
+
+// What the record does not tell.
+void warn_of_record(Summary& summary, const Curve& curve, const estimation::CurveFit& fit)
+{
+    if (fit.is_too_short)
+        summary.add(
+            "warning: record too short",
+            "it is " + rounded(fit.record_length, 2) +
+                " retardation times long: it tells how fast creep begins, about 1 / eta, but not where "
+                "it ends, 1 / E");
+    else if (fit.is_stiffness_open)
+        summary.add("warning: E hardly known",
+                    "its interval goes beyond a factor of 2, though the record is " +
+                        rounded(fit.record_length, 2) +
+                        " retardation times long: noise, or too few readings");
+    // Where it is given there is no interval to look at.
+    if (const Interval& of = fit.elastic_interval;
+        !curve.readings.elastic_part && of.low <= 0 && of.high >= 0)
+        summary.add("warning: elastic part",
+                    "is not told apart from 0, nor are E and eta; displacements count from before the "
+                    "load, not from a reading after it");
+    if (fit.is_too_coarse)
+        summary.add(
+            "warning: readings too coarse",
+            "creep is all but over at the first reading after the load: eta is at most what is found");
+}
+
+// Where Eq. 14 takes for granted what is not so.
+void warn_of_closed_estimate(Summary& summary, const Curve& curve, const Fit& fit)
+{
+    if (fit.left > 0.02)
+        summary.add("warning: creep not over",
+                    rounded(100 * fit.left, 2) + " percent of it is left at the end that Eq. 14 takes: " +
+                        (fit.left > most_left
+                             ? "that is no end, and what it gives has no interval"
+                             : "its E is too high, about " + rounded(1 / (1 - fit.left), 3) + " times"));
+    const double first = curve.readings.time.front(), share = first / fit.by_curve.retardation_time;
+    if (!curve.readings.elastic_part && share > 0.1)
+        summary.add("warning: first reading late",
+                    rounded(first / unit::day) + " days after the load, with " +
+                        rounded(-100 * std::expm1(-share), 2) +
+                        " percent of creep in it, which Eq. 14 takes for elastic");
+}
+
+void report(const Curve& curve, const Fit& fit, const std::vector<Row>& rows)
+{
+    Summary summary;
+    summary.add("readings", curve.readings.time.size());
+    if (curve.before > 0)
+        summary.add("readings before the load",
+                    std::to_string(curve.before) + ", mean " + mm(curve.zero) +
+                        " mm: taken off the others as their zero, and as free of error");
+    summary.add("days since the load", curve.readings.time.back() / unit::day);
+    for (const Row& row : rows)
+        summary.add(row.quantity, rounded(row.value) +
+                                      (row.interval ? " (95 %: " + shown_interval(*row.interval) + ")" : "") +
+                                      ' ' + row.unit);
+    summary.add("correlation of ln E and ln eta", fit.by_curve.correlation);
+    add_residuals(summary, curve, fit.by_curve);
+    warn_of_record(summary, curve, fit.by_curve);
+    warn_of_closed_estimate(summary, curve, fit);
+    warn_of_lag(summary, "", fit.by_curve.lag_one, fit.by_curve.computed.size());
+    summary.print();
+}
+
+} // namespace
+
+std::vector<Option> curve_options()
+{
+    return {{"stiffness", "MPA_PER_M", "of a curve: K of the joint, to give E and eta as such, not over K"},
+            {"elastic-mm", "MM", "of a curve: what the joint did at once, if known (default: found)"},
+            {"load-day", "DAY",
+             "of a curve: when the load changed (default: day of the first reading); the mean of readings "
+             "before it is taken as 0"},
+            {"converged-day", "DAY",
+             "of a curve: when creep is taken to be over, for the closed estimate (default: last reading)"}};
+}
+
+void fit_curve(const Arguments& arguments)
+{
+    const std::optional<double> stiffness = arguments.number("stiffness", scene::joint_stiffnesses, "MPa/m");
+    const std::optional<std::string> readings_path = readings_file(arguments);
+    store::check_writable(arguments.output());
+
+    // 1. The readings, from the change of load on.
+    const Curve curve = read_curve(arguments);
+
+    // 2. E and eta, by least squares and by Eq. 14.
+    const Fit fit = fit_of(arguments, curve);
+
+    // 3. What was found.
+    const std::vector<Row> rows = rows_of(fit, curve.readings.elastic_part.has_value(), stiffness);
+    if (readings_path)
+        write(*readings_path, readings_table(curve, fit.by_curve.computed));
+    write(arguments.output(), table_of(rows));
+    if (!arguments.quiet())
+        report(curve, fit, rows);
+}
+
+} // namespace jointcreep::creepfit

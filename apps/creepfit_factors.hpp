@@ -1,0 +1,28 @@
+// The factors that creepfit finds, as the command line and the summary name them.
+
+#pragma once
+
+#include "back_analysis/back_analysis.hpp"
+
+#include <string>
+#include <vector>
+
+namespace jointcreep::creepfit
+{
+
+using Factors = std::vector<back_analysis::Factor>;
+
+// As --fit has it: "kelvin-stiffness".
+std::string option_of(sensitivity::Parameter parameter);
+// "Kelvin stiffness E".
+std::string words_of(sensitivity::Parameter parameter);
+// All that --fit may have, with `last` before the last one: "kelvin-stiffness, ... and horizontal-stress".
+std::string all_options(const std::string& last);
+
+// What --fit asks for: names parted by commas, each with bounds if wanted. Throws input_error.
+Factors factors_in(const std::string& text);
+
+// "kelvin-stiffness 1.1, joint-stiffness 0.95".
+std::string in_words(const Factors& factors, const std::vector<double>& values);
+
+} // namespace jointcreep::creepfit

@@ -1,0 +1,56 @@
+// Files that creepfit reads and writes, and the names that it refuses.
+
+#pragma once
+
+#include "program.hpp"
+
+#include "model/error.hpp"
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace jointcreep::creepfit
+{
+
+// Throw file_error.
+std::string text_of(const std::string& path);
+void write(const std::string& path, const std::string& text);
+
+// Whatever refuses what is in a file names the file.
+template <class Read>
+auto of_file(const std::string& path, const Read& read)
+{
+    try {
+        return read();
+    } catch (const input_error& error) {
+        const std::string_view message = error.what();
+        throw input_error(path + (message.starts_with("line ") ? ", " : ": ") + error.what());
+    }
+}
+
+// The same, where other things may be refused, too.
+template <class Read>
+auto of_lines_of_file(const std::string& path, const Read& read)
+{
+    try {
+        return read();
+    } catch (const input_error& error) {
+        if (const std::string_view message = error.what(); message.starts_with("line "))
+            throw input_error(path + ", " + error.what());
+        throw;
+    }
+}
+
+// Where to write the readings; refuses what would lose another file.
+std::optional<std::string> readings_file(const Arguments& arguments);
+
+// Refuses a name where what has failed would be written over a file that is read, or found.
+void refuse_loss(const std::string& failed, const std::vector<std::string>& others);
+
+// Refuses options that go with something else.
+void refuse_options(const Arguments& arguments, const std::vector<Option>& options,
+                    const std::string& goes_with);
+
+} // namespace jointcreep::creepfit

@@ -1,0 +1,29 @@
+// What creepfit found through the solver: its tables (docs/programs.md), the summary, and messages.
+
+#pragma once
+
+#include "creepfit_factors.hpp"
+
+#include "scene/measurements.hpp"
+
+#include <string>
+#include <vector>
+
+namespace jointcreep::creepfit
+{
+
+// A row a factor.
+std::string found_table(const back_analysis::Found& found, const Factors& factors, bool knows_deviations);
+
+// A row a measurement.
+std::string readings_table(const back_analysis::Found& found,
+                           const std::vector<scene::Measurement>& measurements, const Scene& scene);
+
+// What ended a search before its end, and what helps.
+std::string why_not_converged(const back_analysis::Found& found, const Factors& factors);
+
+// Prints the summary, and what to write into the scene.
+void report(const back_analysis::Found& found, const std::vector<scene::Measurement>& measurements,
+            const Scene& scene, const back_analysis::Settings& settings);
+
+} // namespace jointcreep::creepfit

@@ -1,0 +1,264 @@
+#include "demsolve_settings.hpp"
+
+#include "model/error.hpp"
+#include "model/units.hpp"
+#include "scene/scene.hpp"
+#include "scene/shared_settings.hpp"
+
+#include <algorithm>
+#include <functional>
+#include <string_view>
+
+namespace jointcreep::demsolve
+{
+
+namespace
+{
+
+constexpr std::uint64_t most_steps = 1000000000; // between two records
+
+// A word of a scene as the command line has it: without blanks.
+std::string as_option(std::string_view word)
+{
+    std::string option(word);
+    std::replace(option.begin(), option.end(), ' ', '-');
+    return option;
+}
+
+// "published, backward, linear-force or fitted": `last` stands before the last one.
+template <class Choice>
+std::string listed(const scene::Words<Choice>& words, const std::string& last = ", ")
+{
+    std::string all;
+    for (std::size_t i = 0; i < words.size(); ++i)
+        all += (i == 0 ? "" : i + 1 < words.size() ? ", " : last) + as_option(words[i].first);
+    return all;
+}
+
+template <class Choice>
+Choice chosen_from(const scene::Words<Choice>& words, const std::string& option, const std::string& name)
+{
+    for (const auto& [word, choice] : words)
+        if (as_option(word) == name)
+            return choice;
+    throw input_error("--" + option + ": \"" + name + "\" is none of " + listed(words));
+}
+
+[[noreturn]] void refuse_together(const std::string& option, const std::string& other)
+{
+    throw input_error("--" + option + " and --" + other + " do not go together");
+}
+
+// A setting of the scene that an option replaces. replace() puts the value that is given there, and returns it
+// as the result file records it.
+struct Setting {
+    Option option;
+    std::function<std::string(const Arguments&, const std::string& option, Scene&)> replace;
+    bool is_of_creep = false;
+    std::string not_with{}; // another option, or ""
+};
+
+// A number in a range.
+auto number(const Range& range, std::string_view unit, const std::function<void(Scene&, double)>& set)
+{
+    return [=](const Arguments& arguments, const std::string& option, Scene& scene) {
+        const double value = arguments.number(option, range, unit).value();
+        set(scene, value);
+        return shown(value);
+    };
+}
+
+// One of some words.
+template <class Choice>
+auto word(const scene::Words<Choice>& words, const std::function<void(Scene&, Choice)>& set)
+{
+    return [=](const Arguments& arguments, const std::string& option, Scene& scene) {
+        const std::string value = arguments.text(option).value();
+        set(scene, chosen_from(words, option, value));
+        return value;
+    };
+}
+
+void set_zone_size(Scene& scene, double size)
+{
+    if (scene.zone_size_at_faces)
+        *scene.zone_size_at_faces *= size / scene.zone_size;
+    scene.zone_size = size;
+}
+
+void set_creep_step(Scene& scene, double days)
+{
+    scene.creep->step = days * unit::day;
+    scene.creep->tolerance.reset();
+}
+
+void set_creep_tolerance(Scene& scene, double tolerance)
+{
+    scene.creep->step.reset();
+    scene.creep->tolerance = tolerance;
+}
+
+std::vector<Setting> settings()
+{
+    return {
+        {{"zone-size", "M",
+          "longest side of zones [m]; size_at_faces_m changes in proportion (default: the scene's)"},
+         number(scene::zone_sizes, "m", set_zone_size)},
+        {{"tolerance", "T", "unbalanced force ratio of an equilibrium (default: the scene's)"},
+         number(scene::equilibrium_tolerances, "(ratio)",
+                [](Scene& scene, double tolerance) { scene.equilibrium.tolerance = tolerance; })},
+        {{"engine", "NAME", "auto, relaxation (dynamic relaxation) or implicit (default: the scene's)"},
+         word<EngineChoice>(scene::engine_words(),
+                            [](Scene& scene, EngineChoice engine) { scene.equilibrium.engine = engine; })},
+        {{"creep-scheme", "NAME", listed(scene::creep_scheme_words(), " or ") + " (default: the scene's)"},
+         word<CreepScheme>(scene::creep_scheme_words(),
+                           [](Scene& scene, CreepScheme scheme) { scene.creep->scheme = scheme; }),
+         true},
+        {{"creep-step", "DAYS", "creep step of a fixed length [day] (default: the scene's)"},
+         number(scene::creep_steps, "day", set_creep_step),
+         true,
+         "creep-tolerance"},
+        {{"creep-tolerance", "M",
+          "error of a creep step, by which its length is chosen [m] (default: the scene's)"},
+         number(scene::creep_tolerances, "m", set_creep_tolerance),
+         true},
+    };
+}
+
+// Settings of creep go with creep.
+void check_creep(const Arguments& arguments, const std::string& option, const Scene& scene)
+{
+    if (arguments.has("no-creep"))
+        refuse_together(option, "no-creep");
+    if (!scene.creep)
+        throw input_error("--" + option + ": the scene has no [creep]");
+}
+
+// Options of the result file, as they are on the command line.
+class Noted
+{
+public:
+    void add(const std::string& option, const std::string& value = "")
+    {
+        text_ += (text_.empty() ? "--" : " --") + option + (value.empty() ? "" : " " + value);
+    }
+    const std::string& text() const { return text_; }
+
+private:
+    std::string text_;
+};
+
+} // namespace
+
+std::vector<Option> options()
+{
+    std::vector<Option> all{
+        {"threads", "N", "threads of the solver; they do not change the result (default 1)"}};
+    for (const Setting& setting : settings())
+        all.push_back(setting.option);
+    const std::vector<Option> others{
+        {"no-creep", "", "excavate only"},
+        {"strength-factor", "F",
+         "divide all strengths of joints and of rock that yields by F: cohesion, tensile strength, "
+         "tan(friction angle) and tan(dilation angle), or what Barton and Bandis's law bears "
+         "(default 1)"},
+        {"factor-of-safety", "",
+         "bracket the largest F with which every equilibrium is found, by runs with different F; "
+         "result.h5 is of that F, result.failed.h5 of the next one"},
+        {"safety-width", "W", "width of that bracket, over F (default 0.01)"},
+        {"until", "DAY", "end there instead of at the scene's end, before or after it [day]"},
+        {"checkpoint", "FILE",
+         "before every stage, keep there what it begins with; if FILE exists, go on from it"},
+        {"states", "N", "record the whole section every N creep steps too (default: at dates only)"},
+        {"step-history", "N", "record points and gauges every N solver steps"}};
+    all.insert(all.end(), others.begin(), others.end());
+    return all;
+}
+
+std::string name_of(EngineChoice engine)
+{
+    for (const auto& [word, choice] : scene::engine_words())
+        if (choice == engine)
+            return std::string(word);
+    return "";
+}
+
+std::string replace_settings(const Arguments& arguments, Scene& scene)
+{
+    Noted noted;
+    for (const Setting& setting : settings()) {
+        const std::string& option = setting.option.name;
+        if (!arguments.has(option))
+            continue;
+        if (setting.is_of_creep)
+            check_creep(arguments, option, scene);
+        noted.add(option, setting.replace(arguments, option, scene));
+        if (arguments.has(setting.not_with))
+            refuse_together(option, setting.not_with);
+    }
+    if (arguments.has("no-creep")) {
+        scene.creep.reset();
+        noted.add("no-creep");
+    }
+    if (arguments.has("checkpoint") && arguments.has("factor-of-safety"))
+        refuse_together("checkpoint", "factor-of-safety");
+    for (const char* option : {"states", "step-history"})
+        if (const auto every = arguments.whole_number(option, 1, most_steps)) {
+            if (scene.large_displacements)
+                throw input_error(
+                    "--" + std::string(option) +
+                    ": the scene has [large_displacements], which records the section every record_every_s");
+            noted.add(option, std::to_string(*every));
+        }
+    return noted.text();
+}
+
+std::string end_scene(const Arguments& arguments, Scene& scene)
+{
+    const auto day = arguments.number("until", above(0).to(scene::farthest_day), "day");
+    if (!day)
+        return "";
+    scene.end = *day * unit::day;
+    std::erase_if(scene.stages, [&](const Stage& stage) { return stage.time > scene.end; });
+    for (MonitoringPoint& point : scene.points)
+        point.first_reading = std::min(point.first_reading, scene.end);
+    return "--until " + shown(*day);
+}
+
+StrengthReduction strength_reduction(const Arguments& arguments, const Scene& scene)
+{
+    const double factor = arguments.number("strength-factor", from(1e-3).to(1e3), "(ratio)").value_or(1);
+    const bool has_bracket = arguments.has("factor-of-safety");
+    if (arguments.has("strength-factor") && has_bracket)
+        refuse_together("strength-factor", "factor-of-safety");
+    const double width = arguments.number("safety-width", from(1e-4).to(1), "(ratio)").value_or(0.01);
+    if (!has_bracket) {
+        if (arguments.has("safety-width"))
+            throw input_error("--safety-width goes with --factor-of-safety only");
+        return {factor, {}};
+    }
+    require(width >= 100 * scene.equilibrium.tolerance, "--safety-width", width, "(ratio)",
+            "must be at least 100 times the tolerance of equilibria, " + shown(scene.equilibrium.tolerance) +
+                ", which tells rest from movement");
+    if (scene.equilibrium.engine == EngineChoice::implicit)
+        throw input_error("--factor-of-safety: the implicit engine cannot tell rock that moves on from an "
+                          "equilibrium it does not find; wanted --engine auto or relaxation");
+    if (scene.large_displacements)
+        throw input_error(
+            "--factor-of-safety: the scene has [large_displacements], where what fails comes to rest again; "
+            "wanted one without");
+    return {factor, width};
+}
+
+analysis::Recording recording(const Arguments& arguments)
+{
+    return {arguments.whole_number("states", 1, most_steps).value_or(0),
+            arguments.whole_number("step-history", 1, most_steps).value_or(0)};
+}
+
+int threads(const Arguments& arguments)
+{
+    return static_cast<int>(arguments.whole_number("threads", 1, 1024).value_or(1));
+}
+
+} // namespace jointcreep::demsolve

@@ -1,0 +1,42 @@
+// The options of demsolve, and what they change in the scene.
+
+#pragma once
+
+#include "program.hpp"
+
+#include "analysis/section.hpp"
+#include "model/scene.hpp"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace jointcreep::demsolve
+{
+
+// All options, in the order of the help.
+std::vector<Option> options();
+
+// A word of an engine: "auto".
+std::string name_of(EngineChoice engine);
+
+// Puts the command line's settings in place of the scene's. Returns these options as the result file records
+// them, with those that say what is recorded.
+std::string replace_settings(const Arguments& arguments, Scene& scene);
+
+// Lets the scene end on the day of --until, if given; returns that option as the result file records it.
+std::string end_scene(const Arguments& arguments, Scene& scene);
+
+// By how much strengths are divided.
+struct StrengthReduction {
+    double factor = 1;                   // [-]
+    std::optional<double> bracket_width; // over the factor [-]; none: one run, with the factor
+};
+StrengthReduction strength_reduction(const Arguments& arguments, const Scene& scene);
+
+// Without what keeps checkpoints.
+analysis::Recording recording(const Arguments& arguments);
+
+int threads(const Arguments& arguments);
+
+} // namespace jointcreep::demsolve

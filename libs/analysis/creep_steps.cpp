@@ -1,0 +1,241 @@
+#include "analysis/creep_steps.hpp"
+
+#include "model/units.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace jointcreep::analysis
+{
+
+namespace
+{
+
+// Of a step in which the implicit engine finds no equilibrium at its end. After that the step is tried as a
+// whole, by dynamic relaxation.
+constexpr int most_halvings_of_a_step = 5;
+
+// Of one creep step where contacts close: in rock full of open joints some close all the time.
+constexpr int most_cuts = 6;
+
+// Throws if steps of a fixed length would be more than anyone can want.
+void check_number_of_steps(double from, double to, const CreepSettings& creep)
+{
+    constexpr double most = 1e6;
+    if (creep.step && (to - from) / *creep.step > most)
+        throw input_error("creep step of " + shown(*creep.step / unit::day) + " day: that makes " +
+                          shown(std::ceil((to - from) / *creep.step)) + " steps from day " +
+                          shown(from / unit::day) + " to day " + shown(to / unit::day) + "; wanted at most " +
+                          shown(most));
+}
+
+// The published creep step is stable up to a limit that joints and rocks set; beyond it its answer would be
+// wrong. A fixed step beyond it is refused; chosen steps stay below.
+std::optional<StableLimit> limit_of_published(const Section& section)
+{
+    const Scene& scene = section.scene;
+    if (!scene.creep || scene.creep->scheme != CreepScheme::published)
+        return {};
+    const creep::StepLimit limit = creep::longest_step(section.joints, scene.rocks);
+    if (limit.rock < 0 && limit.edge < 0)
+        return {};
+    const std::string of = limit.rock >= 0
+                               ? "rock \"" + scene.rocks[limit.rock].name + "\""
+                               : "joint \"" + joint_name(scene, section.network, limit.edge) + "\"";
+    if (scene.creep->step && *scene.creep->step >= limit.step)
+        throw unstable_step("creep step of " + shown(*scene.creep->step / unit::day) +
+                            " day: the published scheme is stable only below " +
+                            shown(limit.step / unit::day) + " day, the limit of " + of);
+    return StableLimit{limit.step, of};
+}
+
+} // namespace
+
+CreepSteps::CreepSteps(Section& section, Engines& engines, const Watchers& watchers,
+                       std::uint64_t state_every)
+    : section_(section), engines_(engines), watchers_(watchers), state_every_(state_every),
+      stable_limit_(limit_of_published(section))
+{
+}
+
+void CreepSteps::begin()
+{
+    const std::optional<CreepSettings>& settings = section_.scene.creep;
+    if (!settings)
+        return;
+    creep_.emplace(section_.scene, section_.network, section_.joints, section_.mesh(), section_.rock);
+    watchers_.tell(&Watcher::creep_begins, *creep_);
+    if (!creep_->anything_creeps())
+        return;
+    length_.emplace(*settings, creep_->fastest_rate(),
+                    stable_limit_ ? stable_limit_->step : std::numeric_limits<double>::infinity());
+    if (creep::is_second_order(settings->scheme))
+        closing_.emplace(length_->closing_tolerance()); // the others are of first order anyway
+}
+
+void CreepSteps::go_to(double date, bool may_stop)
+{
+    double& now = section_.now;
+    const bool is_loaded = section_.loading.changes(now, date);
+    const double longest =
+        is_loaded ? (date - now) / section_.scene.equilibrium.unloading_increments : date - now;
+    if (is_loaded)
+        start_afresh();
+    if (creeps())
+        check_number_of_steps(now, date, *section_.scene.creep);
+    while (now < date && !end_) {
+        section_.say("day " + std::to_string(std::lround(now / unit::day)));
+        const double target = next_target(date, longest);
+        if (!creeps() && !is_loaded)
+            now = target;
+        else if (!reaches(target, may_stop))
+            continue; // by shorter steps
+        watchers_.tell(&Watcher::row_is_due, "");
+        if (state_every_ > 0 && creeps() && ++steps_ % state_every_ == 0 && now < date)
+            watchers_.tell(&Watcher::state_is_due, "");
+    }
+    watchers_.tell(&Watcher::state_is_due, "");
+}
+
+// Where the next step is to end, no longer than `longest` [s].
+double CreepSteps::next_target(double date, double longest) const
+{
+    const double remaining = date - section_.now;
+    const double step = creeps() ? length_->next(remaining, longest) : std::min(remaining, longest);
+    return step < (1 - 1e-12) * remaining ? section_.now + step : date;
+}
+
+// In one step, or in some where contacts close on the way: times of rows stay the same whatever contacts do.
+// False if the error of a step is too large.
+bool CreepSteps::reaches(double target, bool may_stop)
+{
+    int cuts_left = most_cuts;
+    while (section_.now < target && !end_) {
+        if (!step_to(target, cuts_left))
+            return false;
+        const std::optional<double> stop_rate =
+            may_stop && creeps() ? section_.scene.creep->stop_rate : std::nullopt;
+        if (stop_rate && is_slower_than(*stop_rate))
+            end_ = section_.now;
+    }
+    return true;
+}
+
+// One step of creep and loading, to the target or to where an open contact closes before. False if its error
+// is too large: then nothing has happened but that the next step will be shorter.
+bool CreepSteps::step_to(double target, int& cuts_left)
+{
+    mechanics::Assembly& rock = section_.rock;
+    const mechanics::State start = state_of(rock);
+    const std::optional<creep::Creep> creep_at_start = creep_;
+    if (closing_)
+        closing_->start(rock);
+    watchers_.tell(&Watcher::step_begins);
+    const Step step = settle(target, start, cuts_left);
+    watchers_.tell(&Watcher::step_settles, step);
+    if (creeps() && !length_->stands(step.duration, creep_->end(rock))) {
+        go_back(rock, start);
+        creep_ = creep_at_start;
+        section_.loading.apply(rock, section_.now);
+        watchers_.tell(&Watcher::step_is_rejected);
+        return false;
+    }
+    if (closing_)
+        closing_->finish(rock, step.duration);
+    last_duration_ = step.duration;
+    last_move_ = rock.displacement;
+    for (std::size_t g = 0; g < last_move_.size(); ++g)
+        last_move_[g] -= start.displacement[g];
+    section_.now = step.end;
+    watchers_.tell(&Watcher::step_ends, step);
+    if (!step.is_whole && length_)
+        length_->start_afresh();
+    return true;
+}
+
+// Finds an equilibrium at the end of a step from now: at the target, before it where the implicit engine
+// finds none, and before that where contacts close.
+Step CreepSteps::settle(double target, const mechanics::State& start, int& cuts_left)
+{
+    double end = target;
+    int halvings = section_.engine == EngineChoice::relaxation ? most_halvings_of_a_step : 0;
+    for (;;) {
+        const double duration = end - section_.now;
+        if (!settles_at(end, halvings == most_halvings_of_a_step, start)) {
+            ++halvings;
+            end = halvings < most_halvings_of_a_step ? section_.now + duration / 2 : target;
+            watchers_.tell(&Watcher::step_is_halved);
+            continue;
+        }
+        const Step step{end, duration, end == target, creeps() ? &*creep_ : nullptr,
+                        closing_ ? &*closing_ : nullptr};
+        const double longest =
+            closing_ && cuts_left > 0 ? closing_->longest_step(section_.rock, duration) : duration;
+        if (longest >= duration || longest < 1e-9 * (target - section_.now))
+            return step;
+        --cuts_left;
+        watchers_.tell(&Watcher::step_is_cut, step);
+        go_back(section_.rock, start);
+        end = section_.now + longest;
+    }
+}
+
+// Whether there is an equilibrium nearby at the end of a step from now [s]. If there is none at all, the
+// state at its start is recorded.
+bool CreepSteps::settles_at(double end, bool by_relaxation, const mechanics::State& start)
+{
+    const double duration = end - section_.now;
+    if (creeps())
+        creep_->begin(duration, section_.rock);
+    section_.loading.apply(section_.rock, end);
+    try {
+        if (!by_relaxation)
+            return engines_.settles_nearby(guess(duration), end);
+        engines_.settle_by_relaxation(end);
+        return true;
+    } catch (const equilibrium_error&) {
+        go_back(section_.rock, start);
+        watchers_.tell(&Watcher::state_is_due, "");
+        throw;
+    }
+}
+
+// How far gridpoints may be expected to move [m]: creep slows down.
+std::vector<Vector2d> CreepSteps::guess(double duration) const
+{
+    std::vector<Vector2d> guess = last_move_;
+    for (Vector2d& move : guess)
+        move *= 0.9 * duration / last_duration_;
+    return guess;
+}
+
+// Whether every gridpoint moved more slowly in the last step [m/s].
+bool CreepSteps::is_slower_than(double rate) const
+{
+    return std::all_of(last_move_.begin(), last_move_.end(),
+                       [&](const Vector2d& move) { return move.norm() < rate * last_duration_; });
+}
+
+void CreepSteps::start_afresh()
+{
+    last_move_.clear();
+    if (length_)
+        length_->start_afresh();
+    if (closing_)
+        closing_->start_afresh();
+    watchers_.tell(&Watcher::loads_change);
+}
+
+void CreepSteps::transfer(const Transfer& to, Checkpoint& kept)
+{
+    if (creep_)
+        creep_->transfer(to, kept);
+    if (length_)
+        length_->transfer(to, kept);
+    // Only what is left over from the last that was recorded counts.
+    steps_ %= std::max<std::uint64_t>(state_every_, 1);
+    to.value(steps_, kept.steps_since_state);
+}
+
+} // namespace jointcreep::analysis

@@ -1,0 +1,77 @@
+// Creep of joints and rock, and the loading of the outline over time, step by step.
+
+#pragma once
+
+#include "analysis/engines.hpp"
+#include "analysis/section.hpp"
+#include "analysis/watcher.hpp"
+#include "creep/closing.hpp"
+#include "creep/creep.hpp"
+#include "creep/step_length.hpp"
+#include "model/error.hpp"
+
+#include <optional>
+#include <string>
+
+namespace jointcreep::analysis
+{
+
+// A fixed creep step is not below the published scheme's limit, which depends on the joints' constants.
+struct unstable_step : input_error {
+    using input_error::input_error;
+};
+
+// The longest stable creep step, and what sets it: a joint or rock, by name.
+struct StableLimit {
+    double step; // [s]
+    std::string of;
+};
+
+class CreepSteps
+{
+public:
+    // Every `state_every` creep steps a state is due; 0: at dates only. Throws unstable_step.
+    CreepSteps(Section& section, Engines& engines, const Watchers& watchers, std::uint64_t state_every);
+
+    // After the in-situ equilibrium: what creeps has long crept under the stress there.
+    void begin();
+
+    // Steps to a date [s]. If it `may_stop` creep ends where the scene's stop rate is reached.
+    void go_to(double date, bool may_stop);
+
+    // After a sudden change of loads: what was learnt from the steps before no longer holds.
+    void start_afresh();
+
+    // What a checkpoint keeps of it.
+    void transfer(const Transfer& to, Checkpoint& kept);
+
+    bool creeps() const { return length_.has_value(); }
+    // Of the published scheme.
+    const std::optional<StableLimit>& stable_limit() const { return stable_limit_; }
+    // Where the stop rate ended it, since start [s].
+    std::optional<double> end() const { return end_; }
+
+private:
+    double next_target(double date, double longest) const;
+    bool reaches(double target, bool may_stop);
+    bool step_to(double target, int& cuts_left);
+    Step settle(double target, const mechanics::State& start, int& cuts_left);
+    bool settles_at(double end, bool by_relaxation, const mechanics::State& start);
+    std::vector<Vector2d> guess(double duration) const;
+    bool is_slower_than(double rate) const;
+
+    Section& section_;
+    Engines& engines_;
+    const Watchers& watchers_;
+    std::uint64_t state_every_;
+    std::optional<StableLimit> stable_limit_;
+    std::optional<creep::Creep> creep_;
+    std::optional<creep::StepLength> length_;
+    std::optional<creep::Closing> closing_;
+    std::vector<Vector2d> last_move_; // of gridpoints in the last step [m]; none after a sudden change
+    double last_duration_ = 0;        // of the last step [s]
+    std::uint64_t steps_ = 0;         // of creep, whole ones
+    std::optional<double> end_;
+};
+
+} // namespace jointcreep::analysis

@@ -1,0 +1,192 @@
+#include "analysis/dynamic_stage.hpp"
+
+#include "joint/equivalent.hpp"
+#include "model/error.hpp"
+#include "model/units.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace jointcreep::analysis
+{
+
+using large_displacements::Dynamics;
+using large_displacements::Energy;
+
+namespace
+{
+
+// By how much of its largest part the energy balance of a dynamic analysis may be off.
+constexpr double energy_closes = 0.01;
+
+std::vector<char> rigid_zones(const Section& section)
+{
+    const std::vector<std::string>& rigid = section.scene.large_displacements->rigid_rocks;
+    std::vector<char> is_rigid;
+    for (const Index block : section.mesh().zone_block) {
+        const std::string& rock = section.scene.rocks[section.network.blocks.block_rock[block]].name;
+        is_rigid.push_back(std::find(rigid.begin(), rigid.end(), rock) != rigid.end() ? 1 : 0);
+    }
+    return is_rigid;
+}
+
+// What the joint of each contact is made of, by its number in the scene.
+std::vector<Index> material_of_contacts(const Section& section)
+{
+    std::vector<Index> number;
+    for (const Index edge : section.mesh().contact_edge)
+        number.push_back(static_cast<Index>(
+            &joint::material_of(section.scene, section.network, static_cast<std::size_t>(edge)) -
+            section.scene.joint_materials.data()));
+    return number;
+}
+
+// Of contacts that form in a dynamic analysis: friction alone, the residual one where there is one.
+joint::Law law_of_new_contacts(const Scene& scene)
+{
+    const auto material =
+        std::find_if(scene.joint_materials.begin(), scene.joint_materials.end(),
+                     [&](const auto& m) { return m.name == scene.large_displacements->new_contacts; });
+    return joint::unbonded(joint::law_of(*material));
+}
+
+large_displacements::Settings settings_of(const Scene& scene)
+{
+    return {scene.large_displacements->stiffness_damping, scene.large_displacements->mass_damping,
+            scene.large_displacements->release, scene.equilibrium.tolerance};
+}
+
+} // namespace
+
+DynamicStage::DynamicStage(Section& section, const Watchers& watchers)
+    : section_(section), watchers_(watchers),
+      dynamics_(section.rock, section.mesh(), material_of_contacts(section), rigid_zones(section),
+                law_of_new_contacts(section.scene), settings_of(section.scene))
+{
+}
+
+void DynamicStage::settle_in_situ()
+{
+    comes_to_rest(std::numeric_limits<double>::infinity());
+    section_.settled.effort = {};
+    dynamics_.count_from_here();
+}
+
+void DynamicStage::run()
+{
+    dynamics_.start();
+    largest_energy_ = largest_error_ = 0;
+    double due = 0;
+    do {
+        section_.say(section_.stage + ", " + shown(due) + " s");
+        due = std::max(due + section_.scene.large_displacements->record_every, // once a step at most
+                       std::nextafter(dynamics_.time(), std::numeric_limits<double>::infinity()));
+        dynamics_.put_back();
+        watchers_.tell(&Watcher::state_is_due, "");
+        record();
+    } while (!comes_to_rest(due));
+    dynamics_.put_back();
+    note_rest();
+    watchers_.tell(&Watcher::equilibrium_ends, 0.0);
+    watchers_.row_and_state_are_due(section_.stage);
+    record();
+    check_energy();
+}
+
+// Steps until rock is at rest, or until a time has come [s].
+bool DynamicStage::comes_to_rest(double until)
+{
+    const double longest = section_.scene.large_displacements->longest;
+    Index& steps = section_.settled.effort.steps;
+    while (dynamics_.time() < until) {
+        try {
+            dynamics_.step();
+            ++steps;
+            if (steps % Dynamics::check_every == 0 && dynamics_.is_at_rest())
+                return true;
+        } catch (const mechanics::no_equilibrium& error) {
+            give_up(error);
+        } catch (const equilibrium_error& error) {
+            fail(section_, {.reason = error.what()}, section_.now);
+        }
+        if (dynamics_.time() > longest)
+            give_up(dynamics_.moves_on("no rest within " + shown(longest) + " s"));
+    }
+    return false;
+}
+
+// Keeps the state that the analysis has come to, and says what moves.
+void DynamicStage::give_up(const mechanics::no_equilibrium& error)
+{
+    dynamics_.put_back();
+    watchers_.row_and_state_are_due("");
+    record();
+    check_energy();
+    fail(section_, failure_of(error, section_.mesh(), section_.rock), section_.now);
+}
+
+// The convergence report of the equilibrium at rest.
+void DynamicStage::note_rest()
+{
+    const Energy energy = dynamics_.energy();
+    auto& [convergence, effort] = section_.settled;
+    convergence = {.steps = effort.steps,
+                   .unbalanced_force_ratio = dynamics_.unbalanced_force_ratio(),
+                   .contact_force_change = dynamics_.contact_force_change(),
+                   .remaining_displacement = -1,
+                   .work_of_loads = energy.work,
+                   .stored = energy.stored,
+                   .dissipated = energy.friction,
+                   .damped = energy.damped};
+    effort.searches = 1;
+}
+
+// Of the state that was recorded last.
+void DynamicStage::record()
+{
+    DynamicsHistory& history = section_.result.dynamics;
+    history.time.push_back(section_.now / unit::day);
+    history.dynamic_time.push_back(dynamics_.time());
+    history.state.push_back(static_cast<Index>(section_.result.states.time.size()) - 1);
+    history.fastest.push_back(dynamics_.fastest());
+    history.unbalanced_force_ratio.push_back(dynamics_.unbalanced_force_ratio());
+    record_energy();
+    const auto block_of = [&](Index zone) { return zone < 0 ? zone : section_.mesh().zone_block[zone]; };
+    for (const large_displacements::Touching& contact : dynamics_.touching()) {
+        history.contact_block.push_back({block_of(contact.zone[0]), block_of(contact.zone[1])});
+        history.contact_from.push_back(contact.between[0]);
+        history.contact_to.push_back(contact.between[1]);
+        history.contact_normal.push_back(contact.normal);
+        history.contact_traction.push_back(contact.traction);
+        history.contact_closing.push_back(contact.closing);
+        history.contact_slips.push_back(contact.is_slipping ? 1 : 0);
+    }
+    history.first_contact.push_back(static_cast<Index>(history.contact_block.size()));
+}
+
+void DynamicStage::record_energy()
+{
+    DynamicsHistory& history = section_.result.dynamics;
+    const Energy energy = dynamics_.energy();
+    history.work_of_loads.push_back(energy.work);
+    history.kinetic_energy.push_back(energy.kinetic);
+    history.stored_energy.push_back(energy.stored);
+    history.friction_energy.push_back(energy.friction);
+    history.damped_energy.push_back(energy.damped);
+    for (const double part : {energy.work, energy.kinetic, energy.stored, energy.friction, energy.damped})
+        largest_energy_ = std::max(largest_energy_, std::abs(part));
+    largest_error_ = std::max(largest_error_, std::abs(energy.error()));
+}
+
+// Of the dynamic analysis that has ended. Where rock only settles, all parts are small, and an error of the
+// first step, which goes with the square of its length, is not small beside them.
+void DynamicStage::check_energy()
+{
+    const double off = largest_error_ / largest_energy_;
+    if (dynamics_.has_moved() && off > energy_closes)
+        section_.findings.energy_off[section_.stage] =
+            static_cast<Index>(std::lround(100 * std::min(off, 1e6)));
+}
+
+} // namespace jointcreep::analysis

@@ -1,0 +1,46 @@
+// A stage where rock may move far: a dynamic analysis with large displacements, until rest.
+
+#pragma once
+
+#include "analysis/section.hpp"
+#include "analysis/watcher.hpp"
+#include "large_displacements/dynamics.hpp"
+
+namespace jointcreep::analysis
+{
+
+class DynamicStage
+{
+public:
+    // After the in-situ equilibrium.
+    DynamicStage(Section& section, const Watchers& watchers);
+
+    // In situ: contacts between faces are a little other than those between gridpoints, and find their
+    // equilibrium first. Displacements count from there.
+    void settle_in_situ();
+
+    // After a stage's rock has been removed: moves until it is at rest, recorded every so many seconds, with
+    // a row and a state at rest. Throws equilibrium_error where it does not come to rest; the result has the
+    // state that it has come to.
+    void run();
+
+    // What a checkpoint keeps of it.
+    void transfer(const Transfer& to, Checkpoint& kept) { dynamics_.transfer(to, kept.dynamics); }
+
+private:
+    bool comes_to_rest(double until);
+    [[noreturn]] void give_up(const mechanics::no_equilibrium& error);
+    void note_rest();
+    void record();
+    void record_energy();
+    void check_energy();
+
+    Section& section_;
+    const Watchers& watchers_;
+    large_displacements::Dynamics dynamics_;
+    // The energy balance of this dynamic analysis, at recorded moments [J/m].
+    double largest_error_ = 0;
+    double largest_energy_ = 0; // of its parts
+};
+
+} // namespace jointcreep::analysis

@@ -1,0 +1,43 @@
+// Equilibrium of a section by its engine: the implicit engine, dynamic relaxation, or, chosen automatically,
+// the first and, where that fails, the second.
+
+#pragma once
+
+#include "analysis/section.hpp"
+#include "analysis/step_history.hpp"
+
+namespace jointcreep::analysis
+{
+
+class Engines
+{
+public:
+    Engines(Section& section, StepHistory& step_history) : section_(section), step_history_(step_history) {}
+
+    // Equilibrium at `time` since start [s]; messages and the step history have that time. What was found is
+    // in Section::settled. Throws equilibrium_error where there is none.
+    void settle(double time);
+
+    // By the implicit engine, unless only dynamic relaxation is asked for; false if there is none nearby.
+    // `guess` is how far gridpoints may be expected to move [m], or empty.
+    bool settles_nearby(const std::vector<Vector2d>& guess, double time);
+
+    // By dynamic relaxation, unless only the implicit engine is asked for. The `reason` for which it is not
+    // the implicit engine is that engine's own where none is given.
+    void settle_by_relaxation(double time, const std::string& reason = {});
+
+    // Rock that nothing holds falls without end: throws equilibrium_error that names it.
+    void check_held();
+
+    implicit::Solver& implicit_engine() { return implicit_; } // with its last factor
+
+private:
+    void yield_by_relaxation(double time, Index zone);
+    mechanics::Convergence relax(double time);
+
+    Section& section_;
+    StepHistory& step_history_;
+    implicit::Solver implicit_;
+};
+
+} // namespace jointcreep::analysis

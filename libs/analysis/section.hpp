@@ -1,0 +1,102 @@
+// The section that an analysis works on: its rock, how far it is, and what has been found. All parts of the
+// analysis share it.
+
+#pragma once
+
+#include "implicit/equilibrium.hpp"
+#include "mechanics/assembly.hpp"
+#include "mechanics/loading.hpp"
+#include "mechanics/recorder.hpp"
+#include "model/checkpoint.hpp"
+#include "sensitivity/sensitivity.hpp"
+
+#include <array>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace jointcreep::analysis
+{
+
+using mechanics::Vector2d;
+
+// What is to be recorded besides histories and the states at dates; 0 is never.
+struct Recording {
+    std::uint64_t state_every = 0;        // creep steps
+    std::uint64_t step_history_every = 0; // solver steps
+    // Whose sensitivities are found along with the histories: by the implicit engine alone.
+    std::vector<sensitivity::Parameter> parameters{};
+    // Told before every stage what it begins with, and the result so far.
+    std::function<void(const Result&, const Checkpoint&)> keep{};
+};
+
+// Told how far an analysis is, from 0 to 1, and what is being done.
+using Observer = std::function<void(double fraction, const std::string& what)>;
+
+// What the summary counts.
+struct Findings {
+    using Counts = std::map<std::string, Index>;
+    Counts beyond_strength; // contacts by joint: joints at yield in the initial stress state
+    Counts yielded_in_situ; // zones by rock, yielded in the initial stress state
+    Counts given_up;        // equilibria by the reason for which the implicit engine found none
+    Counts energy_off;      // error of the energy balance of dynamic analyses, by stage [percent]
+
+    // The order is that of checkpoints.
+    static constexpr std::array<Counts Findings::*, 4> all{
+        &Findings::beyond_strength, &Findings::yielded_in_situ, &Findings::given_up, &Findings::energy_off};
+    void transfer(const Transfer& to, Checkpoint& kept);
+};
+static_assert(sizeof(Findings) == Findings::all.size() * sizeof(Findings::Counts));
+
+// The last equilibrium, and what it has cost.
+struct Settled {
+    mechanics::Convergence convergence;
+    mechanics::Effort effort; // since the last equilibrium that was recorded
+};
+
+struct Section {
+    // 1. Divides the blocks into zones and loads them with the in-situ stress. Throws input_error where the
+    // engine asked for cannot do what is asked for, and for monitoring points and gauges that have no place.
+    Section(const Scene& scene_of, const Network& network_of, const EquivalentJoints& joints_of, int threads,
+            const Recording& recording, Observer observer);
+    Section(const Section&) = delete; // its parts refer to each other
+    Section& operator=(const Section&) = delete;
+
+    const Mesh& mesh() const { return result.mesh; }
+    // Tells the observer what is being done.
+    void say(const std::string& what) const { observe(now / scene.end, what); }
+
+    // What a checkpoint keeps of it.
+    void transfer(const Transfer& to, Checkpoint& kept);
+
+    const Scene& scene;
+    const Network& network;
+    const EquivalentJoints& joints;
+    Observer observe;
+    EngineChoice engine;
+    Result result;
+    // Of the histories' displacements, [parameter][time, point]: per unit of the parameter's logarithm [m].
+    std::vector<std::vector<Vector2d>> sensitivities;
+    mechanics::Assembly rock;
+    mechanics::Loading loading;
+    mechanics::Recorder recorder;
+    double now = 0;    // since start [s]
+    std::string stage; // being excavated, or ""
+    Settled settled;
+    Findings findings;
+};
+
+// What an edge's joint is called: its set, or the material of the joint that a boundary rests on.
+std::string joint_name(const Scene& scene, const Network& network, Index edge);
+
+// Contacts, by joint, that do not stick.
+Findings::Counts contacts_beyond_strength(const Section& section);
+// Zones, by rock, that have yielded.
+Findings::Counts yielded_zones(const Section& section);
+
+// Ends the analysis: there is no equilibrium at `time` since start [s]. The failure is in the result;
+// throws equilibrium_error with what moves, the day and the stage.
+[[noreturn]] void fail(Section& section, Failure failure, double time);
+
+} // namespace jointcreep::analysis

@@ -1,0 +1,86 @@
+#include "analysis/sensitivities.hpp"
+
+namespace jointcreep::analysis
+{
+
+Sensitivities::Sensitivities(std::vector<sensitivity::Parameter> parameters, Section& section,
+                             implicit::Solver& engine)
+    : section_(section), engine_(engine),
+      sensitivity_(std::move(parameters), section.scene, section.mesh(), section.rock)
+{
+    section.sensitivities.resize(sensitivity_.size());
+}
+
+void Sensitivities::equilibrium_ends(double held)
+{
+    sensitivity_.settle(section_.rock, engine_, section_.now, held);
+}
+
+void Sensitivities::displacements_start()
+{
+    sensitivity_.start_from_here(section_.rock);
+}
+
+void Sensitivities::creep_begins(const creep::Creep& creep)
+{
+    sensitivity_.start_creep(creep);
+}
+
+void Sensitivities::step_begins()
+{
+    at_start_ = sensitivity_;
+    sensitivity_.start_step(section_.rock);
+}
+
+void Sensitivities::step_settles(const Step& step)
+{
+    if (step.creep != nullptr)
+        sensitivity_.creep_step(*step.creep, step.duration, section_.rock, engine_, step.end);
+    else
+        sensitivity_.settle(section_.rock, engine_, step.end);
+}
+
+void Sensitivities::step_is_rejected()
+{
+    sensitivity_ = *at_start_;
+}
+
+void Sensitivities::step_ends(const Step& step)
+{
+    if (step.closing != nullptr)
+        sensitivity_.finish_step(*step.closing, step.duration, step.is_whole, section_.rock);
+}
+
+void Sensitivities::step_is_halved()
+{
+    sensitivity_.shorten(0.5);
+}
+
+void Sensitivities::step_is_cut(const Step& step)
+{
+    sensitivity_.cut(step.closing->last_cut(), *step.creep, step.duration, section_.rock, engine_, step.end);
+}
+
+void Sensitivities::stage_begins()
+{
+    sensitivity_.before_excavation(section_.rock);
+}
+
+void Sensitivities::rock_is_removed()
+{
+    sensitivity_.after_excavation(section_.rock);
+}
+
+void Sensitivities::loads_change()
+{
+    sensitivity_.start_afresh();
+}
+
+void Sensitivities::row_is_due(const std::string& /*event*/)
+{
+    for (std::size_t p = 0; p < sensitivity_.size(); ++p)
+        section_.recorder.append_at_points(section_.sensitivities[p], sensitivity_.displacement(p),
+                                           section_.rock);
+}
+
+} // namespace jointcreep::analysis

@@ -1,0 +1,82 @@
+// What watches an analysis: it is told at the moments below. The schedule (analysis/analysis.hpp) does not know
+// what watches it.
+
+#pragma once
+
+#include "creep/closing.hpp"
+#include "creep/creep.hpp"
+
+#include <string>
+#include <vector>
+
+namespace jointcreep::analysis
+{
+
+// A step of creep and loading.
+struct Step {
+    double end;                    // since start [s]
+    double duration;               // [s]
+    bool is_whole;                 // goes as far as it was to go, and is not cut short where a contact closes
+    const creep::Creep* creep;     // none: only the loading changes
+    const creep::Closing* closing; // none: the creep scheme is of first order, and no step is cut
+};
+
+class Watcher
+{
+public:
+    virtual ~Watcher() = default;
+
+    // There is an equilibrium in which `held` is the share of the last stage's forces that still act.
+    virtual void equilibrium_ends(double /*held*/) {}
+    // In situ, with the equilibrium there: displacements count from here.
+    virtual void displacements_start() {}
+    // After that, with what creeps.
+    virtual void creep_begins(const creep::Creep&) {}
+
+    // A step of creep and loading begins. There is an equilibrium at its end; then either its error is too
+    // large, and everything is as it was at its start, or it stands and has ended.
+    virtual void step_begins() {}
+    virtual void step_settles(const Step&) {}
+    virtual void step_is_rejected() {}
+    virtual void step_ends(const Step&) {}
+    // Meanwhile, no equilibrium was found at its end: it becomes half as long. Or there is one at the end of
+    // this step, and it will be cut short where a contact closes.
+    virtual void step_is_halved() {}
+    virtual void step_is_cut(const Step&) {}
+
+    // A stage is to be excavated; its rock is removed.
+    virtual void stage_begins() {}
+    virtual void rock_is_removed() {}
+    // Loads have changed suddenly, or begin to change.
+    virtual void loads_change() {}
+
+    // A row of the histories is due, or a state of the whole section; `event` is the stage that it is the
+    // first after, or "".
+    virtual void row_is_due(const std::string& /*event*/) {}
+    virtual void state_is_due(const std::string& /*event*/) {}
+};
+
+// Those that watch an analysis, told one after the other.
+class Watchers
+{
+public:
+    void add(Watcher& watcher) { watchers_.push_back(&watcher); }
+
+    template <class... Wanted, class... Given>
+    void tell(void (Watcher::*moment)(Wanted...), const Given&... given) const
+    {
+        for (Watcher* watcher : watchers_)
+            (watcher->*moment)(given...);
+    }
+
+    void row_and_state_are_due(const std::string& event) const
+    {
+        tell(&Watcher::row_is_due, event);
+        tell(&Watcher::state_is_due, event);
+    }
+
+private:
+    std::vector<Watcher*> watchers_;
+};
+
+} // namespace jointcreep::analysis
