@@ -173,6 +173,7 @@ class Runs(ChainTest):
 
     text: str
     count: int
+    plots = None  # a folder of other plots than those of the sources
 
     def setUp(self):
         self.folder = self.chain.new_folder()
@@ -194,8 +195,9 @@ class Runs(ChainTest):
         return folder
 
     def command(self, out, programs, *more):
+        plots = [f"PLOTS={self.plots}"] if self.plots else []
         return ["make", "-C", self.chain.source / "pipelines" / "slope", f"OUT={out}", f"SCENE={self.scene}",
-                f"BIN={programs}", f"N={self.count}", *more]
+                f"BIN={programs}", f"N={self.count}", *plots, *more]
 
     def environment(self):
         return {name: value for name, value in os.environ.items() if name not in ("MAKEFLAGS", "MFLAGS", "MAKELEVEL")}
@@ -259,11 +261,23 @@ class Small(Runs):
     count = N
     made_once = None
 
+    def setUp(self):
+        """Most tests do without a drawn picture, which takes longer than all four realizations."""
+        super().setUp()
+        self.plots = self.chain.new_folder()
+        for name, text in (("plot_ensemble.py", "import sys\nopen(sys.argv[-1], 'w').close()\n"), ("figure.py", "")):
+            (self.plots / name).write_text(text)
+            os.utime(self.plots / name, (0, 0))
+
     def whole(self):
-        """Realizations of the scene, made one at a time by the first test that asks for them. Only to be read."""
+        """Realizations of the scene and their picture, made one at a time by the first test that asks for them. Only
+        to be read."""
         if not Small.made_once:
+            stand_in, self.plots = self.plots, None
             Small.made_once = self.made(self.chain.new_folder() / "whole", self.programs(), "-j1", "realizations")
+            self.plots = stand_in
             self.calls.unlink()
+            self.assertEqual((Small.made_once / "ensemble.png").read_bytes()[:4], b"\x89PNG")
         return Small.made_once
 
     def copy_of_whole(self):
@@ -401,6 +415,7 @@ class Small(Runs):
         bad = f"*0001*) echo '{FAILS}' >&2; exit 3 ;;"
         good, failing = self.programs(), self.programs(demsolve=bad)
         whole = self.whole()
+        self.plots = None  # a picture also of those that are left
         out = self.folder / "out"
         done = self.make(out, failing, "realizations")
         self.assertNotEqual(done.returncode, 0)
