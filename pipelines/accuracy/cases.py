@@ -149,11 +149,6 @@ def groove_error(result):
     return errors.against_tractions(result, displacement[-1:], traction)
 
 
-def contact_error(result):
-    tractions = closed_forms.single_contact(result.scene, result.contacts, result.traction[0], result.time)
-    return errors.against_tractions(result, result.displacement[-1:], tractions)
-
-
 def powers(first, last):
     return [10.0 ** -n for n in range(first, last + 1)]
 

@@ -1,7 +1,12 @@
 """Plots draw what files of the chain hold, and a picture is there whole or not at all."""
 
+import os
+import runpy
+import signal
 import subprocess
 import sys
+import tempfile
+import traceback
 
 import numpy
 
@@ -10,14 +15,56 @@ from chain import ChainTest, changed, datasets, main
 PNG = b"\x89PNG\r\n\x1a\n"
 
 
+def in_a_copy(arguments):
+    """What a Python script does that is run in a copy of this process. It is ended if it takes too long."""
+    import figure  # the copy has it then  # noqa: F401
+
+    with tempfile.TemporaryFile("w+") as out, tempfile.TemporaryFile("w+") as err:
+        sys.stdout.flush()
+        sys.stderr.flush()
+        copy = os.fork()
+        if copy == 0:
+            code = 1
+            try:
+                signal.alarm(300)
+                os.dup2(out.fileno(), 1)
+                os.dup2(err.fileno(), 2)
+                sys.argv = arguments
+                runpy.run_path(arguments[0], run_name="__main__")
+                code = 0
+            except SystemExit as end:
+                if isinstance(end.code, str):
+                    print(end.code, file=sys.stderr)
+                code = end.code if isinstance(end.code, int) else int(end.code is not None)
+            except BaseException:
+                traceback.print_exc()
+            finally:
+                sys.stdout.flush()
+                sys.stderr.flush()
+                os._exit(code)
+        code = os.waitstatus_to_exitcode(os.waitpid(copy, 0)[1])
+        texts = []
+        for file in out, err:
+            file.seek(0)
+            texts.append(file.read())
+    return subprocess.CompletedProcess(arguments, code, *texts)
+
+
 class Plots(ChainTest):
     def setUp(self):
         self.plots = self.chain.source / "pipelines" / "plots"
         sys.path.insert(0, str(self.plots))
         self.addCleanup(sys.path.remove, str(self.plots))
 
+    started = set()
+
     def plot(self, name, source, picture, *options):
+        """What a plot does; the first time it is started as a program, later in a copy of this process, which has
+        loaded already what takes longer to load than a picture to draw."""
         command = [sys.executable, self.plots / f"plot_{name}.py", source, "-o", picture, *options]
+        if name in self.started:
+            return in_a_copy(list(map(str, command[1:])))
+        self.started.add(name)
         return subprocess.run(command, capture_output=True, text=True, timeout=300)
 
     def column(self):

@@ -12,6 +12,7 @@ import csv
 import math
 import os
 import pathlib
+import shutil
 import signal
 import subprocess
 import time
@@ -172,11 +173,13 @@ class Runs(ChainTest):
 
     text: str
     count: int
+    plots = None  # a folder of other plots than those of the sources
 
     def setUp(self):
         self.folder = self.chain.new_folder()
         self.scene = self.folder / "scene.toml"
         self.scene.write_text(self.text)
+        os.utime(self.scene, (0, 0))  # so that results of the same scene from another folder are not old
         self.calls = self.folder / "calls"
 
     def programs(self, **cases):
@@ -192,8 +195,9 @@ class Runs(ChainTest):
         return folder
 
     def command(self, out, programs, *more):
+        plots = [f"PLOTS={self.plots}"] if self.plots else []
         return ["make", "-C", self.chain.source / "pipelines" / "slope", f"OUT={out}", f"SCENE={self.scene}",
-                f"BIN={programs}", f"N={self.count}", *more]
+                f"BIN={programs}", f"N={self.count}", *plots, *more]
 
     def environment(self):
         return {name: value for name, value in os.environ.items() if name not in ("MAKEFLAGS", "MFLAGS", "MAKELEVEL")}
@@ -255,10 +259,34 @@ class Runs(ChainTest):
 class Small(Runs):
     text = SCENE
     count = N
+    made_once = None
+
+    def setUp(self):
+        """Most tests do without a drawn picture, which takes longer than all four realizations."""
+        super().setUp()
+        self.plots = self.chain.new_folder()
+        for name, text in (("plot_ensemble.py", "import sys\nopen(sys.argv[-1], 'w').close()\n"), ("figure.py", "")):
+            (self.plots / name).write_text(text)
+            os.utime(self.plots / name, (0, 0))
+
+    def whole(self):
+        """Realizations of the scene and their picture, made one at a time by the first test that asks for them. Only
+        to be read."""
+        if not Small.made_once:
+            stand_in, self.plots = self.plots, None
+            Small.made_once = self.made(self.chain.new_folder() / "whole", self.programs(), "-j1", "realizations")
+            self.plots = stand_in
+            self.calls.unlink()
+            self.assertEqual((Small.made_once / "ensemble.png").read_bytes()[:4], b"\x89PNG")
+        return Small.made_once
+
+    def copy_of_whole(self):
+        """As made for this test, with the same times of files."""
+        return shutil.copytree(self.whole(), self.folder / "out")
 
     def test_statistics(self):
         """They are what the result files say, by another way of computing them."""
-        out = self.made(self.folder / "out", self.programs(), "realizations")
+        out = self.whole()
         results = [datasets(out / "realizations" / f"{number:04d}.h5") for number in range(N)]
         moves = numpy.stack([result["/history/displacement"] for result in results])
         self.assertGreater(moves[:, -1, 0].std(axis=0).min(), 1e-6)  # [m]; they differ
@@ -302,9 +330,9 @@ class Small(Runs):
         self.assertEqual(float(last["mean_m"]), ensemble["/displacement_since_first_reading/mean"][-1, -1, 1])
 
     def test_one_at_a_time_or_two(self):
-        one = self.made(self.folder / "one", self.programs(), "-j1", "realizations")
         two = self.made(self.folder / "two", self.programs(), "-j2", "realizations")
-        self.assert_same(one, two)
+        self.assert_same(self.whole(), two)
+        self.assert_nothing_half_written(self.whole())
         self.assert_nothing_half_written(two)
 
     def test_nothing_is_done_twice(self):
@@ -317,7 +345,7 @@ class Small(Runs):
 
     def test_interrupts(self):
         """At the beginning, in the middle and at the end of chains. What has ended is not made again."""
-        whole = self.made(self.folder / "whole", self.programs(), "-j2", "realizations")
+        whole = self.whole()
         out = self.folder / "out"
         rounds = [  # how make is stopped; which programs hang, and are met there; what has ended by then
             (kill_make, {"strength": [0, 1]}, []),
@@ -354,7 +382,7 @@ class Small(Runs):
     def test_balances(self):
         """The summary and ensemble.h5 name the errors of energy and area of each realization, here after results have
         been falsified; and what cutting did."""
-        out = self.made(self.folder / "out", self.programs(), "realizations")
+        out = self.copy_of_whole()
         values = datasets(out / "ensemble.h5")
         self.assertLess(values["/realization/energy_error"].max(), 1e-6)
         self.assertLess(values["/realization/area_error"].max(), 1e-12)
@@ -386,7 +414,8 @@ class Small(Runs):
         """It is named with its reason, does not stop the others, and is tried again only when asked."""
         bad = f"*0001*) echo '{FAILS}' >&2; exit 3 ;;"
         good, failing = self.programs(), self.programs(demsolve=bad)
-        whole = self.made(self.folder / "whole", good, "realizations")
+        whole = self.whole()
+        self.plots = None  # a picture also of those that are left
         out = self.folder / "out"
         done = self.make(out, failing, "realizations")
         self.assertNotEqual(done.returncode, 0)
@@ -439,7 +468,7 @@ class Small(Runs):
     def test_a_changed_scene(self):
         """Results of another scene are not mixed in, be they old or put there."""
         programs = self.programs()
-        out = self.made(self.folder / "out", programs, "realizations")
+        out = self.copy_of_whole()
         other = self.folder / "other"
         self.scene.write_text(SCENE.replace("end = 10", "end = 12"))
         later = time.time() + 1
