@@ -104,6 +104,11 @@ Sheared sheared_by(const Moved& moved, const FacePair& pair, const joint::Law& l
             slopes.k_s * pair.length};
 }
 
+bool wears(const joint::Law& law)
+{
+    return joint::dilates(law) && joint::remembers(law);
+}
+
 // Of laws whose dilation wears, tan(psi) is the mean of a joint's pairs, as it is raised as a whole. With one for
 // each pair the rise would change with where the pressure is, and a block that rocks would rock more and more.
 double mean_tan_psi(const std::vector<Index>& joint, const std::vector<FacePair>& pairs,
@@ -111,7 +116,7 @@ double mean_tan_psi(const std::vector<Index>& joint, const std::vector<FacePair>
 {
     double sum = 0, length = 0;
     for (const Index p : joint)
-        if (const FacePair& pair = pairs[p]; pair.is_closed && joint::remembers(laws[pair.law])) {
+        if (const FacePair& pair = pairs[p]; wears(laws[pair.law]) && pair.is_closed) {
             sum += pair.length * joint::slopes(laws[pair.law], pair.state(), pair.sigma).tan_psi;
             length += pair.length;
         }
@@ -141,7 +146,7 @@ void FaceContacts::dilate(const std::vector<Vector2d>& place, const std::vector<
             dilating.pressed += pressed;
             const joint::Law& law = laws_[pair.law];
             joint::Slopes slopes = joint::slopes(law, pair.state(), pair.sigma);
-            if (joint::remembers(law))
+            if (wears(law))
                 slopes.tan_psi = worn;
             if (slopes.tan_psi == 0 || slopes.k_s == 0)
                 continue;
