@@ -181,8 +181,9 @@ class Blocks(ChainTest):
         """Threads that wait sleep, and leave their processor to the tests beside this one."""
         joints = self.chain.joints(changed(text, "^size_m = 1$", f"size_m = {size}"))
         with unittest.mock.patch.dict(os.environ, OMP_WAIT_POLICY="passive"):
-            one, two = (datasets(self.chain.run("demsolve", joints, self.chain.new_folder() / "result.h5", "--threads", n))
-                        for n in (1, 2))
+            files = [self.chain.run("demsolve", joints, self.chain.new_folder() / "result.h5", "--threads", n)
+                     for n in (1, 2)]
+        one, two = map(datasets, files)
         self.assertGreater(len(one["/mesh/zone_block"]), 4000)  # of fewer than 2000 one thread takes all
         for name, values in one.items():
             self.assertTrue(np.array_equal(values, two[name]), name)
