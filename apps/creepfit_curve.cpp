@@ -94,10 +94,9 @@ Curve read_curve(const Arguments& arguments)
 
 Fit fit_of(const Arguments& arguments, const Curve& curve)
 {
-    const auto& [readings, load, zero, before] = curve;
-    const double end =
-        arguments.number("converged-day").value_or((load + readings.time.back()) / unit::day) * unit::day -
-        load;
+    const estimation::CreepCurve& readings = curve.readings;
+    const double last = (curve.load + readings.time.back()) / unit::day;
+    const double end = arguments.number("converged-day").value_or(last) * unit::day - curve.load;
     const estimation::CurveFit by_curve =
         of_file(arguments.input(), [&] { return estimation::fit_curve(readings); });
     return {by_curve, of_file(arguments.input(), [&] { return estimation::closed_estimate(readings, end); }),
@@ -118,13 +117,13 @@ Row row_of(const std::string& quantity, const std::string& unit, const estimatio
 // E and eta in MPa/m and MPa day/m, or over K where its stiffness is not given.
 std::vector<Row> rows_of(const Fit& fit, bool knows_elastic_part, std::optional<double> stiffness)
 {
-    const auto& [by_curve, closed, left] = fit;
+    const estimation::CurveFit& by_curve = fit.by_curve;
     const double K = stiffness.value_or(1), per_day = K / unit::day;
     const std::string unit_E = stiffness ? "MPa/m" : "K", unit_eta = stiffness ? "MPa day/m" : "K day";
     const auto closed_row = [&](const std::string& quantity, const std::string& unit,
                                 const estimation::Estimate& estimate, double by) {
         Row row = row_of(quantity, unit, estimate, by);
-        if (left > most_left)
+        if (fit.left > most_left)
             row.interval.reset();
         return row;
     };
@@ -134,8 +133,8 @@ std::vector<Row> rows_of(const Fit& fit, bool knows_elastic_part, std::optional<
             row_of("retardation time", "day", by_curve.time, 1 / unit::day),
             row_of("Kelvin stiffness E", unit_E, by_curve.stiffness, K),
             row_of("Kelvin viscosity eta", unit_eta, by_curve.viscosity, per_day),
-            closed_row("E by Eq. 14", unit_E, closed.stiffness, K),
-            closed_row("eta by least squares with that E", unit_eta, closed.viscosity, per_day)};
+            closed_row("E by Eq. 14", unit_E, fit.closed.stiffness, K),
+            closed_row("eta by least squares with that E", unit_eta, fit.closed.viscosity, per_day)};
 }
 
 std::string table_of(const std::vector<Row>& rows)

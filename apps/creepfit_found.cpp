@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <iostream>
 #include <numeric>
 
@@ -118,9 +119,8 @@ std::vector<Residual> residuals_of(std::size_t point, int component, const Found
 void add_residuals(Summary& summary, const std::string& label, std::vector<Residual> residuals,
                    bool share_an_error)
 {
-    std::vector<double> values;
-    for (const Residual& residual : residuals)
-        values.push_back(residual.value);
+    std::vector<double> values(residuals.size());
+    std::transform(residuals.begin(), residuals.end(), values.begin(), std::mem_fn(&Residual::value));
     const double mean =
         std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
     summary.add("residuals of " + label, "mean " + mm(mean) + " mm, root mean square " +

@@ -73,7 +73,7 @@ template <class Choice>
 auto word(const scene::Words<Choice>& words, const std::function<void(Scene&, Choice)>& set)
 {
     return [=](const Arguments& arguments, const std::string& option, Scene& scene) {
-        const std::string value = arguments.text(option).value();
+        std::string value = arguments.text(option).value();
         set(scene, chosen_from(words, option, value));
         return value;
     };

@@ -13,8 +13,11 @@
 #include "analysis/records.hpp"
 #include "analysis/section.hpp"
 #include "analysis/sensitivities.hpp"
+#include "analysis/step_history.hpp"
+#include "analysis/watcher.hpp"
 
 #include <optional>
+#include <vector>
 
 namespace jointcreep::analysis
 {

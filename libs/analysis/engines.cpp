@@ -62,10 +62,11 @@ void Engines::yield_by_relaxation(double time, Index zone)
 
 void Engines::settle_by_relaxation(double time, const std::string& reason)
 {
-    const mechanics::no_equilibrium none_nearby("none nearby: " + implicit_.reason() +
-                                                " (--engine auto would continue by dynamic relaxation)");
-    if (section_.engine == EngineChoice::implicit)
-        fail(section_, failure_of(none_nearby, section_.mesh(), section_.rock), time);
+    if (section_.engine == EngineChoice::implicit) {
+        const mechanics::no_equilibrium error("none nearby: " + implicit_.reason() +
+                                              " (--engine auto would continue by dynamic relaxation)");
+        fail(section_, failure_of(error, section_.mesh(), section_.rock), time);
+    }
     if (section_.engine == EngineChoice::automatic)
         ++section_.findings.given_up[reason.empty() ? implicit_.reason() : reason];
     ++section_.settled.effort.searches;
