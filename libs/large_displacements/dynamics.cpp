@@ -139,6 +139,9 @@ void Dynamics::start()
     in_zones_ = {};
     corner_force_.assign(3 * zones_.size(), Vector2d::Zero());
     velocity_.assign(place_.size(), Vector2d::Zero());
+    any_deforms_ = false;
+    for (std::size_t z = 0; z < zones_.size(); ++z)
+        any_deforms_ = any_deforms_ || deforms(z);
     find_faces();
     find_bodies();
     find_time_step();
@@ -236,8 +239,9 @@ void Dynamics::find_forces(const std::vector<Vector2d>& move)
     const mechanics::Incidence& incidence = rock_.incidence;
     for_each(static_cast<Index>(place_.size()), rock_.threads, [&](Index g) {
         Vector2d force = rock_.load[g] + rock_.applied[g] + held * released_[g];
-        for (Index k = incidence.zone_start[g]; k < incidence.zone_start[g + 1]; ++k)
-            force += corner_force_[incidence.zone_corner[k]];
+        if (any_deforms_)
+            for (Index k = incidence.zone_start[g]; k < incidence.zone_start[g + 1]; ++k)
+                force += corner_force_[incidence.zone_corner[k]];
         force_[g] = force;
     });
     contacts_.add_forces(force_, rock_.threads);

@@ -206,6 +206,7 @@ private:
     FaceContacts contacts_;
     std::vector<Body> bodies_;
     std::vector<char> is_rigid_;         // zones
+    bool any_deforms_ = false;           // of the zones that are there
     std::vector<Index> body_of_;         // of gridpoints; -1 none
     std::vector<Zone> zones_;            // of the assembly
     std::vector<Vector2d> corner_force_; // on the three corners of each zone [N/m]

@@ -18,11 +18,11 @@ struct Dynamics::Carried {
 void Dynamics::transfer(const Transfer& to, DynamicsState& kept)
 {
     // All members, so that no new one is forgotten.
-    auto& [rock, mesh, settings, contacts, bodies, is_rigid, body_of, zones, corner_force, yielding, place,
-           velocity, move, force, released, lost, origin, middle, low, high, inverse_mass, law_of_edge,
-           ground, wall_law, face_of_mesh, zone_of_face, dt, last_dt, time, time_lost, stiffest_allowed,
-           starts_from_rest, has_moved, energy, stored_at_start, in_zones, last_kinetic, stiffest,
-           largest_mean, ratio, force_change, fastest, fastest_gridpoint, stiffest_gridpoint,
+    auto& [rock, mesh, settings, contacts, bodies, is_rigid, any_deforms, body_of, zones, corner_force,
+           yielding, place, velocity, move, force, released, lost, origin, middle, low, high, inverse_mass,
+           law_of_edge, ground, wall_law, face_of_mesh, zone_of_face, dt, last_dt, time, time_lost,
+           stiffest_allowed, starts_from_rest, has_moved, energy, stored_at_start, in_zones, last_kinetic,
+           stiffest, largest_mean, ratio, force_change, fastest, fastest_gridpoint, stiffest_gridpoint,
            checks_in_balance, last_contact_force] = *this;
     to.values(origin, kept.origin);
     to.values(place, kept.place);

@@ -101,6 +101,8 @@ inline void Dynamics::find_zone_force(Index z, double viscosity, ZoneSums& sums)
 // Corner forces and energies of all zones, at the present places.
 void Dynamics::find_zone_forces()
 {
+    if (!any_deforms_)
+        return;
     const double viscosity = settings_.stiffness_damping / dt_;
     const double lost_before = in_zones_.friction; // at the start
     in_zones_ = sum_in_chunks<ZoneSums>(static_cast<Index>(zones_.size()), rock_.threads,
