@@ -65,8 +65,8 @@ TEST(Schema, NamesEveryDatasetOnce)
 // Days only for times since the start, text without a unit.
 TEST(Schema, UsesSiUnits)
 {
-    const std::set<std::string> si = {"1",    "m",      "m2",  "rad", "s",   "Pa",
-                                      "Pa/m", "Pa s/m", "J/m", "m/s", "N/m", "1/m"};
+    const std::set<std::string> si = {"1",    "m",      "m2",  "m2/J", "rad", "s",  "Pa",
+                                      "Pa/m", "Pa s/m", "J/m", "m/s",  "N/m", "1/m"};
     CheckpointFile file;
     for (const schema::Field& field : all_fields(file)) {
         EXPECT_TRUE(si.contains(field.units) || (field.units == "day" && field.path.ends_with("/time")))
