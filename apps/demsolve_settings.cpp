@@ -160,7 +160,7 @@ std::vector<Option> options()
         {"no-creep", "", "excavate only"},
         {"strength-factor", "F",
          "divide all strengths of joints and of rock that yields by F: cohesion, tensile strength, "
-         "tan(friction angle) and tan(dilation angle), or what Barton and Bandis's law bears "
+         "tan(friction angle) and tan(dilation angle), or the strength of Barton and Bandis's law "
          "(default 1)"},
         {"factor-of-safety", "",
          "bracket the largest F with which every equilibrium is found, by runs with different F; "

@@ -99,12 +99,10 @@ void add_contacts(Summary& summary, const std::vector<ContactStatus>& status)
 
 void add_findings(Summary& summary, const Findings& findings, const Findings::Counts& yielded)
 {
-    for (const auto& [joint, n] : findings.beyond_strength)
-        summary.add("warning: beyond strength in situ",
-                    std::to_string(n) + " contacts of joint \"" + joint + "\"");
+    for (const auto& [joint, n] : findings.at_yield_in_situ)
+        summary.add("warning: at yield in situ", std::to_string(n) + " contacts of joint \"" + joint + "\"");
     for (const auto& [rock, n] : findings.yielded_in_situ)
-        summary.add("warning: beyond strength in situ",
-                    std::to_string(n) + " zones of rock \"" + rock + "\"");
+        summary.add("warning: at yield in situ", std::to_string(n) + " zones of rock \"" + rock + "\"");
     for (const auto& [rock, n] : yielded)
         summary.add("zones yielded since", std::to_string(n) + " of rock \"" + rock + "\"");
     for (const auto& [stage, percent] : findings.energy_off)

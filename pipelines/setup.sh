@@ -8,6 +8,16 @@
 set -eu
 cd "$(dirname "$0")/.."
 
+if [ $# -gt 1 ]; then
+  echo "setup.sh: unknown \"$2\"; expected nothing, or test" >&2
+  exit 2
+fi
+case "$PWD" in
+*[[:space:]]*)
+  echo "setup.sh: the path \"$PWD\" has a blank, which Make cannot take; expected a path without" >&2
+  exit 2
+  ;;
+esac
 purpose="${1:-run}"
 case "$purpose" in
 run) lists="run" preset="release" ;;
@@ -20,7 +30,7 @@ esac
 
 missing=""
 for list in $lists; do
-  while read -r package; do
+  while read -r package || [ -n "$package" ]; do
     case "$package" in "" | "#"*) continue ;; esac
     case "$(dpkg-query -W -f '${Status}' "$package" 2>/dev/null)" in
       *" installed") ;;

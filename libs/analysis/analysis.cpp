@@ -97,7 +97,7 @@ void Analysis::settle_in_situ()
         throw;
     }
     section_.findings.yielded_in_situ = yielded_zones(section_);
-    section_.findings.beyond_strength = contacts_beyond_strength(section_);
+    section_.findings.at_yield_in_situ = contacts_at_yield(section_);
     watchers_.tell(&Watcher::equilibrium_ends, 0.0);
     watchers_.tell(&Watcher::displacements_start);
     start_from_here(section_.rock);

@@ -48,9 +48,9 @@ void Engines::yield_by_relaxation(double time, Index zone)
     }
     mechanics::Convergence& convergence = section_.settled.convergence;
     mechanics::Convergence elastic = convergence;
-    const double beyond_strength = stored_energy(section_.rock);
+    const double before = stored_energy(section_.rock);
     find_forces(section_.rock);
-    const double lost = beyond_strength - stored_energy(section_.rock); // nothing has moved
+    const double lost = before - stored_energy(section_.rock); // nothing has moved
     elastic.stored -= lost;
     elastic.dissipated += lost;
     settle_by_relaxation(time, "rock yields");

@@ -102,7 +102,7 @@ std::string joint_name(const Scene& scene, const Network& network, Index edge)
                      : network.names.joint_set[network.joints.set[joint]];
 }
 
-Findings::Counts contacts_beyond_strength(const Section& section)
+Findings::Counts contacts_at_yield(const Section& section)
 {
     Findings::Counts contacts;
     const std::vector<ContactStatus>& status = section.rock.contacts.status;

@@ -37,14 +37,14 @@ using Observer = std::function<void(double fraction, const std::string& what)>;
 // What the summary counts.
 struct Findings {
     using Counts = std::map<std::string, Index>;
-    Counts beyond_strength; // contacts by joint: joints at yield in the initial stress state
-    Counts yielded_in_situ; // zones by rock, yielded in the initial stress state
-    Counts given_up;        // equilibria by the reason for which the implicit engine found none
-    Counts energy_off;      // error of the energy balance of dynamic analyses, by stage [percent]
+    Counts at_yield_in_situ; // contacts by joint: joints at yield in the initial stress state
+    Counts yielded_in_situ;  // zones by rock, yielded in the initial stress state
+    Counts given_up;         // equilibria by the reason for which the implicit engine found none
+    Counts energy_off;       // error of the energy balance of dynamic analyses, by stage [percent]
 
     // The order is that of checkpoints.
     static constexpr std::array<Counts Findings::*, 4> all{
-        &Findings::beyond_strength, &Findings::yielded_in_situ, &Findings::given_up, &Findings::energy_off};
+        &Findings::at_yield_in_situ, &Findings::yielded_in_situ, &Findings::given_up, &Findings::energy_off};
     void transfer(const Transfer& to, Checkpoint& kept);
 };
 static_assert(sizeof(Findings) == Findings::all.size() * sizeof(Findings::Counts));
@@ -91,7 +91,7 @@ struct Section {
 std::string joint_name(const Scene& scene, const Network& network, Index edge);
 
 // Contacts, by joint, that do not stick.
-Findings::Counts contacts_beyond_strength(const Section& section);
+Findings::Counts contacts_at_yield(const Section& section);
 // Zones, by rock, that have yielded.
 Findings::Counts yielded_zones(const Section& section);
 

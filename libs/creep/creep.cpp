@@ -39,7 +39,7 @@ Chain chain_of(const Rock& rock)
     return chain;
 }
 
-// A smooth joint bears nothing that could creep.
+// A smooth joint has no shear traction that could creep.
 bool creeps(const Chain& chain)
 {
     return chain.spring > 0 && !chain.units.empty();
@@ -168,7 +168,7 @@ void Creep::begin(double duration, mechanics::Assembly& assembly)
         if (!is_under_way_)
             spring.before = contacts.traction[spring.contact][spring.direction] - spring.reference;
         const Step& step = steps_[spring.chain];
-        // Where a contact is open in situ its spring would bear `initial`, not the reference, 0.
+        // Where a contact is open in situ its spring would carry `initial`, not the reference, 0.
         const double initial = contacts.initial_traction[spring.contact][spring.direction];
         spring.offset = step.compliance * (initial - spring.reference);
         for (std::size_t u = 0; u < step.units.size(); ++u)

@@ -276,9 +276,10 @@ bool Solver::converge(Assembly& assembly, const State& start, const Equilibrium&
         if (is_balanced && is_at_rest(assembly, start, balance.mean, settings.tolerance, convergence))
             return true;
         if (corrections_ - first == most_corrections || since_least == 15) {
-            reason_ = unborne_ < 0 ? "forces do not come into balance"
-                                   : "what the rock at " + shown(assembly.position[unborne_]) +
-                                         " weighs, or bears, its contacts do not bear";
+            reason_ = unsupported_ < 0
+                          ? "forces do not come into balance"
+                          : "contacts do not carry the weight of, and the loads on, the rock at " +
+                                shown(assembly.position[unsupported_]);
             return false;
         }
 
@@ -338,12 +339,12 @@ bool Solver::converge(Assembly& assembly, const State& start, const Equilibrium&
     }
 }
 
-// Whether one more correction would leave contact forces as they are, and contacts bear every piece of rock.
+// Whether one more correction would leave contact forces as they are, and contacts carry every piece of rock.
 // A rough correction says that first: too much rather than too little, but where contacts are open.
 bool Solver::is_at_rest(const Assembly& assembly, const State& start, double mean_force, double tolerance,
                         Convergence& convergence)
 {
-    unborne_ = -1;
+    unsupported_ = -1;
     if (mean_force == 0) { // no force anywhere
         convergence.contact_force_change = convergence.remaining_displacement = 0;
         return true;
@@ -365,15 +366,15 @@ bool Solver::is_at_rest(const Assembly& assembly, const State& start, double mea
     }
     if (convergence.contact_force_change > tolerance)
         return false;
-    // The share of their springs that open contacts keep in the factor may bear rock that nothing else does.
+    // The share of their springs that open contacts keep in the factor may carry rock that nothing else does.
     const double farthest = farthest_displacement(assembly).first, enough = mechanics::enough(tolerance);
     const mechanics::RemainingDisplacement left =
         largest_remaining_displacement(assembly, enough, 1e-15 * stiffest_ * farthest);
     const double way =
         std::max(mechanics::farthest_move(start.displacement, assembly.displacement).first, farthest / 10);
-    unborne_ = left.displacement > enough * way ? left.gridpoint : -1;
+    unsupported_ = left.displacement > enough * way ? left.gridpoint : -1;
     convergence.remaining_displacement = std::max(convergence.remaining_displacement, left.displacement);
-    return unborne_ < 0;
+    return unsupported_ < 0;
 }
 
 std::optional<Convergence> Solver::equilibrate(Assembly& assembly, const Equilibrium& settings,

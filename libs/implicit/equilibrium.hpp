@@ -84,7 +84,7 @@ private:
     std::vector<char> broken_; // when states were taken
     VectorXd scale_;           // of forces: the stiffness against which they act [Pa]
     double stiffest_ = 0;      // row sum [Pa]
-    Index unborne_ = -1;       // gridpoint of rock that forces in balance leave out; -1: none
+    Index unsupported_ = -1;   // gridpoint of rock that forces in balance leave out; -1: none
     double too_far_ = 0;       // to look for equilibrium [m]
     VectorXd force_;           // unbalanced, at the last evaluation
     Index corrections_ = 0, factorisations_ = 0, solves_ = 0;

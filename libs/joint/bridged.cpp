@@ -133,7 +133,7 @@ JointChain bridged(const JointChain& joint, const Bridging& bridging)
     const double bridges = bridging.bridges, share = bridging.share;
     JointChain chain{bridges + share * joint.spring, {}, 0};
     if (!(joint.spring > 0))
-        return chain; // a smooth joint bears nothing that could creep
+        return chain; // a smooth joint has no shear traction that could creep
     if (bridges <= 0) {
         for (const JointChain::KelvinUnit& unit : joint.units)
             chain.units.push_back({share * unit.stiffness, share * unit.viscosity});

@@ -15,9 +15,9 @@ namespace
 
 // A pair that slips or may do so, where its joint rises by x.
 struct Sheared {
-    double share;         // of the work, F tan(psi) [N/m]
-    double trial, bears;  // without slip, and the strength, where it is not raised [N/m]
-    double rises, shears; // the strength by x, the shear by slip [Pa]
+    double share;          // of the work, F tan(psi) [N/m]
+    double trial, carries; // without slip, and the strength, where it is not raised [N/m]
+    double rises, shears;  // the strength by x, the shear by slip [Pa]
 };
 
 // The pairs of one joint.
@@ -31,7 +31,7 @@ struct Dilating {
     {
         std::array<double, 2> sum{0, 0};
         for (const Sheared& one : sheared) {
-            const double excess = one.trial - one.bears - one.rises * x;
+            const double excess = one.trial - one.carries - one.rises * x;
             sum[0] += one.share / pressed * std::clamp(excess, 0.0, one.trial) / one.shears;
             if (excess > 0 && excess < one.trial)
                 sum[1] += one.share / pressed * one.rises / one.shears;

@@ -16,7 +16,7 @@ namespace
 
 using Eigen::Vector3d;
 
-constexpr double soft = 1e-9; // share of their springs that contacts keep which bear nothing
+constexpr double soft = 1e-9; // share of their springs that contacts without load keep
 
 // Rock that hangs together, as a rigid body: it moves by {x, y, turn times radius}.
 struct Piece {

@@ -1,8 +1,10 @@
 # Writes OUTPUT with the project's version and, in a git checkout, the commit: "0.1.0+1a2b3c4d".
 execute_process(COMMAND git -C ${SOURCE} rev-parse --short=8 HEAD
                 OUTPUT_VARIABLE commit OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET RESULT_VARIABLE failed)
+execute_process(COMMAND git -C ${SOURCE} rev-parse --show-prefix
+                OUTPUT_VARIABLE below OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET) # in another project's checkout
 set(text "${VERSION}")
-if(NOT failed)
+if(NOT failed AND NOT below)
   string(APPEND text "+${commit}")
   execute_process(COMMAND git -C ${SOURCE} status --porcelain -- apps libs CMakeLists.txt
                   OUTPUT_VARIABLE changes ERROR_QUIET)

@@ -448,8 +448,8 @@ Convergence relax(Assembly& assembly, const Equilibrium& settings, const StepObs
     Index steps_in_balance = 0;
     std::array<double, window / check_every> remaining_displacement{}; // shares, at the last looks in balance
     Patience with_the_way;
-    mechanics::RemainingDisplacement unborne; // at the last look at pieces
-    Index look_again = 0;                     // at them [steps]
+    mechanics::RemainingDisplacement unsupported; // at the last look at pieces
+    Index look_again = 0;                         // at them [steps]
     while (convergence.steps < settings.most_steps) {
         const Index steps = observe ? 1
                                     : std::min(check_every - convergence.steps % check_every,
@@ -481,11 +481,11 @@ Convergence relax(Assembly& assembly, const Equilibrium& settings, const StepObs
                              with_the_way.ends(share, convergence.steps);
         if (!is_near || convergence.steps < look_again)
             continue;
-        unborne =
+        unsupported =
             largest_remaining_displacement(assembly, enough(settings.tolerance), 1e-15 * stiffest * farthest);
-        if (unborne.displacement <= enough(settings.tolerance) * relaxation.farthest_way()) {
+        if (unsupported.displacement <= enough(settings.tolerance) * relaxation.farthest_way()) {
             convergence.remaining_displacement =
-                std::max(convergence.remaining_displacement, unborne.displacement);
+                std::max(convergence.remaining_displacement, unsupported.displacement);
             relaxation.finish(convergence);
             return convergence;
         }
@@ -500,9 +500,10 @@ Convergence relax(Assembly& assembly, const Equilibrium& settings, const StepObs
                        " of displacement remain, wanted " +
                        shown_length(enough(settings.tolerance) * relaxation.farthest_way())
                  : "") +
-            (unborne.displacement > 0 ? "; what the rock at " + shown(assembly.position[unborne.gridpoint]) +
-                                            " weighs, or bears, its contacts do not bear"
-                                      : "") +
+            (unsupported.displacement > 0
+                 ? "; contacts do not carry the weight of, and the loads on, the rock at " +
+                       shown(assembly.position[unsupported.gridpoint])
+                 : "") +
             "; farthest from balance is the rock at " + shown(assembly.position[balance.worst]),
         false, convergence.steps);
 }

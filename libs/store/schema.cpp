@@ -601,7 +601,7 @@ std::vector<Field> fields_of(Checkpoint& checkpoint)
          "0 removed, 1 stuck, 2 slipping, 3 open."},
         {"/checkpoint/traction", &checkpoint.traction, contact, "Pa", any(), "Traction {normal, shear}, tension positive."},
         {"/checkpoint/initial_traction", &checkpoint.initial_traction, contact, "Pa", any(),
-         "The same at zero displacement; where open, what its springs would bear."},
+         "The same at zero displacement; where open, what its springs would carry."},
         {"/checkpoint/relative_displacement", &checkpoint.relative_displacement, contact, "m", any(),
          "Displacement of side b minus that of side a {normal, shear}."},
         {"/checkpoint/offset", &checkpoint.offset, contact, "m", any(), "What of it has crept {normal, shear}."},
@@ -629,7 +629,7 @@ std::vector<Field> fields_of(Checkpoint& checkpoint)
          "Creep steps since a state by their number."},
         {"/checkpoint/remark", &checkpoint.remark, remark, "1", any(), "A joint, a rock, a reason or a stage, by name."},
         {"/checkpoint/remark_kind", &checkpoint.remark_kind, remark, "1", between(0, 3),
-         "0 contacts of the joint beyond strength in situ, 1 zones of the rock, 2 why the implicit engine gave up, 3 the stage's "
+         "0 contacts of the joint at yield in the initial stress state, 1 zones of the rock, 2 why the implicit engine gave up, 3 the stage's "
          "account of energy is off."},
         {"/checkpoint/remark_count", &checkpoint.remark_count, remark, "1", at_least(0), "How often, or by how many percent."},
     };
@@ -662,7 +662,7 @@ std::vector<Field> fields_of(DynamicsState& state)
         {"/dynamics_state/dilation", &state.dilation, pair, "m", at_least(0), "What dilation has added to both."},
         {"/dynamics_state/tau", &state.tau, pair, "Pa", any(), "Shear traction."},
         {"/dynamics_state/is_known", &state.is_known, pair, "1", between(0, 1), "1 if they have touched since they came near."},
-        {"/dynamics_state/is_new", &state.is_new, pair, "1", between(0, 1), "1 if they have not borne a force yet."},
+        {"/dynamics_state/is_new", &state.is_new, pair, "1", between(0, 1), "1 if they have not carried a force yet."},
         {"/dynamics_state/is_closed", &state.is_closed, pair, "1", between(0, 1), "1 if they touch."},
         {"/dynamics_state/is_broken", &state.is_broken, pair, "1", between(0, 1), "1 if there are no bonds between them."},
         {"/dynamics_state/first_memory", &state.first_memory, pair, "1", any(),

@@ -112,8 +112,24 @@ TEST(edges_csv, adds_the_equivalent_joints)
         EXPECT_EQ(number(rows[3][column(name)]), value) << name;
     std::set<std::string> names(rows[0].begin(), rows[0].end());
     EXPECT_EQ(names.size(), rows[0].size());
-    EXPECT_EQ(rows[0].size(), 11 + joint::all_parameters().size() + 4 + 2 + 1);
-    EXPECT_EQ(rows[0][11], "normal_stiffness_Pa_per_m");
+    const std::vector<std::string> of_joints{"normal_stiffness_Pa_per_m",
+                                             "shear_stiffness_Pa_per_m",
+                                             "cohesion_Pa",
+                                             "friction_angle_rad",
+                                             "tensile_strength_Pa",
+                                             "dilation_angle_rad",
+                                             "dilation_until_m",
+                                             "residual_cohesion_Pa",
+                                             "residual_friction_angle_rad",
+                                             "roughness",
+                                             "wall_strength_Pa",
+                                             "largest_closure_m",
+                                             "dilation_wear_m2_per_J",
+                                             "initial_friction_angle_rad",
+                                             "roughness_length_m"};
+    ASSERT_EQ(rows[0].size(), 11 + of_joints.size() + 4 + 2 + 1);
+    for (std::size_t i = 0; i < of_joints.size(); ++i)
+        EXPECT_EQ(rows[0][11 + i], of_joints[i]);
     EXPECT_EQ(number(rows[2][11]), 0);
 }
 

@@ -199,6 +199,10 @@ TEST(Average, IsWhatAHandFinds)
 TEST(AverageStrength, LeavesTheJointsResidualStrength)
 {
     Section section(.25);
+    const EquivalentJoints without = average_strength(section.scene, section.network);
+    EXPECT_TRUE(without.law.empty() || without.law[0] == 0);
+    for (const auto& [name, values] : without.own)
+        EXPECT_EQ(values.empty() ? 0 : values[0], 0) << name;
     section.scene.joint_materials[1].law = 1; // residual strength
     section.scene.joint_materials[1].own = {{"residual_cohesion", .04 * MPa},
                                             {"residual_friction_angle", 20 * deg}};
@@ -206,6 +210,8 @@ TEST(AverageStrength, LeavesTheJointsResidualStrength)
     EXPECT_EQ(joints.law[0], 1);
     EXPECT_DOUBLE_EQ(joints.own["residual_cohesion"][0], .01 * MPa);
     EXPECT_DOUBLE_EQ(joints.own["residual_friction_angle"][0], 20 * deg);
+    EXPECT_EQ(joints.cohesion[0], without.cohesion[0]);
+    EXPECT_EQ(joints.friction_angle[0], without.friction_angle[0]);
     for (Rock& rock : section.scene.rocks)
         rock.strength->friction_angle = 5 * deg;
     EquivalentJoints weaker = average_strength(section.scene, section.network);

@@ -6,7 +6,7 @@ from chain import ChainTest, main
 
 LIBRARY = re.compile(r"add_jointcreep_library\((\w+)(.*?)\)", re.DOTALL)
 APP = re.compile(r"add_jointcreep_app\(([\w-]+) USES ([\w ]+)\)")
-INCLUDE = re.compile(r'^#include "(\w+)/', re.MULTILINE)
+INCLUDE = re.compile(r'^\s*#\s*include\s*["<](?:\.\./)*(\w+)/', re.MULTILINE)
 
 
 def words_after(keyword, arguments):
@@ -51,11 +51,28 @@ class Links(ChainTest):
             self.assertNotIn(library, self.reached(self.links[library]))
 
     def test_programs(self):
-        apps = APP.findall((self.chain.source / "apps/CMakeLists.txt").read_text())
+        """Each with its own files: demsolve.cpp, demsolve_files.cpp, ..."""
+        apps = dict(APP.findall((self.chain.source / "apps/CMakeLists.txt").read_text()))
         self.assertEqual(len(apps), 5)
-        for app, uses in apps:
-            with self.subTest(app):
-                self.check(self.chain.source / f"apps/{app}.cpp", self.reached([*uses.split(), "model"]))
+        found = set()
+        for path in (self.chain.source / "apps").glob("*.[ch]pp"):
+            app = path.stem.split("_")[0]
+            found.add(app)
+            if app == "program":
+                continue
+            with self.subTest(path.name):
+                self.check(path, self.reached([*apps[app].split(), "model"]))
+        self.assertEqual(found - {"program"}, apps.keys())
+
+    def test_all_tests_are_run(self):
+        """Every file of a test is in the CMakeLists.txt of its folder, and every folder in that of tests."""
+        folder = self.chain.source / "tests"
+        parts = re.search(r"foreach\(part IN ITEMS ([\w ]+)\)", (folder / "CMakeLists.txt").read_text()).group(1).split()
+        self.assertEqual(sorted(parts), sorted(path.parent.name for path in folder.glob("*/CMakeLists.txt")))
+        for path in [*folder.glob("*/*_test.cpp"), *folder.glob("*/*_test.py")]:
+            page = (path.parent / "CMakeLists.txt").read_text()
+            name = path.stem.removesuffix("_test")
+            self.assertRegex(page, rf"_test\((?:{path.parent.name}/)?{name}\b|/{name}\b", path)
 
 
 if __name__ == "__main__":

@@ -43,7 +43,7 @@ struct Study : JointedSection {
         const std::vector<Index>& status = analysis.result().states.contact_status;
         found.slipping = static_cast<Index>(
             std::count(status.begin(), status.end(), static_cast<Index>(ContactStatus::slipping)));
-        for (const auto& [joint, n] : analysis.findings().beyond_strength)
+        for (const auto& [joint, n] : analysis.findings().at_yield_in_situ)
             found.slipping_in_situ += n;
         found.open = static_cast<Index>(
             std::count(status.begin(), status.end(), static_cast<Index>(ContactStatus::open)));

@@ -48,6 +48,11 @@ TEST(Schema, CoversEveryMember)
     // The parameters of single laws are in a map, and not in the record.
     covered += sizeof file.equivalent.own;
     covered -= file.equivalent.own.size() * sizeof(std::vector<double>);
+    std::size_t own = 0;
+    for (const joint::Parameter& parameter : joint::all_parameters())
+        own += parameter.in_joints == nullptr;
+    EXPECT_EQ(file.equivalent.own.size(), own);
+    EXPECT_EQ(own, 8u);
     EXPECT_EQ(covered, sizeof(CheckpointFile));
 }
 
