@@ -3,6 +3,8 @@
 
 #include "random_records.hpp"
 
+#include "joint/law.hpp"
+
 #include <set>
 
 namespace jointcreep::store
