@@ -15,7 +15,7 @@
 //
 //     d(u_s) = d(tau) / k_s + d(u_p),    d(u_p) = (1 / F - 1) d(tau) / k_p,    k_p the spring without creep
 //
-// The path is integrated in parts shorter than a fortieth of R, each exactly for the phi_m of its middle.
+// The path is integrated in parts shorter than a fortieth of R (1000 at most), each exactly for the phi_m of its middle.
 
 #pragma once
 
@@ -44,7 +44,7 @@ inline const Parameter roughness_length{
     above(0).to(1e4),
     WithBridges::refused,
     WithStrengthDivided::same,
-    "Plastic shear displacement that wears off all but exp(-1) of the roughness."};
+    "Plastic shear displacement after which the friction angle exceeds that of the smooth joint by 1/e of what it did."};
 
 } // namespace parameters
 
@@ -76,6 +76,8 @@ struct ContinuouslyYieldingOf {
     T after(const T& tau, const T& by, const T& tau_m, const T& r) const
     {
         using std::exp;
+        if (tau >= tau_m)
+            return tau_m;
         const T elastic = std::max<T>(0, r * tau_m - tau); // until then F would be above 1
         if (elastic >= k_s * by)
             return tau + k_s * by;
@@ -101,19 +103,23 @@ struct ContinuouslyYieldingOf {
         const T most = p * tan_phi_m(u_p); // the pressure may have fallen
         const bool is_beyond = abs(last) > most;
         const T tau = is_beyond ? T(copysign(most, last)) : last;
-        if (is_beyond)
+        if (is_beyond) {
             memory[1] = tau;
-        // Less than this is rounding, which must not count as turning round.
-        if (value_of(abs(u) * k_s) <= 1e-9 * value_of(most))
-            return std::clamp<T>(tau + k_s * u, -most, most);
+            if (value_of(memory[2]) == 0)
+                memory[2] = value_of(last) > 0 ? 2 : -2;
+        }
         const double sense = value_of(u) > 0 ? 1 : -1;
-        if (value_of(memory[2]) * sense <= 0) { // it turns round, or begins
+        const bool turns = value_of(memory[2]) * sense <= 0; // or begins
+        // So little is no turn, but what equilibria leave: it is elastic.
+        if (turns && value_of(abs(u) * k_s) <= 1e-4 * value_of(most))
+            return std::clamp<T>(tau + k_s * u, -most, most);
+        if (turns) {
             const T ratio = sense * tau / most;
             memory[2] = sense * (2 + (value_of(memory[2]) == 0 ? T(0) : std::min<T>(ratio, 0.75)));
         }
         const T r = sense * memory[2] - 2;
         const int parts =
-            std::clamp(static_cast<int>(40 * std::abs(value_of(u)) / roughness_length) + 1, 1, 1000);
+            static_cast<int>(std::min(999.0, 40 * std::abs(value_of(u)) / roughness_length)) + 1;
         const T by = sense * u / parts;
         T along = sense * tau;
         for (int i = 0; i < parts; ++i) {

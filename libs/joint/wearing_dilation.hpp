@@ -23,8 +23,8 @@ inline const Parameter dilation_wear{
     above(0).to(1e6),
     WithBridges::own,
     WithStrengthDivided::same,
-    "With it dilation wears off with the work of slip: the tangent of the dilation angle falls by exp(-1) each "
-    "time that slip has taken the inverse of this work per area."};
+    "With it dilation wears off with the work of slip: each time that slip has taken the inverse of this work per "
+    "area, the tangent of the dilation angle falls to 1/e of what it was."};
 
 } // namespace parameters
 

@@ -148,21 +148,27 @@ TEST(continuously_yielding, a_softer_spring_is_in_series)
 // the same when asked twice.
 RC_GTEST_PROP(continuously_yielding, any_path_is_within_its_strength, ())
 {
-    const ContinuouslyYielding law = rough(1e-5 * (*rc::gen::inRange(1, 1001)));
+    // With any initial shear, and a spring that creep has softened.
+    const auto one_in = [](int from, int to) { return *rc::gen::inRange(from, to); };
+    const ContinuouslyYielding firm = rough(1e-5 * one_in(1, 1001)),
+                               law = firm.with_springs(firm.k_n, firm.k_s / std::pow(10, one_in(0, 5)));
+    const double tau_0 = 2e3 * one_in(-1000, 1001);
     State state;
-    double last = 0, last_u = 0, last_most = 0;
+    double last = tau_0, last_u = 0, last_most = 1e300;
     for (int i = 0; i < 20; ++i) {
         const State before = state;
-        const double u_n = 4e-4 * (*rc::gen::inRange(-1000, 1001)) / 1000.0,
-                     u_s = 1e-2 * (*rc::gen::inRange(-1000, 1001)) / 1000.0;
-        const Response now = respond(law, state, -1e6, 0, u_n, u_s);
+        const double u_n = 4e-4 * one_in(-1000, 1001) / 1000.0, u_s = 1e-2 * one_in(-1000, 1001) / 1000.0;
+        const Response now = respond(law, state, -1e6, tau_0, u_n, u_s);
         const double most = std::max(0.0, -now.sigma_n) * law.tan_phi_m(state.memory[0]);
         RC_ASSERT(std::abs(now.tau) <= most * (1 + 1e-8));
         if (now.status != ContactStatus::open && last_most <= most) // else its strength cuts it off
             RC_ASSERT(std::abs(now.tau - last) <= law.k_s * std::abs(u_s - last_u) * (1 + 1e-9) + 1e-3);
-        RC_ASSERT(state.memory[0] >= before.memory[0]);
+        // Plastic displacement only grows, and by no more than the joint moves and its spring gives.
+        const double grown = state.memory[0] - before.memory[0];
+        RC_ASSERT(grown >= 0);
+        RC_ASSERT(grown <= std::abs(u_s - last_u) + (std::abs(last) + std::abs(now.tau)) / law.k_s + 1e-12);
         const State kept = state;
-        const Response again = respond(law, state, -1e6, 0, u_n, u_s);
+        const Response again = respond(law, state, -1e6, tau_0, u_n, u_s);
         RC_ASSERT(std::abs(again.tau - now.tau) <= 1e-8 * most);
         RC_ASSERT(std::abs(state.memory[0] - kept.memory[0]) <= 1e-12);
         RC_ASSERT(state.memory[2] == kept.memory[2]);
@@ -170,4 +176,15 @@ RC_GTEST_PROP(continuously_yielding, any_path_is_within_its_strength, ())
         last_u = u_s;
         last_most = most;
     }
+}
+
+// What an equilibrium leaves of a displacement back is no turn: the path goes on as if it had not been.
+TEST(continuously_yielding, a_displacement_of_rounding_is_no_turn)
+{
+    const ContinuouslyYielding law = rough(2e-3);
+    State once, twice;
+    respond(law, once, -1e6, 0, 0, 1e-3);
+    respond(law, twice, -1e6, 0, 0, 1e-3);
+    respond(law, twice, -1e6, 0, 0, 1e-3 - 1e-11);
+    EXPECT_NEAR(respond(law, twice, -1e6, 0, 0, 1.5e-3).tau, respond(law, once, -1e6, 0, 0, 1.5e-3).tau, 1);
 }
