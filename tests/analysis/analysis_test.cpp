@@ -10,6 +10,9 @@
 
 #include <numeric>
 
+namespace analysis_test
+{
+
 using namespace jointcreep;
 using analysis::Analysis;
 using analysis::Recording;
@@ -295,3 +298,5 @@ TEST(analysis, the_implicit_engine_has_no_step_history)
     study.scene.equilibrium.engine = EngineChoice::automatic;
     EXPECT_EQ(study.analysis().engine(), EngineChoice::relaxation);
 }
+
+} // namespace analysis_test

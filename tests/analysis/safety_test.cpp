@@ -7,6 +7,9 @@
 
 #include <cmath>
 
+namespace safety_test
+{
+
 using namespace jointcreep;
 using namespace jointcreep::analysis;
 
@@ -54,3 +57,5 @@ TEST(bracket_of, takes_what_is_undecided_as_not_standing_and_says_so)
     EXPECT_EQ(bracket.stands, 1.1875);
     EXPECT_EQ(bracket.not_above, 1.25);
 }
+
+} // namespace safety_test

@@ -11,6 +11,9 @@
 #include <cmath>
 #include <random>
 
+namespace back_analysis_test
+{
+
 using namespace jointcreep;
 using analysis::Analysis;
 using analysis::Recording;
@@ -333,3 +336,5 @@ TEST(back_analysis, too_few_runs_are_no_fit)
     EXPECT_FALSE(found.minimum.is_converged);
     EXPECT_EQ(found.minimum.evaluations, 2);
 }
+
+} // namespace back_analysis_test

@@ -11,6 +11,9 @@
 #include <random>
 #include <set>
 
+namespace arrangement_test
+{
+
 using namespace jointcreep;
 using namespace jointcreep::test;
 using blocks::Graph;
@@ -246,3 +249,5 @@ TEST(arrangement, a_crossing_is_rounded_to_the_nearest_doubles)
     }
     EXPECT_GT(crossings, 10000);
 }
+
+} // namespace arrangement_test

@@ -10,6 +10,9 @@
 #include <algorithm>
 #include <random>
 
+namespace check_test
+{
+
 using namespace jointcreep;
 using namespace jointcreep::test;
 using blocks::Faces;
@@ -181,3 +184,5 @@ TEST(check, blocks_cross_nowhere_with_every_edge_compared)
     }
     EXPECT_GT(most_blocks, 500u);
 }
+
+} // namespace check_test

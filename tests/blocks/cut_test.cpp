@@ -4,6 +4,9 @@
 
 #include <gtest/gtest.h>
 
+namespace cut_test
+{
+
 using namespace jointcreep;
 using namespace jointcreep::test;
 using Eigen::Vector2d;
@@ -329,3 +332,5 @@ TEST(cut, a_block_that_touches_the_border_of_another_in_one_corner_is_a_hole_in_
     ASSERT_GE(with_hole, 0);
     EXPECT_NEAR(blocks.block_area[with_hole], 50 - 4.5, 0.1);
 }
+
+} // namespace cut_test

@@ -11,6 +11,9 @@
 #include <algorithm>
 #include <random>
 
+namespace hard_networks_test
+{
+
 using namespace jointcreep;
 using namespace jointcreep::test;
 using Eigen::Vector2d;
@@ -253,3 +256,5 @@ TEST(hard_networks, the_order_of_joints_does_not_change_the_blocks)
     EXPECT_EQ(a.vertex, b.vertex);
     EXPECT_EQ(a.block_area, b.block_area);
 }
+
+} // namespace hard_networks_test

@@ -12,6 +12,9 @@
 #include <random>
 #include <set>
 
+namespace settled_test
+{
+
 using namespace jointcreep;
 using blocks::Edge;
 using blocks::Graph;
@@ -157,3 +160,5 @@ TEST(settled, pieces_with_a_rounded_end_get_a_second_look)
     }
     EXPECT_GT(crossed_again, 20);
 }
+
+} // namespace settled_test

@@ -4,6 +4,9 @@
 
 #include <gtest/gtest.h>
 
+namespace closing_test
+{
+
 using namespace jointcreep;
 using creep::Closing;
 using Eigen::Vector2d;
@@ -148,3 +151,5 @@ TEST(closing, steps_become_shorter_at_every_cut)
     }
     EXPECT_LT(cuts, 400);
 }
+
+} // namespace closing_test

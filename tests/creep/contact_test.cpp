@@ -6,6 +6,9 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+namespace contact_test
+{
+
 using namespace jointcreep;
 using namespace jointcreep::test;
 using Eigen::Vector2d;
@@ -221,3 +224,5 @@ TEST(contact, nothing_creeps_without_creep_in_the_scene)
     EXPECT_NEAR(contact.creep(joints, CreepScheme::fitted).fastest_rate(),
                 creep::relaxation_rate({K_s, {{1e8, 3e8}}}), 1e-12);
 }
+
+} // namespace contact_test

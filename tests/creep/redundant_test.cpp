@@ -5,6 +5,9 @@
 
 #include <gtest/gtest.h>
 
+namespace redundant_test
+{
+
 using namespace jointcreep;
 using namespace jointcreep::test;
 
@@ -299,3 +302,5 @@ TEST(redundant, the_error_estimate_is_of_the_size_of_the_error)
             }
     }
 }
+
+} // namespace redundant_test

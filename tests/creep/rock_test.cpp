@@ -4,6 +4,9 @@
 
 #include <gtest/gtest.h>
 
+namespace rock_test
+{
+
 using namespace jointcreep;
 using namespace jointcreep::test;
 using Eigen::Vector2d;
@@ -198,3 +201,5 @@ TEST(rock, the_error_estimate_is_of_the_size_of_the_error)
     const double error = std::abs(zone.stress()[2] - exact) / (2 * G) * std::sqrt(2.0);
     EXPECT_NEAR(estimate / error, 1, .05);
 }
+
+} // namespace rock_test

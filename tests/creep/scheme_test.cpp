@@ -5,6 +5,9 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+namespace scheme_test
+{
+
 using namespace jointcreep;
 using namespace jointcreep::test;
 
@@ -139,3 +142,5 @@ TEST(scheme, the_longest_step_of_a_section_names_what_sets_it)
     EXPECT_NEAR(creep::longest_step(joints, {hard, soft}).step, -std::log1p(-2 / 13.), 1e-9);
     EXPECT_EQ(creep::longest_step(joints_of({kelvin(1e9, .5, .1)})).edge, -1);
 }
+
+} // namespace scheme_test

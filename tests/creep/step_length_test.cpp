@@ -7,6 +7,9 @@
 
 #include <limits>
 
+namespace step_length_test
+{
+
 using namespace jointcreep;
 using creep::StepLength;
 
@@ -135,3 +138,5 @@ TEST(step_length, stays_below_what_is_stable)
     settings.first_step = 30;
     EXPECT_LT(StepLength(settings, 1, 20).next(1e6, infinite), 20);
 }
+
+} // namespace step_length_test

@@ -10,6 +10,9 @@
 #include <cmath>
 #include <random>
 
+namespace creep_curve_test
+{
+
 using namespace jointcreep;
 using namespace jointcreep::estimation;
 
@@ -198,3 +201,5 @@ TEST(creep_curve, what_is_none_is_refused)
     std::mt19937_64 random(5);
     EXPECT_THROW(closed_estimate(curve(365 * day, 7, 0, random), 400 * day), input_error);
 }
+
+} // namespace creep_curve_test

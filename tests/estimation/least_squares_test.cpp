@@ -8,6 +8,9 @@
 
 #include <cmath>
 
+namespace least_squares_test
+{
+
 using namespace jointcreep;
 using namespace jointcreep::estimation;
 
@@ -235,3 +238,5 @@ TEST(confidence, sees_residuals_that_follow_each_other)
     EXPECT_GT(lag_one_correlation(wave), 0.95);
     EXPECT_LT(lag_one_correlation(turns), -0.95);
 }
+
+} // namespace least_squares_test

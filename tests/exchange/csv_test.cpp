@@ -14,7 +14,7 @@
 
 #include <cstdlib>
 
-namespace jointcreep::exchange
+namespace jointcreep::exchange::csv_test
 {
 namespace
 {
@@ -181,4 +181,4 @@ TEST(histories_csv, counts_anew_from_a_stage_that_resets)
 }
 
 } // namespace
-} // namespace jointcreep::exchange
+} // namespace jointcreep::exchange::csv_test

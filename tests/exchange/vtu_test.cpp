@@ -12,7 +12,7 @@
 #include <cstdlib>
 #include <sstream>
 
-namespace jointcreep::exchange
+namespace jointcreep::exchange::vtu_test
 {
 namespace
 {
@@ -227,4 +227,4 @@ RC_GTEST_PROP(vtu, every_double_reads_back_as_itself, (const std::vector<double>
 }
 
 } // namespace
-} // namespace jointcreep::exchange
+} // namespace jointcreep::exchange::vtu_test

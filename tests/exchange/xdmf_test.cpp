@@ -12,7 +12,7 @@
 #include <map>
 #include <sstream>
 
-namespace jointcreep::exchange
+namespace jointcreep::exchange::xdmf_test
 {
 namespace
 {
@@ -206,4 +206,4 @@ TEST(xdmf, of_nothing_is_refused)
 }
 
 } // namespace
-} // namespace jointcreep::exchange
+} // namespace jointcreep::exchange::xdmf_test

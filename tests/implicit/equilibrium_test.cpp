@@ -11,6 +11,9 @@
 
 #include <random>
 
+namespace equilibrium_test
+{
+
 using namespace jointcreep;
 using namespace jointcreep::test;
 using Eigen::Vector2d;
@@ -586,3 +589,5 @@ TEST(implicit_equilibrium, follows_excavation_and_ties)
         EXPECT_LT(balance_of(s.assembly).ratio(), 1.01e-7);
     }
 }
+
+} // namespace equilibrium_test

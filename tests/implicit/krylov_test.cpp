@@ -9,6 +9,9 @@
 
 #include <random>
 
+namespace krylov_test
+{
+
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using jointcreep::implicit::KrylovSpace;
@@ -170,3 +173,5 @@ TEST(krylov, forgets_what_has_become_dependent)
     EXPECT_LE(norm, 1e-12);
     EXPECT_LE((VectorXd::Unit(4, 0) - after * x).norm(), 1e-12);
 }
+
+} // namespace krylov_test

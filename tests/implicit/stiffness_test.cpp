@@ -9,6 +9,9 @@
 
 #include <random>
 
+namespace stiffness_test
+{
+
 using namespace jointcreep;
 using namespace jointcreep::test;
 using Eigen::Vector2d;
@@ -16,9 +19,6 @@ using Eigen::VectorXd;
 using implicit::Stiffness;
 using implicit::Tangent;
 using mechanics::Assembly;
-
-namespace
-{
 
 constexpr double friction = 0.5; // [rad]
 
@@ -83,8 +83,6 @@ VectorXd force_at(const Stiffness& stiffness, Assembly assembly, const VectorXd&
 class stiffness : public testing::TestWithParam<bool>
 {
 };
-
-} // namespace
 
 TEST_P(stiffness, is_what_forces_change_by)
 {
@@ -216,3 +214,5 @@ TEST(stiffness, of_rock_that_all_is_held_is_empty)
     K.follow(s.assembly);
     EXPECT_EQ(K.size(), 0);
 }
+
+} // namespace stiffness_test

@@ -5,6 +5,9 @@
 
 #include <gtest/gtest.h>
 
+namespace barton_bandis_test
+{
+
 using namespace jointcreep;
 using namespace jointcreep::joint;
 
@@ -85,3 +88,5 @@ TEST(barton_bandis, responds)
     EXPECT_EQ(respond(law, gaping, 3e5, 0, -2.9e-5, 0).status, ContactStatus::open);
     EXPECT_NEAR(respond(law, gaping, 3e5, 0, -1.3e-4, 0).sigma_n, -2e6, 1e-3);
 }
+
+} // namespace barton_bandis_test

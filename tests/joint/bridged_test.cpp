@@ -12,6 +12,9 @@
 #include <complex>
 #include <numbers>
 
+namespace bridged_test
+{
+
 using namespace jointcreep;
 using namespace jointcreep::joint;
 using namespace jointcreep::unit;
@@ -215,3 +218,5 @@ RC_GTEST_PROP(Bridged, IsTheBridgesBesideTheJointAtEveryRate, ())
                                wanted = 1.0 / (beside.bridges + beside.share / compliance(joint, s));
     RC_ASSERT(std::abs(found - wanted) < 1e-6 * std::abs(wanted));
 }
+
+} // namespace bridged_test

@@ -7,6 +7,9 @@
 
 #include <cmath>
 
+namespace continuously_yielding_test
+{
+
 using namespace jointcreep;
 using namespace jointcreep::joint;
 
@@ -188,3 +191,5 @@ TEST(continuously_yielding, a_displacement_of_rounding_is_no_turn)
     respond(law, twice, -1e6, 0, 0, 1e-3 - 1e-11);
     EXPECT_NEAR(respond(law, twice, -1e6, 0, 0, 1.5e-3).tau, respond(law, once, -1e6, 0, 0, 1.5e-3).tau, 1);
 }
+
+} // namespace continuously_yielding_test

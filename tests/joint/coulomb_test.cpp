@@ -5,6 +5,9 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+namespace coulomb_test
+{
+
 using namespace jointcreep;
 using namespace jointcreep::joint;
 
@@ -252,7 +255,7 @@ TEST(coulomb, dilates_under_tension_too)
 
 RC_GTEST_PROP(coulomb, never_beyond_its_strength_and_the_same_when_asked_twice, ())
 {
-    Coulomb law = ::law;
+    Coulomb law = coulomb_test::law;
     law.tan_psi = *rc::gen::element(0.0, 0.1, 0.5);
     law.dilation_until = *rc::gen::element(0.0, 1e-3, 1e-2);
     State state;
@@ -278,3 +281,5 @@ RC_GTEST_PROP(coulomb, never_beyond_its_strength_and_the_same_when_asked_twice, 
         RC_ASSERT(std::abs(state.slip - before.slip) <= 1e-14);
     }
 }
+
+} // namespace coulomb_test

@@ -11,6 +11,9 @@
 #include <cmath>
 #include <numbers>
 
+namespace equivalent_test
+{
+
 using namespace jointcreep;
 using namespace jointcreep::joint;
 using namespace jointcreep::unit;
@@ -565,3 +568,5 @@ RC_GTEST_PROP(AverageStrength, OverEdgesLinesAndSetsAgreeInTheMean, ())
     }
     RC_ASSERT(std::abs(by_set.persistence[0] - by_set.sets.line_persistence[0]) < 1e-12);
 }
+
+} // namespace equivalent_test

@@ -9,6 +9,9 @@
 #include <cmath>
 #include <set>
 
+namespace law_test
+{
+
 using namespace jointcreep;
 using namespace jointcreep::joint;
 
@@ -155,3 +158,5 @@ TEST(laws, have_tables_that_agree)
     }
     EXPECT_TRUE(laws()[0].own.empty()); // a material without any has the first law
 }
+
+} // namespace law_test

@@ -8,6 +8,9 @@
 #include <cmath>
 #include <numbers>
 
+namespace persistence_test
+{
+
 using namespace jointcreep;
 using namespace jointcreep::joint;
 
@@ -62,3 +65,5 @@ TEST(Persistence, OfSampledJointsIsWithinItsError)
             EXPECT_LT(square, 1 + 4 * std::numbers::sqrt2 / 20) << persistence;
         }
 }
+
+} // namespace persistence_test

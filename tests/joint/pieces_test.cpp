@@ -8,6 +8,9 @@
 #include <numeric>
 #include <random>
 
+namespace pieces_test
+{
+
 using namespace jointcreep;
 using namespace jointcreep::joint;
 
@@ -147,3 +150,5 @@ TEST(PersistenceError, IsWhatManyLinesShow)
     EXPECT_NEAR(mean, k, 4 * wanted / std::sqrt(4000));
     EXPECT_NEAR(std::sqrt(squares / 3999) / wanted, 1, .055);
 }
+
+} // namespace pieces_test

@@ -10,6 +10,9 @@
 
 #include <cmath>
 
+namespace strength_factor_test
+{
+
 using namespace jointcreep;
 using namespace jointcreep::unit;
 
@@ -97,3 +100,5 @@ TEST(with_strength_divided, divides_the_strength_of_rock_and_the_friction_of_new
     EXPECT_DOUBLE_EQ(std::tan(reduced.joint_materials[0].own.at("residual_friction_angle")),
                      std::tan(20 * deg) / F);
 }
+
+} // namespace strength_factor_test

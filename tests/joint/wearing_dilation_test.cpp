@@ -7,6 +7,9 @@
 
 #include <cmath>
 
+namespace wearing_dilation_test
+{
+
 using namespace jointcreep;
 using namespace jointcreep::joint;
 
@@ -132,3 +135,5 @@ RC_GTEST_PROP(wearing_dilation, any_path_is_within_its_bounds, ())
         RC_ASSERT(std::abs(state.dilation - kept.dilation) < 1e-12);
     }
 }
+
+} // namespace wearing_dilation_test

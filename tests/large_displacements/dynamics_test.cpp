@@ -20,6 +20,9 @@
 #include <utility>
 #include <vector>
 
+namespace dynamics_test
+{
+
 using namespace jointcreep;
 using namespace jointcreep::test;
 using Eigen::Matrix2d;
@@ -416,3 +419,5 @@ RC_GTEST_PROP(dynamics, a_uniform_deformation_gives_the_stress_of_the_formula, (
                   (moving.section.mesh.gridpoint[p] - Vector2d(1, 0.5)).transpose();
     RC_ASSERT((virial + 2 * rotation * biot).norm() < 1e-7 * e);
 }
+
+} // namespace dynamics_test

@@ -9,6 +9,9 @@
 #include <cmath>
 #include <numbers>
 
+namespace face_contacts_test
+{
+
 using namespace jointcreep;
 using Eigen::Vector2d;
 using large_displacements::FaceContacts;
@@ -688,3 +691,5 @@ TEST(face_contacts, what_lands_beside_is_raised_as_its_joint_is)
     EXPECT_GT(slider.stored(), 10);
     EXPECT_NEAR(slider.work + slider.stored() + slider.friction, 0, 0.02 * slider.stored());
 }
+
+} // namespace face_contacts_test

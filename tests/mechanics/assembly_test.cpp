@@ -8,6 +8,9 @@
 
 #include <random>
 
+namespace assembly_test
+{
+
 using namespace jointcreep;
 using namespace jointcreep::test;
 using namespace jointcreep::mechanics;
@@ -193,3 +196,5 @@ TEST(assembly, what_excavation_releases_keeps_the_rest_in_balance)
     EXPECT_GT(gone, 10u);
     EXPECT_GT(near_the_cut, 5u);
 }
+
+} // namespace assembly_test

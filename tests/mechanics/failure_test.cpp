@@ -7,6 +7,9 @@
 
 #include <gtest/gtest.h>
 
+namespace failure_test
+{
+
 using namespace jointcreep;
 using namespace jointcreep::test;
 using Eigen::Vector2d;
@@ -89,3 +92,5 @@ TEST(failure_of, names_what_moves_the_fastest_first)
     EXPECT_EQ(failure_of(error, s.mesh, s.assembly).block, std::vector<Index>{failure.block[0]});
     EXPECT_NE(mechanics::shown_blocks(failure).find("at [5, 7.5] m by ["), std::string::npos);
 }
+
+} // namespace failure_test

@@ -8,6 +8,9 @@
 
 #include <numbers>
 
+namespace mohr_coulomb_test
+{
+
 using namespace jointcreep::mechanics;
 using Eigen::Vector3d, Eigen::Vector4d;
 
@@ -141,3 +144,5 @@ TEST(mohr_coulomb, energy)
     EXPECT_NEAR(work, stored(elasticity, s, zone.stress_zz) - at_start + zone.dissipated,
                 1e-9 * zone.dissipated);
 }
+
+} // namespace mohr_coulomb_test

@@ -8,6 +8,9 @@
 
 #include <gtest/gtest.h>
 
+namespace recorder_test
+{
+
 using namespace jointcreep;
 using namespace jointcreep::test;
 using namespace jointcreep::mechanics;
@@ -68,3 +71,5 @@ TEST(recorder, refuses_a_point_outside_the_rock_and_a_gauge_without_joint)
     s.scene.gauges.push_back({"gauge", {3, 3}});
     EXPECT_THROW(Recorder(s.scene, s.network.blocks, s.mesh), input_error);
 }
+
+} // namespace recorder_test

@@ -12,6 +12,9 @@
 #include <functional>
 #include <vector>
 
+namespace invariance_test
+{
+
 using namespace jointcreep;
 using namespace jointcreep::test;
 using Eigen::Matrix2d;
@@ -247,3 +250,5 @@ TEST(invariance, the_base_holds_the_weight)
     EXPECT_LT(inside.norm(), 1e-12 * magnitudes * 100); // rounding of stresses that are larger than the load
     EXPECT_LT((held - load).norm(), 1e-6 * load.norm());
 }
+
+} // namespace invariance_test

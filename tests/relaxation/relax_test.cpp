@@ -10,6 +10,9 @@
 
 #include <gtest/gtest.h>
 
+namespace relax_test
+{
+
 using namespace jointcreep;
 using namespace jointcreep::test;
 using Eigen::Vector2d;
@@ -436,3 +439,5 @@ TEST(relax, gives_up_after_the_steps_allowed_and_says_how_far_it_was)
         EXPECT_NE(std::string(error.what()).find("after 40 steps"), std::string::npos);
     }
 }
+
+} // namespace relax_test

@@ -19,6 +19,9 @@
 #include <map>
 #include <memory>
 
+namespace acceptance_test
+{
+
 using namespace jointcreep;
 using namespace jointcreep::sampling;
 using namespace jointcreep::statistics;
@@ -1245,3 +1248,5 @@ TEST(Terminations, LeaveNoCrossingsButWhereTheyFail)
     EXPECT_EQ(crossings(1), 0);
     EXPECT_GT(crossings(.5), 100);
 }
+
+} // namespace acceptance_test

@@ -13,6 +13,9 @@
 #include <numbers>
 #include <set>
 
+namespace joint_sets_test
+{
+
 using namespace jointcreep;
 using namespace jointcreep::sampling;
 using namespace jointcreep::unit;
@@ -624,3 +627,5 @@ TEST(SampleJoints, RefusesASetParallelToTheSection)
     scene.azimuth = 75 * deg;
     expect_refusal(scene, {"\"spatial\"", "parallel to the section"});
 }
+
+} // namespace joint_sets_test

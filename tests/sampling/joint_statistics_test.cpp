@@ -9,6 +9,9 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
+namespace joint_statistics_test
+{
+
 using namespace jointcreep;
 using namespace jointcreep::sampling;
 using namespace jointcreep::statistics;
@@ -529,3 +532,5 @@ TEST(TraceLength, IsAResidualWhereALineBeginsInATrace)
         plain.push_back(draw_positive(lognormal_length, stream) * uniform(stream));
     EXPECT_FALSE(follow(plain, residual_distribution(lognormal_length)));
 }
+
+} // namespace joint_statistics_test

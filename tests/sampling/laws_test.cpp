@@ -6,6 +6,9 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
+namespace laws_test
+{
+
 using namespace jointcreep;
 using namespace jointcreep::sampling;
 using namespace jointcreep::statistics;
@@ -327,3 +330,5 @@ TEST(DrawPoisson, HasItsMeanAndVariance)
     Stream stream({1, 0, 0}, 0, Purpose::count);
     EXPECT_EQ(draw_poisson(0, stream), 0);
 }
+
+} // namespace laws_test

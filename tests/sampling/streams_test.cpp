@@ -7,6 +7,9 @@
 
 #include <set>
 
+namespace streams_test
+{
+
 using namespace jointcreep;
 using namespace jointcreep::sampling;
 
@@ -73,3 +76,5 @@ TEST(Stream, IsUniformAndIndependentAcrossJointsAndPurposes)
     EXPECT_TRUE(statistics::have_mean(across_joints, 0));
     EXPECT_TRUE(statistics::have_mean(across_purposes, 0));
 }
+
+} // namespace streams_test

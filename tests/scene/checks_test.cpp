@@ -5,6 +5,9 @@
 #include <filesystem>
 #include <fstream>
 
+namespace checks_test
+{
+
 using namespace jointcreep;
 using namespace jointcreep::scene;
 
@@ -509,3 +512,5 @@ TEST(checks, files_that_a_scene_names)
 }
 
 } // namespace
+
+} // namespace checks_test

@@ -5,6 +5,9 @@
 
 #include <gtest/gtest.h>
 
+namespace column_test
+{
+
 using namespace jointcreep;
 using namespace jointcreep::scene;
 using namespace jointcreep::unit;
@@ -113,3 +116,5 @@ TEST(column, settings_and_their_defaults)
 }
 
 } // namespace
+
+} // namespace column_test

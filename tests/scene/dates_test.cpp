@@ -3,6 +3,9 @@
 #include "model/units.hpp"
 #include "text.hpp"
 
+namespace dates_test
+{
+
 using namespace jointcreep;
 using namespace jointcreep::scene;
 using unit::day;
@@ -79,3 +82,5 @@ TEST(dates, too_far_away)
 }
 
 } // namespace
+
+} // namespace dates_test

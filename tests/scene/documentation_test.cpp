@@ -4,6 +4,9 @@
 
 #include <sstream>
 
+namespace documentation_test
+{
+
 using namespace jointcreep;
 using namespace jointcreep::scene;
 
@@ -44,3 +47,5 @@ TEST(documentation, key_list_has_one_row_a_key)
 }
 
 } // namespace
+
+} // namespace documentation_test

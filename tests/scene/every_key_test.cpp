@@ -3,6 +3,9 @@
 #include "model/units.hpp"
 #include "text.hpp"
 
+namespace every_key_test
+{
+
 using namespace jointcreep;
 using namespace jointcreep::scene;
 using namespace jointcreep::unit;
@@ -133,9 +136,9 @@ TEST(every_key, all_else)
     ASSERT_EQ(scene.joint_materials.at(1).law, 1); // residual strength
     EXPECT_EQ(scene.joint_materials.at(1).own.at("residual_cohesion"), 0.05 * MPa);
     EXPECT_EQ(scene.joint_materials.at(1).own.at("residual_friction_angle"), 20 * deg);
-    ASSERT_EQ(scene.joint_materials.at(3).law, 3); // wearing dilation
+    ASSERT_EQ(scene.joint_materials.at(3).law, 3);                                // wearing dilation
     EXPECT_DOUBLE_EQ(scene.joint_materials.at(3).own.at("dilation_wear"), 20e-6); // m2/J
-    ASSERT_EQ(scene.joint_materials.at(4).law, 4); // continuously yielding
+    ASSERT_EQ(scene.joint_materials.at(4).law, 4);                                // continuously yielding
     EXPECT_EQ(scene.joint_materials.at(4).own.at("initial_friction_angle"), 45 * deg);
     EXPECT_EQ(scene.joint_materials.at(4).own.at("roughness_length"), 0.002);
     ASSERT_TRUE(scene.rocks[0].kelvin && scene.rocks[0].maxwell_viscosity);
@@ -241,3 +244,5 @@ TEST(every_key, a_fully_persistent_set_needs_neither_length_nor_strength)
 }
 
 } // namespace
+
+} // namespace every_key_test

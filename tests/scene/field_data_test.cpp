@@ -7,6 +7,9 @@
 
 #include <functional>
 
+namespace field_data_test
+{
+
 using namespace jointcreep;
 using namespace jointcreep::scene;
 using namespace jointcreep::unit;
@@ -157,3 +160,5 @@ TEST(ScanlineCorrection, WeighsByTerzaghi)
     EXPECT_NEAR(poles[0].weight, 1, 1e-12);
     EXPECT_NEAR(poles[1].weight, 2, 1e-12);
 }
+
+} // namespace field_data_test

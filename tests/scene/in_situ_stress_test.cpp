@@ -2,6 +2,9 @@
 
 #include "text.hpp"
 
+namespace in_situ_stress_test
+{
+
 using namespace jointcreep;
 using namespace jointcreep::scene;
 
@@ -120,3 +123,5 @@ TEST(in_situ_stress, no_rock_above_the_ground)
 }
 
 } // namespace
+
+} // namespace in_situ_stress_test

@@ -8,6 +8,9 @@
 #include <cmath>
 #include <numbers>
 
+namespace polygon_test
+{
+
 using namespace jointcreep;
 using namespace jointcreep::scene;
 
@@ -83,3 +86,5 @@ TEST(polygon, common_length)
 }
 
 } // namespace
+
+} // namespace polygon_test

@@ -6,6 +6,9 @@
 
 #include <gtest/gtest.h>
 
+namespace toml_text_test
+{
+
 using namespace jointcreep;
 using namespace jointcreep::scene;
 
@@ -126,3 +129,5 @@ TEST(toml_text, what_stops_toml_plus_plus_ends_the_program_with_a_message)
 }
 
 } // namespace
+
+} // namespace toml_text_test

@@ -7,6 +7,9 @@
 #include <functional>
 #include <numbers>
 
+namespace units_test
+{
+
 using namespace jointcreep;
 using namespace jointcreep::scene;
 
@@ -77,3 +80,5 @@ TEST(units, an_integer_is_not_any_number)
 }
 
 } // namespace
+
+} // namespace units_test

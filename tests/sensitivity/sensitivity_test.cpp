@@ -8,6 +8,9 @@
 
 #include <gtest/gtest.h>
 
+namespace sensitivity_test
+{
+
 using namespace jointcreep;
 using analysis::Analysis;
 using analysis::Recording;
@@ -224,3 +227,5 @@ TEST(sensitivity, dynamic_relaxation_has_none)
     study.scene.equilibrium.engine = EngineChoice::relaxation;
     EXPECT_THROW(study.run(true), input_error);
 }
+
+} // namespace sensitivity_test

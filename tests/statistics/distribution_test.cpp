@@ -8,6 +8,9 @@
 
 #include <cmath>
 
+namespace distribution_test
+{
+
 using namespace jointcreep;
 using namespace jointcreep::statistics;
 
@@ -110,3 +113,5 @@ TEST(Counts, AreSureForConstantIntervals)
     EXPECT_LT(count_p(2, 20, renewal), 1e-6);
     EXPECT_NEAR(count_variance(20, renewal), 1.0 / 6, 1e-12);
 }
+
+} // namespace distribution_test

@@ -12,6 +12,9 @@
 
 #include <random>
 
+namespace shapes_test
+{
+
 using namespace jointcreep;
 using namespace jointcreep::statistics;
 using namespace jointcreep::unit;
@@ -195,3 +198,5 @@ TEST(Blocks, AreAsManyAsExpected)
     EXPECT_NEAR(crossings, crossings_target, 3.3 * error);
     EXPECT_GE(holding, .95 * realizations - 3.3 * std::sqrt(.95 * .05 * realizations));
 }
+
+} // namespace shapes_test

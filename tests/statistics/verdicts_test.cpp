@@ -12,6 +12,9 @@
 #include <functional>
 #include <map>
 
+namespace verdicts_test
+{
+
 using namespace jointcreep;
 using namespace jointcreep::statistics;
 using namespace jointcreep::unit;
@@ -282,3 +285,5 @@ TEST(Verdicts, OfConstantsAreExact)
     other.joint_sets[0].length->mean = 5.001;
     EXPECT_TRUE(fails(report_of(other, constant, 0)));
 }
+
+} // namespace verdicts_test

@@ -9,7 +9,7 @@
 #include <chrono>
 #include <thread>
 
-namespace jointcreep::store
+namespace jointcreep::store::files_test
 {
 
 namespace
@@ -151,4 +151,4 @@ TEST(Files, DigestIsThatOfSha256)
     EXPECT_THROW(sha256_of(folder / "."), file_error);
 }
 
-} // namespace jointcreep::store
+} // namespace jointcreep::store::files_test

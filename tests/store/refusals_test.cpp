@@ -6,10 +6,7 @@
 
 #include <hdf5.h>
 
-namespace jointcreep::store
-{
-
-namespace
+namespace jointcreep::store::refusals_test
 {
 
 // A good result file that a test changes behind the library's back.
@@ -103,8 +100,6 @@ bool says(const std::string& message, const std::string& words)
 {
     return message.find(words) != std::string::npos;
 }
-
-} // namespace
 
 TEST_F(Refusal, OfNothing)
 {
@@ -260,4 +255,4 @@ TEST_F(Refusal, NotOfDatasetsOfLaterMinorVersions)
               "");
 }
 
-} // namespace jointcreep::store
+} // namespace jointcreep::store::refusals_test

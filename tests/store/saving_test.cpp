@@ -11,7 +11,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-namespace jointcreep::store
+namespace jointcreep::store::saving_test
 {
 
 namespace
@@ -142,4 +142,4 @@ TEST(Saving, RefusesRecordsThatBreakTheSchema)
     refused([](ResultFile& f) { f.provenance.program.clear(); }, "/provenance");
 }
 
-} // namespace jointcreep::store
+} // namespace jointcreep::store::saving_test

@@ -7,7 +7,7 @@
 
 #include <set>
 
-namespace jointcreep::store
+namespace jointcreep::store::schema_test
 {
 
 namespace
@@ -125,4 +125,4 @@ TEST(Schema, IsDescribedInDocs)
         << "The page is out of date; make it again: jointexport --file-format > docs/file-format.md";
 }
 
-} // namespace jointcreep::store
+} // namespace jointcreep::store::schema_test

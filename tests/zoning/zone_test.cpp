@@ -8,6 +8,9 @@
 
 #include <random>
 
+namespace zone_test
+{
+
 using namespace jointcreep;
 using namespace jointcreep::test;
 using Eigen::Vector2d;
@@ -289,3 +292,5 @@ TEST(zone, random_networks)
         EXPECT_GT(zoning::quality_of(mesh).smallest_altitude, 1e-3);
     }
 }
+
+} // namespace zone_test
