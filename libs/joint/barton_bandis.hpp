@@ -14,8 +14,7 @@
 
 #pragma once
 
-#include "joint/along_overlap.hpp"
-#include "joint/coulomb.hpp"
+#include "joint/friction_only.hpp"
 
 #include <numbers>
 
@@ -149,10 +148,8 @@ struct BartonBandisOf {
             .own = {"roughness", "wall_strength", "largest_closure"},
             .creeps = false,
             .check = [](const ValueOf& value) -> std::optional<Complaint> {
-                for (const Parameter& none :
-                     {parameters::cohesion, parameters::tensile_strength, dilation_angle, dilation_until})
-                    if (value(none) != 0)
-                        return Complaint{none, "wanted 0 of a Barton-Bandis joint, which has none"};
+                if (const auto complaint = complaint_of_more_than_friction("Barton-Bandis", value))
+                    return complaint;
                 if (value(parameters::friction_angle) >= steepest)
                     return Complaint{parameters::friction_angle,
                                      "wanted less than 70 of a Barton-Bandis joint"};
@@ -196,53 +193,6 @@ template <class T>
 T opening(const BartonBandisOf<T>& law, const Value<T>& sigma_0)
 {
     return -law.closure(-sigma_0);
-}
-inline double stored(const BartonBandis& law, double sigma_n, double tau)
-{
-    return law.stored(-sigma_n) + (law.k_s > 0 ? tau * tau / law.k_s / 2 : 0.0);
-}
-inline AlongOverlap along_overlap(const BartonBandis& law, const State& state,
-                                  const std::array<double, 2>& closing, double length)
-{
-    return along_by_quadrature(law, state, closing, length);
-}
-
-inline bool is_linear(const BartonBandis&)
-{
-    return false;
-}
-inline double cohesion(const BartonBandis&)
-{
-    return 0;
-}
-inline double tensile_strength(const BartonBandis&)
-{
-    return 0;
-}
-inline bool weakens_by_slip(const BartonBandis&)
-{
-    return false;
-}
-inline bool dilates(const BartonBandis&)
-{
-    return false;
-}
-
-inline double dilation_end(const BartonBandis&)
-{
-    return 0;
-}
-inline bool remembers(const BartonBandis&)
-{
-    return false;
-}
-inline double shear(const BartonBandis& law, State&, double last, double slid, double strength)
-{
-    return std::clamp(last + law.k_s * slid, -strength, strength);
-}
-inline BartonBandis unbonded(const BartonBandis& law)
-{
-    return law;
 }
 
 } // namespace jointcreep::joint

@@ -19,8 +19,7 @@
 
 #pragma once
 
-#include "joint/along_overlap.hpp"
-#include "joint/coulomb.hpp"
+#include "joint/friction_only.hpp"
 
 namespace jointcreep::joint
 {
@@ -63,7 +62,7 @@ struct ContinuouslyYieldingOf {
         using std::exp, std::tan;
         return tan(friction_angle + (initial_angle - friction_angle) * exp(-u_p / roughness_length));
     }
-    // Of a closed joint, as along_by_quadrature() asks.
+    // Of a closed joint.
     T stiffness(const T&) const { return k_n; }
     T pressure(const T& closing) const { return k_n * closing; }
     double stored(double p) const { return p > 0 ? p * p / k_n / 2 : 0.0; }
@@ -163,10 +162,8 @@ struct ContinuouslyYieldingOf {
             .parameters = of_all_joints_and({initial_friction_angle, parameters::roughness_length}),
             .own = {"initial_friction_angle", "roughness_length"},
             .check = [](const ValueOf& value) -> std::optional<Complaint> {
-                for (const Parameter& none :
-                     {parameters::cohesion, parameters::tensile_strength, dilation_angle, dilation_until})
-                    if (value(none) != 0)
-                        return Complaint{none, "wanted 0 of a continuously yielding joint, which has none"};
+                if (const auto complaint = complaint_of_more_than_friction("continuously yielding", value))
+                    return complaint;
                 for (const Parameter& some : {shear_stiffness, parameters::friction_angle})
                     if (value(some) == 0)
                         return Complaint{some, "wanted more than 0 of a continuously yielding joint"};
@@ -214,52 +211,11 @@ T opening(const ContinuouslyYieldingOf<T>& law, const Value<T>& sigma_0)
 {
     return sigma_0 / law.k_n;
 }
-inline double stored(const ContinuouslyYielding& law, double sigma_n, double tau)
-{
-    return law.stored(-sigma_n) + tau * tau / law.k_s / 2;
-}
-inline AlongOverlap along_overlap(const ContinuouslyYielding& law, const State& state,
-                                  const std::array<double, 2>& closing, double length)
-{
-    return along_by_quadrature(law, state, closing, length);
-}
-inline bool is_linear(const ContinuouslyYielding&)
-{
-    return false;
-}
-inline double cohesion(const ContinuouslyYielding&)
-{
-    return 0;
-}
-inline double tensile_strength(const ContinuouslyYielding&)
-{
-    return 0;
-}
-inline bool weakens_by_slip(const ContinuouslyYielding&)
-{
-    return false;
-}
-inline bool dilates(const ContinuouslyYielding&)
-{
-    return false;
-}
-inline double dilation_end(const ContinuouslyYielding&)
-{
-    return 0;
-}
-inline bool remembers(const ContinuouslyYielding&)
-{
-    return true;
-}
 // Under the pressure at which the strength is the one given.
 inline double shear(const ContinuouslyYielding& law, State& state, double last, double slid, double strength)
 {
     const double p = strength / law.tan_phi_m(state.memory[0]);
     return p > 0 ? law.sheared(state.memory, last, slid, p) : 0.0;
-}
-inline ContinuouslyYielding unbonded(const ContinuouslyYielding& law)
-{
-    return law;
 }
 
 } // namespace jointcreep::joint

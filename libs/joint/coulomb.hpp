@@ -347,14 +347,6 @@ inline double dilation_end(const Coulomb& law)
 {
     return law.dilation_end();
 }
-inline bool remembers(const Coulomb&)
-{
-    return false;
-}
-inline double shear(const Coulomb& law, State&, double last, double slid, double strength)
-{
-    return std::clamp(last + law.k_s * slid, -strength, strength);
-}
 inline Coulomb unbonded(const Coulomb& law)
 {
     return {law.k_n, law.k_s, 0, law.weakens ? law.residual_tan_phi : law.tan_phi, 0};

@@ -114,16 +114,28 @@ inline bool dilates(const AnyLaw auto& law)
 {
     return std::visit([](const auto& one) { return dilates(one); }, law);
 }
-// Whether its shear traction depends on how it got there by more than slip: then shear() finds it.
+// Whether its shear traction depends on how it got there by more than slip: then it has a shear() of its own.
+template <class One>
+concept Remembers = requires(const One& law, State& state, double number)
+{
+    shear(law, state, number, number, number);
+};
 inline bool remembers(const AnyLaw auto& law)
 {
-    return std::visit([](const auto& one) { return remembers(one); }, law);
+    return std::visit([]<class One>(const One&) { return Remembers<One>; }, law);
 }
 // The mean shear traction along an overlap [Pa] after it slid by `slid` [m] from the traction `last`, with the
 // shear strength that it has now; takes what the law remembers into `state`.
 inline double shear(const AnyLaw auto& law, State& state, double last, double slid, double strength)
 {
-    return std::visit([&](const auto& one) { return shear(one, state, last, slid, strength); }, law);
+    return std::visit(
+        [&]<class One>(const One& one) {
+            if constexpr (Remembers<One>)
+                return shear(one, state, last, slid, strength);
+            else
+                return spring_traction(one.k_s, last, slid, strength);
+        },
+        law);
 }
 // What is left of it where there are no bonds (any more): the law of contacts that form between moving blocks.
 inline Law unbonded(const AnyLaw auto& law)

@@ -5,6 +5,7 @@
 #include "joint/dual.hpp"
 #include "model/result.hpp"
 
+#include <algorithm>
 #include <array>
 #include <type_traits>
 
@@ -31,6 +32,12 @@ struct ResponseOf {
     ContactStatus status;
 };
 using Response = ResponseOf<>;
+
+// Shear traction of a spring [Pa] after it slid by `slid` [m] from the traction `last`, within the strength.
+inline double spring_traction(double k_s, double last, double slid, double strength)
+{
+    return std::clamp(last + k_s * slid, -strength, strength);
+}
 
 // How a contact changes for a small displacement from where it is: its springs; and where it slips, the
 // change of strength over that of pressure, and of dilation over slip.

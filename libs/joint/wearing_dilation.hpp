@@ -38,28 +38,29 @@ struct DilationThatWears {
     bool dilates() const { return tan_psi > 0; }
 
     // What slip opens under the shear traction tau, which works all along it [m].
-    template <class N>
-    N opening_by(const N& slip, const N& tau, const N& until_now) const
+    T opening_by(const T& slip, const T& tau) const
     {
         using std::exp, std::expm1;
-        const N worn = wear * tau * slip;
-        const N mean = value_of(worn) > 1e-8 ? N(-expm1(-worn) / worn) : N(1 - worn / 2); // of exp(-worn)
-        return tan_psi * exp(-wear * until_now) * mean * slip;
+        const T worn = wear * tau * slip;
+        const T mean = value_of(worn) > 1e-8 ? T(-expm1(-worn) / worn) : T(1 - worn / 2); // of exp(-worn)
+        return tan_psi * exp(-wear * work) * mean * slip;
     }
-    // Slip x leaves the shear traction k_s (most - x), and presses the joint together.
+    // Shear traction above the strength after slip x: slip leaves the shear traction k_s (most - x), and presses
+    // the joint together.
+    T excess_after(const T& x, const T& excess, const T& most, const T& k_n, const T& k_s,
+                   double tan_phi) const
+    {
+        return excess - k_s * x - k_n * tan_phi * opening_by(x, k_s * (most - x));
+    }
     T slip(const T& excess, const T& most, const T& k_n, const T& k_s, double tan_phi) const
     {
-        const auto above_strength = [&](const auto& x, const auto& over, const auto& end, const auto& normal,
-                                        const auto& shear, const auto& until_now) {
-            using N = std::remove_cvref_t<decltype(x)>;
-            return N(over - shear * x - normal * tan_phi * opening_by(x, N(shear * (end - x)), N(until_now)));
-        };
         if (excess <= 0)
             return 0;
         const double last = value_of(most);
-        const auto at = [&](double x) { // with its slope
-            return above_strength(Dual(x, 1), Dual(value_of(excess)), Dual(last), Dual(value_of(k_n)),
-                                  Dual(value_of(k_s)), Dual(value_of(work)));
+        const DilationThatWears<Dual> with_slope{tan_psi, wear, value_of(work)};
+        const auto at = [&](double x) {
+            return with_slope.excess_after(Dual(x, 1), value_of(excess), last, value_of(k_n), value_of(k_s),
+                                           tan_phi);
         };
         if (at(last).value >= 0)
             return most;
@@ -77,12 +78,12 @@ struct DilationThatWears {
                 break;
         }
         // One more step, which also carries derivatives.
-        return x - above_strength(T(x), excess, most, k_n, k_s, work) / slope;
+        return x - excess_after(x, excess, most, k_n, k_s, tan_phi) / slope;
     }
-    T press(const T& slip, const T& tau, const T& k_n) const { return k_n * opening_by(slip, tau, work); }
+    T press(const T& slip, const T& tau, const T& k_n) const { return k_n * opening_by(slip, tau); }
     void raise(StateOf<T>& state, const T& slip, const T& tau) const
     {
-        state.dilation += opening_by(slip, tau, work);
+        state.dilation += opening_by(slip, tau);
         state.memory[0] += tau * slip;
     }
 };
@@ -136,15 +137,11 @@ inline Slopes slopes(const WearingDilation& law, const State& state, double sigm
     now.tan_psi *= std::exp(-law.wear * state.memory[0]);
     return now;
 }
-inline bool remembers(const WearingDilation&)
-{
-    return true;
-}
 inline double shear(const WearingDilation& law, State& state, double last, double slid, double strength)
 {
-    const double trial = last + law.k_s * slid, tau = std::clamp(trial, -strength, strength);
+    const double tau = spring_traction(law.k_s, last, slid, strength);
     if (law.k_s > 0)
-        state.memory[0] += tau * (trial - tau) / law.k_s;
+        state.memory[0] += tau * (last + law.k_s * slid - tau) / law.k_s;
     return tau;
 }
 
