@@ -10,7 +10,6 @@
 namespace jointcreep::implicit
 {
 
-using joint::Dual;
 using mechanics::Balance;
 using mechanics::Convergence;
 
@@ -64,33 +63,9 @@ void Solver::take_states(const Assembly& assembly, const State& start, bool firs
     }
 }
 
-// Of a contact whose law remembers, from the start of the equilibrium straight to where it is: what the law itself
-// gives in numbers with derivatives, as its traction goes with more than springs and a strength.
-Tangent Solver::tangent_of_response(const Assembly& assembly, std::size_t c) const
-{
-    const mechanics::Contacts& contacts = assembly.contacts;
-    const joint::Law& law = contacts.law[c];
-    const joint::State& start = start_->joint[c];
-    const Vector2d &initial = contacts.initial_traction[c],
-                   spring = contacts.relative_displacement[c] - contacts.offset[c];
-    const auto by = [&](double normal, double shear) {
-        joint::StateOf<Dual> state{start.slip,
-                                   start.dilation,
-                                   contacts.state[c].is_broken,
-                                   {start.memory[0], start.memory[1], start.memory[2]}};
-        const auto found = joint::with_derivatives(law, k_n(law), k_s(law), [&](const auto& one) {
-            return joint::respond(one, state, initial.x(), initial.y(), Dual(spring.x(), normal),
-                                  Dual(spring.y(), shear));
-        });
-        return Vector2d(found.sigma_n.slope, found.tau.slope);
-    };
-    const Vector2d by_opening = by(1, 0), by_shear = by(0, 1);
-    return {by_opening.x(), by_shear.y(), by_opening.y(), by_shear.x()};
-}
-
 // Of the contacts as they are active; where they hold nothing they keep the share `softness` of their
 // springs.
-std::vector<Tangent> Solver::tangents(const Assembly& assembly, double softness) const
+std::vector<Tangent> Solver::tangents(const Assembly& assembly, const State& start, double softness) const
 {
     const mechanics::Contacts& contacts = assembly.contacts;
     std::vector<Tangent> all(active_.size());
@@ -101,7 +76,7 @@ std::vector<Tangent> Solver::tangents(const Assembly& assembly, double softness)
         if (remembers(contacts.law[c]) && active_[c] != Active::open &&
             slips == (active_[c] != Active::stuck)) {
             const double kept = slips ? softness : 0;
-            const Tangent found = tangent_of_response(assembly, c);
+            const Tangent found = tangent_of_response(contacts, c, start.joint[c]);
             all[c] = {found.normal + kept * (law.k_n - found.normal),
                       found.shear + kept * (law.k_s - found.shear), (1 - kept) * found.friction,
                       (1 - kept) * found.dilation};
@@ -130,9 +105,10 @@ std::vector<Tangent> Solver::tangents(const Assembly& assembly, double softness)
 
 // The displacement that balances `force` to `enough` [N/m], if contacts that slip or are open keep the share
 // `hold` of their springs.
-VectorXd Solver::correction(const Assembly& assembly, const VectorXd& force, double enough, double hold)
+VectorXd Solver::correction(const Assembly& assembly, const State& start, const VectorXd& force,
+                            double enough, double hold)
 {
-    const std::vector<Tangent> acting = tangents(assembly, std::max(soft, hold));
+    const std::vector<Tangent> acting = tangents(assembly, start, std::max(soft, hold));
     const auto product = [&](const VectorXd& x) { return stiffness_.times(assembly, acting, x); };
     const auto precondition = [&](const VectorXd& x) {
         ++solves_;
@@ -244,11 +220,11 @@ bool Solver::mend_bonds(const Assembly& assembly)
 }
 
 // The largest change of a contact's force that a displacement would bring [N/m].
-double Solver::force_change(const Assembly& assembly, const VectorXd& displacement) const
+double Solver::force_change(const Assembly& assembly, const State& start, const VectorXd& displacement) const
 {
     std::vector<Vector2d> u(assembly.position.size(), Vector2d::Zero());
     stiffness_.add_to(u, displacement, 1);
-    const std::vector<Tangent> acting = tangents(assembly, 0);
+    const std::vector<Tangent> acting = tangents(assembly, start, 0);
     const mechanics::Contacts& contacts = assembly.contacts;
     double largest = 0;
     for (std::size_t c = 0; c < acting.size(); ++c) {
@@ -286,7 +262,7 @@ bool Solver::converge(Assembly& assembly, const State& start, const Equilibrium&
         const double enough = is_balanced
                                   ? 0.1 * force_.norm()
                                   : std::max(0.5 * settings.tolerance * balance.mean, 1e-2 * force_.norm());
-        const VectorXd du = correction(assembly, force_, enough, hold);
+        const VectorXd du = correction(assembly, start, force_, enough, hold);
         ++corrections_;
         if (du.size() == 0 || !du.allFinite()) {
             reason_ = "some rock is held by nothing";
@@ -311,7 +287,7 @@ bool Solver::converge(Assembly& assembly, const State& start, const Equilibrium&
                     reason_ = "forces do not come into balance";
                     return false;
                 }
-                const VectorXd leap = correction(assembly, force_, enough, 0);
+                const VectorXd leap = correction(assembly, start, force_, enough, 0);
                 if (leap.size() == 0 || !leap.allFinite()) {
                     reason_ = "some rock is held by nothing";
                     return false;
@@ -350,7 +326,7 @@ bool Solver::is_at_rest(const Assembly& assembly, const State& start, double mea
         return true;
     }
     const auto take = [&](const VectorXd& du) {
-        convergence.contact_force_change = force_change(assembly, du) / mean_force;
+        convergence.contact_force_change = force_change(assembly, start, du) / mean_force;
         std::vector<Vector2d> u(assembly.position.size(), Vector2d::Zero());
         stiffness_.add_to(u, du, 1);
         convergence.remaining_displacement = 0;
@@ -360,7 +336,7 @@ bool Solver::is_at_rest(const Assembly& assembly, const State& start, double mea
     ++solves_;
     take(stiffness_.solve(force_));
     if (convergence.contact_force_change > tolerance) {
-        const VectorXd du = correction(assembly, force_, 0.1 * force_.norm(), 0);
+        const VectorXd du = correction(assembly, start, force_, 0.1 * force_.norm(), 0);
         if (du.size() > 0)
             take(du);
     }
@@ -382,7 +358,6 @@ std::optional<Convergence> Solver::equilibrate(Assembly& assembly, const Equilib
 {
     mechanics::Contacts& contacts = assembly.contacts;
     const State start = state_of(assembly);
-    start_ = &start;
     const auto give_up = [&] {
         go_back(assembly, start);
         return std::nullopt;
@@ -410,7 +385,7 @@ std::optional<Convergence> Solver::equilibrate(Assembly& assembly, const Equilib
     if (!stiffness_.has_factor()) {
         space_.forget();
         linear_space_.forget();
-        acting_ = tangents(assembly, soft);
+        acting_ = tangents(assembly, start, soft);
         ++factorisations_;
         if (!stiffness_.factorise(assembly, acting_)) {
             reason_ = "some rock is held by nothing";

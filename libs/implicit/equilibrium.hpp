@@ -55,9 +55,9 @@ private:
     using State = mechanics::State; // where an equilibrium starts from
     double evaluate(Assembly& assembly, const State& start);
     void take_states(const Assembly& assembly, const State& start, bool first);
-    Tangent tangent_of_response(const Assembly& assembly, std::size_t contact) const;
-    std::vector<Tangent> tangents(const Assembly& assembly, double softness) const;
-    VectorXd correction(const Assembly& assembly, const VectorXd& force, double enough, double hold);
+    std::vector<Tangent> tangents(const Assembly& assembly, const State& start, double softness) const;
+    VectorXd correction(const Assembly& assembly, const State& start, const VectorXd& force, double enough,
+                        double hold);
     struct Way {
         double merit;        // where it ends
         double failed_share; // the smallest share of the correction that brought forces no nearer to balance;
@@ -71,9 +71,8 @@ private:
                     mechanics::Convergence& convergence);
     bool break_bonds(const Assembly& assembly, const State& start);
     bool mend_bonds(const Assembly& assembly);
-    double force_change(const Assembly& assembly, const VectorXd& displacement) const;
+    double force_change(const Assembly& assembly, const State& start, const VectorXd& displacement) const;
 
-    const State* start_ = nullptr; // of the equilibrium that is sought
     Stiffness stiffness_;
     KrylovSpace space_{24};        // of the stiffness
     std::vector<Tangent> acting_;  // with these tangents

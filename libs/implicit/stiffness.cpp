@@ -27,6 +27,28 @@ std::array<int, 2 * N> unknowns_of(const std::vector<std::array<int, 2>>& unknow
 
 } // namespace
 
+Tangent tangent_of_response(const mechanics::Contacts& contacts, std::size_t contact,
+                            const joint::State& start)
+{
+    using joint::Dual;
+    const joint::Law& law = contacts.law[contact];
+    const Vector2d &initial = contacts.initial_traction[contact],
+                   spring = contacts.relative_displacement[contact] - contacts.offset[contact];
+    const auto by = [&](double normal, double shear) {
+        joint::StateOf<Dual> state{start.slip,
+                                   start.dilation,
+                                   contacts.state[contact].is_broken,
+                                   {start.memory[0], start.memory[1], start.memory[2]}};
+        const auto found = joint::with_derivatives(law, k_n(law), k_s(law), [&](const auto& one) {
+            return joint::respond(one, state, initial.x(), initial.y(), Dual(spring.x(), normal),
+                                  Dual(spring.y(), shear));
+        });
+        return Vector2d(found.sigma_n.slope, found.tau.slope);
+    };
+    const Vector2d by_opening = by(1, 0), by_shear = by(0, 1);
+    return {by_opening.x(), by_shear.y(), by_opening.y(), by_shear.x()};
+}
+
 void Stiffness::follow(const Assembly& assembly)
 {
     Eigen::setNbThreads(assembly.threads); // of products; Eigen would take all there are

@@ -44,6 +44,11 @@ struct Tangent {
     }
 };
 
+// That of a contact's response straight from the state `start`, by its law in numbers with derivatives: for laws
+// whose traction goes with more than springs and a strength. A broken bond has been broken from the start.
+Tangent tangent_of_response(const mechanics::Contacts& contacts, std::size_t contact,
+                            const joint::State& start);
+
 class Stiffness
 {
 public:

@@ -154,14 +154,6 @@ Sensitivity::ContactResponse Sensitivity::response(const Assembly& assembly, con
                     change.dilation[c], change.memory[c]});
 }
 
-// Change of a contact's traction over change of its relative displacement.
-implicit::Tangent Sensitivity::tangent(const Assembly& assembly, std::size_t c) const
-{
-    const Vector2d by_opening = respond(assembly, c, {.spring = {1, 0}}).traction,
-                   by_shear = respond(assembly, c, {.spring = {0, 1}}).traction;
-    return {by_opening.x(), by_shear.y(), by_opening.y(), by_shear.x()};
-}
-
 Vector3d Sensitivity::stress(const Assembly& assembly, const Change& change, std::size_t z,
                              bool with_displacement) const
 {
@@ -224,7 +216,8 @@ void Sensitivity::settle(const Assembly& assembly, implicit::Solver& engine, dou
     const std::size_t n = contacts.law.size();
     std::vector<implicit::Tangent> tangents(n);
     for (std::size_t c = 0; c < n; ++c)
-        tangents[c] = tangent(assembly, c);
+        if (contacts.status[c] != ContactStatus::removed)
+            tangents[c] = implicit::tangent_of_response(contacts, c, start_[c]);
     for (Change& change : changes_) {
         std::vector<Vector2d> force = forces(assembly, change, false);
         if (held > 0)

@@ -115,7 +115,6 @@ private:
     };
     ContactResponse respond(const mechanics::Assembly& assembly, std::size_t c,
                             const ContactChange& by) const;
-    implicit::Tangent tangent(const mechanics::Assembly& assembly, std::size_t c) const;
     // Forces on gridpoints, as settled; or before, at displacements as they are.
     std::vector<Vector2d> forces(const mechanics::Assembly& assembly, const Change& change,
                                  bool is_settled) const;
