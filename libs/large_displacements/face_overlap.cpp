@@ -21,9 +21,7 @@ std::optional<Overlap> overlap_along(const Vector2d& tangent, const std::array<V
         along_b{(b[0] - a[0]).dot(tangent), (b[1] - a[0]).dot(tangent)}; // runs the other way
     if (along_a[1] <= 0 || along_b[0] <= along_b[1])
         return overlap;
-    // Each end of the overlap is one of a or of b: of the fractions only that of the other is divided for.
-    const bool starts_with_a = along_b[1] <= 0, ends_with_a = along_a[1] <= along_b[0];
-    const std::array<double, 2> at{starts_with_a ? 0 : along_b[1], ends_with_a ? along_a[1] : along_b[0]};
+    const std::array<double, 2> at{std::max(0.0, along_b[1]), std::min(along_a[1], along_b[0])};
     if (at[1] <= at[0])
         return overlap;
     Overlap& found = overlap.emplace();
@@ -31,13 +29,9 @@ std::optional<Overlap> overlap_along(const Vector2d& tangent, const std::array<V
     found.inset = {along_a[0] - along_b[1], along_b[0] - along_a[1]};
     found.length = at[1] - at[0];
     const Vector2d normal = found.normal();
-    const auto over = [&](bool is_of_a, double end) {
-        return (is_of_a ? end - along_b[0] : end) / (is_of_a ? along_b[1] - along_b[0] : along_a[1]);
-    };
-    const double first = over(starts_with_a, at[0]), last = over(ends_with_a, at[1]);
-    found.on_a = {starts_with_a ? 0 : first, ends_with_a ? 1 : last};
-    found.on_b = {starts_with_a ? first : 1, ends_with_a ? last : -0.0};
     for (int i = 0; i < 2; ++i) {
+        found.on_a[i] = at[i] / along_a[1];
+        found.on_b[i] = (at[i] - along_b[0]) / (along_b[1] - along_b[0]);
         found.gap[i] =
             (b[0] + found.on_b[i] * (b[1] - b[0]) - a[0] - found.on_a[i] * (a[1] - a[0])).dot(normal);
     }
