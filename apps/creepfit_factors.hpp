@@ -19,7 +19,7 @@ std::string words_of(sensitivity::Parameter parameter);
 // All that --fit may have, with `last` before the last one: "kelvin-stiffness, ... and horizontal-stress".
 std::string all_options(const std::string& last);
 
-// What --fit asks for: names parted by commas, each with bounds if wanted. Throws input_error.
+// What --fit asks for: names separated by commas, each with bounds if given. Throws input_error.
 Factors factors_in(const std::string& text);
 
 // "kelvin-stiffness 1.1, joint-stiffness 0.95".

@@ -68,7 +68,7 @@ std::vector<Option> section_options()
         {"measurements", "FILE.csv", "through the solver: displacements of the scene's points"},
         {"fit", "NAMES",
          "through the solver: factors to find, of " + all_options(" and ") +
-             ", parted by commas, each with bounds if wanted: joint-stiffness=0.5:2 (default "
+             ", separated by commas, each with bounds if given: joint-stiffness=0.5:2 (default "
              "bounds: 0.05:20); kelvin-viscosity is that of Maxwell dashpots, too; the search starts from 1, or "
              "from the root of low times high where that is out of bounds"},
         {"since-first-reading", "",

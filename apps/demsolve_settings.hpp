@@ -27,7 +27,7 @@ std::string replace_settings(const Arguments& arguments, Scene& scene);
 // Lets the scene end on the day of --until, if given; returns that option as the result file records it.
 std::string end_scene(const Arguments& arguments, Scene& scene);
 
-// By how much strengths are divided.
+// Strength reduction factor.
 struct StrengthReduction {
     double factor = 1;                   // [-]
     std::optional<double> bracket_width; // over the factor [-]; none: one run, with the factor

@@ -17,7 +17,7 @@ using large_displacements::Energy;
 namespace
 {
 
-// By how much of its largest part the energy balance of a dynamic analysis may be off.
+// Largest error of the energy balance of a dynamic analysis, relative to its largest term [-].
 constexpr double energy_closes = 0.01;
 
 std::vector<char> rigid_zones(const Section& section)

@@ -19,9 +19,8 @@ public:
     // equilibrium first. Displacements count from there.
     void settle_in_situ();
 
-    // After a stage's rock has been removed: moves until it is at rest, recorded every so many seconds, with
-    // a row and a state at rest. Throws equilibrium_error where it does not come to rest; the result has the
-    // state that it has come to.
+    // After a stage's rock has been removed: the motion until equilibrium, recorded every so many seconds, with a
+    // row and a state at equilibrium. Throws equilibrium_error where there is none; the result has the last state.
     void run();
 
     // What a checkpoint keeps of it.

@@ -1009,7 +1009,7 @@ Table<LargeDisplacements> large_displacements()
                 "Time in which the forces of a stage's rock fade away.")
              .or_else(0.0),
          number("longest_s", &LargeDisplacements::longest, seconds, above(0).to(1e6),
-                "A dynamic analysis that has not come to rest by then is given up.")
+                "Longest time of a dynamic analysis. If rock still moves then, the exit code is 3.")
              .or_else(60.0),
          number("record_every_s", &LargeDisplacements::record_every, seconds, above(0).to(1e6),
                 "The section and the balance of energy are recorded that often.")
