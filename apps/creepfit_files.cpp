@@ -11,17 +11,6 @@
 namespace jointcreep::creepfit
 {
 
-namespace
-{
-
-bool is_same_file(const std::string& one, const std::string& other)
-{
-    std::error_code absent;
-    return one == other || std::filesystem::equivalent(one, other, absent);
-}
-
-} // namespace
-
 std::string text_of(const std::string& path)
 {
     if (std::error_code none; std::filesystem::is_directory(path, none))
@@ -43,26 +32,18 @@ void write(const std::string& path, const std::string& text)
     }
 }
 
-std::optional<std::string> readings_file(const Arguments& arguments)
+std::optional<std::string> readings_file(const Arguments& arguments, bool may_fail)
 {
-    std::optional<std::string> path = arguments.text("readings");
-    if (!path)
-        return {};
-    for (const std::string& other :
-         {arguments.input(), arguments.output(), arguments.text("measurements").value_or("")})
-        if (is_same_file(*path, other))
-            throw input_error("--readings: " + *path + " is used already; give it another name");
-    store::check_writable(*path);
-    return path;
-}
-
-void refuse_loss(const std::string& failed, const std::vector<std::string>& others)
-{
-    for (const std::string& other : others)
-        if (is_same_file(failed, other))
-            throw input_error(
-                other +
-                ": a search that does not come to its end would be written there; wanted another name");
+    std::vector<NamedFile> written = arguments.files({"output", "readings"}), failed;
+    for (const auto& [path, name] : written) {
+        store::check_writable(path);
+        const std::string kept = failed_name(path);
+        failed.push_back({kept, kept + ", which a search that fails writes,"});
+    }
+    if (may_fail)
+        written.insert(written.end(), failed.begin(), failed.end());
+    refuse_overwriting(arguments.files({"input", "measurements"}), written);
+    return arguments.text("readings");
 }
 
 void refuse_options(const Arguments& arguments, const std::vector<Option>& options,

@@ -43,11 +43,9 @@ auto of_lines_of_file(const std::string& path, const Read& read)
     }
 }
 
-// Where to write the readings; refuses what would lose another file.
-std::optional<std::string> readings_file(const Arguments& arguments);
-
-// Refuses a name where what has failed would be written over a file that is read, or found.
-void refuse_loss(const std::string& failed, const std::vector<std::string>& others);
+// Where to write the readings. Throws where it, or the output, could not be written, or one of them, or what is kept
+// of a search that `may_fail`, would be written over a file that is read, or over each other.
+std::optional<std::string> readings_file(const Arguments& arguments, bool may_fail);
 
 // Refuses options that go with something else.
 void refuse_options(const Arguments& arguments, const std::vector<Option>& options,

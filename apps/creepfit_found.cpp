@@ -2,6 +2,7 @@
 
 #include "creepfit_words.hpp"
 
+#include "exchange/csv.hpp"
 #include "model/error.hpp"
 #include "model/units.hpp"
 #include "program.hpp"
@@ -24,16 +25,6 @@ using Measurements = std::vector<scene::Measurement>;
 
 namespace
 {
-
-std::string in_quotes(const std::string& name)
-{
-    if (name.find_first_of(",\"\r\n") == std::string::npos)
-        return name;
-    std::string quoted = "\"";
-    for (const char c : name)
-        quoted.append(c == '"' ? 2 : 1, c);
-    return quoted + '"';
-}
 
 // Of a logarithm; empty where it has no bound.
 std::string shown_bound(double logarithm)
@@ -284,9 +275,10 @@ std::string readings_table(const Found& found, const Measurements& measurements,
             return measured.is_before_stage ? stage.time < measured.time : stage.time <= measured.time;
         });
         table += shown(measured.time / unit::day) + ',' + std::to_string(stages) + ',' +
-                 in_quotes(scene.points[measured.point].name) + ',' + (measured.component == 0 ? "x" : "y") +
-                 ',' + shown(measured.displacement * 1e3) + ',' + shown(at_end * 1e3) + ',' +
-                 shown((at_end - measured.displacement) * 1e3) + ',' + shown(at_start * 1e3);
+                 exchange::csv_field(scene.points[measured.point].name) + ',' +
+                 (measured.component == 0 ? "x" : "y") + ',' + shown(measured.displacement * 1e3) + ',' +
+                 shown(at_end * 1e3) + ',' + shown((at_end - measured.displacement) * 1e3) + ',' +
+                 shown(at_start * 1e3);
         if (knows)
             table += ',' + shown(*measured.deviation * 1e3);
         table += '\n';

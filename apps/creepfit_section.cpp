@@ -84,10 +84,7 @@ void fit_section(const Arguments& arguments)
     const std::string &input = arguments.input(), &output = arguments.output();
     const std::string measured = *arguments.text("measurements");
     const back_analysis::Settings settings = settings_of(arguments);
-    const std::optional<std::string> readings_path = readings_file(arguments);
-    store::check_writable(output);
-    for (const std::string& path : {output, readings_path.value_or(output)})
-        refuse_loss(failed_name(path), {input, measured, output, readings_path.value_or("")});
+    const std::optional<std::string> readings_path = readings_file(arguments, true);
 
     // 1. The section, and what was measured there.
     const store::JointsFile file = store::read_joints(input);

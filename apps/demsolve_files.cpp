@@ -17,9 +17,9 @@ Files::Files(const Arguments& arguments, const std::string& program, const store
       provenance_(file.provenance), options_(std::move(options)), end_(std::move(end))
 {
     store::check_writable(output_);
-    if (std::error_code absent; std::filesystem::equivalent(input_, failed_, absent))
-        throw input_error(input_ + ": a run without equilibrium would be written there; " +
-                          "wanted another name than " + output_);
+    std::vector<NamedFile> written = arguments.files({"output", "checkpoint"});
+    written.push_back({failed_, failed_ + ", which a run without equilibrium writes,"});
+    refuse_overwriting(arguments.files({"input"}), written);
     provenance_.program.push_back(program);
     provenance_.version.emplace_back(version());
     provenance_.input_sha256.push_back(store::sha256_of(input_));
@@ -66,7 +66,6 @@ std::optional<store::CheckpointFile> Files::kept_before(const Arguments& argumen
     if (!path)
         return {};
     store::check_writable(*path);
-    check_checkpoint_name(*path);
     if (!std::filesystem::exists(*path))
         return {};
     store::CheckpointFile kept = store::read_checkpoint(*path);
@@ -75,13 +74,6 @@ std::optional<store::CheckpointFile> Files::kept_before(const Arguments& argumen
         throw input_error(*path + ": /checkpoint/time is day " + shown(kept.checkpoint.time / unit::day) +
                           "; wanted not after --until " + shown(scene.end / unit::day));
     return kept;
-}
-
-void Files::check_checkpoint_name(const std::string& path) const
-{
-    for (const std::string& other : {input_, output_, failed_})
-        if (std::filesystem::weakly_canonical(path) == std::filesystem::weakly_canonical(other))
-            throw input_error("--checkpoint " + path + " is " + other + ", too; give it another name");
 }
 
 void Files::check_same_run(const std::string& path, double factor, const Provenance& kept) const

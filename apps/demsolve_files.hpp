@@ -18,7 +18,7 @@ class Files
 public:
     // `options` and `end` as the result file records them. A run that ends on another day may go on from the
     // same checkpoint: `end` is no part of what a checkpoint records. Throws where a file could not be
-    // written, or would be written over the input.
+    // written, or would be written over the input or each other.
     Files(const Arguments& arguments, const std::string& program, const store::JointsFile& file,
           std::string options, std::string end);
 
@@ -37,7 +37,6 @@ public:
 
 private:
     void write(const analysis::Trial& run, const Safety& safety, const std::string& path) const;
-    void check_checkpoint_name(const std::string& path) const;
     void check_same_run(const std::string& path, double factor, const Provenance& kept) const;
     std::string options_of(double factor) const;
     Provenance provenance(const std::string& options) const;

@@ -105,7 +105,12 @@ void generate(const Arguments& arguments)
         store::check_writable(arguments.output());
 
     // 1. The scene.
-    const std::string text = scene::read_scene_text(input);
+    const auto [text, files] = scene::read_scene(input);
+    std::vector<NamedFile> read;
+    for (const std::string& path : files)
+        read.push_back({path, path + ", which the scene names"});
+    if (!check)
+        refuse_overwriting(read, arguments.files({"output"}));
     const Scene scene = scene::parse_scene(text, input);
     const std::uint64_t seed =
         arguments.whole_number("seed", 0, std::numeric_limits<std::uint64_t>::max()).value_or(scene.seed);

@@ -165,6 +165,22 @@ std::string_view shortened(std::string_view text, std::size_t most)
     return text.substr(0, size);
 }
 
+// The path without links, as far as it exists.
+std::filesystem::path without_links(const std::filesystem::path& path)
+{
+    const std::filesystem::path whole = std::filesystem::absolute(path);
+    std::error_code unreachable;
+    const std::filesystem::path found = std::filesystem::weakly_canonical(whole, unreachable);
+    return unreachable ? whole.lexically_normal() : found;
+}
+
+// Whether two paths are one file, or would be once it is written.
+bool is_same_file(const std::filesystem::path& one, const std::filesystem::path& other)
+{
+    std::error_code absent;
+    return std::filesystem::equivalent(one, other, absent) || without_links(one) == without_links(other);
+}
+
 // Threads that wait for each other do so busily, by default for milliseconds: beside other programs that keep
 // all processors busy a run then takes tens of times as long. For how long, the OpenMP library (libgomp)
 // takes from the environment before main() begins; so the program starts once more with it. Where that cannot
@@ -197,6 +213,31 @@ const std::string& Arguments::wanted(const std::string& name) const
     if (found->second.empty())
         throw input_error(shown_.at(name) + " is empty; it must be the name of a file");
     return found->second;
+}
+
+void refuse_overwriting(const std::vector<NamedFile>& read, const std::vector<NamedFile>& written)
+{
+    for (auto file = written.begin(); file != written.end(); ++file) {
+        std::vector<NamedFile> others = read;
+        others.insert(others.end(), written.begin(), file);
+        for (const NamedFile& other : others)
+            if (is_same_file(file->path, other.path))
+                throw input_error(file->name + " is the same file as " + other.name +
+                                  "; give it another name");
+    }
+}
+
+std::vector<NamedFile> Arguments::files(const std::vector<std::string>& options) const
+{
+    std::vector<NamedFile> files;
+    for (const std::string& option : options)
+        if (has(option)) {
+            const std::string name = option == "input"    ? "the input"
+                                     : option == "output" ? "-o"
+                                                          : "--" + option;
+            files.push_back({wanted(option), name + ' ' + wanted(option)});
+        }
+    return files;
 }
 
 std::optional<std::string> Arguments::text(const std::string& option) const
@@ -242,14 +283,6 @@ std::optional<double> Arguments::number(const std::string& option, const Range& 
     return value;
 }
 
-// Writing over what is read would lose it.
-static void require_other_file(const std::string& input, const std::string& output)
-{
-    std::error_code none; // what does not exist is no other file's twin
-    if (std::filesystem::equivalent(input, output, none))
-        throw input_error("the output " + output + " is the input; give it another name");
-}
-
 int run(const Program& program, int argc, char** argv, const std::function<void(const Arguments&)>& body)
 {
     std::signal(SIGXFSZ, SIG_IGN); // a file that grows past the limit is then a write error with a message
@@ -273,7 +306,7 @@ int run(const Program& program, int argc, char** argv, const std::function<void(
                 refuse_renamed(program, name, *text);
         }
         if (arguments.has("input") && arguments.has("output"))
-            require_other_file(arguments.input(), arguments.output());
+            refuse_overwriting(arguments.files({"input"}), arguments.files({"output"}));
         if (arguments.has("help"))
             std::cout << help(program);
         else if (arguments.has("version"))

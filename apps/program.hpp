@@ -67,6 +67,15 @@ struct Program {
     std::string columns{};     // of tables that it reads, if any; indented lines
 };
 
+// A file of a run, and what messages call it: "--readings fit.csv".
+struct NamedFile {
+    std::string path, name;
+};
+
+// Refuses a file to write that is also one to read, or another one to write: what it holds would be lost. Two paths are
+// one file whatever links and folders they go through, also where there is no file yet.
+void refuse_overwriting(const std::vector<NamedFile>& read, const std::vector<NamedFile>& written);
+
 // What was given on the command line. Every accessor throws input_error when what is given is not what is
 // wanted.
 class Arguments
@@ -78,6 +87,9 @@ public:
 
     bool has(const std::string& option) const { return given_.contains(option); }
     bool quiet() const { return has("quiet"); }
+
+    // Those of the options that are given, as files; "input" and "output" are options, too.
+    std::vector<NamedFile> files(const std::vector<std::string>& options) const;
 
     // The value of an option, or nothing if it is not given.
     std::optional<std::string> text(const std::string& option) const;

@@ -12,17 +12,6 @@ namespace jointcreep::exchange
 namespace
 {
 
-// Text as one field: in quotes if it holds what would end a field.
-std::string field(const std::string& text)
-{
-    if (text.find_first_of(",\"\r\n") == std::string::npos)
-        return text;
-    std::string quoted = "\"";
-    for (const char c : text)
-        quoted.append(c == '"' ? 2 : 1, c);
-    return quoted + '"';
-}
-
 std::string field(double value)
 {
     return shown(value);
@@ -41,7 +30,7 @@ std::string field(const Eigen::Vector2d& vector)
 // The name that an index stands for; empty for none.
 std::string name_of(const std::vector<std::string>& names, Index index)
 {
-    return index < 0 ? "" : field(names[index]);
+    return index < 0 ? "" : csv_field(names[index]);
 }
 
 template <class... Fields>
@@ -78,7 +67,27 @@ Index vertices_of(const Blocks& blocks, std::size_t block)
     return blocks.ring_start[blocks.block_ring[block + 1]] - blocks.ring_start[blocks.block_ring[block]];
 }
 
+// What a column's name says of its unit: "_Pa_per_m", or nothing of a plain number.
+std::string suffix(std::string unit)
+{
+    if (unit == "1")
+        return "";
+    if (const auto slash = unit.find('/'); slash != std::string::npos)
+        unit.replace(slash, 1, "_per_");
+    return "_" + unit;
+}
+
 } // namespace
+
+std::string csv_field(const std::string& text)
+{
+    if (text.find_first_of(",\"\r\n") == std::string::npos)
+        return text;
+    std::string quoted = "\"";
+    for (const char c : text)
+        quoted.append(c == '"' ? 2 : 1, c);
+    return quoted + '"';
+}
 
 std::string joints_csv(const Network& network)
 {
@@ -102,16 +111,6 @@ std::string blocks_csv(const Network& network)
                 field(centroid(blocks, block)), field(vertices_of(blocks, block)),
                 field(blocks.block_ring[block + 1] - blocks.block_ring[block] - 1));
     return table;
-}
-
-// What a column's name says of its unit: "_Pa_per_m", or nothing of a plain number.
-static std::string suffix(std::string unit)
-{
-    if (unit == "1")
-        return "";
-    if (const auto slash = unit.find('/'); slash != std::string::npos)
-        unit.replace(slash, 1, "_per_");
-    return "_" + unit;
 }
 
 std::string edges_csv(const Network& network, const EquivalentJoints* equivalent)
@@ -172,14 +171,14 @@ std::string histories_csv(const History& history)
     std::string table = "time_day,event";
     for (const std::string& point : history.point)
         for (const char* column : {"_x_m", "_y_m", "_present"})
-            table.append(",").append(field(point + column));
+            table.append(",").append(csv_field(point + column));
     if (is_reset)
         for (const std::string& point : history.point)
             for (const char* column : {"_since_reset_x_m", "_since_reset_y_m"})
-                table.append(",").append(field(point + column));
+                table.append(",").append(csv_field(point + column));
     table += '\n';
     for (std::size_t row = 0; row < history.time.size(); ++row) {
-        table.append(field(history.time[row])).append(",").append(field(history.event[row]));
+        table.append(field(history.time[row])).append(",").append(csv_field(history.event[row]));
         for (std::size_t at = row * points; at < (row + 1) * points; ++at)
             table.append(",")
                 .append(field(history.displacement[at]))

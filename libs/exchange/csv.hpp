@@ -13,6 +13,9 @@
 namespace jointcreep::exchange
 {
 
+// Text as one field of such a table.
+std::string csv_field(const std::string& text);
+
 // One row a joint trace: set, number (of its joint within the set), x1_m, y1_m, x2_m, y2_m.
 std::string joints_csv(const Network& network);
 

@@ -175,29 +175,36 @@ std::string read_text_file(const std::string& path, const std::string& wanted)
     return text;
 }
 
-// Tables [[file]] with what the scene at `path` asks for. Files that are not there are left out: parse_scene
-// names the key that asks for them.
-std::string files_beside(const std::string& path, const std::string& scene)
+// What the scene at `path` asks for: names and paths. Files that are not there are left out: parse_scene names the
+// key that asks for them.
+struct FileBeside {
+    std::string name, path;
+};
+std::vector<FileBeside> files_beside(const std::string& path, const std::string& scene)
 {
     std::vector<std::string> names;
     try {
         names = named_files(parse_toml(scene, path));
     } catch (const input_error&) { // parse_scene says the same again, in its place
-        return "";
     }
-    std::string tables;
+    std::vector<FileBeside> files;
     for (const std::string& name : names) {
         const std::filesystem::path beside = std::filesystem::path(path).parent_path() / name;
-        if (std::error_code ignored; !std::filesystem::is_regular_file(beside, ignored))
-            continue;
-        const std::string text = read_text_file(beside.string(), "poles or traces of a scene");
-        if (text.find_first_not_of(" \t\r\n") == std::string::npos)
-            throw input_error(beside.string() + ": is empty; wanted poles or traces of a scene");
-        parse_toml("text = " + as_toml(text, ""), beside.string()); // names the line of what is not UTF-8
-        tables +=
-            "\n[[file]] # as it was beside the scene\nname = " + as_toml(name) + "text = " + as_toml(text);
+        if (std::error_code ignored; std::filesystem::is_regular_file(beside, ignored))
+            files.push_back({name, beside.string()});
     }
-    return tables;
+    return files;
+}
+
+// A table [[file]].
+std::string table_of(const FileBeside& file)
+{
+    const std::string text = read_text_file(file.path, "poles or traces of a scene");
+    if (text.find_first_not_of(" \t\r\n") == std::string::npos)
+        throw input_error(file.path + ": is empty; wanted poles or traces of a scene");
+    parse_toml("text = " + as_toml(text, ""), file.path); // names the line of what is not UTF-8
+    return "\n[[file]] # as it was beside the scene\nname = " + as_toml(file.name) +
+           "text = " + as_toml(text);
 }
 
 } // namespace
@@ -251,15 +258,23 @@ Scene parse_scene(std::string_view text, const std::string& name)
     return scene;
 }
 
+SceneText read_scene(const std::string& path)
+{
+    SceneText scene{read_text_file(path, "a scene file"), {}};
+    if (scene.text.empty())
+        throw input_error(path + ": is empty; wanted a scene");
+    for (const FileBeside& file : files_beside(path, scene.text)) {
+        scene.text += table_of(file);
+        scene.files.push_back(file.path);
+    }
+    if (scene.text.size() > largest_text)
+        throw input_error(path + ": is larger than 16 MiB with the files that it names; wanted a scene");
+    return scene;
+}
+
 std::string read_scene_text(const std::string& path)
 {
-    std::string text = read_text_file(path, "a scene file");
-    if (text.empty())
-        throw input_error(path + ": is empty; wanted a scene");
-    text += files_beside(path, text);
-    if (text.size() > largest_text)
-        throw input_error(path + ": is larger than 16 MiB with the files that it names; wanted a scene");
-    return text;
+    return read_scene(path).text;
 }
 
 } // namespace jointcreep::scene

@@ -7,6 +7,7 @@
 
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace jointcreep::scene
 {
@@ -17,8 +18,14 @@ namespace jointcreep::scene
 Scene parse_scene(std::string_view text, const std::string& name);
 
 // The text of a scene file, with the files beside it that it names behind it, each as a table [[file]]: so
-// the text says everything, wherever it goes. Throws file_error if it cannot be read, input_error if it is
-// empty or, with those files, larger than 16 MiB.
+// the text says everything, wherever it goes.
+struct SceneText {
+    std::string text;
+    std::vector<std::string> files; // paths of those that it names
+};
+
+// Throws file_error if it cannot be read, input_error if it is empty or, with those files, larger than 16 MiB.
+SceneText read_scene(const std::string& path);
 std::string read_scene_text(const std::string& path);
 
 // docs/scene.md, whole.

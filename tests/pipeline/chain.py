@@ -28,6 +28,14 @@ class Chain:
         """The text of a file in the source folder."""
         return (self.source / path).read_text()
 
+    def bridged(self, keys, cohesion=0.1, creeps=True):
+        """The scene every_key.toml, whose joints with rock bridges have that cohesion [MPa], a Kelvin unit if they creep, and
+        these keys in addition."""
+        kelvin = "(normal_kelvin_.*\nnormal_kelvin_.*\nshear_kelvin_.*\nshear_kelvin_.*\n)"
+        return changed(self.text("tests/pipeline/every_key.toml"),
+                       "^cohesion_MPa = 0.1\n(friction.*\ntensile_strength_MPa = 0\n)" + kelvin,
+                       rf"cohesion_MPa = {cohesion}\n\1" + (r"\2" if creeps else "") + keys + "\n")
+
     def answer(self, program, *arguments):
         """What the program does, whatever its exit code."""
         command = [self.programs / program, *map(str, arguments)]

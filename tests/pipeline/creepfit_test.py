@@ -91,7 +91,7 @@ class Creepfit(ChainTest):
         done = self.chain.answer("creepfit", self.joints, "--measurements", named, "--fit", "joint-stiffness",
                                  "-o", folder / "other.csv")
         self.assertEqual(done.returncode, 2)
-        self.assertIn("would be written there", done.stderr)
+        self.assertIn(f"{named}, which a search that fails writes, is the same file as --measurements {named}", done.stderr)
 
     def test_bounds(self):
         rows, text, _ = self.found(self.readings(), fit="joint-stiffness=0.9:1.1,kelvin-viscosity")
@@ -236,7 +236,7 @@ class Creepfit(ChainTest):
             (["--fit", "joint-stiffness=1"], "LOW:HIGH"),
             (["--fit", "joint-stiffness,"], "before or after a comma"), (["--fit", ",joint-stiffness"], "a comma"), (["--fit", "joint-stiffness=0:2"], "LOW:HIGH"),
             (["--fit", "joint-stiffness", "--stiffness", "3"], "--stiffness goes with"),
-            (["--fit", "joint-stiffness", "--readings", readings], "is used already"),
+            (["--fit", "joint-stiffness", "--readings", readings], f"--readings {readings} is the same file as --measurements"),
         ]:
             with self.subTest(options):
                 self.refused([self.joints, "--measurements", readings, *options], wanted)

@@ -110,10 +110,8 @@ class WearingDilation(ChainTest):
 
     def test_its_wear_goes_with_the_joint(self):
         """Also where rock bridges halve the tangent of the dilation angle; in exports it has a column."""
-        scene = changed(self.chain.text("tests/pipeline/every_key.toml"), "^tensile_strength_MPa = 0\n"
-                        "(normal_kelvin_.*\nnormal_kelvin_.*\nshear_kelvin_.*\nshear_kelvin_.*\n)",
-                        f"tensile_strength_MPa = 0\n\\1dilation_angle_deg = 10\ndilation_wear_m2_per_MJ = {WEAR * 1e6}\n")
-        joints = self.chain.joints(scene)
+        joints = self.chain.joints(self.chain.bridged(
+            f"dilation_angle_deg = 10\ndilation_wear_m2_per_MJ = {WEAR * 1e6}"))
         table = joints.with_name("edges.csv")
         self.assertEqual(self.chain.answer("jointexport", joints, "-o", table, "--what", "edges").returncode, 0)
         with open(table, encoding="utf-8") as file:
@@ -223,11 +221,8 @@ class ContinuouslyYielding(ChainTest):
         self.assertGreater(factor[stands != 1].min(), 0.99 * wanted)
 
     def test_rock_bridges_are_refused(self):
-        scene = changed(self.chain.text("tests/pipeline/every_key.toml"), "^tensile_strength_MPa = 0\n"
-                        "(normal_kelvin_.*\nnormal_kelvin_.*\nshear_kelvin_.*\nshear_kelvin_.*\n)",
-                        r"tensile_strength_MPa = 0\n\1initial_friction_angle_deg = 40\nroughness_length_mm = 3\n")
-        scene = changed(scene, "^cohesion_MPa = 0.1\nfriction", "cohesion_MPa = 0\nfriction")
-        network = self.chain.network(scene)
+        text = self.chain.bridged("initial_friction_angle_deg = 40\nroughness_length_mm = 3", cohesion=0)
+        network = self.chain.network(text)
         done = self.chain.answer("strength-averaging", network, "-o", network.with_name("joints.h5"))
         self.assertNotEqual(done.returncode, 0)
         self.assertIn("continuously yielding", done.stderr)

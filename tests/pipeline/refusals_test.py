@@ -110,6 +110,46 @@ class Refusals(ChainTest):
             self.assertEqual(pathlib.Path(source).read_bytes(), content)
             self.assertEqual(list(folder.iterdir()), [pathlib.Path(source)])
 
+    def test_no_file_is_written_over_another(self):
+        """Whatever the path to it, also where neither file is there yet; the message names both."""
+        joints = self.files["demsolve"]
+        for program, *arguments, written, other in [
+            ("jointgen", "scene.toml", "-o", "./traces.geojson", "-o ./traces.geojson", "traces.geojson, which the scene names"),
+            ("jointgen", "scene.toml", "-o", "here/scene.toml", "-o here/scene.toml", "the input scene.toml"),
+            ("creepfit", joints, "--fit", "joint-stiffness", "--measurements", "traces.geojson", "-o", "./traces.geojson",
+             "-o ./traces.geojson", "--measurements traces.geojson"),
+            ("creepfit", "traces.geojson", "-o", "z.csv", "--readings", "./z.csv", "--readings ./z.csv", "-o z.csv"),
+            ("creepfit", "traces.geojson", "-o", "z.csv", "--readings", "here/z.csv", "--readings here/z.csv", "-o z.csv"),
+            ("creepfit", "curve.failed.csv", "-o", "curve.csv", "--readings", "./curve.failed.csv",
+             "--readings ./curve.failed.csv", "the input curve.failed.csv"),
+            ("creepfit", joints, "--fit", "joint-stiffness", "--measurements", "curve.failed.csv", "-o", "curve.csv",
+             "curve.failed.csv, which a search that fails writes,", "--measurements curve.failed.csv"),
+            ("creepfit", joints, "--fit", "joint-stiffness", "--measurements", "traces.geojson", "-o", "a.csv",
+             "--readings", "a.failed.csv", "a.failed.csv, which a search that fails writes,", "--readings a.failed.csv"),
+            ("demsolve", joints, "-o", "q.h5", "--checkpoint", "FOLDER/q.h5", "--checkpoint FOLDER/q.h5", "-o q.h5"),
+            ("demsolve", joints, "-o", "q.h5", "--checkpoint", "here/q.failed.h5",
+             "q.failed.h5, which a run without equilibrium writes,", "--checkpoint here/q.failed.h5"),
+            ("demsolve", "q.failed.h5", "-o", "q.h5",
+             "q.failed.h5, which a run without equilibrium writes,", "the input q.failed.h5"),
+            ("demsolve", "q.failed.h5", "-o", "r.h5", "--checkpoint", "./q.failed.h5",
+             "--checkpoint ./q.failed.h5", "the input q.failed.h5"),
+        ]:
+            folder = self.chain.new_folder()
+            for name in "scene.toml", "poles.csv", "traces.geojson":
+                shutil.copy(self.chain.source / "tests/pipeline/kinds" / name, folder)
+            shutil.copy(folder / "traces.geojson", folder / "curve.failed.csv")
+            shutil.copy(joints, folder / "q.failed.h5")
+            (folder / "here").symlink_to(folder)
+            before = {path.name: path.read_bytes() for path in folder.iterdir() if path.is_file()}
+            command = [self.chain.programs / program, *(str(one).replace("FOLDER", str(folder)) for one in arguments)]
+            with self.subTest(command=command[1:]):
+                done = subprocess.run(command, capture_output=True, text=True, timeout=300, cwd=folder)
+                self.assertEqual(done.returncode, BAD_INPUT, done.stderr)
+                message = f"{program}: {written} is the same file as {other}; give it another name\n"
+                self.assertEqual(done.stderr, message.replace("FOLDER", str(folder)))
+                after = {path.name: path.read_bytes() for path in folder.iterdir() if path.is_file()}
+                self.assertEqual(after, before)
+
     def test_command_line(self):
         cases = [
             ("jointgen", ["--seed", "-1"], "--seed"),

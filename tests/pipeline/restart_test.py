@@ -369,7 +369,7 @@ class Restart(ChainTest):
         self.assertIn("--until is 0 day", self.refusal(joints, kept, "--until", 0))
         same = self.chain.answer("demsolve", joints, "-o", result, "--checkpoint", joints)
         self.assertEqual(same.returncode, 2)
-        self.assertIn("give it another name", same.stderr)
+        self.assertIn(f"--checkpoint {joints} is the same file as the input {joints}; give it another name", same.stderr)
         with h5py.File(kept, "r+", libver=("v110", "v110")) as file:
             version = file["/provenance/version"]
             version[-1] = b"0.0.1"
