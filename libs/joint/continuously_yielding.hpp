@@ -215,7 +215,14 @@ T opening(const ContinuouslyYieldingOf<T>& law, const Value<T>& sigma_0)
 inline double shear(const ContinuouslyYielding& law, State& state, double last, double slid, double strength)
 {
     const double p = strength / law.tan_phi_m(state.memory[0]);
-    return p > 0 ? law.sheared(state.memory, last, slid, p) : 0.0;
+    if (!(p > 0))
+        return 0;
+    // What was too little for a turn counts with what comes. A traction far from the kept one is the initial one, or
+    // that of another overlap.
+    if (std::abs(last - state.memory[1]) > 1e-4 * strength)
+        state.memory[1] = last;
+    const double kept = state.memory[1];
+    return law.sheared(state.memory, kept, slid + (last - kept) / law.k_s, p);
 }
 
 } // namespace jointcreep::joint

@@ -181,6 +181,23 @@ RC_GTEST_PROP(continuously_yielding, any_path_is_within_its_strength, ())
     }
 }
 
+// At large displacements every time step is far too little for a turn; many together follow the path, from initial
+// shear on, and back.
+TEST(continuously_yielding, yields_in_small_steps_at_large_displacements)
+{
+    const ContinuouslyYielding law = rough(2e-3);
+    const double p = 1e6, tau_0 = 1e5, step = 2e-8;
+    State at_point, along;
+    double u = 0, tau = tau_0;
+    for (const double by : {2e-3, -1.5e-3, 3e-3}) {
+        u += by;
+        for (int i = 0; i < std::lround(std::abs(by) / step); ++i)
+            tau = shear(law, along, tau, by > 0 ? step : -step, p * law.tan_phi_m(along.memory[0]));
+        EXPECT_NEAR(tau, respond(law, at_point, -p, tau_0, 0, u).tau, 1e-3 * p) << u;
+        EXPECT_NEAR(along.memory[0], at_point.memory[0], 2e-3 * at_point.memory[0]) << u;
+    }
+}
+
 // What an equilibrium leaves of a displacement back is no turn: the path goes on as if it had not been.
 TEST(continuously_yielding, a_displacement_of_rounding_is_no_turn)
 {
