@@ -8,8 +8,9 @@ import math
 import numpy as np
 
 from chain import ChainTest, changed, datasets, main
-from dilation_test import HELD, K_N, K_S, SCENE, STEEL, TAN_PHI, TAN_PSI
-from large_displacements_test import ACCOUNT, GRAVITY, RIGID, error_of_energy, incline
+from dilation_test import C, HELD, K_N, K_S, SCENE, STEEL, TAN_PHI, TAN_PSI
+from export_test import Grid
+from large_displacements_test import ACCOUNT, GRAVITY, NO_STRESS, RIGID, box, error_of_energy, incline, scene
 
 WEAR = 4e-4  # m2/J
 WEARS = ("^dilation_angle_deg = 10", f"dilation_angle_deg = 10\ndilation_wear_m2_per_MJ = {WEAR * 1e6}")
@@ -18,9 +19,10 @@ YIELDS = ("^cohesion_MPa = 0.2\nfriction_angle_deg = 35\ntensile_strength_MPa = 
           "cohesion_MPa = 0\nfriction_angle_deg = 30\ntensile_strength_MPa = 0\ninitial_friction_angle_deg = 45\n"
           f"roughness_length_mm = {ROUGHNESS * 1e3}")
 E_S, ETA_S = 0.8e9, 4e9  # Pa/m, Pa day/m
-KELVIN = ("^initial_friction", "normal_kelvin_stiffness_MPa_per_m = 3000\n"
+E_N, ETA_N = 3e9, 9e9
+KELVIN = ("^(initial_friction|dilation_wear)", "normal_kelvin_stiffness_MPa_per_m = 3000\n"
           "normal_kelvin_viscosity_MPa_day_per_m = 9000\nshear_kelvin_stiffness_MPa_per_m = 800\n"
-          "shear_kelvin_viscosity_MPa_day_per_m = 4000\ninitial_friction")
+          r"shear_kelvin_viscosity_MPa_day_per_m = 4000\n\1")
 
 
 def to_engine(text, engine, increments=1):
@@ -44,6 +46,40 @@ def acceleration(data, after, until):
     time, speed = data["/dynamics/dynamic_time"], np.sqrt(2 * data["/dynamics/kinetic_energy"] / (2700 * 2.0))
     sliding = (time > after) & (time < until)
     return np.polyfit(time[sliding], speed[sliding], 1)[0]
+
+
+def worn_and_crept(days, top, n, wear=WEAR):
+    """Normal and shear traction of the joint with Kelvin units and wearing dilation, fixed in normal direction, after the
+    block has moved by `top` [m]: by n steps, of which each finds the slip with the tractions it ends with, and lets the
+    Kelvin units follow those (backward Euler)."""
+    dt, stiffness = days / n, 1 / (1 / K_N + 1 / STEEL)
+    k_n, k_s = 1 / (1 / stiffness + 1 / (E_N + ETA_N / dt)), 1 / (1 / K_S + 1 / (E_S + ETA_S / dt))
+    slip = dilation = work = d_n = d_s = 0.0
+    for i in range(1, n + 1):
+        o_n, o_s = (d * eta / (eta + e * dt) for d, e, eta in ((d_n, E_N, ETA_N), (d_s, E_S, ETA_S)))
+        tau, pressed = k_s * (top * i / n - slip - o_s), 1e6 + k_n * (dilation + o_n)
+        excess = tau - (C + pressed * TAN_PHI)
+        if excess > 0:
+            tan_psi = TAN_PSI * math.exp(-wear * work)
+            by = excess / (k_s + k_n * TAN_PHI * tan_psi)
+            tau, pressed = tau - k_s * by, pressed + k_n * tan_psi * by
+            slip, dilation, work = slip + by, dilation + tan_psi * by, work + tau * by
+        d_n += (-(pressed - 1e6) - E_N * d_n) * dt / (ETA_N + E_N * dt)
+        d_s += (tau - E_S * d_s) * dt / (ETA_S + E_S * dt)
+    return -pressed, tau
+
+
+def strength_in_the_end(factor):
+    """Shear traction that the joint with wearing dilation, fixed in normal direction, carries however far it slips, with
+    strengths divided by `factor`: the equations in small steps."""
+    stiffness, by = 1 / (1 / K_N + 1 / STEEL), 2e-7
+    pressed, work, tau, wear = 1e6, 0.0, 0.0, 1.0
+    while wear > 1e-6:
+        wear = math.exp(-WEAR * work)
+        tau = (C + pressed * TAN_PHI) / factor
+        pressed += stiffness * TAN_PSI / factor * wear * by
+        work += tau * by
+    return tau
 
 
 class WearingDilation(ChainTest):
@@ -121,14 +157,52 @@ class WearingDilation(ChainTest):
         for row in worn:
             self.assertAlmostEqual(float(row["dilation_wear_m2_per_J"]), WEAR, delta=1e-12)
 
+    def test_it_creeps(self):
+        fine, wanted = (worn_and_crept(10, 4e-3, n) for n in (20000, 40000))
+        self.assertLess(abs(fine[0] / wanted[0] - 1), 1e-4)
+        self.assertLess(-wanted[0], 0.98 * -worn_and_crept(10, 4e-3, 20000, wear=0)[0])  # wear counts
+        text = changed(changed(changed(SCENE, *HELD), *WEARS), *KELVIN)
+        for engine, delta in ("implicit", 2e-2), ("relaxation", 2e-2):
+            errors = []
+            for days in 0.5, 0.25:
+                data = datasets(self.chain.result(to_engine(text, engine) + f"\n[creep]\nstep_days = {days}\n"))
+                errors.append(max(abs(found / of - 1) for found, of in zip(mean_traction(data), wanted)))
+            with self.subTest(engine=engine, errors=errors):
+                self.assertLess(errors[0], delta)
+                self.assertLess(errors[1], 0.7 * errors[0])
+
+    def test_factor_of_safety(self):
+        """Fixed in normal direction, slip presses the joint together, and it fails where the dilation is worn off before it
+        carries the load. Strengths and the tangent of the dilation angle are divided, wear is not."""
+        wanted = 1.25
+        tau = strength_in_the_end(wanted)
+        self.assertGreater(tau, 1.1 * (C + 1e6 * TAN_PHI) / wanted)  # dilation counts
+        text = changed(changed(SCENE, *HELD), *WEARS)
+        text = changed(text, r'^fix = "x"\ndisplacement_mm = \[4, 0\]', f"traction_MPa = [{tau / 1e6}, 0]", 2)
+        joints = self.chain.joints(to_engine(text, "auto", 100))
+        output = joints.with_name("safe.h5")
+        done = self.chain.answer("demsolve", joints, "--factor-of-safety", "-o", output)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        data = datasets(output)
+        factor, stands = data["/safety/factor"], data["/safety/stands"]
+        low, high = factor[stands == 1].max(), factor[stands != 1].min()
+        self.assertLess(high - low, 0.02 * low)
+        self.assertAlmostEqual(low / wanted, 1, delta=0.02)
+
     def test_what_does_not_go_together_is_refused(self):
-        for more, message in (("dilation_until_m = 1", "dilation_until_m"), ("residual_cohesion_MPa = 0", "residual_"),
-                              ("joint_wall_strength_MPa = 10", "joint_")):
-            scene = self.chain.new_folder() / "scene.toml"
-            scene.write_text(changed(changed(SCENE, *WEARS), "^dilation_wear", more + "\ndilation_wear"))
-            done = self.chain.answer("jointgen", scene, "-o", scene.with_suffix(".h5"))
+        one_law = "wanted keys of one joint law"
+        for more, *messages in (
+                ("dilation_until_m = 1", "dilation_until_m", "wanted 0 of a joint whose dilation wears off"),
+                ("residual_cohesion_MPa = 0\nresidual_friction_angle_deg = 30", "residual_cohesion_MPa", one_law),
+                ("joint_roughness_coefficient = 8\njoint_wall_strength_MPa = 50\nlargest_closure_mm = 0.3",
+                 "joint_roughness_coefficient", one_law),
+                ("initial_friction_angle_deg = 45\nroughness_length_mm = 2", "dilation_wear_m2_per_MJ", one_law)):
+            scene_file = self.chain.new_folder() / "scene.toml"
+            scene_file.write_text(changed(changed(SCENE, *WEARS), "^dilation_wear", more + "\ndilation_wear"))
+            done = self.chain.answer("jointgen", scene_file, "-o", scene_file.with_suffix(".h5"))
             self.assertEqual(done.returncode, 2, more)
-            self.assertIn(message, done.stderr)
+            for message in messages:
+                self.assertIn(message, done.stderr)
 
 
 def yielded(moves, pressure=1e6, steps=200000, days=0.0):
@@ -154,6 +228,15 @@ def yielded(moves, pressure=1e6, steps=200000, days=0.0):
             if abs(tau) > most:
                 u_p, tau = u_p + (abs(tau) - most) / K_S, math.copysign(most, tau)
     return tau
+
+
+def displacement_at(tau, k_s, roughness, pressure=1e6, by=1e-8):
+    """Displacement [m] at which the continuously yielding joint first carries that shear traction, in small steps."""
+    u = now = u_p = 0.0
+    while now < tau:
+        share = 1 - now / (pressure * math.tan(PHI + (PHI_I - PHI) * math.exp(-u_p / roughness)))
+        u, now, u_p = u + by, now + share * k_s * by, u_p + (1 - share) * by
+    return u
 
 
 class ContinuouslyYielding(ChainTest):
@@ -204,6 +287,61 @@ class ContinuouslyYielding(ChainTest):
                                 - math.cos(math.radians(dip)) * math.tan(math.radians(friction)))
             self.assertAlmostEqual(acceleration(data, 0.6, 0.95 * math.sqrt(2 * 15 / wanted)) / wanted, 1, delta=2e-3)
             self.assertLess(error_of_energy(data), ACCOUNT)
+
+    def test_with_large_displacements_it_follows_its_equations(self):
+        """A block on its joint, below a lid that slides, is pushed by more than its smooth joint would carry once a stage
+        has removed the rock beside it. What slides on to the next face has no shear yet: with 3 mm and faces of 1 m, 0.3
+        percent of the length at most."""
+        pushed, roughness = 1.3e6, 3e-3
+        stress = changed(NO_STRESS, r"^compression_(..)_MPa = 0$",
+                         lambda found: f"compression_{found[1]}_MPa = {1.3 if found[1] == 'xx' else 1}", 2)
+        sides = "\n".join(('[[boundary]]\nfrom_m = [0, 0]\nto_m = [3, 0]\njoint = "joint"',
+                           '[[boundary]]\nfrom_m = [0, 1]\nto_m = [3, 1]\nfix = "y"',
+                           '[[boundary]]\nfrom_m = [3, 0]\nto_m = [3, 1]\nfix = "x"',
+                           f'[[boundary]]\nfrom_m = [0, 0]\nto_m = [0, 1]\ntraction_MPa = [{pushed / 1e6}, 0]'))
+        text = scene(box(0, 0, 3, 1), [([2, -1], [2, 2])], [[box(2, 0, 3, 1)]], sides,
+                     "release_s = 1\nmass_damping_per_s = 300\nrecord_every_s = 0.1\n" + RIGID, gravity=0, stress=stress,
+                     size=1, points='[[point]]\nname = "middle"\nat_m = [1, 0.5]')
+        text = changed(text, "^tensile_strength_MPa = 0$", "tensile_strength_MPa = 0\ninitial_friction_angle_deg = 45\n"
+                       f"roughness_length_mm = {roughness * 1e3}")
+        data = datasets(self.chain.result(text))
+        self.assertLess(error_of_energy(data), ACCOUNT)
+        tau, k_s = pushed / 2, 0.5e9
+        self.assertGreater(tau, 1.1e6 * math.tan(PHI))
+        wanted = displacement_at(tau, k_s, roughness)
+        self.assertGreater(wanted, 1.07 * displacement_at(tau, k_s, 1e9))  # its roughness wears
+        self.assertGreater(wanted, 1.7 * tau / k_s)  # it yields
+        self.assertAlmostEqual(data["/history/displacement"][-1, 0, 0] / wanted, 1, delta=2e-2)
+
+    def test_its_result_is_exported(self):
+        text = to_engine(changed(SCENE, *YIELDS), "implicit")
+        result = self.chain.result(text)
+        data = datasets(result)
+        edges, contacts = result.with_name("edges.csv"), result.with_name("contacts.vtu")
+        self.chain.run("jointexport", result, edges, "--what", "edges")
+        with open(edges, encoding="utf-8") as file:
+            rows = [row for row in csv.DictReader(file) if row["law"] == "4"]
+        self.assertEqual(len(rows), (data["/equivalent/law"] == 4).sum())
+        self.assertGreater(len(rows), 0)
+        for row in rows:
+            self.assertAlmostEqual(float(row["initial_friction_angle_rad"]), PHI_I, delta=1e-12)
+            self.assertAlmostEqual(float(row["roughness_length_m"]), ROUGHNESS, delta=1e-12)
+            self.assertAlmostEqual(float(row["friction_angle_rad"]), PHI, delta=1e-12)
+        self.chain.run("jointexport", result, contacts, "--what", "contacts")
+        grid = Grid(contacts)
+        np.testing.assert_array_equal(grid.point["shear_traction"], data["/states/traction"][-1, :, 1])
+        self.assertGreater(abs(grid.point["shear_traction"]).min(), 0)
+
+    def test_its_sensitivities_are_refused(self):
+        joints = self.chain.joints(to_engine(changed(SCENE, *YIELDS), "implicit"))
+        readings = joints.with_name("readings.csv")
+        readings.write_text("time_day,point,component,displacement_mm\n"
+                            + "".join(f"{day},top,x,{0.4 * day}\n" for day in range(1, 10)))
+        output = joints.with_name("factors.csv")
+        done = self.chain.answer("creepfit", joints, "--measurements", readings, "--fit", "joint-stiffness", "-o", output)
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertIn("wanted a scene without continuously yielding joints", done.stderr)
+        self.assertFalse(output.exists())
 
     def test_factor_of_safety(self):
         """Of a joint that is smooth from the start: tan(35 deg) / tan(25 deg)."""
