@@ -4,10 +4,10 @@
 #include "creepfit_words.hpp"
 
 #include "estimation/creep_curve.hpp"
+#include "joint/coulomb.hpp"
 #include "model/error.hpp"
 #include "model/units.hpp"
 #include "scene/measurements.hpp"
-#include "scene/shared_settings.hpp"
 
 #include <cmath>
 #include <optional>
@@ -255,7 +255,8 @@ std::vector<Option> curve_options()
 
 void fit_curve(const Arguments& arguments)
 {
-    const std::optional<double> stiffness = arguments.number("stiffness", scene::joint_stiffnesses, "MPa/m");
+    const std::optional<double> stiffness =
+        arguments.number("stiffness", joint::parameters::normal_stiffness.range, "MPa/m");
     const std::optional<std::string> readings_path = readings_file(arguments, false);
 
     // 1. The readings, from the change of load on.

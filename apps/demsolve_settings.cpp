@@ -27,7 +27,7 @@ std::string as_option(std::string_view word)
 
 // "published, backward, linear-force or fitted": `last` stands before the last one.
 template <class Choice>
-std::string listed(const scene::Words<Choice>& words, const std::string& last = ", ")
+std::string listed(const keys::Words<Choice>& words, const std::string& last = ", ")
 {
     std::string all;
     for (std::size_t i = 0; i < words.size(); ++i)
@@ -36,7 +36,7 @@ std::string listed(const scene::Words<Choice>& words, const std::string& last = 
 }
 
 template <class Choice>
-Choice chosen_from(const scene::Words<Choice>& words, const std::string& option, const std::string& name)
+Choice chosen_from(const keys::Words<Choice>& words, const std::string& option, const std::string& name)
 {
     for (const auto& [word, choice] : words)
         if (as_option(word) == name)
@@ -70,7 +70,7 @@ auto number(const Range& range, std::string_view unit, const std::function<void(
 
 // One of some words.
 template <class Choice>
-auto word(const scene::Words<Choice>& words, const std::function<void(Scene&, Choice)>& set)
+auto word(const keys::Words<Choice>& words, const std::function<void(Scene&, Choice)>& set)
 {
     return [=](const Arguments& arguments, const std::string& option, Scene& scene) {
         std::string value = arguments.text(option).value();
@@ -215,7 +215,7 @@ std::string replace_settings(const Arguments& arguments, Scene& scene)
 
 std::string end_scene(const Arguments& arguments, Scene& scene)
 {
-    const auto day = arguments.number("until", above(0).to(scene::farthest_day), "day");
+    const auto day = arguments.number("until", above(0).to(keys::farthest_day), "day");
     if (!day)
         return "";
     scene.end = *day * unit::day;

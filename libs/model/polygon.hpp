@@ -2,12 +2,14 @@
 
 #pragma once
 
-#include "model/scene.hpp"
+#include <Eigen/Core>
 
 #include <vector>
 
 namespace jointcreep
 {
+
+using Polygon = std::vector<Eigen::Vector2d>; // corners in order, either way round, not closed [m]
 
 // A stretch of a line, by distance from the line's point, or of an axis through the origin [m].
 struct Interval {

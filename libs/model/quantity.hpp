@@ -1,5 +1,5 @@
 // What is known of a number that a person writes or reads: its unit and the values it may have. Scene keys
-// (libs/scene/keys.hpp) and parameters of joint laws (libs/joint/parameter.hpp) are declared with these.
+// (libs/keys/keys.hpp) and parameters of joint laws (libs/joint/parameter.hpp) are declared with these.
 
 #pragma once
 

@@ -1,9 +1,10 @@
-// A scene: everything a user says about one section of jointed rock. Read from TOML by libs/scene, where
-// every key is declared with its unit and range. SI units and the signs of model/signs.hpp; angles in
+// A scene: everything a user says about one section of jointed rock. Read from TOML by libs/scene; every key
+// is declared with its unit and range (libs/keys). SI units and the signs of model/signs.hpp; angles in
 // radians.
 
 #pragma once
 
+#include "model/polygon.hpp"
 #include "model/probability_law.hpp"
 #include "model/statistics.hpp"
 
@@ -20,8 +21,6 @@
 
 namespace jointcreep
 {
-
-using Polygon = std::vector<Eigen::Vector2d>; // corners in order, either way round, not closed [m]
 
 struct RockStrength {
     double cohesion;         // [Pa]

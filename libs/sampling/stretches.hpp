@@ -3,6 +3,7 @@
 #pragma once
 
 #include "model/polygon.hpp"
+#include "model/scene.hpp"
 
 #include <vector>
 

@@ -1,5 +1,6 @@
 #include "scene/csv.hpp"
 
+#include "keys/keys.hpp"
 #include "model/error.hpp"
 
 #include <algorithm>
@@ -115,7 +116,7 @@ double Csv::number(const Row& row, std::string_view name, const Range& range) co
     const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
     if (error != std::errc{} || end != digits.data() + digits.size() || !range.holds(value))
         refuse_line(row.line, std::string(name) + " is \"" + std::string(field) + "\"; wanted a number in " +
-                                  shown(range, KeyUnit{""}));
+                                  keys::shown(range, no_unit));
     return value;
 }
 

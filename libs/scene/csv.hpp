@@ -4,7 +4,7 @@
 
 #pragma once
 
-#include "scene/keys.hpp"
+#include "model/quantity.hpp"
 
 #include <string>
 #include <string_view>

@@ -1,9 +1,9 @@
 #include "scene/field_data.hpp"
 
+#include "keys/keys.hpp"
 #include "model/error.hpp"
 #include "model/units.hpp"
 #include "scene/csv.hpp"
-#include "scene/keys.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -39,7 +39,7 @@ std::optional<std::int64_t> id_of(std::string_view text)
     return id;
 }
 
-constexpr Range coordinate_range = within(farthest_metre);
+constexpr Range coordinate_range = keys::coordinates;
 
 std::vector<FoundTrace> traces_in_csv(const Csv& csv, const TraceFilter& filter)
 {
@@ -106,7 +106,7 @@ Polygon polyline_of(const json& coordinates, const std::string& where)
         const Vector2d at(place[0].get<double>(), place[1].get<double>());
         if (!coordinate_range.holds(at.x()) || !coordinate_range.holds(at.y()))
             throw input_error(where + " has the coordinates " + place.dump().substr(0, 60) +
-                              "; wanted numbers in " + shown(coordinate_range, metres));
+                              "; wanted numbers in " + keys::shown(coordinate_range, metres));
         polyline.push_back(at);
     }
     return polyline;

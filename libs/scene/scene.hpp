@@ -1,5 +1,6 @@
-// A scene's TOML text -> Scene, in SI units and checked. The keys are declared in scene_keys.cpp;
-// docs/scene.md and the table below are made from the same declarations.
+// A scene's TOML text -> Scene, in SI units and checked. The keys are declared in scene_keys.cpp
+// and by each kind of force (scene/forces.hpp); docs/scene.md and the table below are made from the same
+// declarations.
 
 #pragma once
 

@@ -1,9 +1,9 @@
 #include "scene/scene_checks.hpp"
 
-#include "joint/law.hpp"
+#include "keys/polygon.hpp"
 #include "model/error.hpp"
 #include "model/polygon.hpp"
-#include "scene/polygon.hpp"
+#include "scene/forces.hpp"
 
 #include <cmath>
 #include <map>
@@ -14,38 +14,15 @@ namespace jointcreep::scene
 namespace
 {
 
-constexpr double same_place =
-    1e-9; // of the section's size: points and boundaries this near the outline are on it
+using namespace keys;
+
 constexpr double least_trace =
     0.05; // of a joint plane's unit normal in the section's plane: else nearly parallel
-constexpr std::size_t most_names_shown = 10;
-
-// The table that a record was read from; knows the lines of its keys.
-struct Given {
-    const Reading& reading;
-    const TomlValue& table;
-    std::string title; // "[[rock]] "granite""
-
-    const TomlValue* find(std::string_view key) const { return table.find(key); }
-
-    // "[[joint]] "F1" material = "gouge": what is wrong", at the key's line, or the table's if it is missing.
-    [[noreturn]] void refuse(const std::string& key, const std::string& what) const
-    {
-        const TomlValue* const value = find(key);
-        const Place place{reading, title};
-        if (value)
-            place.refuse(value->line, title + " " + key + " = " + shown(*value) + ": " + what);
-        place.refuse(table.line, title + " has no " + key + ": " + what);
-    }
-};
 
 class Checker
 {
 public:
-    Checker(const Scene& scene, const TomlValue& root, const Reading& reading)
-        : scene_(scene), root_(root), reading_(reading)
-    {
-    }
+    Checker(const Scene& scene, const Source& source) : scene_(scene), source_(source) {}
 
     void check() const
     {
@@ -53,11 +30,9 @@ public:
         check_references();
         check_polygons();
         check_joints();
-        check_joint_materials();
-        check_rocks();
+        check_materials(&Part<Scene>::values);
         check_joint_sets();
-        check_in_situ_stress();
-        check_boundaries();
+        check_loads(&Part<Scene>::values);
         check_times();
         check_places();
         check_numbers();
@@ -67,84 +42,36 @@ public:
 
 private:
     const Scene& scene_;
-    const TomlValue& root_;
-    const Reading& reading_;
+    const Source& source_;
 
-    Given once(const std::string& name) const
+    using Check = Part<Scene>::Check Part<Scene>::*;
+
+    Given once(const std::string& table) const { return source_.once(table); }
+    Given in_list(const std::string& table, std::size_t i) const { return source_.in_list(table, i); }
+
+    // What concerns one kind of force alone.
+    void check_materials(Check check) const
     {
-        const TomlValue* const table = root_.find(name);
-        return {reading_, table ? *table : root_, "[" + name + "]"};
+        for (const ForceKeys<Scene>& force : forces())
+            check_parts(force.materials, check, scene_, source_);
     }
-
-    Given in_list(const std::string& name, std::size_t i) const
+    void check_loads(Check check) const
     {
-        const TomlValue& table = std::get<TomlValue::List>(root_.find(name)->content)[i];
-        const TomlValue* const own_name = table.find("name");
-        return {reading_, table, "[[" + name + "]]" + (own_name ? " " + shown(*own_name) : "")};
+        for (const ForceKeys<Scene>& force : forces())
+            check_parts(force.loads, check, scene_, source_);
     }
 
     // --- Names and references ------------------------------------------------------------------------------
 
-    template <class Record>
-    void check_unique(const std::string& table, const std::vector<Record>& records,
-                      std::map<std::string, std::int64_t>& line_of) const
-    {
-        for (std::size_t i = 0; i < records.size(); ++i) {
-            const Given given = in_list(table, i);
-            const auto [other, is_new] = line_of.try_emplace(records[i].name, given.find("name")->line);
-            if (!is_new)
-                given.refuse("name", "the name is taken in line " + std::to_string(other->second));
-        }
-    }
-
-    template <class Record>
-    void check_unique(const std::string& table, const std::vector<Record>& records) const
-    {
-        std::map<std::string, std::int64_t> line_of;
-        check_unique(table, records, line_of);
-    }
-
     void check_names() const
     {
-        check_unique("rock", scene_.rocks);
-        check_unique("joint_material", scene_.joint_materials);
-        check_unique("stage", scene_.stages);
-        check_unique("point", scene_.points);
-        check_unique("gauge", scene_.gauges);
-        std::map<std::string, std::int64_t> line_of; // a joint is a set of its own in all files
-        check_unique("joint_set", scene_.joint_sets, line_of);
-        check_unique("joint", scene_.joints, line_of);
-        check_unique("mapped", scene_.mapped, line_of);
-    }
-
-    template <class Record>
-    static std::set<std::string> names_of(const std::vector<Record>& records)
-    {
-        std::set<std::string> names;
-        for (const Record& record : records)
-            names.insert(record.name);
-        return names;
-    }
-
-    static void check_reference(const Given& given, const std::string& key, const std::string& name,
-                                const std::set<std::string>& known, const std::string& what)
-    {
-        if (known.contains(name))
-            return;
-        if (known.empty())
-            given.refuse(key, "there is no " + what);
-        std::string all;
-        std::size_t shown_names = 0;
-        for (const auto& one : known)
-            if (shown_names++ < most_names_shown)
-                all += (all.empty() ? "\"" : ", \"") + one + '"';
-        if (known.size() > most_names_shown)
-            all += ", ...";
-        const auto meant = nearest(name, {known.begin(), known.end()});
-        const TomlValue* const value = given.find(key);
-        const bool is_in_list = value && std::holds_alternative<TomlValue::List>(value->content);
-        given.refuse(key, (is_in_list ? "has \"" + name + "\"; " : "") + "wanted the name of a " + what +
-                              ": " + all + (meant.empty() ? "" : "; did you mean \"" + meant + "\"?"));
+        for (const ForceKeys<Scene>& force : forces()) {
+            keys::check_names(force.materials, source_);
+            keys::check_names(force.loads, source_);
+        }
+        for (const char* const table : {"stage", "point", "gauge"})
+            source_.check_unique({table});
+        source_.check_unique({"joint_set", "joint", "mapped"}); // a joint is a set of its own in all files
     }
 
     void check_references() const
@@ -152,8 +79,7 @@ private:
         const auto rocks = names_of(scene_.rocks);
         const auto materials = names_of(scene_.joint_materials);
         check_reference(once("section"), "rock", scene_.rock, rocks, "[[rock]]");
-        for (std::size_t i = 0; i < scene_.regions.size(); ++i)
-            check_reference(in_list("region", i), "rock", scene_.regions[i].rock, rocks, "[[rock]]");
+        check_materials(&Part<Scene>::references);
         for (std::size_t i = 0; i < scene_.joints.size(); ++i)
             check_reference(in_list("joint", i), "material", scene_.joints[i].material, materials,
                             "[[joint_material]]");
@@ -178,6 +104,7 @@ private:
         for (std::size_t i = 0; i < scene_.joint_sets.size(); ++i)
             for (const std::string& rock : scene_.joint_sets[i].rocks)
                 check_reference(in_list("joint_set", i), "rocks", rock, rocks, "[[rock]]");
+        check_loads(&Part<Scene>::references);
         for (std::size_t i = 0; i < scene_.boundaries.size(); ++i)
             if (!scene_.boundaries[i].joint.empty())
                 check_reference(in_list("boundary", i), "joint", scene_.boundaries[i].joint, materials,
@@ -192,21 +119,15 @@ private:
 
     // --- Geometry ------------------------------------------------------------------------------------------
 
-    static void check_polygon(const Given& given, const std::string& key, const Polygon& polygon)
-    {
-        if (const auto fault = polygon_fault(polygon); !fault.empty())
-            given.refuse(key, fault + "; wanted a simple polygon of at least 3 corners, not closed");
-    }
-
     void check_polygons() const
     {
         check_polygon(once("section"), "outline_m", scene_.outline);
         check_holes();
-        for (std::size_t i = 0; i < scene_.regions.size(); ++i)
-            check_polygon(in_list("region", i), "outline_m", scene_.regions[i].outline);
+        check_materials(&Part<Scene>::shapes);
         for (std::size_t i = 0; i < scene_.joint_sets.size(); ++i)
             if (scene_.joint_sets[i].region)
                 check_polygon(in_list("joint_set", i), "region_m", *scene_.joint_sets[i].region);
+        check_loads(&Part<Scene>::shapes);
         if (scene_.fine_zones)
             check_fine_zones(*scene_.fine_zones);
         for (std::size_t i = 0; i < scene_.stages.size(); ++i)
@@ -249,152 +170,13 @@ private:
         }
     }
 
-    double tolerance() const { return same_place * polygon_size(scene_.outline); }
-
-    void check_joint_materials() const
-    {
-        for (std::size_t i = 0; i < scene_.joint_materials.size(); ++i) {
-            const Given given = in_list("joint_material", i);
-            if (given.find("kelvin_chain") && given.find("normal_kelvin_stiffness_MPa_per_m"))
-                given.refuse("kelvin_chain",
-                             "wanted either it, or the four keys of one Kelvin unit, not both");
-            const JointMaterial& material = scene_.joint_materials[i];
-            const joint::LawInfo& law = joint::laws()[static_cast<std::size_t>(material.law)];
-            for (const joint::LawInfo& other : joint::laws())
-                for (const std::string_view name : other.own)
-                    if (material.own.contains(name) && std::ranges::count(law.own, name) == 0)
-                        given.refuse(key_of(name), "wanted keys of one joint law; those of \"" +
-                                                       std::string(law.name) + "\" are given, too");
-            if (!law.creeps)
-                for (const char* const key : {"kelvin_chain", "normal_kelvin_stiffness_MPa_per_m",
-                                              "normal_maxwell_viscosity_MPa_day_per_m"})
-                    if (given.find(key))
-                        given.refuse(key,
-                                     "a joint of the law \"" + std::string(law.name) + "\" does not creep");
-            const auto complaint =
-                law.check([&](const joint::Parameter& parameter) { return parameter.of(material); });
-            if (complaint)
-                given.refuse(std::string(complaint->parameter.key), complaint->wanted);
-        }
-    }
-
-    static std::string key_of(std::string_view parameter)
-    {
-        return std::string(
-            std::ranges::find(joint::all_parameters(), parameter, &joint::Parameter::name)->key);
-    }
-
-    void check_rocks() const
-    {
-        for (std::size_t i = 0; i < scene_.rocks.size(); ++i) {
-            const Rock& rock = scene_.rocks[i];
-            if (rock.law == RockLaw::mohr_coulomb && !rock.strength)
-                in_list("rock", i).refuse("law", "it needs cohesion_MPa, friction_angle_deg and "
-                                                 "tensile_strength_MPa beside it");
-            if (rock.law == RockLaw::mohr_coulomb && (rock.kelvin || rock.maxwell_viscosity))
-                in_list("rock", i).refuse("law", "wanted \"elastic\" of rock that creeps");
-            if (rock.dilation_angle > 0 && !rock.strength)
-                in_list("rock", i).refuse("dilation_angle_deg",
-                                          "it needs cohesion_MPa, friction_angle_deg and "
-                                          "tensile_strength_MPa beside it");
-            if (rock.dilation_angle > 0 && rock.dilation_angle > rock.strength->friction_angle)
-                in_list("rock", i).refuse("dilation_angle_deg",
-                                          "wanted at most friction_angle_deg, beside it");
-        }
-    }
+    double tolerance() const { return outline_tolerance(scene_.outline); }
 
     void check_joints() const
     {
         for (std::size_t i = 0; i < scene_.joints.size(); ++i)
             if (scene_.joints[i].from == scene_.joints[i].to)
                 in_list("joint", i).refuse("to_m", "wanted another point than from_m");
-    }
-
-    void check_in_situ_stress() const
-    {
-        const Given given = once("in_situ_stress");
-        const auto& ground = scene_.in_situ_stress.ground;
-        if (given.find("ground_m") && given.find("elevation_m"))
-            given.refuse("ground_m", "wanted either it or elevation_m, not both");
-        if (!given.find("ground_m") && !given.find("elevation_m"))
-            given.refuse("elevation_m", "wanted it, or ground_m");
-        if (!given.find("profile") && !given.find("compression_xx_MPa"))
-            given.refuse("compression_xx_MPa",
-                         "wanted the keys of a linear law (compression_xx_MPa, ...), or a profile");
-        if (ground.empty())
-            return;
-        const auto [left, right] =
-            std::minmax_element(scene_.outline.begin(), scene_.outline.end(),
-                                [](const auto& one, const auto& other) { return one.x() < other.x(); });
-        if (ground.front().x() > left->x() + tolerance() || ground.back().x() < right->x() - tolerance())
-            given.refuse("ground_m", "wanted a line across the whole section, from x = " + shown(left->x()) +
-                                         " to " + shown(right->x()) + " m");
-        check_below_ground(given);
-    }
-
-    // Both lines are straight between their corners: where the section is highest above the ground, one of
-    // them has one.
-    void check_below_ground(const Given& given) const
-    {
-        const auto& in_situ = scene_.in_situ_stress;
-        double highest = tolerance(), at = 0;
-        const auto look = [&](const Eigen::Vector2d& place) {
-            if (const double above = -in_situ.depth_of(place); above > highest) {
-                highest = above;
-                at = place.x();
-            }
-        };
-        const Polygon& outline = scene_.outline;
-        for (std::size_t i = 0; i < outline.size(); ++i) {
-            const Eigen::Vector2d &from = outline[i], &to = outline[(i + 1) % outline.size()];
-            look(from);
-            for (const Eigen::Vector2d& corner : in_situ.ground)
-                if (std::min(from.x(), to.x()) < corner.x() && corner.x() < std::max(from.x(), to.x()))
-                    look(from + (to - from) * ((corner.x() - from.x()) / (to.x() - from.x())));
-        }
-        if (highest > tolerance())
-            given.refuse("ground_m", "the section's outline is " + shown(highest) +
-                                         " m above it at x = " + shown(at) +
-                                         " m; wanted the ground as it is before any excavation, "
-                                         "nowhere below the section's top");
-    }
-
-    void check_boundaries() const
-    {
-        const auto& all = scene_.boundaries;
-        for (std::size_t i = 0; i < all.size(); ++i) {
-            const Given given = in_list("boundary", i);
-            if (!given.find("fix") && !given.find("joint") && !given.find("traction_MPa"))
-                given.refuse("fix", "wanted fix = \"x\", \"y\" or \"xy\", or joint = a joint material, or "
-                                    "traction_MPa");
-            if (given.find("joint") && (all[i].traction || all[i].displacement))
-                given.refuse("joint", "wanted no traction_MPa or displacement_mm beside joint");
-            if (all[i].displacement && (!given.find("fix") || !given.find("load_history")))
-                given.refuse("displacement_mm", "wanted fix and load_history beside it");
-            if (all[i].displacement && ((!all[i].fix_x && all[i].displacement->x() != 0) ||
-                                        (!all[i].fix_y && all[i].displacement->y() != 0)))
-                given.refuse("displacement_mm", "wanted 0 in the direction that is not fixed");
-            if (all[i].traction &&
-                ((all[i].fix_x && all[i].traction->x() != 0) || (all[i].fix_y && all[i].traction->y() != 0)))
-                given.refuse("traction_MPa", "wanted 0 in a direction that is fixed");
-            if (given.find("load_history") && !all[i].traction && !all[i].displacement)
-                given.refuse("load_history", "wanted traction_MPa or displacement_mm beside it");
-            if (given.find("fix") && given.find("joint"))
-                given.refuse("fix", "wanted either fix or joint, not both");
-            const double length = (all[i].to - all[i].from).norm();
-            if (!(length > tolerance()))
-                given.refuse("to_m", "wanted another point than from_m");
-            double on_sides = length_on_sides(scene_.outline, all[i].from, all[i].to, tolerance());
-            for (const Polygon& hole : scene_.holes)
-                on_sides += length_on_sides(hole, all[i].from, all[i].to, tolerance());
-            if (on_sides < length - 2 * tolerance())
-                given.refuse("to_m", "wanted from_m and to_m on one straight piece of the section's outline");
-            for (std::size_t j = 0; j < i; ++j)
-                if (common_length(all[i].from, all[i].to, all[j].from, all[j].to, tolerance()) >
-                    2 * tolerance())
-                    given.refuse("to_m", "it runs over the boundary of line " +
-                                             std::to_string(in_list("boundary", j).table.line));
-        }
     }
 
     void check_places() const
@@ -541,9 +323,9 @@ private:
                                                 "tensile_strength_MPa of [[rock]] \"" +
                                                     rock.name + "\"");
         }
-        if (!scene_.joint_sets.empty() && !root_.find("random"))
-            Place{reading_, ""}.refuse(in_list("joint_set", 0).table.line,
-                                       "the scene has no [random] seed: [[joint_set]] needs it");
+        if (!scene_.joint_sets.empty() && !source_.root.find("random"))
+            Place{source_.reading, ""}.refuse(in_list("joint_set", 0).table.line,
+                                              "the scene has no [random] seed: [[joint_set]] needs it");
     }
 
     // --- Time, and numbers that depend on others -----------------------------------------------------------
@@ -658,9 +440,9 @@ private:
 
 } // namespace
 
-void check_scene(const Scene& scene, const TomlValue& root, const Reading& reading)
+void check_scene(const Scene& scene, const Source& source)
 {
-    Checker(scene, root, reading).check();
+    Checker(scene, source).check();
 }
 
 } // namespace jointcreep::scene

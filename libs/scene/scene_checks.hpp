@@ -1,14 +1,15 @@
 // What a scene must hold beyond the range of each key: names, references, polygons, order in time, and keys
-// that ask for others.
+// that ask for others. What concerns one kind of force alone is checked by its own keys (scene/forces.hpp).
 
 #pragma once
 
-#include "scene/keys.hpp"
+#include "keys/source.hpp"
+#include "model/scene.hpp"
 
 namespace jointcreep::scene
 {
 
-// `root` is the text the scene was read from: it knows lines, and which keys were given. Throws input_error.
-void check_scene(const Scene& scene, const TomlValue& root, const Reading& reading);
+// Throws input_error naming the line, key, value and what was wanted.
+void check_scene(const Scene& scene, const keys::Source& source);
 
 } // namespace jointcreep::scene

@@ -1,4 +1,4 @@
-// docs/scene.md and the key list, from the declarations of scene_keys.cpp.
+// docs/scene.md and the key list, from the declarations of the keys.
 
 #include "scene/scene.hpp"
 #include "scene/scene_keys.hpp"
@@ -8,13 +8,15 @@ namespace jointcreep::scene
 namespace
 {
 
+using namespace keys;
+
 constexpr const char* head = R"(# The scene
 
 A scene is one TOML file that says everything about a section of jointed rock: its outline, rocks, joints, stress,
 what holds it, when which part of it is dug away, and where its movement is read. The programs read nothing else,
 but files beside it that it names: measured poles, and mapped traces.
 
-This page is made from the declarations in `libs/scene/scene_keys.cpp`:
+This page is made from the declarations in the files `scene_keys.cpp` of `libs`:
 `jointgen --scene-keys-markdown > docs/scene.md`. The same keys as a table for scripts: `jointgen --scene-keys`.
 
 ## Rules
@@ -166,15 +168,15 @@ std::string heading(const TableInfo& table)
 std::string scene_keys_markdown()
 {
     std::string page = head;
-    scene_tables().each([&page](const auto& table) {
+    for (const Part<Scene>& table : scene_parts()) {
         page += "\n### " + heading(table.info) + "\n\n" + table.info.doc + needed(table.info) + "\n\n";
         page += "| key | kind | range | needed | meaning |\n|---|---|---|---|---|\n";
-        for (const auto& key : table.keys) {
-            const auto range = key.info.range ? shown(*key.info.range, key.info.unit) : "";
-            page += "| `" + key.info.name + "` | " + without_bars(key.info.kind) + " | " + range + " | " +
-                    needed(key.info) + " | " + key.info.doc + " |\n";
+        for (const KeyInfo& key : table.keys) {
+            const auto range = key.range ? shown(*key.range, key.unit) : "";
+            page += "| `" + key.name + "` | " + without_bars(key.kind) + " | " + range + " | " + needed(key) +
+                    " | " + key.doc + " |\n";
         }
-    });
+    }
     return page;
 }
 
@@ -182,18 +184,16 @@ std::string scene_keys_tsv()
 {
     std::string rows = "table\tkey\tkind\tunit\trequired\tminimum\tmaximum\tdefault\n";
     const auto or_none = [](const std::string& text) { return text.empty() ? "-" : text; };
-    scene_tables().each([&](const auto& table) {
-        for (const auto& key : table.keys) {
-            const KeyInfo& info = key.info;
-            const auto required = info.need == Need::required   ? "yes"
-                                  : info.need == Need::optional ? "no"
-                                                                : "together";
-            rows += or_none(table.info.name) + '\t' + info.name + '\t' + info.kind + '\t' +
-                    or_none(std::string(info.unit.symbol)) + '\t' + required + '\t' +
-                    (info.range ? lower_bound(*info.range) : "-") + '\t' +
-                    (info.range ? upper_bound(*info.range) : "-") + '\t' + or_none(info.otherwise) + '\n';
+    for (const Part<Scene>& table : scene_parts())
+        for (const KeyInfo& key : table.keys) {
+            const auto required = key.need == Need::required   ? "yes"
+                                  : key.need == Need::optional ? "no"
+                                                               : "together";
+            rows += or_none(table.info.name) + '\t' + key.name + '\t' + key.kind + '\t' +
+                    or_none(std::string(key.unit.symbol)) + '\t' + required + '\t' +
+                    (key.range ? lower_bound(*key.range) : "-") + '\t' +
+                    (key.range ? upper_bound(*key.range) : "-") + '\t' + or_none(key.otherwise) + '\n';
         }
-    });
     return rows;
 }
 

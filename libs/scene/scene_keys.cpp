@@ -1,45 +1,65 @@
 #include "scene/scene_keys.hpp"
 
-#include "joint/law.hpp"
 #include "model/error.hpp"
 #include "scene/field_data.hpp"
+#include "scene/forces.hpp"
+#include "scene/shared_settings.hpp"
 
 namespace jointcreep::scene
 {
 namespace
 {
 
+using namespace keys;
 using enum Need;
 using enum Written;
 
-constexpr KeyUnit none{""};
-constexpr KeyUnit kg_per_m3{"kg/m3", unit::kg / (unit::m * unit::m * unit::m)};
 constexpr KeyUnit m_per_s2{"m/s2", unit::m / (unit::s * unit::s)};
 constexpr KeyUnit per_s{"1/s", 1 / unit::s};
 constexpr KeyUnit seconds{"s", unit::s};
-constexpr KeyUnit GPa{"GPa", unit::GPa};
-constexpr KeyUnit MPa_day_per_m{"MPa day/m", unit::MPa* unit::day / unit::m};
-constexpr KeyUnit GPa_day{"GPa day", unit::GPa* unit::day};
 constexpr KeyUnit mm_per_day{"mm/day", unit::mm / unit::day};
 
-// Upper bounds far above any rock: they catch slips of unit, and keep all products finite.
-constexpr Range strength = from(0).to(1e4);           // [MPa]
-constexpr Range friction = from(0).below(90);         // [deg]
-constexpr Range stiffness = joint_stiffnesses;        // [MPa/m]
-constexpr Range viscosity = from(1e-9).to(1e12);      // [MPa day/m]
-constexpr Range rock_viscosity = from(1e-9).to(1e12); // [GPa day]
-constexpr Range length = above(0).to(farthest_metre); // [m]
-constexpr Range coordinate = within(farthest_metre);  // [m]
-constexpr Range stress = within(1e4);                 // [MPa]
-constexpr Range gradient = within(100);               // [MPa/m]
+constexpr double usual_shortest_edge = 0.02; // of the zone size
+constexpr double usual_local_damping = 0.8;
 
-// A member of an optional part of a record; reading it makes the part.
-template <auto Part, auto Member>
-constexpr auto part = [](auto& record) -> double& {
-    auto& all = record.*Part;
-    if (!all)
-        all.emplace();
-    return (*all).*Member;
+struct Schedule {
+    Calendar& calendar; // filled by the first key, and used by all later dates
+    double end = 0;     // since start [s]
+};
+
+// A law as a scene writes it. Every law has its own keys; the others stay 0.
+struct WrittenLaw {
+    ProbabilityLaw::Kind kind = ProbabilityLaw::Kind::constant;
+    double mean = 0, deviation = 0;
+    double half_width = 0;            // of a uniform law of angles
+    double shortest = 0, longest = 0; // of a uniform law of lengths, and of a power law
+    double exponent = 0;
+};
+
+// A law of poles as a scene writes it.
+struct WrittenOrientation {
+    bool bootstrap = false;
+    FisherLaw fisher{};
+    std::vector<MeasuredPole> poles{};
+    std::string file{}; // of poles
+    Scanline scanline{};
+    double blind_zone = 0; // [rad]
+};
+
+// A density as a scene writes it: one of five measures.
+struct WrittenDensity {
+    std::optional<double> p10{}, p20{}, p21{}, p30{}, p32{};
+    Scanline scanline{};
+};
+
+// A mapped set before its file is read.
+struct WrittenMapped {
+    std::string name, material, file, property, value;
+};
+
+// A file that the scene holds.
+struct HeldFile {
+    std::string name, text;
 };
 
 Table<Scene> top()
@@ -62,154 +82,6 @@ Table<Scene> section()
          number("azimuth_deg", &Scene::azimuth, degrees, from(0).to(360),
                 "Bearing of the x axis, clockwise from north. Needed by joint sets with a dip.")
              .optional()}};
-}
-
-Table<Rock> rock()
-{
-    return {
-        {"rock", in_list, required,
-         "Intact rock: plane strain, elastic or yielding. Its strength is that of the rock bridges, and is "
-         "needed where a joint set has a persistence below 1, where dangling ends are extended, and where "
-         "the rock yields. With a Kelvin unit or a Maxwell dashpot it creeps, in shear only: its volume "
-         "stays elastic."},
-        {text("name", &Rock::name, "Name, once among the rocks."),
-         number("density_kg_per_m3", &Rock::density, kg_per_m3, above(0).to(3e4), "Density."),
-         number("youngs_modulus_GPa", &Rock::youngs_modulus, GPa, above(0).to(1e4), "Young's modulus."),
-         number("poissons_ratio", &Rock::poissons_ratio, none, from(0).below(0.5), "Poisson's ratio."),
-         number<Rock>("cohesion_MPa", part<&Rock::strength, &RockStrength::cohesion>, MPa, strength,
-                      "Cohesion.")
-             .together("strength"),
-         number<Rock>("friction_angle_deg", part<&Rock::strength, &RockStrength::friction_angle>, degrees,
-                      friction, "Friction angle.")
-             .together("strength"),
-         number<Rock>("tensile_strength_MPa", part<&Rock::strength, &RockStrength::tensile_strength>, MPa,
-                      strength, "Tensile strength, a positive number.")
-             .together("strength"),
-         number("dilation_angle_deg", &Rock::dilation_angle, degrees, friction,
-                "Dilation angle of rock bridges and of rock that yields, at most the friction angle.")
-             .or_else(std::int64_t{0}),
-         choice("law", &Rock::law, {{"elastic", RockLaw::elastic}, {"Mohr-Coulomb", RockLaw::mohr_coulomb}},
-                "elastic; or Mohr-Coulomb: it yields where its strength is reached, in shear and in "
-                "tension, without softening. That needs the strength, and does not go with creep of the "
-                "rock.")
-             .or_else(std::string("elastic")),
-         number<Rock>("kelvin_shear_modulus_GPa", part<&Rock::kelvin, &ShearKelvin::modulus>, GPa,
-                      above(0).to(1e6), "Kelvin spring, in shear.")
-             .together("Kelvin"),
-         number<Rock>("kelvin_shear_viscosity_GPa_day", part<&Rock::kelvin, &ShearKelvin::viscosity>, GPa_day,
-                      rock_viscosity, "Kelvin dashpot, in shear.")
-             .together("Kelvin"),
-         number("maxwell_shear_viscosity_GPa_day", &Rock::maxwell_viscosity, GPa_day, rock_viscosity,
-                "Maxwell dashpot, in shear: it creeps without end.")
-             .optional()}};
-}
-
-Table<Region> region()
-{
-    return {
-        {"region", in_list, optional,
-         "A part of the section made of another rock. Later ones cover earlier ones."},
-        {text("rock", &Region::rock, "Name of its rock."),
-         polygon("outline_m", &Region::outline, "Its outline; what reaches out of the section is cut off.")}};
-}
-
-// A member of a material's first Kelvin unit; reading it makes the unit.
-template <auto Member>
-constexpr auto unit_part = [](JointMaterial& material) -> double& {
-    if (material.kelvin.empty())
-        material.kelvin.emplace_back();
-    return material.kelvin.front().*Member;
-};
-
-Table<Kelvin> kelvin_chain()
-{
-    return {{"joint_material.kelvin_chain", inside, optional, "One Kelvin unit of a chain."},
-            {number("normal_stiffness_MPa_per_m", &Kelvin::normal_stiffness, MPa_per_m, stiffness,
-                    "Its spring, normal."),
-             number("normal_viscosity_MPa_day_per_m", &Kelvin::normal_viscosity, MPa_day_per_m, viscosity,
-                    "Its dashpot, normal."),
-             number("shear_stiffness_MPa_per_m", &Kelvin::shear_stiffness, MPa_per_m, stiffness,
-                    "Its spring, shear."),
-             number("shear_viscosity_MPa_day_per_m", &Kelvin::shear_viscosity, MPa_day_per_m, viscosity,
-                    "Its dashpot, shear.")}};
-}
-
-// A list of inline tables, at least `least` and at most `most` of them.
-template <class Row>
-std::vector<Row> read_rows(const Table<Row>& table, std::size_t least, std::size_t most, const KeyInfo& key,
-                           const TomlValue& value, const Place& outer)
-{
-    const auto* const list = std::get_if<TomlValue::List>(&value.content);
-    if (!list || list->size() < least || list->size() > most)
-        outer.refuse(key, value,
-                     (least > 1 ? std::to_string(least) + " of them at least, and " : "") + "at most " +
-                         std::to_string(most));
-    const Place place{outer.reading, table.info.shown()};
-    std::vector<Row> rows(list->size());
-    for (std::size_t i = 0; i < list->size(); ++i)
-        read_table(table, (*list)[i], place, rows[i]);
-    return rows;
-}
-
-Table<JointMaterial> joint_material(const Table<Kelvin>& chain)
-{
-    constexpr auto maxwell = &JointMaterial::maxwell;
-    const auto read_chain = [chain](const KeyInfo& key, const TomlValue& value, const Place& place) {
-        return read_rows(chain, 1, 20, key, value, place);
-    };
-    std::vector<Key<JointMaterial>> keys{
-        text("name", &JointMaterial::name, "Name, once among the joint materials.")};
-    for (const joint::Parameter& parameter : joint::all_parameters()) {
-        auto key = number<JointMaterial>(
-            std::string(parameter.key),
-            [parameter](JointMaterial& material) -> double& { return parameter.in(material); },
-            parameter.unit, parameter.range, std::string(parameter.meaning));
-        const auto law = std::ranges::find_if(joint::laws(), [&](const joint::LawInfo& one) {
-            return std::ranges::count(one.own, parameter.name) > 0;
-        });
-        if (law != joint::laws().end())
-            key = law->own.size() > 1 ? std::move(key).together(std::string(law->name))
-                                      : std::move(key).optional();
-        else if (parameter.otherwise)
-            key = std::move(key).or_else(*parameter.otherwise);
-        keys.push_back(std::move(key));
-    }
-    std::vector<Key<JointMaterial>> creep{
-        number<JointMaterial>("normal_kelvin_stiffness_MPa_per_m", unit_part<&Kelvin::normal_stiffness>,
-                              MPa_per_m, stiffness, "Kelvin spring, normal.")
-            .together("Kelvin"),
-        number<JointMaterial>("normal_kelvin_viscosity_MPa_day_per_m", unit_part<&Kelvin::normal_viscosity>,
-                              MPa_day_per_m, viscosity, "Kelvin dashpot, normal.")
-            .together("Kelvin"),
-        number<JointMaterial>("shear_kelvin_stiffness_MPa_per_m", unit_part<&Kelvin::shear_stiffness>,
-                              MPa_per_m, stiffness, "Kelvin spring, shear.")
-            .together("Kelvin"),
-        number<JointMaterial>("shear_kelvin_viscosity_MPa_day_per_m", unit_part<&Kelvin::shear_viscosity>,
-                              MPa_day_per_m, viscosity, "Kelvin dashpot, shear.")
-            .together("Kelvin"),
-        key_of<JointMaterial>({"kelvin_chain",
-                               "Kelvin units",
-                               {},
-                               {},
-                               "Several Kelvin units in series, in place of the four keys of one."},
-                              &JointMaterial::kelvin, read_chain)
-            .optional(),
-        number<JointMaterial>("normal_maxwell_viscosity_MPa_day_per_m",
-                              part<maxwell, &Maxwell::normal_viscosity>, MPa_day_per_m, viscosity,
-                              "Maxwell dashpot, normal: it creeps without end.")
-            .together("Maxwell"),
-        number<JointMaterial>("shear_maxwell_viscosity_MPa_day_per_m",
-                              part<maxwell, &Maxwell::shear_viscosity>, MPa_day_per_m, viscosity,
-                              "Maxwell dashpot, shear.")
-            .together("Maxwell")};
-    std::ranges::move(creep, std::back_inserter(keys));
-    return {
-        {"joint_material", in_list, optional,
-         "What joints are made of: springs of stress per displacement, Coulomb friction, and in series what "
-         "creeps: Kelvin units (spring beside dashpot) and a Maxwell dashpot. One Kelvin unit has keys of "
-         "its own; several are a kelvin_chain. A Kelvin unit and a Maxwell dashpot make a Burgers joint. "
-         "Without them the joint does not creep."},
-        keys};
 }
 
 Table<SingleJoint> joint()
@@ -283,12 +155,12 @@ Table<WrittenLaw> length_law(const std::string& name, Need need, const std::stri
     return {
         {"joint_set." + name, inside, need, doc},
         {law_choice(laws_of_lengths()),
-         number("mean_m", &WrittenLaw::mean, metres, length,
+         number("mean_m", &WrittenLaw::mean, metres, lengths,
                 "Mean of the quantity itself, never of its logarithm: needed by the normal, lognormal, "
                 "negative exponential and constant laws, refused by the others.")
              .optional(),
          number(
-             "deviation_m", &WrittenLaw::deviation, metres, length,
+             "deviation_m", &WrittenLaw::deviation, metres, lengths,
              "Standard deviation of the quantity itself: needed by the normal and lognormal laws, refused by "
              "the others. With the normal law the mean must be at least 3 deviations: values of 0 or less "
              "are drawn again, and that must hardly move the mean.")
@@ -297,11 +169,11 @@ Table<WrittenLaw> length_law(const std::string& name, Need need, const std::stri
                 "Least value, a cut-off: needed by the uniform and power laws, refused by the others. With "
                 "a power law at least 1e-6 of longest_m.")
              .optional(),
-         number("longest_m", &WrittenLaw::longest, metres, length,
+         number("longest_m", &WrittenLaw::longest, metres, lengths,
                 "Largest value, a cut-off above shortest_m: needed by the uniform and power laws, refused "
                 "by the others.")
              .optional(),
-         number("exponent", &WrittenLaw::exponent, none, from(0).to(20),
+         number("exponent", &WrittenLaw::exponent, no_unit, from(0).to(20),
                 "Of the power law, whose density falls as the value to the minus this exponent (and the "
                 "number of longer ones with one less): needed by it, refused by the others.")
              .optional()}};
@@ -356,7 +228,7 @@ Table<WrittenOrientation> orientation_law()
                    "Bearing of the dip of that plane, clockwise from north" + fisher_only)
              .optional(),
          number<W>(
-             "concentration", concentration, none, from(5).to(1e6),
+             "concentration", concentration, no_unit, from(5).to(1e6),
              "Fisher's constant kappa: the larger, the nearer the poles to their mean. 63 percent of them "
              "lie within 81 / sqrt(kappa) degrees. Needed by Fisher's law, refused by the other.")
              .optional(),
@@ -367,6 +239,7 @@ Table<WrittenOrientation> orientation_law()
                     "The measured planes, [[dip, dip direction], ...]. The law bootstrap needs either it or "
                     "poles."},
                    &W::poles, read_poles)
+             .asks_for("poles [[dip, dip direction], ...] of numbers in [0, 90] and [0, 360] deg")
              .optional(),
          text("poles", &W::file,
               "File beside the scene with the measured planes: CSV with the columns dip_deg, "
@@ -458,6 +331,8 @@ ProbabilityLaw read_law(const Table<WrittenLaw>& table, const std::vector<LawWor
     return law_of(law);
 }
 
+constexpr const char* a_law = "a law such as { law = \"constant\", mean_m = 2 }";
+
 template <class Member>
 Key<JointSet> law(std::string name, Member member, const Table<WrittenLaw>& table,
                   const std::vector<LawWords>& laws, std::string doc)
@@ -465,7 +340,8 @@ Key<JointSet> law(std::string name, Member member, const Table<WrittenLaw>& tabl
     return key_of<JointSet>({std::move(name), "law", {}, {}, std::move(doc)}, member,
                             [table, &laws](const KeyInfo&, const TomlValue& value, const Place& place) {
                                 return read_law(table, laws, value, place);
-                            });
+                            })
+        .asks_for(a_law);
 }
 
 // The text of a file that a key names.
@@ -531,7 +407,7 @@ Key<JointSet> orientation(const Table<WrittenOrientation>& table)
         set.poles = law.poles;
     };
     Key<JointSet> key{{"orientation", "law", {}, {}, "Law of the joint planes' poles in space."}, read, {}};
-    return std::move(key).optional();
+    return std::move(key).asks_for(a_law).optional();
 }
 
 Table<WrittenDensity> density_table()
@@ -604,6 +480,14 @@ Density read_density(const Table<WrittenDensity>& table, const TomlValue& value,
     return *density;
 }
 
+// The tables inside a joint set.
+struct TablesInJointSet {
+    Table<MaterialInRock> material_in;
+    Table<WrittenLaw> trace_angle, dip, dip_direction, spacing, length, diameter;
+    Table<WrittenOrientation> orientation;
+    Table<WrittenDensity> density;
+};
+
 Table<MaterialInRock> material_in()
 {
     return {
@@ -612,7 +496,7 @@ Table<MaterialInRock> material_in()
          text("material", &MaterialInRock::material, "Name of the joint material.")}};
 }
 
-Table<JointSet> joint_set(const SceneTables& laws)
+Table<JointSet> joint_set(const TablesInJointSet& laws)
 {
     const auto read_materials = [table = laws.material_in](const KeyInfo& key, const TomlValue& value,
                                                            const Place& place) {
@@ -659,6 +543,7 @@ Table<JointSet> joint_set(const SceneTables& laws)
              .optional(),
          key_of<JointSet>({"density", "density", {}, {}, "How much there is. Segments and discs need it."},
                           &JointSet::density, read_amount)
+             .asks_for("a density such as { P21_per_m = 0.5 }")
              .optional(),
          law("length", &JointSet::length, laws.length, laws_of_lengths(),
              "Length of the joint traces. Segments need it, and lines unless their persistence is 0 or 1.")
@@ -666,14 +551,14 @@ Table<JointSet> joint_set(const SceneTables& laws)
          law("diameter", &JointSet::diameter, laws.diameter, laws_of_lengths(),
              "Diameter of the discs, which need it; of others refused.")
              .optional(),
-         number("persistence", &JointSet::persistence, none, from(0).to(1),
+         number("persistence", &JointSet::persistence, no_unit, from(0).to(1),
                 "Fraction of a line that is joint. Lines need it; of others refused.")
              .optional(),
          names("terminates_at", &JointSet::terminates_at,
                "Names of joint sets, joints and mapped sets at whose traces those of this set may end; of "
                "segments and discs.")
              .optional(),
-         number("termination_probability", &JointSet::termination_probability, none, above(0).to(1),
+         number("termination_probability", &JointSet::termination_probability, no_unit, above(0).to(1),
                 "With which a trace, grown from its midpoint, ends at each crossing with one of them.")
              .or_else(1.0),
          polygon("region_m", &JointSet::region, "Where the set exists.").optional("the whole section"),
@@ -702,6 +587,14 @@ Table<WrittenMapped> mapped()
          text("value", &W::value, "The property's value.").together("property")}};
 }
 
+std::string read_file_text(const KeyInfo& key, const TomlValue& value, const Place& place)
+{
+    const auto* const text = std::get_if<std::string>(&value.content);
+    if (!text || text->empty())
+        place.refuse(key, value);
+    return *text;
+}
+
 Table<HeldFile> held_file()
 {
     return {
@@ -709,106 +602,11 @@ Table<HeldFile> held_file()
          "A file that the scene names, held in the scene itself. The programs write it into the copy of the "
          "scene that their own files carry, so that this copy says everything."},
         {text("name", &HeldFile::name, "As the scene names it; it is then not looked for beside the scene."),
-         key_of<HeldFile>({"text", "file text", {}, {}, "What is in it."}, &HeldFile::text, read_file_text)}};
+         key_of<HeldFile>({"text", "file text", {}, {}, "What is in it."}, &HeldFile::text, read_file_text)
+             .asks_for("the text of a file, 16 MiB at most")}};
 }
 
-// --- Stress, boundaries, stages, numerical settings -------------------------------------------------------
-
-Table<InSituStress::Level> stress_profile()
-{
-    using L = InSituStress::Level;
-    return {
-        {"in_situ_stress.profile", inside, optional,
-         "The stress at a depth. Levels stand in order of depth, two at least. Between them the stress is "
-         "straight; above the first one and below the last one it goes straight on.",
-         once},
-        {number("depth_m", &L::depth, metres, from(0).to(farthest_metre), "Depth."),
-         number("compression_xx_MPa", &L::compression_xx, MPa, stress, "Horizontal compression there."),
-         number("compression_yy_MPa", &L::compression_yy, MPa, stress, "Vertical compression there."),
-         number("shear_xy_MPa", &L::shear_xy, MPa, stress, "Shear stress there.")}};
-}
-
-std::vector<InSituStress::Level> read_profile(const Table<InSituStress::Level>& table, const KeyInfo& key,
-                                              const TomlValue& value, const Place& outer)
-{
-    std::vector<InSituStress::Level> levels = read_rows(table, 2, 1000, key, value, outer);
-    for (std::size_t i = 1; i < levels.size(); ++i)
-        if (!(levels[i].depth > levels[i - 1].depth))
-            outer.refuse(key, value, "depth_m increasing from level to level");
-    return levels;
-}
-
-Table<InSituStress> in_situ_stress(const Table<InSituStress::Level>& profile)
-{
-    using S = InSituStress;
-    const auto levels = [profile](const KeyInfo& key, const TomlValue& value, const Place& place) {
-        return read_profile(profile, key, value, place);
-    };
-    return {
-        {"in_situ_stress", once, required,
-         "Stress before excavation, by depth: below elevation_m, or vertically below ground_m. Either "
-         "linear, compression(depth) = compression + gradient x depth, or by a profile. Compression is "
-         "positive here; shear_xy is the stress component sigma_xy itself."},
-        {number("elevation_m", &S::elevation, metres, coordinate, "Elevation y where the depth is 0.")
-             .optional(),
-         polyline("ground_m", &S::ground,
-                  "In place of elevation_m: the ground surface, a line across the whole section with x "
-                  "increasing from corner to corner, nowhere below the section's top.")
-             .optional(),
-         number("compression_xx_MPa", &S::compression_xx, MPa, stress, "Horizontal compression at depth 0.")
-             .together("linear"),
-         number("compression_yy_MPa", &S::compression_yy, MPa, stress, "Vertical compression at depth 0.")
-             .together("linear"),
-         number("shear_xy_MPa", &S::shear_xy, MPa, stress, "Shear stress at depth 0.").together("linear"),
-         number("compression_xx_gradient_MPa_per_m", &S::gradient_xx, MPa_per_m, gradient,
-                "Increase per metre of depth.")
-             .together("linear"),
-         number("compression_yy_gradient_MPa_per_m", &S::gradient_yy, MPa_per_m, gradient,
-                "Increase per metre of depth.")
-             .together("linear"),
-         number("shear_xy_gradient_MPa_per_m", &S::gradient_xy, MPa_per_m, gradient,
-                "Increase per metre of depth.")
-             .together("linear"),
-         key_of<S>({"profile", "levels", {}, {}, "Stress at some depths, in place of the linear law."},
-                   &S::profile, levels)
-             .optional()
-             .in_place_of("linear")}};
-}
-
-Table<Boundary> boundary()
-{
-    struct Fixed {
-        bool x, y;
-    };
-    const auto fix = [](Boundary& held, Fixed fixed) {
-        held.fix_x = fixed.x;
-        held.fix_y = fixed.y;
-    };
-    return {
-        {"boundary", in_list, required,
-         "What holds or loads a straight piece of the outline: fix or joint, traction, or fix and "
-         "displacement. Elsewhere the outline is free."},
-        {point("from_m", &Boundary::from, "One end, on the outline."),
-         point("to_m", &Boundary::to, "The other end, on the same straight piece of the outline."),
-         choice<Boundary, Fixed>("fix", fix,
-                                 {{"x", {true, false}}, {"y", {false, true}}, {"xy", {true, true}}},
-                                 "It does not move in these directions.")
-             .optional(),
-         text("joint", &Boundary::joint, "It rests on fixed ground through a joint of this joint material.")
-             .optional(),
-         vector("traction_MPa", &Boundary::traction, MPa, stress,
-                "Force on the rock per area {x, y}, on top of the in-situ stress.")
-             .optional(),
-         vector("displacement_mm", &Boundary::displacement, millimetres, within(1e6),
-                "Displacement {x, y} it is held at, 0 where it is not fixed; with fix and load_history.")
-             .optional(),
-         load_history(
-             "load_history", &Boundary::load_history,
-             "Factor of traction and displacement over time: pairs of a date and a factor with straight "
-             "lines between them, as for a ramp or cycles. Without it a traction acts from the start, "
-             "and the in-situ equilibrium is found under it.")
-             .optional()}};
-}
+// --- Stages, numerical settings -------------------------------------------------------------------------
 
 Table<Schedule> schedule()
 {
@@ -891,11 +689,11 @@ Table<Scene> zones()
                  "Where they are of that size; outside they are larger. Without it they are of that "
                  "size everywhere.")
              .together("coarsening"),
-         number("coarsening_m", &Scene::zone_coarsening, metres, length,
+         number("coarsening_m", &Scene::zone_coarsening, metres, lengths,
                 "Distance from fine_m in which the size grows by size_m: at twice the distance zones are "
                 "three times as large.")
              .together("coarsening"),
-         number("size_at_faces_m", &Scene::zone_size_at_faces, metres, length,
+         number("size_at_faces_m", &Scene::zone_size_at_faces, metres, lengths,
                 "Longest zone side aimed at on faces that stages dig, at points and at gauges; from there "
                 "it grows by 0.3 m a metre to what the other keys ask for. At most size_m.")
              .optional()}};
@@ -917,6 +715,7 @@ Table<Cutting> cutting()
                 "What becomes of a joint that ends inside a block: it is cut back to the last block edge it "
                 "met, or carried on in its own direction to the line it meets next, as rock bridge, which "
                 "needs the strength of every rock.")
+             .formerly("dead_ends")
              .or_else("prune")}};
 }
 
@@ -949,8 +748,9 @@ Table<Equilibrium> equilibrium()
         {choice("engine", &E::engine, engine_words(),
                 "Dynamic relaxation, or the implicit engine, which solves for the equilibrium at once; auto "
                 "takes the implicit one unless the masses are real.")
+             .former_word("explicit", "relaxation")
              .or_else(std::string("auto")),
-         number("tolerance", &E::tolerance, none, equilibrium_tolerances,
+         number("tolerance", &E::tolerance, no_unit, equilibrium_tolerances,
                 "Of the unbalanced force ratio; dynamic relaxation also ends within 1000 times it of its "
                 "displacement.")
              .or_else(1e-6),
@@ -972,7 +772,7 @@ Table<Equilibrium> equilibrium()
                 "Stiffness-proportional damping of zones, and dashpots in joints that neither slip nor are "
                 "open; with damping = \"mass\".")
              .optional(),
-         number("local_damping", &E::local_damping, none, above(0).below(1),
+         number("local_damping", &E::local_damping, no_unit, above(0).below(1),
                 "Fraction of the unbalanced force; with damping = \"local\" or \"combined\" only.")
              .optional("0.8"),
          integer("unloading_increments", &E::unloading_increments, from(1).to(1000),
@@ -990,7 +790,8 @@ Table<LargeDisplacements> large_displacements()
     return {
         {"large_displacements", once, optional,
          "Dynamic analysis with large displacements after each stage: real masses, contacts found anew, "
-         "until the rock is at rest. Without this table displacements are small. Not with [creep]."},
+         "until the rock is at rest. Without this table displacements are small. Not with [creep].",
+         in_list, "motion"},
         {text("new_contacts", &LargeDisplacements::new_contacts,
               "Joint material of contacts that form, and of what slides off its joint: its stiffnesses "
               "and friction angle, the residual one if it has one, without cohesion, tensile strength and "
@@ -1023,56 +824,7 @@ Table<Scene> random_numbers()
                      "Another seed gives another network of the same statistics.")}};
 }
 
-SceneTables all_tables()
-{
-    SceneTables all;
-    all.top = top();
-    all.section = section();
-    all.rock = rock();
-    all.region = region();
-    all.kelvin_chain = kelvin_chain();
-    all.joint_material = joint_material(all.kelvin_chain);
-    all.joint = joint();
-    all.trace_angle =
-        angle_law("trace_angle", within(180), "Angle of a trace, counter-clockwise from the x axis.");
-    all.dip = angle_law("dip", from(0).to(90),
-                        "Dip below the horizontal, with dip_direction and section.azimuth_deg.");
-    all.dip_direction =
-        angle_law("dip_direction", from(0).to(360), "Bearing of the dip, clockwise from north.");
-    all.orientation = orientation_law();
-    all.spacing = length_law("spacing", optional, "Spacing along the set's mean normal in space.");
-    all.length = length_law("length", optional, "Length of the joint traces.");
-    all.diameter = length_law("diameter", optional, "Diameter of the discs.");
-    all.density = density_table();
-    all.material_in = material_in();
-    all.joint_set = joint_set(all);
-    all.mapped = mapped();
-    all.profile = stress_profile();
-    all.in_situ_stress = in_situ_stress(all.profile);
-    all.boundary = boundary();
-    all.schedule = schedule();
-    all.stage = stage();
-    all.point = monitoring_point();
-    all.gauge = gauge();
-    all.creep = creep();
-    all.zones = zones();
-    all.cutting = cutting();
-    all.averaging = averaging();
-    all.equilibrium = equilibrium();
-    all.large_displacements = large_displacements();
-    all.random = random_numbers();
-    all.file = held_file();
-    return all;
-}
-
-} // namespace
-
-const SceneTables& scene_tables()
-{
-    static const SceneTables tables = all_tables();
-    return tables;
-}
-
+// The mapped set that a table of the scene, at `place`, stands for, from the file that it names.
 MappedSet mapped_set(const WrittenMapped& written, const TomlValue& table, const Place& place)
 {
     const TomlValue& file = *table.find("file");
@@ -1082,6 +834,143 @@ MappedSet mapped_set(const WrittenMapped& written, const TomlValue& table, const
     } catch (const input_error& error) {
         place.refuse(file.line, place.table + " file = " + shown(file) + ": " + error.what());
     }
+}
+
+void read_held_files(const Table<HeldFile>& table, const TomlValue& root, Reading& reading)
+{
+    const auto& list = list_of(table.info, root, reading);
+    const auto files = read_list(table, root, reading);
+    for (std::size_t i = 0; i < files.size(); ++i)
+        if (!reading.files.try_emplace(files[i].name, files[i].text).second)
+            Place{reading, table.info.shown()}.refuse(list[i].find("name")->line,
+                                                      "[[file]] name = " + shown(*list[i].find("name")) +
+                                                          ": the name is taken by another file");
+}
+
+std::vector<MappedSet> read_mapped(const Table<WrittenMapped>& table, const TomlValue& root,
+                                   const Reading& reading)
+{
+    const auto& list = list_of(table.info, root, reading);
+    const auto written = read_list(table, root, reading);
+    std::vector<MappedSet> sets;
+    for (std::size_t i = 0; i < written.size(); ++i)
+        sets.push_back(mapped_set(written[i], list[i],
+                                  {reading, table.info.shown() + " " + shown(*list[i].find("name"))}));
+    return sets;
+}
+
+TablesInJointSet tables_in_joint_set()
+{
+    return {.material_in = material_in(),
+            .trace_angle =
+                angle_law("trace_angle", within(180), "Angle of a trace, counter-clockwise from the x axis."),
+            .dip = angle_law("dip", from(0).to(90),
+                             "Dip below the horizontal, with dip_direction and section.azimuth_deg."),
+            .dip_direction =
+                angle_law("dip_direction", from(0).to(360), "Bearing of the dip, clockwise from north."),
+            .spacing = length_law("spacing", optional, "Spacing along the set's mean normal in space."),
+            .length = length_law("length", optional, "Length of the joint traces."),
+            .diameter = length_law("diameter", optional, "Diameter of the discs."),
+            .orientation = orientation_law(),
+            .density = density_table()};
+}
+
+// --- The list -------------------------------------------------------------------------------------------
+
+using Parts = std::vector<Part<Scene>>;
+
+// A table that fills members of the scene itself.
+Part<Scene> of_scene(const Table<Scene>& table)
+{
+    return part_once<Scene>(table, [](Scene& scene) -> Scene& { return scene; });
+}
+
+Part<Scene> in_turn(Turn turn, Part<Scene> part)
+{
+    part.turn = turn;
+    return part;
+}
+
+Parts general_parts()
+{
+    const auto read_top = [table = top()](const TomlValue& root, Reading& reading, Scene& scene) {
+        fill(table, root, {reading, ""}, scene);
+    };
+    return {part_read_by<Scene>(top(), read_top), of_scene(section())};
+}
+
+Parts joint_parts()
+{
+    const TablesInJointSet in_set = tables_in_joint_set();
+    const auto read_maps = [table = mapped()](const TomlValue& root, Reading& reading, Scene& scene) {
+        scene.mapped = read_mapped(table, root, reading);
+    };
+    return {part_in_list(joint(), &Scene::joints),  part_in_list(joint_set(in_set), &Scene::joint_sets),
+            part_inside<Scene>(in_set.material_in), part_inside<Scene>(in_set.trace_angle),
+            part_inside<Scene>(in_set.dip),         part_inside<Scene>(in_set.dip_direction),
+            part_inside<Scene>(in_set.orientation), part_inside<Scene>(in_set.spacing),
+            part_inside<Scene>(in_set.length),      part_inside<Scene>(in_set.diameter),
+            part_inside<Scene>(in_set.density),     part_read_by<Scene>(mapped(), read_maps)};
+}
+
+Parts schedule_parts()
+{
+    const auto read_schedule = [table = schedule()](const TomlValue& root, Reading& reading, Scene& scene) {
+        Schedule written{reading.calendar};
+        read_once(table, root, reading, written);
+        scene.end = written.end;
+    };
+    return {in_turn(Turn::calendar, part_read_by<Scene>(schedule(), read_schedule)),
+            in_turn(Turn::dated, part_in_list(stage(), &Scene::stages)),
+            in_turn(Turn::dated, part_in_list(monitoring_point(), &Scene::points)),
+            in_turn(Turn::dated, part_in_list(gauge(), &Scene::gauges))};
+}
+
+// Some defaults depend on other keys, or on whether a key is used.
+Parts settings_parts()
+{
+    const auto read_cutting = [table = cutting()](const TomlValue& root, Reading& reading, Scene& scene) {
+        scene.cutting.shortest_edge = usual_shortest_edge * scene.zone_size;
+        read_once(table, root, reading, scene.cutting);
+    };
+    const auto read_equilibrium = [table = equilibrium()](const TomlValue& root, Reading& reading,
+                                                          Scene& scene) {
+        scene.equilibrium.local_damping = usual_local_damping;
+        read_once(table, root, reading, scene.equilibrium);
+    };
+    const auto read_files = [table = held_file()](const TomlValue& root, Reading& reading, Scene&) {
+        read_held_files(table, root, reading);
+    };
+    return {in_turn(Turn::settings, part_if_given(creep(), &Scene::creep)),
+            in_turn(Turn::settings, of_scene(zones())),
+            in_turn(Turn::settings, part_read_by<Scene>(cutting(), read_cutting)),
+            in_turn(Turn::settings, part_once<Scene>(averaging(), &Scene::averaging)),
+            in_turn(Turn::settings, part_read_by<Scene>(equilibrium(), read_equilibrium)),
+            in_turn(Turn::settings, part_if_given(large_displacements(), &Scene::large_displacements)),
+            in_turn(Turn::settings, of_scene(random_numbers())),
+            in_turn(Turn::files, part_read_by<Scene>(held_file(), read_files))};
+}
+
+Parts all_parts()
+{
+    Parts all = general_parts();
+    const auto add = [&all](const Parts& more) { all.insert(all.end(), more.begin(), more.end()); };
+    for (const ForceKeys<Scene>& force : forces())
+        add(force.materials);
+    add(joint_parts());
+    for (const ForceKeys<Scene>& force : forces())
+        add(force.loads);
+    add(schedule_parts());
+    add(settings_parts());
+    return all;
+}
+
+} // namespace
+
+const std::vector<Part<Scene>>& scene_parts()
+{
+    static const Parts parts = all_parts();
+    return parts;
 }
 
 } // namespace jointcreep::scene

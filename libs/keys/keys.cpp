@@ -1,20 +1,20 @@
-#include "scene/keys.hpp"
+#include "keys/keys.hpp"
 
 #include "model/error.hpp"
-#include "scene/renamed.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <numeric>
 
-namespace jointcreep::scene
+namespace jointcreep::keys
 {
 namespace
 {
 
 constexpr std::size_t most_corners = 10000; // of a polygon
 constexpr std::size_t longest_text = 200;   // [byte]
+constexpr std::size_t most_tables = 10000;  // in a list
 
 const TomlValue::List* as_list(const TomlValue& value)
 {
@@ -84,16 +84,10 @@ std::string shown(const Range& range, const KeyUnit& unit)
     return unit.symbol.empty() ? text : text + " " + std::string(unit.symbol);
 }
 
-std::string renamed_value(const std::string& given, const std::string& choice)
-{
-    const std::string now(new_name_of(given));
-    if (now.empty() || choice.find('"' + now + '"') == std::string::npos)
-        return "";
-    return '"' + given + "\" is now called \"" + now + '"';
-}
-
 std::string KeyInfo::wanted() const
 {
+    if (!asked_for.empty())
+        return asked_for;
     const auto in_range = range ? " in " + shown(*range, unit) : "";
     if (kind == "number")
         return "a number" + in_range;
@@ -103,31 +97,16 @@ std::string KeyInfo::wanted() const
         return "a text of 1 to " + std::to_string(longest_text) + " bytes without control characters";
     if (kind == "date")
         return "a date such as 1994-06-15, or a number" + in_range;
-    if (kind == "load history")
-        return "pairs of a date and a number, [[date, factor], ...]";
     if (kind == "point")
         return "a point [x, y] of numbers" + in_range;
     if (kind == "polyline")
         return "a line [[x, y], [x, y], ...] of numbers" + in_range + " from left to right";
-    if (kind == "levels")
-        return "levels [{ depth_m = 0, compression_xx_MPa = 1, compression_yy_MPa = 0, shear_xy_MPa = 0 }, "
-               "...]";
     if (kind == "polygon")
         return "a polygon [[x, y], [x, y], [x, y], ...] of numbers" + in_range;
     if (kind == "polygons")
         return "a list of polygons [[[x, y], [x, y], [x, y], ...], ...] of numbers" + in_range;
-    if (kind == "Kelvin units")
-        return "one Kelvin unit or more, [{ normal_stiffness_MPa_per_m = 690, ... }, ...]";
-    if (kind == "law")
-        return "a law such as { law = \"constant\", mean_m = 2 }";
-    if (kind == "density")
-        return "a density such as { P21_per_m = 0.5 }";
     if (kind == "names")
         return "a list of names, [\"first\", ...]";
-    if (kind == "poles")
-        return "poles [[dip, dip direction], ...] of numbers in [0, 90] and [0, 360] deg";
-    if (kind == "file text")
-        return "the text of a file, 16 MiB at most";
     return kind;
 }
 
@@ -166,14 +145,6 @@ std::string read_text(const KeyInfo& key, const TomlValue& value, const Place& p
     const auto is_control = [](char c) { return (c >= 0 && c < 0x20) || c == 0x7f; };
     if (!text || text->empty() || text->size() > longest_text ||
         std::any_of(text->begin(), text->end(), is_control))
-        place.refuse(key, value);
-    return *text;
-}
-
-std::string read_file_text(const KeyInfo& key, const TomlValue& value, const Place& place)
-{
-    const auto* const text = std::get_if<std::string>(&value.content);
-    if (!text || text->empty())
         place.refuse(key, value);
     return *text;
 }
@@ -220,26 +191,6 @@ Eigen::Vector2d read_point(const KeyInfo& key, const TomlValue& value, const Pla
     if (!list || list->size() != 2)
         place.refuse(key, value);
     return {read_number(key, list->front(), place), read_number(key, list->back(), place)};
-}
-
-LoadHistory read_load_history(const KeyInfo& key, const TomlValue& value, const Place& place)
-{
-    const auto* const list = as_list(value);
-    if (!list || list->empty())
-        place.refuse(key, value);
-    KeyInfo when = key;
-    when.unit = days;
-    LoadHistory load_history;
-    for (const TomlValue& pair : *list) {
-        const auto* const both = as_list(pair);
-        if (!both || both->size() != 2)
-            place.refuse(key, value);
-        const double time = read_date(when, both->front(), place);
-        if (!load_history.points.empty() && time <= load_history.points.back().first)
-            place.refuse(key, value, "dates in increasing order");
-        load_history.points.emplace_back(time, read_number(key, both->back(), place));
-    }
-    return load_history;
 }
 
 std::vector<Eigen::Vector2d> read_polyline(const KeyInfo& key, const TomlValue& value, const Place& place)
@@ -293,11 +244,13 @@ void check_keys(const TomlValue& value, const std::vector<const KeyInfo*>& known
     for (const TomlEntry& entry : *entries) {
         if (std::find(names.begin(), names.end(), entry.key) != names.end())
             continue;
-        const std::string now(new_name_of(entry.key));
-        if (std::find(names.begin(), names.end(), now) != names.end()) {
+        const auto now = std::ranges::find_if(
+            known, [&](const KeyInfo* key) { return !key->formerly.empty() && key->formerly == entry.key; });
+        if (now != known.end()) {
             const TomlValue before{.content = entry.key};
             place.refuse(entry.value.line, place.table + " has no key " + shown(before) +
-                                               ": it is now called " + now + ". Rename it in the scene");
+                                               ": it is now called " + (*now)->name + ". Rename it in the " +
+                                               place.reading.whole);
         }
         const auto meant = nearest(entry.key, names);
         const auto advice = meant.empty() ? "" : "; did you mean " + meant + "?";
@@ -334,6 +287,26 @@ void check_present(const TomlValue& value, const std::vector<const KeyInfo*>& kn
     }
 }
 
+const TomlValue::List& list_of(const TableInfo& info, const TomlValue& root, const Reading& reading)
+{
+    static const TomlValue::List none;
+    const Place place{reading, info.shown()};
+    const TomlValue* const value = root.find(info.name);
+    const std::string the_whole = "the " + reading.whole;
+    if (!value && info.need == Need::optional)
+        return none;
+    if (!value)
+        place.refuse(1, the_whole + " has no " + info.shown() + ": wanted one at least");
+    const auto* const list = std::get_if<TomlValue::List>(&value->content);
+    if (!list || list->empty())
+        place.refuse(value->line,
+                     info.name + " is " + shown(*value) + ": wanted tables under " + info.shown());
+    if (list->size() > most_tables)
+        place.refuse(value->line, the_whole + " has " + std::to_string(list->size()) + " " + info.shown() +
+                                      ": wanted at most " + std::to_string(most_tables));
+    return *list;
+}
+
 std::string nearest(const std::string& name, const std::vector<std::string>& known)
 {
     std::string best;
@@ -346,4 +319,4 @@ std::string nearest(const std::string& name, const std::vector<std::string>& kno
     return best;
 }
 
-} // namespace jointcreep::scene
+} // namespace jointcreep::keys

@@ -1,5 +1,5 @@
-// How a scene's keys are declared and read. One call declares a key with its unit, range, need, documentation
-// and the member it fills; reading, the check for unknown keys, docs/scene.md and the key list follow from
+// How keys of a text are declared and read. One call declares a key with its unit, range, need, documentation
+// and the member it fills; reading, the check for unknown keys, the page of keys and the key list follow from
 // it.
 //
 //     number("poissons_ratio", &Rock::poissons_ratio, none, from(0).below(0.5), "Poisson's ratio.")
@@ -7,11 +7,11 @@
 
 #pragma once
 
+#include "keys/bounds.hpp"
+#include "keys/toml_text.hpp"
+#include "model/polygon.hpp"
 #include "model/quantity.hpp"
-#include "model/scene.hpp"
 #include "model/units.hpp"
-#include "scene/shared_settings.hpp"
-#include "scene/toml_text.hpp"
 
 #include <algorithm>
 #include <concepts>
@@ -22,7 +22,7 @@
 #include <type_traits>
 #include <utility>
 
-namespace jointcreep::scene
+namespace jointcreep::keys
 {
 
 // "[0", "0.5)" and both with the unit, "[0, 0.5) MPa".
@@ -35,20 +35,23 @@ enum class Need { required, optional, together }; // together: all keys of one g
 // What is known of a key without knowing the record it fills.
 struct KeyInfo {
     std::string name;
-    std::string kind{}; // number, integer, text, date, point, polyline, polygon, polygons, law, Kelvin units,
-                        // levels, names, poles, file text, density or the allowed words
+    std::string kind{}; // number, integer, text, names, date, point, polyline, polygon, polygons, the allowed
+                        // words, or a kind of its own
     KeyUnit unit{};
     std::optional<Range> range{};
     std::string doc{};
     Need need = Need::required;
-    std::string otherwise{};   // the default as text
-    std::string group{};       // of keys that come together
-    std::string in_place_of{}; // a group of keys that do not go with it
+    std::string otherwise{};               // the default as text
+    std::string group{};                   // of keys that come together
+    std::string in_place_of{};             // a group of keys that do not go with it
+    std::string asked_for{};               // of a kind of its own: what messages ask for
+    std::string formerly{};                // its name in earlier versions: refused, with the new name
+    std::string former_word{}, word_now{}; // of a choice: a word of earlier versions, likewise
 
     std::string wanted() const; // "a number in [0, 0.5)"
 };
 
-// Start of the scene's time: a date, or a number of days on the axis that all dates then share.
+// Start of time: a date, or a number of days on the axis that all dates then share.
 struct Calendar {
     std::optional<std::chrono::sys_days> start_date;
     double start = 0; // [s], without start_date
@@ -56,9 +59,10 @@ struct Calendar {
 
 // What reading carries along.
 struct Reading {
-    std::string name; // of the text
+    std::string name;  // of the text
+    std::string whole; // what messages call all that it describes: "scene"
     Calendar calendar{};
-    std::map<std::string, std::string> files{}; // texts that the scene holds, by name
+    std::map<std::string, std::string> files{}; // texts that it holds, by name
 };
 
 // Where a value stands: for messages.
@@ -75,12 +79,10 @@ struct Place {
 double read_number(const KeyInfo& key, const TomlValue& value, const Place& place);
 std::int64_t read_integer(const KeyInfo& key, const TomlValue& value, const Place& place);
 std::string read_text(const KeyInfo& key, const TomlValue& value, const Place& place);
-std::string read_file_text(const KeyInfo& key, const TomlValue& value, const Place& place);
 std::vector<std::string> read_names(const KeyInfo& key, const TomlValue& value, const Place& place);
 double read_date(const KeyInfo& key, const TomlValue& value, const Place& place); // since start [s]
 Calendar read_start(const KeyInfo& key, const TomlValue& value, const Place& place);
 Eigen::Vector2d read_point(const KeyInfo& key, const TomlValue& value, const Place& place);
-LoadHistory read_load_history(const KeyInfo& key, const TomlValue& value, const Place& place);
 // From left to right: x increases.
 std::vector<Eigen::Vector2d> read_polyline(const KeyInfo& key, const TomlValue& value, const Place& place);
 Polygon read_polygon(const KeyInfo& key, const TomlValue& value, const Place& place);
@@ -109,6 +111,22 @@ struct Key {
         info.in_place_of = std::move(group);
         return std::move(*this);
     }
+    Key asks_for(std::string what) &&
+    {
+        info.asked_for = std::move(what);
+        return std::move(*this);
+    }
+    Key formerly(std::string name) &&
+    {
+        info.formerly = std::move(name);
+        return std::move(*this);
+    }
+    Key former_word(std::string before, std::string now) &&
+    {
+        info.former_word = std::move(before);
+        info.word_now = std::move(now);
+        return std::move(*this);
+    }
     template <class Default>
     Key or_else(Default value) &&
     {
@@ -117,7 +135,7 @@ struct Key {
     }
 };
 
-// A table of the scene that fills one Record: once in a scene, in a list of any length, or inside a table.
+// A table that fills one Record: once in a text, in a list of any length, or inside another table.
 enum class Written { once, in_list, inside };
 
 struct TableInfo {
@@ -126,6 +144,7 @@ struct TableInfo {
     Need need = Need::required;
     std::string doc{};
     Written outer = Written::in_list; // of a table inside another: how that one is written
+    std::string formerly{};           // its name in earlier versions
 
     std::string shown() const; // "[section]", "[[rock]]", "[[joint_set]] spacing"
 };
@@ -134,6 +153,15 @@ template <class Record>
 struct Table {
     TableInfo info;
     std::vector<Key<Record>> keys;
+};
+
+// A member of an optional part of a record; reading it makes the part.
+template <auto Part, auto Member>
+constexpr auto part = [](auto& record) -> double& {
+    auto& all = record.*Part;
+    if (!all)
+        all.emplace();
+    return (*all).*Member;
 };
 
 // --- Declaring keys ---------------------------------------------------------------------------------------
@@ -205,14 +233,6 @@ Key<Record> vector(std::string name, Value Record::*member, KeyUnit unit, Range 
     return key_of<Record>({std::move(name), "point", unit, range, std::move(doc)}, member, read_point);
 }
 
-// Pairs of a date and a factor.
-template <class Record>
-Key<Record> load_history(std::string name, LoadHistory Record::*member, std::string doc)
-{
-    return key_of<Record>({std::move(name), "load history", {}, within(farthest_day), std::move(doc)}, member,
-                          read_load_history);
-}
-
 template <class Record>
 Key<Record> polyline(std::string name, std::vector<Eigen::Vector2d> Record::*member, std::string doc)
 {
@@ -234,9 +254,6 @@ Key<Record> polygons(std::string name, std::vector<Polygon> Record::*member, std
                           member, read_polygons);
 }
 
-// Advice for a word of earlier versions whose new name is among the words of a choice, or "".
-std::string renamed_value(const std::string& given, const std::string& choice);
-
 // One of some words, each standing for a value, which assign(record, value) stores.
 template <class Record, class Value, std::invocable<Record&, Value> Assign>
 Key<Record> choice(std::string name, Assign assign, Words<Value> words, std::string doc)
@@ -250,8 +267,10 @@ Key<Record> choice(std::string name, Assign assign, Words<Value> words, std::str
                 const auto found = std::find_if(words.begin(), words.end(), [&](const auto& word) {
                     return given && word.first == *given;
                 });
+                if (found == words.end() && given && !given->empty() && *given == key.former_word)
+                    place.refuse(key, value, '"' + *given + "\" is now called \"" + key.word_now + '"');
                 if (found == words.end())
-                    place.refuse(key, value, given ? renamed_value(*given, key.kind) : "");
+                    place.refuse(key, value);
                 assign(record, found->second);
             },
             {}};
@@ -301,7 +320,54 @@ void read_table(const Table<Record>& table, const TomlValue& value, const Place&
     fill(table, value, place, record);
 }
 
+// The tables of a list, one a record; none if an optional list is missing.
+const TomlValue::List& list_of(const TableInfo& info, const TomlValue& root, const Reading& reading);
+
+template <class Record>
+std::vector<Record> read_list(const Table<Record>& table, const TomlValue& root, const Reading& reading)
+{
+    std::vector<Record> records;
+    for (const TomlValue& one : list_of(table.info, root, reading)) {
+        const TomlValue* const name = one.find("name");
+        const Place place{reading, table.info.shown() + (name ? " " + shown(*name) : "")};
+        read_table(table, one, place, records.emplace_back());
+    }
+    return records;
+}
+
+// Fills `record`, with defaults alone if an optional table is missing. Returns whether it is there.
+template <class Record>
+bool read_once(const Table<Record>& table, const TomlValue& root, const Reading& reading, Record& record)
+{
+    const Place place{reading, table.info.shown()};
+    const TomlValue* const value = root.find(table.info.name);
+    if (value)
+        read_table(table, *value, place, record);
+    else if (table.info.need == Need::required)
+        place.refuse(1, "the " + reading.whole + " has no " + table.info.shown());
+    else
+        fill(table, TomlValue{.content = TomlValue::Table{}}, place, record);
+    return value != nullptr;
+}
+
+// A list of inline tables, at least `least` and at most `most` of them.
+template <class Row>
+std::vector<Row> read_rows(const Table<Row>& table, std::size_t least, std::size_t most, const KeyInfo& key,
+                           const TomlValue& value, const Place& outer)
+{
+    const auto* const list = std::get_if<TomlValue::List>(&value.content);
+    if (!list || list->size() < least || list->size() > most)
+        outer.refuse(key, value,
+                     (least > 1 ? std::to_string(least) + " of them at least, and " : "") + "at most " +
+                         std::to_string(most));
+    const Place place{outer.reading, table.info.shown()};
+    std::vector<Row> rows(list->size());
+    for (std::size_t i = 0; i < list->size(); ++i)
+        read_table(table, (*list)[i], place, rows[i]);
+    return rows;
+}
+
 // The name among `known` that is most like `name`, or "" if none is near; for "did you mean".
 std::string nearest(const std::string& name, const std::vector<std::string>& known);
 
-} // namespace jointcreep::scene
+} // namespace jointcreep::keys

@@ -1,4 +1,4 @@
-#include "scene/polygon.hpp"
+#include "keys/polygon.hpp"
 
 #include "model/polygon.hpp"
 
@@ -6,7 +6,7 @@
 #include <limits>
 #include <numeric>
 
-namespace jointcreep::scene
+namespace jointcreep::keys
 {
 namespace
 {
@@ -106,6 +106,12 @@ std::string polygon_fault(const Polygon& polygon)
     return fault;
 }
 
+double outline_tolerance(const Polygon& outline)
+{
+    constexpr double same_place = 1e-9; // of its size
+    return same_place * polygon_size(outline);
+}
+
 double polygon_size(const Polygon& polygon)
 {
     Point low = polygon.front(), high = polygon.front();
@@ -166,4 +172,4 @@ double length_on_sides(const Polygon& polygon, const Point& from, const Point& t
     return sum;
 }
 
-} // namespace jointcreep::scene
+} // namespace jointcreep::keys

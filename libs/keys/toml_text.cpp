@@ -1,4 +1,4 @@
-#include "scene/toml_text.hpp"
+#include "keys/toml_text.hpp"
 
 #include "model/error.hpp"
 
@@ -37,7 +37,7 @@ thread_local std::string text_name;
 #include <toml++/toml.h>
 #pragma GCC diagnostic pop
 
-namespace jointcreep::scene
+namespace jointcreep::keys
 {
 namespace
 {
@@ -317,4 +317,4 @@ TomlValue parse_toml(std::string_view text, const std::string& name)
     }
 }
 
-} // namespace jointcreep::scene
+} // namespace jointcreep::keys

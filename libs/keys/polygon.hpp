@@ -1,10 +1,12 @@
-// What the checks of a scene ask of polygons and lines.
+// What checks ask of polygons and lines.
 
 #pragma once
 
-#include "model/scene.hpp"
+#include "model/polygon.hpp"
 
-namespace jointcreep::scene
+#include <string>
+
+namespace jointcreep::keys
 {
 
 // What is wrong with a polygon, in words, or "": it wants three corners at least, none twice, and sides that
@@ -13,6 +15,9 @@ std::string polygon_fault(const Polygon& polygon);
 
 // Diagonal of the bounding box [m].
 double polygon_size(const Polygon& polygon);
+
+// Points and lines this near a section's outline are on it [m].
+double outline_tolerance(const Polygon& outline);
 
 // Whether a point lies inside a simple polygon, or within `tolerance` [m] of its sides.
 bool covers(const Polygon& polygon, const Eigen::Vector2d& point, double tolerance);
@@ -29,4 +34,4 @@ double length_on_sides(const Polygon& polygon, const Eigen::Vector2d& from, cons
 double common_length(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c,
                      const Eigen::Vector2d& d, double tolerance);
 
-} // namespace jointcreep::scene
+} // namespace jointcreep::keys

@@ -11,7 +11,7 @@
 #include <variant>
 #include <vector>
 
-namespace jointcreep::scene
+namespace jointcreep::keys
 {
 
 struct TomlEntry;
@@ -39,7 +39,8 @@ struct TomlEntry {
 std::string shown(const TomlValue& value);
 using jointcreep::shown; // of numbers
 
-// Throws input_error naming the line on anything that is not TOML; see also parse_scene.
+// Throws input_error naming the line on anything that is not TOML. On a text that makes toml++ stop itself, ends the
+// process with exit code 2.
 TomlValue parse_toml(std::string_view text, const std::string& name);
 
-} // namespace jointcreep::scene
+} // namespace jointcreep::keys

@@ -1,6 +1,6 @@
 // Simple polygons are told from others, and points inside from those outside.
 
-#include "scene/polygon.hpp"
+#include "keys/polygon.hpp"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -12,7 +12,7 @@ namespace polygon_test
 {
 
 using namespace jointcreep;
-using namespace jointcreep::scene;
+using namespace jointcreep::keys;
 
 namespace
 {

@@ -1,6 +1,6 @@
 // What is not TOML, or is more than toml++ can take, is refused with its line.
 
-#include "scene/toml_text.hpp"
+#include "keys/toml_text.hpp"
 
 #include "model/error.hpp"
 
@@ -10,7 +10,7 @@ namespace toml_text_test
 {
 
 using namespace jointcreep;
-using namespace jointcreep::scene;
+using namespace jointcreep::keys;
 
 namespace
 {

@@ -1,0 +1,81 @@
+#include "keys/source.hpp"
+
+#include "keys/polygon.hpp"
+
+#include <map>
+
+namespace jointcreep::keys
+{
+namespace
+{
+
+constexpr std::size_t most_names_shown = 10;
+
+} // namespace
+
+void Given::refuse(const std::string& key, const std::string& what) const
+{
+    const TomlValue* const value = find(key);
+    const Place place{reading, title};
+    if (value)
+        place.refuse(value->line, title + " " + key + " = " + shown(*value) + ": " + what);
+    place.refuse(table.line, title + " has no " + key + ": " + what);
+}
+
+Given Source::once(const std::string& table) const
+{
+    const TomlValue* const value = root.find(table);
+    return {reading, value ? *value : root, "[" + table + "]"};
+}
+
+Given Source::in_list(const std::string& table, std::size_t i) const
+{
+    const TomlValue& value = std::get<TomlValue::List>(root.find(table)->content)[i];
+    const TomlValue* const own_name = value.find("name");
+    return {reading, value, "[[" + table + "]]" + (own_name ? " " + shown(*own_name) : "")};
+}
+
+void Source::check_unique(const std::vector<std::string>& tables) const
+{
+    std::map<std::string, std::int64_t> line_of;
+    for (const std::string& table : tables) {
+        const TomlValue* const list = root.find(table);
+        const std::size_t count = list ? std::get<TomlValue::List>(list->content).size() : 0;
+        for (std::size_t i = 0; i < count; ++i) {
+            const Given given = in_list(table, i);
+            const TomlValue& name = *given.find("name");
+            const auto [other, is_new] = line_of.try_emplace(std::get<std::string>(name.content), name.line);
+            if (!is_new)
+                given.refuse("name", "the name is taken in line " + std::to_string(other->second));
+        }
+    }
+}
+
+void check_reference(const Given& given, const std::string& key, const std::string& name,
+                     const std::set<std::string>& known, const std::string& what)
+{
+    if (known.contains(name))
+        return;
+    if (known.empty())
+        given.refuse(key, "there is no " + what);
+    std::string all;
+    std::size_t shown_names = 0;
+    for (const auto& one : known)
+        if (shown_names++ < most_names_shown)
+            all += (all.empty() ? "\"" : ", \"") + one + '"';
+    if (known.size() > most_names_shown)
+        all += ", ...";
+    const auto meant = nearest(name, {known.begin(), known.end()});
+    const TomlValue* const value = given.find(key);
+    const bool is_in_list = value && std::holds_alternative<TomlValue::List>(value->content);
+    given.refuse(key, (is_in_list ? "has \"" + name + "\"; " : "") + "wanted the name of a " + what + ": " +
+                          all + (meant.empty() ? "" : "; did you mean \"" + meant + "\"?"));
+}
+
+void check_polygon(const Given& given, const std::string& key, const Polygon& polygon)
+{
+    if (const auto fault = polygon_fault(polygon); !fault.empty())
+        given.refuse(key, fault + "; wanted a simple polygon of at least 3 corners, not closed");
+}
+
+} // namespace jointcreep::keys
