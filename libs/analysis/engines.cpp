@@ -28,7 +28,7 @@ bool Engines::settles_nearby(const std::vector<Vector2d>& guess, double time)
     effort.steps += implicit_.corrections();
     if (found) {
         convergence = *found;
-        if (const Index zone = weakest_zone(section_.rock); zone >= 0)
+        if (const Index zone = rock::weakest(section_.rock.zones); zone >= 0)
             yield_by_relaxation(time, zone);
     }
     section_.rock.zones.holds_yield = false;

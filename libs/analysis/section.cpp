@@ -115,7 +115,7 @@ Findings::Counts contacts_at_yield(const Section& section)
 Findings::Counts yielded_zones(const Section& section)
 {
     Findings::Counts zones;
-    const mechanics::Zones& of = section.rock.zones;
+    const rock::Zones& of = section.rock.zones;
     for (std::size_t z = 0; z < of.yielding_number.size(); ++z)
         if (const Index number = of.yielding_number[z];
             number >= 0 && of.is_present[z] && !of.yielding[number].plastic.isZero(0)) {

@@ -10,7 +10,7 @@ namespace
 {
 
 // How far a contact is open beyond where it touches; below 0: how much it is closed, springs and all [m].
-double opening_of(const mechanics::Contacts& contacts, std::size_t c)
+double opening_of(const joint::Contacts& contacts, std::size_t c)
 {
     return joint::opening(contacts.law[c], contacts.initial_traction[c].x()) +
            contacts.relative_displacement[c].x() - contacts.offset[c].x() - contacts.state[c].dilation;
@@ -20,7 +20,7 @@ double opening_of(const mechanics::Contacts& contacts, std::size_t c)
 
 void Closing::start(const mechanics::Assembly& assembly)
 {
-    const mechanics::Contacts& contacts = assembly.contacts;
+    const joint::Contacts& contacts = assembly.contacts;
     const std::size_t n = contacts.status.size();
     cuts_ = 0;
     was_open_.resize(n);
@@ -35,7 +35,7 @@ void Closing::start(const mechanics::Assembly& assembly)
 
 double Closing::longest_step(const mechanics::Assembly& assembly, double duration)
 {
-    const mechanics::Contacts& contacts = assembly.contacts;
+    const joint::Contacts& contacts = assembly.contacts;
     double longest = duration;
     cut_ = {};
     for (std::size_t c = 0; c < was_open_.size(); ++c) {

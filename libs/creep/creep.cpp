@@ -161,7 +161,7 @@ void Creep::begin(double duration, mechanics::Assembly& assembly)
     for (const Chain& chain : chains_)
         steps_.push_back(step_of(chain, scheme_, duration));
 
-    const mechanics::Contacts& contacts = assembly.contacts;
+    const joint::Contacts& contacts = assembly.contacts;
     for (Spring& spring : springs_) {
         if (contacts.status[spring.contact] == ContactStatus::removed)
             continue;
@@ -196,7 +196,7 @@ void Creep::begin(double duration, mechanics::Assembly& assembly)
 double Creep::end(mechanics::Assembly& assembly)
 {
     double error = 0;
-    const mechanics::Contacts& contacts = assembly.contacts;
+    const joint::Contacts& contacts = assembly.contacts;
     for (const Spring& spring : springs_) {
         if (contacts.status[spring.contact] == ContactStatus::removed)
             continue;

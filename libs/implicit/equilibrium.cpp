@@ -44,7 +44,7 @@ double Solver::evaluate(Assembly& assembly, const State& start)
 // ever.
 void Solver::take_states(const Assembly& assembly, const State& start, bool first)
 {
-    const mechanics::Contacts& contacts = assembly.contacts;
+    const joint::Contacts& contacts = assembly.contacts;
     for (std::size_t c = 0; c < active_.size(); ++c) {
         Active now = Active::stuck;
         if (contacts.status[c] == ContactStatus::open || contacts.status[c] == ContactStatus::removed)
@@ -67,7 +67,7 @@ void Solver::take_states(const Assembly& assembly, const State& start, bool firs
 // springs.
 std::vector<Tangent> Solver::tangents(const Assembly& assembly, const State& start, double softness) const
 {
-    const mechanics::Contacts& contacts = assembly.contacts;
+    const joint::Contacts& contacts = assembly.contacts;
     std::vector<Tangent> all(active_.size());
     for (std::size_t c = 0; c < all.size(); ++c) {
         const joint::Slopes law = slopes(contacts.law[c], contacts.state[c], contacts.traction[c].x());
@@ -225,7 +225,7 @@ double Solver::force_change(const Assembly& assembly, const State& start, const 
     std::vector<Vector2d> u(assembly.position.size(), Vector2d::Zero());
     stiffness_.add_to(u, displacement, 1);
     const std::vector<Tangent> acting = tangents(assembly, start, 0);
-    const mechanics::Contacts& contacts = assembly.contacts;
+    const joint::Contacts& contacts = assembly.contacts;
     double largest = 0;
     for (std::size_t c = 0; c < acting.size(); ++c) {
         const auto& [a, b] = contacts.gridpoint[c];
@@ -356,7 +356,7 @@ bool Solver::is_at_rest(const Assembly& assembly, const State& start, double mea
 std::optional<Convergence> Solver::equilibrate(Assembly& assembly, const Equilibrium& settings,
                                                const std::vector<Vector2d>& guess)
 {
-    mechanics::Contacts& contacts = assembly.contacts;
+    joint::Contacts& contacts = assembly.contacts;
     const State start = state_of(assembly);
     const auto give_up = [&] {
         go_back(assembly, start);

@@ -27,28 +27,6 @@ std::array<int, 2 * N> unknowns_of(const std::vector<std::array<int, 2>>& unknow
 
 } // namespace
 
-Tangent tangent_of_response(const mechanics::Contacts& contacts, std::size_t contact,
-                            const joint::State& start)
-{
-    using joint::Dual;
-    const joint::Law& law = contacts.law[contact];
-    const Vector2d &initial = contacts.initial_traction[contact],
-                   spring = contacts.relative_displacement[contact] - contacts.offset[contact];
-    const auto by = [&](double normal, double shear) {
-        joint::StateOf<Dual> state{start.slip,
-                                   start.dilation,
-                                   contacts.state[contact].is_broken,
-                                   {start.memory[0], start.memory[1], start.memory[2]}};
-        const auto found = joint::with_derivatives(law, k_n(law), k_s(law), [&](const auto& one) {
-            return joint::respond(one, state, initial.x(), initial.y(), Dual(spring.x(), normal),
-                                  Dual(spring.y(), shear));
-        });
-        return Vector2d(found.sigma_n.slope, found.tau.slope);
-    };
-    const Vector2d by_opening = by(1, 0), by_shear = by(0, 1);
-    return {by_opening.x(), by_shear.y(), by_opening.y(), by_shear.x()};
-}
-
 void Stiffness::follow(const Assembly& assembly)
 {
     Eigen::setNbThreads(assembly.threads); // of products; Eigen would take all there are
@@ -95,8 +73,8 @@ void Stiffness::number_unknowns(const Assembly& assembly)
 
 void Stiffness::find_pattern(const Assembly& assembly)
 {
-    const mechanics::Zones& zones = assembly.zones;
-    const mechanics::Contacts& contacts = assembly.contacts;
+    const rock::Zones& zones = assembly.zones;
+    const joint::Contacts& contacts = assembly.contacts;
     std::vector<Eigen::Triplet<double, int>> entries;
     const auto couple = [&](const auto& unknowns) {
         for (const int row : unknowns)
@@ -146,7 +124,7 @@ void Stiffness::find_pattern(const Assembly& assembly)
 
 void Stiffness::fill_zones(const Assembly& assembly)
 {
-    const mechanics::Zones& zones = assembly.zones;
+    const rock::Zones& zones = assembly.zones;
     double* const values = zones_.valuePtr();
     std::fill(values, values + zones_.nonZeros(), 0.0);
     for (std::size_t z = 0; z < zones.gridpoint.size(); ++z) {
@@ -215,7 +193,7 @@ Stiffness::Change Stiffness::change(const Assembly& assembly, const std::vector<
 void Stiffness::add_contact(const Assembly& assembly, Index contact, const Tangent& tangent,
                             const Eigen::Ref<const VectorXd>& x, Eigen::Ref<VectorXd> y) const
 {
-    const mechanics::Contacts& contacts = assembly.contacts;
+    const joint::Contacts& contacts = assembly.contacts;
     const auto value = [&](int unknown) { return unknown >= 0 ? x[unknown] : 0.0; };
     const auto& [a, b] = contacts.gridpoint[contact];
     const auto &from = unknown_[a], &to = unknown_[b];
@@ -233,7 +211,7 @@ void Stiffness::add_contact(const Assembly& assembly, Index contact, const Tange
 
 bool Stiffness::factorise(const Assembly& assembly, const std::vector<Tangent>& tangents)
 {
-    const mechanics::Contacts& contacts = assembly.contacts;
+    const joint::Contacts& contacts = assembly.contacts;
     double* const values = factorised_.valuePtr();
     std::copy(zones_.valuePtr(), zones_.valuePtr() + zones_.nonZeros(), values);
     for (const Index c : present_contact_) {

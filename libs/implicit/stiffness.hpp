@@ -26,28 +26,9 @@ namespace jointcreep::implicit
 {
 
 using Eigen::VectorXd;
+using joint::Tangent;
 using mechanics::Assembly;
 using mechanics::Vector2d;
-
-// Change of a contact's traction over change of its relative displacement [Pa/m]: {normal over normal, shear
-// over shear, shear over normal, normal over shear}.
-struct Tangent {
-    double normal, shear, friction, dilation;
-
-    bool operator==(const Tangent&) const = default;
-
-    // Change of {normal, shear} traction [Pa] for one of the {normal, shear} relative displacement [m].
-    Vector2d times(const Vector2d& relative) const
-    {
-        return {normal * relative.x() + dilation * relative.y(),
-                shear * relative.y() + friction * relative.x()};
-    }
-};
-
-// That of a contact's response straight from the state `start`, by its law in numbers with derivatives: for laws
-// whose traction goes with more than springs and a strength. A broken bond has been broken from the start.
-Tangent tangent_of_response(const mechanics::Contacts& contacts, std::size_t contact,
-                            const joint::State& start);
 
 class Stiffness
 {

@@ -188,7 +188,7 @@ void Dynamics::find_time_step()
 {
     // Where joints grow stiffer as they close, with room for that.
     stiffest_allowed_ =
-        contacts_.stiffens() ? mechanics::room_to_stiffen * contacts_.stiffest() : contacts_.stiffest();
+        contacts_.stiffens() ? joint::room_to_stiffen * contacts_.stiffest() : contacts_.stiffest();
     const std::vector<double> sums = stiffness_sums();
     const auto stiffest = std::max_element(sums.begin(), sums.end());
     stiffest_ = *stiffest;

@@ -127,7 +127,7 @@ private:
 
     // Of rock that yields, in the frame that turns with its zone.
     struct Yielding {
-        mechanics::YieldingZone
+        rock::YieldingZone
             zone;               // strains since the shape without stress; its dissipation is of one step
         Eigen::Vector3d stress; // Biot's {xx, yy, xy} now [Pa]
     };

@@ -46,9 +46,9 @@ void Dynamics::transfer(const Transfer& to, DynamicsState& kept)
             return one.zone.*member;
         };
     };
-    to.values(yielding, kept.plastic_strain, of_zone(&mechanics::YieldingZone::plastic));
-    to.values(yielding, kept.initial_zz, of_zone(&mechanics::YieldingZone::initial_zz));
-    to.values(yielding, kept.stress_zz, of_zone(&mechanics::YieldingZone::stress_zz));
+    to.values(yielding, kept.plastic_strain, of_zone(&rock::YieldingZone::plastic));
+    to.values(yielding, kept.initial_zz, of_zone(&rock::YieldingZone::initial_zz));
+    to.values(yielding, kept.stress_zz, of_zone(&rock::YieldingZone::stress_zz));
     to.values(yielding, kept.stress, &Yielding::stress);
     to.size(face_of_mesh, kept.face);
     to.values(face_of_mesh, kept.face);
@@ -122,7 +122,7 @@ std::map<std::array<Index, 2>, Dynamics::Carried> Dynamics::carried_by_pairs() c
 void Dynamics::put_back_contacts()
 {
     const std::vector<Index> leader = leaders();
-    mechanics::Contacts& contacts = rock_.contacts;
+    joint::Contacts& contacts = rock_.contacts;
     const std::map<std::array<Index, 2>, Carried> carried = carried_by_pairs();
     for (std::size_t c = 0; c < contacts.gridpoint.size(); ++c) {
         if (contacts.status[c] == ContactStatus::removed)

@@ -38,7 +38,7 @@ double fit(std::size_t c, const std::vector<std::size_t>& others, const Mesh& me
 // The fixed ground that boundaries rest on through a joint, along all of them, whatever rock there is.
 void Dynamics::find_ground()
 {
-    const mechanics::Contacts& contacts = rock_.contacts;
+    const joint::Contacts& contacts = rock_.contacts;
     std::map<Index, std::vector<std::size_t>> on_ground; // contacts of a gridpoint
     for (std::size_t c = 0; c < contacts.gridpoint.size(); ++c) {
         const auto [a, b] = contacts.gridpoint[c];
@@ -178,7 +178,7 @@ void Dynamics::add_pairs_on_joints(const std::vector<std::array<Index, 2>>& of_m
                                    std::vector<FacePair>& known) const
 {
     const std::set<std::array<Index, 2>> before(face_of_mesh_.begin(), face_of_mesh_.end());
-    const mechanics::Contacts& contacts = rock_.contacts;
+    const joint::Contacts& contacts = rock_.contacts;
     ContactsBetween between;
     for (std::size_t c = 0; c < contacts.gridpoint.size(); ++c)
         if (contacts.status[c] != ContactStatus::removed)
@@ -203,7 +203,7 @@ std::optional<FacePair> Dynamics::pair_on_joint(Index f, Index g,
                                                 const std::vector<std::array<Index, 2>>& of_mesh,
                                                 const ContactsBetween& between) const
 {
-    const mechanics::Contacts& contacts = rock_.contacts;
+    const joint::Contacts& contacts = rock_.contacts;
     FacePair pair{.a = f, .b = g, .is_known = true};
     const auto [from, to] = of_mesh[g];
     const Vector2d normal = normal_of(tangent_of(mesh_.gridpoint[from], mesh_.gridpoint[to]));

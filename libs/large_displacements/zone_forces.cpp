@@ -38,7 +38,7 @@ void Dynamics::make_zones()
         zones_.push_back(zone);
         if (rock_.zones.yielding.empty() || rock_.zones.yielding_number[z] < 0)
             continue;
-        mechanics::YieldingZone yielding = rock_.zones.yielding[rock_.zones.yielding_number[z]];
+        rock::YieldingZone yielding = rock_.zones.yielding[rock_.zones.yielding_number[z]];
         yielding.plastic.setZero(); // is in the shape without stress
         yielding.dissipated = 0;
         yielding.initial_zz = yielding.stress_zz - stiffness[1] * (zone.strain[0] + zone.strain[1]);
@@ -86,7 +86,7 @@ inline void Dynamics::find_zone_force(Index z, double viscosity, ZoneSums& sums)
         if (sums.torn < 0 && !(strain.cwiseAbs().maxCoeff() <= most_strain))
             sums.torn = z;
         sums.friction += zone.area * yields->zone.dissipated;
-        sums.stored += zone.area * mechanics::stored(zone.stiffness, stress, yields->zone.stress_zz);
+        sums.stored += zone.area * rock::stored(zone.stiffness, stress, yields->zone.stress_zz);
     } else {
         stress = stress_of(zone.stiffness, strain);
         held = viscosity * stress_of(zone.stiffness, strain - zone.strain);
@@ -135,7 +135,7 @@ void Dynamics::put_back_zone(std::size_t z)
         biot += skew_part(stretch, biot);
         const Eigen::Vector4d& p = yields->zone.plastic;
         const Matrix2d plastic = rotation * tensor({p[0], p[1], p[3] / 2}) * rotation.transpose();
-        mechanics::YieldingZone& seen = rock_.zones.yielding[rock_.zones.yielding_number[z]];
+        rock::YieldingZone& seen = rock_.zones.yielding[rock_.zones.yielding_number[z]];
         seen.plastic = {plastic(0, 0), plastic(1, 1), p[2], 2 * plastic(0, 1)};
         seen.stress_zz = yields->zone.stress_zz;
     }

@@ -3,12 +3,12 @@
 
 #pragma once
 
-#include "joint/law.hpp"
-#include "mechanics/mohr_coulomb.hpp"
+#include "joint/contacts.hpp"
 #include "model/checkpoint.hpp"
 #include "model/network.hpp"
 #include "model/result.hpp"
 #include "model/scene.hpp"
+#include "rock/zones.hpp"
 
 #include <Eigen/Core>
 
@@ -22,58 +22,21 @@ namespace jointcreep::mechanics
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-// Zones: constant-strain triangles, elastic or yielding, plane strain, small strain.
-struct Zones {
-    std::vector<std::array<Index, 3>> gridpoint;
-    std::vector<std::array<Vector2d, 3>> gradient; // of each corner's shape function [1/m]
-    std::vector<double> area;                      // [m2]
-    std::vector<double> weight;                    // area x density x gravity, downward [N/m]
-    std::vector<double> mass;                      // [kg/m]
-    std::vector<Vector3d> stiffness;               // {C11, C12, C33} of the rock [Pa]
-    std::vector<Vector3d> initial_stress;          // {xx, yy, xy} at zero displacement [Pa]
-    std::vector<Vector3d> stress;                  // now [Pa]
-    std::vector<Vector3d> last_stress;             // before; kept only with stiffness damping [Pa]
-    std::vector<char> is_present;
-
-    // Of rock that yields; empty where none does.
-    std::vector<Index> yielding_number; // into yielding, of every zone; -1 elastic
-    std::vector<YieldingZone> yielding;
-    bool holds_yield = false; // all rock is elastic for now, from the plastic strain it has
-};
-
-// Contacts: springs between two gridpoints that a joint has split. Pairs are {normal, shear}.
-struct Contacts {
-    std::vector<std::array<Index, 2>> gridpoint; // {on side a, on side b}
-    std::vector<Vector2d> normal;                // unit, from a to b
-    std::vector<double> length;                  // [m]
-    std::vector<joint::Law> law;
-    std::vector<joint::State> state;
-    std::vector<Vector2d>
-        initial_traction;           // at zero displacement; where open, the normal part is k_n x gap [Pa]
-    std::vector<Vector2d> offset;   // displacement at which the springs are as at the start: creep [m]
-    std::vector<Vector2d> traction; // now [Pa]
-    std::vector<Vector2d> relative_displacement; // displacement of b minus that of a, now [m]
-    std::vector<ContactStatus> status;           // now; removed once a side is gone
-    std::vector<double> work; // done on it since this was last set to 0, by the trapezoidal rule [J/m]
-};
-
-// What a gridpoint is part of, and in which order forces are added up, whatever the number of threads: zones
-// that follow each other make a part, and add their forces into slots, one for each gridpoint of the part. A
-// gridpoint adds up its slots, then its contacts.
+// What a gridpoint is part of, and in which order forces are added up, whatever the number of threads: a
+// gridpoint adds up its slots (rock/zones.hpp), then its contacts.
 struct Incidence {
     std::vector<Index> zone_start;    // [gridpoints + 1]
     std::vector<Index> zone_corner;   // 3 zone + corner
     std::vector<Index> contact_start; // [gridpoints + 1]
     std::vector<Index> contact_side;  // 2 contact + side (0 a, 1 b)
-    std::vector<Index> part_start;    // [parts + 1] the slots of each part
-    std::vector<std::array<Index, 3>> zone_slot;
-    std::vector<Index> slot_start; // [gridpoints + 1]
-    std::vector<Index> slot;       // those of each gridpoint
+    std::vector<Index> slot_start;    // [gridpoints + 1]
+    std::vector<Index> slot;          // those of each gridpoint
 };
 
 struct Assembly {
-    Zones zones;
-    Contacts contacts;
+    rock::Zones zones;
+    rock::Slots slots;
+    joint::Contacts contacts;
     Incidence incidence;
 
     // Gridpoints.
@@ -93,12 +56,6 @@ struct Assembly {
     };
     std::vector<Tie> ties;
     std::vector<std::array<Index, 2>> tied; // from the ties still there: {follower, leader}
-
-    // Forces of zones by slots and of contacts on their side a, and the sums of the magnitudes of what zones
-    // add to a slot; filled by find_forces [N/m].
-    std::vector<Vector2d> slot_force;
-    std::vector<Vector2d> contact_force;
-    std::vector<double> slot_magnitudes;
 
     double stiffness_damping_rate =
         0; // beta / dt: forces grow by this times their change since the last step [-]
@@ -130,18 +87,8 @@ void find_forces_in_team(Assembly& assembly, bool forces_alone);
 constexpr Index chunk = 512;
 Index chunks_of(const Assembly& assembly);
 
-// The zone that is farthest beyond its strength, where yield is held; -1 if none is.
-Index weakest_zone(const Assembly& assembly);
-
-// What find_forces has summed up since this was forgotten: work on contacts, and what yielding zones have
-// lost [J/m].
-void forget_work(Assembly& assembly);
-double work_on_contacts(const Assembly& assembly);
-double dissipated_in_zones(const Assembly& assembly);
-
-// Energy that zones and contacts have stored, and contacts alone [J/m]; only differences mean anything.
+// Energy that zones and contacts have stored [J/m]; only differences mean anything.
 double stored_energy(const Assembly& assembly);
-double energy_stored_in_contacts(const Assembly& assembly);
 
 struct Balance {
     double largest; // unbalanced force on a free gridpoint [N/m]
@@ -170,9 +117,6 @@ std::pair<double, std::size_t> farthest_displacement(const Assembly& assembly);
 // Work of load and applied forces on the way from the displacements `start` to the present ones [J/m].
 double work_of_loads(const Assembly& assembly, const std::vector<Vector2d>& start);
 
-// Stiffness of a zone between its corners i and j, per area [Pa/m2].
-Eigen::Matrix2d stiffness_between(const Zones& zones, std::size_t z, int i, int j);
-
 // Diagonal of the box around all gridpoints [m].
 double size_of(const Assembly& assembly);
 
@@ -185,7 +129,7 @@ struct State {
     std::vector<joint::State> joint;
     std::vector<ContactStatus> status;
     std::vector<Vector3d> stress;
-    std::vector<YieldingZone> yielding;
+    std::vector<rock::YieldingZone> yielding;
 };
 State state_of(const Assembly& assembly);
 void go_back(Assembly& assembly, const State& state);
@@ -194,9 +138,8 @@ void go_back(Assembly& assembly, const State& state);
 void transfer(const Transfer& to, Assembly& assembly, Checkpoint& kept);
 
 // Row sums of the stiffness matrix's magnitudes, the larger of x and y, of every gridpoint [Pa]: no
-// eigenvalue of stiffness over mass is above the largest row sum over its mass (Gershgorin). Where joints
-// grow stiffer as they close the normal stiffness is taken as this many times that of now.
-inline constexpr double room_to_stiffen = 2;
+// eigenvalue of stiffness over mass is above the largest row sum over its mass (Gershgorin). Joints that grow stiffer as
+// they close count with joint::room_to_stiffen.
 std::vector<double> stiffness_row_sums(const Assembly& assembly);
 
 // Mass of every gridpoint: a third of each present zone around it [kg/m].

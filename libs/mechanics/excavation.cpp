@@ -8,8 +8,8 @@ std::vector<Vector2d> excavate(Assembly& assembly, const Blocks& blocks, const M
 {
     find_forces(assembly);
     std::vector<Vector2d> released = assembly.force;
-    Zones& zones = assembly.zones;
-    Contacts& contacts = assembly.contacts;
+    rock::Zones& zones = assembly.zones;
+    joint::Contacts& contacts = assembly.contacts;
     for (std::size_t z = 0; z < zones.gridpoint.size(); ++z) {
         if (!zones.is_present[z] || blocks.block_stage[mesh.zone_block[z]] != stage)
             continue;
@@ -33,7 +33,7 @@ std::vector<Vector2d> excavate(Assembly& assembly, const Blocks& blocks, const M
         const auto [a, b] = contacts.gridpoint[c];
         if (contacts.status[c] == ContactStatus::removed || (!is_gone(a) && !is_gone(b)))
             continue;
-        assembly.contact_force[c].setZero();
+        contacts.force[c].setZero();
         contacts.traction[c].setZero();
         contacts.status[c] = ContactStatus::removed;
     }

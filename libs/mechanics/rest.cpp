@@ -102,7 +102,7 @@ Eigen::SparseMatrix<double> stiffness_of(const Assembly& assembly, const std::ve
             for (int j = 0; j < 3; ++j)
                 entries.emplace_back(3 * p + i, 3 * q + j, block(i, j));
     };
-    const Contacts& contacts = assembly.contacts;
+    const joint::Contacts& contacts = assembly.contacts;
     double stiffest = 0; // [Pa]
     for (std::size_t c = 0; c < contacts.gridpoint.size(); ++c) {
         if (contacts.status[c] == ContactStatus::removed)

@@ -69,9 +69,9 @@ public:
         if (n_ >= kept_.size()) {
             change = 0;
             for (std::size_t c = 0; c < oldest.size(); ++c)
-                change = std::max(change, (assembly.contact_force[c] - oldest[c]).norm());
+                change = std::max(change, (assembly.contacts.force[c] - oldest[c]).norm());
         }
-        oldest = assembly.contact_force;
+        oldest = assembly.contacts.force;
         ++n_;
         return change;
     }
@@ -98,9 +98,10 @@ public:
         sums_.resize(chunks_of(assembly));
         if (settings.stiffness_damping > 0)
             assembly.zones.last_stress = assembly.zones.stress;
-        forget_work(assembly);
+        joint::forget_work(assembly.contacts);
+        rock::forget_dissipated(assembly.zones);
         stored_at_start_ = stored_energy(assembly);
-        in_contacts_at_start_ = energy_stored_in_contacts(assembly);
+        in_contacts_at_start_ = joint::stored_energy(assembly.contacts);
         if (settings.damping == Damping::adaptive || settings.damping == Damping::combined)
             last_force_ = assembly.force;
     }
@@ -242,8 +243,8 @@ public:
         a_.stiffness_damping_rate = 0;
         find_forces(a_);
         convergence.stored = stored_energy(a_) - stored_at_start_;
-        convergence.dissipated = in_contacts_at_start_ + work_on_contacts(a_) -
-                                 energy_stored_in_contacts(a_) + dissipated_in_zones(a_);
+        convergence.dissipated = in_contacts_at_start_ + joint::work_on(a_.contacts) -
+                                 joint::stored_energy(a_.contacts) + rock::dissipated(a_.zones);
         convergence.work_of_loads = work_of_loads(a_, start_);
         // Stiffness damping works inside zones and contacts, unseen by the gridpoints' motion: it takes what
         // is missing.
@@ -294,16 +295,16 @@ private:
         for (const double m : mass_)
             inverse_mass_.push_back(m > 0 ? 1 / m : 0.0); // gridpoints without any rock do not move
         a_.stiffness_damping_rate = settings_.stiffness_damping / dt_;
-        const mechanics::Contacts& contacts = a_.contacts;
+        const joint::Contacts& contacts = a_.contacts;
         stiffening_.clear();
         for (std::size_t c = 0; c < contacts.law.size(); ++c)
             if (!is_linear(contacts.law[c]) && contacts.status[c] != ContactStatus::removed)
-                stiffening_.emplace_back(c, mechanics::room_to_stiffen * normal_stiffness(c));
+                stiffening_.emplace_back(c, joint::room_to_stiffen * normal_stiffness(c));
     }
 
     double normal_stiffness(std::size_t contact) const
     {
-        const mechanics::Contacts& contacts = a_.contacts;
+        const joint::Contacts& contacts = a_.contacts;
         return slopes(contacts.law[contact], contacts.state[contact], contacts.traction[contact].x()).k_n;
     }
 

@@ -52,7 +52,7 @@ Sensitivity::Sensitivity(std::vector<Parameter> parameters, const Scene& scene, 
                          const Assembly& assembly)
     : parameters_(std::move(parameters))
 {
-    const mechanics::Contacts& contacts = assembly.contacts;
+    const joint::Contacts& contacts = assembly.contacts;
     for (const joint::Law& law : contacts.law)
         if (!joint::is_linear(law))
             throw input_error(
@@ -111,36 +111,8 @@ creep::Chain Sensitivity::change_of(const creep::Chain& chain, Parameter paramet
     return change;
 }
 
-Sensitivity::ContactResponse Sensitivity::respond(const Assembly& assembly, std::size_t c,
-                                                  const ContactChange& by) const
-{
-    const mechanics::Contacts& contacts = assembly.contacts;
-    if (contacts.status[c] == ContactStatus::removed)
-        return {Vector2d::Zero(), by.slip, by.dilation, by.memory};
-    const joint::Law& law = contacts.law[c];
-    const joint::State& start = start_[c];
-    const Vector2d &initial = contacts.initial_traction[c],
-                   stretch = contacts.relative_displacement[c] - contacts.offset[c];
-    joint::StateOf<Dual> state{{start.slip, by.slip},
-                               {start.dilation, by.dilation},
-                               contacts.state[c].is_broken, // bonds that break have done so from the start
-                               {Dual(start.memory[0], by.memory[0]), Dual(start.memory[1], by.memory[1]),
-                                Dual(start.memory[2], by.memory[2])}};
-    const auto found = joint::with_derivatives(
-        law, Dual(joint::k_n(law), by.stiffness.x()), Dual(joint::k_s(law), by.stiffness.y()),
-        [&](const auto& one) {
-            return joint::respond(one, state, Dual(initial.x(), by.initial_traction.x()),
-                                  Dual(initial.y(), by.initial_traction.y()),
-                                  Dual(stretch.x(), by.spring.x()), Dual(stretch.y(), by.spring.y()));
-        });
-    return {{found.sigma_n.slope, found.tau.slope},
-            state.slip.slope,
-            state.dilation.slope,
-            {state.memory[0].slope, state.memory[1].slope, state.memory[2].slope}};
-}
-
-Sensitivity::ContactResponse Sensitivity::response(const Assembly& assembly, const Change& change,
-                                                   std::size_t c, bool with_displacement) const
+joint::ContactResponse Sensitivity::response(const Assembly& assembly, const Change& change, std::size_t c,
+                                             bool with_displacement) const
 {
     Vector2d spring = -change.offset[c];
     if (with_displacement) {
@@ -149,30 +121,20 @@ Sensitivity::ContactResponse Sensitivity::response(const Assembly& assembly, con
                        &normal = assembly.contacts.normal[c];
         spring += Vector2d(normal.dot(apart), along(normal).dot(apart));
     }
-    return respond(assembly, c,
-                   {change.stiffness[c], change.initial_traction[c], spring, change.slip[c],
-                    change.dilation[c], change.memory[c]});
+    return joint::respond(assembly.contacts, c, start_[c],
+                          {change.stiffness[c], change.initial_traction[c], spring, change.slip[c],
+                           change.dilation[c], change.memory[c]});
 }
 
 Vector3d Sensitivity::stress(const Assembly& assembly, const Change& change, std::size_t z,
                              bool with_displacement) const
 {
-    const auto stress_of = [&](const std::vector<Vector2d>& displacement, const Vector3d& c) {
-        double exx = 0, eyy = 0, gxy = 0;
-        for (int i = 0; i < 3; ++i) {
-            const Vector2d &u = displacement[assembly.zones.gridpoint[z][i]],
-                           &gradient = assembly.zones.gradient[z][i];
-            exx += gradient.x() * u.x();
-            eyy += gradient.y() * u.y();
-            gxy += gradient.y() * u.x() + gradient.x() * u.y();
-        }
-        return Vector3d(c[0] * exx + c[1] * eyy, c[1] * exx + c[0] * eyy, c[2] * gxy);
-    };
     Vector3d sum = change.initial_stress[z];
     if (with_displacement)
-        sum += stress_of(change.displacement, assembly.zones.stiffness[z]);
+        sum += rock::stress_by(assembly.zones, z, change.displacement, assembly.zones.stiffness[z]);
     if (change.shear_modulus[z] != 0) // the bulk modulus stays
-        sum += stress_of(assembly.displacement, change.shear_modulus[z] * Vector3d(4. / 3, -2. / 3, 1));
+        sum += rock::stress_by(assembly.zones, z, assembly.displacement,
+                               change.shear_modulus[z] * Vector3d(4. / 3, -2. / 3, 1));
     return sum;
 }
 
@@ -180,28 +142,17 @@ std::vector<Vector2d> Sensitivity::forces(const Assembly& assembly, const Change
                                           bool is_settled) const
 {
     std::vector<Vector2d> force(assembly.position.size(), Vector2d::Zero());
-    const mechanics::Zones& zones = assembly.zones;
-    for (std::size_t z = 0; z < zones.area.size(); ++z) {
-        if (!zones.is_present[z])
-            continue;
-        const Vector3d s = is_settled ? change.stress[z] : stress(assembly, change, z, false);
-        for (int i = 0; i < 3; ++i) {
-            const Vector2d& gradient = zones.gradient[z][i];
-            force[zones.gridpoint[z][i]] -=
-                zones.area[z] * Vector2d(s[0] * gradient.x() + s[2] * gradient.y(),
-                                         s[2] * gradient.x() + s[1] * gradient.y());
-        }
-    }
-    const mechanics::Contacts& contacts = assembly.contacts;
+    for (std::size_t z = 0; z < assembly.zones.area.size(); ++z)
+        if (assembly.zones.is_present[z])
+            rock::add_force(assembly.zones, z,
+                            is_settled ? change.stress[z] : stress(assembly, change, z, false), force);
+    const joint::Contacts& contacts = assembly.contacts;
     for (std::size_t c = 0; c < contacts.length.size(); ++c) {
         if (contacts.status[c] == ContactStatus::removed)
             continue;
         const Vector2d traction =
             is_settled ? change.traction[c] : response(assembly, change, c, false).traction;
-        const Vector2d &normal = contacts.normal[c],
-                       on_a = contacts.length[c] * (traction.x() * normal + traction.y() * along(normal));
-        force[contacts.gridpoint[c][0]] += on_a;
-        force[contacts.gridpoint[c][1]] -= on_a;
+        joint::add_force(contacts, c, traction, force);
     }
     for (const auto& [follower, leader] : assembly.tied) {
         force[leader] += force[follower];
@@ -212,12 +163,12 @@ std::vector<Vector2d> Sensitivity::forces(const Assembly& assembly, const Change
 
 void Sensitivity::settle(const Assembly& assembly, implicit::Solver& engine, double time, double held)
 {
-    const mechanics::Contacts& contacts = assembly.contacts;
+    const joint::Contacts& contacts = assembly.contacts;
     const std::size_t n = contacts.law.size();
-    std::vector<implicit::Tangent> tangents(n);
+    std::vector<joint::Tangent> tangents(n);
     for (std::size_t c = 0; c < n; ++c)
         if (contacts.status[c] != ContactStatus::removed)
-            tangents[c] = implicit::tangent_of_response(contacts, c, start_[c]);
+            tangents[c] = joint::tangent_of_response(contacts, c, start_[c]);
     for (Change& change : changes_) {
         std::vector<Vector2d> force = forces(assembly, change, false);
         if (held > 0)
@@ -232,7 +183,7 @@ void Sensitivity::settle(const Assembly& assembly, implicit::Solver& engine, dou
         change.displacement.assign(force.size(), Vector2d::Zero());
         stiffness.add_to(change.displacement, x, 1);
         for (std::size_t c = 0; c < n; ++c) {
-            const ContactResponse found = response(assembly, change, c, true);
+            const joint::ContactResponse found = response(assembly, change, c, true);
             change.traction[c] = found.traction;
             change.slip[c] = found.slip;
             change.dilation[c] = found.dilation;
@@ -247,12 +198,12 @@ void Sensitivity::settle(const Assembly& assembly, implicit::Solver& engine, dou
 
 void Sensitivity::start_from_here(const Assembly& assembly)
 {
-    const mechanics::Contacts& contacts = assembly.contacts;
+    const joint::Contacts& contacts = assembly.contacts;
     for (Change& change : changes_) {
         for (std::size_t c = 0; c < change.slip.size(); ++c) {
             const auto [a, b] = contacts.gridpoint[c];
             const Vector2d relative = change.displacement[b] - change.displacement[a];
-            // As mechanics::start_from_here() has it.
+            // As joint::start_from_here() has it.
             const Dual sigma_0(contacts.initial_traction[c].x(), change.initial_traction[c].x()),
                 u(contacts.relative_displacement[c].x() - contacts.offset[c].x() - contacts.state[c].dilation,
                   contacts.normal[c].dot(relative) - change.offset[c].x() - change.dilation[c]);
@@ -289,7 +240,7 @@ void Sensitivity::start_creep(const creep::Creep& creep)
 void Sensitivity::creep_step(const creep::Creep& creep, double duration, const Assembly& assembly,
                              implicit::Solver& engine, double time)
 {
-    const mechanics::Contacts& contacts = assembly.contacts;
+    const joint::Contacts& contacts = assembly.contacts;
     const auto& springs = creep.springs();
     const auto& shears = creep.shears();
     std::vector<creep::Step> steps;

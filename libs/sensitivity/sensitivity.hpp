@@ -100,26 +100,11 @@ private:
 
     creep::Chain change_of(const creep::Chain& chain, Parameter parameter) const;
     static double opening(const mechanics::Assembly& assembly, const Change& change, std::size_t c);
-    // What a contact starts with changes by this: its springs, initial traction, the stretch of its springs, and
-    // what it remembers; pairs are {normal, shear}.
-    struct ContactChange {
-        Vector2d stiffness{0, 0}, initial_traction{0, 0}, spring{0, 0};
-        double slip = 0, dilation = 0;
-        std::array<double, 3> memory{};
-    };
-    // So its traction, and what it remembers at the end, change by this.
-    struct ContactResponse {
-        Vector2d traction;
-        double slip, dilation;
-        std::array<double, 3> memory;
-    };
-    ContactResponse respond(const mechanics::Assembly& assembly, std::size_t c,
-                            const ContactChange& by) const;
     // Forces on gridpoints, as settled; or before, at displacements as they are.
     std::vector<Vector2d> forces(const mechanics::Assembly& assembly, const Change& change,
                                  bool is_settled) const;
-    ContactResponse response(const mechanics::Assembly& assembly, const Change& change, std::size_t c,
-                             bool with_displacement) const;
+    joint::ContactResponse response(const mechanics::Assembly& assembly, const Change& change, std::size_t c,
+                                    bool with_displacement) const;
     Vector3d stress(const mechanics::Assembly& assembly, const Change& change, std::size_t z,
                     bool with_displacement) const;
 

@@ -22,7 +22,7 @@ struct Gaps {
 
     explicit Gaps(std::size_t n = 1)
     {
-        mechanics::Contacts& contacts = rock.contacts;
+        joint::Contacts& contacts = rock.contacts;
         contacts.law.assign(n, joint::Coulomb{k_n, 1e9, 0, 0.6, 0});
         contacts.initial_traction.assign(n, {-1e6, 0});
         contacts.offset.assign(n, {2e-4, 0}); // crept

@@ -40,7 +40,7 @@ struct Contact {
         rock.is_free = {{0, 0}, {1, 1}};
         rock.load.assign(2, {0, 0});
         rock.applied = rock.force = rock.load;
-        mechanics::Contacts& contacts = rock.contacts;
+        joint::Contacts& contacts = rock.contacts;
         contacts.gridpoint = {{0, 1}};
         find_incidence(rock);
         contacts.normal = {{0, 1}};

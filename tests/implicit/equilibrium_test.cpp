@@ -401,7 +401,7 @@ TEST(implicit_equilibrium, a_bond_that_need_not_break_is_whole_afterwards)
         if (!solver.equilibrate(s.assembly, settings()))
             continue;
         ++n_found;
-        const mechanics::Contacts& contacts = s.assembly.contacts;
+        const joint::Contacts& contacts = s.assembly.contacts;
         for (std::size_t c = 0; c < contacts.state.size(); ++c) {
             n_broken += contacts.state[c].is_broken ? 1 : 0;
             EXPECT_FALSE(contacts.state[c].is_broken && contacts.status[c] == ContactStatus::stuck) << i;
@@ -433,7 +433,7 @@ TEST(implicit_equilibrium, joints_that_weaken)
         if (!solver.equilibrate(s.assembly, settings()))
             continue;
         ++n_found;
-        const mechanics::Contacts& contacts = s.assembly.contacts;
+        const joint::Contacts& contacts = s.assembly.contacts;
         for (std::size_t c = 0; c < contacts.state.size(); ++c) {
             const auto& law = std::get<joint::Coulomb>(contacts.law[c]);
             joint::State state;

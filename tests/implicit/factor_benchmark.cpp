@@ -65,7 +65,7 @@ std::vector<std::array<int, 2>> rows_of(const Assembly& assembly, const implicit
 }
 
 // Its lower half.
-Matrix matrix_of(const Assembly& assembly, const std::vector<implicit::Tangent>& tangents,
+Matrix matrix_of(const Assembly& assembly, const std::vector<joint::Tangent>& tangents,
                  const std::vector<std::array<int, 2>>& rows, Eigen::Index size)
 {
     std::vector<Eigen::Triplet<double, int>> entries;
@@ -75,7 +75,7 @@ Matrix matrix_of(const Assembly& assembly, const std::vector<implicit::Tangent>&
                 if (rows[b][j] >= 0 && rows[a][i] >= rows[b][j])
                     entries.emplace_back(rows[a][i], rows[b][j], block(i, j));
     };
-    const mechanics::Zones& zones = assembly.zones;
+    const rock::Zones& zones = assembly.zones;
     for (std::size_t z = 0; z < zones.gridpoint.size(); ++z) {
         const mechanics::Vector3d& c = zones.stiffness[z];
         Eigen::Matrix3d elastic;
@@ -90,7 +90,7 @@ Matrix matrix_of(const Assembly& assembly, const std::vector<implicit::Tangent>&
                 add(zones.gridpoint[z][i], zones.gridpoint[z][j],
                     zones.area[z] * strain[i].transpose() * elastic * strain[j]);
     }
-    const mechanics::Contacts& contacts = assembly.contacts;
+    const joint::Contacts& contacts = assembly.contacts;
     for (std::size_t c = 0; c < contacts.gridpoint.size(); ++c) {
         const Vector2d& n = contacts.normal[c];
         const Vector2d t(n.y(), -n.x());
@@ -112,7 +112,7 @@ void measure(const std::string& path, double zone_size)
     scene.zone_size = zone_size;
     const Mesh mesh = zoning::zone(scene, file.network.blocks);
     const Assembly assembly = mechanics::assemble(scene, file.network, file.equivalent, mesh);
-    std::vector<implicit::Tangent> stuck(assembly.contacts.law.size());
+    std::vector<joint::Tangent> stuck(assembly.contacts.law.size());
     for (std::size_t c = 0; c < stuck.size(); ++c) {
         const auto& law = std::get<joint::Coulomb>(assembly.contacts.law[c]);
         stuck[c] = {law.k_n, law.k_s > 0 ? law.k_s : 1e-6 * law.k_n, 0, 0};

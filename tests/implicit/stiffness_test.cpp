@@ -17,7 +17,7 @@ using namespace jointcreep::test;
 using Eigen::Vector2d;
 using Eigen::VectorXd;
 using implicit::Stiffness;
-using implicit::Tangent;
+using joint::Tangent;
 using mechanics::Assembly;
 
 constexpr double friction = 0.5; // [rad]
@@ -46,7 +46,7 @@ Section plate(bool excavated)
 // Every fourth contact is open, slips forward, slips backward, sticks. Returns what each then does.
 std::vector<Tangent> excite(Assembly& assembly)
 {
-    mechanics::Contacts& contacts = assembly.contacts;
+    joint::Contacts& contacts = assembly.contacts;
     std::vector<Tangent> tangents;
     const double tan_phi = std::tan(friction);
     for (std::size_t c = 0; c < contacts.status.size(); ++c) {

@@ -1,4 +1,4 @@
-#include "mechanics/mohr_coulomb.hpp"
+#include "rock/mohr_coulomb.hpp"
 
 #include <Eigen/LU>
 
@@ -6,7 +6,7 @@
 #include <bit>
 #include <limits>
 
-namespace jointcreep::mechanics
+namespace jointcreep::rock
 {
 
 Returned returned(const MohrCoulomb& law, const Elasticity& c, const Eigen::Vector3d& trial)
@@ -104,4 +104,4 @@ Eigen::Vector3d yielded(YieldingZone& zone, const Elasticity& c, const Eigen::Ve
     return {s[0], s[1], s[2]};
 }
 
-} // namespace jointcreep::mechanics
+} // namespace jointcreep::rock

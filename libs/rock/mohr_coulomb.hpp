@@ -18,7 +18,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace jointcreep::mechanics
+namespace jointcreep::rock
 {
 
 struct MohrCoulomb {
@@ -102,4 +102,4 @@ inline double stored(const Elasticity& c, const Eigen::Vector3d& s, double zz)
     return mean * mean / (2 * bulk) + (xx * xx + yy * yy + across * across + 2 * s[2] * s[2]) / (4 * c[2]);
 }
 
-} // namespace jointcreep::mechanics
+} // namespace jointcreep::rock

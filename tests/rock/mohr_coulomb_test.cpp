@@ -1,7 +1,7 @@
 // Rock that yields: strengths by hand, what holds for any return to them, and a path of loading and
 // unloading.
 
-#include "mechanics/mohr_coulomb.hpp"
+#include "rock/mohr_coulomb.hpp"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -11,7 +11,7 @@
 namespace mohr_coulomb_test
 {
 
-using namespace jointcreep::mechanics;
+using namespace jointcreep::rock;
 using Eigen::Vector3d, Eigen::Vector4d;
 
 namespace

@@ -1,0 +1,169 @@
+#include "joint/contacts.hpp"
+
+#include "model/signs.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+namespace jointcreep::joint
+{
+
+Contacts contacts_of(const Scene& scene, const EquivalentJoints& joints, const Mesh& mesh)
+{
+    Contacts contacts;
+    const std::size_t n = mesh.contact_edge.size();
+    contacts.gridpoint = mesh.contact_gridpoint;
+    contacts.normal = mesh.contact_normal;
+    contacts.length = mesh.contact_length;
+    for (std::size_t c = 0; c < n; ++c) {
+        const Index e = mesh.contact_edge[c];
+        contacts.law.push_back(law_of(joints, static_cast<std::size_t>(e)));
+        const Eigen::Vector3d stress = scene.in_situ_stress.at(mesh.contact_centre[c]);
+        const Vector2d normal = mesh.contact_normal[c], tangent = along(normal);
+        const Vector2d pull(stress[0] * normal.x() + stress[2] * normal.y(),
+                            stress[2] * normal.x() + stress[1] * normal.y());
+        contacts.initial_traction.emplace_back(pull.dot(normal), pull.dot(tangent));
+    }
+    contacts.state.resize(n);
+    contacts.offset.assign(n, Vector2d::Zero());
+    contacts.traction = contacts.initial_traction;
+    contacts.relative_displacement.assign(n, Vector2d::Zero());
+    contacts.status.assign(n, ContactStatus::stuck);
+    contacts.work.assign(n, 0.0);
+    return contacts;
+}
+
+void find_forces_in_team(Contacts& contacts, std::span<const Vector2d> displacement, double damping)
+{
+    const auto n = static_cast<Index>(contacts.gridpoint.size());
+    const Vector2d* u = displacement.data();
+#pragma omp for schedule(static) nowait
+    for (Index c = 0; c < n; ++c) {
+        if (contacts.status[c] == ContactStatus::removed)
+            continue;
+        const auto [a, b] = contacts.gridpoint[c];
+        const Vector2d normal = contacts.normal[c], tangent = along(normal);
+        const Vector2d apart = u[b] - u[a], relative_displacement(apart.dot(normal), apart.dot(tangent));
+        const Vector2d sprung = relative_displacement - contacts.offset[c];
+        const Response response =
+            respond(contacts.law[c], contacts.state[c], contacts.initial_traction[c].x(),
+                    contacts.initial_traction[c].y(), sprung.x(), sprung.y());
+        const Vector2d traction(response.sigma_n, response.tau), last = contacts.traction[c];
+        const double length = contacts.length[c];
+        contacts.work[c] +=
+            length / 2 * (last + traction).dot(relative_displacement - contacts.relative_displacement[c]);
+        contacts.relative_displacement[c] = relative_displacement;
+        contacts.traction[c] = traction;
+        contacts.status[c] = response.status;
+        Vector2d acting = traction;
+        if (damping > 0 && response.status == ContactStatus::stuck)
+            acting += damping * (traction - last); // dashpots; none where it slips or is open
+        contacts.force[c] = length * (acting.x() * normal + acting.y() * tangent);
+    }
+}
+
+void add_force(const Contacts& contacts, std::size_t c, const Vector2d& traction,
+               std::vector<Vector2d>& force)
+{
+    const Vector2d &normal = contacts.normal[c],
+                   on_a = contacts.length[c] * (traction.x() * normal + traction.y() * along(normal));
+    force[contacts.gridpoint[c][0]] += on_a;
+    force[contacts.gridpoint[c][1]] -= on_a;
+}
+
+ContactResponse respond(const Contacts& contacts, std::size_t c, const State& start, const ContactChange& by)
+{
+    if (contacts.status[c] == ContactStatus::removed)
+        return {Vector2d::Zero(), by.slip, by.dilation, by.memory};
+    const Law& law = contacts.law[c];
+    const Vector2d &initial = contacts.initial_traction[c],
+                   stretch = contacts.relative_displacement[c] - contacts.offset[c];
+    StateOf<Dual> state{{start.slip, by.slip},
+                        {start.dilation, by.dilation},
+                        contacts.state[c].is_broken,
+                        {Dual(start.memory[0], by.memory[0]), Dual(start.memory[1], by.memory[1]),
+                         Dual(start.memory[2], by.memory[2])}};
+    const auto found = with_derivatives(
+        law, Dual(k_n(law), by.stiffness.x()), Dual(k_s(law), by.stiffness.y()), [&](const auto& one) {
+            return respond(one, state, Dual(initial.x(), by.initial_traction.x()),
+                           Dual(initial.y(), by.initial_traction.y()), Dual(stretch.x(), by.spring.x()),
+                           Dual(stretch.y(), by.spring.y()));
+        });
+    return {{found.sigma_n.slope, found.tau.slope},
+            state.slip.slope,
+            state.dilation.slope,
+            {state.memory[0].slope, state.memory[1].slope, state.memory[2].slope}};
+}
+
+Tangent tangent_of_response(const Contacts& contacts, std::size_t c, const State& start)
+{
+    const Vector2d by_opening = respond(contacts, c, start, {.spring = {1, 0}}).traction,
+                   by_shear = respond(contacts, c, start, {.spring = {0, 1}}).traction;
+    return {by_opening.x(), by_shear.y(), by_opening.y(), by_shear.x()};
+}
+
+void add_row_sums(const Contacts& contacts, std::vector<Vector2d>& sums)
+{
+    for (std::size_t c = 0; c < contacts.gridpoint.size(); ++c) {
+        if (contacts.status[c] == ContactStatus::removed)
+            continue;
+        const Vector2d n = contacts.normal[c].cwiseAbs(), t(n.y(), n.x());
+        const Slopes law = slopes(contacts.law[c], contacts.state[c], contacts.traction[c].x());
+        const double k_n = (is_linear(contacts.law[c]) ? 1 : room_to_stiffen) * law.k_n;
+        const Vector2d row =
+            2 * contacts.length[c] * (k_n * n * (n.x() + n.y()) + law.k_s * t * (t.x() + t.y()));
+        for (const Index g : contacts.gridpoint[c])
+            sums[g] += row;
+    }
+}
+
+double stored_energy(const Contacts& contacts)
+{
+    double energy = 0;
+    for (std::size_t c = 0; c < contacts.gridpoint.size(); ++c)
+        if (contacts.status[c] != ContactStatus::removed)
+            energy += contacts.length[c] *
+                      stored(contacts.law[c], contacts.traction[c].x(), contacts.traction[c].y());
+    return energy;
+}
+
+double work_on(const Contacts& contacts)
+{
+    return std::accumulate(contacts.work.begin(), contacts.work.end(), 0.0);
+}
+
+void forget_work(Contacts& contacts)
+{
+    std::fill(contacts.work.begin(), contacts.work.end(), 0.0);
+}
+
+void start_from_here(Contacts& contacts)
+{
+    for (std::size_t c = 0; c < contacts.gridpoint.size(); ++c) {
+        // An open contact keeps its gap as the tension its spring would have.
+        const double normal = normal_traction(contacts.law[c], contacts.initial_traction[c].x(),
+                                              contacts.relative_displacement[c].x() - contacts.offset[c].x() -
+                                                  contacts.state[c].dilation);
+        contacts.initial_traction[c] = {normal, contacts.traction[c].y()};
+        contacts.state[c].slip = contacts.state[c].dilation = 0;
+        contacts.offset[c].setZero();
+    }
+}
+
+void transfer(const Transfer& to, Contacts& contacts, Checkpoint& kept)
+{
+    to.values(contacts.status, kept.contact_status);
+    to.values(contacts.traction, kept.traction);
+    to.values(contacts.initial_traction, kept.initial_traction);
+    to.values(contacts.relative_displacement, kept.relative_displacement);
+    to.values(contacts.offset, kept.offset);
+    to.values(contacts.state, kept.slip, &State::slip);
+    to.values(contacts.state, kept.dilation, &State::dilation);
+    to.values(contacts.state, kept.is_broken, &State::is_broken);
+    const auto memory = [](std::size_t i) { return [i](State& one) -> double& { return one.memory[i]; }; };
+    to.values(contacts.state, kept.first_memory, memory(0));
+    to.values(contacts.state, kept.second_memory, memory(1));
+    to.values(contacts.state, kept.third_memory, memory(2));
+}
+
+} // namespace jointcreep::joint
