@@ -20,7 +20,7 @@ constexpr KeyUnit GPa_day{"GPa day", unit::GPa* unit::day};
 constexpr Range strength = from(0).to(1e4);      // [MPa]
 constexpr Range friction = from(0).below(90);    // [deg]
 constexpr Range viscosity = from(1e-9).to(1e12); // [GPa day]
-constexpr Range gradient = within(100);          // [MPa/m]
+constexpr Range stress_gradient = within(100);   // [MPa/m]
 
 Table<Rock> rock()
 {
@@ -117,13 +117,13 @@ Table<InSituStress> in_situ_stress(const Table<InSituStress::Level>& profile)
          number("compression_yy_MPa", &S::compression_yy, MPa, stresses, "Vertical compression at depth 0.")
              .together("linear"),
          number("shear_xy_MPa", &S::shear_xy, MPa, stresses, "Shear stress at depth 0.").together("linear"),
-         number("compression_xx_gradient_MPa_per_m", &S::gradient_xx, MPa_per_m, gradient,
+         number("compression_xx_gradient_MPa_per_m", &S::gradient_xx, MPa_per_m, stress_gradient,
                 "Increase per metre of depth.")
              .together("linear"),
-         number("compression_yy_gradient_MPa_per_m", &S::gradient_yy, MPa_per_m, gradient,
+         number("compression_yy_gradient_MPa_per_m", &S::gradient_yy, MPa_per_m, stress_gradient,
                 "Increase per metre of depth.")
              .together("linear"),
-         number("shear_xy_gradient_MPa_per_m", &S::gradient_xy, MPa_per_m, gradient,
+         number("shear_xy_gradient_MPa_per_m", &S::gradient_xy, MPa_per_m, stress_gradient,
                 "Increase per metre of depth.")
              .together("linear"),
          key_of<S>({"profile", "levels", {}, {}, "Stress at some depths, in place of the linear law."},
