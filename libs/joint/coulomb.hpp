@@ -227,15 +227,15 @@ ResponseOf<T> respond_by_coulomb(const Law& law, StateOf<T>& state, const Value<
     using std::abs, std::copysign;
     const T sigma_trial = sigma_0 + law.k_n * (u_n - state.dilation);
     const T tau_trial = tau_0 + law.k_s * (u_s - state.slip);
-    const T give = law.k_s > 0 ? 1 / law.k_s : T(0);
+    const auto give = [&] { return law.k_s > 0 ? T(1 / law.k_s) : T(0); }; // asked for where it slips only
     // Slip presses a joint that dilates together, and its strength grows with that; where it has none to
     // begin with, under tension, it slips until no shear is left at most.
     const auto dilation = law.dilation(state);
     const bool dilates = law.k_s > 0 && dilation.dilates();
     double cohesion = law.cohesion_of(state.is_broken), tan_phi = law.tan_phi_of(state.is_broken);
     const auto slipped = [&]() -> T {
-        return dilation.slip(T(abs(tau_trial) - (cohesion - sigma_trial * tan_phi)), T(abs(tau_trial) * give),
-                             law.k_n, law.k_s, tan_phi);
+        return dilation.slip(T(abs(tau_trial) - (cohesion - sigma_trial * tan_phi)),
+                             T(abs(tau_trial) * give()), law.k_n, law.k_s, tan_phi);
     };
     const auto pressed = [&]() -> T {
         if (!dilates)
@@ -251,7 +251,7 @@ ResponseOf<T> respond_by_coulomb(const Law& law, StateOf<T>& state, const Value<
         cohesion = law.cohesion_of(true);
         tan_phi = law.tan_phi_of(true);
         if (pressed() > 0) {
-            state.slip += tau_trial * give; // the joint closes again without shear
+            state.slip += tau_trial * give(); // the joint closes again without shear
             return {0, 0, ContactStatus::open};
         }
     }
@@ -261,7 +261,7 @@ ResponseOf<T> respond_by_coulomb(const Law& law, StateOf<T>& state, const Value<
         return {sigma_trial, tau_trial, ContactStatus::stuck};
     if (!dilates) {
         const T tau = copysign(std::min<T>(limit, abs(tau_trial)), tau_trial);
-        state.slip += (tau_trial - tau) * give;
+        state.slip += (tau_trial - tau) * give();
         return {sigma_trial, tau, ContactStatus::slipping};
     }
     const T slip = slipped(), size = abs(tau_trial) - law.k_s * slip;

@@ -95,7 +95,7 @@ TEST(assembly, contacts_pull_as_their_springs_say)
     for (std::size_t c = 0; c < s.mesh.contact_edge.size(); ++c) {
         EXPECT_NEAR(s.assembly.contacts.traction[c].x(), 4e9 * 1e-4, 1e-3); // tension: it opens
         EXPECT_NEAR(s.assembly.contacts.traction[c].y(), 1e9 * 2e-4, 1e-3);
-        on_lower += s.assembly.contact_force[c];
+        on_lower += s.assembly.contacts.force[c];
     }
     EXPECT_NEAR(on_lower.x(), 10 * 1e9 * 2e-4, 1e-2);
     EXPECT_NEAR(on_lower.y(), 10 * 4e9 * 1e-4, 1e-2);
