@@ -165,6 +165,15 @@ std::string_view shortened(std::string_view text, std::size_t most)
     return text.substr(0, size);
 }
 
+// Takes the stack that the work may need now: where memory is limited, a stack that cannot grow later is a crash.
+void reserve_stack()
+{
+    constexpr std::size_t enough = std::size_t{1} << 20, page = 4096; // [bytes]
+    volatile char room[enough];
+    for (std::size_t i = 0; i < enough; i += page)
+        room[i] = 0;
+}
+
 // The path without links, as far as it exists.
 std::filesystem::path without_links(const std::filesystem::path& path)
 {
@@ -285,6 +294,7 @@ std::optional<double> Arguments::number(const std::string& option, const Range& 
 
 int run(const Program& program, int argc, char** argv, const std::function<void(const Arguments&)>& body)
 {
+    reserve_stack();
     std::signal(SIGXFSZ, SIG_IGN); // a file that grows past the limit is then a write error with a message
     // Large arrays come and go. Handed back to the system each time, they cost up to a tenth of the run.
     mallopt(M_MMAP_THRESHOLD, 1 << 30);
