@@ -49,6 +49,14 @@ class Memory(ChainTest):
             self.assertEqual(list(folder.glob("limited*")), [])
         return codes
 
+    def test_threads_that_cannot_start(self):
+        joints = self.chain.joints(self.chain.text("data/column/scene.toml"))
+        output = joints.with_name("result.h5")
+        code, message = self.limited("demsolve", 500, joints, "-o", output, "--threads", "1000")
+        self.assertEqual(code, 2)
+        self.assertRegex(message, r"^demsolve: --threads 1000: only \d+ could be started here \(.+\); wanted fewer\n$")
+        self.assertFalse(output.exists())
+
     def test_memory_swept(self):
         folder = self.chain.new_folder()
         scene = self.chain.source / "tests/pipeline/kinds/scene.toml"
