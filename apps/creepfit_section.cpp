@@ -30,7 +30,7 @@ back_analysis::Settings settings_of(const Arguments& arguments)
         throw input_error("--fit is not given; wanted the factors to find");
     return {.factors = factors_in(*arguments.text("fit")),
             .since_first_reading = arguments.has("since-first-reading"),
-            .threads = static_cast<int>(arguments.whole_number("threads", 1, 1024).value_or(1)),
+            .threads = arguments.threads(),
             .most_runs = static_cast<int>(arguments.whole_number("runs", 1, 100000).value_or(60))};
 }
 

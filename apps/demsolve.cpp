@@ -96,7 +96,7 @@ void solve(const Arguments& arguments)
     const std::string options = demsolve::replace_settings(arguments, scene);
     const demsolve::Files files(arguments, program.name, file, options, end);
     const auto [factor, bracket_width] = demsolve::strength_reduction(arguments, scene);
-    const int threads = demsolve::threads(arguments);
+    const int threads = arguments.threads();
 
     // 2. What is recorded, and what a checkpoint has kept before.
     analysis::Recording recording = demsolve::recording(arguments);

@@ -256,9 +256,4 @@ analysis::Recording recording(const Arguments& arguments)
             arguments.whole_number("step-history", 1, most_steps).value_or(0)};
 }
 
-int threads(const Arguments& arguments)
-{
-    return static_cast<int>(arguments.whole_number("threads", 1, 1024).value_or(1));
-}
-
 } // namespace jointcreep::demsolve

@@ -37,6 +37,4 @@ StrengthReduction strength_reduction(const Arguments& arguments, const Scene& sc
 // Without what keeps checkpoints.
 analysis::Recording recording(const Arguments& arguments);
 
-int threads(const Arguments& arguments);
-
 } // namespace jointcreep::demsolve

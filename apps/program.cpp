@@ -17,8 +17,11 @@
 #include <cstdlib>
 #include <filesystem>
 #include <iostream>
+#include <latch>
 #include <new>
 #include <sstream>
+#include <system_error>
+#include <thread>
 
 namespace jointcreep
 {
@@ -165,6 +168,15 @@ std::string_view shortened(std::string_view text, std::size_t most)
     return text.substr(0, size);
 }
 
+// Takes the stack that the work may need now: where memory is limited, a stack that cannot grow later is a crash.
+[[gnu::noinline]] void reserve_stack()
+{
+    constexpr std::size_t enough = std::size_t{1} << 20, page = 4096; // [bytes]
+    [[maybe_unused]] volatile char room[enough];
+    for (std::size_t i = 0; i < enough; i += page)
+        room[i] = 0;
+}
+
 // The path without links, as far as it exists.
 std::filesystem::path without_links(const std::filesystem::path& path)
 {
@@ -283,8 +295,31 @@ std::optional<double> Arguments::number(const std::string& option, const Range& 
     return value;
 }
 
+int Arguments::threads() const
+{
+    const auto wanted = static_cast<int>(whole_number("threads", 1, 1024).value_or(1));
+    // OpenMP ends the program where it cannot start its threads: so as many are started here before.
+    std::latch all(1);
+    std::vector<std::jthread> team;
+    try {
+        while (static_cast<int>(team.size()) + 1 < wanted)
+            team.emplace_back([&all] { all.wait(); });
+    } catch (const std::system_error& error) {
+        const std::string started = std::to_string(team.size() + 1);
+        all.count_down();
+        throw input_error("--threads " + std::to_string(wanted) + ": only " + started +
+                          " could be started here (" + error.code().message() + "); wanted fewer");
+    } catch (...) {
+        all.count_down();
+        throw;
+    }
+    all.count_down();
+    return wanted;
+}
+
 int run(const Program& program, int argc, char** argv, const std::function<void(const Arguments&)>& body)
 {
+    reserve_stack();
     std::signal(SIGXFSZ, SIG_IGN); // a file that grows past the limit is then a write error with a message
     // Large arrays come and go. Handed back to the system each time, they cost up to a tenth of the run.
     mallopt(M_MMAP_THRESHOLD, 1 << 30);

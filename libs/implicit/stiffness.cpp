@@ -3,8 +3,10 @@
 #include "model/signs.hpp"
 
 #include <omp.h>
+#include <sys/mman.h>
 
 #include <algorithm>
+#include <new>
 
 namespace jointcreep::implicit
 {
@@ -24,6 +26,36 @@ std::array<int, 2 * N> unknowns_of(const std::vector<std::array<int, 2>>& unknow
     }
     return all;
 }
+
+#ifdef JOINTCREEP_CHOLMOD
+// OpenBLAS takes this much address space at its first use [bytes], and asks for it again and again where it does not
+// get it.
+constexpr std::size_t blas_buffer = std::size_t{192} << 20;
+
+void check_room_for_blas()
+{
+    static const bool has_room = [] {
+        void* const room =
+            mmap(nullptr, blas_buffer, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+        return room != MAP_FAILED && munmap(room, blas_buffer) == 0;
+    }();
+    if (!has_room)
+        throw std::bad_alloc();
+}
+
+template <class Factor>
+void check_memory(Factor& factor)
+{
+    if (factor.cholmod().status == CHOLMOD_OUT_OF_MEMORY)
+        throw std::bad_alloc();
+}
+#else
+void check_room_for_blas() {}
+template <class Factor>
+void check_memory(const Factor&)
+{
+} // Eigen's own factor throws by itself
+#endif
 
 } // namespace
 
@@ -119,7 +151,9 @@ void Stiffness::find_pattern(const Assembly& assembly)
     factorised_ = zones_;
     if (n_ == 0)
         return;
+    check_room_for_blas();
     factor_.analyzePattern(factorised_);
+    check_memory(factor_);
 }
 
 void Stiffness::fill_zones(const Assembly& assembly)
@@ -229,9 +263,18 @@ bool Stiffness::factorise(const Assembly& assembly, const std::vector<Tangent>& 
     omp_set_max_active_levels(0);
     factor_.factorize(factorised_);
     omp_set_max_active_levels(levels);
+    check_memory(factor_);
     has_factor_ = factor_.info() == Eigen::Success;
     factor_of_ = tangents;
     return has_factor_;
+}
+
+VectorXd Stiffness::solve(const VectorXd& right) const
+{
+    VectorXd x = factor_.solve(right);
+    if (factor_.info() != Eigen::Success) // there is a factor: memory for the solution was short
+        throw std::bad_alloc();
+    return x;
 }
 
 } // namespace jointcreep::implicit

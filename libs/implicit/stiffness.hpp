@@ -60,9 +60,10 @@ public:
     void add_contact(const Assembly& assembly, Index contact, const Tangent& tangent,
                      const Eigen::Ref<const VectorXd>& x, Eigen::Ref<VectorXd> y) const;
 
-    // Factorises with these tangents; false if the matrix has no Cholesky factor.
+    // Factorises with these tangents; false if the matrix has no Cholesky factor. This, follow() and solve() throw
+    // std::bad_alloc where memory is short: a matrix that does not fit is not one without a factor.
     bool factorise(const Assembly& assembly, const std::vector<Tangent>& tangents);
-    VectorXd solve(const VectorXd& right) const { return factor_.solve(right); }
+    VectorXd solve(const VectorXd& right) const;
     bool has_factor() const { return has_factor_; }
     bool has_factor_of(const std::vector<Tangent>& tangents) const
     {

@@ -2,8 +2,8 @@
 """The section at one state of a result file: displacement, stress or the state of the contacts. Removed rock is not
 drawn, and positions are those at the start, unless displacements are magnified.
 
-The state is its number, counted from 0, the name of the stage that it follows (with hyphens for blanks, if that is
-easier), or "last".
+The state is its number, counted from 0, the name of the stage that it follows, the plain word for that name
+(stage_names.py), or "last".
 """
 
 import datetime
@@ -16,6 +16,7 @@ import numpy as np
 from matplotlib.collections import LineCollection
 
 import figure
+from stage_names import plain
 
 STUCK, SLIPPING, OPEN = 1, 2, 3  # /states/contact_status
 COMPONENTS = {
@@ -55,9 +56,10 @@ def state_index(file, wanted):
         return int(wanted)
     if wanted and wanted in event:
         return event.index(wanted)
-    hyphenated = [name.replace(" ", "-") for name in event]
-    if wanted and wanted in hyphenated:
-        return hyphenated.index(wanted)
+    named = [state for state, name in enumerate(event) if name]
+    words = dict(zip(plain([event[state] for state in named]), named))
+    if wanted in words:
+        return words[wanted]
     names = "\n".join(f"{state}: {name_of(file, state)}" for state in range(len(event)))
     raise figure.NotWanted(f"there is no state '{wanted}'; there are:\n{names}")
 

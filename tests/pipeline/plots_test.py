@@ -90,6 +90,23 @@ class Plots(ChainTest):
                     self.assertEqual([path.name for path in picture.parent.iterdir()], ["picture.png"])
                     self.assertEqual(picture.read_bytes()[:8], PNG)
 
+    def test_names_of_stages_in_makefiles(self):
+        """A makefile knows a stage by a plain word: no name of a scene is part of a command."""
+        from stage_names import plain
+
+        self.assertEqual(plain(["bench 1", "bench-1", "last", "2", "`touch x`", "", "-f"]),
+                         ["bench-1", "bench-1-2", "last-2", "stage-2", "touch-x", "stage", "f"])
+        folder = self.chain.new_folder()
+        scene = folder / "scene.toml"
+        scene.write_text(changed(self.chain.text("data/slope/scene.toml"), '^name = "bench 1"',
+                                 "name = 'bench `touch a` $(touch b) \"1'"))
+        done = subprocess.run(["make", "-n", "-C", self.chain.source / "pipelines/slope", f"SCENE={scene}", f"OUT={folder}",
+                               f"BIN={self.chain.programs}"], capture_output=True, text=True)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("--state bench-touch-a-touch-b-1 ", done.stdout)
+        self.assertNotRegex(done.stdout, "touch [ab]")
+        self.assertEqual([path.name for path in folder.iterdir()], ["scene.toml"])
+
     def test_picture_of_a_dynamic_analysis(self):
         result = self.chain.result(self.chain.text("data/collapse/toppling.toml"))
         picture = result.with_name("picture.png")
