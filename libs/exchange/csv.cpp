@@ -1,8 +1,9 @@
 #include "exchange/csv.hpp"
 
-#include "joint/law.hpp"
+#include "exchange/forces.hpp"
 #include "model/error.hpp"
 
+#include <algorithm>
 #include <array>
 #include <string_view>
 
@@ -67,13 +68,20 @@ Index vertices_of(const Blocks& blocks, std::size_t block)
     return blocks.ring_start[blocks.block_ring[block + 1]] - blocks.ring_start[blocks.block_ring[block]];
 }
 
-// What a column's name says of its unit: "_Pa_per_m", or nothing of a plain number.
+std::string field(const fields::Column& column, std::size_t row)
+{
+    const double value = column.value(row);
+    return column.is_integer ? field(static_cast<Index>(value)) : field(value);
+}
+
+// What a column's name says of its unit: "_Pa_s_per_m", or nothing of a plain number.
 std::string suffix(std::string unit)
 {
     if (unit == "1")
         return "";
     if (const auto slash = unit.find('/'); slash != std::string::npos)
         unit.replace(slash, 1, "_per_");
+    std::ranges::replace(unit, ' ', '_');
     return "_" + unit;
 }
 
@@ -119,19 +127,10 @@ std::string edges_csv(const Network& network, const EquivalentJoints* equivalent
     const Blocks& blocks = network.blocks;
     const Joints& joints = network.joints;
     std::string table = "edge,x1_m,y1_m,x2_m,y2_m,left_block,right_block,kind,set,number,joint_fraction";
-    if (equivalent)
-        for (const joint::Parameter& parameter : joint::all_parameters())
-            table.append(",").append(parameter.name).append(suffix(parameter.si_unit()));
-    const std::size_t units = equivalent ? equivalent->kelvin_units() : 0;
-    for (std::size_t unit = 0; unit < units; ++unit) {
-        const std::string number = units == 1 ? "" : "_" + std::to_string(unit + 1);
-        for (const char* quantity : {"stiffness", "viscosity"})
-            for (const char* direction : {",normal_kelvin_", ",shear_kelvin_"})
-                table.append(direction).append(quantity).append(number).append(
-                    quantity[0] == 's' ? "_Pa_per_m" : "_Pa_s_per_m");
-    }
-    if (equivalent)
-        table += ",normal_maxwell_viscosity_Pa_s_per_m,shear_maxwell_viscosity_Pa_s_per_m,law";
+    const std::vector<fields::Column> columns =
+        equivalent ? columns_of(&fields::ForceColumns::of_edges, *equivalent) : std::vector<fields::Column>();
+    for (const fields::Column& column : columns)
+        table.append(",").append(column.name).append(suffix(column.units));
     table += '\n';
     for (std::size_t edge = 0; edge < blocks.edge_vertex.size(); ++edge) {
         const auto [first, second] = blocks.edge_vertex[edge];
@@ -142,24 +141,10 @@ std::string edges_csv(const Network& network, const EquivalentJoints* equivalent
                 joint < 0 ? "" : name_of(network.names.joint_set, joints.set[joint]),
                 joint < 0 ? "" : field(joints.number[joint]),
                 joint < 0 ? "" : field(blocks.edge_joint_fraction[edge]));
-        if (equivalent) {
-            table.back() = ',';
-            std::string parameters;
-            for (const joint::Parameter& parameter : joint::all_parameters())
-                parameters.append(parameters.empty() ? "" : ",")
-                    .append(field(parameter.of(*equivalent, edge)));
-            table += parameters + '\n';
-            for (std::size_t unit = edge * units; unit < (edge + 1) * units; ++unit) {
-                table.back() = ',';
-                add_row(table, field(equivalent->normal_kelvin_stiffness[unit]),
-                        field(equivalent->shear_kelvin_stiffness[unit]),
-                        field(equivalent->normal_kelvin_viscosity[unit]),
-                        field(equivalent->shear_kelvin_viscosity[unit]));
-            }
-            table.back() = ',';
-            add_row(table, field(equivalent->normal_maxwell_viscosity[edge]),
-                    field(equivalent->shear_maxwell_viscosity[edge]), field(equivalent->law[edge]));
-        }
+        table.pop_back(); // the end of the line
+        for (const fields::Column& column : columns)
+            table.append(",").append(field(column, edge));
+        table += '\n';
     }
     return table;
 }

@@ -1,6 +1,6 @@
 #include "exchange/vtu.hpp"
 
-#include "joint/law.hpp"
+#include "exchange/forces.hpp"
 #include "model/error.hpp"
 
 #include <algorithm>
@@ -15,6 +15,9 @@ namespace jointcreep::exchange
 
 namespace
 {
+
+using fields::Column;
+using fields::ForceColumns;
 
 enum CellType { vertex = 1, line = 3, triangle = 5, polygon = 7 }; // VTK's numbers
 
@@ -58,6 +61,14 @@ public:
         array("Float64", name, 3, flat);
     }
 
+    void add(const Column& column, const std::vector<Index>& rows)
+    {
+        if (column.is_integer)
+            add(column.name, values_of<Index>(column, rows));
+        else
+            add(column.name, values_of<double>(column, rows));
+    }
+
     // Field data: the names behind a code, as bytes, each ended by a 0; and the time of a state.
     void add_names(const std::string& name, const std::vector<std::string>& names)
     {
@@ -87,6 +98,16 @@ public:
     }
 
 private:
+    template <class Value>
+    static std::vector<Value> values_of(const Column& column, const std::vector<Index>& rows)
+    {
+        std::vector<Value> values;
+        values.reserve(rows.size());
+        for (const Index row : rows)
+            values.push_back(static_cast<Value>(column.value(static_cast<std::size_t>(row))));
+        return values;
+    }
+
     static std::string text_of(double value) { return shown(value); }
     template <std::integral Value>
     static std::string text_of(Value value)
@@ -144,17 +165,6 @@ std::vector<Value> picked(const std::vector<Value>& values, const std::vector<In
     result.reserve(rows.size());
     for (const Index row : rows)
         result.push_back(values[first + row]);
-    return result;
-}
-
-// One column of a picked array of vectors.
-template <class Vector>
-std::vector<double> component(const std::vector<Vector>& vectors, int column)
-{
-    std::vector<double> result;
-    result.reserve(vectors.size());
-    for (const Vector& vector : vectors)
-        result.push_back(vector[column]);
     return result;
 }
 
@@ -253,31 +263,9 @@ std::string joints_vtu(const Network& network, const EquivalentJoints* equivalen
     grid.add("joint", joint);
     grid.add("set", looked_up(network.joints.set, joint));
     grid.add("joint_fraction", picked(blocks.edge_joint_fraction, edges));
-    if (equivalent) {
-        for (const joint::Parameter& parameter : joint::all_parameters()) {
-            std::vector<double> values;
-            for (const Index edge : edges)
-                values.push_back(parameter.of(*equivalent, static_cast<std::size_t>(edge)));
-            grid.add(std::string(parameter.name), values);
-        }
-        const std::size_t units = equivalent->kelvin_units();
-        for (std::size_t unit = 0; unit < units; ++unit) {
-            const std::string number = units == 1 ? "" : "_" + std::to_string(unit + 1);
-            const auto add = [&](const char* name, const std::vector<double>& values) {
-                std::vector<double> of_unit;
-                for (const Index edge : edges)
-                    of_unit.push_back(values[edge * units + unit]);
-                grid.add(name + number, of_unit);
-            };
-            add("normal_kelvin_stiffness", equivalent->normal_kelvin_stiffness);
-            add("shear_kelvin_stiffness", equivalent->shear_kelvin_stiffness);
-            add("normal_kelvin_viscosity", equivalent->normal_kelvin_viscosity);
-            add("shear_kelvin_viscosity", equivalent->shear_kelvin_viscosity);
-        }
-        grid.add("normal_maxwell_viscosity", picked(equivalent->normal_maxwell_viscosity, edges));
-        grid.add("shear_maxwell_viscosity", picked(equivalent->shear_maxwell_viscosity, edges));
-        grid.add("law", picked(equivalent->law, edges));
-    }
+    if (equivalent)
+        for (const Column& column : columns_of(&ForceColumns::of_edges, *equivalent))
+            grid.add(column, edges);
     grid.open("Points");
     grid.add("position", blocks.vertex);
     grid.cells(connectivity, offsets_of(edges.size(), 2), line);
@@ -310,7 +298,6 @@ std::string zones_vtu(const Network& network, const Result& result, std::size_t 
         }
     }
     const std::vector<Index> block = picked(mesh.zone_block, present);
-    const auto stress = picked(states.stress, present, state * zones);
 
     GridText grid(gridpoints.size(), present.size());
     grid.open("FieldData");
@@ -335,18 +322,8 @@ std::string zones_vtu(const Network& network, const Result& result, std::size_t 
     grid.add("block", block);
     grid.add("rock", looked_up(network.blocks.block_rock, block));
     grid.add("stage", looked_up(network.blocks.block_stage, block));
-    grid.add("stress_xx", component(stress, 0));
-    grid.add("stress_yy", component(stress, 1));
-    grid.add("stress_xy", component(stress, 2));
-    if (const std::size_t n = states.yielding_zone.size(); n > 0) {
-        std::vector<Eigen::Vector3d> of_zone(zones, Eigen::Vector3d::Zero());
-        for (std::size_t i = 0; i < n; ++i)
-            of_zone[states.yielding_zone[i]] = states.plastic_strain[state * n + i];
-        const auto plastic = picked(of_zone, present);
-        grid.add("plastic_strain_xx", component(plastic, 0));
-        grid.add("plastic_strain_yy", component(plastic, 1));
-        grid.add("plastic_strain_xy", component(plastic, 2));
-    }
+    for (const Column& column : columns_of(&ForceColumns::of_zones, result, state))
+        grid.add(column, present);
     grid.open("Points");
     grid.add("position", picked(mesh.gridpoint, gridpoints));
     grid.cells(connectivity, offsets_of(present.size(), 3), triangle);
@@ -373,8 +350,6 @@ std::string contacts_vtu(const Result& result, std::size_t state)
         displacement.push_back(
             (states.displacement[first_gridpoint + a] + states.displacement[first_gridpoint + b]) / 2);
     }
-    const auto traction = picked(states.traction, present, state * contacts);
-    const auto relative = picked(states.relative_displacement, present, state * contacts);
 
     GridText grid(present.size(), present.size());
     grid.open("FieldData");
@@ -385,11 +360,8 @@ std::string contacts_vtu(const Result& result, std::size_t state)
     grid.add("normal", picked(mesh.contact_normal, present));
     grid.add("length", picked(mesh.contact_length, present));
     grid.add("displacement", displacement);
-    grid.add("normal_traction", component(traction, 0));
-    grid.add("shear_traction", component(traction, 1));
-    grid.add("normal_relative_displacement", component(relative, 0));
-    grid.add("shear_relative_displacement", component(relative, 1));
-    grid.add("status", picked(states.contact_status, present, state * contacts));
+    for (const Column& column : columns_of(&ForceColumns::of_contacts, result, state))
+        grid.add(column, present);
     grid.open("Points");
     grid.add("position", picked(mesh.contact_centre, present));
     grid.cells(consecutive(present.size()), offsets_of(present.size(), 1), vertex);

@@ -3,7 +3,8 @@
 // every number reads back as the same double. SI units and the signs of model/signs.hpp.
 //
 // Codes that stand for a name (rock, stage, joint set) count from 0 in the field data array of names beside
-// them: block 3 with rock = 1 is of the second rock of "rock_names". -1 means none.
+// them: block 3 with rock = 1 is of the second rock of "rock_names". -1 means none. Arrays that belong to a kind
+// of force come last, and are named by that force (exchange/forces.hpp).
 
 #pragma once
 
@@ -31,7 +32,7 @@ std::string joints_vtu(const Network& network, const EquivalentJoints* equivalen
 // The zones present in a state, one triangle each, at their positions at the start. `state` is a row of
 // result.states; one that does not exist throws input_error. Its time [day] is the field data array
 // TimeValue. Points: gridpoint, displacement [m]. Cells: zone, block, rock, stage, stress_xx, stress_yy,
-// stress_xy [Pa].
+// stress_xy [Pa]; where rock yields, plastic_strain_xx, plastic_strain_yy, plastic_strain_xy [-].
 std::string zones_vtu(const Network& network, const Result& result, std::size_t state);
 
 // The contacts present in a state, one point each, at their centres at the start.

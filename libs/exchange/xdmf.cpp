@@ -1,5 +1,6 @@
 #include "exchange/xdmf.hpp"
 
+#include "exchange/forces.hpp"
 #include "model/error.hpp"
 
 #include <algorithm>
@@ -13,6 +14,9 @@ namespace jointcreep::exchange
 
 namespace
 {
+
+using fields::Column;
+using fields::ForceColumns;
 
 // Types of numbers, as a data item's attributes.
 constexpr std::string_view real = "NumberType=\"Float\" Precision=\"8\"";
@@ -161,6 +165,15 @@ public:
         text_ += "</Attribute>\n";
     }
 
+    // ... or of the dataset of a column.
+    void column_of_state(const Column& column, std::string_view centre, std::size_t rows)
+    {
+        if (column.components == 1)
+            scalar_of_state(column.name, centre, column.is_integer ? integer : real, column.dataset, rows);
+        else
+            column_of_state(column.name, centre, column.dataset, rows, column.components, column.component);
+    }
+
     // Says what is hidden, and goes on to the next state.
     void close_state()
     {
@@ -212,6 +225,13 @@ private:
     std::string text_;
 };
 
+// Those that a dataset has for every row.
+std::vector<Column> in_datasets(std::vector<Column> columns)
+{
+    std::erase_if(columns, [](const Column& column) { return column.dataset.empty(); });
+    return columns;
+}
+
 void require_states(const Result& result)
 {
     if (result.states.time.empty())
@@ -225,15 +245,15 @@ std::string zones_xdmf(const Result& result, const std::string& result_file)
     require_states(result);
     const std::size_t gridpoints = result.mesh.gridpoint.size();
     const std::size_t zones = result.mesh.zone_block.size();
+    const std::vector<Column> columns = in_datasets(columns_of(&ForceColumns::of_zones, result, 0));
     CollectionText text("zones", result, result_file, result.states.zone_present);
     for (std::size_t state = 0; state < result.states.time.size(); ++state) {
         text.open_state();
         text.triangles("/mesh/zone_gridpoint");
         text.points("/mesh/gridpoint_position", gridpoints);
         text.vector_of_state("displacement", "Node", "/states/displacement", gridpoints);
-        text.column_of_state("stress_xx", "Cell", "/states/stress", zones, 3, 0);
-        text.column_of_state("stress_yy", "Cell", "/states/stress", zones, 3, 1);
-        text.column_of_state("stress_xy", "Cell", "/states/stress", zones, 3, 2);
+        for (const Column& column : columns)
+            text.column_of_state(column, "Cell", zones);
         text.scalar_of_state("zone_present", "Cell", integer, "/states/zone_present", zones);
         text.scalar("block", "Cell", integer, "/mesh/zone_block", zones);
         text.close_state();
@@ -247,18 +267,14 @@ std::string contacts_xdmf(const Result& result, const std::string& result_file)
     const std::size_t contacts = result.mesh.contact_edge.size();
     if (contacts == 0)
         throw input_error("there is no contact in this result");
+    const std::vector<Column> columns = in_datasets(columns_of(&ForceColumns::of_contacts, result, 0));
     CollectionText text("contacts", result, result_file, result.states.contact_status);
     for (std::size_t state = 0; state < result.states.time.size(); ++state) {
         text.open_state();
         text.vertices();
         text.points("/mesh/contact_centre", contacts);
-        text.column_of_state("normal_traction", "Node", "/states/traction", contacts, 2, 0);
-        text.column_of_state("shear_traction", "Node", "/states/traction", contacts, 2, 1);
-        text.column_of_state("normal_relative_displacement", "Node", "/states/relative_displacement",
-                             contacts, 2, 0);
-        text.column_of_state("shear_relative_displacement", "Node", "/states/relative_displacement", contacts,
-                             2, 1);
-        text.scalar_of_state("status", "Node", integer, "/states/contact_status", contacts);
+        for (const Column& column : columns)
+            text.column_of_state(column, "Node", contacts);
         text.scalar("length", "Node", real, "/mesh/contact_length", contacts);
         text.close_state();
     }

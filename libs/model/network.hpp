@@ -1,5 +1,5 @@
 // The blocks of a section and the joints that made them: flat arrays, the same in memory and in a file
-// (libs/store/schema.cpp gives each one's dataset, shape, unit and range). An index of -1 means none.
+// (libs/store/schema.hpp and the forces give each one's dataset, unit and range). An index of -1 means none.
 
 #pragma once
 

@@ -10,6 +10,8 @@ namespace jointcreep::store::schema
 namespace
 {
 
+using namespace fields;
+
 // A name in a field's dimensions: "block" or, with one element more, "block+1".
 struct Axis {
     std::string dimension;

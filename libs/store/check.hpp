@@ -18,7 +18,7 @@ class Dimensions
 {
 public:
     // Is `size` right for the field's axis?
-    Fault fault(const Field& field, std::size_t axis, std::size_t size);
+    Fault fault(const fields::Field& field, std::size_t axis, std::size_t size);
     std::size_t size(const std::string& dimension) const { return sizes_.at(dimension); }
     bool has(const std::string& dimension) const { return sizes_.contains(dimension); }
 
@@ -27,7 +27,7 @@ private:
 };
 
 // The first fault in sizes, then in values, then between values. Fills `dimensions`.
-Fault fault_in(const std::vector<Field>& fields, const std::vector<Invariant>& invariants,
+Fault fault_in(const std::vector<fields::Field>& fields, const std::vector<fields::Invariant>& invariants,
                Dimensions& dimensions);
 
 } // namespace jointcreep::store::schema

@@ -4,16 +4,16 @@
 #include "store/hdf5.hpp"
 #include "store/save.hpp"
 
-#include <algorithm>
-
 namespace jointcreep::store
 {
 
+using fields::append;
+using fields::Field;
+using fields::Invariant;
+using fields::reading;
 using schema::Dimensions;
-using schema::Field;
 using schema::fields_of;
 using schema::invariants_of;
-using schema::reading;
 
 namespace
 {
@@ -31,16 +31,10 @@ auto naming(const std::string& path, Work work)
     }
 }
 
-template <class Item>
-void append(std::vector<Item>& items, std::vector<Item> more)
-{
-    std::ranges::move(more, std::back_inserter(items));
-}
-
 // What a file holds, part by part.
 struct Contents {
     std::vector<Field> fields;
-    std::vector<schema::Invariant> invariants;
+    std::vector<Invariant> invariants;
 
     Contents(const Provenance& provenance, const Network& network)
         : fields(fields_of(reading(provenance))), invariants(invariants_of(network))

@@ -13,8 +13,8 @@
 namespace jointcreep::store::hdf5
 {
 
+using fields::Field;
 using schema::Dimensions;
-using schema::Field;
 
 namespace
 {
@@ -164,12 +164,12 @@ std::vector<hsize_t> extents_of(const Field& field, const Dimensions& dimensions
 {
     std::vector<hsize_t> extents;
     if (field.dimensions.size() < 2)
-        extents.push_back(schema::rows(field.values));
+        extents.push_back(fields::rows(field.values));
     else
         for (const std::string& name : field.dimensions)
             extents.push_back(dimensions.size(name));
-    if (schema::components(field.values) > 1)
-        extents.push_back(schema::components(field.values));
+    if (fields::components(field.values) > 1)
+        extents.push_back(fields::components(field.values));
     return extents;
 }
 
@@ -345,7 +345,7 @@ void require_stored(const Field& field, hid_t dataset, hid_t type, hsize_t eleme
 hsize_t checked_count(const Field& field, hid_t space, Dimensions& dimensions)
 {
     const std::size_t axes = std::max<std::size_t>(field.dimensions.size(), 1);
-    const std::size_t inner = schema::components(field.values);
+    const std::size_t inner = fields::components(field.values);
     const std::size_t rank = axes + (inner > 1 ? 1 : 0);
     if (H5Sget_simple_extent_type(space) != H5S_SIMPLE || H5Sget_simple_extent_ndims(space) != int(rank))
         throw input_error(field.path + " has the wrong number of dimensions; wanted " + std::to_string(rank));
@@ -390,7 +390,7 @@ void Image::add(const Field& field, const Dimensions& dimensions)
                "create " + group);
     }
 
-    Written values = std::visit([](auto span) { return written(span); }, schema::flat(field.values));
+    Written values = std::visit([](auto span) { return written(span); }, fields::flat(field.values));
     if (!values.text.empty())
         values.data = values.text.data();
     const std::vector<hsize_t> extents = extents_of(field, dimensions);
@@ -453,15 +453,15 @@ void Source::read(const Field& field, Dimensions& dimensions) const
     const Object dataset(H5Dopen2(file_, path.c_str(), H5P_DEFAULT), H5Dclose, "open " + path);
     const Object type(H5Dget_type(dataset), H5Tclose, "read the type of " + path);
     const Object space(H5Dget_space(dataset), H5Sclose, "read the shape of " + path);
-    std::visit(TypeCheck{path, type}, schema::flat(field.values));
+    std::visit(TypeCheck{path, type}, fields::flat(field.values));
     if (const std::string units = text_attribute(dataset, "units", path); units != field.units)
         throw input_error(path + " is in " + units + "; wanted " + field.units);
     const hsize_t elements = checked_count(field, space, dimensions);
     if (elements > 0)
         require_stored(field, dataset, type, elements, size_);
-    schema::resize(field.values, elements / schema::components(field.values));
+    fields::resize(field.values, elements / fields::components(field.values));
     if (elements > 0)
-        std::visit(Fill{path, dataset, type}, schema::flat(field.values));
+        std::visit(Fill{path, dataset, type}, fields::flat(field.values));
 }
 
 std::string Source::text(const std::string& attribute) const

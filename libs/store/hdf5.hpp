@@ -44,7 +44,7 @@ public:
     Image();
     Image(const Image&) = delete; // HDF5 knows where memory_ is
     Image& operator=(const Image&) = delete;
-    void add(const schema::Field& field, const schema::Dimensions& dimensions);
+    void add(const fields::Field& field, const schema::Dimensions& dimensions);
     void set_text(const std::string& attribute, const std::string& value);
     void set_integers(const std::string& attribute,
                       const std::vector<Index>& values); // a single one as a scalar
@@ -65,7 +65,7 @@ public:
 
     bool has_group(const std::string& path) const;
     // Resizes and fills what the field points to. Type, shape and units are checked, the values not.
-    void read(const schema::Field& field, schema::Dimensions& dimensions) const;
+    void read(const fields::Field& field, schema::Dimensions& dimensions) const;
 
     // Attributes of the file. They throw input_error if it is not there or of another type.
     std::string text(const std::string& attribute) const;

@@ -5,7 +5,7 @@
 namespace jointcreep::store
 {
 
-using schema::Field;
+using fields::Field;
 
 namespace
 {
@@ -17,7 +17,7 @@ std::string type_of(const Field& field)
         std::string operator()(std::span<Index>) const { return "int32"; }
         std::string operator()(std::span<std::string>) const { return "text"; }
     } const name;
-    return std::visit(name, schema::flat(field.values));
+    return std::visit(name, fields::flat(field.values));
 }
 
 // "[edge, 2]"
@@ -28,18 +28,18 @@ std::string shape_of(const Field& field)
         text.append(text.empty() ? "[" : ", ").append(name);
     if (field.dimensions.empty())
         text = "[1";
-    if (const std::size_t count = schema::components(field.values); count > 1)
+    if (const std::size_t count = fields::components(field.values); count > 1)
         text.append(", ").append(std::to_string(count));
     return text.append("]");
 }
 
 std::string wanted_of(const Field& field)
 {
-    return type_of(field) == "text" ? "" : schema::wanted(field.limits);
+    return type_of(field) == "text" ? "" : fields::wanted(field.limits);
 }
 
 void list(std::ostream& page, const std::string& title, const std::vector<Field>& fields,
-          const std::vector<schema::Invariant>& invariants = {})
+          const std::vector<fields::Invariant>& invariants = {})
 {
     page << "\n## " << title << "\n\n"
          << "| dataset | shape | type | unit | values | |\n"
@@ -49,14 +49,14 @@ void list(std::ostream& page, const std::string& title, const std::vector<Field>
              << field.units << " | " << wanted_of(field) << " | " << field.description << " |\n";
     if (!invariants.empty())
         page << "\nBesides, in every row:\n\n";
-    for (const schema::Invariant& invariant : invariants)
+    for (const fields::Invariant& invariant : invariants)
         page << "- " << invariant.sentence << " (`" << invariant.path << "`).\n";
 }
 
-void list(std::ostream& page, const std::string& title, const std::vector<schema::Described>& rows)
+void list(std::ostream& page, const std::string& title, const std::vector<fields::Described>& rows)
 {
     page << "| " << title << " | |\n|---|---|\n";
-    for (const schema::Described& row : rows)
+    for (const fields::Described& row : rows)
         page << "| `" << row.name << "` | " << row.description << " |\n";
 }
 
@@ -73,7 +73,7 @@ std::string schema_markdown()
     std::ostringstream page;
     page << R"(# File format
 
-<!-- Made from libs/store/schema.cpp by: jointexport --file-format > docs/file-format.md -->
+<!-- Made from libs/store/schema.cpp and libs/*/fields.cpp by: jointexport --file-format > docs/file-format.md -->
 
 The programs hand each other HDF5 files. A file holds all that later programs need:
 

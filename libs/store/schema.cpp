@@ -1,12 +1,6 @@
 #include "store/schema.hpp"
 
-#include "joint/law.hpp"
-#include "model/error.hpp"
-
-#include <algorithm>
-#include <cmath>
-#include <iterator>
-#include <numbers>
+#include "store/forces.hpp"
 
 namespace jointcreep::store::schema
 {
@@ -14,50 +8,26 @@ namespace jointcreep::store::schema
 namespace
 {
 
-Limits any()
-{
-    return {};
-}
+using namespace fields;
 
-Limits positive()
+// The rows that forces have of a record, or their invariants.
+template <class Record>
+std::vector<Field> of_forces(Part<Record> ForceFields::*part, Record& record)
 {
-    return {.positive = true};
+    std::vector<Field> all;
+    for (const ForceFields& force : forces())
+        if ((force.*part).fields)
+            append(all, (force.*part).fields(record));
+    return all;
 }
-
-Limits at_least(double least)
+template <class Record>
+std::vector<Invariant> invariants_of_forces(Part<Record> ForceFields::*part, const Record& record)
 {
-    return {.least = least};
-}
-
-Limits between(double least, double most)
-{
-    return {.least = least, .most = most};
-}
-
-Limits index_of(std::string dimension)
-{
-    return {.index_of = std::move(dimension)};
-}
-
-Limits index_or_none(std::string dimension)
-{
-    return {.index_of = std::move(dimension), .or_none = true};
-}
-
-Limits ascending()
-{
-    return {.least = 0, .ascending = true};
-}
-
-// For "first" arrays: rows first[i] .. first[i + 1] belong to i.
-Limits rows_in(std::string dimension)
-{
-    return {.least = 0, .ascending = true, .rows_of = std::move(dimension)};
-}
-
-void append(std::vector<Field>& fields, std::vector<Field> more)
-{
-    std::ranges::move(more, std::back_inserter(fields));
+    std::vector<Invariant> all;
+    for (const ForceFields& force : forces())
+        if ((force.*part).invariants)
+            append(all, (force.*part).invariants(record));
+    return all;
 }
 
 std::vector<Field> fields_of(Names& names)
@@ -208,7 +178,7 @@ std::vector<Field> fields_of(Statistics& rows)
 std::vector<Field> fields_of(Mesh& mesh)
 {
     // clang-format off
-    return {
+    std::vector<Field> all = {
         {"/mesh/gridpoint_position", &mesh.gridpoint, {"gridpoint"}, "m", any(),
          "Position of the gridpoint at the start {x, y}."},
         {"/mesh/gridpoint_fixed", &mesh.gridpoint_fixed, {"gridpoint"}, "1", between(0, 3),
@@ -220,23 +190,10 @@ std::vector<Field> fields_of(Mesh& mesh)
         {"/mesh/tie_gridpoint", &mesh.tie_gridpoint, {"tie"}, "1", index_of("gridpoint"),
          "Two gridpoints that move as one until a stage."},
         {"/mesh/tie_stage", &mesh.tie_stage, {"tie"}, "1", index_of("stage"), "The stage that parts them."},
-        {"/mesh/side_gridpoint", &mesh.side_gridpoint, {"side"}, "1", index_of("gridpoint"),
-         "Gridpoints of a zone side that lies on a boundary condition."},
-        {"/mesh/side_zone", &mesh.side_zone, {"side"}, "1", index_of("zone"), "Its zone."},
-        {"/mesh/side_boundary", &mesh.side_boundary, {"side"}, "1", at_least(0),
-         "Position of the boundary condition among the scene's [[boundary]] tables."},
-        {"/mesh/contact_gridpoint", &mesh.contact_gridpoint, {"contact"}, "1", index_of("gridpoint"),
-         "Gridpoint on side a and on side b."},
-        {"/mesh/contact_edge", &mesh.contact_edge, {"contact"}, "1", index_of("edge"),
-         "Edge the contact lies on."},
-        {"/mesh/contact_normal", &mesh.contact_normal, {"contact"}, "1", any(),
-         "Unit normal {x, y}, from side a to side b."},
-        {"/mesh/contact_length", &mesh.contact_length, {"contact"}, "m", positive(),
-         "Length of edge that the contact stands for."},
-        {"/mesh/contact_centre", &mesh.contact_centre, {"contact"}, "m", any(),
-         "Where a traction that is linear along the edge has its mean over the contact {x, y}."},
     };
     // clang-format on
+    append(all, of_forces(&ForceFields::mesh, mesh));
+    return all;
 }
 
 std::vector<Field> fields_of(History& history)
@@ -266,30 +223,22 @@ std::vector<Field> fields_of(History& history)
 std::vector<Field> fields_of(States& states)
 {
     // clang-format off
-    return {
+    std::vector<Field> all = {
         {"/states/time", &states.time, {"state"}, "day", ascending(), "Time since the start."},
         {"/states/event", &states.event, {"state"}, "1", any(),
          "Stage that this state is the first after, or an empty text."},
         {"/states/displacement", &states.displacement, {"state", "gridpoint"}, "m", any(),
          "Displacement {x, y} since the in-situ equilibrium."},
-        {"/states/stress", &states.stress, {"state", "zone"}, "Pa", any(),
-         "Stress {xx, yy, xy}, tension positive."},
-        {"/states/zone_present", &states.zone_present, {"state", "zone"}, "1", between(0, 1),
-         "1 while the zone is there, 0 once it is removed."},
-        {"/states/traction", &states.traction, {"state", "contact"}, "Pa", any(),
-         "Traction {normal, shear} that side b exerts on side a, tension positive."},
-        {"/states/relative_displacement", &states.relative_displacement, {"state", "contact"}, "m", any(),
-         "Displacement of side b minus that of side a {normal, shear}, opening positive."},
-        {"/states/contact_status", &states.contact_status, {"state", "contact"}, "1", between(0, 3),
-         "0 removed (a side has been excavated), 1 stuck, 2 slipping, 3 open."},
-        {"/states/yielding_zone", &states.yielding_zone, {"yielding_zone"}, "1", index_of("zone"),
-         "Zones of rock that yields; none where all is elastic."},
-        {"/states/plastic_strain", &states.plastic_strain, {"state", "yielding_zone"}, "1", any(),
-         "Plastic strain {xx, yy, xy} since the in-situ equilibrium, extension positive."},
-        {"/states/reset_state", &states.reset_state, {"state"}, "1", index_of("state"),
-         "State from which displacements are to count since the last stage that resets them; 0 before one."},
     };
     // clang-format on
+    append(all, of_forces(&ForceFields::states, states));
+    // clang-format off
+    append(all, {
+        {"/states/reset_state", &states.reset_state, {"state"}, "1", index_of("state"),
+         "State from which displacements are to count since the last stage that resets them; 0 before one."},
+    });
+    // clang-format on
+    return all;
 }
 
 std::vector<Field> fields_of(Equilibria& equilibria)
@@ -357,119 +306,9 @@ std::vector<Field> fields_of(Network& network)
     return fields;
 }
 
-namespace
-{
-
-std::vector<Field> fields_of(Pieces& pieces)
-{
-    // clang-format off
-    return {
-        {"/pieces/joint", &pieces.joint, {"piece"}, "1", index_of("joint"),
-         "Joint that the piece lies on; pieces are in the order of joints, and along each from its one end."},
-        {"/pieces/is_bridge", &pieces.is_bridge, {"piece"}, "1", between(0, 1),
-         "1 rock bridge, 0 joint trace."},
-        {"/pieces/from", &pieces.from, {"piece"}, "m", any(),
-         "One end of the piece, inside the section {x, y}."},
-        {"/pieces/to", &pieces.to, {"piece"}, "m", any(), "The other end {x, y}."},
-        {"/pieces/length", &pieces.length, {"piece"}, "m", positive(), "Its length."},
-        {"/bridges/piece", &pieces.bridge, {"bridge"}, "1", index_of("piece"),
-         "The rock bridges among the pieces."},
-        {"/lines/length", &pieces.line_length, {"joint"}, "m", at_least(0),
-         "Length of the joint's line inside the section."},
-        {"/lines/persistence", &pieces.line_persistence, {"joint"}, "1", between(0, 1),
-         "Fraction of it that is joint."},
-    };
-    // clang-format on
-}
-
-std::vector<Field> fields_of(SetAverages& sets)
-{
-    const std::vector<std::string> set = {"joint_set"};
-    const Limits fraction = between(0, 1), angle = between(0, std::numbers::pi / 2), natural = at_least(0);
-    // clang-format off
-    return {
-        {"/sets/target_persistence", &sets.target_persistence, set, "1", fraction,
-         "Persistence that the scene asks for; 1 for all but sets of lines."},
-        {"/sets/line_persistence", &sets.line_persistence, set, "1", fraction,
-         "Fraction of the set's lines inside the section that is joint."},
-        {"/sets/persistence_error", &sets.persistence_error, set, "1", natural,
-         "Standard error that it is expected to have, by the laws of traces and bridges."},
-        {"/sets/edge_persistence", &sets.edge_persistence, set, "1", fraction,
-         "Fraction of the set's edges that is joint."},
-        {"/sets/line_length", &sets.line_length, set, "m", natural,
-         "Length of the set's lines inside the section."},
-        {"/sets/edge_length", &sets.edge_length, set, "m", natural,
-         "Length of the set's edges. Strengths and stiffnesses are means over it."},
-        {"/sets/joint_cohesion", &sets.joint_cohesion, set, "Pa", natural, "Cohesion of the joint."},
-        {"/sets/joint_friction_angle", &sets.joint_friction_angle, set, "rad", angle, "Its friction angle."},
-        {"/sets/joint_tensile_strength", &sets.joint_tensile_strength, set, "Pa", natural,
-         "Its tensile strength."},
-        {"/sets/bridge_cohesion", &sets.bridge_cohesion, set, "Pa", natural,
-         "Cohesion of the rock bridges; 0, as the next two, where there are none."},
-        {"/sets/bridge_friction_angle", &sets.bridge_friction_angle, set, "rad", angle,
-         "Their friction angle."},
-        {"/sets/bridge_tensile_strength", &sets.bridge_tensile_strength, set, "Pa", natural,
-         "Their tensile strength."},
-        {"/sets/cohesion", &sets.cohesion, set, "Pa", natural, "Cohesion of the equivalent joints."},
-        {"/sets/friction_angle", &sets.friction_angle, set, "rad", angle, "Their friction angle."},
-        {"/sets/tensile_strength", &sets.tensile_strength, set, "Pa", natural, "Their tensile strength."},
-        {"/sets/joint_dilation_angle", &sets.joint_dilation_angle, set, "rad", angle,
-         "Dilation angle of the joint."},
-        {"/sets/bridge_dilation_angle", &sets.bridge_dilation_angle, set, "rad", angle,
-         "Dilation angle of the rock bridges; 0 where there are none."},
-        {"/sets/dilation_angle", &sets.dilation_angle, set, "rad", angle,
-         "Dilation angle of the equivalent joints."},
-        {"/sets/joint_normal_stiffness", &sets.joint_normal_stiffness, set, "Pa/m", natural,
-         "Normal stiffness of the joint."},
-        {"/sets/joint_shear_stiffness", &sets.joint_shear_stiffness, set, "Pa/m", natural,
-         "Its shear stiffness."},
-        {"/sets/normal_stiffness", &sets.normal_stiffness, set, "Pa/m", natural,
-         "Normal stiffness of the equivalent joints."},
-        {"/sets/shear_stiffness", &sets.shear_stiffness, set, "Pa/m", natural, "Their shear stiffness."},
-        {"/sets/limited_length", &sets.limited_length, set, "m", natural,
-         "Length of edges whose stiffness was limited to ten times that of a zone."},
-    };
-    // clang-format on
-}
-
-} // namespace
-
 std::vector<Field> fields_of(EquivalentJoints& joints)
 {
-    const std::vector<std::string> edge = {"edge"}, units = {"edge", "kelvin_unit"};
-    // clang-format off
-    std::vector<Field> fields;
-    for (const joint::Parameter& parameter : joint::all_parameters())
-        fields.push_back({"/equivalent/" + std::string(parameter.name), &parameter.in(joints), edge,
-                          parameter.si_unit(),
-                          parameter.is_angle() ? between(0, std::numbers::pi / 2) : at_least(0),
-                          std::string(parameter.meaning)});
-    std::string numbers;
-    for (std::size_t law = 0; law < joint::laws().size(); ++law)
-        numbers += (law > 0 ? "; " : "") + std::to_string(law) + " " + std::string(joint::laws()[law].about);
-    fields.push_back({"/equivalent/law", &joints.law, edge, "1",
-                      between(0, static_cast<double>(joint::laws().size() - 1)),
-                      "Joint law: " + numbers + ". Parameters that the law does not have are 0."});
-    append(fields, {
-        {"/equivalent/persistence", &joints.persistence, edge, "1", between(0, 1),
-         "Persistence that joint and rock bridges were averaged with: of the edge, of its line or of its set."},
-        {"/equivalent/normal_kelvin_stiffness", &joints.normal_kelvin_stiffness, units, "Pa/m", at_least(0),
-         "Normal stiffness of the Kelvin unit; 0 if the joint has no such unit."},
-        {"/equivalent/shear_kelvin_stiffness", &joints.shear_kelvin_stiffness, units, "Pa/m", at_least(0),
-         "Shear stiffness of the Kelvin unit; 0 if the joint has no such unit."},
-        {"/equivalent/normal_kelvin_viscosity", &joints.normal_kelvin_viscosity, units, "Pa s/m", at_least(0),
-         "Normal viscosity of the Kelvin unit."},
-        {"/equivalent/shear_kelvin_viscosity", &joints.shear_kelvin_viscosity, units, "Pa s/m", at_least(0),
-         "Shear viscosity of the Kelvin unit."},
-        {"/equivalent/normal_maxwell_viscosity", &joints.normal_maxwell_viscosity, edge, "Pa s/m", at_least(0),
-         "Normal viscosity of the Maxwell dashpot; 0 if there is none."},
-        {"/equivalent/shear_maxwell_viscosity", &joints.shear_maxwell_viscosity, edge, "Pa s/m", at_least(0),
-         "Shear viscosity of the Maxwell dashpot; 0 if there is none."},
-    });
-    // clang-format on
-    append(fields, fields_of(joints.pieces));
-    append(fields, fields_of(joints.sets));
-    return fields;
+    return of_forces(&ForceFields::equivalent_joints, joints);
 }
 
 std::vector<Field> fields_of(Result& result)
@@ -502,7 +341,7 @@ std::vector<Field> fields_of(StepHistory& step_history)
 std::vector<Field> fields_of(DynamicsHistory& dynamics)
 {
     // clang-format off
-    return {
+    std::vector<Field> all = {
         {"/dynamics/time", &dynamics.time, {"moment"}, "day", ascending(), "Time of the stage since the start."},
         {"/dynamics/dynamic_time", &dynamics.dynamic_time, {"moment"}, "s", at_least(0), "Time since the dynamic analysis began."},
         {"/dynamics/state", &dynamics.state, {"moment"}, "1", index_of("state"), "The section's state then."},
@@ -520,22 +359,10 @@ std::vector<Field> fields_of(DynamicsHistory& dynamics)
         {"/dynamics/fastest", &dynamics.fastest, {"moment"}, "m/s", at_least(0), "Speed of the fastest gridpoint."},
         {"/dynamics/unbalanced_force_ratio", &dynamics.unbalanced_force_ratio, {"moment"}, "1", at_least(0),
          "Unbalanced force ratio."},
-        {"/dynamics/first_contact", &dynamics.first_contact, {"moment+1"}, "1", rows_in("moving_contact"),
-         "At moment i the moving contacts first_contact[i] up to, not including, first_contact[i + 1] touch."},
-        {"/dynamics/contact_block", &dynamics.contact_block, {"moving_contact"}, "1", index_or_none("block"),
-         "Its two blocks, on side a and on side b; -1 is the ground that a boundary rests on."},
-        {"/dynamics/contact_from", &dynamics.contact_from, {"moving_contact"}, "m", any(),
-         "One end of the part that touches {x, y}, where it is then."},
-        {"/dynamics/contact_to", &dynamics.contact_to, {"moving_contact"}, "m", any(), "The other end {x, y}."},
-        {"/dynamics/contact_normal", &dynamics.contact_normal, {"moving_contact"}, "1", any(),
-         "Unit normal {x, y} from side a to side b."},
-        {"/dynamics/contact_traction", &dynamics.contact_traction, {"moving_contact"}, "Pa", any(),
-         "Mean traction {normal, shear} that side b exerts on side a by the joint's springs, tension positive."},
-        {"/dynamics/contact_closing", &dynamics.contact_closing, {"moving_contact"}, "m", any(),
-         "By how much its springs are pressed together, the mean; below 0 where a bond is pulled."},
-        {"/dynamics/contact_slips", &dynamics.contact_slips, {"moving_contact"}, "1", between(0, 1), "1 while it slips."},
     };
     // clang-format on
+    append(all, of_forces(&ForceFields::dynamics, dynamics));
+    return all;
 }
 
 std::vector<Field> fields_of(Failure& failure)
@@ -578,7 +405,7 @@ std::vector<Field> fields_of(Checkpoint& checkpoint)
     const std::vector<std::string> gridpoint = {"gridpoint"}, zone = {"zone"}, yields = {"yielding_zone"},
                                    contact = {"contact"}, remark = {"remark"};
     // clang-format off
-    return {
+    std::vector<Field> all = {
         {"/checkpoint/stage", &checkpoint.stage, {}, "1", index_of("stage"), "Stage that is about to be excavated."},
         {"/checkpoint/time", &checkpoint.time, {}, "s", at_least(0), "Its time since the start."},
         {"/checkpoint/displacement", &checkpoint.displacement, gridpoint, "m", any(),
@@ -586,39 +413,11 @@ std::vector<Field> fields_of(Checkpoint& checkpoint)
         {"/checkpoint/is_free", &checkpoint.is_free, gridpoint, "1", between(0, 1),
          "1 or 0 in {x, y}: free, or held itself or without rock."},
         {"/checkpoint/load", &checkpoint.load, gridpoint, "N/m", any(), "Weight {x, y} that the gridpoint has."},
-        {"/checkpoint/zone_present", &checkpoint.zone_present, zone, "1", between(0, 1),
-         "1 while the zone is there, 0 once it is removed."},
-        {"/checkpoint/stress", &checkpoint.stress, zone, "Pa", any(), "Stress {xx, yy, xy}, tension positive."},
-        {"/checkpoint/initial_stress", &checkpoint.initial_stress, zone, "Pa", any(),
-         "The same at zero displacement, less what has crept since."},
-        {"/checkpoint/stiffness", &checkpoint.stiffness, zone, "Pa", at_least(0),
-         "C11, C12 and C33 of the rock, rounded as creep leaves them."},
-        {"/checkpoint/plastic_strain", &checkpoint.plastic_strain, yields, "1", any(),
-         "Plastic strain {xx, yy, zz, 2 xy} since the in-situ equilibrium, extension positive."},
-        {"/checkpoint/stress_zz", &checkpoint.stress_zz, yields, "Pa", any(), "Stress across the section."},
-        {"/checkpoint/initial_zz", &checkpoint.initial_zz, yields, "Pa", any(), "The same at zero displacement."},
-        {"/checkpoint/contact_status", &checkpoint.contact_status, contact, "1", between(0, 3),
-         "0 removed, 1 stuck, 2 slipping, 3 open."},
-        {"/checkpoint/traction", &checkpoint.traction, contact, "Pa", any(), "Traction {normal, shear}, tension positive."},
-        {"/checkpoint/initial_traction", &checkpoint.initial_traction, contact, "Pa", any(),
-         "The same at zero displacement; where open, what its springs would carry."},
-        {"/checkpoint/relative_displacement", &checkpoint.relative_displacement, contact, "m", any(),
-         "Displacement of side b minus that of side a {normal, shear}."},
-        {"/checkpoint/offset", &checkpoint.offset, contact, "m", any(), "What of it has crept {normal, shear}."},
-        {"/checkpoint/slip", &checkpoint.slip, contact, "m", any(), "Slip since the in-situ equilibrium."},
-        {"/checkpoint/dilation", &checkpoint.dilation, contact, "m", any(), "Opening by slip since then."},
-        {"/checkpoint/is_broken", &checkpoint.is_broken, contact, "1", between(0, 1),
-         "1 once the bonds of the contact are broken."},
-        {"/checkpoint/first_memory", &checkpoint.first_memory, contact, "1", any(),
-         "What the contact's law remembers beside slip, dilation and broken bonds, in SI units; 0 if nothing."},
-        {"/checkpoint/second_memory", &checkpoint.second_memory, contact, "1", any(), "The same, a second number."},
-        {"/checkpoint/third_memory", &checkpoint.third_memory, contact, "1", any(), "The same, a third number."},
-        {"/checkpoint/reference", &checkpoint.reference, {"direction"}, "Pa", any(), "Traction from which creep counts."},
-        {"/checkpoint/crept", &checkpoint.crept, {"direction_unit"}, "m", any(), "Displacement that has crept."},
-        {"/checkpoint/rock_reference", &checkpoint.rock_reference, {"creeping_zone"}, "Pa", any(),
-         "Stress {xx, yy, xy} from which creep counts."},
-        {"/checkpoint/rock_crept", &checkpoint.rock_crept, {"zone_unit"}, "1", any(),
-         "Deviatoric strain {xx, yy, xy} that has crept."},
+    };
+    // clang-format on
+    append(all, of_forces(&ForceFields::checkpoint, checkpoint));
+    // clang-format off
+    append(all, {
         {"/checkpoint/creep_step", &checkpoint.creep_step, {}, "s", at_least(0),
          "Creep step to be tried next; 0 where nothing creeps."},
         {"/checkpoint/solver_time", &checkpoint.solver_time, {}, "s", at_least(0),
@@ -632,8 +431,9 @@ std::vector<Field> fields_of(Checkpoint& checkpoint)
          "0 contacts of the joint at yield in the initial stress state, 1 zones of the rock, 2 why the implicit engine gave up, 3 the stage's "
          "account of energy is off."},
         {"/checkpoint/remark_count", &checkpoint.remark_count, remark, "1", at_least(0), "How often, or by how many percent."},
-    };
+    });
     // clang-format on
+    return all;
 }
 
 std::vector<Field> fields_of(DynamicsState& state)
@@ -641,43 +441,20 @@ std::vector<Field> fields_of(DynamicsState& state)
     const std::vector<std::string> gridpoint = {"gridpoint"}, zone = {"zone"}, yields = {"yielding_zone"},
                                    pair = {"pair"};
     // clang-format off
-    return {
+    std::vector<Field> all = {
         {"/dynamics_state/origin", &state.origin, gridpoint, "m", any(), "Place {x, y} that displacements count from, counted from the section's middle."},
         {"/dynamics_state/place", &state.place, gridpoint, "m", any(), "Place {x, y} now, counted from there."},
-        {"/dynamics_state/inverse", &state.inverse, zone, "1/m", any(),
-         "Inverse of the matrix of the zone's edges without stress, by columns."},
-        {"/dynamics_state/area", &state.area, zone, "m2", positive(), "Area of the zone without stress."},
-        {"/dynamics_state/strain", &state.strain, zone, "1", any(), "Biot's strain {xx, yy, 2 xy} of the zone."},
-        {"/dynamics_state/plastic_strain", &state.plastic_strain, yields, "1", any(),
-         "Of it, plastic strain {xx, yy, zz, 2 xy}, extension positive."},
-        {"/dynamics_state/initial_zz", &state.initial_zz, yields, "Pa", any(), "Stress across the section of the shape without stress."},
-        {"/dynamics_state/stress_zz", &state.stress_zz, yields, "Pa", any(), "The same now."},
-        {"/dynamics_state/stress", &state.stress, yields, "Pa", any(), "Biot's stress {xx, yy, xy}, tension positive."},
-        {"/dynamics_state/face", &state.face, {"face"}, "1", index_of("gridpoint"), "First and second gridpoint of the face."},
-        {"/dynamics_state/pair", &state.pair, pair, "1", index_of("face"), "The two faces."},
-        {"/dynamics_state/law", &state.law, pair, "1", at_least(0), "Number of the joint law between them."},
-        {"/dynamics_state/first_lead", &state.first_lead, pair, "m", any(),
-         "Closing without a gap at the first end of the first face."},
-        {"/dynamics_state/second_lead", &state.second_lead, pair, "m", any(), "The same at its second end."},
-        {"/dynamics_state/dilation", &state.dilation, pair, "m", at_least(0), "What dilation has added to both."},
-        {"/dynamics_state/tau", &state.tau, pair, "Pa", any(), "Shear traction."},
-        {"/dynamics_state/is_known", &state.is_known, pair, "1", between(0, 1), "1 if they have touched since they came near."},
-        {"/dynamics_state/is_new", &state.is_new, pair, "1", between(0, 1), "1 if they have not carried a force yet."},
-        {"/dynamics_state/is_closed", &state.is_closed, pair, "1", between(0, 1), "1 if they touch."},
-        {"/dynamics_state/is_broken", &state.is_broken, pair, "1", between(0, 1), "1 if there are no bonds between them."},
-        {"/dynamics_state/first_memory", &state.first_memory, pair, "1", any(),
-         "What the law of the pair remembers beside, in SI units; 0 if nothing."},
-        {"/dynamics_state/second_memory", &state.second_memory, pair, "1", any(), "The same, a second number."},
-        {"/dynamics_state/third_memory", &state.third_memory, pair, "1", any(), "The same, a third number."},
-        {"/dynamics_state/normal", &state.normal, pair, "1", any(), "Unit normal {x, y} from the first to the second, or 0."},
-        {"/dynamics_state/length", &state.length, pair, "m", at_least(0), "Length on which they touch."},
-        {"/dynamics_state/pressed_in", &state.pressed_in, pair, "J/m", at_least(0), "Energy of the normal springs between them."},
-        {"/dynamics_state/sheared_in", &state.sheared_in, pair, "J/m", at_least(0), "Energy of the shear springs between them."},
+    };
+    // clang-format on
+    append(all, of_forces(&ForceFields::dynamics_state, state));
+    // clang-format off
+    append(all, {
         {"/dynamics_state/fastest", &state.fastest, {}, "m/s", at_least(0), "Speed of the fastest gridpoint at the end of the last dynamic analysis."},
         {"/dynamics_state/unbalanced_force_ratio", &state.unbalanced_force_ratio, {}, "1", at_least(0), "Unbalanced force ratio then."},
         {"/dynamics_state/largest_mean_force", &state.largest_mean_force, {}, "N/m", at_least(0), "Largest mean force on gridpoints so far."},
-    };
+    });
     // clang-format on
+    return all;
 }
 
 std::vector<Invariant> invariants_of(const Network& network)
@@ -703,25 +480,12 @@ std::vector<Invariant> invariants_of(const Network& network)
 
 std::vector<Invariant> invariants_of(const EquivalentJoints& joints)
 {
-    const auto flows = [&joints](const std::vector<double>& stiffness, const std::vector<double>& viscosity) {
-        return [&joints, &stiffness, &viscosity](std::size_t edge) {
-            const std::size_t units = joints.kelvin_units();
-            for (std::size_t unit = edge * units; unit < (edge + 1) * units; ++unit)
-                if (stiffness[unit] > 0 && viscosity[unit] <= 0)
-                    return false;
-            return true;
-        };
-    };
-    const std::string sentence = "a Kelvin unit with a stiffness has a viscosity";
-    return {{"/equivalent/normal_kelvin_viscosity", sentence, "edge",
-             flows(joints.normal_kelvin_stiffness, joints.normal_kelvin_viscosity)},
-            {"/equivalent/shear_kelvin_viscosity", sentence, "edge",
-             flows(joints.shear_kelvin_stiffness, joints.shear_kelvin_viscosity)}};
+    return invariants_of_forces(&ForceFields::equivalent_joints, joints);
 }
 
 std::vector<Invariant> invariants_of(const Mesh& mesh)
 {
-    return {
+    std::vector<Invariant> all = {
         {"/mesh/zone_gridpoint", "the corners of a zone run counter-clockwise around an area", "zone",
          [&mesh](std::size_t zone) {
              const auto [first, second, third] = mesh.zone_gridpoint[zone];
@@ -729,18 +493,14 @@ std::vector<Invariant> invariants_of(const Mesh& mesh)
              const Eigen::Vector2d to_third = mesh.gridpoint[third] - mesh.gridpoint[first];
              return to_second.x() * to_third.y() - to_second.y() * to_third.x() > 0;
          }},
-        {"/mesh/contact_gridpoint", "the two gridpoints of a contact differ", "contact",
-         [&mesh](std::size_t contact) {
-             return mesh.contact_gridpoint[contact][0] != mesh.contact_gridpoint[contact][1];
-         }},
-        {"/mesh/contact_normal", "the normal of a contact has length 1", "contact",
-         [&mesh](std::size_t contact) { return std::abs(mesh.contact_normal[contact].norm() - 1) < 1e-9; }},
     };
+    append(all, invariants_of_forces(&ForceFields::mesh, mesh));
+    return all;
 }
 
 const std::vector<Described>& dimensions()
 {
-    static const std::vector<Described> all = {
+    static const std::vector<Described> own = {
         {"program", "a program of the chain that has run"},
         {"rock", "a rock of the scene"},
         {"joint_material", "a joint material of the scene"},
@@ -750,38 +510,31 @@ const std::vector<Described>& dimensions()
         {"trace", "a joint trace: an open piece of a joint"},
         {"vertex", "a point where edges meet"},
         {"edge", "a straight piece of the cut between blocks"},
-        {"piece", "a joint trace or a rock bridge inside the section"},
-        {"bridge", "a rock bridge: rock between the traces of a joint"},
         {"share", "a joint on an edge; where joints share an edge it has several"},
-        {"kelvin_unit", "a Kelvin unit of a joint's chain, as many as the longest chain has"},
         {"block", "a face of the cut section"},
         {"ring", "a closed outline of a block, outer or hole"},
         {"corner", "a corner of a ring"},
         {"statistic", "a row of the report on the network"},
         {"gridpoint", "a corner of zones, split along joints"},
         {"zone", "a constant-strain triangle"},
-        {"yielding_zone", "a zone of rock that yields"},
         {"tie", "a pair of gridpoints that are one until a stage"},
-        {"side", "a side of a zone that lies on a boundary condition"},
-        {"contact", "a pair of gridpoints that face each other across a joint"},
         {"time", "a recorded time of the history"},
         {"point", "a monitoring point of the scene"},
         {"state", "a recorded state of the whole section"},
         {"equilibrium", "an equilibrium that was found"},
         {"row", "a recorded step of the solver"},
         {"moment", "a recorded moment of a dynamic analysis"},
-        {"moving_contact", "two faces of blocks that touch at a recorded moment of a dynamic analysis"},
         {"gauge", "a gauge of the scene"},
         {"moving_block", "a block that had no equilibrium"},
         {"trial", "a run by which a factor of safety was found"},
-        {"direction", "the normal or the shear of a contact that creeps"},
-        {"direction_unit", "a Kelvin unit or dashpot of one of these"},
-        {"creeping_zone", "a zone of rock that creeps"},
-        {"zone_unit", "a Kelvin unit or dashpot of one of these"},
         {"remark", "a line of the summary so far"},
-        {"face", "a side of a zone with no rock before it, or of the ground"},
-        {"pair", "two faces that may touch"},
     };
+    static const std::vector<Described> all = [] {
+        std::vector<Described> list = own;
+        for (const ForceFields& force : forces())
+            append(list, force.dimensions);
+        return list;
+    }();
     return all;
 }
 
@@ -828,93 +581,6 @@ std::string maker(FileKind kind)
         return "demsolve";
     }
     return {};
-}
-
-std::string wanted(const Limits& limits)
-{
-    if (!limits.index_of.empty())
-        return "index of " + limits.index_of + (limits.or_none ? " or -1" : "");
-    if (!limits.rows_of.empty())
-        return "0, not decreasing, up to the number of " + limits.rows_of + "s";
-    std::string text = "finite";
-    if (limits.positive)
-        text = "> 0";
-    else if (std::isfinite(limits.least) && std::isfinite(limits.most))
-        text = shown(limits.least) + " to " + shown(limits.most);
-    else if (std::isfinite(limits.least))
-        text = ">= " + shown(limits.least);
-    return limits.ascending ? text + ", not decreasing" : text;
-}
-
-namespace
-{
-
-template <class Number, int rows>
-std::span<double> spread(std::vector<Eigen::Matrix<Number, rows, 1>>& values)
-{
-    static_assert(sizeof values[0] == rows * sizeof(Number));
-    return {reinterpret_cast<double*>(values.data()), rows * values.size()};
-}
-
-template <std::size_t size>
-std::span<Index> spread(std::vector<std::array<Index, size>>& values)
-{
-    static_assert(sizeof values[0] == size * sizeof(Index));
-    return {reinterpret_cast<Index*>(values.data()), size * values.size()};
-}
-
-template <class Value>
-std::span<Value> spread(std::vector<Value>& values)
-{
-    return values;
-}
-
-template <class Value>
-std::span<Value> spread(Value& value)
-{
-    return {&value, 1};
-}
-
-template <class Value>
-void resize_array(std::vector<Value>& values, std::size_t count)
-{
-    values.resize(count);
-}
-
-template <class Value>
-void resize_array(Value&, std::size_t)
-{
-    // a single value
-}
-
-template <class Value>
-inline constexpr std::size_t components_in = 1;
-template <int rows>
-inline constexpr std::size_t components_in<std::vector<Eigen::Matrix<double, rows, 1>>> = rows;
-template <std::size_t size>
-inline constexpr std::size_t components_in<std::vector<std::array<Index, size>>> = size;
-
-} // namespace
-
-Flat flat(const Values& values)
-{
-    return std::visit([](auto* place) -> Flat { return spread(*place); }, values);
-}
-
-std::size_t components(const Values& values)
-{
-    return std::visit([](auto* place) { return components_in<std::remove_reference_t<decltype(*place)>>; },
-                      values);
-}
-
-std::size_t rows(const Values& values)
-{
-    return std::visit([](auto span) { return span.size(); }, flat(values)) / components(values);
-}
-
-void resize(const Values& values, std::size_t count)
-{
-    std::visit([count](auto* place) { resize_array(*place, count); }, values);
 }
 
 } // namespace jointcreep::store::schema

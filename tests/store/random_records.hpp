@@ -97,19 +97,19 @@ private:
         return sizes_.try_emplace(dimension, 2 + random_() % (largest_ - 1)).first->second;
     }
 
-    void fill(const std::vector<schema::Field>& fields)
+    void fill(const std::vector<fields::Field>& fields)
     {
-        for (const schema::Field& field : fields) {
+        for (const fields::Field& field : fields) {
             std::size_t rows = 1;
             for (const std::string& name : field.dimensions)
                 rows *= name.ends_with("+1") ? size(name.substr(0, name.size() - 2)) + 1 : size(name);
-            schema::resize(field.values, rows);
-            std::visit([&](auto values) { fill(field.limits, values); }, schema::flat(field.values));
+            fields::resize(field.values, rows);
+            std::visit([&](auto values) { fill(field.limits, values); }, fields::flat(field.values));
         }
     }
 
     // Numbers of all magnitudes, and signs where allowed; sometimes the ends of the range.
-    void fill(const schema::Limits& limits, std::span<double> values)
+    void fill(const fields::Limits& limits, std::span<double> values)
     {
         for (double& value : values) {
             value = std::ldexp(fraction() + 0.5, static_cast<int>(random_() % 200) - 100);
@@ -126,7 +126,7 @@ private:
             std::ranges::sort(values);
     }
 
-    void fill(const schema::Limits& limits, std::span<Index> values)
+    void fill(const fields::Limits& limits, std::span<Index> values)
     {
         std::int64_t least = 0, most = std::numeric_limits<Index>::max();
         if (std::isfinite(limits.least))
@@ -148,7 +148,7 @@ private:
         }
     }
 
-    void fill(const schema::Limits&, std::span<std::string> values)
+    void fill(const fields::Limits&, std::span<std::string> values)
     {
         static const std::vector<std::string> letters = {"a",  "Z", " ",  "\n",        "0",
                                                          "\"", "ß", "節", "\U0001F600"};
@@ -209,13 +209,13 @@ private:
 template <class Record>
 bool same(const Record& left, const Record& right)
 {
-    const auto fields = schema::fields_of(schema::reading(left));
-    const auto others = schema::fields_of(schema::reading(right));
-    const auto equal = [](const schema::Values& a, const schema::Values& b) {
+    const auto fields = schema::fields_of(fields::reading(left));
+    const auto others = schema::fields_of(fields::reading(right));
+    const auto equal = [](const fields::Values& a, const fields::Values& b) {
         return std::visit(
             [&](auto* value) { return *value == *std::get<std::remove_const_t<decltype(value)>>(b); }, a);
     };
-    return std::ranges::equal(fields, others, equal, &schema::Field::values, &schema::Field::values);
+    return std::ranges::equal(fields, others, equal, &fields::Field::values, &fields::Field::values);
 }
 
 inline bool same(const NetworkFile& left, const NetworkFile& right)

@@ -144,7 +144,7 @@ TEST_F(Refusal, OfMissingDatasets)
                                schema::fields_of(empty.equivalent), schema::fields_of(empty.result),
                                schema::fields_of(empty.result.step_history),
                                schema::fields_of(empty.result.failure), schema::fields_of(empty.safety)})
-        for (const schema::Field& field : fields) {
+        for (const fields::Field& field : fields) {
             EXPECT_SAYS(after([&](hid_t opened) {
                             EXPECT_GE(H5Ldelete(opened, field.path.c_str(), H5P_DEFAULT), 0);
                         }),

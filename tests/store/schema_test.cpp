@@ -13,9 +13,9 @@ namespace jointcreep::store::schema_test
 namespace
 {
 
-std::vector<schema::Field> all_fields(CheckpointFile& file)
+std::vector<fields::Field> all_fields(CheckpointFile& file)
 {
-    std::vector<schema::Field> all;
+    std::vector<fields::Field> all;
     for (const auto& fields :
          {schema::fields_of(file.provenance), schema::fields_of(file.network),
           schema::fields_of(file.equivalent), schema::fields_of(file.result),
@@ -40,7 +40,7 @@ TEST(Schema, CoversEveryMember)
     std::size_t covered = sizeof file.provenance.seed + 8; // these two and the realization are attributes
     covered += sizeof EquivalentJoints::strength_divisor;  // is of one run, and in no file
     std::set<const void*> places;
-    for (const schema::Field& field : all_fields(file))
+    for (const fields::Field& field : all_fields(file))
         std::visit(
             [&](auto* place) {
                 covered += (sizeof *place + 7) / 8 * 8;
@@ -62,7 +62,7 @@ TEST(Schema, NamesEveryDatasetOnce)
 {
     CheckpointFile file;
     std::set<std::string> paths;
-    for (const schema::Field& field : all_fields(file)) {
+    for (const fields::Field& field : all_fields(file)) {
         EXPECT_TRUE(paths.insert(field.path).second) << field.path;
         EXPECT_FALSE(field.units.empty()) << field.path;
         EXPECT_TRUE(field.description.ends_with(".")) << field.path;
@@ -75,10 +75,10 @@ TEST(Schema, UsesSiUnits)
     const std::set<std::string> si = {"1",    "m",      "m2",  "m2/J", "rad", "s",  "Pa",
                                       "Pa/m", "Pa s/m", "J/m", "m/s",  "N/m", "1/m"};
     CheckpointFile file;
-    for (const schema::Field& field : all_fields(file)) {
+    for (const fields::Field& field : all_fields(file)) {
         EXPECT_TRUE(si.contains(field.units) || (field.units == "day" && field.path.ends_with("/time")))
             << field.path;
-        const bool is_real = std::holds_alternative<std::span<double>>(schema::flat(field.values));
+        const bool is_real = std::holds_alternative<std::span<double>>(fields::flat(field.values));
         EXPECT_TRUE(is_real || field.units == "1") << field.path;
     }
 }
@@ -87,10 +87,10 @@ TEST(Schema, UsesSiUnits)
 TEST(Schema, KnowsItsDimensions)
 {
     std::set<std::string> described, sized;
-    for (const schema::Described& dimension : schema::dimensions())
+    for (const fields::Described& dimension : schema::dimensions())
         described.insert(dimension.name);
     CheckpointFile file;
-    for (const schema::Field& field : all_fields(file)) {
+    for (const fields::Field& field : all_fields(file)) {
         if (field.dimensions.size() == 1)
             sized.insert(without_one(field.dimensions[0]));
         if (field.dimensions == std::vector<std::string>{"edge", "kelvin_unit"})
@@ -98,7 +98,7 @@ TEST(Schema, KnowsItsDimensions)
         for (const std::string& dimension : field.dimensions)
             EXPECT_TRUE(sized.contains(without_one(dimension))) << field.path << ": " << dimension;
     }
-    for (const schema::Field& field : all_fields(file))
+    for (const fields::Field& field : all_fields(file))
         for (const std::string& dimension : {field.limits.index_of, field.limits.rows_of})
             EXPECT_TRUE(dimension.empty() || sized.contains(dimension)) << field.path << ": " << dimension;
     EXPECT_EQ(described, sized);
@@ -107,15 +107,15 @@ TEST(Schema, KnowsItsDimensions)
 TEST(Schema, KeepsThePathsThatScriptsRelyOn)
 {
     CheckpointFile file;
-    std::map<std::string, schema::Field> fields;
-    for (const schema::Field& field : all_fields(file))
+    std::map<std::string, fields::Field> fields;
+    for (const fields::Field& field : all_fields(file))
         fields.emplace(field.path, field);
     EXPECT_EQ(fields.at("/history/time").units, "day");
     EXPECT_TRUE(fields.contains("/history/event"));
     EXPECT_TRUE(fields.contains("/history/point"));
     const std::vector<std::string> time_point = {"time", "point"};
     EXPECT_EQ(fields.at("/history/displacement").dimensions, time_point);
-    EXPECT_EQ(schema::components(fields.at("/history/displacement").values), 2u);
+    EXPECT_EQ(fields::components(fields.at("/history/displacement").values), 2u);
     EXPECT_EQ(fields.at("/history/present").dimensions, time_point);
 }
 

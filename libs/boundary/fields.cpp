@@ -1,0 +1,39 @@
+#include "boundary/fields.hpp"
+
+namespace jointcreep::boundary
+{
+
+namespace
+{
+
+using fields::Field;
+
+std::vector<Field> fields_of(Mesh& mesh)
+{
+    using namespace fields;
+    // clang-format off
+    return {
+        {"/mesh/side_gridpoint", &mesh.side_gridpoint, {"side"}, "1", index_of("gridpoint"),
+         "Gridpoints of a zone side that lies on a boundary condition."},
+        {"/mesh/side_zone", &mesh.side_zone, {"side"}, "1", index_of("zone"), "Its zone."},
+        {"/mesh/side_boundary", &mesh.side_boundary, {"side"}, "1", at_least(0),
+         "Position of the boundary condition among the scene's [[boundary]] tables."},
+    };
+    // clang-format on
+}
+
+} // namespace
+
+fields::ForceFields fields_in_files()
+{
+    // clang-format off
+    return {
+        .dimensions = {
+            {"side", "a side of a zone that lies on a boundary condition"},
+        },
+        .mesh = {fields_of},
+    };
+    // clang-format on
+}
+
+} // namespace jointcreep::boundary

@@ -1,0 +1,90 @@
+#include "rock/fields.hpp"
+
+namespace jointcreep::rock
+{
+
+namespace
+{
+
+using fields::Field;
+
+std::vector<Field> fields_of(States& states)
+{
+    using namespace fields;
+    // clang-format off
+    return {
+        {"/states/stress", &states.stress, {"state", "zone"}, "Pa", any(),
+         "Stress {xx, yy, xy}, tension positive."},
+        {"/states/zone_present", &states.zone_present, {"state", "zone"}, "1", between(0, 1),
+         "1 while the zone is there, 0 once it is removed."},
+        {"/states/yielding_zone", &states.yielding_zone, {"yielding_zone"}, "1", index_of("zone"),
+         "Zones of rock that yields; none where all is elastic."},
+        {"/states/plastic_strain", &states.plastic_strain, {"state", "yielding_zone"}, "1", any(),
+         "Plastic strain {xx, yy, xy} since the in-situ equilibrium, extension positive."},
+    };
+    // clang-format on
+}
+
+std::vector<Field> fields_of(Checkpoint& checkpoint)
+{
+    using namespace fields;
+    const std::vector<std::string> zone = {"zone"}, yields = {"yielding_zone"};
+    // clang-format off
+    return {
+        {"/checkpoint/zone_present", &checkpoint.zone_present, zone, "1", between(0, 1),
+         "1 while the zone is there, 0 once it is removed."},
+        {"/checkpoint/stress", &checkpoint.stress, zone, "Pa", any(), "Stress {xx, yy, xy}, tension positive."},
+        {"/checkpoint/initial_stress", &checkpoint.initial_stress, zone, "Pa", any(),
+         "The same at zero displacement, less what has crept since."},
+        {"/checkpoint/stiffness", &checkpoint.stiffness, zone, "Pa", at_least(0),
+         "C11, C12 and C33 of the rock, rounded as creep leaves them."},
+        {"/checkpoint/plastic_strain", &checkpoint.plastic_strain, yields, "1", any(),
+         "Plastic strain {xx, yy, zz, 2 xy} since the in-situ equilibrium, extension positive."},
+        {"/checkpoint/stress_zz", &checkpoint.stress_zz, yields, "Pa", any(), "Stress across the section."},
+        {"/checkpoint/initial_zz", &checkpoint.initial_zz, yields, "Pa", any(), "The same at zero displacement."},
+        {"/checkpoint/rock_reference", &checkpoint.rock_reference, {"creeping_zone"}, "Pa", any(),
+         "Stress {xx, yy, xy} from which creep counts."},
+        {"/checkpoint/rock_crept", &checkpoint.rock_crept, {"zone_unit"}, "1", any(),
+         "Deviatoric strain {xx, yy, xy} that has crept."},
+    };
+    // clang-format on
+}
+
+std::vector<Field> fields_of(DynamicsState& state)
+{
+    using namespace fields;
+    const std::vector<std::string> zone = {"zone"}, yields = {"yielding_zone"};
+    // clang-format off
+    return {
+        {"/dynamics_state/inverse", &state.inverse, zone, "1/m", any(),
+         "Inverse of the matrix of the zone's edges without stress, by columns."},
+        {"/dynamics_state/area", &state.area, zone, "m2", positive(), "Area of the zone without stress."},
+        {"/dynamics_state/strain", &state.strain, zone, "1", any(), "Biot's strain {xx, yy, 2 xy} of the zone."},
+        {"/dynamics_state/plastic_strain", &state.plastic_strain, yields, "1", any(),
+         "Of it, plastic strain {xx, yy, zz, 2 xy}, extension positive."},
+        {"/dynamics_state/initial_zz", &state.initial_zz, yields, "Pa", any(), "Stress across the section of the shape without stress."},
+        {"/dynamics_state/stress_zz", &state.stress_zz, yields, "Pa", any(), "The same now."},
+        {"/dynamics_state/stress", &state.stress, yields, "Pa", any(), "Biot's stress {xx, yy, xy}, tension positive."},
+    };
+    // clang-format on
+}
+
+} // namespace
+
+fields::ForceFields fields_in_files()
+{
+    // clang-format off
+    return {
+        .dimensions = {
+            {"yielding_zone", "a zone of rock that yields"},
+            {"creeping_zone", "a zone of rock that creeps"},
+            {"zone_unit", "a Kelvin unit or dashpot of one of these"},
+        },
+        .states = {fields_of},
+        .checkpoint = {fields_of},
+        .dynamics_state = {fields_of},
+    };
+    // clang-format on
+}
+
+} // namespace jointcreep::rock
