@@ -67,7 +67,7 @@ void add_equilibria(Summary& summary, const Scene& scene, const Analysis& run)
     summary.add("equilibria by the implicit engine", implicit);
     summary.add("equilibria by dynamic relaxation", all - implicit);
     for (const auto& [reason, n] : run.findings().given_up)
-        summary.add("implicit engine gave up", std::to_string(n) + " times: " + reason);
+        summary.add("implicit engine did not converge", std::to_string(n) + " times: " + reason);
     summary.add("equilibria rejected or sought in vain", sum_of(equilibria.searches) - all);
     summary.add("solver steps", sum_of(equilibria.steps));
     summary.add("factorisations", sum_of(equilibria.factorisations));

@@ -13,7 +13,7 @@
 namespace jointcreep::analysis
 {
 
-// How a run ends: every equilibrium found; rock seen to slide or fall; or the search for one given up.
+// How a run ends: every equilibrium found; rock seen to slide or fall; or no answer within the limits of the search.
 enum class Ending { stands, falls, undecided };
 
 // An analysis with strengths divided by a factor [-].

@@ -1,4 +1,4 @@
-// The springs and Kelvin constants of a joint whose traces are parted by rock bridges.
+// The springs and Kelvin constants of a joint whose traces are separated by rock bridges.
 //
 // Traces of length L, as far apart as the persistence k says, lie along a line with period 2 b = L / k in
 // rock of E' = E / (1 - nu^2). A joint of the stiffness K_j [Pa/m] fills them. The mean displacement across

@@ -177,7 +177,7 @@ std::vector<Field> fields_of(DynamicsHistory& dynamics)
         {"/dynamics/contact_traction", &dynamics.contact_traction, {"moving_contact"}, "Pa", any(),
          "Mean traction {normal, shear} that side b exerts on side a by the joint's springs, tension positive."},
         {"/dynamics/contact_closing", &dynamics.contact_closing, {"moving_contact"}, "m", any(),
-         "By how much its springs are pressed together, the mean; below 0 where a bond is pulled."},
+         "Mean closing of its springs; below 0 where a bond is in tension."},
         {"/dynamics/contact_slips", &dynamics.contact_slips, {"moving_contact"}, "1", between(0, 1), "1 while it slips."},
     };
     // clang-format on

@@ -1,4 +1,4 @@
-// Tables of text with named columns, as field data come: a line of column names, then rows; fields are parted
+// Tables of text with named columns, as field data come: a line of column names, then rows; fields are separated
 // by commas, and may stand in double quotes; empty lines and those that begin with # are left out. Errors are
 // input_error that name the line; the caller says which file.
 

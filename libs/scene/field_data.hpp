@@ -1,6 +1,6 @@
 // What was measured in the field, from the files that a scene names: poles, and mapped traces.
 //
-// CSV: a line of column names, then rows; fields are parted by commas, and may stand in double quotes; empty
+// CSV: a line of column names, then rows; fields are separated by commas, and may stand in double quotes; empty
 // lines and those that begin with # are left out. GeoJSON (RFC 7946): LineString and MultiLineString, with
 // coordinates in metres of the section. Errors are input_error that name the line or feature; the caller says
 // which file.

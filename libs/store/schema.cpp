@@ -428,7 +428,7 @@ std::vector<Field> fields_of(Checkpoint& checkpoint)
          "Creep steps since a state by their number."},
         {"/checkpoint/remark", &checkpoint.remark, remark, "1", any(), "A joint, a rock, a reason or a stage, by name."},
         {"/checkpoint/remark_kind", &checkpoint.remark_kind, remark, "1", between(0, 3),
-         "0 contacts of the joint at yield in the initial stress state, 1 zones of the rock, 2 why the implicit engine gave up, 3 the stage's "
+         "0 contacts of the joint at yield in the initial stress state, 1 zones of the rock, 2 why the implicit engine found no equilibrium, 3 the stage's "
          "account of energy is off."},
         {"/checkpoint/remark_count", &checkpoint.remark_count, remark, "1", at_least(0), "How often, or by how many percent."},
     });

@@ -22,7 +22,7 @@ class Fallback(ChainTest):
     def test_dynamic_relaxation_takes_over(self):
         output, done = self.solve()
         self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertRegex(done.stdout, "implicit engine gave up +1 times: forces do not come into balance")
+        self.assertRegex(done.stdout, "implicit engine did not converge +1 times: forces do not come into balance")
         data = datasets(output)
         implicit, searches = data["/equilibria/is_implicit"], data["/equilibria/searches"]
         self.assertEqual((implicit == 0).sum(), 1)
