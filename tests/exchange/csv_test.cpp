@@ -127,7 +127,11 @@ TEST(edges_csv, adds_the_equivalent_joints)
                                              "dilation_wear_m2_per_J",
                                              "initial_friction_angle_rad",
                                              "roughness_length_m"};
-    ASSERT_EQ(rows[0].size(), 11 + of_joints.size() + 4 + 2 + 1);
+    const std::vector<joint::Parameter>& all = joint::all_parameters();
+    ASSERT_EQ(rows[0].size(), 11 + all.size() + 4 + 2 + 1);
+    ASSERT_GE(all.size(), of_joints.size());
+    for (std::size_t i = 0; i < all.size(); ++i)
+        EXPECT_TRUE(rows[0][11 + i].starts_with(all[i].name)) << rows[0][11 + i];
     for (std::size_t i = 0; i < of_joints.size(); ++i)
         EXPECT_EQ(rows[0][11 + i], of_joints[i]);
     EXPECT_EQ(number(rows[2][11]), 0);
