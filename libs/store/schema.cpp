@@ -402,8 +402,7 @@ std::vector<Field> fields_of(Safety& safety)
 
 std::vector<Field> fields_of(Checkpoint& checkpoint)
 {
-    const std::vector<std::string> gridpoint = {"gridpoint"}, zone = {"zone"}, yields = {"yielding_zone"},
-                                   contact = {"contact"}, remark = {"remark"};
+    const std::vector<std::string> gridpoint = {"gridpoint"}, remark = {"remark"};
     // clang-format off
     std::vector<Field> all = {
         {"/checkpoint/stage", &checkpoint.stage, {}, "1", index_of("stage"), "Stage that is about to be excavated."},
@@ -438,8 +437,7 @@ std::vector<Field> fields_of(Checkpoint& checkpoint)
 
 std::vector<Field> fields_of(DynamicsState& state)
 {
-    const std::vector<std::string> gridpoint = {"gridpoint"}, zone = {"zone"}, yields = {"yielding_zone"},
-                                   pair = {"pair"};
+    const std::vector<std::string> gridpoint = {"gridpoint"};
     // clang-format off
     std::vector<Field> all = {
         {"/dynamics_state/origin", &state.origin, gridpoint, "m", any(), "Place {x, y} that displacements count from, counted from the section's middle."},

@@ -18,7 +18,7 @@ def plain(names):
     for name in names:
         word = re.sub(r"[^A-Za-z0-9._]+", "-", name).strip("-.") or "stage"
         number, unique = 2, "stage-" + word if word.isdecimal() else word
-        while unique in [*words, "last"]:
+        while unique in [*words, "last"] or (unique != name and unique in names):
             unique, number = f"{word}-{number}", number + 1
         words.append(unique)
     return words
