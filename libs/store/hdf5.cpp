@@ -7,6 +7,7 @@
 #include <cstring>
 #include <new>
 
+#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 #include <zlib.h>
@@ -48,11 +49,13 @@ Result ok(Result result, const std::string& what)
 }
 
 // Before a file is opened or made. HDF5 crashes where it gets no memory for its own tables, or gives another reason:
-// so much must be free.
+// where memory is limited, so much must be free.
 void begin()
 {
     constexpr std::size_t room = std::size_t{16} << 20; // [bytes]
-    ::operator delete(::operator new(room));
+    rlimit limit{};
+    if (getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY)
+        ::operator delete(::operator new(room));
     H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
 }
 
