@@ -6,6 +6,7 @@
 #include <boost/program_options.hpp>
 
 #include <malloc.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -168,10 +169,14 @@ std::string_view shortened(std::string_view text, std::size_t most)
     return text.substr(0, size);
 }
 
-// Takes the stack that the work may need now: where memory is limited, a stack that cannot grow later is a crash.
+// Takes the stack that the work may need now: where memory is limited, a stack that cannot grow later is a crash. A
+// small stack is left as it is.
 [[gnu::noinline]] void reserve_stack()
 {
     constexpr std::size_t enough = std::size_t{1} << 20, page = 4096; // [bytes]
+    rlimit limit{};
+    if (getrlimit(RLIMIT_STACK, &limit) != 0 || limit.rlim_cur < 2 * enough)
+        return;
     [[maybe_unused]] volatile char room[enough];
     for (std::size_t i = 0; i < enough; i += page)
         room[i] = 0;

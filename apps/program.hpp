@@ -96,9 +96,9 @@ public:
     std::optional<std::uint64_t> whole_number(const std::string& option, std::uint64_t least,
                                               std::uint64_t most) const;
     std::optional<double> number(const std::string& option) const; // finite
+    std::optional<double> number(const std::string& option, const Range& range, std::string_view unit) const;
     // The value of --threads, 1 if it is not given; refuses more threads than the system starts.
     int threads() const;
-    std::optional<double> number(const std::string& option, const Range& range, std::string_view unit) const;
 
 private:
     friend int run(const Program&, int, char**, const std::function<void(const Arguments&)>&);

@@ -31,7 +31,7 @@ fields::ForceFields fields_in_files()
         .dimensions = {
             {"side", "a side of a zone that lies on a boundary condition"},
         },
-        .mesh = {fields_of},
+        .mesh = fields_of,
     };
     // clang-format on
 }

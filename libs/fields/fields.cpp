@@ -66,10 +66,10 @@ std::string wanted(const Limits& limits)
 namespace
 {
 
-template <class Number, int rows>
-std::span<double> spread(std::vector<Eigen::Matrix<Number, rows, 1>>& values)
+template <int rows>
+std::span<double> spread(std::vector<Eigen::Matrix<double, rows, 1>>& values)
 {
-    static_assert(sizeof values[0] == rows * sizeof(Number));
+    static_assert(sizeof values[0] == rows * sizeof(double));
     return {reinterpret_cast<double*>(values.data()), rows * values.size()};
 }
 

@@ -3,7 +3,7 @@
 //
 //     fields::ForceFields fields_in_files()
 //     {
-//         return {.dimensions = {{"contact", "a pair of gridpoints ..."}}, .mesh = {fields_of, invariants_of}};
+//         return {.dimensions = {{"contact", "a pair of gridpoints ..."}}, .mesh = fields_of};
 //     }
 
 #pragma once
@@ -16,21 +16,23 @@
 namespace jointcreep::fields
 {
 
-// The rows that a force has of a record, and what must hold between their values; either may be none.
+// The rows that a force has of a record, and what must hold between their values. They refer to the record.
 template <class Record>
-struct Part {
-    std::vector<Field> (*fields)(Record&) = nullptr;
-    std::vector<Invariant> (*invariants)(const Record&) = nullptr; // they refer to the record
-};
+using RowsOf = std::vector<Field> (*)(Record&);
+template <class Record>
+using InvariantsOf = std::vector<Invariant> (*)(const Record&);
 
+// Any may be none.
 struct ForceFields {
     std::vector<Described> dimensions{}; // those of its rows that nobody else has
-    Part<EquivalentJoints> equivalent_joints{};
-    Part<Mesh> mesh{};
-    Part<States> states{};
-    Part<DynamicsHistory> dynamics{};
-    Part<Checkpoint> checkpoint{};
-    Part<DynamicsState> dynamics_state{};
+    RowsOf<EquivalentJoints> equivalent_joints = nullptr;
+    InvariantsOf<EquivalentJoints> invariants_of_equivalent_joints = nullptr;
+    RowsOf<Mesh> mesh = nullptr;
+    InvariantsOf<Mesh> invariants_of_mesh = nullptr;
+    RowsOf<States> states = nullptr;
+    RowsOf<DynamicsHistory> dynamics = nullptr;
+    RowsOf<Checkpoint> checkpoint = nullptr;
+    RowsOf<DynamicsState> dynamics_state = nullptr;
 };
 
 } // namespace jointcreep::fields

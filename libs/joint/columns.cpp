@@ -8,7 +8,7 @@ namespace jointcreep::joint
 namespace
 {
 
-using fields::Column;
+using fields::Column, fields::component_column;
 
 // The value of every `stride`th row, from `first` on.
 Column column_of(std::string name, std::string units, const std::vector<double>& values,
@@ -53,17 +53,14 @@ std::vector<Column> contact_columns(const Result& result, std::size_t state)
 {
     const States& states = result.states;
     const std::size_t first = state * result.mesh.contact_edge.size();
-    const auto component = [first](std::string name, std::string units, std::string dataset,
-                                   const std::vector<Eigen::Vector2d>& values, int i) {
-        return fields::component_column(std::move(name), std::move(units), std::move(dataset), values, first,
-                                        i);
-    };
     const std::string traction = "/states/traction", relative = "/states/relative_displacement";
     return {
-        component("normal_traction", "Pa", traction, states.traction, 0),
-        component("shear_traction", "Pa", traction, states.traction, 1),
-        component("normal_relative_displacement", "m", relative, states.relative_displacement, 0),
-        component("shear_relative_displacement", "m", relative, states.relative_displacement, 1),
+        component_column("normal_traction", "Pa", traction, states.traction, first, 0),
+        component_column("shear_traction", "Pa", traction, states.traction, first, 1),
+        component_column("normal_relative_displacement", "m", relative, states.relative_displacement, first,
+                         0),
+        component_column("shear_relative_displacement", "m", relative, states.relative_displacement, first,
+                         1),
         {.name = "status",
          .units = "1",
          .value = [&states, first](std::size_t contact) { return states.contact_status[first + contact]; },

@@ -288,12 +288,14 @@ fields::ForceFields fields_in_files()
             {"face", "a side of a zone with no rock before it, or of the ground"},
             {"pair", "two faces that may touch"},
         },
-        .equivalent_joints = {fields_of, invariants_of},
-        .mesh = {fields_of, invariants_of},
-        .states = {fields_of},
-        .dynamics = {fields_of},
-        .checkpoint = {fields_of},
-        .dynamics_state = {fields_of},
+        .equivalent_joints = fields_of,
+        .invariants_of_equivalent_joints = invariants_of,
+        .mesh = fields_of,
+        .invariants_of_mesh = invariants_of,
+        .states = fields_of,
+        .dynamics = fields_of,
+        .checkpoint = fields_of,
+        .dynamics_state = fields_of,
     };
     // clang-format on
 }

@@ -1,11 +1,8 @@
 #include "mechanics/assembly.hpp"
 
-#include "model/signs.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 
 namespace jointcreep::mechanics
 {

@@ -80,9 +80,9 @@ fields::ForceFields fields_in_files()
             {"creeping_zone", "a zone of rock that creeps"},
             {"zone_unit", "a Kelvin unit or dashpot of one of these"},
         },
-        .states = {fields_of},
-        .checkpoint = {fields_of},
-        .dynamics_state = {fields_of},
+        .states = fields_of,
+        .checkpoint = fields_of,
+        .dynamics_state = fields_of,
     };
     // clang-format on
 }

@@ -11,22 +11,13 @@ namespace
 using namespace fields;
 
 // The rows that forces have of a record, or their invariants.
-template <class Record>
-std::vector<Field> of_forces(Part<Record> ForceFields::*part, Record& record)
+template <class Row, class Record>
+std::vector<Row> of_forces(std::vector<Row> (*ForceFields::*part)(Record&), Record& record)
 {
-    std::vector<Field> all;
+    std::vector<Row> all;
     for (const ForceFields& force : forces())
-        if ((force.*part).fields)
-            append(all, (force.*part).fields(record));
-    return all;
-}
-template <class Record>
-std::vector<Invariant> invariants_of_forces(Part<Record> ForceFields::*part, const Record& record)
-{
-    std::vector<Invariant> all;
-    for (const ForceFields& force : forces())
-        if ((force.*part).invariants)
-            append(all, (force.*part).invariants(record));
+        if (force.*part)
+            append(all, (force.*part)(record));
     return all;
 }
 
@@ -478,7 +469,7 @@ std::vector<Invariant> invariants_of(const Network& network)
 
 std::vector<Invariant> invariants_of(const EquivalentJoints& joints)
 {
-    return invariants_of_forces(&ForceFields::equivalent_joints, joints);
+    return of_forces(&ForceFields::invariants_of_equivalent_joints, joints);
 }
 
 std::vector<Invariant> invariants_of(const Mesh& mesh)
@@ -492,7 +483,7 @@ std::vector<Invariant> invariants_of(const Mesh& mesh)
              return to_second.x() * to_third.y() - to_second.y() * to_third.x() > 0;
          }},
     };
-    append(all, invariants_of_forces(&ForceFields::mesh, mesh));
+    append(all, of_forces(&ForceFields::invariants_of_mesh, mesh));
     return all;
 }
 

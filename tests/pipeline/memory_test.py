@@ -1,5 +1,6 @@
 """With too little memory a program says so: it neither hangs, nor crashes, nor finds something else."""
 
+import os
 import resource
 import subprocess
 
@@ -14,7 +15,8 @@ class Memory(ChainTest):
     def limited(self, program, limit, *arguments):
         """The exit code of a program that has this much address space [MB]."""
         command = [self.chain.programs / program, *map(str, arguments)]
-        done = subprocess.run(command, capture_output=True, text=True, timeout=LONGEST,
+        environment = dict(os.environ, OPENBLAS_NUM_THREADS="1")  # else the limit depends on the number of processors
+        done = subprocess.run(command, capture_output=True, text=True, timeout=LONGEST, env=environment,
                               preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, (limit * MB, limit * MB)))
         return done.returncode, done.stderr
 
