@@ -8,11 +8,24 @@ namespace
 
 using fields::Field;
 
+std::vector<Field> fields_of(Network& network)
+{
+    using namespace fields;
+    // clang-format off
+    return {
+        {"/edges/boundary", &network.blocks.edge_boundary, {"edge"}, "1", at_least(-1),
+         "Which of the scene's boundary entries holds a boundary edge, counted from 0; -1 none."},
+    };
+    // clang-format on
+}
+
 std::vector<Field> fields_of(Mesh& mesh)
 {
     using namespace fields;
     // clang-format off
     return {
+        {"/mesh/gridpoint_fixed", &mesh.gridpoint_fixed, {"gridpoint"}, "1", between(0, 3),
+         "0 free, 1 held in x, 2 held in y, 3 held in both."},
         {"/mesh/side_gridpoint", &mesh.side_gridpoint, {"side"}, "1", index_of("gridpoint"),
          "Gridpoints of a zone side that lies on a boundary condition."},
         {"/mesh/side_zone", &mesh.side_zone, {"side"}, "1", index_of("zone"), "Its zone."},
@@ -31,6 +44,7 @@ fields::ForceFields fields_in_files()
         .dimensions = {
             {"side", "a side of a zone that lies on a boundary condition"},
         },
+        .network = fields_of,
         .mesh = fields_of,
     };
     // clang-format on

@@ -1,5 +1,5 @@
-// Rows in files of boundary conditions: the sides of zones they act on. Paths, units and ranges are declared
-// with each row.
+// Rows in files of boundary conditions: the edges, gridpoints and sides of zones they act on. Paths, units and ranges
+// are declared with each row.
 
 #pragma once
 

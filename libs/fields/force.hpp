@@ -25,11 +25,13 @@ using InvariantsOf = std::vector<Invariant> (*)(const Record&);
 // Any may be none.
 struct ForceFields {
     std::vector<Described> dimensions{}; // those of its rows that nobody else has
+    RowsOf<Network> network = nullptr;
     RowsOf<EquivalentJoints> equivalent_joints = nullptr;
     InvariantsOf<EquivalentJoints> invariants_of_equivalent_joints = nullptr;
     RowsOf<Mesh> mesh = nullptr;
     InvariantsOf<Mesh> invariants_of_mesh = nullptr;
     RowsOf<States> states = nullptr;
+    RowsOf<StepHistory> step_history = nullptr;
     RowsOf<DynamicsHistory> dynamics = nullptr;
     RowsOf<Checkpoint> checkpoint = nullptr;
     RowsOf<DynamicsState> dynamics_state = nullptr;

@@ -160,6 +160,20 @@ std::vector<Field> fields_of(States& states)
     // clang-format on
 }
 
+std::vector<Field> fields_of(StepHistory& step_history)
+{
+    using namespace fields;
+    // clang-format off
+    return {
+        {"/step_history/gauge", &step_history.gauge, {"gauge"}, "1", any(), "Names of the gauges."},
+        {"/step_history/gauge_contact", &step_history.gauge_contact, {"gauge"}, "1", index_of("contact"),
+         "Contact the gauge reads."},
+        {"/step_history/traction", &step_history.traction, {"row", "gauge"}, "Pa", any(),
+         "Traction {normal, shear} at the gauge, as in the states."},
+    };
+    // clang-format on
+}
+
 std::vector<Field> fields_of(DynamicsHistory& dynamics)
 {
     using namespace fields;
@@ -282,6 +296,7 @@ fields::ForceFields fields_in_files()
             {"bridge", "a rock bridge: rock between the traces of a joint"},
             {"kelvin_unit", "a Kelvin unit of a joint's chain, as many as the longest chain has"},
             {"contact", "a pair of gridpoints that face each other across a joint"},
+            {"gauge", "a gauge of the scene"},
             {"moving_contact", "two faces of blocks that touch at a recorded moment of a dynamic analysis"},
             {"direction", "the normal or the shear of a contact that creeps"},
             {"direction_unit", "a Kelvin unit or dashpot of one of these"},
@@ -293,6 +308,7 @@ fields::ForceFields fields_in_files()
         .mesh = fields_of,
         .invariants_of_mesh = invariants_of,
         .states = fields_of,
+        .step_history = fields_of,
         .dynamics = fields_of,
         .checkpoint = fields_of,
         .dynamics_state = fields_of,

@@ -8,6 +8,19 @@ namespace
 
 using fields::Field;
 
+std::vector<Field> fields_of(Mesh& mesh)
+{
+    using namespace fields;
+    // clang-format off
+    return {
+        {"/mesh/zone_gridpoint", &mesh.zone_gridpoint, {"zone"}, "1", index_of("gridpoint"),
+         "Corners of the zone, counter-clockwise."},
+        {"/mesh/zone_block", &mesh.zone_block, {"zone"}, "1", index_of("block"),
+         "Block the zone is part of."},
+    };
+    // clang-format on
+}
+
 std::vector<Field> fields_of(States& states)
 {
     using namespace fields;
@@ -69,6 +82,19 @@ std::vector<Field> fields_of(DynamicsState& state)
     // clang-format on
 }
 
+std::vector<fields::Invariant> invariants_of(const Mesh& mesh)
+{
+    return {
+        {"/mesh/zone_gridpoint", "the corners of a zone run counter-clockwise around an area", "zone",
+         [&mesh](std::size_t zone) {
+             const auto [first, second, third] = mesh.zone_gridpoint[zone];
+             const Eigen::Vector2d to_second = mesh.gridpoint[second] - mesh.gridpoint[first];
+             const Eigen::Vector2d to_third = mesh.gridpoint[third] - mesh.gridpoint[first];
+             return to_second.x() * to_third.y() - to_second.y() * to_third.x() > 0;
+         }},
+    };
+}
+
 } // namespace
 
 fields::ForceFields fields_in_files()
@@ -76,10 +102,13 @@ fields::ForceFields fields_in_files()
     // clang-format off
     return {
         .dimensions = {
+            {"zone", "a constant-strain triangle"},
             {"yielding_zone", "a zone of rock that yields"},
             {"creeping_zone", "a zone of rock that creeps"},
             {"zone_unit", "a Kelvin unit or dashpot of one of these"},
         },
+        .mesh = fields_of,
+        .invariants_of_mesh = invariants_of,
         .states = fields_of,
         .checkpoint = fields_of,
         .dynamics_state = fields_of,

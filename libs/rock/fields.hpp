@@ -1,4 +1,4 @@
-// Rows in files of zones of rock: stress, plastic strain, creep. Paths, units and ranges are declared
+// Rows in files of zones of rock: corners, stress, plastic strain, creep. Paths, units and ranges are declared
 // with each row.
 
 #pragma once

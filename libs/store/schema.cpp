@@ -75,8 +75,6 @@ std::vector<Field> fields_of(Blocks& blocks)
         {"/edges/joint", &blocks.edge_joint, {"edge"}, "1", index_or_none("joint"), "Joint of a joint edge."},
         {"/edges/joint_fraction", &blocks.edge_joint_fraction, {"edge"}, "1", between(0, 1),
          "Joint length over edge length, on joint edges; the rest is rock bridge."},
-        {"/edges/boundary", &blocks.edge_boundary, {"edge"}, "1", at_least(-1),
-         "Which of the scene's boundary entries holds a boundary edge, counted from 0; -1 none."},
 
         {"/edges/first_share", &blocks.edge_share, {"edge+1"}, "1", rows_in("share"),
          "Edge e lies on the joints of the shares first_share[e] up to, not including, first_share[e + 1]; the "
@@ -172,12 +170,6 @@ std::vector<Field> fields_of(Mesh& mesh)
     std::vector<Field> all = {
         {"/mesh/gridpoint_position", &mesh.gridpoint, {"gridpoint"}, "m", any(),
          "Position of the gridpoint at the start {x, y}."},
-        {"/mesh/gridpoint_fixed", &mesh.gridpoint_fixed, {"gridpoint"}, "1", between(0, 3),
-         "0 free, 1 held in x, 2 held in y, 3 held in both."},
-        {"/mesh/zone_gridpoint", &mesh.zone_gridpoint, {"zone"}, "1", index_of("gridpoint"),
-         "Corners of the zone, counter-clockwise."},
-        {"/mesh/zone_block", &mesh.zone_block, {"zone"}, "1", index_of("block"),
-         "Block the zone is part of."},
         {"/mesh/tie_gridpoint", &mesh.tie_gridpoint, {"tie"}, "1", index_of("gridpoint"),
          "Two gridpoints that move as one until a stage."},
         {"/mesh/tie_stage", &mesh.tie_stage, {"tie"}, "1", index_of("stage"), "The stage that parts them."},
@@ -294,6 +286,7 @@ std::vector<Field> fields_of(Network& network)
     append(fields, fields_of(network.joints));
     append(fields, fields_of(network.blocks));
     append(fields, fields_of(network.statistics));
+    append(fields, of_forces(&ForceFields::network, network));
     return fields;
 }
 
@@ -314,19 +307,16 @@ std::vector<Field> fields_of(Result& result)
 std::vector<Field> fields_of(StepHistory& step_history)
 {
     // clang-format off
-    return {
+    std::vector<Field> all = {
         {"/step_history/time", &step_history.time, {"row"}, "day", ascending(), "Time since the start."},
         {"/step_history/solver_time", &step_history.solver_time, {"row"}, "s", ascending(),
          "Time of the solver, accumulated over all equilibria."},
         {"/step_history/displacement", &step_history.displacement, {"row", "point"}, "m", any(),
          "Displacement {x, y} of the monitoring point, as in the history."},
-        {"/step_history/gauge", &step_history.gauge, {"gauge"}, "1", any(), "Names of the gauges."},
-        {"/step_history/gauge_contact", &step_history.gauge_contact, {"gauge"}, "1", index_of("contact"),
-         "Contact the gauge reads."},
-        {"/step_history/traction", &step_history.traction, {"row", "gauge"}, "Pa", any(),
-         "Traction {normal, shear} at the gauge, as in the states."},
     };
     // clang-format on
+    append(all, of_forces(&ForceFields::step_history, step_history));
+    return all;
 }
 
 std::vector<Field> fields_of(DynamicsHistory& dynamics)
@@ -474,17 +464,7 @@ std::vector<Invariant> invariants_of(const EquivalentJoints& joints)
 
 std::vector<Invariant> invariants_of(const Mesh& mesh)
 {
-    std::vector<Invariant> all = {
-        {"/mesh/zone_gridpoint", "the corners of a zone run counter-clockwise around an area", "zone",
-         [&mesh](std::size_t zone) {
-             const auto [first, second, third] = mesh.zone_gridpoint[zone];
-             const Eigen::Vector2d to_second = mesh.gridpoint[second] - mesh.gridpoint[first];
-             const Eigen::Vector2d to_third = mesh.gridpoint[third] - mesh.gridpoint[first];
-             return to_second.x() * to_third.y() - to_second.y() * to_third.x() > 0;
-         }},
-    };
-    append(all, of_forces(&ForceFields::invariants_of_mesh, mesh));
-    return all;
+    return of_forces(&ForceFields::invariants_of_mesh, mesh);
 }
 
 const std::vector<Described>& dimensions()
@@ -505,7 +485,6 @@ const std::vector<Described>& dimensions()
         {"corner", "a corner of a ring"},
         {"statistic", "a row of the report on the network"},
         {"gridpoint", "a corner of zones, split along joints"},
-        {"zone", "a constant-strain triangle"},
         {"tie", "a pair of gridpoints that are one until a stage"},
         {"time", "a recorded time of the history"},
         {"point", "a monitoring point of the scene"},
@@ -513,7 +492,6 @@ const std::vector<Described>& dimensions()
         {"equilibrium", "an equilibrium that was found"},
         {"row", "a recorded step of the solver"},
         {"moment", "a recorded moment of a dynamic analysis"},
-        {"gauge", "a gauge of the scene"},
         {"moving_block", "a block that had no equilibrium"},
         {"trial", "a run by which a factor of safety was found"},
         {"remark", "a line of the summary so far"},
