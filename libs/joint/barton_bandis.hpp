@@ -147,6 +147,7 @@ struct BartonBandisOf {
                            parameters::roughness, parameters::wall_strength, parameters::largest_closure},
             .own = {"roughness", "wall_strength", "largest_closure"},
             .creeps = false,
+            .no_sensitivities = "their normal stiffness depends on the pressure",
             .check = [](const ValueOf& value) -> std::optional<Complaint> {
                 if (const auto complaint = complaint_of_more_than_friction("Barton-Bandis", value))
                     return complaint;
@@ -193,6 +194,10 @@ template <class T>
 T opening(const BartonBandisOf<T>& law, const Value<T>& sigma_0)
 {
     return -law.closure(-sigma_0);
+}
+inline bool stiffens(const BartonBandis&)
+{
+    return true;
 }
 
 } // namespace jointcreep::joint

@@ -109,7 +109,7 @@ void add_row_sums(const Contacts& contacts, std::vector<Vector2d>& sums)
             continue;
         const Vector2d n = contacts.normal[c].cwiseAbs(), t(n.y(), n.x());
         const Slopes law = slopes(contacts.law[c], contacts.state[c], contacts.traction[c].x());
-        const double k_n = (is_linear(contacts.law[c]) ? 1 : room_to_stiffen) * law.k_n;
+        const double k_n = (stiffens(contacts.law[c]) ? room_to_stiffen : 1) * law.k_n;
         const Vector2d row =
             2 * contacts.length[c] * (k_n * n * (n.x() + n.y()) + law.k_s * t * (t.x() + t.y()));
         for (const Index g : contacts.gridpoint[c])

@@ -161,6 +161,7 @@ struct ContinuouslyYieldingOf {
             .about = "continuously yielding (Cundall and Lemos)",
             .parameters = of_all_joints_and({initial_friction_angle, parameters::roughness_length}),
             .own = {"initial_friction_angle", "roughness_length"},
+            .no_sensitivities = "their plastic displacement has a shear stiffness that is not differentiated",
             .check = [](const ValueOf& value) -> std::optional<Complaint> {
                 if (const auto complaint = complaint_of_more_than_friction("continuously yielding", value))
                     return complaint;
@@ -210,6 +211,10 @@ template <class T>
 T opening(const ContinuouslyYieldingOf<T>& law, const Value<T>& sigma_0)
 {
     return sigma_0 / law.k_n;
+}
+inline bool stiffens(const ContinuouslyYielding&)
+{
+    return false;
 }
 // Under the pressure at which the strength is the one given.
 inline double shear(const ContinuouslyYielding& law, State& state, double last, double slid, double strength)

@@ -322,10 +322,10 @@ inline AlongOverlap along_overlap(const Coulomb& law, const State&, const std::a
             law.k_n};
 }
 
-// Whether its stiffness is that of its springs, whatever the traction; its bonds [Pa]; what slip does to it.
-inline bool is_linear(const Coulomb&)
+// Whether its normal spring grows stiffer as it closes; its bonds [Pa]; what slip does to it.
+inline bool stiffens(const Coulomb&)
 {
-    return true;
+    return false;
 }
 inline double cohesion(const Coulomb& law)
 {

@@ -41,10 +41,6 @@ inline AlongOverlap along_overlap(const FrictionOnly auto& law, const State& sta
 {
     return along_by_quadrature(law, state, closing, length);
 }
-inline bool is_linear(const FrictionOnly auto&)
-{
-    return false;
-}
 inline double cohesion(const FrictionOnly auto&)
 {
     return 0;

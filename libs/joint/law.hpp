@@ -94,9 +94,9 @@ auto& k_s(Any& law)
 }
 
 // As for each of them.
-inline bool is_linear(const AnyLaw auto& law)
+inline bool stiffens(const AnyLaw auto& law)
 {
-    return std::visit([](const auto& one) { return is_linear(one); }, law);
+    return std::visit([](const auto& one) { return stiffens(one); }, law);
 }
 inline double cohesion(const AnyLaw auto& law)
 {
@@ -113,6 +113,11 @@ inline bool weakens_by_slip(const AnyLaw auto& law)
 inline bool dilates(const AnyLaw auto& law)
 {
     return std::visit([](const auto& one) { return dilates(one); }, law);
+}
+// Whether it has friction only: no bonds that could break.
+inline bool has_friction_only(const AnyLaw auto& law)
+{
+    return std::visit([]<class One>(const One&) { return FrictionOnly<One>; }, law);
 }
 // Whether its shear traction depends on how it got there by more than slip: then it has a shear() of its own.
 template <class One>

@@ -98,6 +98,8 @@ struct LawInfo {
     std::vector<std::string_view> own; // names of those that make a material one of this law: the scene gives
                                        // all of them or none
     bool creeps = true;                // whether creep may act in series with its springs
+    std::string_view
+        no_sensitivities{}; // why sensitivities refuse such joints: "their ..."; empty: they do not
     // Asked of a material, and of the joint that it makes with rock bridges.
     std::function<std::optional<Complaint>(const ValueOf&)> check{};
 };

@@ -43,7 +43,7 @@ FaceContacts::FaceContacts(std::vector<joint::Law> laws, std::vector<Index> mate
     material_.resize(laws_.size(), -1);
     for (const joint::Law& law : laws_) {
         stiffest_open_ = std::max({stiffest_open_, joint::k_n(law), joint::k_s(law)});
-        stiffens_ = stiffens_ || !joint::is_linear(law);
+        stiffens_ = stiffens_ || joint::stiffens(law);
         dilates_ = dilates_ || joint::dilates(law);
     }
     stiffest_ = stiffest_open_;

@@ -230,7 +230,7 @@ std::optional<FacePair> Dynamics::pair_on_joint(Index f, Index g,
     }
     if (n == 0)
         return {};
-    if (!joint::is_linear(contacts_.laws()[pair.law]))
+    if (joint::has_friction_only(contacts_.laws()[pair.law]))
         pair.is_broken = true; // it never had bonds
     pair.tau /= n;
     for (int end = 0; end < 2; ++end)

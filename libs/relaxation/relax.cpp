@@ -298,7 +298,7 @@ private:
         const joint::Contacts& contacts = a_.contacts;
         stiffening_.clear();
         for (std::size_t c = 0; c < contacts.law.size(); ++c)
-            if (!is_linear(contacts.law[c]) && contacts.status[c] != ContactStatus::removed)
+            if (stiffens(contacts.law[c]) && contacts.status[c] != ContactStatus::removed)
                 stiffening_.emplace_back(c, joint::room_to_stiffen * normal_stiffness(c));
     }
 

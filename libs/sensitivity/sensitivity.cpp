@@ -54,10 +54,11 @@ Sensitivity::Sensitivity(std::vector<Parameter> parameters, const Scene& scene, 
 {
     const joint::Contacts& contacts = assembly.contacts;
     for (const joint::Law& law : contacts.law)
-        if (!joint::is_linear(law))
-            throw input_error(
-                "sensitivities are those of joints with constant springs; wanted a scene without " +
-                std::string(joint::laws()[law.index()].name) + " joints");
+        if (const joint::LawInfo& info = joint::laws()[law.index()]; !info.no_sensitivities.empty()) {
+            const std::string joints = std::string(info.name) + " joints";
+            throw input_error("no sensitivities of " + joints + ": " + std::string(info.no_sensitivities) +
+                              "; wanted a scene without " + joints);
+        }
     const std::size_t n = contacts.law.size(), zones = assembly.zones.area.size();
     start_.assign(n, {});
     const std::vector<Vector2d> no_gridpoints(assembly.position.size(), Vector2d::Zero()),

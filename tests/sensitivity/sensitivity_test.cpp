@@ -221,6 +221,30 @@ TEST(sensitivity, of_chosen_steps_is_nearly_that_of_whole_runs)
     }
 }
 
+// Each for its own reason.
+TEST(sensitivity, says_of_which_joints_it_has_none)
+{
+    std::size_t refused = 0;
+    for (std::size_t place = 0; place < joint::laws().size(); ++place) {
+        const joint::LawInfo& law = joint::laws()[place];
+        if (law.no_sensitivities.empty())
+            continue;
+        ++refused;
+        Study study(0.5);
+        study.joints.law.assign(study.joints.normal_stiffness.size(), static_cast<Index>(place));
+        for (const std::string_view own : law.own)
+            study.joints.own[std::string(own)].assign(study.joints.law.size(), 1);
+        try {
+            study.run(true);
+            ADD_FAILURE() << law.name;
+        } catch (const input_error& error) {
+            EXPECT_NE(std::string_view(error.what()).find(law.no_sensitivities), std::string_view::npos)
+                << error.what();
+        }
+    }
+    EXPECT_EQ(refused, 2U); // Barton-Bandis, continuously yielding
+}
+
 TEST(sensitivity, dynamic_relaxation_has_none)
 {
     Study study;
