@@ -50,6 +50,12 @@ class Links(ChainTest):
         for library in self.links:
             self.assertNotIn(library, self.reached(self.links[library]))
 
+    def test_scenes_files_and_exports_bring_no_force(self):
+        """Who links them names the kinds of force that it uses itself."""
+        for library in ("scene", "store", "exchange"):
+            self.assertIn("joint", self.links[library], library)
+            self.assertFalse(self.reached([library]) & {"rock", "joint", "boundary"}, library)
+
     def test_programs(self):
         """Each with its own files: demsolve.cpp, demsolve_files.cpp, ..."""
         apps = dict(APP.findall((self.chain.source / "apps/CMakeLists.txt").read_text()))
