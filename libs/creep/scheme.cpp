@@ -75,7 +75,7 @@ Number fitted_weight(Number x, Number r)
     return (mean_decay(x) - exp(-std::min(x, r)) * mean_decay(abs(x - r))) / -expm1(-r);
 }
 
-// Part of the integral over 0 <= s <= 1 of exp(-x (1 - s)) that goes with the force at the end.
+// Share of the integral over 0 <= s <= 1 of exp(-x (1 - s)) that goes with the force at the end.
 template <class Number>
 Number last_weight(CreepScheme scheme, Number x, Number r)
 {
@@ -92,14 +92,15 @@ Number last_weight(CreepScheme scheme, Number x, Number r)
     return 0;
 }
 
-// One unit's part of a step.
+// Step::Weights, of numbers that may have a change.
 template <class Number>
-struct Part {
+struct WeightsOf {
     Number decay, first, last;
 };
 
 template <class Number>
-Part<Number> part_of(Number stiffness, Number viscosity, Number rate, CreepScheme scheme, Number duration)
+WeightsOf<Number> weights_of(Number stiffness, Number viscosity, Number rate, CreepScheme scheme,
+                             Number duration)
 {
     Number x = stiffness / viscosity * duration, flow = duration / viscosity;
     if (x > for_ever) {
@@ -145,10 +146,10 @@ Step step_of(const Chain& chain, CreepScheme scheme, double duration)
     Step step{{}, 0, 0, 0};
     double others = 0;
     for (const KelvinUnit& unit : chain.units) {
-        const auto part = part_of(unit.stiffness, unit.viscosity, rate, scheme, duration);
-        step.units.push_back({part.decay, part.first, part.last});
-        step.compliance += part.last;
-        others += part_of(unit.stiffness, unit.viscosity, rate, other, duration).last;
+        const auto weights = weights_of(unit.stiffness, unit.viscosity, rate, scheme, duration);
+        step.units.push_back({weights.decay, weights.first, weights.last});
+        step.compliance += weights.last;
+        others += weights_of(unit.stiffness, unit.viscosity, rate, other, duration).last;
     }
     step.acting_stiffness = 1 / (1 / chain.spring + step.compliance);
     step.doubt = std::abs(step.compliance - others);
@@ -167,9 +168,10 @@ Step change_of_step(const Chain& chain, const Chain& change, CreepScheme scheme,
     Step step{{}, 0, 0, 0};
     Changing compliance = 0;
     for (const auto& [stiffness, viscosity] : units) {
-        const auto part = part_of(stiffness, viscosity, rate, scheme, Changing(duration, duration_change));
-        step.units.push_back({part.decay.change, part.first.change, part.last.change});
-        compliance = compliance + part.last;
+        const auto weights =
+            weights_of(stiffness, viscosity, rate, scheme, Changing(duration, duration_change));
+        step.units.push_back({weights.decay.change, weights.first.change, weights.last.change});
+        compliance = compliance + weights.last;
     }
     step.compliance = compliance.change;
     step.acting_stiffness = (1 / (1 / spring + compliance)).change;

@@ -85,11 +85,11 @@ Table<JointMaterial> joint_material(const Table<Kelvin>& chain)
             .asks_for("one Kelvin unit or more, [{ normal_stiffness_MPa_per_m = 690, ... }, ...]")
             .optional(),
         number<JointMaterial>("normal_maxwell_viscosity_MPa_day_per_m",
-                              part<maxwell, &Maxwell::normal_viscosity>, MPa_day_per_m, viscosity,
+                              in_optional<maxwell, &Maxwell::normal_viscosity>, MPa_day_per_m, viscosity,
                               "Maxwell dashpot, normal: it creeps without end.")
             .together("Maxwell"),
         number<JointMaterial>("shear_maxwell_viscosity_MPa_day_per_m",
-                              part<maxwell, &Maxwell::shear_viscosity>, MPa_day_per_m, viscosity,
+                              in_optional<maxwell, &Maxwell::shear_viscosity>, MPa_day_per_m, viscosity,
                               "Maxwell dashpot, shear.")
             .together("Maxwell")};
     std::ranges::move(creep, std::back_inserter(keys));

@@ -155,10 +155,10 @@ struct Table {
     std::vector<Key<Record>> keys;
 };
 
-// A member of an optional part of a record; reading it makes the part.
-template <auto Part, auto Member>
-constexpr auto part = [](auto& record) -> double& {
-    auto& all = record.*Part;
+// A member of an optional member of a record; reading it makes the optional one.
+template <auto Optional, auto Member>
+constexpr auto in_optional = [](auto& record) -> double& {
+    auto& all = record.*Optional;
     if (!all)
         all.emplace();
     return (*all).*Member;

@@ -150,21 +150,21 @@ double stored_energy(const Assembly& assembly)
 Balance balance_of(const Assembly& assembly)
 {
     const Incidence& incidence = assembly.incidence;
-    struct Part {
+    struct OfChunk {
         double largest = 0, sum = 0;
         Index worst = 0, n = 0;
     };
     const auto n = static_cast<Index>(assembly.position.size());
     const Index n_chunks = chunks_of(assembly);
-    std::vector<Part> parts(n_chunks);
+    std::vector<OfChunk> chunks(n_chunks);
 #pragma omp parallel for schedule(static) num_threads(assembly.threads) if (assembly.threads > 1)
     for (Index k = 0; k < n_chunks; ++k) {
-        Part part;
+        OfChunk here;
         for (Index g = k * chunk; g < std::min(n, (k + 1) * chunk); ++g) {
             const double force = assembly.force[g].cwiseProduct(assembly.is_free[g]).norm();
-            if (!(force <= part.largest)) { // also what is no number, and stays so
-                part.largest = force;
-                part.worst = g;
+            if (!(force <= here.largest)) { // also what is no number, and stays so
+                here.largest = force;
+                here.worst = g;
                 if (!std::isfinite(force))
                     break;
             }
@@ -174,22 +174,22 @@ Balance balance_of(const Assembly& assembly)
             for (Index i = incidence.contact_start[g]; i < incidence.contact_start[g + 1]; ++i)
                 magnitudes += assembly.contacts.force[incidence.contact_side[i] / 2].norm();
             if (magnitudes > 0) {
-                part.sum += magnitudes;
-                ++part.n;
+                here.sum += magnitudes;
+                ++here.n;
             }
         }
-        parts[k] = part;
+        chunks[k] = here;
     }
-    Part all;
-    for (const Part& part : parts) {
-        if (!std::isfinite(part.largest))
-            return {part.largest, part.worst, 1};
-        if (part.largest > all.largest) {
-            all.largest = part.largest;
-            all.worst = part.worst;
+    OfChunk all;
+    for (const OfChunk& one : chunks) {
+        if (!std::isfinite(one.largest))
+            return {one.largest, one.worst, 1};
+        if (one.largest > all.largest) {
+            all.largest = one.largest;
+            all.worst = one.worst;
         }
-        all.sum += part.sum;
-        all.n += part.n;
+        all.sum += one.sum;
+        all.n += one.n;
     }
     return {all.largest, all.worst, all.n > 0 ? all.sum / all.n : 0.0};
 }

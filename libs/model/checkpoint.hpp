@@ -100,16 +100,16 @@ public:
             kept = static_cast<Kept>(live); // NOLINT(bugprone-signed-char-misuse): flags are 0 and 1
     }
 
-    // Of every item, or of a part of it.
-    template <class Live, class Kept, class Part = std::identity>
-    void values(std::vector<Live>& live, std::vector<Kept>& kept, Part part = {}) const
+    // Of every item, or of a member of it.
+    template <class Live, class Kept, class Member = std::identity>
+    void values(std::vector<Live>& live, std::vector<Kept>& kept, Member member = {}) const
     {
         if (!restores_)
             kept.resize(live.size());
         else if (kept.size() != live.size())
             throw input_error("the state kept is that of another section");
         for (std::size_t i = 0; i < live.size(); ++i)
-            value(std::invoke(part, live[i]), kept[i]);
+            value(std::invoke(member, live[i]), kept[i]);
     }
 
     // For lists that are not as long in every run.

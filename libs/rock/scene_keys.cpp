@@ -34,14 +34,14 @@ Table<Rock> rock()
          number("density_kg_per_m3", &Rock::density, kg_per_m3, above(0).to(3e4), "Density."),
          number("youngs_modulus_GPa", &Rock::youngs_modulus, GPa, above(0).to(1e4), "Young's modulus."),
          number("poissons_ratio", &Rock::poissons_ratio, no_unit, from(0).below(0.5), "Poisson's ratio."),
-         number<Rock>("cohesion_MPa", part<&Rock::strength, &RockStrength::cohesion>, MPa, strength,
+         number<Rock>("cohesion_MPa", in_optional<&Rock::strength, &RockStrength::cohesion>, MPa, strength,
                       "Cohesion.")
              .together("strength"),
-         number<Rock>("friction_angle_deg", part<&Rock::strength, &RockStrength::friction_angle>, degrees,
-                      friction, "Friction angle.")
+         number<Rock>("friction_angle_deg", in_optional<&Rock::strength, &RockStrength::friction_angle>,
+                      degrees, friction, "Friction angle.")
              .together("strength"),
-         number<Rock>("tensile_strength_MPa", part<&Rock::strength, &RockStrength::tensile_strength>, MPa,
-                      strength, "Tensile strength, a positive number.")
+         number<Rock>("tensile_strength_MPa", in_optional<&Rock::strength, &RockStrength::tensile_strength>,
+                      MPa, strength, "Tensile strength, a positive number.")
              .together("strength"),
          number("dilation_angle_deg", &Rock::dilation_angle, degrees, friction,
                 "Dilation angle of rock bridges and of rock that yields, at most the friction angle.")
@@ -51,11 +51,11 @@ Table<Rock> rock()
                 "tension, without softening. That needs the strength, and does not go with creep of the "
                 "rock.")
              .or_else(std::string("elastic")),
-         number<Rock>("kelvin_shear_modulus_GPa", part<&Rock::kelvin, &ShearKelvin::modulus>, GPa,
+         number<Rock>("kelvin_shear_modulus_GPa", in_optional<&Rock::kelvin, &ShearKelvin::modulus>, GPa,
                       above(0).to(1e6), "Kelvin spring, in shear.")
              .together("Kelvin"),
-         number<Rock>("kelvin_shear_viscosity_GPa_day", part<&Rock::kelvin, &ShearKelvin::viscosity>, GPa_day,
-                      viscosity, "Kelvin dashpot, in shear.")
+         number<Rock>("kelvin_shear_viscosity_GPa_day", in_optional<&Rock::kelvin, &ShearKelvin::viscosity>,
+                      GPa_day, viscosity, "Kelvin dashpot, in shear.")
              .together("Kelvin"),
          number("maxwell_shear_viscosity_GPa_day", &Rock::maxwell_viscosity, GPa_day, viscosity,
                 "Maxwell dashpot, in shear: it creeps without end.")
