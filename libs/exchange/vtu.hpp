@@ -3,8 +3,8 @@
 // every number reads back as the same double. SI units and the signs of model/signs.hpp.
 //
 // Codes that stand for a name (rock, stage, joint set) count from 0 in the field data array of names beside
-// them: block 3 with rock = 1 is of the second rock of "rock_names". -1 means none. Arrays that belong to a kind
-// of force come last, and are named by that force (exchange/forces.hpp).
+// them: block 3 with rock = 1 is of the second rock of "rock_names". -1 means none. Where there are "columns of
+// forces", each kind of force declares its own, with name and unit (exchange/forces.hpp).
 
 #pragma once
 
@@ -25,20 +25,18 @@ std::string blocks_vtu(const Network& network);
 
 // One line an edge that has joint properties: the joint edges, and boundary edges that rest on a joint (these
 // only with `equivalent`, which is null where strength-averaging has not yet been). Cells: edge, kind
-// (EdgeKind), joint, set, joint_fraction [-], then every array of EquivalentJoints, by its name
-// (and the number of the Kelvin unit, counted from 1, where joints have several).
+// (EdgeKind), joint, set, joint_fraction [-], then the columns of forces.
 std::string joints_vtu(const Network& network, const EquivalentJoints* equivalent);
 
 // The zones present in a state, one triangle each, at their positions at the start. `state` is a row of
 // result.states; one that does not exist throws input_error. Its time [day] is the field data array
-// TimeValue. Points: gridpoint, displacement [m]. Cells: zone, block, rock, stage, stress_xx, stress_yy,
-// stress_xy [Pa]; where rock yields, plastic_strain_xx, plastic_strain_yy, plastic_strain_xy [-].
+// TimeValue. Points: gridpoint, displacement [m]; after a stage that resets displacements, displacement_since_reset
+// [m]. Cells: zone, block, rock, stage, then the columns of forces.
 std::string zones_vtu(const Network& network, const Result& result, std::size_t state);
 
 // The contacts present in a state, one point each, at their centres at the start.
 // Points: contact, edge, normal (from side a to side b), length [m], displacement (mean of the two sides)
-// [m], normal_traction, shear_traction [Pa], normal_relative_displacement, shear_relative_displacement [m],
-// status (ContactStatus).
+// [m], then the columns of forces.
 std::string contacts_vtu(const Result& result, std::size_t state);
 
 } // namespace jointcreep::exchange
