@@ -268,8 +268,8 @@ void fit_curve(const Arguments& arguments)
     // 3. What was found.
     const std::vector<Row> rows = rows_of(fit, curve.readings.elastic_part.has_value(), stiffness);
     if (readings_path)
-        write(*readings_path, readings_table(curve, fit.by_curve.computed));
-    write(arguments.output(), table_of(rows));
+        write_text(*readings_path, readings_table(curve, fit.by_curve.computed));
+    write_text(arguments.output(), table_of(rows));
     if (!arguments.quiet())
         report(curve, fit, rows);
 }

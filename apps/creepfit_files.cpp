@@ -1,11 +1,9 @@
 #include "creepfit_files.hpp"
 
 #include "store/files.hpp"
-#include "store/save.hpp"
 
 #include <filesystem>
 #include <fstream>
-#include <span>
 #include <sstream>
 
 namespace jointcreep::creepfit
@@ -21,15 +19,6 @@ std::string text_of(const std::string& path)
     if (!file)
         throw file_error(path + ": cannot be read");
     return text.str();
-}
-
-void write(const std::string& path, const std::string& text)
-{
-    try {
-        store::save(path, std::as_bytes(std::span(text)));
-    } catch (const file_error& error) {
-        throw file_error(path + ": " + error.what());
-    }
 }
 
 std::optional<std::string> readings_file(const Arguments& arguments, bool may_fail)

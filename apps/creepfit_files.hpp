@@ -14,9 +14,8 @@
 namespace jointcreep::creepfit
 {
 
-// Throw file_error.
+// Throws file_error.
 std::string text_of(const std::string& path);
-void write(const std::string& path, const std::string& text);
 
 // Whatever refuses what is in a file names the file.
 template <class Read>

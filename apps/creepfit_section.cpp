@@ -99,8 +99,9 @@ void fit_section(const Arguments& arguments)
         return found.minimum.is_converged ? path : failed_name(path);
     };
     if (readings_path)
-        write(name(*readings_path), readings_table(found, measurements, scene));
-    write(name(output), found_table(found, settings.factors, measurements.front().deviation.has_value()));
+        write_text(name(*readings_path), readings_table(found, measurements, scene));
+    write_text(name(output),
+               found_table(found, settings.factors, measurements.front().deviation.has_value()));
     if (!found.minimum.is_converged)
         throw fit_error(why_not_converged(found, settings.factors) + "\nthe best so far is in " +
                         name(output));

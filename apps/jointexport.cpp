@@ -16,14 +16,12 @@
 #include "exchange/xdmf.hpp"
 #include "model/error.hpp"
 #include "store/files.hpp"
-#include "store/save.hpp"
 
 #include <algorithm>
 #include <array>
 #include <charconv>
 #include <filesystem>
 #include <iostream>
-#include <span>
 
 using namespace jointcreep;
 
@@ -155,15 +153,6 @@ std::string text_of(const Arguments& arguments, store::FileKind kind, const std:
                            : exchange::contacts_vtu(file.result, state);
 }
 
-void write(const std::string& path, const std::string& text)
-{
-    try {
-        store::save(path, std::as_bytes(std::span(text)));
-    } catch (const file_error& error) {
-        throw file_error(path + ": " + error.what());
-    }
-}
-
 void export_file(const Arguments& arguments)
 {
     if (arguments.has("file-format")) {
@@ -181,7 +170,7 @@ void export_file(const Arguments& arguments)
         throw input_error("--state does not go with .xdmf, which has all states");
     if (arguments.has("state") && what != "zones" && what != "contacts")
         throw input_error("--state goes with --what zones or contacts, not with " + what);
-    write(output, text_of(arguments, kind, what, format));
+    write_text(output, text_of(arguments, kind, what, format));
 
     if (!arguments.quiet()) {
         Summary summary;

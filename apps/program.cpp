@@ -2,6 +2,7 @@
 
 #include "model/error.hpp"
 #include "model/version.hpp"
+#include "store/save.hpp"
 
 #include <boost/program_options.hpp>
 
@@ -20,6 +21,7 @@
 #include <iostream>
 #include <latch>
 #include <new>
+#include <span>
 #include <sstream>
 #include <system_error>
 #include <thread>
@@ -241,6 +243,15 @@ void refuse_overwriting(const std::vector<NamedFile>& read, const std::vector<Na
             if (is_same_file(file->path, other.path))
                 throw input_error(file->name + " is the same file as " + other.name +
                                   "; give it another name");
+    }
+}
+
+void write_text(const std::string& path, const std::string& text)
+{
+    try {
+        store::save(path, std::as_bytes(std::span(text)));
+    } catch (const file_error& error) {
+        throw file_error(path + ": " + error.what());
     }
 }
 

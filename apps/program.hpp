@@ -76,6 +76,9 @@ struct NamedFile {
 // one file whatever links and folders they go through, also where there is no file yet.
 void refuse_overwriting(const std::vector<NamedFile>& read, const std::vector<NamedFile>& written);
 
+// Writes a text as a file that appears when it is whole. Throws file_error.
+void write_text(const std::string& path, const std::string& text);
+
 // What was given on the command line. Every accessor throws input_error when what is given is not what is
 // wanted.
 class Arguments
