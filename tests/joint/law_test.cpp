@@ -1,5 +1,7 @@
 // What holds of every law in the list: its derivatives, its integral along an overlap, its table.
 
+#include "any_law.hpp"
+
 #include "joint/along_overlap.hpp"
 #include "joint/law.hpp"
 
@@ -14,40 +16,7 @@ namespace law_test
 
 using namespace jointcreep;
 using namespace jointcreep::joint;
-
-namespace
-{
-
-// A law with parameters within their ranges, by its place in the list.
-Law some_law(Index place)
-{
-    const std::map<std::string_view, double> values{
-        {"normal_stiffness", 1e9},       {"shear_stiffness", 5e8},         {"cohesion", 1e5},
-        {"friction_angle", 0.5},         {"tensile_strength", 5e4},        {"dilation_angle", 0.1},
-        {"residual_cohesion", 2e4},      {"residual_friction_angle", 0.3}, {"roughness", 10},
-        {"wall_strength", 1e8},          {"largest_closure", 5e-3},        {"dilation_wear", 5e-4},
-        {"initial_friction_angle", 0.7}, {"roughness_length", 2.0371e-3}};
-    return law_of(
-        place,
-        [&](const Parameter& parameter) {
-            const auto found = values.find(parameter.name);
-            return found == values.end() ? 0.0 : found->second;
-        },
-        1);
-}
-
-Index places()
-{
-    return static_cast<Index>(laws().size());
-}
-
-// From all of the range in every case; by itself rapidcheck begins with a small part of it.
-Index any_in(Index from, Index to)
-{
-    return *rc::gen::resize(rc::kNominalSize, rc::gen::inRange(from, to));
-}
-
-} // namespace
+using namespace jointcreep::test;
 
 // Forward differentiation beside central differences, on the branch that all three are on: by the displacement, and
 // by what the joint remembers of a first displacement, if there is one.
