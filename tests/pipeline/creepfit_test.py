@@ -156,7 +156,7 @@ class Creepfit(ChainTest):
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("record too short", done.stdout)
         # The end that Eq. 14 takes is none: no interval.
-        self.assertIn("that is no end", done.stdout)
+        self.assertIn("too much for Eq. 14", done.stdout)
         rows = {row["quantity"]: row for row in table(curve.with_name("out.csv"))}
         self.assertEqual((rows["E by Eq. 14"]["low_95"], rows["E by Eq. 14"]["high_95"]), ("", ""))
         long = self.chain.answer("creepfit", self.curve(730), "-o", curve.with_name("out.csv"))
@@ -185,7 +185,7 @@ class Creepfit(ChainTest):
         with_zero, text = found(moved, "--load-day", "0")
         for quantity, value in plain.items():
             self.assertAlmostEqual(with_zero[quantity] / value, 1, delta=1e-3)
-        self.assertIn("2, mean 100 mm: taken off the others", text)
+        self.assertIn("2, mean 100 mm: subtracted from the others", text)
         self.assertNotIn("first reading late", text)
         _, text = found(rows[2:], "--load-day", "0")  # day 14 of 120
         self.assertIn("warning: first reading late", text)
