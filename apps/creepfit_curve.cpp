@@ -194,7 +194,7 @@ void warn_of_record(Summary& summary, const Curve& curve, const estimation::Curv
     if (const Interval& of = fit.elastic_interval;
         !curve.readings.elastic_part && of.low <= 0 && of.high >= 0)
         summary.add("warning: elastic part",
-                    "cannot be told from 0, nor can E and eta; count displacements from before the "
+                    "cannot be distinguished from 0, nor can E and eta; count displacements from before the "
                     "load, not from a reading after it");
     if (fit.is_too_coarse)
         summary.add(

@@ -156,7 +156,7 @@ void warn_of_weak_combination(Summary& summary, const Found& found, const Factor
     if (!weak)
         return;
     const double half = found.confidence.quantile * weak->standard_error;
-    summary.add(weak->is_alike_effects ? "warning: hardly told apart" : "warning: hardly known",
+    summary.add(weak->is_alike_effects ? "warning: hardly distinguished" : "warning: hardly known",
                 combination_in_words(weak->direction, half, factors) +
                     (weak->is_alike_effects ? " changes the readings by no more than their noise"
                                             : " is still within the readings' noise"));

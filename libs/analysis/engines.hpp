@@ -22,12 +22,12 @@ public:
     // `guess` is how far gridpoints may be expected to move [m], or empty.
     bool settles_nearby(const std::vector<Vector2d>& guess, double time);
 
-    // By dynamic relaxation, unless only the implicit engine is asked for. The `reason` for which it is not
-    // the implicit engine is that engine's own where none is given.
+    // By dynamic relaxation, unless only the implicit engine is asked for. `reason`: why the implicit engine was not
+    // used; empty: that engine's own message.
     void settle_by_relaxation(double time, const std::string& reason = {});
 
-    // Rock that nothing holds falls without end: throws equilibrium_error that names it.
-    void check_held();
+    // Throws equilibrium_error that names rock without support, which falls without end.
+    void check_supported();
 
     implicit::Solver& implicit_engine() { return implicit_; } // with its last factor
 

@@ -19,7 +19,7 @@ namespace
 
 using Eigen::Vector2d;
 
-// Who moves to whom: the lower level moves.
+// Which vertex moves to which: the lower level moves.
 enum Level : char { free_vertex = 0, on_bonded = 1, on_outline = 2, outline_corner = 3 };
 
 Level level_of(const Edge& edge, const Sources& sources)

@@ -1,4 +1,4 @@
-// How far parameters found by least squares are to be trusted.
+// Confidence in parameters found by least squares.
 //
 // Assumed: the model is right, and readings have independent normal errors, with the standard deviations that
 // residuals were divided by times one factor. The factor is either 1, the deviations being known, or found
@@ -48,8 +48,8 @@ struct Confidence {
 
 Confidence confidence_of(const Minimum& minimum, bool deviations_are_known);
 
-// The combination of free parameters that the data know least of, if they know it badly: by less than a
-// factor of 2 each way (parameters are logarithms), or 10 times less than if each parameter were fitted alone
+// The combination of free parameters that the data know least, if they know it badly: by less than a factor of 2 up
+// and down (parameters are logarithms), or 10 times less than if each parameter were fitted alone
 // (smallest_eigenvalue below 0.01).
 struct WeakCombination {
     VectorXd direction;    // its largest entry is 1 [-]

@@ -174,7 +174,7 @@ public:
             column_of_state(column.name, centre, column.dataset, rows, column.components, column.component);
     }
 
-    // Says what is hidden, and goes on to the next state.
+    // Writes what is hidden, and continues with the next state.
     void close_state()
     {
         open_attribute("vtkGhostType", "Scalar", "Cell", {cells_});

@@ -3,7 +3,7 @@
 // of XDMF 2. Its two readers of XDMF 3 do not take hyperslabs, and ParaView 5.11 ends when they are tried; of
 // a file named .xdmf2 it does not offer them. SI units and the signs of model/signs.hpp.
 //
-// Removed zones and contacts are hidden by the cell array vtkGhostType, VTK's own way: 32 hides a cell, 0
+// Removed zones and contacts are hidden by the cell array vtkGhostType, VTK's convention: 32 hides a cell, 0
 // shows it. A reader that does not know it shows them; zone_present and status tell them apart.
 //
 // Times are in days. XDMF has one state a time, so one that has the next state's time, being the one just

@@ -1,5 +1,5 @@
 // Columns of exports: a number for each edge, zone or contact, which a kind of force gives by name. Each format
-// writes them in its own way.
+// writes them in its own form.
 //
 //     fields::ForceColumns columns_in_exports()
 //     {

@@ -504,7 +504,7 @@ void add_persistence(Statistics& statistics, const JointSet& set, const Seen& se
         for (const Tally& line : seen.lines)
             squares += std::pow(line.open - achieved * line.length, 2);
         const auto n = static_cast<double>(seen.lines.size());
-        // By the log odds, which know no ends.
+        // By the log odds, which have no bounds.
         const auto odds = [](double x) { return std::log(x / (1 - x)); };
         const auto from_odds = [](double x) { return 1 / (1 + std::exp(-x)); };
         const double error = std::sqrt(squares * n / (n - 1)) / length / (achieved * (1 - achieved));

@@ -21,7 +21,7 @@ Statistics statistics_of(const Scene& scene, const Network& network);
 // As a table to read, angles in degrees, and a last line with the verdict.
 std::string table(const Statistics& statistics);
 
-// What of the scene no statistics are made of, in a line; empty if there is nothing.
+// What the statistics leave out, in a line; empty if there is nothing.
 std::string left_out(const Scene& scene);
 
 } // namespace jointcreep::statistics

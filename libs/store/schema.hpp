@@ -1,6 +1,6 @@
 // The one list of everything in a file. Writing, reading, checking and docs/file-format.md all follow it: a
 // new member of a record needs a line here, and no more. What belongs to a kind of force is listed in the
-// folder of that force, and joined here by way of store/forces.hpp.
+// folder of that force, and added here by store/forces.hpp.
 
 #pragma once
 

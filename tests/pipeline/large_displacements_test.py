@@ -247,7 +247,7 @@ class Blocks(ChainTest):
         text = incline(30, 25)
         for more, message in (('[creep]\nstep_days = 1\n', r"a scene with \[large_displacements\] has no \[creep\]"),
                               ("[equilibrium]\nunloading_increments = 2\n",
-                               r"unloading_increments = 2: with \[large_displacements\] a stage takes its rock away at once; wanted 1"),
+                               r"unloading_increments = 2: with \[large_displacements\] a stage excavates its rock at once; wanted 1"),
                               ("", r"release_s = 5: wanted less than longest_s, 5 s"),
                               ("", r"rigid_rocks.*wanted the name of a \[\[rock\]\]"), ("", "new_contacts = .clay")):
             scene = text + more

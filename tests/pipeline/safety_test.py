@@ -267,7 +267,7 @@ class NoEquilibrium(ChainTest):
         left = datasets(path)
         self.assertEqual(left["/failure/steps"].tolist(), [0])
         np.testing.assert_allclose(left["/failure/place"], [[5, 25]], atol=1e-9)
-        self.assertIn("no boundary and no contact holds", message)
+        self.assertIn("no boundary and no contact supports", message)
         self.assertIn('on day 1, stage "the middle one"', message)
         # Nothing was sought after the stage: only the in-situ equilibrium is there.
         self.assertEqual(left["/equilibria/time"].tolist(), [0])
