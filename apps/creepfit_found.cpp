@@ -26,7 +26,7 @@ using Measurements = std::vector<scene::Measurement>;
 namespace
 {
 
-// Of a logarithm; empty where it has no bound.
+// The bound of a factor, from its logarithm; empty where there is none.
 std::string shown_bound(double logarithm)
 {
     return std::isfinite(logarithm) ? shown(std::exp(logarithm)) : std::string();
@@ -95,7 +95,7 @@ struct Residual {
     double value; // computed less measured [m]
 };
 
-// Of a point in one direction.
+// Residuals of a point in one direction.
 std::vector<Residual> residuals_of(std::size_t point, int component, const Found& found,
                                    const Measurements& measurements)
 {
@@ -216,7 +216,7 @@ void print_for_the_scene(const Found& found, const Scene& scene, const Factors& 
             print_stress(scene.in_situ_stress, f);
         }
     }
-    // Of joint materials, where joints have their constants.
+    // Advice for joint materials: only where joints have their constants.
     if (scene.averaging.stiffness != StiffnessRule::joint || (E == 1 && eta == 1 && K == 1))
         return;
     std::cout << "\nIn the scene: multiply by " << rounded(K, 6) << " all stiffnesses of joint materials, by "
@@ -230,7 +230,7 @@ std::string found_table(const Found& found, const Factors& factors, bool knows_d
 {
     const Confidence& confidence = found.confidence;
     const auto weak = estimation::weak_combination(found.minimum, confidence);
-    // Of the whole fit: the same in every row.
+    // Columns of the whole fit: the same in every row.
     const std::string of_fit = std::string(found.minimum.is_converged ? "yes" : "no") + ',' +
                                std::to_string(found.minimum.evaluations) + ',' +
                                (knows_deviations ? shown(confidence.sum_of_squares) : "") + ',' +

@@ -88,7 +88,7 @@ public:
     bool has(const std::string& option) const { return given_.contains(option); }
     bool quiet() const { return has("quiet"); }
 
-    // Those of the options that are given, as files; "input" and "output" are options, too.
+    // The files of those options that are given; "input" and "output" are options, too.
     std::vector<NamedFile> files(const std::vector<std::string>& options) const;
 
     // The value of an option, or nothing if it is not given.

@@ -32,7 +32,7 @@ const Program program{
     .example = "strength-averaging network.h5 -o joints.h5",
 };
 
-// To four digits.
+// A number with four digits.
 std::string digits(double value)
 {
     std::array<char, 32> text{};

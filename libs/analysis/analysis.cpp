@@ -32,7 +32,7 @@ std::set<double> dates_of(const Section& section)
     return dates;
 }
 
-// After this time only creep remains.
+// The time of the last event; after it only creep remains [s].
 double last_event_of(const Section& section)
 {
     const std::vector<Stage>& stages = section.scene.stages;

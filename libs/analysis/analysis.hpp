@@ -39,7 +39,8 @@ public:
     void go_on(Result so_far, Checkpoint kept);
 
     const Result& result() const { return section_.result; }
-    // Of the histories' displacements, [parameter][time, point]: per unit of the parameter's logarithm [m].
+    // Sensitivities of the histories' displacements, [parameter][time, point]: per unit of the parameter's
+    // logarithm [m].
     const std::vector<std::vector<Vector2d>>& sensitivities() const { return section_.sensitivities; }
     const mechanics::Assembly& rock() const { return section_.rock; }
     EngineChoice engine() const { return section_.engine; }

@@ -46,7 +46,7 @@ public:
     void transfer(const Transfer& to, Checkpoint& kept);
 
     bool creeps() const { return length_.has_value(); }
-    // Of the published scheme.
+    // The limit of the published scheme.
     const std::optional<StableLimit>& stable_limit() const { return stable_limit_; }
     // Where the stop rate ended it, since start [s].
     std::optional<double> end() const { return end_; }

@@ -42,7 +42,7 @@ std::vector<Index> material_of_contacts(const Section& section)
     return number;
 }
 
-// Of contacts that form in a dynamic analysis: friction alone, the residual one where there is one.
+// The law of contacts that form in a dynamic analysis: friction only, the residual one where there is one.
 joint::Law law_of_new_contacts(const Scene& scene)
 {
     const auto material =

@@ -12,7 +12,7 @@ namespace jointcreep::analysis
 class DynamicStage
 {
 public:
-    // After the in-situ equilibrium.
+    // To be made after the in-situ equilibrium.
     DynamicStage(Section& section, const Watchers& watchers);
 
     // In situ: contacts between faces differ a little from those between gridpoints, so their equilibrium is found

@@ -35,7 +35,7 @@ bool Engines::settles_nearby(const std::vector<Vector2d>& guess, double time)
     return found.has_value();
 }
 
-// From an elastic equilibrium in which this zone is beyond its strength.
+// Continues from an elastic equilibrium in which this zone is beyond its strength.
 void Engines::yield_by_relaxation(double time, Index zone)
 {
     section_.rock.zones.holds_yield = false;

@@ -23,7 +23,7 @@ public:
     Trial(const Scene& scene, const Network& network, const EquivalentJoints& joints, double factor,
           int threads, const Recording& recording, const Observer& observe);
 
-    // As those of Analysis, once; where there is no equilibrium they end with a message.
+    // The same as in Analysis, once. Without an equilibrium they end with a message.
     void run();
     void go_on(Result so_far, Checkpoint kept);
 

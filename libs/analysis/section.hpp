@@ -75,7 +75,8 @@ struct Section {
     Observer observe;
     EngineChoice engine;
     Result result;
-    // Of the histories' displacements, [parameter][time, point]: per unit of the parameter's logarithm [m].
+    // Sensitivities of the histories' displacements, [parameter][time, point]: per unit of the parameter's
+    // logarithm [m].
     std::vector<std::vector<Vector2d>> sensitivities;
     mechanics::Assembly rock;
     mechanics::Loading loading;

@@ -30,7 +30,7 @@ public:
     virtual void equilibrium_ends(double /*still_applied*/) {}
     // In situ, at equilibrium: displacements count from here.
     virtual void displacements_start() {}
-    // After that, with what creeps.
+    // Called after that, with the creep of joints and rock.
     virtual void creep_begins(const creep::Creep&) {}
 
     // A step of creep and loading begins. An equilibrium is found at its end. Then the step is rejected for its error,

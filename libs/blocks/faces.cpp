@@ -147,7 +147,7 @@ private:
         const Vector2d &p = graph_.vertex[graph_.edge[e].first], &q = graph_.vertex[graph_.edge[e].second];
         return p.y() < q.y() ? std::pair(p, q) : std::pair(q, p);
     }
-    // Of two edges that the ray meets and that do not cross.
+    // Order of two edges that the ray meets and that do not cross.
     bool is_left_of(Index e, Index f) const
     {
         const auto [a, b] = upward(e);

@@ -105,7 +105,7 @@ struct Faces {
     }
 };
 
-// Of each edge of a planar graph without crossings: whether it has one face on both sides.
+// Whether each edge of a planar graph without crossings has one face on both sides.
 std::vector<char> slits(const Graph& graph);
 
 // Faces of a planar graph without crossings, in the order of their first edges.

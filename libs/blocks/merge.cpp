@@ -575,7 +575,7 @@ void report_merged_faces(const Graph& graph, const std::vector<Index>& joined, c
     });
 }
 
-// Of these edges, and the vertices that they have.
+// The graph of these edges, with the vertices that they have.
 Graph graph_of(std::vector<Edge> edges, const Bent& bent)
 {
     Graph graph;

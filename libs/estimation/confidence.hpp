@@ -35,14 +35,14 @@ struct Confidence {
     double quantile = 0;     // standard errors on each side of one parameter's interval of 95 percent
     double quantile_all = 0; // of intervals that hold all together with 95 percent (Bonferroni)
 
-    // Of J with its columns scaled to length 1: alike effects on the readings make it small.
+    // For J with its columns scaled to length 1: similar effects on the readings make it small.
     double smallest_eigenvalue = 1; // of their products with each other [-]
     double condition_number = 1;    // of J so scaled [-]
 
     double standard_error(Eigen::Index i) const;
     // 95 percent, of one parameter by itself or of all together; without bounds where the data have none.
     Interval interval(double value, Eigen::Index i, bool all_together = false) const;
-    // Of a quantity with this gradient over the parameters.
+    // Standard error of a quantity with this gradient over the parameters.
     double standard_error(const VectorXd& gradient) const;
 };
 

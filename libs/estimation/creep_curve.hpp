@@ -24,7 +24,7 @@ struct Estimate {
     Interval interval;
 };
 
-// By least squares over d_e (unless known), d_c and tau. Intervals of tau, E and eta are those of the
+// The fit by least squares over d_e (unless known), d_c and tau. Intervals of tau, E and eta are those of the
 // profile: where the least sum of squares with that value fixed exceeds the least of all by no more than
 // chance (Student's t, squared). In short records these are far from even; an end may be 0 or infinite.
 struct CurveFit {

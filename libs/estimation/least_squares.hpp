@@ -1,8 +1,8 @@
 // Nonlinear least squares within bounds, by Levenberg and Marquardt: the parameters that make the sum of
 // squared residuals least.
 //
-// Each step solves (J^T J + lambda diag(J^T J)) step = -J^T r for the parameters that no bound stops; those
-// that it would carry beyond a bound stop there, and the others step as is best then. lambda follows Nielsen
+// Each step solves (J^T J + lambda diag(J^T J)) step = -J^T r for the parameters that no bound stops. Those
+// that would go beyond a bound stop there, and the others take the best step then. lambda follows Nielsen
 // (1999) by the ratio of the achieved to the predicted decrease. Eigen's own (unsupported/Eigen/LevenbergMarquardt)
 // knows no bounds, and no place where a model has no answer.
 

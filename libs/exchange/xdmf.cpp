@@ -225,7 +225,7 @@ private:
     std::string text_;
 };
 
-// Those that a dataset has for every row.
+// The columns that have a dataset with a value for every row.
 std::vector<Column> in_datasets(std::vector<Column> columns)
 {
     std::erase_if(columns, [](const Column& column) { return column.dataset.empty(); });

@@ -18,7 +18,7 @@
 namespace jointcreep::fields
 {
 
-// Of one state, where rows have several. It refers to the record.
+// A column; of one state, where rows have several. It refers to the record.
 struct Column {
     std::string name;
     std::string units; // SI: "Pa", "Pa s/m"; "1" for numbers without one

@@ -37,8 +37,8 @@ public:
                                                       const std::vector<Vector2d>& guess = {});
     const std::string& reason() const { return reason_; }
 
-    // After equilibrate(), at the same stiffnesses: the x with K x = right, K made of the contacts' tangents
-    // given. By the last factor, which is renewed where it is too far off. Empty if K has no inverse.
+    // After equilibrate(), at the same stiffnesses: the x with K x = right, with K from the given tangents
+    // of contacts. Uses the last factor, which is renewed where it is too far off. Empty if K has no inverse.
     VectorXd solve_linear(const Assembly& assembly, const std::vector<Tangent>& tangents,
                           const VectorXd& right);
     const Stiffness& stiffness() const { return stiffness_; }

@@ -45,7 +45,7 @@ bool is_plain(const Assembly& assembly, double share, double rounding)
     return true;
 }
 
-// Of each gridpoint the number of its piece, and the pieces.
+// The pieces, and for each gridpoint the number of its piece.
 std::vector<Piece> pieces_of(const Assembly& assembly, std::vector<Index>& piece_of)
 {
     const std::size_t n = assembly.position.size();

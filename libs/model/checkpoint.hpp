@@ -14,7 +14,7 @@
 namespace jointcreep
 {
 
-// Of a dynamic analysis with large displacements, beside the rest; pairs of faces that may touch.
+// What a dynamic analysis with large displacements adds: among others pairs of faces that may touch.
 struct DynamicsState {
     std::vector<Eigen::Vector2d> origin, place;  // of gridpoints: that displacements count from; now [m]
     std::vector<Eigen::Vector4d> inverse;        // of zones: of their edges without stress [1/m]
@@ -100,7 +100,7 @@ public:
             kept = static_cast<Kept>(live); // NOLINT(bugprone-signed-char-misuse): flags are 0 and 1
     }
 
-    // Of every item, or of a part of it.
+    // A value of every item, or of a part of it.
     template <class Live, class Kept, class Part = std::identity>
     void values(std::vector<Live>& live, std::vector<Kept>& kept, Part part = {}) const
     {

@@ -182,7 +182,7 @@ struct EquivalentJoints {
     Pieces pieces{};
     SetAverages sets{};
 
-    // As many as the longest chain has.
+    // The number of Kelvin units of the longest chain.
     std::size_t kelvin_units() const
     {
         return normal_stiffness.empty() ? 0 : normal_kelvin_stiffness.size() / normal_stiffness.size();

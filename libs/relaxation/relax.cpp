@@ -106,7 +106,7 @@ public:
             last_force_ = assembly.force;
     }
 
-    // Of the solver, since this began [s].
+    // Time of the solver since the start [s].
     double time() const { return time_before_ + steps_since_ * dt_; }
 
     // Moves by so many steps. The threads stay together for all of them, and wait for each other twice a

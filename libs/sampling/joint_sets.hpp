@@ -1,5 +1,5 @@
-// From a scene's joint sets, single joints and mapped sets to joints, and the traces on them. How joints lie
-// is said in orientations.hpp, how many there are in density.hpp.
+// Makes joints, and the traces on them, from a scene's joint sets, single joints and mapped sets. Orientations are
+// in orientations.hpp, densities in density.hpp.
 //
 // Sets of lines. Their places along the set's mean normal in the section are a stationary renewal process:
 // the intervals are the set's spacings over |n_p|, or of the mean that density.hpp says, and of the one

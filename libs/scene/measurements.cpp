@@ -66,7 +66,7 @@ double time_in(const Csv& csv, const Csv::Row& row, double end)
     return csv.number(row, "time_day", from(0).to(end / unit::day)) * unit::day;
 }
 
-// Of one point, component, time and event there is one reading. Times are compared as numbers.
+// One reading for one point, component, time and event. Times are compared as numbers.
 class Readings
 {
 public:

@@ -49,7 +49,7 @@ std::vector<std::string> named_files(const TomlValue& root)
     return names;
 }
 
-// As a TOML string, a line for each of the text, the first after `begin`.
+// The text as a TOML string with the same lines, the first after `begin`.
 std::string as_toml(const std::string& text, const std::string& begin = "\n")
 {
     std::string out = "\"\"\"" + begin;

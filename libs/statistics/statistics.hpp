@@ -18,7 +18,7 @@ namespace jointcreep::statistics
 // Without blocks there are no rows of them.
 Statistics statistics_of(const Scene& scene, const Network& network);
 
-// As a table to read, angles in degrees, and a last line with the verdict.
+// The statistics as a text table, angles in degrees, with a last line for the verdict.
 std::string table(const Statistics& statistics);
 
 // What the statistics leave out, in a line; empty if there is nothing.
