@@ -224,9 +224,8 @@ void report(const Curve& curve, const Fit& fit, const std::vector<Row>& rows)
     Summary summary;
     summary.add("readings", curve.readings.time.size());
     if (curve.before > 0)
-        summary.add("readings before the load",
-                    std::to_string(curve.before) + ", mean " + mm(curve.zero) +
-                        " mm: subtracted from the others, and taken as exact");
+        summary.add("readings before the load", std::to_string(curve.before) + ", mean " + mm(curve.zero) +
+                                                    " mm: subtracted from the others, and taken as exact");
     summary.add("days since the load", curve.readings.time.back() / unit::day);
     for (const Row& row : rows)
         summary.add(row.quantity, rounded(row.value) +
@@ -244,13 +243,14 @@ void report(const Curve& curve, const Fit& fit, const std::vector<Row>& rows)
 
 std::vector<Option> curve_options()
 {
-    return {{"stiffness", "MPA_PER_M", "of a curve: joint stiffness K; without it E and eta are given over K"},
-            {"elastic-mm", "MM", "of a curve: elastic displacement, if known (default: fitted)"},
-            {"load-day", "DAY",
-             "of a curve: when the load changed (default: day of the first reading); the mean of readings "
-             "before it is taken as 0"},
-            {"converged-day", "DAY",
-             "of a curve: when creep is taken to be over, for the closed estimate (default: last reading)"}};
+    return {
+        {"stiffness", "MPA_PER_M", "of a curve: joint stiffness K; without it E and eta are given over K"},
+        {"elastic-mm", "MM", "of a curve: elastic displacement, if known (default: fitted)"},
+        {"load-day", "DAY",
+         "of a curve: when the load changed (default: day of the first reading); the mean of readings "
+         "before it is taken as 0"},
+        {"converged-day", "DAY",
+         "of a curve: when creep is taken to be over, for the closed estimate (default: last reading)"}};
 }
 
 void fit_curve(const Arguments& arguments)

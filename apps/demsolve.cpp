@@ -104,7 +104,7 @@ void solve(const Arguments& arguments)
     std::optional<store::CheckpointFile> kept = files.kept_before(arguments, scene, factor);
     if (kept)
         summary.add("continued from", "stage \"" + scene.stages.at(kept->checkpoint.stage).name + "\", day " +
-                                        shown(kept->checkpoint.time / unit::day));
+                                          shown(kept->checkpoint.time / unit::day));
     if (const auto path = arguments.text("checkpoint"))
         recording.keep = [&files, path, factor = factor](const Result& so_far, const Checkpoint& checkpoint) {
             files.write_checkpoint(*path, factor, so_far, checkpoint);

@@ -167,8 +167,7 @@ std::vector<Option> options()
          "result.h5 is of that F, result.failed.h5 of the next one"},
         {"safety-width", "W", "width of that bracket, over F (default 0.01)"},
         {"until", "DAY", "end there instead of at the scene's end, before or after it [day]"},
-        {"checkpoint", "FILE",
-         "before every stage, write the state there; if FILE exists, continue from it"},
+        {"checkpoint", "FILE", "before every stage, write the state there; if FILE exists, continue from it"},
         {"states", "N", "record the whole section every N creep steps too (default: at dates only)"},
         {"step-history", "N", "record points and gauges every N solver steps"}};
     all.insert(all.end(), others.begin(), others.end());

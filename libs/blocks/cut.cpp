@@ -584,11 +584,11 @@ private:
             const Boundary& boundary = scene_.boundaries[b];
             const double wanted = (boundary.to - boundary.from).norm();
             if (std::abs(on_boundary[b] - wanted) > 1e-3 * wanted + 4 * reach_)
-                throw input_error(
-                    "boundary " + std::to_string(b + 1) + " from " + shown(boundary.from) + " to " +
-                    shown(boundary.to) + ": only " + shown(on_boundary[b]) + " of its " + shown(wanted) +
-                    " m lie on the outline and not on an earlier boundary; it must lie on "
-                    "a straight part of the outline");
+                throw input_error("boundary " + std::to_string(b + 1) + " from " + shown(boundary.from) +
+                                  " to " + shown(boundary.to) + ": only " + shown(on_boundary[b]) +
+                                  " of its " + shown(wanted) +
+                                  " m lie on the outline and not on an earlier boundary; it must lie on "
+                                  "a straight part of the outline");
         }
 
         blocks.block_ring = faces.first_ring;
@@ -606,8 +606,9 @@ private:
         for (std::size_t s = 0; s < scene_.stages.size(); ++s)
             if (std::find(blocks.block_stage.begin(), blocks.block_stage.end(), static_cast<Index>(s)) ==
                 blocks.block_stage.end())
-                throw input_error("stage \"" + scene_.stages[s].name +
-                                  "\" removes nothing: its remove_m contains no rock that earlier stages leave");
+                throw input_error(
+                    "stage \"" + scene_.stages[s].name +
+                    "\" removes nothing: its remove_m contains no rock that earlier stages leave");
         blocks.fates = fates_.table(reach_);
         blocks.report = report_;
         measure_moves(blocks);

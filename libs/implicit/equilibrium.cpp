@@ -134,7 +134,8 @@ VectorXd Solver::correction(const Assembly& assembly, const State& start, const 
 // Moves along a correction, by too_far_ at most. First all of it is tried; then the point where forces do no more
 // work along it; then part of it, until forces come nearer to balance. (A block that moves until it touches loses
 // no force before, and its balance there is narrow.)
-Solver::Advance Solver::go_along(Assembly& assembly, const State& start, const VectorXd& correction, double merit)
+Solver::Advance Solver::go_along(Assembly& assembly, const State& start, const VectorXd& correction,
+                                 double merit)
 {
     const std::vector<Vector2d> from = assembly.displacement;
     const double work = force_.dot(correction);

@@ -273,8 +273,8 @@ void check_present(const TomlValue& value, const std::vector<const KeyInfo*>& kn
         const auto* const found = value.find(key->name);
         if (found && !key->in_place_of.empty() && given.contains(key->in_place_of))
             place.refuse(found->line, place.table + " " + key->name + " = " + shown(*found) +
-                                         ": wanted either " + key->name + " or the " + key->in_place_of +
-                                         " keys (" + given[key->in_place_of] + ", ...), not both");
+                                          ": wanted either " + key->name + " or the " + key->in_place_of +
+                                          " keys (" + given[key->in_place_of] + ", ...), not both");
     }
     for (const KeyInfo* const key : known) {
         if (value.find(key->name))

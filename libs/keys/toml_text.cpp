@@ -75,7 +75,7 @@ std::optional<std::size_t> utf8_length(std::string_view text)
                                : first < 0xe0 ? 2
                                : first < 0xf0 ? 3
                                : first < 0xf5 ? 4
-                                             : 0;
+                                              : 0;
     if (length == 0 || text.size() < length)
         return {};
     for (std::size_t i = 1; i < length; ++i)

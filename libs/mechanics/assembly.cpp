@@ -228,7 +228,7 @@ static std::pair<double, std::size_t> largest_of(std::size_t n, const Length& le
 }
 
 std::pair<double, std::size_t> largest_move(const std::vector<Vector2d>& from,
-                                             const std::vector<Vector2d>& to)
+                                            const std::vector<Vector2d>& to)
 {
     return largest_of(from.size(), [&](std::size_t g) { return (to[g] - from[g]).norm(); });
 }
@@ -236,7 +236,7 @@ std::pair<double, std::size_t> largest_move(const std::vector<Vector2d>& from,
 std::pair<double, std::size_t> largest_displacement(const Assembly& assembly)
 {
     return largest_of(assembly.displacement.size(),
-                       [&](std::size_t g) { return assembly.displacement[g].norm(); });
+                      [&](std::size_t g) { return assembly.displacement[g].norm(); });
 }
 
 double work_of_loads(const Assembly& assembly, const std::vector<Vector2d>& start)

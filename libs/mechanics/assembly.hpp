@@ -108,7 +108,7 @@ Balance balance_of(const Assembly& assembly, double stiffest, double largest, do
 // The largest of the moves between two lists of displacements [m], and its gridpoint; a move that is no
 // number first of all.
 std::pair<double, std::size_t> largest_move(const std::vector<Vector2d>& from,
-                                             const std::vector<Vector2d>& to);
+                                            const std::vector<Vector2d>& to);
 
 // The same of the displacements since the in-situ state.
 std::pair<double, std::size_t> largest_displacement(const Assembly& assembly);

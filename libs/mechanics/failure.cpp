@@ -18,8 +18,8 @@ constexpr std::size_t most_shown = 5;
 
 // The blocks' present rock.
 struct Rock {
-    std::vector<double> area;     // 0 once a block is removed [m2]
-    std::vector<Vector2d> centre; // at the start [m]
+    std::vector<double> area;           // 0 once a block is removed [m2]
+    std::vector<Vector2d> centre;       // at the start [m]
     std::vector<Vector2d> displacement; // mean [m]
 };
 

@@ -129,8 +129,7 @@ struct Failure {
 // Runs by which a factor of safety was found, beside the result of the run with the largest factor in equilibrium.
 struct Safety {
     std::vector<double> factor{}; // that strengths were divided by [-]
-    std::vector<Index>
-        stands{}; // 1 every equilibrium was found, 0 rock slides or falls, -1 undecided
+    std::vector<Index> stands{};  // 1 every equilibrium was found, 0 rock slides or falls, -1 undecided
 };
 
 struct Result {

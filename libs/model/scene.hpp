@@ -283,9 +283,8 @@ struct Equilibrium {
     double mass_damping = 0;      // alpha of the paper's Eq. 1, with damping "mass" [1/s]
     double stiffness_damping = 0; // beta of zones and of the joints' dashpots, with damping "mass" [s]
     double local_damping = 0;     // with damping "local" or "combined" [-]
-    std::int32_t unloading_increments =
-        1;                       // increments of excavation, and of loads that change between dates
-    std::int32_t most_steps = 0; // largest number of steps for an equilibrium
+    std::int32_t unloading_increments = 1; // increments of excavation, and of loads that change between dates
+    std::int32_t most_steps = 0;           // largest number of steps for an equilibrium
 };
 
 // Dynamic analysis with large displacements: Newton's law with real masses, in place of the search for

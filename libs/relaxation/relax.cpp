@@ -420,7 +420,7 @@ private:
     Index steps_since_ = 0;
     double dt_ = 0, too_far_ = 0, alpha_ = 0;
     Index checks_in_movement_ = 0; // in a row, every `patience` steps
-    double last_energy_ = 0;    // twice the kinetic energy, with kinetic damping [J/m]
+    double last_energy_ = 0;       // twice the kinetic energy, with kinetic damping [J/m]
     bool starts_from_rest_ = true;
 };
 
@@ -447,7 +447,7 @@ Convergence relax(Assembly& assembly, const Equilibrium& settings, const StepObs
     ForceMemory memory;
     memory.change_since_window(assembly);
     Index steps_in_balance = 0;
-    std::array<double, window / check_every> remaining_displacement{}; // shares, at the last checks in balance
+    std::array<double, window / check_every> remaining_displacement{}; // at the last checks
     Patience with_remaining;
     mechanics::RemainingDisplacement unsupported; // at the last look at pieces
     Index look_again = 0;                         // at them [steps]
@@ -477,7 +477,8 @@ Convergence relax(Assembly& assembly, const Equilibrium& settings, const StepObs
         if (steps_in_balance < window || convergence.contact_force_change > settings.tolerance)
             continue;
         const double share = *std::max_element(remaining_displacement.begin(), remaining_displacement.end());
-        convergence.remaining_displacement = (std::isfinite(share) ? share : 1) * relaxation.reference_displacement();
+        convergence.remaining_displacement =
+            (std::isfinite(share) ? share : 1) * relaxation.reference_displacement();
         const bool is_near = share <= enough(settings.tolerance) || is_rounding() ||
                              with_remaining.ends(share, convergence.steps);
         if (!is_near || convergence.steps < look_again)

@@ -434,7 +434,8 @@ private:
             for (const char* key : {"displacement_mm", "load_history"})
                 if (const Given boundary = in_list("boundary", i); boundary.find(key))
                     boundary.refuse(
-                        key, "with [large_displacements], boundaries must neither move nor change their traction");
+                        key,
+                        "with [large_displacements], boundaries must neither move nor change their traction");
     }
 };
 

@@ -73,9 +73,10 @@ Table<Scene> section()
     return {
         {"section", once, required, "The section: a vertical plane through the rock, x to the right, y up."},
         {polygon("outline_m", &Scene::outline, "Its outline, either way round."),
-         polygons("holes_m", &Scene::holes,
-                  "Where there is no rock from the start, a tunnel for example: inside the outline, not touching "
-                  "it or each other.")
+         polygons(
+             "holes_m", &Scene::holes,
+             "Where there is no rock from the start, a tunnel for example: inside the outline, not touching "
+             "it or each other.")
              .optional(),
          text("rock", &Scene::rock, "Name of the rock that no region covers."),
          number("gravity_m_per_s2", &Scene::gravity, m_per_s2, from(0).to(100), "Gravity, downward."),
@@ -728,15 +729,14 @@ Table<Averaging> averaging()
                 "Over what joint and bridges are averaged: each edge between two blocks, each joint's whole "
                 "line, or all lines of a set.")
              .or_else(std::string("edge")),
-         choice(
-             "stiffness", &Averaging::stiffness,
-             {{"joint", StiffnessRule::joint},
-              {"lower bound", StiffnessRule::lower_bound},
-              {"upper bound", StiffnessRule::upper_bound},
-              {"staggered", StiffnessRule::staggered}},
-             "Stiffnesses and Kelvin constants of a joint with rock bridges: the joint's own; bounds for "
-             "joint traces connected by rock bridges; or those of many such lines, with "
-             "staggered traces.")
+         choice("stiffness", &Averaging::stiffness,
+                {{"joint", StiffnessRule::joint},
+                 {"lower bound", StiffnessRule::lower_bound},
+                 {"upper bound", StiffnessRule::upper_bound},
+                 {"staggered", StiffnessRule::staggered}},
+                "Stiffnesses and Kelvin constants of a joint with rock bridges: the joint's own; bounds for "
+                "joint traces connected by rock bridges; or those of many such lines, with "
+                "staggered traces.")
              .or_else(std::string("joint"))}};
 }
 
@@ -779,9 +779,10 @@ Table<Equilibrium> equilibrium()
                  "Number of increments of excavation, and of loads that change between dates. With "
                  "[large_displacements] 1; there release_s is used.")
              .or_else(std::int64_t{1}),
-         integer("most_steps", &E::most_steps, from(1).to(2147483647),
-                 "Largest number of steps of dynamic relaxation for an equilibrium; then the exit code is 3. With "
-                 "[large_displacements] this holds in situ alone; longest_s limits the dynamic analysis.")
+         integer(
+             "most_steps", &E::most_steps, from(1).to(2147483647),
+             "Largest number of steps of dynamic relaxation for an equilibrium; then the exit code is 3. With "
+             "[large_displacements] this holds in situ alone; longest_s limits the dynamic analysis.")
              .or_else(std::int64_t{1000000})}};
 }
 

@@ -89,7 +89,7 @@ public:
 
 private:
     DisjointSets same_, linked_; // one gridpoint; connected by links so far
-    std::vector<Index> life_;  // stage that ends the longest-lived corner of a group; at its root
+    std::vector<Index> life_;    // stage that ends the longest-lived corner of a group; at its root
     std::vector<Tie> ties_;
 };
 

@@ -73,7 +73,7 @@ const Assembly& reference()
 double farthest(const Assembly& rock)
 {
     return mechanics::largest_move(std::vector<Vector2d>(rock.displacement.size(), Vector2d::Zero()),
-                                    rock.displacement)
+                                   rock.displacement)
         .first;
 }
 
