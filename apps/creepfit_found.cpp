@@ -185,8 +185,8 @@ void print_stress(const InSituStress& stress, double factor)
                   << rounded(stress.gradient_xx * factor / unit::MPa, 6) << '\n';
         return;
     }
-    std::cout << "\nIn the scene: multiply by " << rounded(factor, 6)
-              << " all compression_xx_MPa of the profile of [in_situ_stress]:";
+    std::cout << "\nIn the scene: multiply all compression_xx_MPa of the profile of [in_situ_stress] by "
+              << rounded(factor, 6) << ':';
     for (const InSituStress::Level& level : stress.profile)
         std::cout << ' ' << rounded(level.compression_xx * factor / unit::MPa, 6);
     std::cout << ".\n";
@@ -219,9 +219,9 @@ void print_for_the_scene(const Found& found, const Scene& scene, const Factors& 
     // Advice for joint materials: only where joints have their constants.
     if (scene.averaging.stiffness != StiffnessRule::joint || (E == 1 && eta == 1 && K == 1))
         return;
-    std::cout << "\nIn the scene: multiply by " << rounded(K, 6) << " all stiffnesses of joint materials, by "
-              << rounded(E, 6) << " their Kelvin stiffnesses, by " << rounded(eta, 6)
-              << " their Kelvin and Maxwell viscosities.\n";
+    std::cout << "\nIn the scene: multiply all stiffnesses of joint materials by " << rounded(K, 6)
+              << ", their Kelvin stiffnesses by " << rounded(E, 6)
+              << ", and their Kelvin and Maxwell viscosities by " << rounded(eta, 6) << ".\n";
 }
 
 } // namespace

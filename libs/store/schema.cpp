@@ -261,7 +261,7 @@ std::vector<Field> fields_of(Equilibria& equilibria)
          "Work of weight, of forces of excavated rock and of tractions, not that of displaced boundaries; the sum of "
          "the next three."},
         {"/equilibria/stored_energy", &equilibria.stored_energy, {"equilibrium"}, "J/m", any(),
-         "Energy stored in zones and contacts."},
+         "Increase of the energy stored in zones and contacts."},
         {"/equilibria/dissipated_energy", &equilibria.dissipated_energy, {"equilibrium"}, "J/m", any(),
          "Energy lost in contacts by slip and opening."},
         {"/equilibria/damped_energy", &equilibria.damped_energy, {"equilibrium"}, "J/m", any(),
@@ -342,7 +342,7 @@ std::vector<Field> fields_of(DynamicsHistory& dynamics)
         {"/dynamics/kinetic_energy", &dynamics.kinetic_energy, {"moment"}, "J/m", any(),
          "Kinetic energy; a little below 0 where all velocities change sign at once."},
         {"/dynamics/stored_energy", &dynamics.stored_energy, {"moment"}, "J/m", any(),
-         "Energy stored in zones and contacts."},
+         "Increase of the energy stored in zones and contacts."},
         {"/dynamics/friction_energy", &dynamics.friction_energy, {"moment"}, "J/m", any(),
          "Energy lost to slip and yield; a little below 0 where slip dilates by the friction angle, which loses none."},
         {"/dynamics/damped_energy", &dynamics.damped_energy, {"moment"}, "J/m", any(),

@@ -118,7 +118,7 @@ class Creepfit(ChainTest):
             stronger = changed(changed(profile, "xx_MPa = 0.1,", "xx_MPa = 0.125,"), "xx_MPa = 0.5,", "xx_MPa = 0.625,")
             history = self.history(stronger)
             text = self.found(history, fit="horizontal-stress,kelvin-stiffness", joints=self.chain.joints(profile))[1]
-            self.assertIn("times 1.25 all compression_xx_MPa of the profile of [in_situ_stress]: 0.125 0.625.", text)
+            self.assertIn("multiply all compression_xx_MPa of the profile of [in_situ_stress] by 1.25: 0.125 0.625.", text)
             self.assertIn("does not change these readings", text)
             self.assertNotIn("Kelvin stiffnesses", text)
         stronger = changed(law, "xx_gradient_MPa_per_m = 0.013", "xx_gradient_MPa_per_m = 0.01625")
@@ -162,7 +162,7 @@ class Creepfit(ChainTest):
         long = self.chain.answer("creepfit", self.curve(730), "-o", curve.with_name("out.csv"))
         self.assertNotIn("record too short", long.stdout)
         year = self.chain.answer("creepfit", self.curve(366, noise=1e-4), "-o", curve.with_name("out.csv"))
-        self.assertIn("its E is too high, about 1.05 times", year.stdout)
+        self.assertIn("its E is too high, by a factor of about 1.05", year.stdout)
         noisy = self.chain.answer("creepfit", self.curve(730, step=60, noise=2.5), "-o", curve.with_name("out.csv"))
         self.assertIn("warning: E hardly known", noisy.stdout, noisy.stderr)
         self.assertNotIn("too short", noisy.stdout)
@@ -196,7 +196,7 @@ class Creepfit(ChainTest):
             done = self.chain.answer("creepfit", path, "-o", path.with_name("out.csv"))
             self.assertIn(done.returncode, (0, 2))
             said = done.stdout if done.returncode == 0 else done.stderr
-            self.assertIn("displacements count from before the load", " ".join(said.split()))
+            self.assertIn("count displacements from before the load", " ".join(said.split()))
 
     def refused(self, arguments, *wanted, code=2):
         out = self.chain.new_folder() / "out.csv"

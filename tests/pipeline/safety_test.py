@@ -179,7 +179,7 @@ class Safety(ChainTest):
                               (("--strength-factor", "2", "--factor-of-safety"), "do not go together"),
                               (("--safety-width", "0.1"), "goes with --factor-of-safety only"),
                               (("--factor-of-safety", "--safety-width", "1e-4", "--tolerance", "1e-5"), "100 times"),
-                              (("--factor-of-safety", "--engine", "implicit"), "cannot tell")):
+                              (("--factor-of-safety", "--engine", "implicit"), "cannot show")):
             done = self.chain.answer("demsolve", joints, "-o", joints.with_name("result.h5"), *options)
             self.assertEqual(done.returncode, 2, options)
             self.assertIn(said, done.stderr)
