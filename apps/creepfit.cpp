@@ -7,10 +7,9 @@
 // Reads   curve.csv, or joints.h5 (from strength-averaging) and readings.csv
 // Writes  a table of what was found, and one of the readings on request   (docs/programs.md)
 //
-//         factors.failed.csv   where the search did not come to its end: the best so far
+//         factors.failed.csv   if the search does not converge: the best factors so far
 //
-// The curve is in creepfit_curve and libs/estimation, the way through the solver in creepfit_section and
-// libs/back_analysis.
+// One curve: creepfit_curve and libs/estimation. Through the solver: creepfit_section and libs/back_analysis.
 
 #include "creepfit_curve.hpp"
 #include "creepfit_files.hpp"
@@ -22,7 +21,7 @@ using namespace jointcreep;
 namespace
 {
 
-// Those of both ways to fit, in the order of the help.
+// Options of both kinds of fit, in the order of the help.
 std::vector<Option> options()
 {
     std::vector<Option> all{{"readings", "FILE.csv", "write measured and computed displacements, too"}};
@@ -40,11 +39,11 @@ const Program program{
     .example = "creepfit joints.h5 --measurements readings.csv --fit kelvin-stiffness,kelvin-viscosity -o "
                "factors.csv",
     .columns =
-        "  CURVE.csv       time_day, displacement_mm; if wanted sigma_mm\n"
-        "  --measurements  a row a reading: time_day, point, component (x or y), displacement_mm;\n"
-        "                  if wanted sigma_mm, event\n"
-        "                  or a row a time, as jointexport writes it: time_day, event, and A_x_m, A_y_m,\n"
-        "                  A_present of a point A; if wanted A_x_sigma_m, A_y_sigma_m\n"
+        "  CURVE.csv       time_day, displacement_mm; optional: sigma_mm\n"
+        "  --measurements  one row per reading: time_day, point, component (x or y), displacement_mm;\n"
+        "                  optional: sigma_mm, event\n"
+        "                  or one row per time, as jointexport writes it: time_day, event, and A_x_m, A_y_m,\n"
+        "                  A_present of a point A; optional: A_x_sigma_m, A_y_sigma_m\n"
         "  A length may be in _m, _cm or _mm, as its name says.\n",
 };
 

@@ -21,24 +21,24 @@ using estimation::Interval;
 namespace
 {
 
-// Of creep, at the end that Eq. 14 takes. With more of it the equation says nothing.
+// Largest share of creep that may be left at the end that Eq. 14 assumes. Above it Eq. 14 has no meaning.
 constexpr double most_left = 0.2;
 
 // Readings from the change of load on.
 struct Curve {
-    estimation::CreepCurve readings; // from `load` and `zero`
+    estimation::CreepCurve readings; // time from `load`, displacement from `zero`
     double load;                     // when it changed [s]
-    double zero = 0;                 // mean of what was read before, from where displacements count [m]
-    std::size_t before = 0;          // so many readings
+    double zero = 0;                 // mean of the readings before it [m]
+    std::size_t before = 0;          // number of readings before the load
 };
 
 struct Fit {
     estimation::CurveFit by_curve;
     estimation::ClosedEstimate closed; // by Eq. 14
-    double left;                       // of creep, when Eq. 14 takes it to be over [-]
+    double left;                       // share of creep left when Eq. 14 takes it as over [-]
 };
 
-// A row of what was found.
+// A row of the table of results.
 struct Row {
     std::string quantity, unit;
     double value;
@@ -176,7 +176,7 @@ void add_residuals(Summary& summary, const Curve& curve, const estimation::Curve
     summary.add("noise taken as", noise_in_words(fit.confidence, knows));
 }
 
-// What the record does not tell.
+// Warns of what the record is too short, or too coarse, to give.
 void warn_of_record(Summary& summary, const Curve& curve, const estimation::CurveFit& fit)
 {
     if (fit.is_too_short)
@@ -187,30 +187,30 @@ void warn_of_record(Summary& summary, const Curve& curve, const estimation::Curv
                 "it ends, 1 / E");
     else if (fit.is_stiffness_open)
         summary.add("warning: E hardly known",
-                    "its interval goes beyond a factor of 2, though the record is " +
+                    "its interval is wider than a factor of 2, though the record is " +
                         rounded(fit.record_length, 2) +
                         " retardation times long: noise, or too few readings");
-    // Where it is given there is no interval to look at.
+    // A given elastic part has no interval.
     if (const Interval& of = fit.elastic_interval;
         !curve.readings.elastic_part && of.low <= 0 && of.high >= 0)
         summary.add("warning: elastic part",
-                    "is not told apart from 0, nor are E and eta; displacements count from before the "
+                    "cannot be distinguished from 0, nor can E and eta; count displacements from before the "
                     "load, not from a reading after it");
     if (fit.is_too_coarse)
         summary.add(
             "warning: readings too coarse",
-            "creep is all but over at the first reading after the load: eta is at most what is found");
+            "creep is nearly over at the first reading after the load: the eta found is an upper limit");
 }
 
-// Where Eq. 14 takes for granted what is not so.
+// Warns where an assumption of Eq. 14 does not hold.
 void warn_of_closed_estimate(Summary& summary, const Curve& curve, const Fit& fit)
 {
     if (fit.left > 0.02)
         summary.add("warning: creep not over",
                     rounded(100 * fit.left, 2) + " percent of it is left at the end that Eq. 14 takes: " +
                         (fit.left > most_left
-                             ? "that is no end, and what it gives has no interval"
-                             : "its E is too high, about " + rounded(1 / (1 - fit.left), 3) + " times"));
+                             ? "too much for Eq. 14; its results have no interval"
+                             : "its E is too high, by a factor of about " + rounded(1 / (1 - fit.left), 3)));
     const double first = curve.readings.time.front(), share = first / fit.by_curve.retardation_time;
     if (!curve.readings.elastic_part && share > 0.1)
         summary.add("warning: first reading late",
@@ -224,9 +224,8 @@ void report(const Curve& curve, const Fit& fit, const std::vector<Row>& rows)
     Summary summary;
     summary.add("readings", curve.readings.time.size());
     if (curve.before > 0)
-        summary.add("readings before the load",
-                    std::to_string(curve.before) + ", mean " + mm(curve.zero) +
-                        " mm: taken off the others as their zero, and as free of error");
+        summary.add("readings before the load", std::to_string(curve.before) + ", mean " + mm(curve.zero) +
+                                                    " mm: subtracted from the others, and taken as exact");
     summary.add("days since the load", curve.readings.time.back() / unit::day);
     for (const Row& row : rows)
         summary.add(row.quantity, rounded(row.value) +
@@ -244,13 +243,14 @@ void report(const Curve& curve, const Fit& fit, const std::vector<Row>& rows)
 
 std::vector<Option> curve_options()
 {
-    return {{"stiffness", "MPA_PER_M", "of a curve: K of the joint, to give E and eta as such, not over K"},
-            {"elastic-mm", "MM", "of a curve: what the joint did at once, if known (default: found)"},
-            {"load-day", "DAY",
-             "of a curve: when the load changed (default: day of the first reading); the mean of readings "
-             "before it is taken as 0"},
-            {"converged-day", "DAY",
-             "of a curve: when creep is taken to be over, for the closed estimate (default: last reading)"}};
+    return {
+        {"stiffness", "MPA_PER_M", "of a curve: joint stiffness K; without it E and eta are given over K"},
+        {"elastic-mm", "MM", "of a curve: elastic displacement, if known (default: fitted)"},
+        {"load-day", "DAY",
+         "of a curve: when the load changed (default: day of the first reading); the mean of readings "
+         "before it is taken as 0"},
+        {"converged-day", "DAY",
+         "of a curve: when creep is taken to be over, for the closed estimate (default: last reading)"}};
 }
 
 void fit_curve(const Arguments& arguments)

@@ -49,7 +49,7 @@ Parameter parameter_in(const std::string& option)
     return name->parameter;
 }
 
-// The search starts from 1, or from the middle of bounds that 1 is out of.
+// The search starts from 1, or from the geometric mean of the bounds if 1 is outside them.
 void set_bounds(back_analysis::Factor& factor, const std::string& option, const std::string& text)
 {
     double low = 0, high = 0;
@@ -58,7 +58,7 @@ void set_bounds(back_analysis::Factor& factor, const std::string& option, const 
     if (!(bounds >> low >> colon >> high) || colon != ':' || bounds >> rest || !(low > 0) || !(low < high) ||
         low < 1e-6 || high > 1e6)
         throw input_error("--fit: the bounds of " + option + " are \"" + text +
-                          "\"; wanted two factors LOW:HIGH, 1e-6 at least, rising, 1e6 at most");
+                          "\"; wanted two factors LOW:HIGH with 1e-6 <= LOW < HIGH <= 1e6");
     factor.low = low;
     factor.high = high;
     factor.start = low <= 1 && 1 <= high ? 1 : std::sqrt(low * high);

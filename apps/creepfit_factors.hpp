@@ -12,7 +12,7 @@ namespace jointcreep::creepfit
 
 using Factors = std::vector<back_analysis::Factor>;
 
-// As --fit has it: "kelvin-stiffness".
+// The name for --fit: "kelvin-stiffness".
 std::string option_of(sensitivity::Parameter parameter);
 // "Kelvin stiffness E".
 std::string words_of(sensitivity::Parameter parameter);

@@ -17,7 +17,7 @@ namespace jointcreep::creepfit
 // Throws file_error.
 std::string text_of(const std::string& path);
 
-// Whatever refuses what is in a file names the file.
+// Calls read(). Messages of input_error begin with the file's name.
 template <class Read>
 auto of_file(const std::string& path, const Read& read)
 {
@@ -29,7 +29,7 @@ auto of_file(const std::string& path, const Read& read)
     }
 }
 
-// The same, where other things may be refused, too.
+// The same. But only messages of lines are the file's.
 template <class Read>
 auto of_lines_of_file(const std::string& path, const Read& read)
 {
@@ -42,11 +42,11 @@ auto of_lines_of_file(const std::string& path, const Read& read)
     }
 }
 
-// Where to write the readings. Throws where it, or the output, could not be written, or one of them, or what is kept
-// of a search that `may_fail`, would be written over a file that is read, or over each other.
+// The file for the readings, if asked for. Throws where it, or the output, cannot be written. Throws where an output
+// would overwrite an input or another output; those of a search that `may_fail` count too.
 std::optional<std::string> readings_file(const Arguments& arguments, bool may_fail);
 
-// Refuses options that go with something else.
+// Refuses these options if they are given: they go with something else.
 void refuse_options(const Arguments& arguments, const std::vector<Option>& options,
                     const std::string& goes_with);
 

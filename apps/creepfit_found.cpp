@@ -26,7 +26,7 @@ using Measurements = std::vector<scene::Measurement>;
 namespace
 {
 
-// Of a logarithm; empty where it has no bound.
+// The bound of a factor, from its logarithm; empty where there is none.
 std::string shown_bound(double logarithm)
 {
     return std::isfinite(logarithm) ? shown(std::exp(logarithm)) : std::string();
@@ -53,7 +53,7 @@ std::string shown_factor(const Found& found, std::size_t i)
     const std::string value = rounded(found.factors[i]);
     if (const AtBound at = found.minimum.at_bound[i]; at != AtBound::no)
         return value + ": at its " + (at == AtBound::low ? "lower" : "upper") +
-               " bound; the readings want it beyond";
+               " bound; the readings fit better beyond it";
     if (found.confidence.is_fixed[i])
         return value + ": it does not change these readings";
     const auto index = static_cast<Eigen::Index>(i);
@@ -95,7 +95,7 @@ struct Residual {
     double value; // computed less measured [m]
 };
 
-// Of a point in one direction.
+// Residuals of a point in one direction.
 std::vector<Residual> residuals_of(std::size_t point, int component, const Found& found,
                                    const Measurements& measurements)
 {
@@ -156,13 +156,13 @@ void warn_of_weak_combination(Summary& summary, const Found& found, const Factor
     if (!weak)
         return;
     const double half = found.confidence.quantile * weak->standard_error;
-    summary.add(weak->is_alike_effects ? "warning: hardly told apart" : "warning: hardly known",
+    summary.add(weak->is_alike_effects ? "warning: hardly distinguished" : "warning: hardly known",
                 combination_in_words(weak->direction, half, factors) +
                     (weak->is_alike_effects ? " changes the readings by no more than their noise"
                                             : " is still within the readings' noise"));
 }
 
-// The history is straight between creep steps.
+// Between creep steps the history is interpolated linearly.
 void warn_of_interpolation(Summary& summary, const Found& found, const Measurements& measurements)
 {
     double between_steps = 0;
@@ -173,7 +173,7 @@ void warn_of_interpolation(Summary& summary, const Found& found, const Measureme
     if (between_steps > 0)
         summary.add("warning: readings between steps",
                     "may be off by " + mm(between_steps) +
-                        " mm, the history being straight between creep steps; shorter steps help");
+                        " mm: histories are linear between creep steps. Use shorter steps");
 }
 
 void print_stress(const InSituStress& stress, double factor)
@@ -185,14 +185,14 @@ void print_stress(const InSituStress& stress, double factor)
                   << rounded(stress.gradient_xx * factor / unit::MPa, 6) << '\n';
         return;
     }
-    std::cout << "\nIn the scene: times " << rounded(factor, 6)
-              << " all compression_xx_MPa of the profile of [in_situ_stress]:";
+    std::cout << "\nIn the scene: multiply all compression_xx_MPa of the profile of [in_situ_stress] by "
+              << rounded(factor, 6) << ':';
     for (const InSituStress::Level& level : stress.profile)
         std::cout << ' ' << rounded(level.compression_xx * factor / unit::MPa, 6);
     std::cout << ".\n";
 }
 
-// What to write into the scene. A factor that does not change the readings says nothing of it.
+// What to write into the scene. Factors that do not change the readings are left out.
 void print_for_the_scene(const Found& found, const Scene& scene, const Factors& factors)
 {
     double E = 1, eta = 1, K = 1;
@@ -216,12 +216,12 @@ void print_for_the_scene(const Found& found, const Scene& scene, const Factors& 
             print_stress(scene.in_situ_stress, f);
         }
     }
-    // Of joint materials, where joints have their constants.
+    // Advice for joint materials: only where joints have their constants.
     if (scene.averaging.stiffness != StiffnessRule::joint || (E == 1 && eta == 1 && K == 1))
         return;
-    std::cout << "\nIn the scene: times " << rounded(K, 6) << " all stiffnesses of joint materials, times "
-              << rounded(E, 6) << " their Kelvin stiffnesses, times " << rounded(eta, 6)
-              << " their Kelvin and Maxwell viscosities.\n";
+    std::cout << "\nIn the scene: multiply all stiffnesses of joint materials by " << rounded(K, 6)
+              << ", their Kelvin stiffnesses by " << rounded(E, 6)
+              << ", and their Kelvin and Maxwell viscosities by " << rounded(eta, 6) << ".\n";
 }
 
 } // namespace
@@ -230,7 +230,7 @@ std::string found_table(const Found& found, const Factors& factors, bool knows_d
 {
     const Confidence& confidence = found.confidence;
     const auto weak = estimation::weak_combination(found.minimum, confidence);
-    // Of the whole fit: the same in every row.
+    // Columns of the whole fit: the same in every row.
     const std::string of_fit = std::string(found.minimum.is_converged ? "yes" : "no") + ',' +
                                std::to_string(found.minimum.evaluations) + ',' +
                                (knows_deviations ? shown(confidence.sum_of_squares) : "") + ',' +
@@ -293,10 +293,10 @@ std::string why_not_converged(const Found& found, const Factors& factors)
     for (std::size_t i = 0; i < factors.size(); ++i)
         wanted.push_back(found.factors[i] * std::exp(minimum.left[static_cast<Eigen::Index>(i)]));
     std::string why = "no fit was found in " + std::to_string(minimum.evaluations) + " runs: the best is " +
-                      in_words(factors, found.factors) + ", and the readings still want " +
+                      in_words(factors, found.factors) + "; the next step would be to " +
                       in_words(factors, wanted);
     if (minimum.has_stalled)
-        why += ", but no run on the way there was better";
+        why += ", but no run in that direction was better";
     if (!found.without_answer.empty())
         why += "\nruns without an answer: " + shown_without_answer(found, factors);
     return why + (minimum.has_stalled ? "\nwanted other bounds in --fit, or fewer factors"
@@ -315,7 +315,7 @@ void report(const Found& found, const Measurements& measurements, const Scene& s
     add_factors(summary, found, factors);
     add_noise(summary, found.confidence, measurements.front().deviation.has_value());
     if (settings.since_first_reading)
-        summary.add("first readings", "have such noise, too, which is in all that count from them");
+        summary.add("first readings", "have the same noise; it is in all readings that count from them");
     add_points(summary, found, measurements, scene, settings.since_first_reading);
     if (found.confidence.parameters > 1)
         summary.add("condition number of the scaled sensitivities",

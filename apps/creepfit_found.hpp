@@ -12,14 +12,14 @@
 namespace jointcreep::creepfit
 {
 
-// A row a factor.
+// One row per factor.
 std::string found_table(const back_analysis::Found& found, const Factors& factors, bool knows_deviations);
 
-// A row a measurement.
+// One row per measurement.
 std::string readings_table(const back_analysis::Found& found,
                            const std::vector<scene::Measurement>& measurements, const Scene& scene);
 
-// What ended a search before its end, and what helps.
+// Why a search did not converge, and what to do.
 std::string why_not_converged(const back_analysis::Found& found, const Factors& factors);
 
 // Prints the summary, and what to write into the scene.

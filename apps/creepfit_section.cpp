@@ -70,12 +70,12 @@ std::vector<Option> section_options()
          "through the solver: factors to find, of " + all_options(" and ") +
              ", separated by commas, each with bounds if given: joint-stiffness=0.5:2 (default "
              "bounds: 0.05:20); kelvin-viscosity is that of Maxwell dashpots, too; the search starts from 1, or "
-             "from the root of low times high where that is out of bounds"},
+             "from the geometric mean of the bounds if 1 is outside them"},
         {"since-first-reading", "",
          "through the solver: measurements count from each point's first reading, and share its error"},
         {"runs", "N",
-         "through the solver: at most so many runs (default 60); where they are too few the exit code is 3, "
-         "and the best so far is in FOUND.failed.csv"},
+         "through the solver: largest number of runs (default 60); if they are too few the exit code is 3, "
+         "and the best factors are in FOUND.failed.csv"},
         {"threads", "N", "through the solver: threads (default 1)"}};
 }
 
@@ -86,15 +86,15 @@ void fit_section(const Arguments& arguments)
     const back_analysis::Settings settings = settings_of(arguments);
     const std::optional<std::string> readings_path = readings_file(arguments, true);
 
-    // 1. The section, and what was measured there.
+    // 1. The section, and its measurements.
     const store::JointsFile file = store::read_joints(input);
     const Scene scene = scene::parse_scene(file.provenance.scene, input + ": /scene");
     const Measurements measurements = read_measurements(measured, scene, settings.factors.size());
 
-    // 2. The factors with which it moves as was measured.
+    // 2. The factors that fit the measurements.
     const Found found = search(arguments, file, scene, measurements, settings);
 
-    // 3. What was found, or the best so far.
+    // 3. The results, or the best factors so far.
     const auto name = [&](const std::string& path) {
         return found.minimum.is_converged ? path : failed_name(path);
     };
@@ -103,7 +103,7 @@ void fit_section(const Arguments& arguments)
     write_text(name(output),
                found_table(found, settings.factors, measurements.front().deviation.has_value()));
     if (!found.minimum.is_converged)
-        throw fit_error(why_not_converged(found, settings.factors) + "\nthe best so far is in " +
+        throw fit_error(why_not_converged(found, settings.factors) + "\nthe best factors are in " +
                         name(output));
     if (!arguments.quiet())
         report(found, measurements, scene, settings);

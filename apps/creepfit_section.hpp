@@ -12,8 +12,8 @@ namespace jointcreep::creepfit
 // Its options alone.
 std::vector<Option> section_options();
 
-// Reads joints.h5 and the measurements, writes FOUND.csv and prints the summary. Where the search does not
-// come to its end it writes FOUND.failed.csv, and throws fit_error.
+// Reads joints.h5 and the measurements, writes FOUND.csv and prints the summary. If the search does not converge it
+// writes FOUND.failed.csv, and throws fit_error.
 void fit_section(const Arguments& arguments);
 
 } // namespace jointcreep::creepfit

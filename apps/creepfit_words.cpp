@@ -40,7 +40,7 @@ std::string noise_in_words(const Confidence& confidence, bool knows_deviations)
 {
     std::string words = "independent and normal, ";
     if (!knows_deviations)
-        return words + "alike for all readings, as large as the residuals are";
+        return words + "equal for all readings, as large as the residuals";
     if (!confidence.is_noise_from_residuals)
         return words + "with the readings' sigma";
     return words + "with the readings' sigma times " + rounded(confidence.noise_factor, 3) +
@@ -51,7 +51,7 @@ void warn_of_lag(Summary& summary, const std::string& label, double lag_one, std
 {
     if (lag_one > 2 / std::sqrt(static_cast<double>(readings)))
         summary.add(
-            "warning: residuals follow each other" + label,
+            "warning: residuals are correlated" + label,
             "correlation of neighbours " + rounded(lag_one, 2) +
                 ": the noise is not independent, or the model is not right, and intervals are too narrow");
 }

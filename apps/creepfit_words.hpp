@@ -22,8 +22,8 @@ double root_mean_square(std::span<const double> values);
 
 std::string noise_in_words(const estimation::Confidence& confidence, bool knows_deviations);
 
-// Warns where residuals follow each other: intervals are then too narrow. `lag_one` is the correlation of
-// neighbours [-].
+// Warns where residuals are correlated: intervals are then too narrow. `lag_one` is the correlation of neighbours
+// [-].
 void warn_of_lag(Summary& summary, const std::string& label, double lag_one, std::size_t readings);
 
 } // namespace jointcreep::creepfit

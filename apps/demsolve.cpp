@@ -7,7 +7,7 @@
 // Writes  result.h5   the same, zones, histories, states of all stages (docs/file-format.md)
 //
 //         result.failed.h5   where there is no equilibrium: the run up to there, and what moves
-//         checkpoint.h5      if asked for: the run up to a stage, to go on from
+//         checkpoint.h5      if asked for: the run up to a stage, to continue from
 //
 // The method is in libs/analysis. Options are in demsolve_settings, files in demsolve_files, and the summary
 // is in demsolve_summary.
@@ -59,8 +59,8 @@ std::unique_ptr<Trial> run_once(double factor, const RunWith& run_with, const de
     return run;
 }
 
-// Runs with different factors: the one with the largest that stands is written and returned, and the one above
-// is written as failed.
+// Runs with different factors. Writes and returns the run of the largest factor at which every equilibrium is found.
+// Writes the run of the next larger factor as failed.
 std::unique_ptr<Trial> bracket_safety(double width, const RunWith& run_with, const demsolve::Files& files,
                                       Summary& summary)
 {
@@ -98,13 +98,13 @@ void solve(const Arguments& arguments)
     const auto [factor, bracket_width] = demsolve::strength_reduction(arguments, scene);
     const int threads = arguments.threads();
 
-    // 2. What is recorded, and what a checkpoint has kept before.
+    // 2. Recording, and the state of a checkpoint, if there is one.
     analysis::Recording recording = demsolve::recording(arguments);
     Summary summary;
     std::optional<store::CheckpointFile> kept = files.kept_before(arguments, scene, factor);
     if (kept)
-        summary.add("went on from", "stage \"" + scene.stages.at(kept->checkpoint.stage).name + "\", day " +
-                                        shown(kept->checkpoint.time / unit::day));
+        summary.add("continued from", "stage \"" + scene.stages.at(kept->checkpoint.stage).name + "\", day " +
+                                          shown(kept->checkpoint.time / unit::day));
     if (const auto path = arguments.text("checkpoint"))
         recording.keep = [&files, path, factor = factor](const Result& so_far, const Checkpoint& checkpoint) {
             files.write_checkpoint(*path, factor, so_far, checkpoint);

@@ -16,22 +16,22 @@ namespace jointcreep::demsolve
 class Files
 {
 public:
-    // `options` and `end` as the result file records them. A run that ends on another day may go on from the
-    // same checkpoint: `end` is no part of what a checkpoint records. Throws where a file could not be
-    // written, or would be written over the input or each other.
+    // `options` and `end` as the result file records them. A run with another `end` may continue from the same
+    // checkpoint: checkpoints do not record it. Throws where a file could not be written, or would be written over
+    // the input or another output.
     Files(const Arguments& arguments, const std::string& program, const store::JointsFile& file,
           std::string options, std::string end);
 
     void write_result(const analysis::Trial& run, const Safety& safety = {}) const;
 
-    // A run without equilibrium. Returns what to say of it.
+    // Writes a run without equilibrium. Returns the line of the message that says where it is.
     std::string write_failed(const analysis::Trial& run, const Safety& safety = {}) const;
 
     void write_checkpoint(const std::string& path, double factor, const Result& so_far,
                           const Checkpoint& checkpoint) const;
 
-    // What --checkpoint has kept before, if anything. Throws if a run with this strength factor would not
-    // have come by where the checkpoint is, bit by bit, or ends before it.
+    // The checkpoint of an earlier run, if there is one. Throws if a run with this strength factor would not reach the
+    // same state, bit by bit, or would end before it.
     std::optional<store::CheckpointFile> kept_before(const Arguments& arguments, const Scene& scene,
                                                      double factor) const;
 

@@ -167,8 +167,7 @@ std::vector<Option> options()
          "result.h5 is of that F, result.failed.h5 of the next one"},
         {"safety-width", "W", "width of that bracket, over F (default 0.01)"},
         {"until", "DAY", "end there instead of at the scene's end, before or after it [day]"},
-        {"checkpoint", "FILE",
-         "before every stage, keep there what it begins with; if FILE exists, go on from it"},
+        {"checkpoint", "FILE", "before every stage, write the state there; if FILE exists, continue from it"},
         {"states", "N", "record the whole section every N creep steps too (default: at dates only)"},
         {"step-history", "N", "record points and gauges every N solver steps"}};
     all.insert(all.end(), others.begin(), others.end());
@@ -239,14 +238,14 @@ StrengthReduction strength_reduction(const Arguments& arguments, const Scene& sc
     }
     require(width >= 100 * scene.equilibrium.tolerance, "--safety-width", width, "(ratio)",
             "must be at least 100 times the tolerance of equilibria, " + shown(scene.equilibrium.tolerance) +
-                ", which tells rest from movement");
+                ", which separates equilibrium from movement");
     if (scene.equilibrium.engine == EngineChoice::implicit)
-        throw input_error("--factor-of-safety: the implicit engine cannot tell rock that moves on from an "
-                          "equilibrium it does not find; wanted --engine auto or relaxation");
+        throw input_error("--factor-of-safety: the implicit engine cannot show that blocks are moving; "
+                          "wanted --engine auto or relaxation");
     if (scene.large_displacements)
         throw input_error(
-            "--factor-of-safety: the scene has [large_displacements], where what fails comes to rest again; "
-            "wanted one without");
+            "--factor-of-safety: the scene has [large_displacements], where rock that fails reaches a new equilibrium; "
+            "wanted a scene without");
     return {factor, width};
 }
 

@@ -20,8 +20,8 @@ std::vector<Option> options();
 // A word of an engine: "auto".
 std::string name_of(EngineChoice engine);
 
-// Puts the command line's settings in place of the scene's. Returns these options as the result file records
-// them, with those that say what is recorded.
+// Puts the command line's settings in place of the scene's. Returns these options, and those of recording, as the
+// result file records them.
 std::string replace_settings(const Arguments& arguments, Scene& scene);
 
 // Lets the scene end on the day of --until, if given; returns that option as the result file records it.

@@ -53,7 +53,7 @@ void add_mesh(Summary& summary, const Network& network, const Mesh& mesh)
 std::string engine_in_words(const Scene& scene, const Analysis& run)
 {
     if (run.engine() == EngineChoice::automatic)
-        return "implicit, and dynamic relaxation where that gives up (auto)";
+        return "implicit, and dynamic relaxation where it does not converge (auto)";
     const bool chose = scene.equilibrium.engine == EngineChoice::automatic;
     return name_of(run.engine()) + (chose ? " (auto: real masses or a step history)" : "");
 }
@@ -68,7 +68,7 @@ void add_equilibria(Summary& summary, const Scene& scene, const Analysis& run)
     summary.add("equilibria by dynamic relaxation", all - implicit);
     for (const auto& [reason, n] : run.findings().given_up)
         summary.add("implicit engine did not converge", std::to_string(n) + " times: " + reason);
-    summary.add("equilibria rejected or sought in vain", sum_of(equilibria.searches) - all);
+    summary.add("searches rejected or not converged", sum_of(equilibria.searches) - all);
     summary.add("solver steps", sum_of(equilibria.steps));
     summary.add("factorisations", sum_of(equilibria.factorisations));
     summary.add("back-substitutions", sum_of(equilibria.solves));
@@ -106,7 +106,7 @@ void add_findings(Summary& summary, const Findings& findings, const Findings::Co
     for (const auto& [rock, n] : yielded)
         summary.add("zones yielded since", std::to_string(n) + " of rock \"" + rock + "\"");
     for (const auto& [stage, percent] : findings.energy_off)
-        summary.add("warning: account of energy", off_by(percent, stage));
+        summary.add("warning: energy balance", off_by(percent, stage));
 }
 
 // The lines of a message, one below the other.
@@ -147,13 +147,13 @@ void add_safety(Summary& summary, const analysis::Bracket& bracket, const std::s
     const Safety& trials = bracket.trials;
     summary.add("runs", trials.factor.size());
     if (!bracket.not_above) {
-        summary.add("factor of safety, below", "none found: strength decides nothing");
+        summary.add("factor of safety, below", "none found: equilibrium at every factor tried");
         return;
     }
     const auto upper =
         std::find(trials.factor.begin(), trials.factor.end(), *bracket.not_above) - trials.factor.begin();
     const bool fails = trials.stands[upper] == 0;
-    summary.add(fails ? "factor of safety, below" : "warning: no answer at", shown(*bracket.not_above));
+    summary.add(fails ? "factor of safety, below" : "warning: undecided at", shown(*bracket.not_above));
     add_lines(summary, "  there", what_moves);
     if (fails)
         return;
@@ -165,7 +165,7 @@ std::string warnings_of(const Findings& findings)
 {
     std::string lines;
     for (const auto& [stage, percent] : findings.energy_off)
-        lines += "\nwarning: account of energy " + off_by(percent, stage);
+        lines += "\nwarning: energy balance " + off_by(percent, stage);
     return lines;
 }
 

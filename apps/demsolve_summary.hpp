@@ -1,4 +1,4 @@
-// What demsolve says of a run at its end.
+// The summary of a run of demsolve.
 
 #pragma once
 
@@ -13,10 +13,10 @@
 namespace jointcreep::demsolve
 {
 
-// What the run is of, how its equilibria were found, and what there is to warn of.
+// The mesh, how equilibria were found, and warnings.
 void add_run(Summary& summary, const Network& network, const Scene& scene, const analysis::Analysis& run);
 
-// What a bracket is, and what moves at its upper end.
+// The bracket of the factor of safety, and the blocks that move at its upper end.
 void add_safety(Summary& summary, const analysis::Bracket& bracket, const std::string& what_moves);
 
 // Lines that end a message, each after a line break.

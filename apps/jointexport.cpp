@@ -1,4 +1,4 @@
-// jointexport: what a file of the chain holds, in the formats of other tools.
+// jointexport: writes the content of a file of the chain in the formats of other tools.
 //
 //   jointexport result.h5 -o result.xdmf2                     the zones at all states, for ParaView
 //   jointexport result.h5 -o result.vtu                       the zones at the last state
@@ -50,7 +50,7 @@ bool is_offered(const View& view, store::FileKind kind, const std::string& forma
            (!view.of_result || kind >= store::FileKind::result);
 }
 
-// What is meant when --what is not given.
+// The default of --what.
 std::string_view usual(store::FileKind kind, const std::string& format)
 {
     if (kind >= store::FileKind::result)
@@ -89,7 +89,7 @@ std::string chosen(const Arguments& arguments, store::FileKind kind, const std::
                       " file can have: " + offered);
 }
 
-// The row of the states that is meant: a number, a stage (its state after removal), or the last.
+// The row of the states that --state names: a number, a stage (its state after removal), or the last.
 std::size_t chosen_state(const Arguments& arguments, const States& states)
 {
     const std::string wanted = arguments.text("state").value_or("last");

@@ -77,7 +77,7 @@ void report(const Network& network)
     summary.add("  inside, cut back", total(fates.dangling_end), "m");
     summary.add("  merged away", total(fates.merged), "m");
     if (const double extended = total(fates.extended); extended > 0)
-        summary.add("carried on", extended, "m");
+        summary.add("extended", extended, "m");
     summary.add("joints dropped",
                 std::count(fates.fate.begin(), fates.fate.end(), static_cast<Index>(JointFate::dropped)));
     std::vector<double> on_edges(network.names.joint_set.size(), 0.0);
@@ -125,11 +125,11 @@ void generate(const Arguments& arguments)
 
         // 3. Its blocks.
         network.blocks = blocks::cut(scene, network.joints);
-    } catch (const input_error& error) { // of what one key alone does not tell
+    } catch (const input_error& error) { // of several keys together
         throw input_error(input + ": " + error.what());
     }
 
-    // 4. What the network is like, beside what the scene asked for.
+    // 4. Statistics of the network, beside the scene's laws.
     if (arguments.has("report"))
         network.statistics = statistics::statistics_of(scene, network);
 

@@ -171,7 +171,7 @@ std::string_view shortened(std::string_view text, std::size_t most)
     return text.substr(0, size);
 }
 
-// Takes the stack that the work may need now: where memory is limited, a stack that cannot grow later is a crash. A
+// Uses the stack that the work may need now. Where memory is limited, a stack that cannot grow later ends in a crash. A
 // small stack is left as it is.
 [[gnu::noinline]] void reserve_stack()
 {
@@ -200,10 +200,9 @@ bool is_same_file(const std::filesystem::path& one, const std::filesystem::path&
     return std::filesystem::equivalent(one, other, absent) || without_links(one) == without_links(other);
 }
 
-// Threads that wait for each other do so busily, by default for milliseconds: beside other programs that keep
-// all processors busy a run then takes tens of times as long. For how long, the OpenMP library (libgomp)
-// takes from the environment before main() begins; so the program starts once more with it. Where that cannot
-// be, it goes on.
+// Threads that wait for each other spin, by default for milliseconds. Beside other programs that use all processors a
+// run then takes tens of times as long. The OpenMP library (libgomp) reads the time of spinning from the environment
+// before main() begins. So the program sets it and starts once more. Where that is not possible, it continues.
 void start_with_short_waits(char** argv)
 {
     if (std::getenv("OMP_WAIT_POLICY") != nullptr || std::getenv("GOMP_SPINCOUNT") != nullptr)
@@ -314,7 +313,7 @@ std::optional<double> Arguments::number(const std::string& option, const Range& 
 int Arguments::threads() const
 {
     const auto wanted = static_cast<int>(whole_number("threads", 1, 1024).value_or(1));
-    // OpenMP ends the program where it cannot start its threads: so as many are started here before.
+    // OpenMP ends the program where it cannot start its threads. So the same number is started here first.
     std::latch all(1);
     std::vector<std::jthread> team;
     try {
@@ -337,7 +336,7 @@ int run(const Program& program, int argc, char** argv, const std::function<void(
 {
     reserve_stack();
     std::signal(SIGXFSZ, SIG_IGN); // a file that grows past the limit is then a write error with a message
-    // Large arrays come and go. Handed back to the system each time, they cost up to a tenth of the run.
+    // Large arrays are allocated and freed often. Returning them to the system costs up to a tenth of the run.
     mallopt(M_MMAP_THRESHOLD, 1 << 30);
     mallopt(M_TRIM_THRESHOLD, 1 << 30);
     try {

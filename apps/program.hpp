@@ -40,12 +40,12 @@ enum ExitCode {
     exit_internal = 5   // anything else, memory that ran out among it
 };
 
-// A search that has not come to its end: exit code 3.
+// A search that has not converged: exit code 3.
 struct fit_error : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-// "result.failed.h5" for "result.h5": where what did not come to its end is kept.
+// "result.failed.h5" for "result.h5": the file of a run, or a search, that failed.
 std::string failed_name(const std::string& output);
 
 // An option of one program. All options are long ones (--name), and are given at most once.
@@ -72,8 +72,8 @@ struct NamedFile {
     std::string path, name;
 };
 
-// Refuses a file to write that is also one to read, or another one to write: what it holds would be lost. Two paths are
-// one file whatever links and folders they go through, also where there is no file yet.
+// Refuses an output that is also an input, or another output: its content would be lost. Two paths are one file
+// whatever links and folders they go through, also where there is no file yet.
 void refuse_overwriting(const std::vector<NamedFile>& read, const std::vector<NamedFile>& written);
 
 // Writes a text as a file that appears when it is whole. Throws file_error.
@@ -91,7 +91,7 @@ public:
     bool has(const std::string& option) const { return given_.contains(option); }
     bool quiet() const { return has("quiet"); }
 
-    // Those of the options that are given, as files; "input" and "output" are options, too.
+    // The files of those options that are given; "input" and "output" are options, too.
     std::vector<NamedFile> files(const std::vector<std::string>& options) const;
 
     // The value of an option, or nothing if it is not given.
@@ -115,7 +115,7 @@ private:
 // `body` throws becomes a message on stderr, "jointgen: scene.toml:12: ...", and an exit code.
 int run(const Program& program, int argc, char** argv, const std::function<void(const Arguments&)>& body);
 
-// A progress bar on stderr, if that is a terminal; in a pipe it writes nothing. The destructor wipes it out.
+// A progress bar on stderr, if that is a terminal; in a pipe it writes nothing. The destructor clears it.
 class Progress
 {
 public:

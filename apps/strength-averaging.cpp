@@ -32,7 +32,7 @@ const Program program{
     .example = "strength-averaging network.h5 -o joints.h5",
 };
 
-// To four digits.
+// A number with four digits.
 std::string digits(double value)
 {
     std::array<char, 32> text{};
@@ -49,7 +49,7 @@ std::string beside(double joint, std::optional<double> bridges, double equivalen
            digits(equivalent / unit) + " equivalent";
 }
 
-// Of each set what was wanted, what is there, and its joints beside what they are made of.
+// For each set: persistence, target and achieved; and the properties of joints, bridges and their averages.
 void report(const Network& network, const EquivalentJoints& joints)
 {
     const SetAverages& sets = joints.sets;

@@ -13,7 +13,7 @@ namespace jointcreep::analysis
 namespace
 {
 
-// Of a stage's increment, where the implicit engine finds no equilibrium at its end.
+// How often a stage's increment is halved where the implicit engine finds no equilibrium at its end.
 constexpr int most_halvings_of_an_increment = 5;
 
 // The times when something other than creep happens: stages, corners of the loading, first readings, the end.
@@ -32,7 +32,7 @@ std::set<double> dates_of(const Section& section)
     return dates;
 }
 
-// After this nothing happens but creep.
+// The time of the last event; after it only creep remains [s].
 double last_event_of(const Section& section)
 {
     const std::vector<Stage>& stages = section.scene.stages;
@@ -83,13 +83,13 @@ void Analysis::go_on(Result so_far, Checkpoint kept)
     follow_schedule(section_.now);
 }
 
-// 2. The in-situ equilibrium. Everything is counted from here.
+// 2. The in-situ equilibrium. Displacements count from here.
 void Analysis::settle_in_situ()
 {
     section_.say("in-situ equilibrium");
     const mechanics::State given = state_of(section_.rock);
     try {
-        engines_.check_held();
+        engines_.check_supported();
         engines_.settle(0);
     } catch (const equilibrium_error&) {
         go_back(section_.rock, given);
@@ -121,8 +121,7 @@ void Analysis::follow_schedule(double after)
             section_.recorder.start_readings(section_.result, point.first_reading);
 }
 
-// 3. Creep, and what the loading does meanwhile, up to a date. Where rock may move far it is at rest between
-// stages.
+// 3. Creep and changes of load, up to a date. With large displacements nothing moves between stages.
 void Analysis::go_to(double date)
 {
     if (!dynamics_)
@@ -133,7 +132,7 @@ void Analysis::go_to(double date)
     }
 }
 
-// Those that are left, and the first readings after them.
+// The stages of a date, and the first readings after them.
 void Analysis::excavate_stages_of(double date)
 {
     const std::vector<Stage>& stages = section_.scene.stages;
@@ -142,8 +141,7 @@ void Analysis::excavate_stages_of(double date)
     section_.recorder.start_readings(section_.result, section_.now);
 }
 
-// 4. Take away what a stage removes, and unload what is left; or, where rock may move far, follow it until it
-// is at rest.
+// 4. Excavate the rock of a stage, and unload what is left. With large displacements: a dynamic analysis until rest.
 void Analysis::excavate(const Stage& stage)
 {
     watchers_.tell(&Watcher::stage_begins);
@@ -164,17 +162,17 @@ void Analysis::excavate(const Stage& stage)
     section_.stage.clear();
 }
 
-// In the scene's increments; in smaller ones where the implicit engine finds no equilibrium nearby.
+// In the scene's increments. In smaller ones where the implicit engine finds no equilibrium nearby.
 void Analysis::unload(const std::vector<Vector2d>& released)
 {
-    engines_.check_held();
+    engines_.check_supported();
     const std::vector<Vector2d> load = section_.rock.load;
     const int finest = section_.engine == EngineChoice::relaxation ? 1 : 1 << most_halvings_of_an_increment;
     const int n = finest * section_.scene.equilibrium.unloading_increments;
     for (int done = 0, increment = finest; done < n;) {
-        const double held = 1 - static_cast<double>(done + increment) / n;
+        const double still_applied = 1 - static_cast<double>(done + increment) / n;
         for (std::size_t g = 0; g < load.size(); ++g)
-            section_.rock.load[g] = load[g] + held * released[g];
+            section_.rock.load[g] = load[g] + still_applied * released[g];
         if (!engines_.settles_nearby({}, section_.now)) {
             if (increment > 1) {
                 increment /= 2;
@@ -183,12 +181,11 @@ void Analysis::unload(const std::vector<Vector2d>& released)
             engines_.settle_by_relaxation(section_.now);
         }
         done += increment;
-        watchers_.tell(&Watcher::equilibrium_ends, held);
+        watchers_.tell(&Watcher::equilibrium_ends, still_applied);
     }
 }
 
-// The state before a stage, by the parts that it belongs to. Everything else is made from the scene, or found
-// anew in a stage.
+// The state before a stage, part by part. Everything else is made from the scene, or computed again in a stage.
 void Analysis::transfer(const Transfer& to, Checkpoint& kept)
 {
     to.value(next_stage_, kept.stage);

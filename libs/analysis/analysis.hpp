@@ -1,8 +1,8 @@
-// A section on its way through excavation and creep: the method, from the in-situ state to the scene's end.
+// Analysis of a section: in-situ equilibrium, excavation in stages, creep, to the scene's end.
 //
-// The schedule of stages and steps. Equilibria are found by analysis/engines.hpp, creep's steps made by
-// analysis/creep_steps.hpp, dynamic analyses by analysis/dynamic_stage.hpp. What records the analysis, keeps
-// checkpoints and finds sensitivities watches it (analysis/watcher.hpp).
+// Here is the schedule of stages and steps. Equilibria are found by analysis/engines.hpp, creep steps made by
+// analysis/creep_steps.hpp, dynamic analyses by analysis/dynamic_stage.hpp. Recording, checkpoints and
+// sensitivities are watchers (analysis/watcher.hpp).
 
 #pragma once
 
@@ -29,17 +29,18 @@ public:
     Analysis(const Scene& scene, const Network& network, const EquivalentJoints& joints, int threads,
              const Recording& recording, const Observer& observe);
 
-    // From the in-situ state to the scene's end, by the steps numbered in the source; once. Throws
-    // equilibrium_error where there is no equilibrium: result() then goes up to the last one, and says in
-    // `failure` what moves. (If it is the in-situ one that is missing, its row and state are those given.)
+    // From the in-situ state to the scene's end, by the steps numbered in the source; once. Throws equilibrium_error
+    // where there is no equilibrium. result() then ends with the last one, and `failure` says what moves. (Without an
+    // in-situ equilibrium its row and state are those given.)
     void run();
 
-    // The same from a checkpoint on, with the result up to there: as if the run that was kept had gone on.
-    // What was kept is moved from. Throws input_error where the sizes are not those of this section.
+    // The same from a checkpoint, with the result up to there. The result is that of the run that wrote it. `kept` is
+    // moved from. Throws input_error where the sizes are not those of this section.
     void go_on(Result so_far, Checkpoint kept);
 
     const Result& result() const { return section_.result; }
-    // Of the histories' displacements, [parameter][time, point]: per unit of the parameter's logarithm [m].
+    // Sensitivities of the histories' displacements, [parameter][time, point]: per unit of the parameter's
+    // logarithm [m].
     const std::vector<std::vector<Vector2d>>& sensitivities() const { return section_.sensitivities; }
     const mechanics::Assembly& rock() const { return section_.rock; }
     EngineChoice engine() const { return section_.engine; }

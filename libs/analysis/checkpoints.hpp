@@ -1,4 +1,4 @@
-// Keeps what every stage begins with, so that another run can go on from there.
+// Keeps the state before every stage, so that another run can continue from there.
 
 #pragma once
 
@@ -19,7 +19,7 @@ public:
     {
     }
 
-    // The stage that the analysis goes on from is kept already.
+    // The stage that the analysis continues from has its checkpoint already.
     void skip_next() { skips_next_ = true; }
 
     void stage_begins() override

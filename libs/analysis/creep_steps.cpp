@@ -12,14 +12,14 @@ namespace jointcreep::analysis
 namespace
 {
 
-// Of a step in which the implicit engine finds no equilibrium at its end. After that the step is tried as a
-// whole, by dynamic relaxation.
+// How often a step is halved where the implicit engine finds no equilibrium at its end. After that the whole step is
+// tried by dynamic relaxation.
 constexpr int most_halvings_of_a_step = 5;
 
-// Of one creep step where contacts close: in rock full of open joints some close all the time.
+// How often one creep step is cut where contacts close. In rock full of open joints some close all the time.
 constexpr int most_cuts = 6;
 
-// Throws if steps of a fixed length would be more than anyone can want.
+// Throws if a fixed step length gives too many steps.
 void check_number_of_steps(double from, double to, const CreepSettings& creep)
 {
     constexpr double most = 1e6;
@@ -30,8 +30,8 @@ void check_number_of_steps(double from, double to, const CreepSettings& creep)
                           shown(most));
 }
 
-// The published creep step is stable up to a limit that joints and rocks set; beyond it its answer would be
-// wrong. A fixed step beyond it is refused; chosen steps stay below.
+// The published scheme is stable below a step length that depends on joints and rocks; beyond it results are wrong. A
+// longer fixed step is refused; chosen steps stay below.
 std::optional<StableLimit> limit_of_published(const Section& section)
 {
     const Scene& scene = section.scene;
@@ -106,8 +106,8 @@ double CreepSteps::next_target(double date, double longest) const
     return step < (1 - 1e-12) * remaining ? section_.now + step : date;
 }
 
-// In one step, or in some where contacts close on the way: times of rows stay the same whatever contacts do.
-// False if the error of a step is too large.
+// One step, or several where contacts close before its end. The times of rows do not depend on contacts. False if the
+// error of a step is too large.
 bool CreepSteps::reaches(double target, bool may_stop)
 {
     int cuts_left = most_cuts;
@@ -122,8 +122,8 @@ bool CreepSteps::reaches(double target, bool may_stop)
     return true;
 }
 
-// One step of creep and loading, to the target or to where an open contact closes before. False if its error
-// is too large: then nothing has happened but that the next step will be shorter.
+// One step of creep and loading, to the target, or to where an open contact closes before it. False if its error is
+// too large: then only the length of the next step has changed.
 bool CreepSteps::step_to(double target, int& cuts_left)
 {
     mechanics::Assembly& rock = section_.rock;
@@ -201,7 +201,7 @@ bool CreepSteps::settles_at(double end, bool by_relaxation, const mechanics::Sta
     }
 }
 
-// How far gridpoints may be expected to move [m]: creep slows down.
+// A guess of the displacements in the next step [m]: creep slows down.
 std::vector<Vector2d> CreepSteps::guess(double duration) const
 {
     std::vector<Vector2d> guess = last_move_;
@@ -233,7 +233,7 @@ void CreepSteps::transfer(const Transfer& to, Checkpoint& kept)
         creep_->transfer(to, kept);
     if (length_)
         length_->transfer(to, kept);
-    // Only what is left over from the last that was recorded counts.
+    // Steps count from the last recorded state.
     steps_ %= std::max<std::uint64_t>(state_every_, 1);
     to.value(steps_, kept.steps_since_state);
 }

@@ -21,7 +21,7 @@ struct unstable_step : input_error {
     using input_error::input_error;
 };
 
-// The longest stable creep step, and what sets it: a joint or rock, by name.
+// The longest stable creep step, and the joint or rock that limits it, by name.
 struct StableLimit {
     double step; // [s]
     std::string of;
@@ -33,20 +33,20 @@ public:
     // Every `state_every` creep steps a state is due; 0: at dates only. Throws unstable_step.
     CreepSteps(Section& section, Engines& engines, const Watchers& watchers, std::uint64_t state_every);
 
-    // After the in-situ equilibrium: what creeps has long crept under the stress there.
+    // To be called after the in-situ equilibrium: creep under the in-situ stress has long ended.
     void begin();
 
     // Steps to a date [s]. If it `may_stop` creep ends where the scene's stop rate is reached.
     void go_to(double date, bool may_stop);
 
-    // After a sudden change of loads: what was learnt from the steps before no longer holds.
+    // To be called after a sudden change of loads: what earlier steps showed no longer holds.
     void start_afresh();
 
     // What a checkpoint keeps of it.
     void transfer(const Transfer& to, Checkpoint& kept);
 
     bool creeps() const { return length_.has_value(); }
-    // Of the published scheme.
+    // The limit of the published scheme.
     const std::optional<StableLimit>& stable_limit() const { return stable_limit_; }
     // Where the stop rate ended it, since start [s].
     std::optional<double> end() const { return end_; }

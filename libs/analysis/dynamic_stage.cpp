@@ -42,7 +42,7 @@ std::vector<Index> material_of_contacts(const Section& section)
     return number;
 }
 
-// Of contacts that form in a dynamic analysis: friction alone, the residual one where there is one.
+// The law of contacts that form in a dynamic analysis: friction only, the residual one where there is one.
 joint::Law law_of_new_contacts(const Scene& scene)
 {
     const auto material =
@@ -116,7 +116,7 @@ bool DynamicStage::comes_to_rest(double until)
     return false;
 }
 
-// Keeps the state that the analysis has come to, and says what moves.
+// Records the present state, and ends the analysis with the blocks that move.
 void DynamicStage::give_up(const mechanics::no_equilibrium& error)
 {
     dynamics_.put_back();
@@ -142,7 +142,7 @@ void DynamicStage::note_rest()
     effort.searches = 1;
 }
 
-// Of the state that was recorded last.
+// Adds the state that was recorded last to the dynamic history.
 void DynamicStage::record()
 {
     DynamicsHistory& history = section_.result.dynamics;
@@ -179,8 +179,9 @@ void DynamicStage::record_energy()
     largest_error_ = std::max(largest_error_, std::abs(energy.error()));
 }
 
-// Of the dynamic analysis that has ended. Where rock only settles, all parts are small, and an error of the
-// first step, which goes with the square of its length, is not small beside them.
+// Checks the energy balance of the dynamic analysis that has ended. Where rock only settles, all energies are
+// small. The error of the first step, which is proportional to the square of its length, is then not small beside
+// them.
 void DynamicStage::check_energy()
 {
     const double off = largest_error_ / largest_energy_;

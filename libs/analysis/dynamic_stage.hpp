@@ -1,4 +1,4 @@
-// A stage where rock may move far: a dynamic analysis with large displacements, until rest.
+// A stage with large displacements: a dynamic analysis until rest.
 
 #pragma once
 
@@ -12,15 +12,16 @@ namespace jointcreep::analysis
 class DynamicStage
 {
 public:
-    // After the in-situ equilibrium.
+    // To be made after the in-situ equilibrium.
     DynamicStage(Section& section, const Watchers& watchers);
 
-    // In situ: contacts between faces are a little other than those between gridpoints, and find their
-    // equilibrium first. Displacements count from there.
+    // In situ: contacts between faces differ a little from those between gridpoints, so their equilibrium is found
+    // first. Displacements count from there.
     void settle_in_situ();
 
-    // After a stage's rock has been removed: the motion until equilibrium, recorded every so many seconds, with a
-    // row and a state at equilibrium. Throws equilibrium_error where there is none; the result has the last state.
+    // After a stage's rock is removed: the dynamic analysis until equilibrium, recorded every so many seconds, with
+    // a row and a state at equilibrium. Throws equilibrium_error where there is none; the result has the last
+    // state.
     void run();
 
     // What a checkpoint keeps of it.

@@ -13,8 +13,8 @@ void Engines::settle(double time)
         settle_by_relaxation(time);
 }
 
-// All rock is elastic in it. Where some is beyond its strength in the end, dynamic relaxation goes on from
-// there.
+// The implicit engine takes all rock as elastic. Where some is beyond its strength at the end, dynamic relaxation
+// continues from there.
 bool Engines::settles_nearby(const std::vector<Vector2d>& guess, double time)
 {
     if (section_.engine == EngineChoice::relaxation)
@@ -35,7 +35,7 @@ bool Engines::settles_nearby(const std::vector<Vector2d>& guess, double time)
     return found.has_value();
 }
 
-// From an elastic equilibrium in which this zone is beyond its strength.
+// Continues from an elastic equilibrium in which this zone is beyond its strength.
 void Engines::yield_by_relaxation(double time, Index zone)
 {
     section_.rock.zones.holds_yield = false;
@@ -91,13 +91,13 @@ mechanics::Convergence Engines::relax(double time)
 }
 
 // No step is taken.
-void Engines::check_held()
+void Engines::check_supported()
 {
-    Failure failure = mechanics::failure_of_unheld(section_.mesh(), section_.rock);
+    Failure failure = mechanics::failure_of_unsupported(section_.mesh(), section_.rock);
     if (failure.block.empty())
         return;
     failure.moves_on = 1;
-    failure.reason = "no equilibrium: no boundary and no contact holds some of the rock";
+    failure.reason = "no equilibrium: no boundary and no contact supports some of the rock";
     fail(section_, std::move(failure), section_.now);
 }
 

@@ -18,16 +18,16 @@ public:
     // in Section::settled. Throws equilibrium_error where there is none.
     void settle(double time);
 
-    // By the implicit engine, unless only dynamic relaxation is asked for; false if there is none nearby.
+    // Equilibrium by the implicit engine, unless only dynamic relaxation is asked for; false if it finds none nearby.
     // `guess` is how far gridpoints may be expected to move [m], or empty.
     bool settles_nearby(const std::vector<Vector2d>& guess, double time);
 
-    // By dynamic relaxation, unless only the implicit engine is asked for. The `reason` for which it is not
-    // the implicit engine is that engine's own where none is given.
+    // Equilibrium by dynamic relaxation, unless only the implicit engine is asked for. `reason`: why the implicit
+    // engine was not used; empty: that engine's own message.
     void settle_by_relaxation(double time, const std::string& reason = {});
 
-    // Rock that nothing holds falls without end: throws equilibrium_error that names it.
-    void check_held();
+    // Throws equilibrium_error that names rock without support, which falls without end.
+    void check_supported();
 
     implicit::Solver& implicit_engine() { return implicit_; } // with its last factor
 

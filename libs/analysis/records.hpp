@@ -13,7 +13,7 @@ class Records : public Watcher
 public:
     explicit Records(Section& section) : section_(section) {}
 
-    void equilibrium_ends(double /*held*/) override { record_equilibrium(); }
+    void equilibrium_ends(double /*still_applied*/) override { record_equilibrium(); }
     void step_ends(const Step&) override { record_equilibrium(); }
     void row_is_due(const std::string& event) override
     {

@@ -1,5 +1,5 @@
-// A factor of safety by strength reduction: the factor F that strengths can be divided by before the rock has
-// no equilibrium any more (libs/joint/strength_factor.hpp). What is found is a bracket, by whole runs.
+// Factor of safety by strength reduction: the largest factor F that strengths can be divided by with every equilibrium
+// found (libs/joint/strength_factor.hpp). The result is a bracket of F, by whole runs.
 
 #pragma once
 
@@ -13,7 +13,7 @@
 namespace jointcreep::analysis
 {
 
-// How a run ends: every equilibrium found; rock seen to slide or fall; or no answer within the limits of the search.
+// How a run ends: every equilibrium found; rock seen to slide or fall; or undecided within the limits of the search.
 enum class Ending { stands, falls, undecided };
 
 // An analysis with strengths divided by a factor [-].
@@ -23,7 +23,7 @@ public:
     Trial(const Scene& scene, const Network& network, const EquivalentJoints& joints, double factor,
           int threads, const Recording& recording, const Observer& observe);
 
-    // As those of Analysis, once; where there is no equilibrium they end with a message.
+    // The same as in Analysis, once. Without an equilibrium they end with a message.
     void run();
     void go_on(Result so_far, Checkpoint kept);
 
@@ -41,13 +41,13 @@ private:
 };
 
 struct Bracket {
-    std::optional<double> stands;    // the largest factor that stood [-]; none if nothing stood
-    std::optional<double> not_above; // the smallest one that did not; none if everything stood
+    std::optional<double> stands;    // largest factor with every equilibrium [-]; none if no run has
+    std::optional<double> not_above; // smallest factor without; none if all runs have
     Safety trials;                   // in the order they were made
 };
 
-// Doubles or halves the factor from 1, to 64 or 1/64 at most, then halves the bracket until it is no wider
-// than `width` times its lower end. What is undecided counts as not standing.
+// Doubles or halves the factor from 1, to 64 or 1/64 at most. Then halves the bracket until it is no wider than
+// `width` times its lower end. Undecided runs count as without equilibrium.
 Bracket bracket_of(const std::function<Ending(double factor)>& trial, double width);
 
 } // namespace jointcreep::analysis

@@ -1,5 +1,4 @@
-// The section that an analysis works on: its rock, how far it is, and what has been found. All parts of the
-// analysis share it.
+// What all parts of an analysis share: the section and its rock, the present time, and the results so far.
 
 #pragma once
 
@@ -25,13 +24,13 @@ using mechanics::Vector2d;
 struct Recording {
     std::uint64_t state_every = 0;        // creep steps
     std::uint64_t step_history_every = 0; // solver steps
-    // Whose sensitivities are found along with the histories: by the implicit engine alone.
+    // Parameters of sensitivities, found with the histories by the implicit engine alone.
     std::vector<sensitivity::Parameter> parameters{};
-    // Told before every stage what it begins with, and the result so far.
+    // Gets the state before every stage, and the result so far.
     std::function<void(const Result&, const Checkpoint&)> keep{};
 };
 
-// Told how far an analysis is, from 0 to 1, and what is being done.
+// Called with the progress of an analysis, from 0 to 1, and what is being done.
 using Observer = std::function<void(double fraction, const std::string& what)>;
 
 // What the summary counts.
@@ -76,7 +75,8 @@ struct Section {
     Observer observe;
     EngineChoice engine;
     Result result;
-    // Of the histories' displacements, [parameter][time, point]: per unit of the parameter's logarithm [m].
+    // Sensitivities of the histories' displacements, [parameter][time, point]: per unit of the parameter's
+    // logarithm [m].
     std::vector<std::vector<Vector2d>> sensitivities;
     mechanics::Assembly rock;
     mechanics::Loading loading;
@@ -87,7 +87,7 @@ struct Section {
     Findings findings;
 };
 
-// What an edge's joint is called: its set, or the material of the joint that a boundary rests on.
+// The name of an edge's joint: its set, or the material of the joint that a boundary rests on.
 std::string joint_name(const Scene& scene, const Network& network, Index edge);
 
 // Contacts, by joint, that do not stick.

@@ -11,9 +11,9 @@ Sensitivities::Sensitivities(std::vector<sensitivity::Parameter> parameters, Sec
     section.sensitivities.resize(sensitivity_.size());
 }
 
-void Sensitivities::equilibrium_ends(double held)
+void Sensitivities::equilibrium_ends(double still_applied)
 {
-    sensitivity_.settle(section_.rock, engine_, section_.now, held);
+    sensitivity_.settle(section_.rock, engine_, section_.now, still_applied);
 }
 
 void Sensitivities::displacements_start()

@@ -17,7 +17,7 @@ public:
     // Section::sensitivities.
     Sensitivities(std::vector<sensitivity::Parameter> parameters, Section& section, implicit::Solver& engine);
 
-    void equilibrium_ends(double held) override;
+    void equilibrium_ends(double still_applied) override;
     void displacements_start() override;
     void creep_begins(const creep::Creep& creep) override;
     void step_begins() override;

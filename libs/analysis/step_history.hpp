@@ -30,7 +30,7 @@ public:
     }
     void end() { solver_time_ += since_begin_; }
 
-    // What a checkpoint keeps. Of the steps those count that are left over from the last recorded one.
+    // What a checkpoint keeps. Steps count from the last recorded one.
     void transfer(const Transfer& to, Checkpoint& kept)
     {
         to.value(solver_time_, kept.solver_time);

@@ -1,5 +1,5 @@
-// What watches an analysis: it is told at the moments below. The schedule (analysis/analysis.hpp) does not know
-// what watches it.
+// Watchers of an analysis: their functions are called at the moments below. The schedule (analysis/analysis.hpp) does
+// not know them.
 
 #pragma once
 
@@ -16,7 +16,7 @@ namespace jointcreep::analysis
 struct Step {
     double end;                    // since start [s]
     double duration;               // [s]
-    bool is_whole;                 // goes as far as it was to go, and is not cut short where a contact closes
+    bool is_whole;                 // has its full length: not cut short where a contact closes
     const creep::Creep* creep;     // none: only the loading changes
     const creep::Closing* closing; // none: the creep scheme is of first order, and no step is cut
 };
@@ -26,21 +26,21 @@ class Watcher
 public:
     virtual ~Watcher() = default;
 
-    // There is an equilibrium in which `held` is the share of the last stage's forces that still act.
-    virtual void equilibrium_ends(double /*held*/) {}
-    // In situ, with the equilibrium there: displacements count from here.
+    // An equilibrium was found. `still_applied` is the share of the last stage's forces that still act [-].
+    virtual void equilibrium_ends(double /*still_applied*/) {}
+    // In situ, at equilibrium: displacements count from here.
     virtual void displacements_start() {}
-    // After that, with what creeps.
+    // Called after that, with the creep of joints and rock.
     virtual void creep_begins(const creep::Creep&) {}
 
-    // A step of creep and loading begins. There is an equilibrium at its end; then either its error is too
-    // large, and everything is as it was at its start, or it stands and has ended.
+    // A step of creep and loading begins. An equilibrium is found at its end. Then the step is rejected for its error,
+    // and everything is as it was at its start; or it is accepted and has ended.
     virtual void step_begins() {}
     virtual void step_settles(const Step&) {}
     virtual void step_is_rejected() {}
     virtual void step_ends(const Step&) {}
-    // Meanwhile, no equilibrium was found at its end: it becomes half as long. Or there is one at the end of
-    // this step, and it will be cut short where a contact closes.
+    // In between: no equilibrium was found at its end, and the step is halved. Or one was found, and the step will be
+    // cut short where a contact closes.
     virtual void step_is_halved() {}
     virtual void step_is_cut(const Step&) {}
 
@@ -56,7 +56,7 @@ public:
     virtual void state_is_due(const std::string& /*event*/) {}
 };
 
-// Those that watch an analysis, told one after the other.
+// The watchers of an analysis, called in this order.
 class Watchers
 {
 public:

@@ -44,7 +44,7 @@ Rows rows_at(const History& history, double day, bool first)
     return {{row - 1, 1 - share}, {row, share}};
 }
 
-// How far the straight way between two rows may be off, by the bend of the row before: second differences.
+// Error of linear interpolation between two rows, estimated by second differences at the row before [m].
 double bend(const History& history, const Rows& rows, std::size_t point, int component)
 {
     if (rows.size() < 2 || rows[0].first == 0)
@@ -64,8 +64,8 @@ double deviation_of(const scene::Measurement& measurement)
     return measurement.deviation.value_or(usual_deviation);
 }
 
-// What is left of residuals, and of their derivatives, once they are made independent of each other. Readings
-// that count from a first one share its error, of the deviation sigma_0: over their own deviations their
+// Residuals and their derivatives, transformed so that they are independent of each other. Readings
+// that count from a first one share its error, of deviation sigma_0. Over their own deviations their
 // covariance is 1 + v v^T, v_i = sigma_0 / sigma_i, and
 //     (1 + v v^T)^(-1/2) = 1 - (1 - 1 / sqrt(1 + v.v)) v v^T / v.v .
 // The sum of squares is then that with a free offset of each point and direction, the first reading, 0, being
@@ -113,7 +113,7 @@ public:
         }
     }
 
-    // Those that tell anything: a first reading is 0 by itself.
+    // Readings that count: a first reading is 0 by definition.
     const std::vector<std::size_t>& readings() const { return readings_; }
 
     void apply(Evaluation& at) const
@@ -244,7 +244,7 @@ Found fit(const Scene& scene, const Network& network, const EquivalentJoints& jo
             // Before the first stage nothing moves, whatever the factors.
             if (is_first && at.jacobian.norm() == 0)
                 throw input_error("no factor changes any of the readings; wanted readings from the first "
-                                  "stage on, of what the factors change");
+                                  "stage on that depend on the factors");
             whitening.apply(at);
             done.push_back({logarithms, std::move(found.displacement), std::move(found.interpolation_error)});
             return at;

@@ -1,5 +1,4 @@
-// Back analysis: the factors on joint constants and in-situ stress with which a section moves as was
-// measured.
+// Back analysis: the factors on joint constants and in-situ stress that fit measured displacements.
 //
 // Each evaluation is an analysis from the in-situ state to the scene's end, with sensitivities found along
 // with it (libs/sensitivity); least squares (libs/estimation) over the factors' logarithms.
@@ -20,8 +19,8 @@ struct Factor {
 
 struct Settings {
     std::vector<Factor> factors;
-    // Measurements count from each point's first reading, not from the start: it has been taken off all of
-    // a point's displacements in a direction, and its error is in all of them.
+    // Measurements count from each point's first reading, not from the start. It has been subtracted from all
+    // displacements of a point in a direction, so that all of them have its error.
     bool since_first_reading = false;
     int threads = 1;
     int most_runs = 60;
@@ -43,23 +42,23 @@ struct Found {
                                  // none, made independent where they share a first reading's error
     estimation::Confidence confidence;
     std::vector<Computed> computed; // of the measurements
-    // Between its steps an analysis is taken to go straight; by how much that may be off, each [m].
+    // Error of linear interpolation between the steps of the analysis, by estimate [m].
     std::vector<double> interpolation_error;
-    std::vector<WithoutAnswer> without_answer; // runs that the search turned back from
+    std::vector<WithoutAnswer> without_answer; // in the search
 };
 
-// Told before every run, with the factors it is for.
+// Called before every run, with its factors.
 using RunObserver = std::function<void(int run, const std::vector<double>& factors)>;
 
-// Throws input_error where the measurements are not of what the section has (rock that is gone, times before
-// a first reading, that reading itself and not 0), where no factor changes any of them, and equilibrium_error
-// where there is no equilibrium at the start. Elsewhere in the search factors without an equilibrium, or with
-// which the scene's creep step is not stable, are kept away from; anything else that a run refuses ends it.
+// Throws input_error where the measurements are not of what the section has (removed rock, times before a first
+// reading, a first reading that is not 0), and where no factor changes any of them. Throws equilibrium_error where
+// there is no equilibrium at the start. Elsewhere the search avoids factors without equilibrium, and factors with
+// which the scene's creep step is not stable. Anything else that a run refuses ends the search.
 Found fit(const Scene& scene, const Network& network, const EquivalentJoints& joints,
           const std::vector<scene::Measurement>& measurements, const Settings& settings,
           const RunObserver& observe = {});
 
-// What an analysis has for the measurements [m], and their sensitivities, [measurement, parameter].
+// The measurements as an analysis computes them [m], and their sensitivities, [measurement, parameter].
 struct Prediction {
     std::vector<double> displacement;
     estimation::MatrixXd sensitivity;

@@ -43,7 +43,7 @@ std::int64_t euler(const Graph& graph, const Faces& faces)
 void check_faces(const Graph& graph, const Faces& faces, double section_area, std::size_t section_holes)
 {
     const auto refuse = [](const std::string& what) {
-        throw input_error("cutting: " + what + "; another shortest_edge_m may settle");
+        throw input_error("cutting: " + what + "; try another shortest_edge_m");
     };
     const auto near = [&](Index v) { return " near " + shown(graph.vertex[v]); };
     if (!crosses_nowhere(graph))

@@ -161,7 +161,7 @@ public:
             if (pass == most_passes)
                 throw input_error("cutting: after " + std::to_string(most_passes) +
                                   " passes edges still come closer than " + shown(reach_) +
-                                  " m; a smaller shortest_edge_m may settle");
+                                  " m; try a smaller shortest_edge_m");
             graph_ = arrange(graph_, sources_, section_box());
             drop_outside();
             prune_ends();
@@ -204,15 +204,15 @@ private:
                 add_polygon(polygon, Source::Kind::bonded);
         const std::size_t first_joint = lines_.size(), corners = graph_.vertex.size();
         for (std::size_t j = 0; j < joints_.set.size(); ++j) {
-            // An end on a slanting line is, in doubles, a little off it: a bit of overlap makes it reach.
-            // What overlaps in vain is pruned.
+            // An end on a slanting line is, in doubles, a little off it. A small overlap makes it reach the line.
+            // Overlap that crosses nothing is pruned.
             const Vector2d overlap = reach_ * (joints_.to[j] - joints_.from[j]).normalized();
             add_line(given_end(joints_.from[j], -overlap, j, corners),
                      given_end(joints_.to[j], overlap, j, corners),
                      {Source::Kind::joint, static_cast<Index>(j)});
         }
         if (scene_.cutting.dangling_ends == DanglingEnds::extend)
-            carry_on(first_joint);
+            extend_joints(first_joint);
         divide_by_parts(first_joint);
         pass_through_corners(first_joint);
         std::vector<Source> sources;
@@ -222,9 +222,8 @@ private:
         sources_ = Sources(std::move(sources));
     }
 
-    // Where a line drawn for a joint ends. One that a scene's author, or a map, lets end at a corner of a
-    // polygon ends just there: carried past it, along a side of the polygon, it would run beside that side
-    // and meet nothing.
+    // The end of a line that is drawn for a joint. An end at the corner of a polygon, given by the scene or a map,
+    // stays there. Extended along a side of the polygon, the line would run beside that side and meet nothing.
     Vector2d given_end(const Vector2d& end, const Vector2d& overlap, std::size_t joint,
                        std::size_t corners) const
     {
@@ -235,9 +234,8 @@ private:
         return end + overlap;
     }
 
-    // A single joint may lie on an earlier one, a part of it. In doubles two slanting lines hardly ever
-    // agree, and one beside the other would end at nothing; so the longer one goes through the ends of the
-    // parts.
+    // A single joint may lie on an earlier one, as a part of it. In doubles two slanting lines rarely agree, and one
+    // beside the other would end at nothing. So the longer one passes through the ends of its parts.
     void divide_by_parts(std::size_t first_joint)
     {
         const double off = reach_ / 2; // as merging has it
@@ -271,8 +269,8 @@ private:
         }
     }
 
-    // A joint along a side of the outline goes on into the rock from its corner. In doubles it would pass
-    // beside that, and end at nothing in the rock below the side; so it is taken through the corner.
+    // A joint along a side of the outline may continue into the rock at a corner. In doubles it would pass beside the
+    // corner, and end at nothing below the side. So it is led through the corner.
     void pass_through_corners(std::size_t first_joint)
     {
         const double rounding = 1e-12 * size_;
@@ -306,8 +304,8 @@ private:
         graph_.vertex[graph_.edge[line].second] = to;
     }
 
-    // Joints that end inside the section go on to the line they meet next.
-    void carry_on(std::size_t first_joint)
+    // Extends joints that end inside the section to the next line.
+    void extend_joints(std::size_t first_joint)
     {
         std::vector<Segment> drawn;
         for (const Line& line : lines_)
@@ -320,7 +318,7 @@ private:
             move_line(first_joint + j, line.from - extensions[j].before * along,
                       line.to + extensions[j].beyond * along);
             if (extensions[j].before > 0 || extensions[j].beyond > 0)
-                fates_.carry_on(static_cast<Index>(j));
+                fates_.extend(static_cast<Index>(j));
             traces_.end_before(static_cast<Index>(j), extensions[j].before > 0, extensions[j].beyond > 0);
         }
     }
@@ -440,8 +438,8 @@ private:
         remove_faces(faces, is_hole);
     }
 
-    // Edges with one face on both sides separate nothing. They are those on no closed way, so that without
-    // them no further edge has one face on both sides or ends at nothing.
+    // Removes edges with one face on both sides: they separate nothing. These are the edges on no closed path.
+    // Without them no other edge has one face on both sides, or a free end.
     void prune_slits()
     {
         const std::vector<char> gone = slits(graph_);
@@ -483,7 +481,7 @@ private:
         return any;
     }
 
-    // The boundary condition that holds an edge of the outline, -1 if none.
+    // The boundary condition on an edge of the outline, -1 if none.
     Index boundary_of(const Vector2d& p, const Vector2d& q) const
     {
         const double reach = 1e-6 * size_ + reach_ / 2;
@@ -573,24 +571,24 @@ private:
                 blocks.vertex.push_back(graph_.vertex[v]);
             }
 
-        std::vector<double> held(scene_.boundaries.size(), 0.0);
+        std::vector<double> on_boundary(scene_.boundaries.size(), 0.0);
         blocks.edge_share.push_back(0);
         for (std::size_t e = 0; e < graph_.edge.size(); ++e) {
             describe_edge(blocks, graph_.edge[e], faces.sides[e]);
             for (Index& v : blocks.edge_vertex.back())
                 v = index[v];
             if (const Index b = blocks.edge_boundary.back(); b >= 0)
-                held[b] += length(graph_.edge[e]);
+                on_boundary[b] += length(graph_.edge[e]);
         }
-        for (std::size_t b = 0; b < held.size(); ++b) {
+        for (std::size_t b = 0; b < on_boundary.size(); ++b) {
             const Boundary& boundary = scene_.boundaries[b];
             const double wanted = (boundary.to - boundary.from).norm();
-            if (std::abs(held[b] - wanted) > 1e-3 * wanted + 4 * reach_)
-                throw input_error(
-                    "boundary " + std::to_string(b + 1) + " from " + shown(boundary.from) + " to " +
-                    shown(boundary.to) + ": only " + shown(held[b]) + " of its " + shown(wanted) +
-                    " m lie on the outline and are not held by an earlier boundary; it must lie on "
-                    "a straight part of the outline");
+            if (std::abs(on_boundary[b] - wanted) > 1e-3 * wanted + 4 * reach_)
+                throw input_error("boundary " + std::to_string(b + 1) + " from " + shown(boundary.from) +
+                                  " to " + shown(boundary.to) + ": only " + shown(on_boundary[b]) +
+                                  " of its " + shown(wanted) +
+                                  " m lie on the outline and not on an earlier boundary; it must lie on "
+                                  "a straight part of the outline");
         }
 
         blocks.block_ring = faces.first_ring;
@@ -608,8 +606,9 @@ private:
         for (std::size_t s = 0; s < scene_.stages.size(); ++s)
             if (std::find(blocks.block_stage.begin(), blocks.block_stage.end(), static_cast<Index>(s)) ==
                 blocks.block_stage.end())
-                throw input_error("stage \"" + scene_.stages[s].name +
-                                  "\" removes nothing: its remove_m holds no rock that earlier stages leave");
+                throw input_error(
+                    "stage \"" + scene_.stages[s].name +
+                    "\" removes nothing: its remove_m contains no rock that earlier stages leave");
         blocks.fates = fates_.table(reach_);
         blocks.report = report_;
         measure_moves(blocks);
@@ -617,7 +616,7 @@ private:
         return blocks;
     }
 
-    // What several passes have moved has moved farther than in any one of them: as far as it is off its line.
+    // Several passes may move a vertex farther than any one of them. What counts is its distance from its line.
     void measure_moves(Blocks& blocks) const
     {
         const double rounding = 1e-12 * size_;

@@ -10,18 +10,16 @@ namespace jointcreep::blocks
 
 // The blocks of the section. `joints` may cross, touch, overlap, reach beyond the outline or run along it.
 //
-//  - Every crossing is found by exact predicates and rounded once (blocks/graph.hpp); then vertices closer
-//  than
-//    scene.cutting.shortest_edge to each other, or than half of it to an edge, are merged, and wedges
-//    narrower than scene.cutting.smallest_angle closed where that moves little; vertices on the outline stay
-//    on it, so the blocks' areas add up to the section's.
-//  - A joint that ends inside a block is cut back to the last block border it met, or carried on to the next
-//  line
-//    as rock bridge, by scene.cutting.dangling_ends.
+//  - Every crossing is found by exact predicates and rounded once (blocks/graph.hpp). Then vertices closer
+//    than scene.cutting.shortest_edge to each other, or than half of it to an edge, are merged. Wedges
+//    narrower than scene.cutting.smallest_angle are closed where that moves little. Vertices on the outline
+//    stay on it, so the blocks' areas add up to the section's.
+//  - A joint that ends inside a block is cut back to the last block border it met, or extended to the next
+//    line as rock bridge, by scene.cutting.dangling_ends.
 //  - Inside the section's holes there are no blocks.
-//  - Blocks are checked before they are given (blocks/check.hpp), and each joint's length is accounted for.
+//  - Blocks are checked (blocks/check.hpp), and each joint's length is accounted for.
 //  - An edge on several joints belongs to the one with the largest joint fraction, then to the first.
-//  - Joint edges run the way their joint runs; boundary edges have the rock on their left.
+//  - Joint edges have the direction of their joint; boundary edges have the rock on their left.
 //
 // Throws input_error where a boundary condition does not lie on the outline, where merging does not settle,
 // or where the check fails.

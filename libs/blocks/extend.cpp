@@ -52,7 +52,7 @@ std::vector<Extension> extensions_to_next(const std::vector<Segment>& lines, std
 {
     const SegmentGrid grid(lines);
     const auto at_end = [&](std::size_t i, const Vector2d& end, const Vector2d& along) {
-        const Vector2d tip = end - reach * along; // of what the line stands for
+        const Vector2d tip = end - reach * along; // end of the joint
         if (!is_in_section(tip))
             return 0.0;
         // From as far behind the tip as the line reaches beyond it.

@@ -1,4 +1,4 @@
-// Carries joints that end inside a block on to the next line. Inside libs/blocks only.
+// Extends joints that end inside a block to the next line. Inside libs/blocks only.
 
 #pragma once
 
@@ -10,15 +10,15 @@
 namespace jointcreep::blocks
 {
 
-// How far a line is carried on at each end; 0 where it meets a line there [m].
+// Length of the extension at each end; 0 where it meets a line there [m].
 struct Extension {
     double before, beyond;
 };
 
-// For every line from number `first` on: how far each end must go on, in the line's own direction, to cross
-// the line that it meets next, by `reach`. Lines are as drawn, by `reach` longer than what they stand for at
-// both ends; an end is free if no line crosses it within `reach` of that. An end outside the section
-// (is_in_section false), or with nothing ahead, stays.
+// For every line from number `first` on: the extension of each end, in the line's own direction, that crosses the
+// next line by `reach`. Lines are as drawn: by `reach` longer at both ends than their joint. An end is free if no
+// line crosses it within `reach` of the joint's end. An end outside the section (is_in_section false), or with
+// nothing ahead, is not extended.
 std::vector<Extension> extensions_to_next(const std::vector<Segment>& lines, std::size_t first, double reach,
                                           const std::function<bool(const Eigen::Vector2d&)>& is_in_section);
 

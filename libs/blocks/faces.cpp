@@ -55,8 +55,7 @@ private:
             const bool a_right = is_before(centre, a), b_right = is_before(centre, b);
             return a_right != b_right ? a_right : turn(centre, a, b) > 0;
         });
-        // With the face on the left, turn as sharply right as possible... that is, take the half-edge just
-        // before the way back, counter-clockwise.
+        // With the face on the left, take the half-edge just before the reversed one, counter-clockwise.
         for (std::size_t i = 0; i < fan.size(); ++i)
             next_[fan[i] ^ 1] = fan[i == 0 ? fan.size() - 1 : i - 1];
     }
@@ -148,7 +147,7 @@ private:
         const Vector2d &p = graph_.vertex[graph_.edge[e].first], &q = graph_.vertex[graph_.edge[e].second];
         return p.y() < q.y() ? std::pair(p, q) : std::pair(q, p);
     }
-    // Of two edges that the ray meets and that do not cross.
+    // Order of two edges that the ray meets and that do not cross.
     bool is_left_of(Index e, Index f) const
     {
         const auto [a, b] = upward(e);
@@ -188,26 +187,26 @@ bool is_rim(const std::vector<Vector2d>& vertex, std::span<const Index> ring)
     return false;
 }
 
-// Rings that visit no vertex twice: where one does, what lies between the visits is a ring of its own.
-// `visited_at`, -1 for every vertex, and `way` are room to work in.
-void split_at_pinches(std::span<const Index> ring, std::vector<Index>& visited_at, std::vector<Index>& way,
+// Splits a ring into rings that visit no vertex twice: what lies between two visits is a ring of its own.
+// `visited_at`, -1 for every vertex, and `path` are work space.
+void split_at_pinches(std::span<const Index> ring, std::vector<Index>& visited_at, std::vector<Index>& path,
                       Rings& simple)
 {
-    way.clear();
+    path.clear();
     for (const Index v : ring) {
         if (visited_at[v] >= 0) {
             const auto from = static_cast<std::size_t>(visited_at[v]);
-            simple.add(std::span(way).subspan(from));
-            for (std::size_t i = from + 1; i < way.size(); ++i)
-                visited_at[way[i]] = -1;
-            way.resize(from + 1);
+            simple.add(std::span(path).subspan(from));
+            for (std::size_t i = from + 1; i < path.size(); ++i)
+                visited_at[path[i]] = -1;
+            path.resize(from + 1);
             continue;
         }
-        visited_at[v] = static_cast<Index>(way.size());
-        way.push_back(v);
+        visited_at[v] = static_cast<Index>(path.size());
+        path.push_back(v);
     }
-    simple.add(way);
-    for (const Index v : way)
+    simple.add(path);
+    for (const Index v : path)
         visited_at[v] = -1;
 }
 
@@ -318,7 +317,7 @@ Faces trace_faces(const Graph& graph)
     faces.first_ring = {0};
     faces.ring_start = {0};
     faces.ring_vertex.reserve(rings.vertex.size());
-    std::vector<Index> visited_at(graph.vertex.size(), -1), way;
+    std::vector<Index> visited_at(graph.vertex.size(), -1), path;
     Rings simple;
     const auto add_ring = [&](std::span<const Index> ring) {
         faces.ring_vertex.insert(faces.ring_vertex.end(), ring.begin(), ring.end());
@@ -330,10 +329,10 @@ Faces trace_faces(const Graph& graph)
         const Index face = face_of_ring[r];
         double area = ring_areas[r];
         simple.clear();
-        split_at_pinches(rings[r], visited_at, way, simple);
+        split_at_pinches(rings[r], visited_at, path, simple);
         if (!holes.empty())
             for (const Index hole : holes[face]) {
-                split_at_pinches(rings[hole], visited_at, way, simple);
+                split_at_pinches(rings[hole], visited_at, path, simple);
                 area += ring_areas[hole];
             }
         // The outer ring first.

@@ -25,10 +25,10 @@ void FateRecord::add(Index joint, Fate fate, const Vector2d& from, const Vector2
     pieces_.push_back({joint, fate, low, high});
 }
 
-void FateRecord::carry_on(Index joint)
+void FateRecord::extend(Index joint)
 {
-    carried_on_.resize(joints_.set.size(), 0);
-    carried_on_[joint] = 1;
+    is_extended_.resize(joints_.set.size(), 0);
+    is_extended_[joint] = 1;
 }
 
 JointFates FateRecord::table(double tolerance) const
@@ -90,7 +90,7 @@ JointFates FateRecord::table(double tolerance) const
         table.outside[j] = of(Fate::outside);
         table.dangling_end[j] = of(Fate::dangling_end);
         table.merged[j] = std::max(0.0, length - covered);
-        if (carried_on_.empty() || !carried_on_[j])
+        if (is_extended_.empty() || !is_extended_[j])
             table.extended[j] = 0; // the overlap at its ends, or merging has moved an end
 
         JointFate fate = JointFate::kept;

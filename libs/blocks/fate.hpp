@@ -1,4 +1,4 @@
-// What becomes of each joint's line while the section is cut. Inside libs/blocks only.
+// Fates of joints: what becomes of each joint's line when the section is cut. Inside libs/blocks only.
 
 #pragma once
 
@@ -11,8 +11,8 @@
 namespace jointcreep::blocks
 {
 
-// What a piece of a joint's line ended as. Where pieces overlap, which merging by moving brings about, the
-// first named counts.
+// The fate of a piece of a joint's line. Where pieces overlap, because merging has moved them, the first named
+// counts.
 enum class Fate : Index { kept, shared, on_outline, dangling_end, outside };
 
 // Collects pieces of joints with their fates. What no piece covers in the end has merged away.
@@ -24,8 +24,8 @@ public:
     // A piece between two places near the line of a joint.
     void add(Index joint, Fate fate, const Eigen::Vector2d& from, const Eigen::Vector2d& to);
 
-    // A joint goes on beyond an end; what lies beyond counts for others as overlap only.
-    void carry_on(Index joint);
+    // The joint is extended beyond an end. The extension counts as overlap for other joints only.
+    void extend(Index joint);
 
     // Lengths by joint; a length up to `tolerance` [m] does not make a joint's fate.
     JointFates table(double tolerance) const;
@@ -38,7 +38,7 @@ private:
     };
     const Joints& joints_;
     std::vector<Piece> pieces_;
-    std::vector<char> carried_on_; // by joint; empty if none is
+    std::vector<char> is_extended_; // by joint; empty if none is
 };
 
 // The joint traces of each joint, in order along it.
@@ -47,12 +47,12 @@ class TracesAlong
 public:
     explicit TracesAlong(const Joints& joints);
 
-    // Where a joint has been carried on beyond an end, its traces are taken to stop there. Elsewhere a trace
-    // that goes to the joint's end goes on with the joint as far as it is drawn, or moved.
+    // Where a joint has been extended beyond an end, its traces are taken to stop there. Elsewhere a trace
+    // that reaches the joint's end continues with the joint as far as it is drawn, or moved.
     void end_before(Index joint, bool first_end, bool second_end);
 
     // Fraction of the piece of a joint between two places that is joint trace; `overlap` [m] is how far
-    // traces that go to its end go on.
+    // traces that reach its end continue.
     double fraction(Index joint, const Eigen::Vector2d& p, const Eigen::Vector2d& q, double overlap) const;
 
 private:

@@ -1,5 +1,5 @@
-// A planar graph on its way from the lines of a scene to blocks: vertices, straight edges between them
-// knowing which lines of the scene they lie on, and faces. Inside libs/blocks only.
+// A planar graph, from the lines of a scene to blocks: vertices, straight edges with the lines of the scene that
+// they lie on, and faces. Inside libs/blocks only.
 
 #pragma once
 
@@ -105,7 +105,7 @@ struct Faces {
     }
 };
 
-// Of each edge of a planar graph without crossings: whether it has one face on both sides.
+// Whether each edge of a planar graph without crossings has one face on both sides.
 std::vector<char> slits(const Graph& graph);
 
 // Faces of a planar graph without crossings, in the order of their first edges.
@@ -117,7 +117,7 @@ Faces trace_faces(const Graph& graph);
 void for_outer_rings(const Graph& graph, const std::vector<char>& is_chosen,
                      const std::function<void(std::span<const Index>, double)>& visit);
 
-// Takes faces away, as belonging to the unbounded one.
+// Removes faces; they then belong to the unbounded one.
 void remove_faces(Faces& faces, const std::vector<char>& is_gone);
 
 // Area inside a closed ring, positive if counter-clockwise, taken about one of its own vertices so that small

@@ -19,7 +19,7 @@ namespace
 
 using Eigen::Vector2d;
 
-// Who moves to whom: the lower level moves.
+// Which vertex moves to which: the lower level moves.
 enum Level : char { free_vertex = 0, on_bonded = 1, on_outline = 2, outline_corner = 3 };
 
 Level level_of(const Edge& edge, const Sources& sources)
@@ -575,7 +575,7 @@ void report_merged_faces(const Graph& graph, const std::vector<Index>& joined, c
     });
 }
 
-// Of these edges, and the vertices that they have.
+// The graph of these edges, with the vertices that they have.
 Graph graph_of(std::vector<Edge> edges, const Bent& bent)
 {
     Graph graph;

@@ -15,7 +15,7 @@ struct MergeLimits {
     static constexpr double farthest_closing = 5;
 };
 
-// One pass of merging over a planar graph. Vertices give way in this order: a vertex between joints moves to
+// One pass of merging over a planar graph. Vertices move in this order: a vertex between joints moves to
 // a stage outline or rock border, and both move to the section's outline; corners of the outlines never move,
 // and vertices on a side of the outline stay on it. The result may cross itself where much moved: arrange()
 // it again, and repeat until a pass changes nothing (returns false).

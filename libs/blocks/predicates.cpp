@@ -139,11 +139,11 @@ Vector2d crossing(const Vector2d& p0, const Vector2d& p1, const Vector2d& q0, co
     const double error_of_t =
         unit_error * (1 + 2 * (size(a) + size(b)) / size(above) + 2 * (size(c) + size(d)) / size(below));
     const auto along = [&](double from, const Double2& step, double& place) {
-        const Double2 way = t * step;
-        const Double2 sum = Double2{from, 0} + way;
+        const Double2 offset = t * step;
+        const Double2 sum = Double2{from, 0} + offset;
         place = sum.high;
         return is_nearest_for_all(sum,
-                                  2 * size(way) * (error_of_t + unit_error) + unit_error * std::abs(from));
+                                  2 * size(offset) * (error_of_t + unit_error) + unit_error * std::abs(from));
     };
     Vector2d place;
     if (along(p0.x(), px, place.x()) && along(p0.y(), py, place.y()))

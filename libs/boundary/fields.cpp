@@ -14,7 +14,7 @@ std::vector<Field> fields_of(Network& network)
     // clang-format off
     return {
         {"/edges/boundary", &network.blocks.edge_boundary, {"edge"}, "1", at_least(-1),
-         "Which of the scene's boundary entries holds a boundary edge, counted from 0; -1 none."},
+         "The scene's boundary entry on a boundary edge, counted from 0; -1 none."},
     };
     // clang-format on
 }
@@ -25,7 +25,7 @@ std::vector<Field> fields_of(Mesh& mesh)
     // clang-format off
     return {
         {"/mesh/gridpoint_fixed", &mesh.gridpoint_fixed, {"gridpoint"}, "1", between(0, 3),
-         "0 free, 1 held in x, 2 held in y, 3 held in both."},
+         "0 free, 1 fixed in x, 2 fixed in y, 3 fixed in both."},
         {"/mesh/side_gridpoint", &mesh.side_gridpoint, {"side"}, "1", index_of("gridpoint"),
          "Gridpoints of a zone side that lies on a boundary condition."},
         {"/mesh/side_zone", &mesh.side_zone, {"side"}, "1", index_of("zone"), "Its zone."},

@@ -1,6 +1,6 @@
 // Open contacts that close during a creep step.
 //
-// Once closed they hold shear, counted from where they touched. A step that runs past that moment counts it
+// Once closed they carry shear, counted from where they touched. A step that runs past that moment counts it
 // from its own start, which makes an error of first order in the step. So the step is cut short there.
 
 #pragma once
@@ -13,8 +13,8 @@ namespace jointcreep::creep
 class Closing
 {
 public:
-    // `tolerance` is how far a contact may shear on unnoticed, in a step in which it closes, before it
-    // touches [m].
+    // `tolerance`: how far a contact may shear, in a step in which it closes, before it touches without the step
+    // being cut [m].
     explicit Closing(double tolerance) : tolerance_(tolerance) {}
 
     // Before a step, with the assembly's own stiffnesses.
@@ -34,14 +34,14 @@ public:
     };
     const Cut& last_cut() const { return cut_; }
 
-    // The step stands.
+    // The step is accepted.
     void finish(const mechanics::Assembly& assembly, double duration);
 
     // Whether a contact was open at the step's start; after finish(), how fast it opens then [m/s].
     bool was_open(std::size_t contact) const { return was_open_[contact] != 0; }
     double rate(std::size_t contact) const { return rate_[contact].x(); }
 
-    // Forgets how fast contacts were closing: after a sudden change of loads.
+    // Forgets the rates of closing: to be called after a sudden change of loads.
     void start_afresh() { rate_.clear(); }
 
 private:

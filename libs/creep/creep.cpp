@@ -238,7 +238,7 @@ void Creep::cancel(mechanics::Assembly& assembly)
 
 void Creep::transfer(const Transfer& to, Checkpoint& kept)
 {
-    // The scene has the rest, and begin() finds anew what else springs and shears hold.
+    // The scene has the rest, and begin() computes again what else springs and shears need.
     to.values(springs_, kept.reference, &Spring::reference);
     to.values(crept_, kept.crept);
     to.values(shears_, kept.rock_reference, &Shear::reference);

@@ -1,12 +1,11 @@
-// Creep of joints and rock over any way of finding equilibrium: one equilibrium a step, whatever the scheme
-// (creep/scheme.hpp).
+// Creep of joints and rock, with any engine: one equilibrium per step, whatever the scheme (creep/scheme.hpp).
 //
 // What creeps sits in series with the springs of contacts, and with the shear stiffness of zones. During a
 // step both ends of it are taken into account at once: the springs act with a lower stiffness K_t and from an
 // offset o that are known beforehand, such that the traction F of the equilibrium at the step's end is
 //     F = F_init + K (u - slip - d) = F_init + K_t (u - slip - o),     d = o + C (F - F_init),
 // with d the creep displacement at the end and 1 / K_t = 1 / K + C. Slip and opening follow from the
-// contact's own law; where it is open F is 0, and what creeps goes on relaxing. Rock creeps in shear only:
+// contact's own law; where it is open F is 0, and what creeps continues to relax. Rock creeps in shear only:
 // deviatoric stress and strain in place of traction and displacement, 2 G in place of K, the volume elastic.
 
 #pragma once

@@ -64,8 +64,8 @@ Step change_of_step(const Chain& chain, const Chain& change, CreepScheme scheme,
 // rho [1/s].
 double relaxation_rate(const Chain& chain);
 
-// Up to which the published scheme is stable [s]; infinite if it always is. Where chains make up a system
-// with any elastic surroundings, F = F_0 - S d, 0 <= S <= K, it is stable if this holds for each:
+// The longest step with which the published scheme is stable [s]; infinite if it always is. Where chains make up a
+// system with any elastic surroundings, F = F_0 - S d, 0 <= S <= K, it is stable if this holds for each:
 //     K sum of tanh(lam dT / 2) / E < 1 ,   for one unit   (1 - exp(-lam dT)) (1 + K / E) < 2 .
 double longest_stable_step(const Chain& chain);
 

@@ -38,7 +38,7 @@ bool StepLength::stands(double step, double error)
     const double growth =
         error > 0 ? safety * std::pow(*settings_.tolerance / error, 1 / order_) : most_growth;
     const bool stands = error <= *settings_.tolerance || step <= shortest_;
-    // A step cut by a date says nothing against the longer one wanted before.
+    // A step shortened by a date does not shorten the next one.
     const double chosen = step * std::clamp(growth, most_cut, most_growth);
     wanted_ = std::clamp(stands && growth > 1 ? std::max(chosen, wanted_) : chosen, shortest_, longest_);
     return stands;

@@ -13,15 +13,15 @@ public:
     // `fastest_rate` of relaxation [1/s] and the `longest_stable` step [s], infinite if there is none.
     StepLength(const CreepSettings& settings, double fastest_rate, double longest_stable);
 
-    // The step to try next, where nothing may be stepped over for `remaining` [s], and no step may be longer
-    // than `longest` [s]. The steps of a fixed length up to a date are equal, none longer than the scene's.
+    // The step to try next, no longer than `remaining` [s] (to the next date) and `longest` [s]. Steps of a fixed
+    // length up to a date are equal, none longer than the scene's.
     double next(double remaining, double longest) const;
 
-    // Whether a step with this estimate of its error [m] stands; either way the next one is chosen by it.
-    // Steps of a fixed length always stand, and so does one of the shortest length.
+    // Whether a step with this estimate of its error [m] is accepted. The next length follows from the error in
+    // both cases. Steps of a fixed length are always accepted, and so is one of the shortest length.
     bool stands(double step, double error);
 
-    // After a sudden change of loads or a change of contacts: begins with the first step again.
+    // To be called after a sudden change of loads, or a change of contacts: begins with the first step again.
     void start_afresh();
 
     void transfer(const Transfer& to, Checkpoint& kept) { to.value(wanted_, kept.creep_step); }

@@ -75,7 +75,7 @@ Confidence confidence_of(const Minimum& minimum, bool deviations_are_known)
     if (free.empty())
         return found;
 
-    // By the columns' lengths, so that inverting loses no more digits than it must.
+    // Columns are divided by their lengths, so that inverting loses few digits.
     const MatrixXd columns = J(Eigen::all, free);
     const VectorXd length = columns.colwise().norm();
     const MatrixXd scaled = columns * length.cwiseInverse().asDiagonal();

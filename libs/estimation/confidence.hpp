@@ -1,4 +1,4 @@
-// How far parameters found by least squares are to be trusted.
+// Confidence in parameters found by least squares.
 //
 // Assumed: the model is right, and readings have independent normal errors, with the standard deviations that
 // residuals were divided by times one factor. The factor is either 1, the deviations being known, or found
@@ -35,21 +35,21 @@ struct Confidence {
     double quantile = 0;     // standard errors on each side of one parameter's interval of 95 percent
     double quantile_all = 0; // of intervals that hold all together with 95 percent (Bonferroni)
 
-    // Of J with its columns scaled to length 1: alike effects on the readings make it small.
+    // For J with its columns scaled to length 1: similar effects on the readings make it small.
     double smallest_eigenvalue = 1; // of their products with each other [-]
     double condition_number = 1;    // of J so scaled [-]
 
     double standard_error(Eigen::Index i) const;
     // 95 percent, of one parameter by itself or of all together; without bounds where the data have none.
     Interval interval(double value, Eigen::Index i, bool all_together = false) const;
-    // Of a quantity with this gradient over the parameters.
+    // Standard error of a quantity with this gradient over the parameters.
     double standard_error(const VectorXd& gradient) const;
 };
 
 Confidence confidence_of(const Minimum& minimum, bool deviations_are_known);
 
-// The combination of free parameters that the data know least of, if they know it badly: by less than a
-// factor of 2 each way (parameters are logarithms), or 10 times less than if each parameter were fitted alone
+// The combination of free parameters that the data know least, if they know it badly: by less than a factor of 2 up
+// and down (parameters are logarithms), or 10 times less than if each parameter were fitted alone
 // (smallest_eigenvalue below 0.01).
 struct WeakCombination {
     VectorXd direction;    // its largest entry is 1 [-]

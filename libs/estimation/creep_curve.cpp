@@ -18,7 +18,7 @@ namespace
 constexpr double shortest_share = 0.05, longest_share = 100;
 
 constexpr const char* same_way =
-    " m; wanted both to go the same way, as those of a joint under one load do (displacements count from "
+    " m; wanted both in one direction, as those of a joint under one load are (displacements count from "
     "before the load, not from a reading after it)";
 
 double shortest_interval(const CreepCurve& curve)
@@ -87,11 +87,11 @@ double best_on_grid(double shortest, double longest, const std::function<double(
     return best;
 }
 
-// Profiles of the sum of squares: its least with one of E / K, eta / K and tau held, over the others.
+// Profiles of the sum of squares: its minimum over the other parameters, with one of E / K, eta / K and tau fixed.
 class Profiles
 {
 public:
-    enum Held { stiffness, viscosity, time };
+    enum Fixed { stiffness, viscosity, time };
 
     // Around the best fit, d_e [m], e = E / K and tau [s].
     Profiles(const CreepCurve& curve, double elastic_part, double ratio, double tau)
@@ -103,24 +103,24 @@ public:
     }
 
     // Where it is below `limit`. An end is 0 or infinite where that is more than a factor of 1000 away.
-    Interval interval(Held held, double limit, double first_step) const
+    Interval interval(Fixed fixed, double limit, double first_step) const
     {
-        const double farthest = std::log(1e3);
+        const double widest = std::log(1e3);
         VectorXd at = best_;
-        if (held == viscosity)
+        if (fixed == viscosity)
             at[0] += at[1];
-        const Eigen::Index i = held == time ? 1 : 0;
+        const Eigen::Index i = fixed == time ? 1 : 0;
         const double middle = at[i];
         const auto end = [&](double side) {
             VectorXd start = at;
             const auto is_within = [&](double distance) {
                 VectorXd low = VectorXd::Constant(at.size(), -1e3), high = -low;
-                // Far off on the flat, where creep is over at once or hardly begins, nothing would bring it
-                // back.
+                // Far from the minimum, where creep is over at once or hardly begins, the sum is flat: nothing
+                // would bring the search back.
                 low[1] = std::log(shortest_share * shortest_interval(curve_));
                 high[1] = std::log(longest_share * curve_.time.back());
                 low[i] = high[i] = middle + side * distance;
-                const Minimum least = minimise(model(held == viscosity), start, low, high, 100, 1e-10);
+                const Minimum least = minimise(model(fixed == viscosity), start, low, high, 100, 1e-10);
                 start = least.parameters;
                 return least.sum_of_squares() <= limit;
             };
@@ -128,7 +128,7 @@ public:
             while (is_within(beyond)) {
                 within = beyond;
                 beyond *= 1.5;
-                if (within > farthest)
+                if (within > widest)
                     return side * std::numeric_limits<double>::infinity();
             }
             while (beyond - within > 1e-4 * beyond) {
@@ -293,7 +293,7 @@ ClosedEstimate closed_estimate(const CreepCurve& curve, double end)
         throw input_error("the elastic part is " + shown(found.elastic_part) + " m and the creep part " +
                           shown(found.creep_part) + same_way);
 
-    // tau, with d_e and d_c held.
+    // tau, with d_e and d_c fixed.
     const auto n = static_cast<Eigen::Index>(curve.time.size());
     const Model model = [&](const VectorXd& p) -> std::optional<Evaluation> {
         Evaluation at{VectorXd(n), MatrixXd(n, 1)};

@@ -1,8 +1,8 @@
 // Creep of one joint, from one curve of displacement after one change of load (the paper's Eqs. 11 to 14 and
 // its Fig. 12):
 //     d(t) = d_e + d_c (1 - exp(-t / tau)),      d_e = F / K,   d_c = F / E,   tau = eta / E .
-// With K known,  E = K d_e / d_c,  eta = E tau. d_e is what the joint does at once; the elastic part of the
-// rock beside it is to be taken off before.
+// With K known,  E = K d_e / d_c,  eta = E tau. d_e is the elastic displacement of the joint. Subtract that
+// of the rock beside it before.
 
 #pragma once
 
@@ -24,8 +24,8 @@ struct Estimate {
     Interval interval;
 };
 
-// By least squares over d_e (unless known), d_c and tau. Intervals of tau, E and eta are those of the
-// profile: where the least sum of squares with that value held exceeds the least of all by no more than
+// The fit by least squares over d_e (unless known), d_c and tau. Intervals of tau, E and eta are those of the
+// profile: where the least sum of squares with that value fixed exceeds the least of all by no more than
 // chance (Student's t, squared). In short records these are far from even; an end may be 0 or infinite.
 struct CurveFit {
     double elastic_part, creep_part, retardation_time; // d_e [m], d_c [m], tau [s]
@@ -37,10 +37,10 @@ struct CurveFit {
     std::vector<double> computed; // [m]
     double lag_one;               // correlation of neighbouring residuals
 
-    // What the record does not tell.
-    bool is_stiffness_open = false; // E: its interval goes beyond a factor of 2 either way,
+    // What the record does not give.
+    bool is_stiffness_open = false; // E: its interval is wider than a factor of 2 up or down,
     bool is_too_short = false;      // and the record is below 2 tau, so that it need not be the noise
-    bool is_too_coarse = false;     // tau: it is all but over at the first reading after the load
+    bool is_too_coarse = false;     // tau: creep is nearly over at the first reading after the load
     double record_length;           // over tau [-]
 };
 
@@ -48,9 +48,9 @@ struct CurveFit {
 // direction of the elastic part.
 CurveFit fit_curve(const CreepCurve& curve);
 
-// The paper's: E by Eq. 14 from d(T_c), T_c being when creep is taken to be over, and tau by least squares
-// with E held. d_e is the known one, or the first reading. Intervals carry the noise of d_e's and d(T_c)'s
-// readings, and of all others into tau; that creep goes on after T_c they do not know.
+// The paper's estimate: E by Eq. 14 from d(T_c), T_c being when creep is taken to be over; then tau by least
+// squares with E fixed. d_e is the known one, or the first reading. Intervals contain the noise of the readings of
+// d_e and d(T_c), and of all others in tau. They do not contain creep after T_c.
 struct ClosedEstimate {
     double elastic_part, creep_part; // [m]
     double end;                      // T_c [s]

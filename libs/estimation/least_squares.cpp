@@ -12,7 +12,8 @@ namespace jointcreep::estimation
 namespace
 {
 
-// Of the free parameters. Those that would go beyond a bound go to it, and the others as is best then.
+// The step of the free parameters. Those that would go beyond a bound stop there, and the others take the best step
+// then.
 VectorXd step_within(const MatrixXd& information, const VectorXd& downhill, double lambda,
                      std::vector<Eigen::Index> free, const VectorXd& low, const VectorXd& high)
 {

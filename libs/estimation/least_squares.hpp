@@ -1,9 +1,9 @@
 // Nonlinear least squares within bounds, by Levenberg and Marquardt: the parameters that make the sum of
 // squared residuals least.
 //
-// Each step solves (J^T J + lambda diag(J^T J)) step = -J^T r for the parameters that no bound stops; those
-// that it would carry beyond a bound stop there, and the others step as is best then. lambda follows Nielsen
-// (1999) by how much of the predicted decrease came true. Eigen's own (unsupported/Eigen/LevenbergMarquardt)
+// Each step solves (J^T J + lambda diag(J^T J)) step = -J^T r for the parameters that no bound stops. Those
+// that would go beyond a bound stop there, and the others take the best step then. lambda follows Nielsen
+// (1999) by the ratio of the achieved to the predicted decrease. Eigen's own (unsupported/Eigen/LevenbergMarquardt)
 // knows no bounds, and no place where a model has no answer.
 
 #pragma once
@@ -25,7 +25,7 @@ struct Evaluation {
     MatrixXd jacobian; // of the residuals, [reading, parameter]
 };
 
-// Nothing where the model has no answer, which is then not gone to.
+// Nothing where the model has no answer; the search then avoids that place.
 using Model = std::function<std::optional<Evaluation>(const VectorXd& parameters)>;
 
 enum class AtBound { no, low, high };
@@ -33,7 +33,7 @@ enum class AtBound { no, low, high };
 struct Minimum {
     VectorXd parameters;
     Evaluation there;
-    std::vector<AtBound> at_bound; // where the sum would fall on beyond
+    std::vector<AtBound> at_bound; // where the sum would decrease beyond it
     VectorXd left;                 // the step that the derivatives there still ask for
     int evaluations = 0;
     bool is_converged = false; // else it ran out of evaluations, or

@@ -20,7 +20,7 @@ inline const std::vector<fields::ForceColumns>& forces()
     return all;
 }
 
-// Those of all forces: columns_of(&ForceColumns::of_zones, result, state). They refer to the records.
+// The columns of all forces: columns_of(&ForceColumns::of_zones, result, state). They refer to the records.
 template <class... Records>
 std::vector<fields::Column> columns_of(fields::ColumnsOf<Records...> fields::ForceColumns::*part,
                                        std::type_identity_t<Records>... records)

@@ -168,7 +168,7 @@ std::vector<Value> picked(const std::vector<Value>& values, const std::vector<In
     return result;
 }
 
-// A code per row by way of an index that may be none: what its target has, or -1.
+// A code for each row, through an index: that of its target, or -1 where the index is none.
 std::vector<Index> looked_up(const std::vector<Index>& target, const std::vector<Index>& indices)
 {
     std::vector<Index> result;

@@ -174,7 +174,7 @@ public:
             column_of_state(column.name, centre, column.dataset, rows, column.components, column.component);
     }
 
-    // Says what is hidden, and goes on to the next state.
+    // Writes what is hidden, and continues with the next state.
     void close_state()
     {
         open_attribute("vtkGhostType", "Scalar", "Cell", {cells_});
@@ -225,7 +225,7 @@ private:
     std::string text_;
 };
 
-// Those that a dataset has for every row.
+// The columns that have a dataset with a value for every row.
 std::vector<Column> in_datasets(std::vector<Column> columns)
 {
     std::erase_if(columns, [](const Column& column) { return column.dataset.empty(); });

@@ -4,7 +4,7 @@
 // a file named .xdmf2 it does not offer them. SI units and the signs of model/signs.hpp. Columns of forces are those
 // that the result file has as datasets (exchange/forces.hpp).
 //
-// Removed zones and contacts are hidden by the cell array vtkGhostType, VTK's own way: 32 hides a cell, 0
+// Removed zones and contacts are hidden by the cell array vtkGhostType, VTK's convention: 32 hides a cell, 0
 // shows it. A reader that does not know it shows them; zone_present and status tell them apart.
 //
 // Times are in days. XDMF has one state a time, so one that has the next state's time, being the one just

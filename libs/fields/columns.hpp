@@ -1,5 +1,5 @@
 // Columns of exports: a number for each edge, zone or contact, which a kind of force gives by name. Each format
-// writes them in its own way.
+// writes them in its own form.
 //
 //     fields::ForceColumns columns_in_exports()
 //     {
@@ -18,7 +18,7 @@
 namespace jointcreep::fields
 {
 
-// Of one state, where rows have several. It refers to the record.
+// A column; of one state, where rows have several. It refers to the record.
 struct Column {
     std::string name;
     std::string units; // SI: "Pa", "Pa s/m"; "1" for numbers without one

@@ -21,7 +21,7 @@ constexpr char mended = 100; // more openings than corrections can count
 constexpr int patience = 15; // iterations with an old factor: a new one costs 10 to 20 of them
 constexpr int most_leaps = 5;
 constexpr int most_trials = 50, most_halvings = 6; // along a correction
-constexpr double least_hold = 1e-2;
+constexpr double least_kept_share = 1e-2;
 constexpr double soft = 1e-6; // share of their springs that open and slipping contacts keep in the factor
 
 } // namespace
@@ -39,9 +39,8 @@ double Solver::evaluate(Assembly& assembly, const State& start)
     return force_.cwiseQuotient(scale_).dot(force_);
 }
 
-// Takes over what contacts do now: sliding back only by way of sticking, unless this is the `first` time. A
-// bond that breaks for the second time stays broken: with cohesion back at every closing it might flicker for
-// ever.
+// Takes over what contacts do now. A contact slides back only after it has stuck, unless this is the `first` time. A
+// bond that breaks for the second time stays broken: with cohesion back at every closing it could alternate for ever.
 void Solver::take_states(const Assembly& assembly, const State& start, bool first)
 {
     const joint::Contacts& contacts = assembly.contacts;
@@ -63,7 +62,7 @@ void Solver::take_states(const Assembly& assembly, const State& start, bool firs
     }
 }
 
-// Of the contacts as they are active; where they hold nothing they keep the share `softness` of their
+// Tangents of the contacts in their active states. Open and slipping contacts keep the share `softness` of their
 // springs.
 std::vector<Tangent> Solver::tangents(const Assembly& assembly, const State& start, double softness) const
 {
@@ -103,12 +102,12 @@ std::vector<Tangent> Solver::tangents(const Assembly& assembly, const State& sta
     return all;
 }
 
-// The displacement that balances `force` to `enough` [N/m], if contacts that slip or are open keep the share
-// `hold` of their springs.
+// The displacement that balances `force` to `enough` [N/m], if open and slipping contacts keep the share
+// `kept_share` of their springs.
 VectorXd Solver::correction(const Assembly& assembly, const State& start, const VectorXd& force,
-                            double enough, double hold)
+                            double enough, double kept_share)
 {
-    const std::vector<Tangent> acting = tangents(assembly, start, std::max(soft, hold));
+    const std::vector<Tangent> acting = tangents(assembly, start, std::max(soft, kept_share));
     const auto product = [&](const VectorXd& x) { return stiffness_.times(assembly, acting, x); };
     const auto precondition = [&](const VectorXd& x) {
         ++solves_;
@@ -132,10 +131,11 @@ VectorXd Solver::correction(const Assembly& assembly, const State& start, const 
     return x;
 }
 
-// Moves along a correction, at most too far, and as far as forces come nearer to balance: all the way,
-// or to where they do no more work along it (a block on its way to where it touches loses no force before,
-// and its balance there is narrow), or else part of the way.
-Solver::Way Solver::go_along(Assembly& assembly, const State& start, const VectorXd& correction, double merit)
+// Moves along a correction, by too_far_ at most. First all of it is tried; then the point where forces do no more
+// work along it; then part of it, until forces come nearer to balance. (A block that moves until it touches loses
+// no force before, and its balance there is narrow.)
+Solver::Advance Solver::go_along(Assembly& assembly, const State& start, const VectorXd& correction,
+                                 double merit)
 {
     const std::vector<Vector2d> from = assembly.displacement;
     const double work = force_.dot(correction);
@@ -156,14 +156,14 @@ Solver::Way Solver::go_along(Assembly& assembly, const State& start, const Vecto
     const auto at_best = [&](double share) {
         if (share != best_share)
             is_good(best_share);
-        return Way{best_merit, failed_share};
+        return Advance{best_merit, failed_share};
     };
 
     double share = std::min(1.0, too_far_ / correction.lpNorm<Eigen::Infinity>());
     const bool good_at_once = is_good(share);
     double low = 0, work_low = work, high = share, work_high = force_.dot(correction);
     if (good_at_once || (best_merit < 1.01 * merit && work_high > work / 2))
-        return {best_merit, 0}; // also a block on its way through the air
+        return {best_merit, 0}; // also a block that touches nothing yet
     for (int i = 0; i < most_trials && work_low > 0 && work_high < 0; ++i) {
         // Bisection for the kink where it touches, regula falsi for the balance there, in turn.
         share = i % 2 == 0 ? (low + high) / 2 : low + (high - low) * work_low / (work_low - work_high);
@@ -185,8 +185,8 @@ Solver::Way Solver::go_along(Assembly& assembly, const State& start, const Vecto
     return at_best(share);
 }
 
-// Breaks the bonds of contacts that have opened, or closed, or weakened, since states were taken: with
-// cohesion coming and going there may be no equilibrium between. True if there are any.
+// Breaks the bonds of contacts that have opened, closed or weakened since states were taken: with cohesion that comes
+// and goes there may be no equilibrium. True if any bond breaks.
 bool Solver::break_bonds(const Assembly& assembly, const State& start)
 {
     bool breaks = false;
@@ -205,8 +205,8 @@ bool Solver::break_bonds(const Assembly& assembly, const State& start)
     return breaks;
 }
 
-// Bonds of contacts that opened on the way and have closed again: where they make no difference they are as
-// they were at the start; elsewhere they get another chance. True if that changes forces.
+// Restores the bonds of contacts that opened during the search and are closed now. Their next opening breaks them for
+// good. True if that changes forces.
 bool Solver::mend_bonds(const Assembly& assembly)
 {
     bool changes = false;
@@ -243,7 +243,7 @@ bool Solver::converge(Assembly& assembly, const State& start, const Equilibrium&
 {
     const Index first = corrections_;
     double merit = evaluate(assembly, start), least_merit = merit;
-    double hold = 0; // share of their springs that contacts which slip or are open keep in a correction
+    double kept_share = 0; // of their springs, by open and slipping contacts in a correction
     int since_least = 0, leaps_done = 0;
     for (;;) {
         const Balance balance = balance_of(assembly, stiffest_, 0, settings.tolerance);
@@ -262,51 +262,51 @@ bool Solver::converge(Assembly& assembly, const State& start, const Equilibrium&
         const double enough = is_balanced
                                   ? 0.1 * force_.norm()
                                   : std::max(0.5 * settings.tolerance * balance.mean, 1e-2 * force_.norm());
-        const VectorXd du = correction(assembly, start, force_, enough, hold);
+        const VectorXd du = correction(assembly, start, force_, enough, kept_share);
         ++corrections_;
         if (du.size() == 0 || !du.allFinite()) {
-            reason_ = "some rock is held by nothing";
+            reason_ = "some rock has no support";
             return false;
         }
         const std::vector<Vector2d> from = assembly.displacement;
-        const Way way = go_along(assembly, start, du, merit);
-        if (way.failed_share > 0 && way.merit > 0.99 * merit) {
-            // Next to nothing is won that way. A bond that stands in it breaks; if none does, contacts that
-            // slip or are open are held more firmly.
+        const Advance advance = go_along(assembly, start, du, merit);
+        if (advance.failed_share > 0 && advance.merit > 0.99 * merit) {
+            // The correction gains almost nothing. Bonds that hinder it break. If there are none, contacts that
+            // slip or are open keep more of their springs.
             const std::vector<Vector2d> reached = assembly.displacement;
             assembly.displacement = from;
-            stiffness_.add_to(assembly.displacement, du, way.failed_share);
+            stiffness_.add_to(assembly.displacement, du, advance.failed_share);
             evaluate(assembly, start);
             const bool breaks = break_bonds(assembly, start);
-            const bool leaps = !breaks && hold == 1;
-            const bool goes_back = breaks || way.merit >= merit || leaps;
+            const bool leaps = !breaks && kept_share == 1;
+            const bool goes_back = breaks || advance.merit >= merit || leaps;
             assembly.displacement = goes_back ? from : reached;
             merit = evaluate(assembly, start);
-            if (leaps) { // out of where it is stuck, whatever that does to the forces
+            if (leaps) { // on from here, even if forces grow
                 if (++leaps_done > most_leaps) {
                     reason_ = "forces do not come into balance";
                     return false;
                 }
                 const VectorXd leap = correction(assembly, start, force_, enough, 0);
                 if (leap.size() == 0 || !leap.allFinite()) {
-                    reason_ = "some rock is held by nothing";
+                    reason_ = "some rock has no support";
                     return false;
                 }
-                const double farthest =
-                    mechanics::farthest_move(start.displacement, assembly.displacement).first;
+                const double largest =
+                    mechanics::largest_move(start.displacement, assembly.displacement).first;
                 stiffness_.add_to(assembly.displacement, leap,
-                                  std::min(1.0, farthest / leap.lpNorm<Eigen::Infinity>()));
+                                  std::min(1.0, largest / leap.lpNorm<Eigen::Infinity>()));
                 merit = evaluate(assembly, start);
             }
-            hold = breaks ? hold : leaps ? 0 : std::clamp(10 * hold, least_hold, 1.0);
+            kept_share = breaks ? kept_share : leaps ? 0 : std::clamp(10 * kept_share, least_kept_share, 1.0);
             if (breaks || leaps)
                 least_merit = merit;
         } else {
-            merit = way.merit;
-            hold = hold <= least_hold ? 0 : hold / 3;
+            merit = advance.merit;
+            kept_share = kept_share <= least_kept_share ? 0 : kept_share / 3;
         }
         take_states(assembly, start, false);
-        if (farthest_displacement(assembly).first > too_far_) { // increments must not add up to more either
+        if (largest_displacement(assembly).first > too_far_) { // increments must not add up to more either
             reason_ = "rock would move by more than a tenth of the section";
             return false;
         }
@@ -315,8 +315,8 @@ bool Solver::converge(Assembly& assembly, const State& start, const Equilibrium&
     }
 }
 
-// Whether one more correction would leave contact forces as they are, and contacts carry every piece of rock.
-// A rough correction says that first: too much rather than too little, but where contacts are open.
+// Whether one more correction would leave contact forces unchanged, and contacts support every piece of rock. A rough
+// correction is asked first: it is rather too large, except where contacts are open.
 bool Solver::is_at_rest(const Assembly& assembly, const State& start, double mean_force, double tolerance,
                         Convergence& convergence)
 {
@@ -342,13 +342,13 @@ bool Solver::is_at_rest(const Assembly& assembly, const State& start, double mea
     }
     if (convergence.contact_force_change > tolerance)
         return false;
-    // The share of their springs that open contacts keep in the factor may carry rock that nothing else does.
-    const double farthest = farthest_displacement(assembly).first, enough = mechanics::enough(tolerance);
+    // The springs that open contacts keep in the factor may support rock that nothing else supports.
+    const double largest = largest_displacement(assembly).first, enough = mechanics::enough(tolerance);
     const mechanics::RemainingDisplacement left =
-        largest_remaining_displacement(assembly, enough, 1e-15 * stiffest_ * farthest);
-    const double way =
-        std::max(mechanics::farthest_move(start.displacement, assembly.displacement).first, farthest / 10);
-    unsupported_ = left.displacement > enough * way ? left.gridpoint : -1;
+        largest_remaining_displacement(assembly, enough, 1e-15 * stiffest_ * largest);
+    const double moved =
+        std::max(mechanics::largest_move(start.displacement, assembly.displacement).first, largest / 10);
+    unsupported_ = left.displacement > enough * moved ? left.gridpoint : -1;
     convergence.remaining_displacement = std::max(convergence.remaining_displacement, left.displacement);
     return unsupported_ < 0;
 }
@@ -388,7 +388,7 @@ std::optional<Convergence> Solver::equilibrate(Assembly& assembly, const Equilib
         acting_ = tangents(assembly, start, soft);
         ++factorisations_;
         if (!stiffness_.factorise(assembly, acting_)) {
-            reason_ = "some rock is held by nothing";
+            reason_ = "some rock has no support";
             return give_up();
         }
     }
@@ -396,7 +396,7 @@ std::optional<Convergence> Solver::equilibrate(Assembly& assembly, const Equilib
         return give_up();
     if (is_balanced && corrections_ == 0)
         return convergence;
-    for (;;) { // without the bonds that broke in vain, if there is equilibrium without
+    for (;;) { // restores bonds that need not have broken, if there is equilibrium with them
         const std::vector<Vector2d> displacement = assembly.displacement;
         const std::vector<char> breaks = breaks_;
         const Convergence with_them = convergence;

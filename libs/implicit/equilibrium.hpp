@@ -1,17 +1,16 @@
 // Implicit equilibrium: Newton's method over the contacts' states, in place of dynamic relaxation.
 //
-// Between changes of contact state the assembly is linear, so one factor of its stiffness serves one
-// equilibrium after another. Each correction solves K du = unbalanced force by GCR, preconditioned with
-// the last factor; the factor is renewed once that costs less than going on with the old one. Contacts open,
-// close, stick and slip by the same law as in dynamic relaxation, each from its state at the start of the
-// equilibrium straight to the one at its end (backward Euler). A contact goes from slip one way to slip the
-// other way only through sticking.
+// Between changes of contact state the assembly is linear, so one factor of its stiffness serves one equilibrium
+// after another. Each correction solves K du = unbalanced force by GCR, preconditioned with the last factor. The
+// factor is renewed when that costs less than going on with the old one. Contacts open, close, stick and slip by
+// the same law as in dynamic relaxation, each from its state at the start of the equilibrium straight to the one at
+// its end (backward Euler). A contact changes its direction of slip only through sticking.
 //
-// The account of energy is that of backward Euler, too: a contact slips under the traction it ends with. What
-// neither is stored nor goes there counts as damped.
+// The energy balance is that of backward Euler, too: a contact slips under the traction it ends with. What is
+// neither stored nor dissipated so counts as damped.
 //
-// Bonds that break do so for good, and at once; a contact that opened, or weakened, on the way without having
-// needed to is given its bond back.
+// Bonds break at once and for good. A contact that opened, or weakened, during the search without need gets its
+// bond back.
 
 #pragma once
 
@@ -32,14 +31,14 @@ public:
     // gridpoint. A state that is in balance already is left as it is, after 0 steps. `guess` is how far
     // gridpoints may be expected to move [m]; none, or a bad one, costs time only.
     //
-    // Nothing if it finds no equilibrium; reason() says why. The assembly is then as it was: bonds that broke
-    // on a way that led nowhere are not broken for what comes after.
+    // Nothing if it finds no equilibrium; reason() says why. The assembly is then as it was: bonds that broke in
+    // this search are whole again.
     std::optional<mechanics::Convergence> equilibrate(Assembly& assembly, const Equilibrium& settings,
                                                       const std::vector<Vector2d>& guess = {});
     const std::string& reason() const { return reason_; }
 
-    // After equilibrate(), at the same stiffnesses: the x with K x = right, K made of the contacts' tangents
-    // given. By the last factor, which is renewed where it is too far off. Empty if K has no inverse.
+    // After equilibrate(), at the same stiffnesses: the x with K x = right, with K from the given tangents
+    // of contacts. Uses the last factor, which is renewed where it is too far off. Empty if K has no inverse.
     VectorXd solve_linear(const Assembly& assembly, const std::vector<Tangent>& tangents,
                           const VectorXd& right);
     const Stiffness& stiffness() const { return stiffness_; }
@@ -57,13 +56,13 @@ private:
     void take_states(const Assembly& assembly, const State& start, bool first);
     std::vector<Tangent> tangents(const Assembly& assembly, const State& start, double softness) const;
     VectorXd correction(const Assembly& assembly, const State& start, const VectorXd& force, double enough,
-                        double hold);
-    struct Way {
+                        double kept_share);
+    struct Advance {
         double merit;        // where it ends
         double failed_share; // the smallest share of the correction that brought forces no nearer to balance;
                              // 0 if none
     };
-    Way go_along(Assembly& assembly, const State& start, const VectorXd& correction, double merit);
+    Advance go_along(Assembly& assembly, const State& start, const VectorXd& correction, double merit);
     void prepare(const Assembly& assembly);
     bool converge(Assembly& assembly, const State& start, const Equilibrium& settings, int most_corrections,
                   mechanics::Convergence& convergence);
@@ -83,8 +82,8 @@ private:
     std::vector<char> broken_; // when states were taken
     VectorXd scale_;           // of forces: the stiffness against which they act [Pa]
     double stiffest_ = 0;      // row sum [Pa]
-    Index unsupported_ = -1;   // gridpoint of rock that forces in balance leave out; -1: none
-    double too_far_ = 0;       // to look for equilibrium [m]
+    Index unsupported_ = -1;   // gridpoint of rock without support though forces balance; -1: none
+    double too_far_ = 0;       // largest displacement in a search for equilibrium [m]
     VectorXd force_;           // unbalanced, at the last evaluation
     Index corrections_ = 0, factorisations_ = 0, solves_ = 0;
     std::string reason_;

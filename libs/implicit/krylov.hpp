@@ -25,7 +25,7 @@ using Eigen::VectorXd;
 class KrylovSpace
 {
 public:
-    // Of more solutions than this, the one goes that has helped least of late.
+    // With more solutions than this, the one that has helped least of late is dropped.
     explicit KrylovSpace(int most_kept) : most_kept_(most_kept) {}
 
     void forget() { size_ = 0; }
@@ -79,7 +79,7 @@ template <class Product, class Precondition>
 double KrylovSpace::solve(const Product& product, const Precondition& precondition, const VectorXd& right,
                           double enough, int most, VectorXd& x)
 {
-    constexpr double rounding = 1e-14; // what is left of a product beside the space, if nothing new is in it
+    constexpr double rounding = 1e-14; // left of a product that lies in the space
     constexpr double little = 0.9;     // is left of the residual by an iteration that gains enough
     x = VectorXd::Zero(right.size());
     const double norm_of_right = right.norm();
@@ -127,7 +127,7 @@ double KrylovSpace::solve(const Product& product, const Precondition& preconditi
         }
         if (!(next.length > rounding * whole) || !std::isfinite(next.length)) {
             if (!by_residual || found.empty())
-                break; // nothing new to be had
+                break; // no new direction is left
             by_residual = false;
             continue;
         }

@@ -1,4 +1,4 @@
-// Linear systems at an equilibrium: what it would change by.
+// Linear systems at an equilibrium: to first order, how it changes.
 
 #include "implicit/equilibrium.hpp"
 

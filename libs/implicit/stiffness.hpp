@@ -40,7 +40,7 @@ public:
     Eigen::Index size() const { return n_; }
 
     // Gathers a vector over gridpoints into the unknowns' order (forces: of the free directions), and back
-    // (displacements: 0 where held).
+    // (displacements: 0 where fixed).
     VectorXd gathered(const Assembly& assembly, const std::vector<Vector2d>& over_gridpoints) const;
     void add_to(std::vector<Vector2d>& over_gridpoints, const VectorXd& unknowns, double factor) const;
 
@@ -83,7 +83,7 @@ private:
     void fill_zones(const Assembly& assembly);
 
     Eigen::Index n_ = 0;
-    std::vector<std::array<int, 2>> unknown_; // of each gridpoint's {x, y}; -1 held
+    std::vector<std::array<int, 2>> unknown_; // of each gridpoint's {x, y}; -1 fixed
     Matrix zones_;                            // of the zones alone, with all contacts' entries in the pattern
     std::vector<std::array<int, 36>> zone_entry_;    // where a zone's 6 x 6 goes in zones_; -1 nowhere
     std::vector<std::array<int, 16>> contact_entry_; // where a contact's 4 x 4 goes

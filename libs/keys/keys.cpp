@@ -270,11 +270,11 @@ void check_present(const TomlValue& value, const std::vector<const KeyInfo*>& kn
         if (key->need == Need::together && value.find(key->name))
             given[key->group] = key->name;
     for (const KeyInfo* const key : known) {
-        const auto* const held = value.find(key->name);
-        if (held && !key->in_place_of.empty() && given.contains(key->in_place_of))
-            place.refuse(held->line, place.table + " " + key->name + " = " + shown(*held) +
-                                         ": wanted either " + key->name + " or the " + key->in_place_of +
-                                         " keys (" + given[key->in_place_of] + ", ...), not both");
+        const auto* const found = value.find(key->name);
+        if (found && !key->in_place_of.empty() && given.contains(key->in_place_of))
+            place.refuse(found->line, place.table + " " + key->name + " = " + shown(*found) +
+                                          ": wanted either " + key->name + " or the " + key->in_place_of +
+                                          " keys (" + given[key->in_place_of] + ", ...), not both");
     }
     for (const KeyInfo* const key : known) {
         if (value.find(key->name))

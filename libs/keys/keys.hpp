@@ -83,7 +83,7 @@ std::vector<std::string> read_names(const KeyInfo& key, const TomlValue& value, 
 double read_date(const KeyInfo& key, const TomlValue& value, const Place& place); // since start [s]
 Calendar read_start(const KeyInfo& key, const TomlValue& value, const Place& place);
 Eigen::Vector2d read_point(const KeyInfo& key, const TomlValue& value, const Place& place);
-// From left to right: x increases.
+// A line from left to right: x increases.
 std::vector<Eigen::Vector2d> read_polyline(const KeyInfo& key, const TomlValue& value, const Place& place);
 Polygon read_polygon(const KeyInfo& key, const TomlValue& value, const Place& place);
 std::vector<Polygon> read_polygons(const KeyInfo& key, const TomlValue& value, const Place& place);

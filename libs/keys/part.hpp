@@ -38,7 +38,7 @@ struct Part {
 
     // What must hold beyond the range of each key, in this order. They throw input_error.
     using Check = std::function<void(const Whole&, const Source&)>;
-    bool has_names = false; // "name" is a key, and each name stands once in the list
+    bool has_names = false; // "name" is a key, and each name occurs once in the list
     Check references{};     // names of other tables
     Check shapes{};         // polygons
     Check values{};         // all else; may rely on the shapes of all tables
@@ -53,7 +53,7 @@ struct ForceKeys {
 
 // --- Making a part ----------------------------------------------------------------------------------------
 
-// Of a table that `read` reads.
+// A part: a table that `read` reads.
 template <class Whole, class Record, class Read>
 Part<Whole> part_read_by(const Table<Record>& table, Read read)
 {
@@ -63,14 +63,14 @@ Part<Whole> part_read_by(const Table<Record>& table, Read read)
     return one;
 }
 
-// Of a table inside another, which reads it; it is documented where it stands in the list.
+// A table inside another, which reads it. It is documented at its place in the list.
 template <class Whole, class Record>
 Part<Whole> part_inside(const Table<Record>& table)
 {
     return part_read_by<Whole>(table, nullptr);
 }
 
-// Of a list of tables, one a record.
+// A list of tables, one per record.
 template <class Whole, class Record>
 Part<Whole> part_in_list(const Table<Record>& table, std::vector<Record> Whole::*member)
 {
@@ -79,7 +79,7 @@ Part<Whole> part_in_list(const Table<Record>& table, std::vector<Record> Whole::
     });
 }
 
-// Of a table that stands once and fills `member`: a pointer to a member, or a function Whole& -> Record&.
+// A table that occurs once and fills `member`: a pointer to a member, or a function Whole& -> Record&.
 // Without the table the defaults fill it.
 template <class Whole, class Record, class Member>
 Part<Whole> part_once(const Table<Record>& table, Member member)
@@ -89,7 +89,7 @@ Part<Whole> part_once(const Table<Record>& table, Member member)
     });
 }
 
-// Of a table that stands once, or not at all: then there is no record.
+// A table that occurs once, or not at all: then there is no record.
 template <class Whole, class Record>
 Part<Whole> part_if_given(const Table<Record>& table, std::optional<Record> Whole::*member)
 {

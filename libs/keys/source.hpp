@@ -33,7 +33,7 @@ struct Source {
     Given once(const std::string& table) const;                   // the root where it is not given
     Given in_list(const std::string& table, std::size_t i) const; // it must be there
 
-    // Refuses a name that stands twice in all of these lists of tables.
+    // Refuses a name that occurs twice in all of these lists of tables.
     void check_unique(const std::vector<std::string>& tables) const;
 };
 

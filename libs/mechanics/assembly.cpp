@@ -60,8 +60,8 @@ Assembly assemble(const Scene& scene, const Network& network, const EquivalentJo
     assembly.force.assign(n, Vector2d::Zero());
     assembly.load.assign(n, Vector2d::Zero());
     assembly.applied.assign(n, Vector2d::Zero());
-    for (const Index held : mesh.gridpoint_fixed)
-        assembly.is_free_untied.emplace_back((held & 1) != 0 ? 0.0 : 1.0, (held & 2) != 0 ? 0.0 : 1.0);
+    for (const Index fixed : mesh.gridpoint_fixed)
+        assembly.is_free_untied.emplace_back((fixed & 1) != 0 ? 0.0 : 1.0, (fixed & 2) != 0 ? 0.0 : 1.0);
     assembly.zones = rock::zones_of(scene, network, mesh);
     assembly.contacts = joint::contacts_of(scene, equivalent, mesh);
     find_incidence(assembly);
@@ -194,12 +194,12 @@ Balance balance_of(const Assembly& assembly)
     return {all.largest, all.worst, all.n > 0 ? all.sum / all.n : 0.0};
 }
 
-Balance balance_of(const Assembly& assembly, double stiffest, double farthest, double tolerance)
+Balance balance_of(const Assembly& assembly, double stiffest, double largest, double tolerance)
 {
     for (const Vector2d& u : assembly.displacement)
-        farthest = std::max(farthest, u.norm());
+        largest = std::max(largest, u.norm());
     Balance balance = balance_of(assembly);
-    balance.mean = std::max(balance.mean, 1e-15 * stiffest * farthest / tolerance);
+    balance.mean = std::max(balance.mean, 1e-15 * stiffest * largest / tolerance);
     return balance;
 }
 
@@ -215,28 +215,28 @@ double size_of(const Assembly& assembly)
 
 // The largest of n lengths, or the first that is no number.
 template <class Length>
-static std::pair<double, std::size_t> farthest_of(std::size_t n, const Length& length)
+static std::pair<double, std::size_t> largest_of(std::size_t n, const Length& length)
 {
-    std::pair<double, std::size_t> farthest(0, 0);
+    std::pair<double, std::size_t> largest(0, 0);
     for (std::size_t g = 0; g < n; ++g) {
         const double moved = length(g);
         if (!std::isfinite(moved))
             return {moved, g};
-        farthest = std::max(farthest, {moved, g});
+        largest = std::max(largest, {moved, g});
     }
-    return farthest;
+    return largest;
 }
 
-std::pair<double, std::size_t> farthest_move(const std::vector<Vector2d>& from,
-                                             const std::vector<Vector2d>& to)
+std::pair<double, std::size_t> largest_move(const std::vector<Vector2d>& from,
+                                            const std::vector<Vector2d>& to)
 {
-    return farthest_of(from.size(), [&](std::size_t g) { return (to[g] - from[g]).norm(); });
+    return largest_of(from.size(), [&](std::size_t g) { return (to[g] - from[g]).norm(); });
 }
 
-std::pair<double, std::size_t> farthest_displacement(const Assembly& assembly)
+std::pair<double, std::size_t> largest_displacement(const Assembly& assembly)
 {
-    return farthest_of(assembly.displacement.size(),
-                       [&](std::size_t g) { return assembly.displacement[g].norm(); });
+    return largest_of(assembly.displacement.size(),
+                      [&](std::size_t g) { return assembly.displacement[g].norm(); });
 }
 
 double work_of_loads(const Assembly& assembly, const std::vector<Vector2d>& start)

@@ -42,9 +42,9 @@ struct Assembly {
     // Gridpoints.
     std::vector<Vector2d> position;       // at the start [m]
     std::vector<Vector2d> displacement;   // [m]
-    std::vector<Vector2d> is_free_untied; // 1 or 0 in {x, y}: neither held by a boundary nor gone
-    std::vector<Vector2d> is_free;        // 1 or 0 in {x, y}: nor tied to one that is held
-    std::vector<Vector2d> load;           // weight, and what excavation still holds [N/m]
+    std::vector<Vector2d> is_free_untied; // 1 or 0 in {x, y}: not fixed by a boundary, not removed
+    std::vector<Vector2d> is_free;        // 1 or 0 in {x, y}: and not tied to a fixed one
+    std::vector<Vector2d> load;           // weight, and forces of excavated rock still applied [N/m]
     std::vector<Vector2d> applied;        // from tractions on the outline [N/m]
     std::vector<Vector2d> force;          // unbalanced, also where fixed; filled by find_forces [N/m]
 
@@ -70,7 +70,7 @@ Assembly assemble(const Scene& scene, const Network& network, const EquivalentJo
 // Finds which zones, contacts and gridpoints belong together; part of assemble.
 void find_incidence(Assembly& assembly);
 
-// Ends the ties that a stage parts.
+// Ends the ties that a stage separates.
 void part_ties(Assembly& assembly, Index stage);
 
 // Stresses, tractions and forces at the present displacements. Slip and breaking of contacts are taken into
@@ -100,21 +100,20 @@ struct Balance {
 // How far the forces of the last find_forces are from equilibrium.
 Balance balance_of(const Assembly& assembly);
 
-// The same, allowing for rounding: where rock is almost without stress, forces are rounding errors of
-// stiffness times displacement, and those are in balance, too. So the mean does not count as less than the
-// `stiffest` row sum and the farthest displacement, of now or `farthest` [m] on the way here, demand for
-// `tolerance`.
-Balance balance_of(const Assembly& assembly, double stiffest, double farthest, double tolerance);
+// The same, allowing for rounding. Where rock is almost without stress, forces are rounding errors of stiffness
+// times displacement; those are in balance, too. So the mean is at least what `tolerance` requires for these
+// errors, with the `stiffest` row sum and the largest displacement, present or `largest` [m] during the search.
+Balance balance_of(const Assembly& assembly, double stiffest, double largest, double tolerance);
 
 // The largest of the moves between two lists of displacements [m], and its gridpoint; a move that is no
 // number first of all.
-std::pair<double, std::size_t> farthest_move(const std::vector<Vector2d>& from,
-                                             const std::vector<Vector2d>& to);
+std::pair<double, std::size_t> largest_move(const std::vector<Vector2d>& from,
+                                            const std::vector<Vector2d>& to);
 
 // The same of the displacements since the in-situ state.
-std::pair<double, std::size_t> farthest_displacement(const Assembly& assembly);
+std::pair<double, std::size_t> largest_displacement(const Assembly& assembly);
 
-// Work of load and applied forces on the way from the displacements `start` to the present ones [J/m].
+// Work of load and applied forces between the displacements `start` and the present ones [J/m].
 double work_of_loads(const Assembly& assembly, const std::vector<Vector2d>& start);
 
 // Diagonal of the box around all gridpoints [m].
@@ -145,7 +144,7 @@ std::vector<double> stiffness_row_sums(const Assembly& assembly);
 // Mass of every gridpoint: a third of each present zone around it [kg/m].
 std::vector<double> lumped_masses(const Assembly& assembly);
 
-// What an equilibrium has cost, with what was found and rejected or sought in vain before it.
+// The cost of an equilibrium, with the rejected and failed searches before it.
 struct Effort {
     Index searches = 0;                   // for equilibrium, by either engine
     Index steps = 0;                      // of dynamic relaxation, and corrections
@@ -160,8 +159,8 @@ struct Convergence {
     // Largest over the last 100 steps, or by one more correction; over the mean force on a gridpoint [-].
     double contact_force_change = 0;
     double remaining_displacement = 0; // largest, by estimate [m]
-    // On the way: work of loads = what zones and contacts store + what contacts dissipate + what damping
-    // takes [J/m].
+    // Energy balance: work of loads = stored in zones and contacts + dissipated in contacts + taken by damping
+    // [J/m].
     double work_of_loads = 0, stored = 0, dissipated = 0, damped = 0;
 };
 

@@ -19,7 +19,7 @@ std::vector<Vector2d> excavate(Assembly& assembly, const Blocks& blocks, const M
         zones.stress[z].setZero();
     }
 
-    const auto is_gone = [&](Index g) {
+    const auto has_no_rock = [&](Index g) {
         const Incidence& incidence = assembly.incidence;
         bool had_zones = false;
         for (Index k = incidence.zone_start[g]; k < incidence.zone_start[g + 1]; ++k) {
@@ -27,18 +27,18 @@ std::vector<Vector2d> excavate(Assembly& assembly, const Blocks& blocks, const M
                 return false;
             had_zones = true;
         }
-        return had_zones; // gridpoints of the ground have none, ever
+        return had_zones; // gridpoints of the ground never have any
     };
     for (std::size_t c = 0; c < contacts.gridpoint.size(); ++c) {
         const auto [a, b] = contacts.gridpoint[c];
-        if (contacts.status[c] == ContactStatus::removed || (!is_gone(a) && !is_gone(b)))
+        if (contacts.status[c] == ContactStatus::removed || (!has_no_rock(a) && !has_no_rock(b)))
             continue;
         contacts.force[c].setZero();
         contacts.traction[c].setZero();
         contacts.status[c] = ContactStatus::removed;
     }
     for (std::size_t g = 0; g < assembly.position.size(); ++g)
-        if (is_gone(static_cast<Index>(g))) {
+        if (has_no_rock(static_cast<Index>(g))) {
             assembly.load[g].setZero();
             assembly.is_free_untied[g].setZero();
         }
@@ -47,11 +47,11 @@ std::vector<Vector2d> excavate(Assembly& assembly, const Blocks& blocks, const M
     loading.leave_removed(assembly);
     find_forces(assembly);
     for (std::size_t g = 0; g < released.size(); ++g) {
-        if (is_gone(static_cast<Index>(g))) {
+        if (has_no_rock(static_cast<Index>(g))) {
             released[g].setZero();
             continue;
         }
-        // What a boundary held through a tie was in balance with it.
+        // Where the tie to a fixed gridpoint ends, this force was in balance with the boundary.
         released[g] = (assembly.is_free[g].array() > was_free[g].array()).select(0, released[g]);
         released[g] -= assembly.force[g];
     }

@@ -1,4 +1,4 @@
-// Taking rock away.
+// Excavation.
 
 #pragma once
 
@@ -8,10 +8,9 @@
 namespace jointcreep::mechanics
 {
 
-// Removes the blocks of a stage. Zones leave, contacts with a side on them end, tractions on them too,
-// gridpoints without any zone left are held where they are. Returns the forces that what has gone exerted on
-// the gridpoints that stay [N/m]: added to the load they keep what is left in balance, and fading them out
-// unloads it gradually.
+// Removes the blocks of a stage, with their zones. Contacts and tractions on them end. Gridpoints without any zone
+// left are fixed. Returns the forces of the removed rock on the gridpoints that stay [N/m]. Added to the load,
+// these forces keep the remaining rock in balance; reducing them to 0 unloads it gradually.
 std::vector<Vector2d> excavate(Assembly& assembly, const Blocks& blocks, const Mesh& mesh,
                                const Loading& loading, Index stage);
 

@@ -13,17 +13,17 @@ namespace jointcreep::mechanics
 namespace
 {
 
-constexpr double is_moving = 0.1; // of the fastest block's motion
+constexpr double is_moving = 0.1; // of the fastest block's displacement
 constexpr std::size_t most_shown = 5;
 
 // The blocks' present rock.
 struct Rock {
-    std::vector<double> area;     // 0 once a block is gone [m2]
-    std::vector<Vector2d> centre; // at the start [m]
-    std::vector<Vector2d> motion; // mean [m]
+    std::vector<double> area;           // 0 once a block is removed [m2]
+    std::vector<Vector2d> centre;       // at the start [m]
+    std::vector<Vector2d> displacement; // mean [m]
 };
 
-Rock rock_of(const Mesh& mesh, const Assembly& assembly, const std::vector<Vector2d>& motion)
+Rock rock_of(const Mesh& mesh, const Assembly& assembly, const std::vector<Vector2d>& displacement)
 {
     const auto n =
         static_cast<std::size_t>(1 + *std::max_element(mesh.zone_block.begin(), mesh.zone_block.end()));
@@ -37,14 +37,14 @@ Rock rock_of(const Mesh& mesh, const Assembly& assembly, const std::vector<Vecto
         rock.area[b] += 3 * third;
         for (const Index g : mesh.zone_gridpoint[z]) {
             rock.centre[b] += third * assembly.position[g];
-            if (!motion.empty())
-                rock.motion[b] += third * motion[g];
+            if (!displacement.empty())
+                rock.displacement[b] += third * displacement[g];
         }
     }
     for (std::size_t b = 0; b < n; ++b)
         if (rock.area[b] > 0) {
             rock.centre[b] /= rock.area[b];
-            rock.motion[b] /= rock.area[b];
+            rock.displacement[b] /= rock.area[b];
         }
     return rock;
 }
@@ -53,7 +53,7 @@ void add(Failure& failure, const Rock& rock, std::size_t block)
 {
     failure.block.push_back(static_cast<Index>(block));
     failure.place.push_back(rock.centre[block]);
-    failure.motion.push_back(rock.motion[block]);
+    failure.motion.push_back(rock.displacement[block]);
 }
 
 } // namespace
@@ -71,15 +71,15 @@ Failure failure_of(const no_equilibrium& error, const Mesh& mesh, const Assembly
     std::vector<std::size_t> blocks(rock.area.size());
     std::iota(blocks.begin(), blocks.end(), 0);
     std::stable_sort(blocks.begin(), blocks.end(), [&](std::size_t a, std::size_t b) {
-        return rock.motion[a].norm() > rock.motion[b].norm();
+        return rock.displacement[a].norm() > rock.displacement[b].norm();
     });
     for (const std::size_t b : blocks)
-        if (rock.motion[b].norm() > is_moving * rock.motion[blocks[0]].norm())
+        if (rock.displacement[b].norm() > is_moving * rock.displacement[blocks[0]].norm())
             add(failure, rock, b);
     return failure;
 }
 
-Failure failure_of_unheld(const Mesh& mesh, const Assembly& assembly)
+Failure failure_of_unsupported(const Mesh& mesh, const Assembly& assembly)
 {
     // Pieces of rock: gridpoints joined by zones, ties and contacts that are not removed.
     DisjointSets sets(assembly.position.size());
@@ -106,16 +106,16 @@ Failure failure_of_unheld(const Mesh& mesh, const Assembly& assembly)
     }
 
     const Rock rock = rock_of(mesh, assembly, {});
-    std::vector<char> is_unheld(rock.area.size(), 0);
+    std::vector<char> is_unsupported(rock.area.size(), 0);
     for (std::size_t z = 0; z < mesh.zone_gridpoint.size(); ++z) {
         const Piece& piece = pieces[sets.root(mesh.zone_gridpoint[z][0])];
         const Vector2d push = piece.resultant.cwiseProduct(piece.free);
         if (assembly.zones.is_present[z] && push.lpNorm<Eigen::Infinity>() > 1e-9 * piece.magnitudes)
-            is_unheld[mesh.zone_block[z]] = 1;
+            is_unsupported[mesh.zone_block[z]] = 1;
     }
     Failure failure;
-    for (std::size_t b = 0; b < is_unheld.size(); ++b)
-        if (is_unheld[b])
+    for (std::size_t b = 0; b < is_unsupported.size(); ++b)
+        if (is_unsupported[b])
             add(failure, rock, b);
     return failure;
 }

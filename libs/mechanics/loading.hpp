@@ -16,7 +16,7 @@ public:
     // Puts on the tractions and displacements of `time` since start [s], in place of those before.
     void apply(Assembly& assembly, double time);
 
-    // Takes tractions off sides whose rock has been removed.
+    // Removes tractions from sides whose rock has been removed.
     void leave_removed(Assembly& assembly) const;
 
 private:

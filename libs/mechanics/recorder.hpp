@@ -1,4 +1,4 @@
-// Writes down what happens at the monitoring points, in the whole section, and between steps of the solver.
+// Records the monitoring points, states of the whole section, and steps of the solver.
 
 #pragma once
 
@@ -29,8 +29,8 @@ public:
     // Counts displacements from the last recorded row and state on.
     static void reset(Result& result);
 
-    // Appends a row of what the monitoring points are given by the values of gridpoints; a removed point has
-    // what it had in the row before.
+    // Appends a row of values at the monitoring points, from values of gridpoints. A removed point keeps its value
+    // of the row before.
     void append_at_points(std::vector<Vector2d>& rows, const std::vector<Vector2d>& of_gridpoints,
                           const Assembly& assembly) const
     {

@@ -18,7 +18,7 @@ using Eigen::Vector3d;
 
 constexpr double soft = 1e-9; // share of their springs that contacts without load keep
 
-// Rock that hangs together, as a rigid body: it moves by {x, y, turn times radius}.
+// Connected rock as a rigid body: it moves by {x, y, rotation times radius}.
 struct Piece {
     Index first = -1; // gridpoint
     Vector2d middle{0, 0};
@@ -26,7 +26,7 @@ struct Piece {
     Vector3d unbalanced{0, 0, 0};     // force, moment over radius [N/m]
     double loads = 0, gridpoints = 0; // sum of magnitudes of weight and tractions [N/m]; count
 
-    // How a place of it moves.
+    // Displacements of a place by unit movements of the piece.
     Eigen::Matrix<double, 2, 3> moves(const Vector2d& place) const
     {
         const Vector2d arm = (place - middle) / radius;
@@ -45,7 +45,7 @@ bool is_plain(const Assembly& assembly, double share, double rounding)
     return true;
 }
 
-// Of each gridpoint the number of its piece, and the pieces.
+// The pieces, and for each gridpoint the number of its piece.
 std::vector<Piece> pieces_of(const Assembly& assembly, std::vector<Index>& piece_of)
 {
     const std::size_t n = assembly.position.size();
@@ -92,7 +92,7 @@ std::vector<Piece> pieces_of(const Assembly& assembly, std::vector<Index>& piece
     return pieces;
 }
 
-// Of rigid pieces, on the contacts and on gridpoints that are held.
+// Stiffness of rigid pieces, on the contacts and on fixed gridpoints.
 Eigen::SparseMatrix<double> stiffness_of(const Assembly& assembly, const std::vector<Piece>& pieces,
                                          const std::vector<Index>& piece_of)
 {
@@ -128,10 +128,10 @@ Eigen::SparseMatrix<double> stiffness_of(const Assembly& assembly, const std::ve
     for (std::size_t g = 0; g < piece_of.size(); ++g)
         if (piece_of[g] >= 0 && assembly.is_free[g].minCoeff() == 0) {
             const Eigen::Matrix<double, 2, 3> moves = pieces[piece_of[g]].moves(assembly.position[g]);
-            const Vector2d held = Vector2d::Ones() - assembly.is_free[g];
-            add(piece_of[g], piece_of[g], firm * moves.transpose() * held.asDiagonal() * moves);
+            const Vector2d fixed = Vector2d::Ones() - assembly.is_free[g];
+            add(piece_of[g], piece_of[g], firm * moves.transpose() * fixed.asDiagonal() * moves);
         }
-    // What nothing holds at all moves out of all bounds, and the others as they do.
+    // A tiny stiffness for all: pieces without support move out of all bounds, and the others as before.
     for (Eigen::Index i = 0; i < 3 * static_cast<Eigen::Index>(pieces.size()); ++i)
         entries.emplace_back(static_cast<int>(i), static_cast<int>(i), 1e-14 * firm);
     Eigen::SparseMatrix<double> stiffness(3 * static_cast<Eigen::Index>(pieces.size()),
@@ -149,9 +149,9 @@ double enough(double tolerance)
 
 RemainingDisplacement largest_remaining_displacement(const Assembly& assembly, double share, double rounding)
 {
-    RemainingDisplacement farthest;
+    RemainingDisplacement largest;
     if (is_plain(assembly, share, rounding))
-        return farthest;
+        return largest;
     std::vector<Index> piece_of;
     const std::vector<Piece> pieces = pieces_of(assembly, piece_of);
     Eigen::VectorXd push = Eigen::VectorXd::Zero(3 * static_cast<Eigen::Index>(pieces.size()));
@@ -160,14 +160,14 @@ RemainingDisplacement largest_remaining_displacement(const Assembly& assembly, d
             pieces[p].loads > 0 && force > share * pieces[p].loads && force > rounding)
             push.segment<3>(3 * static_cast<Eigen::Index>(p)) = pieces[p].unbalanced;
     if (push.isZero(0))
-        return farthest;
+        return largest;
     const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(stiffness_of(assembly, pieces, piece_of));
-    const Eigen::VectorXd way = factor.solve(push);
+    const Eigen::VectorXd displacement = factor.solve(push);
     for (std::size_t p = 0; p < pieces.size(); ++p)
-        if (const double moved = way.segment<3>(3 * static_cast<Eigen::Index>(p)).norm();
-            !(moved <= farthest.displacement))
-            farthest = {std::isfinite(moved) ? moved : size_of(assembly), pieces[p].first};
-    return farthest;
+        if (const double moved = displacement.segment<3>(3 * static_cast<Eigen::Index>(p)).norm();
+            !(moved <= largest.displacement))
+            largest = {std::isfinite(moved) ? moved : size_of(assembly), pieces[p].first};
+    return largest;
 }
 
 } // namespace jointcreep::mechanics

@@ -1,5 +1,5 @@
-// Whether every piece of rock rests, not only the section as a whole: beside large forces elsewhere the
-// weight of a small block is nothing, and it would fall unseen.
+// Whether every piece of rock is in equilibrium, not only the section as a whole. Beside large forces elsewhere the
+// weight of a small block does not count in the unbalanced force ratio, and it would fall unseen.
 
 #pragma once
 
@@ -8,8 +8,8 @@
 namespace jointcreep::mechanics
 {
 
-// What an equilibrium may be short of, for a tolerance of the unbalanced force ratio: of displacements, and
-// of a piece's own loads [-].
+// From the tolerance of the unbalanced force ratio: the largest remaining displacement over the displacement, and the
+// largest unbalanced force of a piece over its own loads, at equilibrium [-].
 double enough(double tolerance);
 
 struct RemainingDisplacement {
@@ -17,12 +17,13 @@ struct RemainingDisplacement {
     Index gridpoint = 0;     // of the piece that has it
 };
 
-// How far rock would still move that its contacts do not support. A piece is rock that holds together; the
-// unbalanced force and moment on it count where they are more than `share` of the piece's own
-// weight and tractions and more than `rounding` [N/m]; rock without any of these is driven by nothing of its
-// own. The displacement is that of rigid pieces on contacts as they are now, where those that are open or
-// slip have a billionth of their springs: micrometres where springs take it up, and out of all bounds where
-// rock falls. 0 if nothing counts. Contact forces and those on gridpoints are the present ones.
+// Largest displacement that contacts do not yet balance, by estimate. A piece is connected rock. Its unbalanced
+// force and moment count where they are more than `share` of the piece's own weight and tractions, and more than
+// `rounding` [N/m]. A piece without weight and tractions does not count.
+//
+// The displacement is that of rigid pieces on the present contacts; open and slipping contacts have a billionth of
+// their springs. It is micrometres where springs carry the piece, and out of all bounds where it falls. 0 if no
+// piece counts. Contact forces and forces on gridpoints are the present ones.
 RemainingDisplacement largest_remaining_displacement(const Assembly& assembly, double share, double rounding);
 
 } // namespace jointcreep::mechanics

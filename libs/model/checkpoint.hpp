@@ -1,6 +1,6 @@
-// What a run's stage begins with, so that another run can go on from there as if it were the same one.
+// The state before a stage, from which another run can continue with the same result.
 //
-// Everything else starts afresh at a stage: factorisations, what was learnt from earlier steps.
+// Everything else begins anew at a stage: factorisations, what was learnt from earlier steps.
 
 #pragma once
 
@@ -14,7 +14,7 @@
 namespace jointcreep
 {
 
-// Of a dynamic analysis with large displacements, beside the rest; pairs of faces that may touch.
+// What a dynamic analysis with large displacements adds: among others pairs of faces that may touch.
 struct DynamicsState {
     std::vector<Eigen::Vector2d> origin, place;  // of gridpoints: that displacements count from; now [m]
     std::vector<Eigen::Vector4d> inverse;        // of zones: of their edges without stress [1/m]
@@ -26,8 +26,8 @@ struct DynamicsState {
     std::vector<std::array<Index, 2>> face;    // gridpoints
     std::vector<std::array<Index, 2>> pair;    // faces
     std::vector<Index> law;                    // of the pair
-    std::vector<double> first_lead, second_lead;                   // [m]
-    std::vector<double> dilation;                                  // in the leads [m]
+    std::vector<double> first_lead, second_lead;                   // closure without gap [m]
+    std::vector<double> dilation;                                  // part of the leads [m]
     std::vector<double> tau;                                       // [Pa]
     std::vector<Index> is_known, is_new, is_closed, is_broken;     // 0 or 1
     std::vector<double> first_memory, second_memory, third_memory; // of the law [SI]
@@ -40,7 +40,7 @@ struct DynamicsState {
 };
 
 struct Checkpoint {
-    Index stage = 0; // about to be excavated
+    Index stage = 0; // to be excavated next
     double time = 0; // since start [s]
 
     // Gridpoints.
@@ -83,7 +83,7 @@ struct Checkpoint {
     DynamicsState dynamics;
 };
 
-// Takes state into a checkpoint, or gives it back. So a list of what is state is written once, for both.
+// Copies state into a checkpoint, or back from it. So a list of the state is written once, for both.
 class Transfer
 {
 public:

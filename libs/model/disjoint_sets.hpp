@@ -31,7 +31,7 @@ public:
     }
 
 private:
-    mutable std::vector<Index> parent_; // ways to the roots get shorter as they are gone
+    mutable std::vector<Index> parent_; // paths to the roots get shorter with each use
 };
 
 } // namespace jointcreep

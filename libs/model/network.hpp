@@ -64,17 +64,16 @@ struct CuttingReport {
     double smallest_angle = 0;     // between neighbouring edges that is left [rad]
 };
 
-// What became of a joint when the section was cut; judged up to the shortest edge.
+// The fate of a joint: what became of it when the section was cut, to the length of the shortest edge.
 enum class JointFate : Index {
     kept = 0,    // all of it is on block edges
-    clipped = 1, // what lies in the section is, but for what runs along its outline
+    clipped = 1, // the part inside the section is, except along the outline
     trimmed = 2, // some of it ended inside a block, and was cut back
     merged = 3,  // some of it was on edges too short, or too close to others, to stay
     dropped = 4  // none of it is on block edges
 };
 
-// The same in lengths; rows are joints. The lengths but the last sum to the length of the joint's line,
-// traces and bridges together [m].
+// Fates by lengths; rows are joints. All lengths but the last add up to the joint's line, traces and bridges [m].
 struct JointFates {
     std::vector<Index> fate;          // JointFate
     std::vector<double> kept;         // on block edges that have its properties
@@ -83,7 +82,7 @@ struct JointFates {
     std::vector<double> outside;      // of the section: clipped
     std::vector<double> dangling_end; // inside a block: cut back
     std::vector<double> merged;       // on edges that vanished
-    std::vector<double> extended;     // carried on beyond its ends, to the next block edge
+    std::vector<double> extended;     // beyond its ends, to the next block edge
 };
 
 // The cut section: a planar map whose faces are the blocks.
@@ -183,7 +182,7 @@ struct EquivalentJoints {
     Pieces pieces{};
     SetAverages sets{};
 
-    // As many as the longest chain has.
+    // The number of Kelvin units of the longest chain.
     std::size_t kelvin_units() const
     {
         return normal_stiffness.empty() ? 0 : normal_kelvin_stiffness.size() / normal_stiffness.size();

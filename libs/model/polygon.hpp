@@ -26,7 +26,7 @@ inline double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b)
     return a.x() * b.y() - a.y() * b.x();
 }
 
-// Of a polygon along a unit vector.
+// The extent of a polygon along a unit vector.
 Interval extent(const Polygon& polygon, const Eigen::Vector2d& direction);
 
 // The stretches of a line inside a polygon. A corner on the line counts as left of it, so that crossings pair

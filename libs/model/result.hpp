@@ -19,11 +19,11 @@ enum class ContactStatus : Index {
 // a joint has split.
 struct Mesh {
     std::vector<Eigen::Vector2d> gridpoint;           // position at the start [m]
-    std::vector<Index> gridpoint_fixed;               // 0 free, 1 held in x, 2 in y, 3 in both
+    std::vector<Index> gridpoint_fixed;               // 0 free, 1 fixed in x, 2 in y, 3 in both
     std::vector<std::array<Index, 3>> zone_gridpoint; // counter-clockwise
     std::vector<Index> zone_block;                    // into Blocks
-    // Gridpoints that are one until a stage takes away the rock that holds them together (a joint's tip on
-    // rock that goes, say), and two from then on.
+    // Ties: two gridpoints that move as one until a stage excavates the rock that connects them (at a joint's tip,
+    // for example).
     std::vector<std::array<Index, 2>> tie_gridpoint;
     std::vector<Index> tie_stage;                     // into Names::stage
     std::vector<std::array<Index, 2>> side_gridpoint; // zone sides on a boundary condition
@@ -45,7 +45,7 @@ struct History {
     std::vector<Eigen::Vector2d> point_position; // [m]
     std::vector<Index> first_reading_row;        // [point] the row a point's own readings count from
     std::vector<Eigen::Vector2d> displacement;   // [time, point] since the in-situ equilibrium [m]
-    std::vector<Index> present; // [time, point] 0 once removed; the last displacement is held
+    std::vector<Index> present; // [time, point] 0 once removed; the last displacement is kept
     std::vector<Index>
         reset_row; // [time] the row displacements are to count from since the last reset, 0 before one
 };
@@ -71,7 +71,7 @@ struct States {
 struct Equilibria {
     std::vector<double> time;       // since start [day]
     std::vector<Index> is_implicit; // 1 by the implicit engine, 0 by dynamic relaxation
-    // What it has cost, with what was found and rejected or sought in vain before it.
+    // The cost of the equilibrium, with the rejected and failed searches before it.
     std::vector<Index> searches; // for equilibrium, by either engine
     std::vector<Index> steps;    // of dynamic relaxation, and corrections of the implicit engine
     std::vector<Index> factorisations, solves;  // of the implicit engine; solves are back-substitutions
@@ -79,7 +79,7 @@ struct Equilibria {
     std::vector<double>
         contact_force_change; // over the last 100 steps or by one more correction, over the mean force [-]
     std::vector<double> remaining_displacement; // largest, by estimate [m]
-    // On the way there, in balance: work_of_loads = stored + dissipated (by contacts) + damped [J/m].
+    // Energy balance: work_of_loads = stored + dissipated (by contacts) + damped [J/m].
     std::vector<double> work_of_loads, stored_energy, dissipated_energy, damped_energy;
 };
 
@@ -103,7 +103,7 @@ struct DynamicsHistory {
     std::vector<double> fastest;                // gridpoint's speed [m/s]
     std::vector<double> unbalanced_force_ratio; // [-]
 
-    // What touches what at these moments, row m having the contacts from first_contact[m] on.
+    // Contacts at these moments; those of moment m begin at row first_contact[m].
     std::vector<Index> first_contact{0};                   // [moment + 1]
     std::vector<std::array<Index, 2>> contact_block;       // {a, b}; -1 the ground
     std::vector<Eigen::Vector2d> contact_from, contact_to; // ends of the part that touches [m]
@@ -113,25 +113,23 @@ struct DynamicsHistory {
     std::vector<Index> contact_slips;                      // 0 or 1
 };
 
-// Where a run ended because the section has no equilibrium. Blocks are those that moved on, or that nothing
-// holds.
+// The end of a run without equilibrium. Blocks are those that move, or those without support.
 struct Failure {
-    std::string reason{};                  // the message; empty: the run has gone to its end
-    std::string stage{};                   // whose rock had just gone, or ""
+    std::string reason{};                  // the message; empty: the run was completed
+    std::string stage{};                   // whose rock had just been excavated, or ""
     double time = 0;                       // since start [day]
-    Index moves_on = 0;                    // 1 blocks slide or fall, 0 the search ended without an answer
+    Index moves_on = 0;                    // 1 blocks slide or fall, 0 undecided
     double seconds = 0;                    // that the next stand for with real masses, or 0 [s]
-    Index steps = 0;                       // of the engine, the last ones
+    Index steps = 0;                       // the last ones of the engine
     std::vector<Index> block{};            // the fastest first
     std::vector<Eigen::Vector2d> place{};  // centroid, at the start [m]
-    std::vector<Eigen::Vector2d> motion{}; // in these steps [m]
+    std::vector<Eigen::Vector2d> motion{}; // displacement in these steps [m]
 };
 
-// Runs by which a factor of safety was found, beside the result of the last one that stood.
+// Runs by which a factor of safety was found, beside the result of the run with the largest factor in equilibrium.
 struct Safety {
     std::vector<double> factor{}; // that strengths were divided by [-]
-    std::vector<Index>
-        stands{}; // 1 every equilibrium was found, 0 none, -1 the search ended without an answer
+    std::vector<Index> stands{};  // 1 every equilibrium was found, 0 rock slides or falls, -1 undecided
 };
 
 struct Result {

@@ -198,15 +198,15 @@ struct InSituStress {
     };
     std::vector<Level> profile{}; // none, or two at least, in order of depth
 
-    // Vertically below the ground, which goes on level beyond its ends; or below the elevation [m].
+    // Vertically below the ground, which continues level beyond its ends; or below the elevation [m].
     double depth_of(const Eigen::Vector2d& place) const;
     // {sigma_xx, sigma_yy, sigma_xy}, tension positive [Pa]. Above its first level and below its last one a
-    // profile goes straight on.
+    // profile continues in a straight line.
     Eigen::Vector3d at(const Eigen::Vector2d& place) const;
 };
 
-// A factor that goes piecewise straight through (time since start [s], factor) pairs, and stays what it is at
-// the ends. Without pairs it is 1.
+// A factor that is linear between (time since start [s], factor) pairs, and constant before and after them. Without
+// pairs it is 1.
 struct LoadHistory {
     std::vector<std::pair<double, double>> points; // in order of time
 
@@ -223,7 +223,7 @@ struct LoadHistory {
     }
 };
 
-// What holds or moves the outline from `from` to `to`, a straight piece of it. Elsewhere the outline is free.
+// Boundary condition on the outline from `from` to `to`, a straight piece of it. Elsewhere the outline is free.
 struct Boundary {
     Eigen::Vector2d from, to; // [m]
     bool fix_x = false, fix_y = false;
@@ -231,7 +231,7 @@ struct Boundary {
 
     // On top of the in-situ stress, both times the factor of the load history:
     std::optional<Eigen::Vector2d> traction{};     // force on the rock per area, {x, y} [Pa]
-    std::optional<Eigen::Vector2d> displacement{}; // where fixed, the displacement it is held at, {x, y} [m]
+    std::optional<Eigen::Vector2d> displacement{}; // where fixed: prescribed displacement {x, y} [m]
     LoadHistory load_history{};
 };
 
@@ -239,7 +239,7 @@ struct Boundary {
 struct Stage {
     std::string name;
     double time = 0;                  // since start [s]
-    std::vector<Polygon> remove;      // the rock inside these leaves
+    std::vector<Polygon> remove;      // the rock inside these is excavated
     bool reset_displacements = false; // from its equilibrium on, displacements are to count from there
 };
 
@@ -283,9 +283,8 @@ struct Equilibrium {
     double mass_damping = 0;      // alpha of the paper's Eq. 1, with damping "mass" [1/s]
     double stiffness_damping = 0; // beta of zones and of the joints' dashpots, with damping "mass" [s]
     double local_damping = 0;     // with damping "local" or "combined" [-]
-    std::int32_t unloading_increments =
-        1;                       // in which a stage's rock is taken away, and loads change between dates
-    std::int32_t most_steps = 0; // without equilibrium after so many, the program gives up
+    std::int32_t unloading_increments = 1; // increments of excavation, and of loads that change between dates
+    std::int32_t most_steps = 0;           // largest number of steps for an equilibrium
 };
 
 // Dynamic analysis with large displacements: Newton's law with real masses, in place of the search for
@@ -295,7 +294,7 @@ struct LargeDisplacements {
     std::vector<std::string> rigid_rocks{}; // names of Rocks whose blocks do not deform then
     double stiffness_damping = 0;           // dashpots of zones and closed joints over their springs [s]
     double mass_damping = 0;                // [1/s]
-    double release = 0;                     // time in which the forces of a stage's rock fade away [s]
+    double release = 0;                     // time in which the forces of a stage's rock go to 0 [s]
     double longest = 0;                     // of one dynamic analysis [s]
     double record_every = 0;                // [s]
 };
@@ -315,7 +314,7 @@ struct Averaging {
 // What is done with a joint that ends inside a block.
 enum class DanglingEnds {
     prune, // it is cut back to the last block edge it met
-    extend // it is carried on to the next one, as rock bridge
+    extend // it is extended to the next one, as rock bridge
 };
 
 struct Cutting {

@@ -25,8 +25,8 @@ namespace
 {
 
 constexpr Index check_every = 20, window = 100; // [steps]
-constexpr Index patience = 5000;                // between looks at what moves on [steps]
-constexpr Index looks_enough = 3;               // in a row, that see it slide or fall
+constexpr Index patience = 5000;                // between checks whether rock slides or falls [steps]
+constexpr Index looks_enough = 3;               // checks in a row that find it sliding or falling
 constexpr double safety = 0.9;                  // of the largest stable step
 constexpr double rounding = 1e-11;              // of the unbalanced force ratio: nothing is nearer to balance
 
@@ -37,8 +37,8 @@ std::string shown_length(double length)
     return text.data();
 }
 
-// With the remaining displacement, once forces are in balance: it ends where in a third of all steps, and in
-// 5000, it has not shrunk by a tenth. What is left then is rounding.
+// Patience with the remaining displacement, once forces are in balance. It ends where the remaining displacement
+// has not shrunk by a tenth in a third of all steps, and in 5000. What is left then is rounding.
 class Patience
 {
 public:
@@ -106,7 +106,7 @@ public:
             last_force_ = assembly.force;
     }
 
-    // Of the solver, since this began [s].
+    // Time of the solver since the start [s].
     double time() const { return time_before_ + steps_since_ * dt_; }
 
     // Moves by so many steps. The threads stay together for all of them, and wait for each other twice a
@@ -154,41 +154,41 @@ public:
         }
     }
 
-    // Throws if a piece of rock is on its way: far already, or steadily.
-    void check_motion(Index steps)
+    // Throws if rock is moving: too far already, or steadily.
+    void check_movement(Index steps)
     {
-        const auto [moved, g] = mechanics::farthest_move(start_, a_.displacement);
+        const auto [moved, g] = mechanics::largest_move(start_, a_.displacement);
         if (!std::isfinite(moved))
             throw no_equilibrium("the rock at " + shown(a_.position[g]) +
-                                 " has moved without bound; is it held by anything?");
+                                 " has moved without bound; does anything support it?");
         if (moved > too_far_)
             give_up("the rock at " + shown(a_.position[g]) + " has moved " + shown_length(moved) +
-                        " and is still moving; is it held by anything?",
+                        " and is still moving; does anything support it?",
                     true, steps);
-        if (const auto [in_all, h] = farthest_displacement(a_); in_all > too_far_)
+        if (const auto [in_all, h] = largest_displacement(a_); in_all > too_far_)
             give_up("the rock at " + shown(a_.position[h]) + " has moved " + shown_length(in_all) +
                         " since the in-situ state, by more than a tenth of the section: too far for small "
                         "displacements",
                     false, steps);
         if (steps % patience != 0)
             return;
-        const auto [lately, h] = mechanics::farthest_move(patience_ago_, a_.displacement);
-        looks_in_motion_ = slides_or_falls() ? looks_in_motion_ + 1 : 0;
-        if (looks_in_motion_ == looks_enough)
-            give_up("the rock at " + shown(a_.position[h]) + " moves on, " + shown_length(lately) +
-                        " over the last " + std::to_string(patience) +
-                        " steps, and what drives it does not fall off; it slides or "
-                        "falls, and nothing stops it",
+        const auto [lately, h] = mechanics::largest_move(patience_ago_, a_.displacement);
+        checks_in_movement_ = slides_or_falls() ? checks_in_movement_ + 1 : 0;
+        if (checks_in_movement_ == looks_enough)
+            give_up("the rock at " + shown(a_.position[h]) + " slides or falls: " + shown_length(lately) +
+                        " in the last " + std::to_string(patience) +
+                        " steps, and the unbalanced forces do not decrease enough "
+                        "to stop it",
                     true, steps);
         patience_ago_ = a_.displacement;
     }
 
-    // By estimate, how far the rock still is from rest: over the way it has gone since this began, or a tenth
-    // of its whole displacement if that is more, as roots of sums over mass times length squared. Of two
-    // moments, the quotient of how forces have answered to the motion between them shows the softest w^2 in
-    // this motion, and w^2 times the remaining displacement is the force left over mass. Stiffer modes in the
-    // force make it too much. In the motion they make it too little, so the moments are a quarter of all
-    // steps apart or more, in which these modes come to nothing.
+    // The remaining displacement, by estimate, over the displacement since the start, or over a tenth of the whole
+    // displacement if that is more: roots of sums over mass times length squared. Between two moments, the quotient
+    // of the change of forces to the displacement is w^2 of the softest mode in this displacement. The unbalanced
+    // force over mass is w^2 times the remaining displacement. Stiffer modes in the force make the estimate too
+    // large. In the displacement they make it too small; so the moments are a quarter of all steps apart or more,
+    // in which these modes die out.
     double remaining_share() const
     {
         double force = 0, answer = 0, between = 0, gone = 0, whole = 0;
@@ -217,15 +217,15 @@ public:
         newer_ = {steps, a_.displacement, a_.force, work_};
     }
 
-    // What the share is of: the farthest way of a gridpoint since this began, or a tenth of the farthest
-    // displacement [m].
-    double farthest_way() const
+    // What the share is of: the largest displacement since the start, or a tenth of the largest whole displacement
+    // [m].
+    double reference_displacement() const
     {
-        return std::max(mechanics::farthest_move(start_, a_.displacement).first,
-                        farthest_displacement(a_).first / 10);
+        return std::max(mechanics::largest_move(start_, a_.displacement).first,
+                        largest_displacement(a_).first / 10);
     }
 
-    // Throws, with the motion since the last look at what moves on.
+    // Throws, with the displacements since the last check whether rock slides or falls.
     [[noreturn]] void give_up(const std::string& why, bool moves_on, Index steps) const
     {
         no_equilibrium error(why);
@@ -237,7 +237,7 @@ public:
         throw error;
     }
 
-    // Ends the motion and settles the account of energy.
+    // Ends the movement and settles the energy balance.
     void finish(Convergence& convergence)
     {
         a_.stiffness_damping_rate = 0;
@@ -246,28 +246,28 @@ public:
         convergence.dissipated = in_contacts_at_start_ + joint::work_on(a_.contacts) -
                                  joint::stored_energy(a_.contacts) + rock::dissipated(a_.zones);
         convergence.work_of_loads = work_of_loads(a_, start_);
-        // Stiffness damping works inside zones and contacts, unseen by the gridpoints' motion: it takes what
+        // Stiffness damping works inside zones and contacts, unseen by the gridpoints: it takes what
         // is missing.
         convergence.damped = settings_.stiffness_damping > 0
                                  ? convergence.work_of_loads - convergence.stored - convergence.dissipated
-                                 : work_ + work_of_changes_ - energy_of_motion();
+                                 : work_ + work_of_changes_ - kinetic_energy();
     }
 
 private:
-    // What comes to rest does so as springs take up the force that drives it; what slides or falls finds none
-    // that do. Since the older moment the unbalanced forces have done work, and over the same displacement
-    // they have fallen off by `answer`: carried on, they come to nothing within a tenth of the section, or
-    // not. Of springs `answer` is twice the energy that the way would store in them, which no trembling makes
-    // less.
+    // Rock stops where springs take up the force that drives it. Rock that slides or falls finds no such springs.
+    // Since the older moment the unbalanced forces have done `work`, and over the same displacement they have
+    // decreased by `answer`. If at this rate they do not vanish within a tenth of the section, rock slides or falls.
+    // With springs `answer` is twice the energy that the displacement would store in them; vibration does not make
+    // it less.
     bool slides_or_falls() const
     {
         const double work = work_ - older_.work;
-        const double way = mechanics::farthest_move(older_.displacement, a_.displacement).first;
+        const double moved = mechanics::largest_move(older_.displacement, a_.displacement).first;
         double answer = 0;
         for (std::size_t g = 0; g < a_.force.size(); ++g)
             answer -= (a_.displacement[g] - older_.displacement[g])
                           .dot((a_.force[g] - older_.force[g]).cwiseProduct(a_.is_free[g]));
-        return work > 0 && work * way > answer * too_far_;
+        return work > 0 && work * moved > answer * too_far_;
     }
 
     // Masses and step for these row sums.
@@ -309,7 +309,7 @@ private:
     }
 
     // Masses or the step follow joints that have grown stiffer than these are stable for. Velocities keep the
-    // kinetic energy, or the account would not close.
+    // kinetic energy, or energies would not balance.
     void follow_stiffness()
     {
         if (std::none_of(stiffening_.begin(), stiffening_.end(), [&](const auto& contact) {
@@ -337,7 +337,7 @@ private:
 
     // Over gridpoints, in one step.
     struct Sums {
-        double energy = 0, answer = 0; // of the Rayleigh quotient: of motion, and how forces answer to it
+        double energy = 0, answer = 0; // of the Rayleigh quotient: kinetic, and the change of forces by it
         double work = 0;               // of the unbalanced forces [J/m]
     };
 
@@ -360,7 +360,7 @@ private:
             Vector2d energy(0, 0), answer(0, 0), work(0, 0); // in x and y apart: one sum a number is slower
             for (Index g = k * chunk; g < std::min(n, (k + 1) * chunk); ++g) {
                 const Vector2d free_force = a_.force[g].cwiseProduct(a_.is_free[g]), last = velocity_[g];
-                Vector2d force = free_force, change = Vector2d::Zero(); // with the last step's motion
+                Vector2d force = free_force, change = Vector2d::Zero(); // in the last step
                 if (adaptive || combined) {
                     change = force - last_force_[g];
                     last_force_[g] = force;
@@ -385,7 +385,7 @@ private:
         }
     }
 
-    double energy_of_motion() const
+    double kinetic_energy() const
     {
         double energy = 0;
         for (std::size_t g = 0; g < velocity_.size(); ++g)
@@ -419,8 +419,8 @@ private:
     double time_before_ = 0;                                 // at the last change of the step [s]
     Index steps_since_ = 0;
     double dt_ = 0, too_far_ = 0, alpha_ = 0;
-    Index looks_in_motion_ = 0; // in a row, every `patience` steps
-    double last_energy_ = 0;    // of motion, with kinetic damping: twice it [J/m]
+    Index checks_in_movement_ = 0; // in a row, every `patience` steps
+    double last_energy_ = 0;       // twice the kinetic energy, with kinetic damping [J/m]
     bool starts_from_rest_ = true;
 };
 
@@ -432,11 +432,11 @@ Convergence relax(Assembly& assembly, const Equilibrium& settings, const StepObs
     Convergence convergence;
     const std::vector<double> row_sums = stiffness_row_sums(assembly);
     const double stiffest = *std::max_element(row_sums.begin(), row_sums.end());
-    double farthest = 0; // displacement on the way [m]
+    double largest = 0; // displacement so far [m]
     const auto balance_for = [&](double tolerance) {
         for (const Vector2d& u : assembly.displacement)
-            farthest = std::max(farthest, u.norm());
-        return balance_of(assembly, stiffest, farthest, tolerance);
+            largest = std::max(largest, u.norm());
+        return balance_of(assembly, stiffest, largest, tolerance);
     };
     const auto is_rounding = [&] { return balance_for(rounding).ratio() <= rounding; };
     convergence.unbalanced_force_ratio = balance_for(settings.tolerance).ratio();
@@ -447,8 +447,8 @@ Convergence relax(Assembly& assembly, const Equilibrium& settings, const StepObs
     ForceMemory memory;
     memory.change_since_window(assembly);
     Index steps_in_balance = 0;
-    std::array<double, window / check_every> remaining_displacement{}; // shares, at the last looks in balance
-    Patience with_the_way;
+    std::array<double, window / check_every> remaining_displacement{}; // at the last checks
+    Patience with_remaining;
     mechanics::RemainingDisplacement unsupported; // at the last look at pieces
     Index look_again = 0;                         // at them [steps]
     while (convergence.steps < settings.most_steps) {
@@ -461,7 +461,7 @@ Convergence relax(Assembly& assembly, const Equilibrium& settings, const StepObs
             observe(relaxation.time());
         if (convergence.steps % check_every != 0)
             continue;
-        relaxation.check_motion(convergence.steps);
+        relaxation.check_movement(convergence.steps);
         const Balance balance = balance_for(settings.tolerance);
         convergence.unbalanced_force_ratio = balance.ratio();
         convergence.contact_force_change = memory.change_since_window(assembly) / balance.mean;
@@ -477,14 +477,15 @@ Convergence relax(Assembly& assembly, const Equilibrium& settings, const StepObs
         if (steps_in_balance < window || convergence.contact_force_change > settings.tolerance)
             continue;
         const double share = *std::max_element(remaining_displacement.begin(), remaining_displacement.end());
-        convergence.remaining_displacement = (std::isfinite(share) ? share : 1) * relaxation.farthest_way();
+        convergence.remaining_displacement =
+            (std::isfinite(share) ? share : 1) * relaxation.reference_displacement();
         const bool is_near = share <= enough(settings.tolerance) || is_rounding() ||
-                             with_the_way.ends(share, convergence.steps);
+                             with_remaining.ends(share, convergence.steps);
         if (!is_near || convergence.steps < look_again)
             continue;
         unsupported =
-            largest_remaining_displacement(assembly, enough(settings.tolerance), 1e-15 * stiffest * farthest);
-        if (unsupported.displacement <= enough(settings.tolerance) * relaxation.farthest_way()) {
+            largest_remaining_displacement(assembly, enough(settings.tolerance), 1e-15 * stiffest * largest);
+        if (unsupported.displacement <= enough(settings.tolerance) * relaxation.reference_displacement()) {
             convergence.remaining_displacement =
                 std::max(convergence.remaining_displacement, unsupported.displacement);
             relaxation.finish(convergence);
@@ -499,13 +500,13 @@ Convergence relax(Assembly& assembly, const Equilibrium& settings, const StepObs
             (convergence.remaining_displacement > 0
                  ? ", and by estimate " + shown_length(convergence.remaining_displacement) +
                        " of displacement remain, wanted " +
-                       shown_length(enough(settings.tolerance) * relaxation.farthest_way())
+                       shown_length(enough(settings.tolerance) * relaxation.reference_displacement())
                  : "") +
             (unsupported.displacement > 0
                  ? "; contacts do not carry the weight of, and the loads on, the rock at " +
                        shown(assembly.position[unsupported.gridpoint])
                  : "") +
-            "; farthest from balance is the rock at " + shown(assembly.position[balance.worst]),
+            "; the largest unbalanced force is at " + shown(assembly.position[balance.worst]),
         false, convergence.steps);
 }
 

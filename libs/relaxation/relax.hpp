@@ -5,13 +5,13 @@
 //
 // Masses are the real ones or scaled: for a state of rest only the forces matter, so every gridpoint may have
 // the mass that just allows the common step (dt = 1 s then; solver time means nothing). Damping is one of
-//   adaptive  alpha = 2 w, critical for the lowest frequency w that the present motion shows (Rayleigh
+//   adaptive  alpha = 2 w, critical for the lowest frequency w that the present movement shows (Rayleigh
 //             quotient)
-//   kinetic   none, but all motion is stopped whenever the kinetic energy has passed a peak (Cundall 1976)
+//   kinetic   none, but all gridpoints are stopped whenever the kinetic energy has passed a peak (Cundall 1976)
 //   local     a fraction of the unbalanced force, against the velocity (Cundall 1987)
 //   combined  half of that against the velocity, half along the change of force: it also damps vibration
-//             about a steady motion
-//   mass      alpha as given: the paper's way
+//             about a steady movement
+//   mass      alpha as given: as in the paper
 
 #pragma once
 
@@ -25,14 +25,17 @@ namespace jointcreep::relaxation
 // Called after every step with the solver time since this equilibrium began [s].
 using StepObserver = std::function<void(double solver_time)>;
 
-// Moves the assembly to equilibrium: every 20 steps in 100 the unbalanced force ratio was at most the
-// tolerance, and over these 100 steps no contact force changed by more than the tolerance times the mean
-// force on a gridpoint; and by estimate it is at most 1000 times the tolerance, or a tenth, short of the
-// displacement of this equilibrium, or of a tenth of the whole displacement if that is more, unless that is
-// rounding. Starts from rest; a state in balance to rounding is left as it is, after 0 steps. Throws
-// no_equilibrium when a gridpoint has moved by a tenth of the section's size, in this or since the in-situ
-// state, or moves on while what drives it does not fall off, when forces are no longer numbers, and after
-// settings.most_steps.
+// Moves the assembly to equilibrium. There, in each of the last 5 checks, 20 steps apart:
+//   - the unbalanced force ratio is at most the tolerance;
+// and over these 100 steps:
+//   - no contact force has changed by more than the tolerance times the mean force on a gridpoint;
+//   - the remaining displacement, by estimate, is at most 1000 times the tolerance, or a tenth, of the displacement of
+//     this equilibrium, or of a tenth of the whole displacement if that is more; unless it is rounding.
+// Starts from rest. A state in balance to rounding is left as it is, after 0 steps.
+//
+// Throws no_equilibrium when a gridpoint has moved by a tenth of the section's size, in this equilibrium or since
+// the in-situ state; when rock moves steadily while the unbalanced forces do not decrease; when forces are no
+// longer numbers; and after settings.most_steps.
 mechanics::Convergence relax(mechanics::Assembly& assembly, const Equilibrium& settings,
                              const StepObserver& observe = {});
 

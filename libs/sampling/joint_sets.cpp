@@ -57,7 +57,7 @@ std::vector<Interval> pieces(const JointSet& set, const Scene& scene, const Line
     std::vector<Interval> stretches = where_set_exists(set, scene, line);
     if (set.region || !set.rocks.empty() || stretches.empty())
         return stretches;
-    // By its corners' extent rather than by crossings: these are ill-defined where a line runs along a side.
+    // The extent of the corners is used, not crossings: these are not defined where a line runs along a side.
     const Polygon& outline = scene.outline;
     const double origin = line.point.dot(line.direction);
     const Interval reach = widened(extent(outline, line.direction), overshoot_of(outline));
@@ -165,7 +165,7 @@ void Sampler::add_lines(const JointSet& set, Index index)
 
 // Midpoints of traces whose size (of a segment its length, of a disc its diameter) is x have the density
 // P20 x^o f(x) / E[x^o] over sizes, o = 0 for segments and 1 for discs, which a section meets by their size.
-// Those of the box of w by h widened by x/2 on every side are in number Poisson, of the mean
+// The number of those in the box of w by h, widened by x/2 on every side, is Poisson distributed, with the mean
 //     P20 E[x^o (w + x) (h + x)] / E[x^o]
 // and hold every trace that comes into the box, however large sizes can be. A size of theirs has the density
 // x^o (w + x) (h + x) f(x), a mixture of powers of x.

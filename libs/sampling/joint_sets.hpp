@@ -1,5 +1,5 @@
-// From a scene's joint sets, single joints and mapped sets to joints, and the traces on them. How joints lie
-// is said in orientations.hpp, how many there are in density.hpp.
+// Makes joints, and the traces on them, from a scene's joint sets, single joints and mapped sets. Orientations are
+// in orientations.hpp, densities in density.hpp.
 //
 // Sets of lines. Their places along the set's mean normal in the section are a stationary renewal process:
 // the intervals are the set's spacings over |n_p|, or of the mean that density.hpp says, and of the one
@@ -22,24 +22,22 @@
 // A trace is one joint with one joint trace covering it whole, also where it reaches out of the section; a
 // region or rock cuts it off, with an overshoot.
 //
-// Terminations. A trace grows from its midpoint both ways, and at each crossing, inside the section, with a
+// Terminations. A trace grows from its midpoint in both directions, and at each crossing, inside the section, with a
 // joint trace (not a rock bridge) of a set in `terminates_at` it ends with `termination_probability`. It ends
 // on the other trace, to rounding: blocks::cut makes joints longer by its shortest edge at both ends before
-// it looks for crossings, and takes away what overlaps in vain, so that the end becomes a T node. A trace
+// it looks for crossings, and removes overlap that crosses nothing, so that the end becomes a T node. A trace
 // whose midpoint is outside the section is not ended out there, where joints are not all known: near the
 // section's edges a few more traces go through. Density targets are those before terminations.
 //
 // What stays the same, byte for byte:
-// - all joints of a set, whatever happens to other sets, to single joints and to their order in the scene,
-// but
-//   that its traces end where those of its `terminates_at` are;
+// - all joints of a set, whatever happens to other sets, to single joints and to their order in the scene;
+//   but its traces end where those of its `terminates_at` are;
 // - the lines of a set, whatever happens to its lengths and persistence;
 // - its lines and traces, whatever happens to its region or the outline, while the window stays the same (but
 //   these end them where they do). With another window lines turn about other points and have other traces;
 //   without scatter of the orientation they are still the same lines, to rounding;
 // - segments and discs likewise, while their own window stays the same: the bounding box, each side widened
-// to
-//   multiples of an eighth of the least power of two above its length;
+//   to multiples of an eighth of the least power of two above its length;
 // - everything, between machines of IEEE arithmetic whose exp, log, sin and cos round the same way.
 
 #pragma once

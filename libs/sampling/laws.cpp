@@ -27,7 +27,7 @@ double draw_normal(double mean, double deviation, Stream& stream)
     return mean + deviation * boost::random::normal_distribution<double>()(stream);
 }
 
-// Of the normal law that a lognormal quantity's logarithm follows.
+// The normal law of a lognormal quantity's logarithm.
 struct LogParameters {
     double mean, deviation;
 };
@@ -53,7 +53,7 @@ double power(double x, int order)
     return product;
 }
 
-// By the inverse of its distribution function, (1 - t^q) / (1 - r^q) with q = 1 - exponent, t = x / least and
+// A draw by the inverse of the distribution function, (1 - t^q) / (1 - r^q) with q = 1 - exponent, t = x / least and
 // r = most / least.
 double draw_power(double exponent, double least, double most, Stream& stream)
 {

@@ -19,10 +19,10 @@ double draw_exponential(double mean, Stream& stream);
 // Poisson of the given mean, >= 0.
 std::int64_t draw_poisson(double mean, Stream& stream);
 
-// From the law as it is; in the law's unit.
+// A draw from the law as it is, in the law's unit.
 double draw(const ProbabilityLaw& law, Stream& stream);
 
-// From the law's values above 0, as lengths and spacings have to be: the lower tail of a normal law is drawn
+// A draw from the law's values above 0, as lengths and spacings have to be: the lower tail of a normal law is drawn
 // again. Throws input_error if the law has next to no values above 0.
 double draw_positive(const ProbabilityLaw& law, Stream& stream);
 
@@ -37,11 +37,11 @@ double mean_of_positive(const ProbabilityLaw& law);
 // concentration > 0.
 Eigen::Vector3d draw_fisher(const Eigen::Vector3d& mean, double concentration, Stream& stream);
 
-// From the values above 0, of density f, as a point sees them that falls anywhere on a line laid out with
-// such intervals: of density x f(x) / mean.
+// A draw from the density x f(x) / mean, f being the density of values above 0: the length of the interval that
+// contains a random point of a line made of such intervals.
 double draw_size_biased(const ProbabilityLaw& law, Stream& stream);
 
-// From the density x^order f(x) / E[x^order]; order 0 is draw_positive, order 1 draw_size_biased.
+// A draw from the density x^order f(x) / E[x^order]; order 0 is draw_positive, order 1 draw_size_biased.
 double draw_biased(const ProbabilityLaw& law, int order, Stream& stream);
 
 } // namespace jointcreep::sampling

@@ -243,10 +243,10 @@ Rose Orientations::rose() const
     } else if (set_.orientation) {
         const int steps = 150, turns = 72;
         const double kappa = set_.orientation->concentration;
-        const double farthest = std::min(std::numbers::pi, 9 / std::sqrt(kappa));
+        const double widest = std::min(std::numbers::pi, 9 / std::sqrt(kappa));
         const Vector3d first = mean_pole_.unitOrthogonal(), second = mean_pole_.cross(first);
         for (int i = 0; i < steps; ++i) {
-            const double t = (i + .5) / steps * farthest;
+            const double t = (i + .5) / steps * widest;
             const double share = std::sin(t) * std::exp(-2 * kappa * std::pow(std::sin(t / 2), 2));
             for (int j = 0; j < turns; ++j) {
                 const double turn = (j + .5) / turns * 2 * std::numbers::pi;

@@ -10,7 +10,7 @@
 namespace jointcreep::sampling
 {
 
-// By which joints go past where they are to end: 1e-6 of the polygon's size [m].
+// Length by which joints go past their end: 1e-6 of the polygon's size [m].
 double overshoot_of(const Polygon& polygon);
 
 // The stretches of a line in a set's region or rocks, each with its overshoot; in the section, if it has

@@ -22,7 +22,7 @@ using nlohmann::json;
 
 constexpr std::int64_t largest_id = 2097151; // 2^31 / mapped_step - 1 (sampling/joint_sets.hpp)
 
-// A trace on its way, with what the file says of its id.
+// A trace as it is read, with what the file says of its id.
 struct FoundTrace {
     std::optional<std::int64_t> id;
     std::int64_t place; // in the file

@@ -22,7 +22,7 @@ struct LengthUnit {
 };
 constexpr std::array<LengthUnit, 3> units{{{"_m", 1}, {"_cm", 1e-2}, {"_mm", 1e-3}}};
 
-constexpr double farthest = 1e4; // [m]
+constexpr double largest = 1e4; // [m]
 
 // A column of lengths, named with one of the units.
 struct Column {
@@ -49,7 +49,7 @@ double length_of(const Csv& csv, const Csv::Row& row, const Column& column, cons
     return csv.number(row, column.name, range) * column.in_m;
 }
 
-const Range deviations = above(0).to(farthest);
+const Range deviations = above(0).to(largest);
 
 std::string column_names(const std::string& name)
 {
@@ -66,7 +66,7 @@ double time_in(const Csv& csv, const Csv::Row& row, double end)
     return csv.number(row, "time_day", from(0).to(end / unit::day)) * unit::day;
 }
 
-// Of one point, component, time and event there is one reading. Times are compared as numbers.
+// One reading for one point, component, time and event. Times are compared as numbers.
 class Readings
 {
 public:
@@ -117,7 +117,7 @@ std::vector<Measurement> listed(const Csv& csv, const Scene& scene)
                                 .component = component == "x" ? 0 : 1,
                                 .time = time_in(csv, row, scene.end),
                                 .is_before_stage = csv.has("event") && is_empty(csv, row, "event"),
-                                .displacement = length_of(csv, row, displacement, within(farthest)),
+                                .displacement = length_of(csv, row, displacement, within(largest)),
                                 .deviation = {},
                                 .line = row.line};
         if (!sigma.name.empty())
@@ -175,7 +175,7 @@ std::vector<Measurement> tabled(const Csv& csv, const Scene& scene)
                                     .component = place.component,
                                     .time = time_in(csv, row, scene.end),
                                     .is_before_stage = csv.has("event") && is_empty(csv, row, "event"),
-                                    .displacement = length_of(csv, row, place.displacement, within(farthest)),
+                                    .displacement = length_of(csv, row, place.displacement, within(largest)),
                                     .deviation = {},
                                     .line = row.line};
             if (!place.sigma.name.empty())
@@ -213,7 +213,7 @@ std::vector<Measurement> creep_curve_in_csv(std::string_view text)
         Measurement measurement{.point = 0,
                                 .component = 0,
                                 .time = time,
-                                .displacement = length_of(csv, row, displacement, within(farthest)),
+                                .displacement = length_of(csv, row, displacement, within(largest)),
                                 .deviation = {},
                                 .line = row.line};
         if (!sigma.name.empty())

@@ -40,8 +40,8 @@ std::vector<std::string> named_files(const TomlValue& root)
             take(orientation->find("poles"));
     for (const TomlValue& mapped : in_list("mapped"))
         take(mapped.find("file"));
-    for (const TomlValue& held : in_list("file"))
-        if (const TomlValue* const name = held.find("name"))
+    for (const TomlValue& file : in_list("file"))
+        if (const TomlValue* const name = file.find("name"))
             std::erase_if(names, [&](const std::string& known) {
                 return std::get_if<std::string>(&name->content) &&
                        known == std::get<std::string>(name->content);
@@ -49,7 +49,7 @@ std::vector<std::string> named_files(const TomlValue& root)
     return names;
 }
 
-// As a TOML string, a line for each of the text, the first after `begin`.
+// The text as a TOML string with the same lines, the first after `begin`.
 std::string as_toml(const std::string& text, const std::string& begin = "\n")
 {
     std::string out = "\"\"\"" + begin;

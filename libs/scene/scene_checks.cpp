@@ -424,17 +424,18 @@ private:
             once("large_displacements")
                 .refuse("release_s", "wanted less than longest_s, " +
                                          shown(scene_.large_displacements->longest) +
-                                         " s: before that there is no rest");
+                                         " s; no rest is possible before");
         if (scene_.equilibrium.unloading_increments > 1)
             once("equilibrium")
                 .refuse("unloading_increments",
-                        "with [large_displacements] a stage takes its rock away at once; wanted 1, and "
-                        "[large_displacements] release_s for forces that fade away in time");
+                        "with [large_displacements] a stage excavates its rock at once; wanted 1, and "
+                        "[large_displacements] release_s for forces that go to 0 in time");
         for (std::size_t i = 0; i < scene_.boundaries.size(); ++i)
             for (const char* key : {"displacement_mm", "load_history"})
                 if (const Given boundary = in_list("boundary", i); boundary.find(key))
                     boundary.refuse(
-                        key, "with [large_displacements], boundaries neither move nor change their traction");
+                        key,
+                        "with [large_displacements], boundaries must neither move nor change their traction");
     }
 };
 

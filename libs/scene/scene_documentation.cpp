@@ -13,8 +13,8 @@ using namespace keys;
 constexpr const char* head = R"(# The scene
 
 A scene is one TOML file that says everything about a section of jointed rock: its outline, rocks, joints, stress,
-what holds it, when which part of it is dug away, and where its movement is read. The programs read nothing else,
-but files beside it that it names: measured poles, and mapped traces.
+boundary conditions, stages of excavation, and monitoring points. The programs read nothing else,
+except files beside it that it names: measured poles, and mapped traces.
 
 This page is made from the declarations in the files `scene_keys.cpp` of `libs`:
 `jointgen --scene-keys-markdown > docs/scene.md`. The same keys as a table for scripts: `jointgen --scene-keys`.
@@ -39,7 +39,7 @@ This page is made from the declarations in the files `scene_keys.cpp` of `libs`:
 
 A slope of one rock, 40 m high, that rests on a fixed base. One set of joints dips out of the slope at 55 degrees.
 Its joint traces are 6 m long on average and make up 70 percent of each joint line; the rest is rock bridges. The
-rock in front of the slope is dug away on 15 June 1994, and a point on the crest is measured from ten days later.
+rock in front of the slope is excavated on 15 June 1994, and a point on the crest is measured from ten days later.
 
 ```toml
 title = "A slope"
@@ -89,7 +89,7 @@ compression_xx_gradient_MPa_per_m = 0.0132435
 compression_yy_gradient_MPa_per_m = 0.026487
 shear_xy_gradient_MPa_per_m = 0
 
-[[boundary]]                 # the sides slide up and down, the base holds
+[[boundary]]                 # the sides slide up and down, the base is fixed
 from_m = [0, 0]
 to_m = [0, 60]
 fix = "x"

@@ -73,9 +73,10 @@ Table<Scene> section()
     return {
         {"section", once, required, "The section: a vertical plane through the rock, x to the right, y up."},
         {polygon("outline_m", &Scene::outline, "Its outline, either way round."),
-         polygons("holes_m", &Scene::holes,
-                  "Where there is no rock from the start, a tunnel for example: inside the outline, apart "
-                  "from it and from each other.")
+         polygons(
+             "holes_m", &Scene::holes,
+             "Where there is no rock from the start, a tunnel for example: inside the outline, not touching "
+             "it or each other.")
              .optional(),
          text("rock", &Scene::rock, "Name of the rock that no region covers."),
          number("gravity_m_per_s2", &Scene::gravity, m_per_s2, from(0).to(100), "Gravity, downward."),
@@ -599,7 +600,7 @@ Table<HeldFile> held_file()
 {
     return {
         {"file", in_list, optional,
-         "A file that the scene names, held in the scene itself. The programs write it into the copy of the "
+         "A file that the scene names, stored in the scene itself. The programs write it into the copy of the "
          "scene that their own files carry, so that this copy says everything."},
         {text("name", &HeldFile::name, "As the scene names it; it is then not looked for beside the scene."),
          key_of<HeldFile>({"text", "file text", {}, {}, "What is in it."}, &HeldFile::text, read_file_text)
@@ -626,7 +627,7 @@ Table<Stage> stage()
         {"stage", in_list, optional, "One excavation step, later than the one before it."},
         {text("name", &Stage::name, "Name, once among the stages."),
          date("date", &Stage::time, "When: after the start, not after the end."),
-         polygons("remove_m", &Stage::remove, "The rock inside these leaves."),
+         polygons("remove_m", &Stage::remove, "The rock inside these polygons is excavated."),
          choice(
              "displacements", &Stage::reset_displacements, {{"go on", false}, {"reset", true}},
              "Reset: displacements are also counted from the equilibrium after this stage, until another one "
@@ -686,7 +687,7 @@ Table<Scene> zones()
         {"zones", once, required, "Zones: the constant-strain triangles inside the blocks."},
         {number("size_m", &Scene::zone_size, metres, zone_sizes, "Longest zone side aimed at."),
          polygon("fine_m", &Scene::fine_zones,
-                 "Where they are of that size; outside they are larger. Without it they are of that "
+                 "Where zones are of that size; outside they are larger. Without it they are of that "
                  "size everywhere.")
              .together("coarsening"),
          number("coarsening_m", &Scene::zone_coarsening, metres, lengths,
@@ -708,12 +709,12 @@ Table<Cutting> cutting()
              "Vertices closer than this, or than half of it to an edge, are merged. At most the zone size.")
              .optional("0.02 x zones.size_m"),
          number("smallest_angle_deg", &Cutting::smallest_angle, degrees, from(0).to(30),
-                "Narrower wedges between edges are closed where that moves nothing far.")
+                "Narrower wedges between edges are closed where that moves little.")
              .or_else(std::int64_t{1}),
          choice("dangling_ends", &Cutting::dangling_ends,
                 {{"prune", DanglingEnds::prune}, {"extend", DanglingEnds::extend}},
                 "What becomes of a joint that ends inside a block: it is cut back to the last block edge it "
-                "met, or carried on in its own direction to the line it meets next, as rock bridge, which "
+                "met, or extended in its own direction to the next line, as rock bridge, which "
                 "needs the strength of every rock.")
              .formerly("dead_ends")
              .or_else("prune")}};
@@ -728,15 +729,14 @@ Table<Averaging> averaging()
                 "Over what joint and bridges are averaged: each edge between two blocks, each joint's whole "
                 "line, or all lines of a set.")
              .or_else(std::string("edge")),
-         choice(
-             "stiffness", &Averaging::stiffness,
-             {{"joint", StiffnessRule::joint},
-              {"lower bound", StiffnessRule::lower_bound},
-              {"upper bound", StiffnessRule::upper_bound},
-              {"staggered", StiffnessRule::staggered}},
-             "Springs and Kelvin constants: the joint's own, as if its bridges gave way like it; bounds for "
-             "joint traces that rock bridges hold together; or those of such lines beside each other, with "
-             "their traces staggered.")
+         choice("stiffness", &Averaging::stiffness,
+                {{"joint", StiffnessRule::joint},
+                 {"lower bound", StiffnessRule::lower_bound},
+                 {"upper bound", StiffnessRule::upper_bound},
+                 {"staggered", StiffnessRule::staggered}},
+                "Stiffnesses and Kelvin constants of a joint with rock bridges: the joint's own; bounds for "
+                "joint traces connected by rock bridges; or those of many such lines, with "
+                "staggered traces.")
              .or_else(std::string("joint"))}};
 }
 
@@ -751,11 +751,11 @@ Table<Equilibrium> equilibrium()
              .former_word("explicit", "relaxation")
              .or_else(std::string("auto")),
          number("tolerance", &E::tolerance, no_unit, equilibrium_tolerances,
-                "Of the unbalanced force ratio; dynamic relaxation also ends within 1000 times it of its "
-                "displacement.")
+                "Of the unbalanced force ratio. Dynamic relaxation also needs a remaining displacement below "
+                "1000 times it, as a share of the displacement.")
              .or_else(1e-6),
          choice("masses", &E::masses, {{"scaled", Masses::scaled}, {"real", Masses::real}},
-                "Nodal masses: scaled for a fast way to the same equilibrium, or the real ones.")
+                "Nodal masses: scaled, which finds the same equilibrium sooner, or the real ones.")
              .or_else(std::string("scaled")),
          choice("damping", &E::damping,
                 {{"adaptive", Damping::adaptive},
@@ -776,12 +776,13 @@ Table<Equilibrium> equilibrium()
                 "Fraction of the unbalanced force; with damping = \"local\" or \"combined\" only.")
              .optional("0.8"),
          integer("unloading_increments", &E::unloading_increments, from(1).to(1000),
-                 "In which the rock of a stage is excavated, and in which loads change between dates. With "
-                 "[large_displacements] 1; there release_s does it.")
+                 "Number of increments of excavation, and of loads that change between dates. With "
+                 "[large_displacements] 1; there release_s is used.")
              .or_else(std::int64_t{1}),
-         integer("most_steps", &E::most_steps, from(1).to(2147483647),
-                 "Without equilibrium after so many steps of dynamic relaxation the program gives up. With "
-                 "[large_displacements] this holds in situ alone; longest_s limits the dynamic analysis.")
+         integer(
+             "most_steps", &E::most_steps, from(1).to(2147483647),
+             "Largest number of steps of dynamic relaxation for an equilibrium; then the exit code is 3. With "
+             "[large_displacements] this holds in situ alone; longest_s limits the dynamic analysis.")
              .or_else(std::int64_t{1000000})}};
 }
 
@@ -807,7 +808,7 @@ Table<LargeDisplacements> large_displacements()
                 "Force over mass and velocity. It also brakes rock that slides or falls.")
              .or_else(0.0),
          number("release_s", &LargeDisplacements::release, seconds, from(0).to(1e6),
-                "Time in which the forces of a stage's rock fade away.")
+                "Time in which the forces of a stage's rock go to 0.")
              .or_else(0.0),
          number("longest_s", &LargeDisplacements::longest, seconds, above(0).to(1e6),
                 "Longest time of a dynamic analysis. If rock still moves then, the exit code is 3.")

@@ -26,7 +26,7 @@ struct Area {
     Vector2d first{0, 0};
     Matrix2d second = Matrix2d::Zero();
 
-    // By triangles with a corner at the point.
+    // Adds triangles with a corner at the point.
     void add(const Ring& ring, const Vector2d& point)
     {
         for (std::size_t i = 0; i < ring.size(); ++i) {

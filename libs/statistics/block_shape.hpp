@@ -17,7 +17,7 @@
 namespace jointcreep::statistics
 {
 
-// Of every block, in order.
+// Shapes of all blocks, in order.
 struct BlockShapes {
     std::vector<double> aspect; // of the ellipse of the same second moments of area, long over short axis [-]
     std::vector<double> alpha;  // [-]

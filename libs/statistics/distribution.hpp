@@ -24,7 +24,7 @@ double quantile(const ProbabilityLaw& law, double p);
 // Fourth central moment over the square of the second; of the laws of angles: normal and uniform.
 double kurtosis(const ProbabilityLaw& law);
 
-// Of the law's values above 0.
+// Moments of the law's values above 0.
 struct Moments {
     double mean;
     double squared_variation; // variance / mean^2
@@ -73,7 +73,7 @@ struct Range {
 };
 Range mean_range(std::size_t n, double length, const Renewal& renewal, double confidence);
 
-// Of the count: (sigma/mu)^2 t/mu + 1/6 + (sigma/mu)^4/2 - third/3 for t much longer than an interval (Cox
+// Variance of the count: (sigma/mu)^2 t/mu + 1/6 + (sigma/mu)^4/2 - third/3 for t much longer than an interval (Cox
 // 1962, section 4.5).
 double count_variance(double length, const Renewal& renewal);
 

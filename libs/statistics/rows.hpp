@@ -29,9 +29,8 @@ struct Row {
 
 void add(Statistics& statistics, const std::string& subject, const Row& row);
 
-// Verdicts of all tested rows: a row fails where its p-value is below the false-alarm rate over the number of
-// tested rows (Bonferroni), so that a right network fails anywhere at most at that rate, however much the
-// rows hang together.
+// Verdicts of all tested rows. A row fails where its p-value is below the false-alarm rate over the number of
+// tested rows (Bonferroni). So a right network fails anywhere at most at that rate, even where rows are correlated.
 void judge(Statistics& statistics);
 
 } // namespace jointcreep::statistics

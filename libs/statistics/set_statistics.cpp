@@ -265,7 +265,7 @@ void add_angles(Statistics& statistics, const std::string& subject, const std::s
     add(statistics, subject, of_law);
 }
 
-// Of Fisher's law. A plane has two poles; that of the file is the upward one, which may lie more than 90
+// Rows of Fisher's law. A plane has two poles. The file has the upward one, which may lie more than 90
 // degrees from the mean. So the angle t from the mean is taken up to 90 degrees only, where by law
 //     P(cos(t) >= c) = (sinh(kappa) - sinh(kappa c)) / sinh(kappa) .
 // With poles turned toward the mean, 2 kappa (n - R) is nearly chi squared with 2 (n - 1) degrees for kappa
@@ -336,7 +336,7 @@ void add_poles(Statistics& statistics, const std::string& subject, const FisherL
     add(statistics, subject, of_turns);
 }
 
-// Of dip and dip direction as drawn. A pole has two such pairs, {dip, direction} and {-dip, direction + pi},
+// Rows of dip and dip direction as drawn. A pole has two such pairs, {dip, direction} and {-dip, direction + pi},
 // and its opposite two more; the one nearest to the mean dip direction, then to the mean dip, is meant.
 void add_planes(Statistics& statistics, const std::string& subject, const ProbabilityLaw& dip_law,
                 const ProbabilityLaw& direction_law, double azimuth, const std::vector<Crossing>& crossings)
@@ -406,7 +406,7 @@ double dispersion_of(const JointSet& set, const MeanTrace& mean, const Interval&
     return count_variance(length, lines) * lines.mean / length;
 }
 
-// Of the scanline: lines, and where they are joint.
+// Rows of the scanline: lines, and where they are joint.
 void add_spacing(Statistics& statistics, const JointSet& set, const MeanTrace& mean, const Seen& seen)
 {
     const Moments moments = positive_moments(set.spacing);
@@ -504,7 +504,7 @@ void add_persistence(Statistics& statistics, const JointSet& set, const Seen& se
         for (const Tally& line : seen.lines)
             squares += std::pow(line.open - achieved * line.length, 2);
         const auto n = static_cast<double>(seen.lines.size());
-        // By the log odds, which know no ends.
+        // By the log odds, which have no bounds.
         const auto odds = [](double x) { return std::log(x / (1 - x)); };
         const auto from_odds = [](double x) { return 1 / (1 + std::exp(-x)); };
         const double error = std::sqrt(squares * n / (n - 1)) / length / (achieved * (1 - achieved));
@@ -648,7 +648,7 @@ void add_poisson(Statistics& statistics, const std::string& subject, Row row, do
     add(statistics, subject, row);
 }
 
-// Of the chords that a section makes of discs whose diameters D it meets by their size: P(chord > l) is the
+// Chords that a section makes of discs, which it meets by their diameters D: P(chord > l) is the
 // integral of (1 - F(sqrt(l^2 + v^2))) / E[D] over v from 0 (from Warburton's 1980 by parts, v^2 = D^2 -
 // l^2).
 std::vector<double> chords_as_uniform(const ProbabilityLaw& diameter, const std::vector<double>& chords)

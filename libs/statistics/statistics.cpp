@@ -17,8 +17,8 @@ namespace
 {
 
 // What lines of all sets do together, where it has a closed form: no regions, no single joints, and each set
-// of lines with a spacing,
-// either without scatter or with negative exponential spacing, so that its lines are independent.
+// of lines with a spacing, either without scatter or with negative exponential spacing, so that its lines are
+// independent.
 struct Expected {
     double crossings = 0;       // of joint traces, per area [1/m2]
     double line_crossings = 0;  // of the lines, bridges included, per area [1/m2]

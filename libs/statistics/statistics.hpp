@@ -18,10 +18,10 @@ namespace jointcreep::statistics
 // Without blocks there are no rows of them.
 Statistics statistics_of(const Scene& scene, const Network& network);
 
-// As a table to read, angles in degrees, and a last line with the verdict.
+// The statistics as a text table, angles in degrees, with a last line for the verdict.
 std::string table(const Statistics& statistics);
 
-// What of the scene no statistics are made of, in a line; empty if there is nothing.
+// What the statistics leave out, in a line; empty if there is nothing.
 std::string left_out(const Scene& scene);
 
 } // namespace jointcreep::statistics

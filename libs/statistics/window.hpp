@@ -26,7 +26,7 @@ public:
     // The stretches of a line inside, by distance from its point, in order [m].
     std::vector<Interval> stretches(const Line& line) const;
 
-    // From the least to the largest of its corners, in a direction [m].
+    // Extent of its corners in a direction [m].
     Interval extent(const Eigen::Vector2d& direction) const;
 
     double area() const; // [m2]

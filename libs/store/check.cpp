@@ -25,8 +25,8 @@ Axis axis_of(const std::string& name)
     return {name, 0};
 }
 
-// Of an array with several dimensions only the product can be seen in memory; the others fix their sizes, or
-// all but that of the last one.
+// In memory an array with several dimensions shows only the product of their sizes. So other arrays fix these
+// sizes, or all except that of the last dimension.
 Fault size_fault(const Field& field, Dimensions& dimensions)
 {
     const std::size_t count = rows(field.values);

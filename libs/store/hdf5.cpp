@@ -72,7 +72,7 @@ Object timeless(hid_t kind)
     return list;
 }
 
-// HDF5 makes the file in our memory, so that the closed file is still there when HDF5 has let go of it. (What
+// HDF5 makes the file in our memory, so that the closed file is still there when HDF5 has freed its own. (What
 // H5Fget_file_image gives of an open file has a superblock with a wrong checksum in HDF5 1.10.)
 extern "C" void* grow(void*, std::size_t size, H5FD_file_image_op_t, void* memory)
 try {

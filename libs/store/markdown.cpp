@@ -130,11 +130,11 @@ with h5py.File("result.h5") as file:
     page << "\nThe group `/dynamics` is there only if the scene has [large_displacements] and a stage.\n";
     list(page, "Failure", schema::fields_of(result.failure));
     page << "\nThe group `/failure` is there only in `NAME.failed.h5`, of a run that found no equilibrium. "
-            "All else in such a file goes up to the last one.\n";
+            "All other data of such a file end with the last equilibrium.\n";
     list(page, "Factor of safety", schema::fields_of(safety));
     page << "\nThe group `/safety` is there only if a factor of safety was asked for.\n";
     list(page, "Checkpoint", schema::fields_of(checkpoint));
-    page << "\nOnly in files of `--checkpoint`, for a run to go on from.\n";
+    page << "\nOnly in files of `--checkpoint`, from which a run can continue.\n";
     list(page, "State of a dynamic analysis", schema::fields_of(checkpoint.dynamics));
     page << "\nBeside it, in scenes with [large_displacements].\n";
     return page.str();

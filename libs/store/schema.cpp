@@ -108,7 +108,7 @@ std::vector<Field> fields_of(Blocks& blocks)
          "Inside a block, and cut back."},
         {"/fates/merged_length", &fates.merged, {"joint"}, "m", at_least(0), "On edges that vanished."},
         {"/fates/extended_length", &fates.extended, {"joint"}, "m", at_least(0),
-         "Carried on beyond its ends to the next block edge, as rock bridge."},
+         "Extension beyond its ends to the next block edge, as rock bridge."},
 
         {"/cutting/merged_vertices", &report.merged_vertices, {}, "1", at_least(0),
          "Vertices that cutting merged into others."},
@@ -172,7 +172,7 @@ std::vector<Field> fields_of(Mesh& mesh)
          "Position of the gridpoint at the start {x, y}."},
         {"/mesh/tie_gridpoint", &mesh.tie_gridpoint, {"tie"}, "1", index_of("gridpoint"),
          "Two gridpoints that move as one until a stage."},
-        {"/mesh/tie_stage", &mesh.tie_stage, {"tie"}, "1", index_of("stage"), "The stage that parts them."},
+        {"/mesh/tie_stage", &mesh.tie_stage, {"tie"}, "1", index_of("stage"), "The stage that separates them."},
     };
     // clang-format on
     append(all, of_forces(&ForceFields::mesh, mesh));
@@ -193,7 +193,7 @@ std::vector<Field> fields_of(History& history)
         {"/history/first_reading_row", &history.first_reading_row, {"point"}, "1", index_of("time"),
          "Row of time from which the point's own readings count."},
         {"/history/displacement", &history.displacement, {"time", "point"}, "m", any(),
-         "Displacement {x, y} since the in-situ equilibrium; the last one is held once the point is "
+         "Displacement {x, y} since the in-situ equilibrium; the last one is kept once the point is "
          "removed."},
         {"/history/present", &history.present, {"time", "point"}, "1", between(0, 1),
          "1 while the point is there, 0 once it is removed."},
@@ -232,7 +232,7 @@ std::vector<Field> fields_of(Equilibria& equilibria)
         {"/equilibria/is_implicit", &equilibria.is_implicit, {"equilibrium"}, "1", between(0, 1),
          "1 if the implicit engine found it, 0 if dynamic relaxation did."},
         {"/equilibria/searches", &equilibria.searches, {"equilibrium"}, "1", at_least(1),
-         "Equilibria sought for this one: by either engine, and with creep steps that were too long."},
+         "Searches for this equilibrium: by either engine, and with creep steps that were too long."},
         {"/equilibria/steps", &equilibria.steps, {"equilibrium"}, "1", at_least(0),
          "Steps of dynamic relaxation, and corrections by the implicit engine, in all of these."},
         {"/equilibria/factorisations", &equilibria.factorisations, {"equilibrium"}, "1", at_least(0),
@@ -250,10 +250,10 @@ std::vector<Field> fields_of(Equilibria& equilibria)
          "Largest displacement that remains until rest, by estimate: from the softest mode that dynamic relaxation shows, or "
          "from one more correction; -1 after a dynamic analysis with large displacements, which has none."},
         {"/equilibria/work_of_loads", &equilibria.work_of_loads, {"equilibrium"}, "J/m", any(),
-         "Work of weight, held rock and tractions on the way, not that of displaced boundaries; the sum of the next "
-         "three."},
+         "Work of weight, of forces of excavated rock and of tractions, not that of displaced boundaries; the sum of "
+         "the next three."},
         {"/equilibria/stored_energy", &equilibria.stored_energy, {"equilibrium"}, "J/m", any(),
-         "Energy that zones and contacts took up on the way."},
+         "Increase of the energy stored in zones and contacts."},
         {"/equilibria/dissipated_energy", &equilibria.dissipated_energy, {"equilibrium"}, "J/m", any(),
          "Energy lost in contacts by slip and opening."},
         {"/equilibria/damped_energy", &equilibria.damped_energy, {"equilibrium"}, "J/m", any(),
@@ -327,16 +327,16 @@ std::vector<Field> fields_of(DynamicsHistory& dynamics)
         {"/dynamics/dynamic_time", &dynamics.dynamic_time, {"moment"}, "s", at_least(0), "Time since the dynamic analysis began."},
         {"/dynamics/state", &dynamics.state, {"moment"}, "1", index_of("state"), "The section's state then."},
         {"/dynamics/work_of_loads", &dynamics.work_of_loads, {"moment"}, "J/m", any(),
-         "Work of weight, held rock and tractions since then; but for the error of time steps the sum of the next "
-         "four."},
+         "Work of weight, of forces of excavated rock and of tractions since then; but for the error of time steps "
+         "the sum of the next four."},
         {"/dynamics/kinetic_energy", &dynamics.kinetic_energy, {"moment"}, "J/m", any(),
-         "Kinetic energy; a little below 0 where all turns round at once."},
+         "Kinetic energy; a little below 0 where all velocities change sign at once."},
         {"/dynamics/stored_energy", &dynamics.stored_energy, {"moment"}, "J/m", any(),
-         "Energy that zones and contacts took up."},
+         "Increase of the energy stored in zones and contacts."},
         {"/dynamics/friction_energy", &dynamics.friction_energy, {"moment"}, "J/m", any(),
          "Energy lost to slip and yield; a little below 0 where slip dilates by the friction angle, which loses none."},
         {"/dynamics/damped_energy", &dynamics.damped_energy, {"moment"}, "J/m", any(),
-         "Energy taken by dashpots, and where slow motion was stopped."},
+         "Energy taken by dashpots, and by stopping slow movement."},
         {"/dynamics/fastest", &dynamics.fastest, {"moment"}, "m/s", at_least(0), "Speed of the fastest gridpoint."},
         {"/dynamics/unbalanced_force_ratio", &dynamics.unbalanced_force_ratio, {"moment"}, "1", at_least(0),
          "Unbalanced force ratio."},
@@ -352,16 +352,16 @@ std::vector<Field> fields_of(Failure& failure)
     return {
         {"/failure/reason", &failure.reason, {}, "1", any(), "Why there is no equilibrium."},
         {"/failure/stage", &failure.stage, {}, "1", any(),
-         "Stage whose rock had just been taken away, or an empty text."},
+         "Stage whose rock had just been excavated, or an empty text."},
         {"/failure/time", &failure.time, {}, "day", at_least(0), "Time since the start."},
         {"/failure/moves_on", &failure.moves_on, {}, "1", between(0, 1),
-         "1 blocks were seen to slide or fall, 0 the search for equilibrium ended without an answer."},
+         "1 blocks were seen to slide or fall, 0 undecided: the search for equilibrium ended without an answer."},
         {"/failure/steps", &failure.steps, {}, "1", at_least(0), "Steps of the engine, the last ones."},
         {"/failure/seconds", &failure.seconds, {}, "s", at_least(0),
          "Time that these steps stand for with real masses; otherwise 0."},
         {"/failure/block", &failure.block, {"moving_block"}, "1", index_of("block"),
-         "Blocks that moved by more than a tenth of what the fastest one did, the fastest first; or that nothing "
-         "holds."},
+         "Blocks that moved by more than a tenth of what the fastest one did, the fastest first; or blocks "
+         "without support."},
         {"/failure/place", &failure.place, {"moving_block"}, "m", any(), "Centroid of the block {x, y}."},
         {"/failure/motion", &failure.motion, {"moving_block"}, "m", any(),
          "Displacement {x, y} of the block in these steps, a mean over its zones."},
@@ -376,7 +376,7 @@ std::vector<Field> fields_of(Safety& safety)
         {"/safety/factor", &safety.factor, {"trial"}, "1", positive(),
          "Factor that all strengths of joints were divided by."},
         {"/safety/stands", &safety.stands, {"trial"}, "1", between(-1, 1),
-         "1 every equilibrium was found, 0 rock was seen to slide or fall, -1 the search ended without an answer."},
+         "1 every equilibrium was found, 0 rock was seen to slide or fall, -1 undecided."},
     };
     // clang-format on
 }
@@ -391,7 +391,7 @@ std::vector<Field> fields_of(Checkpoint& checkpoint)
         {"/checkpoint/displacement", &checkpoint.displacement, gridpoint, "m", any(),
          "Displacement {x, y} since the in-situ equilibrium."},
         {"/checkpoint/is_free", &checkpoint.is_free, gridpoint, "1", between(0, 1),
-         "1 or 0 in {x, y}: free, or held itself or without rock."},
+         "In {x, y}: 1 free, 0 fixed itself or without rock."},
         {"/checkpoint/load", &checkpoint.load, gridpoint, "N/m", any(), "Weight {x, y} that the gridpoint has."},
     };
     // clang-format on
@@ -409,7 +409,7 @@ std::vector<Field> fields_of(Checkpoint& checkpoint)
         {"/checkpoint/remark", &checkpoint.remark, remark, "1", any(), "A joint, a rock, a reason or a stage, by name."},
         {"/checkpoint/remark_kind", &checkpoint.remark_kind, remark, "1", between(0, 3),
          "0 contacts of the joint at yield in the initial stress state, 1 zones of the rock, 2 why the implicit engine found no equilibrium, 3 the stage's "
-         "account of energy is off."},
+         "energy balance is off."},
         {"/checkpoint/remark_count", &checkpoint.remark_count, remark, "1", at_least(0), "How often, or by how many percent."},
     });
     // clang-format on
@@ -485,7 +485,7 @@ const std::vector<Described>& dimensions()
         {"corner", "a corner of a ring"},
         {"statistic", "a row of the report on the network"},
         {"gridpoint", "a corner of zones, split along joints"},
-        {"tie", "a pair of gridpoints that are one until a stage"},
+        {"tie", "a pair of gridpoints that move as one until a stage"},
         {"time", "a recorded time of the history"},
         {"point", "a monitoring point of the scene"},
         {"state", "a recorded state of the whole section"},

@@ -1,6 +1,6 @@
 // The one list of everything in a file. Writing, reading, checking and docs/file-format.md all follow it: a
 // new member of a record needs a line here, and no more. What belongs to a kind of force is listed in the
-// folder of that force, and joined here by way of store/forces.hpp.
+// folder of that force, and added here by store/forces.hpp.
 
 #pragma once
 
@@ -28,7 +28,7 @@ std::vector<fields::Field> fields_of(Safety& safety);
 std::vector<fields::Field> fields_of(Checkpoint& checkpoint); // without the state of a dynamic analysis
 std::vector<fields::Field> fields_of(DynamicsState& state);
 
-// To be asked only once the fields are within their limits. They refer to the record.
+// To be checked only when the fields are within their limits. They refer to the record.
 std::vector<fields::Invariant> invariants_of(const Network& network);
 std::vector<fields::Invariant> invariants_of(const EquivalentJoints& joints);
 std::vector<fields::Invariant> invariants_of(const Mesh& mesh);

@@ -29,11 +29,11 @@ struct ZoneSize::DistanceFrom {
     double minimumOnVolume(const Eigen::AlignedBox2d& box) const { return box.exteriorDistance(place); }
     double minimumOnObject(const Stretch& stretch) const
     {
-        const Vector2d way = stretch.to - stretch.from, off = place - stretch.from;
-        const double length = way.norm();
+        const Vector2d along = stretch.to - stretch.from, off = place - stretch.from;
+        const double length = along.norm();
         if (length == 0)
             return off.norm();
-        return (off - std::clamp(off.dot(way) / length, 0.0, length) / length * way).norm();
+        return (off - std::clamp(off.dot(along) / length, 0.0, length) / length * along).norm();
     }
 };
 
@@ -42,7 +42,7 @@ ZoneSize::ZoneSize(const Scene& scene, const Blocks& blocks) : scene_(scene)
     if (!scene.zone_size_at_faces)
         return;
     std::vector<Stretch> fine;
-    // A face is between rock that goes and rock that stays, or goes at another time.
+    // A face is between excavated rock and rock that stays, or rock of two stages.
     for (std::size_t e = 0; e < blocks.edge_vertex.size(); ++e) {
         const auto [left, right] = blocks.edge_block[e];
         if (right >= 0 && blocks.block_stage[left] != blocks.block_stage[right])

@@ -42,7 +42,7 @@ Eigen::Vector2d middle_of(const Cdt::Face_handle& face)
 
 // CGAL's criteria for size and angle, with a size that changes from place to place. But a triangle whose
 // sides are all below a floor is good enough whatever its angles: in a corner of blocks sharper than the
-// angle asked for no triangle is ever good, and refinement would go on there until rounding ends it, with a
+// angle asked for no triangle is ever good, and refinement would continue there until rounding ends it, with a
 // crash.
 class Criteria : public CGAL::Delaunay_mesh_size_criteria_2<Cdt>
 {
@@ -82,7 +82,7 @@ private:
     double floor_; // [m]
 };
 
-// The next vertex from `at` along the straight block edge to `target`, and the face on the left of that way.
+// The next vertex from `at` along the straight block edge to `target`, and the face on the left of it.
 // Refinement has split the edge into constrained pieces; of those at `at` the one that points best is it.
 Cdt::Edge next_piece(const Cdt& cdt, Cdt::Vertex_handle at, Cdt::Vertex_handle target)
 {

@@ -14,7 +14,7 @@ namespace jointcreep::zoning
 // A piece of a block edge between two neighbouring vertices of the triangulation.
 struct Side {
     Index edge;                    // into Blocks
-    std::array<Index, 2> vertex;   // the way the edge runs
+    std::array<Index, 2> vertex;   // in the direction of the edge
     std::array<Index, 2> triangle; // on its {left, right}; -1 outside the section
 };
 

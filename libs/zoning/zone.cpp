@@ -22,10 +22,10 @@ Index corner_at(const std::array<Index, 3>& triangle, Index vertex)
 
 // Which corners of zones are one gridpoint. Corner i of zone z is 3 z + i.
 //
-// Two corners at one vertex hold together where their zones share a side there that is no joint, and for as
-// long as both zones are there. Links are taken the longest-lived first. Where one joins parts that both
-// outlive it, the parts get gridpoints of their own and a tie until then: rock that is to go must not leave
-// what it held together hanging on one gridpoint. Otherwise the parts are one gridpoint.
+// Two corners at one vertex are connected where their zones share a side there that is no joint, as long as both
+// zones are present. Such links are taken in order, the longest-lived first. A link may join two groups that both
+// outlive it. Then each group keeps its own gridpoint, and a tie joins them until the link's stage: excavated rock
+// must not leave one gridpoint to what it connected. Otherwise the two groups become one gridpoint.
 class Corners
 {
 public:
@@ -35,7 +35,7 @@ public:
     };
 
     Corners(const Triangulation& t, const Blocks& blocks)
-        : same_(3 * t.triangle.size()), held_(3 * t.triangle.size())
+        : same_(3 * t.triangle.size()), linked_(3 * t.triangle.size())
     {
         const Index for_good = std::numeric_limits<Index>::max();
         const auto life_of = [&](Index z) {
@@ -68,9 +68,9 @@ public:
 
         for (const Link& l : links) {
             const Index a = same_.root(l.a), b = same_.root(l.b);
-            if (a == b || held_.root(l.a) == held_.root(l.b))
+            if (a == b || linked_.root(l.a) == linked_.root(l.b))
                 continue;
-            held_.join(l.a, l.b);
+            linked_.join(l.a, l.b);
             if (life_[a] > l.life && life_[b] > l.life) {
                 ties_.push_back({l.a, l.b, l.life});
                 continue;
@@ -88,8 +88,8 @@ public:
     const std::vector<Tie>& ties() const { return ties_; }
 
 private:
-    DisjointSets same_, held_; // one gridpoint; held together by links so far
-    std::vector<Index> life_;  // stage that ends the longest-lived corner of a part; at its root
+    DisjointSets same_, linked_; // one gridpoint; connected by links so far
+    std::vector<Index> life_;    // stage that ends the longest-lived corner of a group; at its root
     std::vector<Tie> ties_;
 };
 
@@ -156,7 +156,7 @@ Mesh zone(const Scene& scene, const Blocks& blocks)
             const Index b = gridpoint_of(side.triangle[0], v);
             const Index a = rests_on_joint ? -1 : gridpoint_of(side.triangle[1], v);
             if (a == b)
-                continue; // the tip of a joint: the rock holds together there
+                continue; // the tip of a joint: the rock is connected there
             const auto [found, is_new] =
                 contact_of.try_emplace({e, a, b}, static_cast<Index>(mesh.contact_edge.size()));
             const Index c = found->second;
@@ -173,7 +173,7 @@ Mesh zone(const Scene& scene, const Blocks& blocks)
                 mesh.contact_length.push_back(0);
                 mesh.contact_centre.push_back(Eigen::Vector2d::Zero());
             }
-            // What a traction linear along the side gives to this end, it has at a third of the way.
+            // A linear traction along the side acts on this end at a third of the side's length.
             const Eigen::Vector2d centre = (2 * t.vertex[v] + t.vertex[side.vertex[1 - i]]) / 3;
             const double total = mesh.contact_length[c] + half;
             mesh.contact_centre[c] =

@@ -11,18 +11,17 @@ namespace jointcreep::zoning
 
 // Zones, gridpoints and contacts of the section.
 //
-// All blocks are triangulated together, so the zones on the two sides of any edge match. Then every gridpoint
-// on a joint is split into one for each piece of rock around it; blocks on a bonded edge share theirs. Pieces
-// that only rock to be removed holds together at a gridpoint get one each, tied until then. A contact joins
-// two gridpoints that were one, carrying half of each piece of the block edge beside them. A boundary edge
-// that rests on a joint gets contacts to gridpoints of the fixed ground, which no zone uses and which are
-// held.
+// All blocks are triangulated together, so the zones on the two sides of any edge match. Then every gridpoint on a
+// joint is split into one for each piece of rock around it; blocks on a bonded edge share theirs. Pieces that are
+// connected at a gridpoint only by rock that will be excavated get one each, tied until then. A contact joins two
+// gridpoints that were one, with half of each piece of the block edge beside them. A boundary edge that rests on a
+// joint gets contacts to gridpoints of the fixed ground, which no zone uses and which are fixed.
 Mesh zone(const Scene& scene, const Blocks& blocks);
 
 // What decides cost and quality of a mesh.
 struct MeshQuality {
     double shortest_side;     // [m]
-    double smallest_altitude; // of a zone: the explicit step with real masses goes with it [m]
+    double smallest_altitude; // of a zone: proportional to the time step with real masses [m]
     double smallest_angle;    // [rad]
 };
 MeshQuality quality_of(const Mesh& mesh);

@@ -34,14 +34,14 @@ Section stack(double gravity, const std::vector<Boundary>& more = {})
 
 Failure without_contacts(Section s)
 {
-    EXPECT_TRUE(failure_of_unheld(s.mesh, s.assembly).block.empty()) << "the joint holds it";
+    EXPECT_TRUE(failure_of_unsupported(s.mesh, s.assembly).block.empty()) << "the joint holds it";
     s.assembly.contacts.status.assign(s.assembly.contacts.status.size(), ContactStatus::removed);
-    return failure_of_unheld(s.mesh, s.assembly);
+    return failure_of_unsupported(s.mesh, s.assembly);
 }
 
 } // namespace
 
-TEST(failure_of_unheld, names_the_block_and_where_it_is)
+TEST(failure_of_unsupported, names_the_block_and_where_it_is)
 {
     const Failure failure = without_contacts(stack(9.81));
     ASSERT_EQ(failure.block.size(), 1U);
@@ -49,7 +49,7 @@ TEST(failure_of_unheld, names_the_block_and_where_it_is)
     EXPECT_EQ(failure.motion[0], Vector2d(0, 0));
 }
 
-TEST(failure_of_unheld, looks_at_each_direction)
+TEST(failure_of_unsupported, looks_at_each_direction)
 {
     const Boundary roller{.from = {0, 5}, .to = {0, 10}, .fix_x = true};
     const Boundary shelf{.from = {0, 10}, .to = {10, 10}, .fix_y = true};

@@ -321,7 +321,7 @@ class BarelyHeld(ChainTest):
                 left, message = self.failed(self.checker(joints), "--engine", engine)
                 np.testing.assert_allclose(left["/failure/place"], [[7.5, 7.5]], atol=1e-9)
                 self.assertEqual(left["/failure/steps"].tolist(), [0])
-                self.assertIn("no boundary and no contact holds", message)
+                self.assertIn("no boundary and no contact supports", message)
 
     def test_a_block_that_hangs_by_a_corner_falls(self):
         cut = [joint("floor", [-1, 0], [11, 0]), joint("level", [-1, 5], [11, 5]), joint("upright", [5, 0], [5, 11])]

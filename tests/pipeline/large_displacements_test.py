@@ -247,7 +247,7 @@ class Blocks(ChainTest):
         text = incline(30, 25)
         for more, message in (('[creep]\nstep_days = 1\n', r"a scene with \[large_displacements\] has no \[creep\]"),
                               ("[equilibrium]\nunloading_increments = 2\n",
-                               r"unloading_increments = 2: with \[large_displacements\] a stage takes its rock away at once; wanted 1"),
+                               r"unloading_increments = 2: with \[large_displacements\] a stage excavates its rock at once; wanted 1"),
                               ("", r"release_s = 5: wanted less than longest_s, 5 s"),
                               ("", r"rigid_rocks.*wanted the name of a \[\[rock\]\]"), ("", "new_contacts = .clay")):
             scene = text + more
@@ -853,7 +853,7 @@ class Collapse(ChainTest):
             output = joints.with_name("result.h5")
             done = self.chain.answer("demsolve", joints, "-o", output)
             self.assertEqual(done.returncode, 0, done.stderr)
-            said = re.findall('warning: account of energy +off by ([0-9]+) percent in the dynamic analysis of stage "toe removed"',
+            said = re.findall('warning: energy balance +off by ([0-9]+) percent in the dynamic analysis of stage "toe removed"',
                               done.stdout)
             data = datasets(output)
             largest = max(abs(data[f"/dynamics/{part}"]).max() for part in

@@ -233,7 +233,7 @@ class Restart(ChainTest):
             run(parts, "--until", day)
             self.assertNotEqual(parts.read_bytes(), whole.read_bytes())
         went_on, told_after = run(parts, *threads).split("\n", 1)
-        self.assertRegex(went_on, r'^went on from +stage ".*", day ')
+        self.assertRegex(went_on, r'^continued from +stage ".*", day ')
         told.append(told_after)
         return [(path.read_bytes(), path.with_name("kept.h5").read_bytes(), screen.split())
                 for path, screen in zip((whole, parts), told)]
@@ -327,7 +327,7 @@ class Restart(ChainTest):
         self.assertFalse(result.exists(), "it was not killed in time")
         done = subprocess.run(command, capture_output=True, text=True, timeout=300)
         self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertIn("went on from", done.stdout)
+        self.assertIn("continued from", done.stdout)
         self.assertTrue(result.read_bytes() == whole.read_bytes())
 
     def test_a_checkpoint_stays_if_the_next_cannot_be_written(self):

@@ -179,7 +179,7 @@ class Safety(ChainTest):
                               (("--strength-factor", "2", "--factor-of-safety"), "do not go together"),
                               (("--safety-width", "0.1"), "goes with --factor-of-safety only"),
                               (("--factor-of-safety", "--safety-width", "1e-4", "--tolerance", "1e-5"), "100 times"),
-                              (("--factor-of-safety", "--engine", "implicit"), "cannot tell")):
+                              (("--factor-of-safety", "--engine", "implicit"), "cannot show")):
             done = self.chain.answer("demsolve", joints, "-o", joints.with_name("result.h5"), *options)
             self.assertEqual(done.returncode, 2, options)
             self.assertIn(said, done.stderr)
@@ -267,7 +267,7 @@ class NoEquilibrium(ChainTest):
         left = datasets(path)
         self.assertEqual(left["/failure/steps"].tolist(), [0])
         np.testing.assert_allclose(left["/failure/place"], [[5, 25]], atol=1e-9)
-        self.assertIn("no boundary and no contact holds", message)
+        self.assertIn("no boundary and no contact supports", message)
         self.assertIn('on day 1, stage "the middle one"', message)
         # Nothing was sought after the stage: only the in-situ equilibrium is there.
         self.assertEqual(left["/equilibria/time"].tolist(), [0])

@@ -299,7 +299,7 @@ void measure(const std::string& path, double zone_size, int steps, int rounds)
             throw std::runtime_error(std::string(ways[i].name) + ": the bits are others on two threads");
         const bool is_dynamic = ways[i].kind == Kind::dynamics || ways[i].kind == Kind::rigid_dynamics;
         const Way& same = is_dynamic ? alone : ways[ways[i].damping == Damping::mass ? 0 : 2];
-        const double apart = mechanics::farthest_move(same.u, ways[i].u).first;
+        const double apart = mechanics::largest_move(same.u, ways[i].u).first;
         if (!(apart <= 1e-9 * farthest))
             throw std::runtime_error(std::string(ways[i].name) + ", " + std::to_string(ways[i].threads) +
                                      " thread(s): arrives elsewhere than the " + same.name + ", by " +
