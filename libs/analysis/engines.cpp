@@ -40,7 +40,7 @@ void Engines::yield_by_relaxation(double time, Index zone)
 {
     section_.rock.zones.holds_yield = false;
     if (section_.engine == EngineChoice::implicit) {
-        const auto& [a, b, c] = section_.mesh().zone_gridpoint[zone];
+        const auto& [a, b, c] = section_.mesh().zone_gridpoint[section_.rock.zones.zone_of(zone)];
         const std::vector<Vector2d>& at = section_.mesh().gridpoint;
         const mechanics::no_equilibrium error("the rock at " + shown(Vector2d((at[a] + at[b] + at[c]) / 3)) +
                                               " yields (--engine auto would continue by dynamic relaxation)");

@@ -85,7 +85,7 @@ private:
     Eigen::Index n_ = 0;
     std::vector<std::array<int, 2>> unknown_; // of each gridpoint's {x, y}; -1 held
     Matrix zones_;                            // of the zones alone, with all contacts' entries in the pattern
-    std::vector<std::array<int, 36>> zone_entry_;    // where a zone's 6 x 6 goes in zones_; -1 nowhere
+    std::vector<int> zone_entry_; // where the square of each zone goes in zones_, row by row; -1 nowhere
     std::vector<std::array<int, 16>> contact_entry_; // where a contact's 4 x 4 goes
     std::vector<Index> present_contact_;
     Matrix factorised_;

@@ -349,6 +349,7 @@ struct Scene {
 
     std::uint64_t seed = 0; // needed by joint sets only
     std::optional<CreepSettings> creep;
+    bool zones_are_quadratic = false;    // six gridpoints a zone; else three, and constant strain
     double zone_size = 0;                // longest zone side aimed at [m]
     std::optional<Polygon> fine_zones{}; // where zones have that size, or else everywhere
     double zone_coarsening = 0;          // distance from there in which the size grows by `zone_size` [m]

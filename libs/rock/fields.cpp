@@ -28,7 +28,7 @@ std::vector<Field> fields_of(States& states)
 std::vector<Field> fields_of(Checkpoint& checkpoint)
 {
     using namespace fields;
-    const std::vector<std::string> zone = {"zone"}, yields = {"yielding_zone"};
+    const std::vector<std::string> zone = {"stress_point"}, yields = {"yielding_point"};
     // clang-format off
     return {
         {"/checkpoint/zone_present", &checkpoint.zone_present, zone, "1", between(0, 1),
@@ -77,7 +77,9 @@ fields::ForceFields fields_in_files()
     return {
         .dimensions = {
             {"yielding_zone", "a zone of rock that yields"},
-            {"creeping_zone", "a zone of rock that creeps"},
+            {"stress_point", "a point of a zone at which its stress is computed: one of a zone of constant strain, three of a quadratic one"},
+            {"yielding_point", "a stress point of rock that yields"},
+            {"creeping_zone", "a stress point of rock that creeps"},
             {"zone_unit", "a Kelvin unit or dashpot of one of these"},
         },
         .states = fields_of,
