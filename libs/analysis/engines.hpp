@@ -20,7 +20,7 @@ public:
 
     // By the implicit engine, unless only dynamic relaxation is asked for; false if there is none nearby.
     // `guess` is how far gridpoints may be expected to move [m], or empty.
-    bool settles_nearby(const std::vector<Vector2d>& guess, double time);
+    bool settles_nearby(const std::vector<Vector2d>& guess);
 
     // By dynamic relaxation, unless only the implicit engine is asked for. The `reason` for which it is not
     // the implicit engine is that engine's own where none is given.
@@ -32,7 +32,6 @@ public:
     implicit::Solver& implicit_engine() { return implicit_; } // with its last factor
 
 private:
-    void yield_by_relaxation(double time, Index zone);
     mechanics::Convergence relax(double time);
 
     Section& section_;

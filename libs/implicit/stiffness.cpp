@@ -54,6 +54,12 @@ void check_memory(Factor& factor)
     if (factor.cholmod().status == CHOLMOD_OUT_OF_MEMORY)
         throw std::bad_alloc();
 }
+template <class Matrix>
+void check_memory(Eigen::UmfPackLU<Matrix>& factor)
+{
+    if (factor.umfpackFactorizeReturncode() == UMFPACK_ERROR_out_of_memory)
+        throw std::bad_alloc();
+}
 #else
 void check_room_for_blas() {}
 template <class Factor>
@@ -152,7 +158,7 @@ void Stiffness::find_pattern(const Assembly& assembly)
     for (const Index c : present_contact_)
         list(unknowns_of(unknown_, contacts.gridpoint[c]), contact_entry_[c].data());
 
-    has_factor_ = false;
+    has_factor_ = has_pattern_of_yielding_ = false;
     factorised_ = zones_;
     if (n_ == 0)
         return;
@@ -161,26 +167,71 @@ void Stiffness::find_pattern(const Assembly& assembly)
     check_memory(factor_);
 }
 
-void Stiffness::fill_zones(const Assembly& assembly)
+// Adds the zones' stiffness: block(stress point, i, j) per area between its gridpoints [Pa/m2].
+template <class Block>
+void Stiffness::add_zones(Matrix& matrix, const rock::Zones& zones, const Block& block) const
 {
-    const rock::Zones& zones = assembly.zones;
-    double* const values = zones_.valuePtr();
-    std::fill(values, values + zones_.nonZeros(), 0.0);
+    double* const values = matrix.valuePtr();
     const int n = zones.gridpoints_of_zone;
     for (std::size_t z = 0; z < zones.size(); ++z) {
         if (!zones.is_present[z])
             continue;
         const int* const entries = &zone_entry_[square_of_zone(zones) * zones.zone_of(z)];
+        const auto of_point = block(z);
         for (int i = 0; i < n; ++i)
             for (int j = 0; j < n; ++j) {
-                const Eigen::Matrix2d block = zones.area[z] * stiffness_between(zones, z, i, j);
+                const Eigen::Matrix2d between = zones.area[z] * of_point(i, j);
                 for (int row = 0; row < 2; ++row)
                     for (int column = 0; column < 2; ++column)
                         if (const int entry = entries[2 * n * (2 * i + row) + 2 * j + column]; entry >= 0)
-                            values[entry] += block(row, column);
+                            values[entry] += between(row, column);
             }
     }
+}
+
+void Stiffness::fill_zones(const Assembly& assembly)
+{
+    const rock::Zones& zones = assembly.zones;
+    std::fill(zones_.valuePtr(), zones_.valuePtr() + zones_.nonZeros(), 0.0);
+    add_zones(zones_, zones, [&zones](std::size_t z) {
+        return [&zones, z](int i, int j) { return stiffness_between(zones, z, i, j); };
+    });
     has_factor_ = false;
+}
+
+VectorXd Stiffness::solve_yielding(const Assembly& assembly, const std::vector<Tangent>& tangents,
+                                   const std::vector<rock::YieldingZone>& start, const VectorXd& right)
+{
+    const rock::Zones& zones = assembly.zones;
+    const joint::Contacts& contacts = assembly.contacts;
+    Matrix matrix = zones_;
+    std::fill(matrix.valuePtr(), matrix.valuePtr() + matrix.nonZeros(), 0.0);
+    add_zones(matrix, zones, [&](std::size_t z) {
+        const Eigen::Matrix3d tangent = tangent_at(zones, z, assembly.displacement, start);
+        return [&zones, z, tangent](int i, int j) { return stiffness_between(zones, z, i, j, tangent); };
+    });
+    for (const Index c : present_contact_) {
+        const Vector2d &normal = contacts.normal[c], tangent = along(normal);
+        const Tangent& of = tangents[c];
+        const Eigen::Matrix2d block =
+            contacts.length[c] *
+            (of.normal * normal * normal.transpose() + of.shear * tangent * tangent.transpose() +
+             of.friction * tangent * normal.transpose() + of.dilation * normal * tangent.transpose());
+        for (int i = 0; i < 4; ++i)
+            for (int j = 0; j < 4; ++j)
+                if (const int entry = contact_entry_[c][4 * i + j]; entry >= 0)
+                    matrix.valuePtr()[entry] += (i / 2 == j / 2 ? 1 : -1) * block(i % 2, j % 2);
+    }
+    check_room_for_blas();
+    if (!has_pattern_of_yielding_)
+        yielding_factor_.analyzePattern(matrix);
+    has_pattern_of_yielding_ = true;
+    yielding_factor_.factorize(matrix);
+    check_memory(yielding_factor_);
+    if (yielding_factor_.info() != Eigen::Success)
+        return {};
+    VectorXd x = yielding_factor_.solve(right);
+    return yielding_factor_.info() == Eigen::Success && x.allFinite() ? x : VectorXd();
 }
 
 VectorXd Stiffness::gathered(const Assembly& assembly, const std::vector<Vector2d>& over_gridpoints) const

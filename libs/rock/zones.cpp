@@ -265,8 +265,16 @@ Eigen::Matrix2d stiffness_between(const Zones& zones, std::size_t z, int i, int 
     return block;
 }
 
-Vector3d stress_by(const Zones& zones, std::size_t z, std::span<const Vector2d> displacement,
-                   const Vector3d& stiffness)
+Eigen::Matrix2d stiffness_between(const Zones& zones, std::size_t z, int i, int j, const Eigen::Matrix3d& tangent)
+{
+    const auto strain_of = [&](int corner) { // by a displacement of the gridpoint
+        const Vector2d& p = zones.gradients(z)[corner];
+        return (Eigen::Matrix<double, 3, 2>() << p.x(), 0, 0, p.y(), p.y(), p.x()).finished();
+    };
+    return strain_of(i).transpose() * tangent * strain_of(j);
+}
+
+Vector3d strain_at(const Zones& zones, std::size_t z, std::span<const Vector2d> displacement)
 {
     double exx = 0, eyy = 0, gxy = 0;
     for (int i = 0; i < zones.gridpoints_of_zone; ++i) {
@@ -275,8 +283,24 @@ Vector3d stress_by(const Zones& zones, std::size_t z, std::span<const Vector2d> 
         eyy += gradient.y() * u.y();
         gxy += gradient.y() * u.x() + gradient.x() * u.y();
     }
-    const Vector3d& c = stiffness;
-    return {c[0] * exx + c[1] * eyy, c[1] * exx + c[0] * eyy, c[2] * gxy};
+    return {exx, eyy, gxy};
+}
+
+Eigen::Matrix3d tangent_at(const Zones& zones, std::size_t z, std::span<const Vector2d> displacement,
+                           const std::vector<YieldingZone>& start)
+{
+    const Vector3d& c = zones.stiffness[z];
+    if (start.empty() || zones.yielding_number[z] < 0 || zones.holds_yield)
+        return (Eigen::Matrix3d() << c[0], c[1], 0, c[1], c[0], 0, 0, 0, c[2]).finished();
+    return tangent_of_yield(start[zones.yielding_number[z]], c, zones.initial_stress[z],
+                            strain_at(zones, z, displacement));
+}
+
+Vector3d stress_by(const Zones& zones, std::size_t z, std::span<const Vector2d> displacement,
+                   const Vector3d& stiffness)
+{
+    const Vector3d strain = strain_at(zones, z, displacement), &c = stiffness;
+    return {c[0] * strain[0] + c[1] * strain[1], c[1] * strain[0] + c[0] * strain[1], c[2] * strain[2]};
 }
 
 void add_force(const Zones& zones, std::size_t z, const Vector3d& stress, std::vector<Vector2d>& force)

@@ -80,6 +80,17 @@ void find_forces_in_team(Zones& zones, Slots& slots, std::span<const Vector2d> d
 // Stiffness of a zone between its gridpoints i and j, at a stress point, per area [Pa/m2].
 Eigen::Matrix2d stiffness_between(const Zones& zones, std::size_t z, int i, int j);
 
+// The same for any change of stress {xx, yy, xy} over strain {xx, yy, gamma_xy} [Pa].
+Eigen::Matrix2d stiffness_between(const Zones& zones, std::size_t z, int i, int j, const Eigen::Matrix3d& tangent);
+
+// Strain {xx, yy, gamma_xy} at a stress point at the displacements of all gridpoints [-].
+Vector3d strain_at(const Zones& zones, std::size_t z, std::span<const Vector2d> displacement);
+
+// Change of the stress at a stress point over that of its strain, at the displacements of all gridpoints, if it goes
+// straight there from `start`, as yielding zones were [Pa].
+Eigen::Matrix3d tangent_at(const Zones& zones, std::size_t z, std::span<const Vector2d> displacement,
+                           const std::vector<YieldingZone>& start);
+
 // Stress {xx, yy, xy} at a stress point by elasticity of stiffness {C11, C12, C33} at the displacements of all gridpoints [Pa].
 Vector3d stress_by(const Zones& zones, std::size_t z, std::span<const Vector2d> displacement,
                    const Vector3d& stiffness);
