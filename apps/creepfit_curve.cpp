@@ -180,46 +180,40 @@ void add_residuals(Summary& summary, const Curve& curve, const estimation::Curve
 void warn_of_record(Summary& summary, const Curve& curve, const estimation::CurveFit& fit)
 {
     if (fit.is_too_short)
-        summary.add(
-            "warning: record too short",
-            "it is " + rounded(fit.record_length, 2) +
-                " retardation times long: it tells how fast creep begins, about 1 / eta, but not where "
-                "it ends, 1 / E");
+        summary.warn("record too short: it is " + rounded(fit.record_length, 2) +
+                     " retardation times long: it tells how fast creep begins, about 1 / eta, but not where "
+                     "it ends, 1 / E");
     else if (fit.is_stiffness_open)
-        summary.add("warning: E hardly known",
-                    "its interval goes beyond a factor of 2, though the record is " +
-                        rounded(fit.record_length, 2) +
-                        " retardation times long: noise, or too few readings");
+        summary.warn("E hardly known: its interval goes beyond a factor of 2, though the record is " +
+                     rounded(fit.record_length, 2) + " retardation times long: noise, or too few readings");
     // Where it is given there is no interval to look at.
     if (const Interval& of = fit.elastic_interval;
         !curve.readings.elastic_part && of.low <= 0 && of.high >= 0)
-        summary.add("warning: elastic part",
-                    "is not told apart from 0, nor are E and eta; displacements count from before the "
-                    "load, not from a reading after it");
+        summary.warn(
+            "the elastic part is not told apart from 0, nor are E and eta; displacements count from before the "
+            "load, not from a reading after it");
     if (fit.is_too_coarse)
-        summary.add(
-            "warning: readings too coarse",
-            "creep is all but over at the first reading after the load: eta is at most what is found");
+        summary.warn(
+            "readings too coarse: creep is all but over at the first reading after the load: eta is at most what is found");
 }
 
 // Where Eq. 14 takes for granted what is not so.
 void warn_of_closed_estimate(Summary& summary, const Curve& curve, const Fit& fit)
 {
     if (fit.left > 0.02)
-        summary.add("warning: creep not over",
-                    rounded(100 * fit.left, 2) + " percent of it is left at the end that Eq. 14 takes: " +
-                        (fit.left > most_left
-                             ? "that is no end, and what it gives has no interval"
-                             : "its E is too high, about " + rounded(1 / (1 - fit.left), 3) + " times"));
+        summary.warn("creep not over: " + rounded(100 * fit.left, 2) +
+                     " percent of it is left at the end that Eq. 14 takes: " +
+                     (fit.left > most_left
+                          ? "that is no end, and what it gives has no interval"
+                          : "its E is too high, about " + rounded(1 / (1 - fit.left), 3) + " times"));
     const double first = curve.readings.time.front(), share = first / fit.by_curve.retardation_time;
     if (!curve.readings.elastic_part && share > 0.1)
-        summary.add("warning: first reading late",
-                    rounded(first / unit::day) + " days after the load, with " +
-                        rounded(-100 * std::expm1(-share), 2) +
-                        " percent of creep in it, which Eq. 14 takes for elastic");
+        summary.warn("first reading late: " + rounded(first / unit::day) + " days after the load, with " +
+                     rounded(-100 * std::expm1(-share), 2) +
+                     " percent of creep in it, which Eq. 14 takes for elastic");
 }
 
-void report(const Curve& curve, const Fit& fit, const std::vector<Row>& rows)
+void report(const Arguments& arguments, const Curve& curve, const Fit& fit, const std::vector<Row>& rows)
 {
     Summary summary;
     summary.add("readings", curve.readings.time.size());
@@ -237,7 +231,7 @@ void report(const Curve& curve, const Fit& fit, const std::vector<Row>& rows)
     warn_of_record(summary, curve, fit.by_curve);
     warn_of_closed_estimate(summary, curve, fit);
     warn_of_lag(summary, "", fit.by_curve.lag_one, fit.by_curve.computed.size());
-    summary.print();
+    summary.print(arguments);
 }
 
 } // namespace
@@ -270,8 +264,7 @@ void fit_curve(const Arguments& arguments)
     if (readings_path)
         write(*readings_path, readings_table(curve, fit.by_curve.computed));
     write(arguments.output(), table_of(rows));
-    if (!arguments.quiet())
-        report(curve, fit, rows);
+    report(arguments, curve, fit, rows);
 }
 
 } // namespace jointcreep::creepfit

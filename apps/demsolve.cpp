@@ -52,27 +52,28 @@ using RunWith = std::function<std::unique_ptr<Trial>(double factor)>;
 std::unique_ptr<Trial> run_once(double factor, const RunWith& run_with, const demsolve::Files& files)
 {
     std::unique_ptr<Trial> run = run_with(factor);
-    if (run->ending() != Ending::stands)
+    if (run->outcome().ending != Ending::stands)
         throw equilibrium_error(run->message() + '\n' + files.write_failed(*run) +
-                                demsolve::warnings_of(run->analysis().findings()));
+                                demsolve::warning_lines(*run));
     files.write_result(*run);
     return run;
 }
 
 // Runs with different factors: the one with the largest that stands is written and returned, and the one above
 // is written as failed.
-std::unique_ptr<Trial> bracket_safety(double width, const RunWith& run_with, const demsolve::Files& files,
-                                      Summary& summary)
+std::unique_ptr<Trial> bracket_safety(const demsolve::SafetySearch& safety, const RunWith& run_with,
+                                      const demsolve::Files& files, Summary& summary)
 {
     std::unique_ptr<Trial> run, failed;
     const Bracket bracket = analysis::bracket_of(
-        [&](double factor) {
+        [&](double factor, double most_displacement) {
             std::unique_ptr<Trial> made = run_with(factor);
-            const Ending ending = made->ending();
-            (ending == Ending::stands ? run : failed) = std::move(made);
-            return ending;
+            made->limit_displacement(most_displacement);
+            const analysis::Outcome outcome = made->outcome();
+            (outcome.ending == Ending::stands ? run : failed) = std::move(made);
+            return outcome;
         },
-        width);
+        safety.width, safety.runs_away);
     if (!run)
         throw equilibrium_error("with strengths " + shown(1 / failed->factor()) +
                                 " times as large there is still " + failed->message() + '\n' +
@@ -95,7 +96,7 @@ void solve(const Arguments& arguments)
     const std::string end = demsolve::end_scene(arguments, scene);
     const std::string options = demsolve::replace_settings(arguments, scene);
     const demsolve::Files files(arguments, program.name, file, options, end);
-    const auto [factor, bracket_width] = demsolve::strength_reduction(arguments, scene);
+    const auto [factor, search] = demsolve::strength_reduction(arguments, scene);
     const int threads = arguments.threads();
 
     // 2. What is recorded, and what a checkpoint has kept before.
@@ -111,7 +112,7 @@ void solve(const Arguments& arguments)
         };
 
     // 3. The analysis: in-situ equilibrium, excavation in stages, creep.
-    const RunWith run_with = [&, is_bracket = bracket_width.has_value()](double divisor) {
+    const RunWith run_with = [&, is_bracket = search.has_value()](double divisor) {
         Progress progress(arguments.quiet());
         const std::string which = is_bracket ? "strengths / " + shown(divisor) + ", " : "";
         auto run = std::make_unique<Trial>(scene, file.network, file.equivalent, divisor, threads, recording,
@@ -126,13 +127,10 @@ void solve(const Arguments& arguments)
     };
 
     // 4. Once, or with strengths divided by factors until rock moves.
-    const std::unique_ptr<Trial> run = bracket_width
-                                           ? bracket_safety(*bracket_width, run_with, files, summary)
-                                           : run_once(factor, run_with, files);
-    if (!arguments.quiet()) {
-        demsolve::add_run(summary, file.network, scene, run->analysis());
-        summary.print();
-    }
+    const std::unique_ptr<Trial> run =
+        search ? bracket_safety(*search, run_with, files, summary) : run_once(factor, run_with, files);
+    demsolve::add_run(summary, file.network, *run);
+    summary.print(arguments);
 }
 
 } // namespace

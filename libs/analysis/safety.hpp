@@ -1,5 +1,10 @@
-// A factor of safety by strength reduction: the factor F that strengths can be divided by before the rock has
-// no equilibrium any more (libs/joint/strength_factor.hpp). What is found is a bracket, by whole runs.
+// A factor of safety by strength reduction: the factor F that strengths can be divided by before the rock fails
+// (libs/joint/strength_factor.hpp). What is found is a bracket, by whole runs.
+//
+// Rock fails where there is no equilibrium, and where its displacement runs away with F: zones that cannot flow without
+// changing their volume carry more than the rock does, and are in equilibrium long after it would have collapsed. The
+// measure is the largest displacement beside that of the same run with strengths so large that next to nothing slips or
+// yields.
 
 #pragma once
 
@@ -16,6 +21,12 @@ namespace jointcreep::analysis
 // How a run ends: every equilibrium found; rock seen to slide or fall; or no answer within the limits of the search.
 enum class Ending { stands, falls, undecided };
 
+struct Outcome {
+    Ending ending;
+    double largest_displacement = 0;   // since the in-situ equilibrium [m]
+    double largest_plastic_strain = 0; // shear strain of a zone [-]
+};
+
 // An analysis with strengths divided by a factor [-].
 class Trial
 {
@@ -27,8 +38,12 @@ public:
     void run();
     void go_on(Result so_far, Checkpoint kept);
 
-    Ending ending() const;
-    const std::string& message() const { return message_; } // why there is no equilibrium; empty: there is
+    // Counts the run as failed if its largest displacement is more than `most` [m].
+    void limit_displacement(double most);
+
+    Outcome outcome() const;
+    const std::string& message() const { return message_; } // why it fails; empty: it stands
+    const Scene& scene() const { return scene_; }
     double factor() const { return factor_; }
     const Analysis& analysis() const { return analysis_; }
 
@@ -46,8 +61,12 @@ struct Bracket {
     Safety trials;                   // in the order they were made
 };
 
-// Doubles or halves the factor from 1, to 64 or 1/64 at most, then halves the bracket until it is no wider
+// A run with a factor, which fails if its displacement is more than that [m].
+using RunWith = std::function<Outcome(double factor, double most_displacement)>;
+
+// First a run with strengths 64 times as large; the displacement of others may be `runs_away` times as large as its own.
+// Then doubles or halves the factor from 1, to 64 or 1/64 at most, then halves the bracket until it is no wider
 // than `width` times its lower end. What is undecided counts as not standing.
-Bracket bracket_of(const std::function<Ending(double factor)>& trial, double width);
+Bracket bracket_of(const RunWith& run_with, double width, double runs_away);
 
 } // namespace jointcreep::analysis

@@ -139,6 +139,8 @@ struct Safety {
     std::vector<double> factor{}; // that strengths were divided by [-]
     std::vector<Index>
         stands{}; // 1 every equilibrium was found, 0 none, -1 the search ended without an answer
+    std::vector<double> largest_displacement{};   // since the in-situ equilibrium, at the end [m]
+    std::vector<double> largest_plastic_strain{}; // shear strain of a zone, at the end [-]
 };
 
 struct Result {

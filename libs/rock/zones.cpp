@@ -383,6 +383,17 @@ void forget_dissipated(Zones& zones)
         zone.dissipated = 0;
 }
 
+double largest_plastic_strain(const Zones& zones)
+{
+    double largest = 0;
+    for (std::size_t z = 0; z < zones.yielding_number.size(); ++z)
+        if (const Index number = zones.yielding_number[z]; number >= 0 && zones.is_present[z]) {
+            const Eigen::Vector4d& plastic = zones.yielding[number].plastic;
+            largest = std::max(largest, std::hypot(plastic[0] - plastic[1], plastic[3]));
+        }
+    return largest;
+}
+
 Index weakest(const Zones& zones)
 {
     Index weakest = -1;

@@ -116,6 +116,9 @@ double stored_energy(const Zones& zones);
 double dissipated(const Zones& zones);
 void forget_dissipated(Zones& zones);
 
+// The largest plastic shear strain at a stress point that is there, in the section [-].
+double largest_plastic_strain(const Zones& zones);
+
 // The stress point that is farthest beyond its strength; -1 if none is.
 Index weakest(const Zones& zones);
 
