@@ -6,6 +6,8 @@
 
 #include "scene/measurements.hpp"
 
+#include "program.hpp"
+
 #include <string>
 #include <vector>
 

@@ -24,6 +24,7 @@
 #include "store/files.hpp"
 
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -45,13 +46,13 @@ const Program program{
     .example = "demsolve joints.h5 --threads 2 -o result.h5",
 };
 
-// A run with strengths divided by a factor.
-using RunWith = std::function<std::unique_ptr<Trial>(double factor)>;
+// A run with strengths divided by a factor, which fails where displacement is more than that [m].
+using RunWith = std::function<std::unique_ptr<Trial>(double factor, double most_displacement)>;
 
 // One run, written; the run itself.
 std::unique_ptr<Trial> run_once(double factor, const RunWith& run_with, const demsolve::Files& files)
 {
-    std::unique_ptr<Trial> run = run_with(factor);
+    std::unique_ptr<Trial> run = run_with(factor, std::numeric_limits<double>::infinity());
     if (run->outcome().ending != Ending::stands)
         throw equilibrium_error(run->message() + '\n' + files.write_failed(*run) +
                                 demsolve::warning_lines(*run));
@@ -67,8 +68,7 @@ std::unique_ptr<Trial> bracket_safety(const demsolve::SafetySearch& safety, cons
     std::unique_ptr<Trial> run, failed;
     const Bracket bracket = analysis::bracket_of(
         [&](double factor, double most_displacement) {
-            std::unique_ptr<Trial> made = run_with(factor);
-            made->limit_displacement(most_displacement);
+            std::unique_ptr<Trial> made = run_with(factor, most_displacement);
             const analysis::Outcome outcome = made->outcome();
             (outcome.ending == Ending::stands ? run : failed) = std::move(made);
             return outcome;
@@ -112,13 +112,14 @@ void solve(const Arguments& arguments)
         };
 
     // 3. The analysis: in-situ equilibrium, excavation in stages, creep.
-    const RunWith run_with = [&, is_bracket = search.has_value()](double divisor) {
+    const RunWith run_with = [&, is_bracket = search.has_value()](double divisor, double most_displacement) {
         Progress progress(arguments.quiet());
         const std::string which = is_bracket ? "strengths / " + shown(divisor) + ", " : "";
-        auto run = std::make_unique<Trial>(scene, file.network, file.equivalent, divisor, threads, recording,
-                                           [&progress, which](double fraction, const std::string& what) {
-                                               progress.show(fraction, which + what);
-                                           });
+        auto run =
+            std::make_unique<Trial>(scene, file.network, file.equivalent, divisor, most_displacement, threads,
+                                    recording, [&progress, which](double fraction, const std::string& what) {
+                                        progress.show(fraction, which + what);
+                                    });
         if (kept)
             run->go_on(std::move(kept->result), std::move(kept->checkpoint));
         else

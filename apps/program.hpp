@@ -143,7 +143,7 @@ public:
     void add(std::string label, std::int64_t value, const std::string& unit = "");
     void add(std::string label, std::size_t value, const std::string& unit = "");
     void add(std::string label, std::int32_t value, const std::string& unit = "");
-    void warn(std::string text) { warnings_.push_back(std::move(text)); }
+    void warn(const std::string& text) { warnings_.push_back(text); }
     // Lines to stdout, unless --quiet. Warnings to stderr, also with --quiet: "demsolve: warning: ...".
     void print(const Arguments& arguments) const;
 

@@ -2,7 +2,6 @@
 
 #include "mechanics/excavation.hpp"
 #include "model/error.hpp"
-#include "model/units.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -198,13 +197,6 @@ void Analysis::transfer(const Transfer& to, Checkpoint& kept)
     creep_.transfer(to, kept);
     if (dynamics_)
         dynamics_->transfer(to, kept);
-}
-
-void Analysis::count_as_failed(const std::string& reason)
-{
-    section_.result.failure.reason = reason;
-    section_.result.failure.moves_on = 1;
-    section_.result.failure.time = section_.now / unit::day;
 }
 
 } // namespace jointcreep::analysis

@@ -38,9 +38,6 @@ public:
     // What was kept is moved from. Throws input_error where the sizes are not those of this section.
     void go_on(Result so_far, Checkpoint kept);
 
-    // Has the result say that the section fails, at the end of the run, for a reason that no equilibrium shows.
-    void count_as_failed(const std::string& reason);
-
     const Result& result() const { return section_.result; }
     // Of the histories' displacements, [parameter][time, point]: per unit of the parameter's logarithm [m].
     const std::vector<std::vector<Vector2d>>& sensitivities() const { return section_.sensitivities; }

@@ -8,9 +8,21 @@
 namespace jointcreep::analysis
 {
 
+namespace
+{
+
+Scene limited(Scene scene, double most_displacement)
+{
+    scene.equilibrium.largest_displacement = most_displacement;
+    return scene;
+}
+
+} // namespace
+
 Trial::Trial(const Scene& scene, const Network& network, const EquivalentJoints& joints, double factor,
-             int threads, const Recording& recording, const Observer& observe)
-    : factor_(factor), scene_(factor == 1 ? scene : joint::with_strength_divided(scene, factor)),
+             double most_displacement, int threads, const Recording& recording, const Observer& observe)
+    : factor_(factor),
+      scene_(limited(factor == 1 ? scene : joint::with_strength_divided(scene, factor), most_displacement)),
       joints_(factor == 1 ? joints : joint::with_strength_divided(joints, factor)),
       analysis_(scene_, network, joints_, threads, recording, observe)
 {
@@ -32,16 +44,6 @@ void Trial::go_on(Result so_far, Checkpoint kept)
     } catch (const equilibrium_error& error) {
         message_ = error.what();
     }
-}
-
-void Trial::limit_displacement(double most)
-{
-    const double displacement = analysis_.largest_displacement();
-    if (!message_.empty() || displacement <= most)
-        return;
-    message_ = "displacement runs away: it is " + shown(displacement) + " m; counted as failure above " +
-               shown(most) + " m";
-    analysis_.count_as_failed(message_);
 }
 
 Outcome Trial::outcome() const

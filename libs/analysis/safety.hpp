@@ -31,15 +31,13 @@ struct Outcome {
 class Trial
 {
 public:
+    // The run fails where the largest displacement is more than `most_displacement` [m].
     Trial(const Scene& scene, const Network& network, const EquivalentJoints& joints, double factor,
-          int threads, const Recording& recording, const Observer& observe);
+          double most_displacement, int threads, const Recording& recording, const Observer& observe);
 
     // As those of Analysis, once; where there is no equilibrium they end with a message.
     void run();
     void go_on(Result so_far, Checkpoint kept);
-
-    // Counts the run as failed if its largest displacement is more than `most` [m].
-    void limit_displacement(double most);
 
     Outcome outcome() const;
     const std::string& message() const { return message_; } // why it fails; empty: it stands

@@ -321,6 +321,10 @@ bool Solver::converge(Assembly& assembly, const State& start, const Equilibrium&
             hold = hold <= least_hold ? 0 : hold / 3;
         }
         take_states(assembly, start, false);
+        if (farthest_displacement(assembly).first > settings.largest_displacement) {
+            reason_ = "displacement runs away";
+            return false;
+        }
         if (farthest_displacement(assembly).first > too_far_) { // increments must not add up to more either
             reason_ = "rock would move by more than a tenth of the section";
             return false;

@@ -14,6 +14,7 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -286,6 +287,8 @@ struct Equilibrium {
     std::int32_t unloading_increments =
         1;                       // in which a stage's rock is taken away, and loads change between dates
     std::int32_t most_steps = 0; // without equilibrium after so many, the program gives up
+    // Rock that has moved farther since the in-situ state fails; no key: analysis::Trial sets it [m].
+    double largest_displacement = std::numeric_limits<double>::infinity();
 };
 
 // Dynamic analysis with large displacements: Newton's law with real masses, in place of the search for

@@ -165,17 +165,22 @@ public:
             give_up("the rock at " + shown(a_.position[g]) + " has moved " + shown_length(moved) +
                         " and is still moving; is it held by anything?",
                     true, steps);
-        if (const auto [in_all, h] = farthest_displacement(a_); in_all > too_far_)
+        const auto [in_all, h] = farthest_displacement(a_);
+        if (in_all > settings_.largest_displacement)
+            give_up("the displacement of the rock at " + shown(a_.position[h]) + " runs away: more than " +
+                        shown_length(settings_.largest_displacement),
+                    true, steps);
+        if (in_all > too_far_)
             give_up("the rock at " + shown(a_.position[h]) + " has moved " + shown_length(in_all) +
                         " since the in-situ state, by more than a tenth of the section: too far for small "
                         "displacements",
                     false, steps);
         if (steps % patience != 0)
             return;
-        const auto [lately, h] = mechanics::farthest_move(patience_ago_, a_.displacement);
+        const auto [lately, k] = mechanics::farthest_move(patience_ago_, a_.displacement);
         looks_in_motion_ = slides_or_falls() ? looks_in_motion_ + 1 : 0;
         if (looks_in_motion_ == looks_enough)
-            give_up("the rock at " + shown(a_.position[h]) + " moves on, " + shown_length(lately) +
+            give_up("the rock at " + shown(a_.position[k]) + " moves on, " + shown_length(lately) +
                         " over the last " + std::to_string(patience) +
                         " steps, and what drives it does not fall off; it slides or "
                         "falls, and nothing stops it",
