@@ -180,46 +180,40 @@ void add_residuals(Summary& summary, const Curve& curve, const estimation::Curve
 void warn_of_record(Summary& summary, const Curve& curve, const estimation::CurveFit& fit)
 {
     if (fit.is_too_short)
-        summary.add(
-            "warning: record too short",
-            "it is " + rounded(fit.record_length, 2) +
-                " retardation times long: it tells how fast creep begins, about 1 / eta, but not where "
-                "it ends, 1 / E");
+        summary.warn("record too short: it is " + rounded(fit.record_length, 2) +
+                     " retardation times long: it tells how fast creep begins, about 1 / eta, but not where "
+                     "it ends, 1 / E");
     else if (fit.is_stiffness_open)
-        summary.add("warning: E hardly known",
-                    "its interval is wider than a factor of 2, though the record is " +
-                        rounded(fit.record_length, 2) +
-                        " retardation times long: noise, or too few readings");
+        summary.warn("E hardly known: its interval is wider than a factor of 2, though the record is " +
+                     rounded(fit.record_length, 2) + " retardation times long: noise, or too few readings");
     // A given elastic part has no interval.
     if (const Interval& of = fit.elastic_interval;
         !curve.readings.elastic_part && of.low <= 0 && of.high >= 0)
-        summary.add("warning: elastic part",
-                    "cannot be distinguished from 0, nor can E and eta; count displacements from before the "
-                    "load, not from a reading after it");
+        summary.warn(
+            "the elastic part cannot be distinguished from 0, nor can E and eta; count displacements from before "
+            "the load, not from a reading after it");
     if (fit.is_too_coarse)
-        summary.add(
-            "warning: readings too coarse",
-            "creep is nearly over at the first reading after the load: the eta found is an upper limit");
+        summary.warn(
+            "readings too coarse: creep is nearly over at the first reading after the load: the eta found is an upper limit");
 }
 
 // Warns where an assumption of Eq. 14 does not hold.
 void warn_of_closed_estimate(Summary& summary, const Curve& curve, const Fit& fit)
 {
     if (fit.left > 0.02)
-        summary.add("warning: creep not over",
-                    rounded(100 * fit.left, 2) + " percent of it is left at the end that Eq. 14 takes: " +
-                        (fit.left > most_left
-                             ? "too much for Eq. 14; its results have no interval"
-                             : "its E is too high, by a factor of about " + rounded(1 / (1 - fit.left), 3)));
+        summary.warn("creep not over: " + rounded(100 * fit.left, 2) +
+                     " percent of it is left at the end that Eq. 14 takes: " +
+                     (fit.left > most_left
+                          ? "too much for Eq. 14; its results have no interval"
+                          : "its E is too high, by a factor of about " + rounded(1 / (1 - fit.left), 3)));
     const double first = curve.readings.time.front(), share = first / fit.by_curve.retardation_time;
     if (!curve.readings.elastic_part && share > 0.1)
-        summary.add("warning: first reading late",
-                    rounded(first / unit::day) + " days after the load, with " +
-                        rounded(-100 * std::expm1(-share), 2) +
-                        " percent of creep in it, which Eq. 14 takes for elastic");
+        summary.warn("first reading late: " + rounded(first / unit::day) + " days after the load, with " +
+                     rounded(-100 * std::expm1(-share), 2) +
+                     " percent of creep in it, which Eq. 14 takes for elastic");
 }
 
-void report(const Curve& curve, const Fit& fit, const std::vector<Row>& rows)
+void report(const Arguments& arguments, const Curve& curve, const Fit& fit, const std::vector<Row>& rows)
 {
     Summary summary;
     summary.add("readings", curve.readings.time.size());
@@ -236,7 +230,7 @@ void report(const Curve& curve, const Fit& fit, const std::vector<Row>& rows)
     warn_of_record(summary, curve, fit.by_curve);
     warn_of_closed_estimate(summary, curve, fit);
     warn_of_lag(summary, "", fit.by_curve.lag_one, fit.by_curve.computed.size());
-    summary.print();
+    summary.print(arguments);
 }
 
 } // namespace
@@ -270,8 +264,7 @@ void fit_curve(const Arguments& arguments)
     if (readings_path)
         write_text(*readings_path, readings_table(curve, fit.by_curve.computed));
     write_text(arguments.output(), table_of(rows));
-    if (!arguments.quiet())
-        report(curve, fit, rows);
+    report(arguments, curve, fit, rows);
 }
 
 } // namespace jointcreep::creepfit

@@ -156,10 +156,10 @@ void warn_of_weak_combination(Summary& summary, const Found& found, const Factor
     if (!weak)
         return;
     const double half = found.confidence.quantile * weak->standard_error;
-    summary.add(weak->is_alike_effects ? "warning: hardly distinguished" : "warning: hardly known",
-                combination_in_words(weak->direction, half, factors) +
-                    (weak->is_alike_effects ? " changes the readings by no more than their noise"
-                                            : " is still within the readings' noise"));
+    summary.warn((weak->is_alike_effects ? "hardly distinguished: " : "hardly known: ") +
+                 combination_in_words(weak->direction, half, factors) +
+                 (weak->is_alike_effects ? " changes the readings by no more than their noise"
+                                         : " is still within the readings' noise"));
 }
 
 // Between creep steps the history is interpolated linearly.
@@ -171,9 +171,8 @@ void warn_of_interpolation(Summary& summary, const Found& found, const Measureme
             error > 0.2 * measurements[m].deviation.value_or(1e-3 * found.confidence.noise_factor))
             between_steps = std::max(between_steps, error);
     if (between_steps > 0)
-        summary.add("warning: readings between steps",
-                    "may be off by " + mm(between_steps) +
-                        " mm: histories are linear between creep steps. Use shorter steps");
+        summary.warn("readings between steps may be off by " + mm(between_steps) +
+                     " mm: histories are linear between creep steps. Use shorter steps");
 }
 
 void print_stress(const InSituStress& stress, double factor)
@@ -303,8 +302,8 @@ std::string why_not_converged(const Found& found, const Factors& factors)
                                       : "\nwanted more --runs");
 }
 
-void report(const Found& found, const Measurements& measurements, const Scene& scene,
-            const back_analysis::Settings& settings)
+void report(const Arguments& arguments, const Found& found, const Measurements& measurements,
+            const Scene& scene, const back_analysis::Settings& settings)
 {
     const Factors& factors = settings.factors;
     Summary summary;
@@ -322,8 +321,9 @@ void report(const Found& found, const Measurements& measurements, const Scene& s
                     rounded(found.confidence.condition_number, 3));
     warn_of_weak_combination(summary, found, factors);
     warn_of_interpolation(summary, found, measurements);
-    summary.print();
-    print_for_the_scene(found, scene, factors);
+    summary.print(arguments);
+    if (!arguments.quiet())
+        print_for_the_scene(found, scene, factors);
 }
 
 } // namespace jointcreep::creepfit

@@ -6,6 +6,8 @@
 
 #include "scene/measurements.hpp"
 
+#include "program.hpp"
+
 #include <string>
 #include <vector>
 
@@ -23,7 +25,8 @@ std::string readings_table(const back_analysis::Found& found,
 std::string why_not_converged(const back_analysis::Found& found, const Factors& factors);
 
 // Prints the summary, and what to write into the scene.
-void report(const back_analysis::Found& found, const std::vector<scene::Measurement>& measurements,
-            const Scene& scene, const back_analysis::Settings& settings);
+void report(const Arguments& arguments, const back_analysis::Found& found,
+            const std::vector<scene::Measurement>& measurements, const Scene& scene,
+            const back_analysis::Settings& settings);
 
 } // namespace jointcreep::creepfit

@@ -105,8 +105,7 @@ void fit_section(const Arguments& arguments)
     if (!found.minimum.is_converged)
         throw fit_error(why_not_converged(found, settings.factors) + "\nthe best factors are in " +
                         name(output));
-    if (!arguments.quiet())
-        report(found, measurements, scene, settings);
+    report(arguments, found, measurements, scene, settings);
 }
 
 } // namespace jointcreep::creepfit

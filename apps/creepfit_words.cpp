@@ -50,10 +50,9 @@ std::string noise_in_words(const Confidence& confidence, bool knows_deviations)
 void warn_of_lag(Summary& summary, const std::string& label, double lag_one, std::size_t readings)
 {
     if (lag_one > 2 / std::sqrt(static_cast<double>(readings)))
-        summary.add(
-            "warning: residuals are correlated" + label,
-            "correlation of neighbours " + rounded(lag_one, 2) +
-                ": the noise is not independent, or the model is not right, and intervals are too narrow");
+        summary.warn(
+            "residuals are correlated" + label + ": correlation of neighbours " + rounded(lag_one, 2) +
+            ": the noise is not independent, or the model is not right, and intervals are too narrow");
 }
 
 } // namespace jointcreep::creepfit

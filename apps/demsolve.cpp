@@ -24,6 +24,7 @@
 #include "store/files.hpp"
 
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -45,34 +46,34 @@ const Program program{
     .example = "demsolve joints.h5 --threads 2 -o result.h5",
 };
 
-// A run with strengths divided by a factor.
-using RunWith = std::function<std::unique_ptr<Trial>(double factor)>;
+// A run with strengths divided by a factor, which fails where displacement is more than that [m].
+using RunWith = std::function<std::unique_ptr<Trial>(double factor, double most_displacement)>;
 
 // One run, written; the run itself.
 std::unique_ptr<Trial> run_once(double factor, const RunWith& run_with, const demsolve::Files& files)
 {
-    std::unique_ptr<Trial> run = run_with(factor);
-    if (run->ending() != Ending::stands)
+    std::unique_ptr<Trial> run = run_with(factor, std::numeric_limits<double>::infinity());
+    if (run->outcome().ending != Ending::stands)
         throw equilibrium_error(run->message() + '\n' + files.write_failed(*run) +
-                                demsolve::warnings_of(run->analysis().findings()));
+                                demsolve::warning_lines(*run));
     files.write_result(*run);
     return run;
 }
 
 // Runs with different factors. Writes and returns the run of the largest factor at which every equilibrium is found.
 // Writes the run of the next larger factor as failed.
-std::unique_ptr<Trial> bracket_safety(double width, const RunWith& run_with, const demsolve::Files& files,
-                                      Summary& summary)
+std::unique_ptr<Trial> bracket_safety(const demsolve::SafetySearch& safety, const RunWith& run_with,
+                                      const demsolve::Files& files, Summary& summary)
 {
     std::unique_ptr<Trial> run, failed;
     const Bracket bracket = analysis::bracket_of(
-        [&](double factor) {
-            std::unique_ptr<Trial> made = run_with(factor);
-            const Ending ending = made->ending();
-            (ending == Ending::stands ? run : failed) = std::move(made);
-            return ending;
+        [&](double factor, double most_displacement) {
+            std::unique_ptr<Trial> made = run_with(factor, most_displacement);
+            const analysis::Outcome outcome = made->outcome();
+            (outcome.ending == Ending::stands ? run : failed) = std::move(made);
+            return outcome;
         },
-        width);
+        safety.width, safety.runs_away);
     if (!run)
         throw equilibrium_error("with strengths " + shown(1 / failed->factor()) +
                                 " times as large there is still " + failed->message() + '\n' +
@@ -95,7 +96,7 @@ void solve(const Arguments& arguments)
     const std::string end = demsolve::end_scene(arguments, scene);
     const std::string options = demsolve::replace_settings(arguments, scene);
     const demsolve::Files files(arguments, program.name, file, options, end);
-    const auto [factor, bracket_width] = demsolve::strength_reduction(arguments, scene);
+    const auto [factor, search] = demsolve::strength_reduction(arguments, scene);
     const int threads = arguments.threads();
 
     // 2. Recording, and the state of a checkpoint, if there is one.
@@ -111,13 +112,14 @@ void solve(const Arguments& arguments)
         };
 
     // 3. The analysis: in-situ equilibrium, excavation in stages, creep.
-    const RunWith run_with = [&, is_bracket = bracket_width.has_value()](double divisor) {
+    const RunWith run_with = [&, is_bracket = search.has_value()](double divisor, double most_displacement) {
         Progress progress(arguments.quiet());
         const std::string which = is_bracket ? "strengths / " + shown(divisor) + ", " : "";
-        auto run = std::make_unique<Trial>(scene, file.network, file.equivalent, divisor, threads, recording,
-                                           [&progress, which](double fraction, const std::string& what) {
-                                               progress.show(fraction, which + what);
-                                           });
+        auto run =
+            std::make_unique<Trial>(scene, file.network, file.equivalent, divisor, most_displacement, threads,
+                                    recording, [&progress, which](double fraction, const std::string& what) {
+                                        progress.show(fraction, which + what);
+                                    });
         if (kept)
             run->go_on(std::move(kept->result), std::move(kept->checkpoint));
         else
@@ -126,13 +128,10 @@ void solve(const Arguments& arguments)
     };
 
     // 4. Once, or with strengths divided by factors until rock moves.
-    const std::unique_ptr<Trial> run = bracket_width
-                                           ? bracket_safety(*bracket_width, run_with, files, summary)
-                                           : run_once(factor, run_with, files);
-    if (!arguments.quiet()) {
-        demsolve::add_run(summary, file.network, scene, run->analysis());
-        summary.print();
-    }
+    const std::unique_ptr<Trial> run =
+        search ? bracket_safety(*search, run_with, files, summary) : run_once(factor, run_with, files);
+    demsolve::add_run(summary, file.network, *run);
+    summary.print(arguments);
 }
 
 } // namespace

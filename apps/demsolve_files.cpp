@@ -1,5 +1,7 @@
 #include "demsolve_files.hpp"
 
+#include "demsolve_summary.hpp"
+
 #include "model/error.hpp"
 #include "model/units.hpp"
 #include "model/version.hpp"
@@ -48,7 +50,10 @@ void Files::write(const Trial& run, const Safety& safety, const std::string& pat
     std::string options = options_of(run.factor());
     if (!end_.empty())
         options += (options.empty() ? "" : " ") + end_;
-    store::write_result(path, provenance(options), file_.network, file_.equivalent, run.analysis().result(),
+    Provenance with_warnings = provenance(options);
+    for (const std::string& warning : warnings_of(run))
+        with_warnings.warnings.add(with_warnings.program.back(), warning);
+    store::write_result(path, with_warnings, file_.network, file_.equivalent, run.analysis().result(),
                         safety);
 }
 

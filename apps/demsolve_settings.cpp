@@ -166,6 +166,8 @@ std::vector<Option> options()
          "bracket the largest F with which every equilibrium is found, by runs with different F; "
          "result.h5 is of that F, result.failed.h5 of the next one"},
         {"safety-width", "W", "width of that bracket, over F (default 0.01)"},
+        {"safety-displacement", "R",
+         "largest displacement that counts as failure, over that with strengths 64 times as large (default 10)"},
         {"until", "DAY", "end there instead of at the scene's end, before or after it [day]"},
         {"checkpoint", "FILE", "before every stage, write the state there; if FILE exists, continue from it"},
         {"states", "N", "record the whole section every N creep steps too (default: at dates only)"},
@@ -231,9 +233,11 @@ StrengthReduction strength_reduction(const Arguments& arguments, const Scene& sc
     if (arguments.has("strength-factor") && has_bracket)
         refuse_together("strength-factor", "factor-of-safety");
     const double width = arguments.number("safety-width", from(1e-4).to(1), "(ratio)").value_or(0.01);
+    const double runs_away = arguments.number("safety-displacement", from(2).to(1e6), "(ratio)").value_or(10);
     if (!has_bracket) {
-        if (arguments.has("safety-width"))
-            throw input_error("--safety-width goes with --factor-of-safety only");
+        for (const std::string option : {"safety-width", "safety-displacement"})
+            if (arguments.has(option))
+                throw input_error("--" + option + " goes with --factor-of-safety only");
         return {factor, {}};
     }
     require(width >= 100 * scene.equilibrium.tolerance, "--safety-width", width, "(ratio)",
@@ -246,7 +250,7 @@ StrengthReduction strength_reduction(const Arguments& arguments, const Scene& sc
         throw input_error(
             "--factor-of-safety: the scene has [large_displacements], where rock that fails reaches a new equilibrium; "
             "wanted a scene without");
-    return {factor, width};
+    return {factor, demsolve::SafetySearch{width, runs_away}};
 }
 
 analysis::Recording recording(const Arguments& arguments)

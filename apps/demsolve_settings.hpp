@@ -27,10 +27,16 @@ std::string replace_settings(const Arguments& arguments, Scene& scene);
 // Lets the scene end on the day of --until, if given; returns that option as the result file records it.
 std::string end_scene(const Arguments& arguments, Scene& scene);
 
+// How a factor of safety is searched for.
+struct SafetySearch {
+    double width;     // of the bracket, over the factor [-]
+    double runs_away; // displacement that counts as failure, over that with strengths 64 times as large [-]
+};
+
 // Strength reduction factor.
 struct StrengthReduction {
-    double factor = 1;                   // [-]
-    std::optional<double> bracket_width; // over the factor [-]; none: one run, with the factor
+    double factor = 1;                    // [-]
+    std::optional<SafetySearch> search{}; // none: one run, with the factor
 };
 StrengthReduction strength_reduction(const Arguments& arguments, const Scene& scene);
 

@@ -21,6 +21,10 @@ using analysis::Findings;
 namespace
 {
 
+// Above these a run is warned of.
+constexpr double much_plastic_strain = 0.05; // [-]
+constexpr double large_displacement = 0.02;  // over the diagonal of the section [-]
+
 std::int64_t sum_of(const std::vector<Index>& numbers)
 {
     return std::accumulate(numbers.begin(), numbers.end(), std::int64_t{0});
@@ -77,10 +81,8 @@ void add_equilibria(Summary& summary, const Scene& scene, const Analysis& run)
                 "m");
 }
 
-void add_creep(Summary& summary, const Scene& scene, const Analysis& run)
+void add_creep(Summary& summary, const Analysis& run)
 {
-    if (scene.creep && !run.creeps())
-        summary.add("warning: no creep", "neither joints nor rocks of the section creep");
     if (const auto& limit = run.stable_limit())
         summary.add("creep steps below", shown(limit->step / unit::day) + " day: " + limit->of);
     if (run.end_of_creep())
@@ -97,16 +99,12 @@ void add_contacts(Summary& summary, const std::vector<ContactStatus>& status)
     summary.add("contacts open", number(ContactStatus::open));
 }
 
-void add_findings(Summary& summary, const Findings& findings, const Findings::Counts& yielded)
+void add_yield(Summary& summary, const Analysis& run)
 {
-    for (const auto& [joint, n] : findings.at_yield_in_situ)
-        summary.add("warning: at yield in situ", std::to_string(n) + " contacts of joint \"" + joint + "\"");
-    for (const auto& [rock, n] : findings.yielded_in_situ)
-        summary.add("warning: at yield in situ", std::to_string(n) + " zones of rock \"" + rock + "\"");
-    for (const auto& [rock, n] : yielded)
+    for (const auto& [rock, n] : run.yielded())
         summary.add("zones yielded since", std::to_string(n) + " of rock \"" + rock + "\"");
-    for (const auto& [stage, percent] : findings.energy_off)
-        summary.add("warning: energy balance", off_by(percent, stage));
+    if (const double strain = rock::largest_plastic_strain(run.rock().zones); strain > 0)
+        summary.add("largest plastic shear strain", strain);
 }
 
 // The lines of a message, one below the other.
@@ -131,14 +129,17 @@ double smallest_that_fails(const Safety& trials)
 
 } // namespace
 
-void add_run(Summary& summary, const Network& network, const Scene& scene, const Analysis& run)
+void add_run(Summary& summary, const Network& network, const analysis::Trial& trial)
 {
+    const Analysis& run = trial.analysis();
     add_mesh(summary, network, run.result().mesh);
-    summary.add("stages", scene.stages.size());
-    add_equilibria(summary, scene, run);
-    add_creep(summary, scene, run);
+    summary.add("stages", trial.scene().stages.size());
+    add_equilibria(summary, trial.scene(), run);
+    add_creep(summary, run);
     add_contacts(summary, run.rock().contacts.status);
-    add_findings(summary, run.findings(), run.yielded());
+    add_yield(summary, run);
+    for (const std::string& warning : warnings_of(trial))
+        summary.warn(warning);
 }
 
 void add_safety(Summary& summary, const analysis::Bracket& bracket, const std::string& what_moves)
@@ -153,19 +154,48 @@ void add_safety(Summary& summary, const analysis::Bracket& bracket, const std::s
     const auto upper =
         std::find(trials.factor.begin(), trials.factor.end(), *bracket.not_above) - trials.factor.begin();
     const bool fails = trials.stands[upper] == 0;
-    summary.add(fails ? "factor of safety, below" : "warning: undecided at", shown(*bracket.not_above));
+    summary.add(fails ? "factor of safety, below" : "undecided at", shown(*bracket.not_above));
     add_lines(summary, "  there", what_moves);
+    if (!fails)
+        summary.warn("undecided with strengths divided by " + shown(*bracket.not_above) +
+                     ": the factor of safety may be above " + shown(*bracket.stands));
     if (fails)
         return;
     if (const double factor = smallest_that_fails(trials); std::isfinite(factor)) // known all the same
         summary.add("factor of safety, below", shown(factor));
 }
 
-std::string warnings_of(const Findings& findings)
+std::vector<std::string> warnings_of(const analysis::Trial& trial)
+{
+    const Analysis& run = trial.analysis();
+    const Findings& findings = run.findings();
+    std::vector<std::string> warnings;
+    if (trial.scene().creep && !run.creeps())
+        warnings.emplace_back("no creep: neither joints nor rocks of the section creep");
+    for (const auto& [joint, n] : findings.at_yield_in_situ)
+        warnings.push_back("at yield in the initial stress state: " + std::to_string(n) +
+                           " contacts of joint \"" + joint + '"');
+    for (const auto& [rock, n] : findings.yielded_in_situ)
+        warnings.push_back("at yield in the initial stress state: " + std::to_string(n) +
+                           " zones of rock \"" + rock + '"');
+    for (const auto& [stage, percent] : findings.energy_off)
+        warnings.push_back("energy balance " + off_by(percent, stage));
+    if (const double strain = rock::largest_plastic_strain(run.rock().zones); strain > much_plastic_strain)
+        warnings.push_back("plastic shear strain of " + shown(strain) +
+                           " in a zone: the rock may have failed");
+    if (const double share = run.largest_displacement() / size_of(run.rock());
+        !trial.scene().large_displacements && share > large_displacement)
+        warnings.push_back(
+            "displacement of " + shown(run.largest_displacement()) + " m, " + shown(100 * share) +
+            " percent of the section's size: too much for the formulas of small displacements");
+    return warnings;
+}
+
+std::string warning_lines(const analysis::Trial& run)
 {
     std::string lines;
-    for (const auto& [stage, percent] : findings.energy_off)
-        lines += "\nwarning: energy balance " + off_by(percent, stage);
+    for (const std::string& warning : warnings_of(run))
+        lines += "\nwarning: " + warning;
     return lines;
 }
 

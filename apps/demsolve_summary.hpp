@@ -9,17 +9,19 @@
 #include "model/scene.hpp"
 
 #include <string>
+#include <vector>
 
 namespace jointcreep::demsolve
 {
 
 // The mesh, how equilibria were found, and warnings.
-void add_run(Summary& summary, const Network& network, const Scene& scene, const analysis::Analysis& run);
+void add_run(Summary& summary, const Network& network, const analysis::Trial& run);
 
 // The bracket of the factor of safety, and the blocks that move at its upper end.
 void add_safety(Summary& summary, const analysis::Bracket& bracket, const std::string& what_moves);
 
-// Lines that end a message, each after a line break.
-std::string warnings_of(const analysis::Findings& findings);
+// The warnings of a run; and as lines that end a message, each after a line break.
+std::vector<std::string> warnings_of(const analysis::Trial& run);
+std::string warning_lines(const analysis::Trial& run);
 
 } // namespace jointcreep::demsolve

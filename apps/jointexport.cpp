@@ -172,13 +172,11 @@ void export_file(const Arguments& arguments)
         throw input_error("--state goes with --what zones or contacts, not with " + what);
     write_text(output, text_of(arguments, kind, what, format));
 
-    if (!arguments.quiet()) {
-        Summary summary;
-        summary.add(what, output);
-        if (const std::string reason = store::reason_of_failure(input); !reason.empty())
-            summary.add("warning: ended early", reason);
-        summary.print();
-    }
+    Summary summary;
+    summary.add(what, output);
+    if (const std::string reason = store::reason_of_failure(input); !reason.empty())
+        summary.warn("the run of " + input + " ended early: " + reason);
+    summary.print(arguments);
 }
 
 } // namespace

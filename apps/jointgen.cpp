@@ -43,7 +43,26 @@ const Program program{
     .other_usage = "SCENE.toml --check",
 };
 
-void report(const Network& network)
+// Of joint sets that are on no edge.
+Warnings warnings_of(const Network& network)
+{
+    const Blocks& blocks = network.blocks;
+    std::vector<double> on_edges(network.names.joint_set.size(), 0.0); // [m]
+    for (std::size_t e = 0; e < blocks.edge_joint.size(); ++e)
+        if (blocks.edge_joint[e] >= 0) {
+            const auto [a, b] = blocks.edge_vertex[e];
+            on_edges[network.joints.set[blocks.edge_joint[e]]] +=
+                (blocks.vertex[a] - blocks.vertex[b]).norm();
+        }
+    Warnings warnings;
+    for (std::size_t set = 0; set < on_edges.size(); ++set)
+        if (on_edges[set] == 0)
+            warnings.add(program.name,
+                         "no block edge lies on joint set \"" + network.names.joint_set[set] + '"');
+    return warnings;
+}
+
+void report(const Arguments& arguments, const Network& network, const Warnings& warnings)
 {
     const Blocks& blocks = network.blocks;
     std::array<std::size_t, 3> edges{};
@@ -80,17 +99,9 @@ void report(const Network& network)
         summary.add("extended", extended, "m");
     summary.add("joints dropped",
                 std::count(fates.fate.begin(), fates.fate.end(), static_cast<Index>(JointFate::dropped)));
-    std::vector<double> on_edges(network.names.joint_set.size(), 0.0);
-    for (std::size_t e = 0; e < blocks.edge_joint.size(); ++e)
-        if (blocks.edge_joint[e] >= 0) {
-            const auto [a, b] = blocks.edge_vertex[e];
-            on_edges[network.joints.set[blocks.edge_joint[e]]] +=
-                (blocks.vertex[a] - blocks.vertex[b]).norm();
-        }
-    for (std::size_t set = 0; set < on_edges.size(); ++set)
-        if (on_edges[set] == 0)
-            summary.add("warning: no edge left on", "\"" + network.names.joint_set[set] + "\"");
-    summary.print();
+    for (const std::string& warning : warnings.text)
+        summary.warn(warning);
+    summary.print(arguments);
 }
 
 void generate(const Arguments& arguments)
@@ -133,6 +144,7 @@ void generate(const Arguments& arguments)
     if (arguments.has("report"))
         network.statistics = statistics::statistics_of(scene, network);
 
+    const Warnings warnings = warnings_of(network);
     if (!check)
         store::write_network(arguments.output(),
                              {.scene = text,
@@ -141,10 +153,10 @@ void generate(const Arguments& arguments)
                               .program = {program.name},
                               .version = {std::string(version())},
                               .input_sha256 = {store::sha256_of(input)},
-                              .options = {arguments.has("report") ? "--report" : ""}},
+                              .options = {arguments.has("report") ? "--report" : ""},
+                              .warnings = warnings},
                              network);
-    if (!arguments.quiet())
-        report(network);
+    report(arguments, network, warnings);
     if (!arguments.quiet() && arguments.has("report"))
         std::cout << '\n' << statistics::table(network.statistics) << statistics::left_out(scene);
 }

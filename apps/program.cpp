@@ -346,6 +346,7 @@ int run(const Program& program, int argc, char** argv, const std::function<void(
             return exit_input;
         }
         Arguments arguments;
+        arguments.program_ = program.name;
         arguments.shown_ = {{"input", program.input}, {"output", "-o " + program.output}};
         for (const Option& option : program.options)
             arguments.shown_[option.name] = "--" + option.name;
@@ -445,13 +446,18 @@ void Summary::add(std::string label, std::int32_t value, const std::string& unit
     add(std::move(label), std::to_string(value), unit);
 }
 
-void Summary::print() const
+void Summary::print(const Arguments& arguments) const
 {
     std::size_t width = 0;
     for (const auto& [label, value] : lines_)
         width = std::max(width, columns(label));
-    for (const auto& [label, value] : lines_)
-        std::cout << label << std::string(width - columns(label) + 2, ' ') << value << '\n';
+    if (!arguments.quiet()) {
+        for (const auto& [label, value] : lines_)
+            std::cout << label << std::string(width - columns(label) + 2, ' ') << value << '\n';
+        std::cout.flush(); // before what comes on stderr
+    }
+    for (const std::string& text : warnings_)
+        std::cerr << arguments.program() << ": warning: " << text << '\n';
 }
 
 } // namespace jointcreep

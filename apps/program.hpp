@@ -88,6 +88,7 @@ public:
     const std::string& input() const { return wanted("input"); }
     const std::string& output() const { return wanted("output"); }
 
+    const std::string& program() const { return program_; } // its name
     bool has(const std::string& option) const { return given_.contains(option); }
     bool quiet() const { return has("quiet"); }
 
@@ -107,6 +108,7 @@ private:
     friend int run(const Program&, int, char**, const std::function<void(const Arguments&)>&);
     const std::string& wanted(const std::string& name) const;
 
+    std::string program_;
     std::map<std::string, std::string> given_;
     std::map<std::string, std::string> shown_; // how messages name them: "--seed", "SCENE.toml"
 };
@@ -134,7 +136,8 @@ private:
     std::chrono::steady_clock::time_point next_{};
 };
 
-// The summary at the end of a run: lines "label   value unit", their values aligned.
+// The summary at the end of a run: lines "label   value unit", their values aligned; and warnings: what a person should
+// look at, although the run came to its end.
 class Summary
 {
 public:
@@ -143,10 +146,13 @@ public:
     void add(std::string label, std::int64_t value, const std::string& unit = "");
     void add(std::string label, std::size_t value, const std::string& unit = "");
     void add(std::string label, std::int32_t value, const std::string& unit = "");
-    void print() const; // to stdout
+    void warn(const std::string& text) { warnings_.push_back(text); }
+    // Lines to stdout, unless --quiet. Warnings to stderr, also with --quiet: "demsolve: warning: ...".
+    void print(const Arguments& arguments) const;
 
 private:
     std::vector<std::pair<std::string, std::string>> lines_; // label, value with unit
+    std::vector<std::string> warnings_;
 };
 
 } // namespace jointcreep

@@ -50,7 +50,7 @@ std::string beside(double joint, std::optional<double> bridges, double equivalen
 }
 
 // For each set: persistence, target and achieved; and the properties of joints, bridges and their averages.
-void report(const Network& network, const EquivalentJoints& joints)
+void report(const Arguments& arguments, const Network& network, const EquivalentJoints& joints)
 {
     const SetAverages& sets = joints.sets;
     Summary summary;
@@ -93,7 +93,7 @@ void report(const Network& network, const EquivalentJoints& joints)
         if (sets.limited_length[set] > 0)
             summary.add(name + ": stiffness limited on", sets.limited_length[set], "m");
     }
-    summary.print();
+    summary.print(arguments);
 }
 
 void average_and_write(const Arguments& arguments)
@@ -114,8 +114,7 @@ void average_and_write(const Arguments& arguments)
     provenance.input_sha256.push_back(store::sha256_of(input));
     provenance.options.emplace_back();
     store::write_joints(arguments.output(), provenance, file.network, joints);
-    if (!arguments.quiet())
-        report(file.network, joints);
+    report(arguments, file.network, joints);
 }
 
 } // namespace

@@ -173,7 +173,7 @@ void Analysis::unload(const std::vector<Vector2d>& released)
         const double still_applied = 1 - static_cast<double>(done + increment) / n;
         for (std::size_t g = 0; g < load.size(); ++g)
             section_.rock.load[g] = load[g] + still_applied * released[g];
-        if (!engines_.settles_nearby({}, section_.now)) {
+        if (!engines_.settles_nearby({})) {
             if (increment > 1) {
                 increment /= 2;
                 continue;

@@ -43,6 +43,10 @@ public:
     // logarithm [m].
     const std::vector<std::vector<Vector2d>>& sensitivities() const { return section_.sensitivities; }
     const mechanics::Assembly& rock() const { return section_.rock; }
+    double largest_displacement() const
+    {
+        return mechanics::largest_displacement(section_.rock).first;
+    } // in situ is 0 [m]
     EngineChoice engine() const { return section_.engine; }
     const Findings& findings() const { return section_.findings; }
     Findings::Counts yielded() const { return yielded_zones(section_); } // zones by rock, up to now

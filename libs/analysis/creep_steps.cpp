@@ -191,7 +191,7 @@ bool CreepSteps::settles_at(double end, bool by_relaxation, const mechanics::Sta
     section_.loading.apply(section_.rock, end);
     try {
         if (!by_relaxation)
-            return engines_.settles_nearby(guess(duration), end);
+            return engines_.settles_nearby(guess(duration));
         engines_.settle_by_relaxation(end);
         return true;
     } catch (const equilibrium_error&) {

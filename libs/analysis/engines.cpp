@@ -9,55 +9,41 @@ namespace jointcreep::analysis
 
 void Engines::settle(double time)
 {
-    if (!settles_nearby({}, time))
+    if (!settles_nearby({}))
         settle_by_relaxation(time);
 }
 
-// The implicit engine takes all rock as elastic. Where some is beyond its strength at the end, dynamic relaxation
-// continues from there.
-bool Engines::settles_nearby(const std::vector<Vector2d>& guess, double time)
+// First with all rock elastic, which is quicker. Where some is beyond its strength then, again from the start with rock
+// that yields; the elastic equilibrium is the first guess.
+bool Engines::settles_nearby(const std::vector<Vector2d>& guess)
 {
     if (section_.engine == EngineChoice::relaxation)
         return false;
-    auto& [convergence, effort] = section_.settled;
-    section_.rock.zones.holds_yield = true;
-    const auto found = implicit_.equilibrate(section_.rock, section_.scene.equilibrium, guess);
-    ++effort.searches;
-    effort.factorisations += implicit_.factorisations();
-    effort.solves += implicit_.solves();
-    effort.steps += implicit_.corrections();
-    if (found) {
-        convergence = *found;
-        if (const Index zone = rock::weakest(section_.rock.zones); zone >= 0)
-            yield_by_relaxation(time, zone);
-    }
-    section_.rock.zones.holds_yield = false;
-    return found.has_value();
-}
-
-// Continues from an elastic equilibrium in which this zone is beyond its strength.
-void Engines::yield_by_relaxation(double time, Index zone)
-{
-    section_.rock.zones.holds_yield = false;
-    if (section_.engine == EngineChoice::implicit) {
-        const auto& [a, b, c] = section_.mesh().zone_gridpoint[zone];
-        const std::vector<Vector2d>& at = section_.mesh().gridpoint;
-        const mechanics::no_equilibrium error("the rock at " + shown(Vector2d((at[a] + at[b] + at[c]) / 3)) +
-                                              " yields (--engine auto would continue by dynamic relaxation)");
-        fail(section_, failure_of(error, section_.mesh(), section_.rock), time);
-    }
-    mechanics::Convergence& convergence = section_.settled.convergence;
-    mechanics::Convergence elastic = convergence;
-    const double before = stored_energy(section_.rock);
-    find_forces(section_.rock);
-    const double lost = before - stored_energy(section_.rock); // nothing has moved
-    elastic.stored -= lost;
-    elastic.dissipated += lost;
-    settle_by_relaxation(time, "rock yields");
-    convergence.work_of_loads += elastic.work_of_loads;
-    convergence.stored += elastic.stored;
-    convergence.dissipated += elastic.dissipated;
-    convergence.damped += elastic.damped;
+    mechanics::Assembly& rock = section_.rock;
+    const auto find = [&](const std::vector<Vector2d>& from) {
+        auto& [convergence, effort] = section_.settled;
+        const auto found = implicit_.equilibrate(rock, section_.scene.equilibrium, from);
+        ++effort.searches;
+        effort.factorisations += implicit_.factorisations();
+        effort.solves += implicit_.solves();
+        effort.steps += implicit_.corrections();
+        if (found)
+            convergence = *found;
+        return found.has_value();
+    };
+    if (rock.zones.yielding.empty())
+        return find(guess);
+    const mechanics::State start = state_of(rock);
+    rock.zones.holds_yield = true;
+    bool found = find(guess);
+    rock.zones.holds_yield = false;
+    if (found && rock::weakest(rock.zones) < 0)
+        return true;
+    std::vector<Vector2d> elastic = rock.displacement;
+    for (std::size_t g = 0; g < elastic.size(); ++g)
+        elastic[g] -= start.displacement[g];
+    go_back(rock, start);
+    return find(found ? elastic : guess);
 }
 
 void Engines::settle_by_relaxation(double time, const std::string& reason)

@@ -20,7 +20,7 @@ public:
 
     // Equilibrium by the implicit engine, unless only dynamic relaxation is asked for; false if it finds none nearby.
     // `guess` is how far gridpoints may be expected to move [m], or empty.
-    bool settles_nearby(const std::vector<Vector2d>& guess, double time);
+    bool settles_nearby(const std::vector<Vector2d>& guess);
 
     // Equilibrium by dynamic relaxation, unless only the implicit engine is asked for. `reason`: why the implicit
     // engine was not used; empty: that engine's own message.
@@ -32,7 +32,6 @@ public:
     implicit::Solver& implicit_engine() { return implicit_; } // with its last factor
 
 private:
-    void yield_by_relaxation(double time, Index zone);
     mechanics::Convergence relax(double time);
 
     Section& section_;

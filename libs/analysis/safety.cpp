@@ -3,12 +3,26 @@
 #include "joint/strength_factor.hpp"
 #include "model/error.hpp"
 
+#include <limits>
+
 namespace jointcreep::analysis
 {
 
+namespace
+{
+
+Scene limited(Scene scene, double most_displacement)
+{
+    scene.equilibrium.largest_displacement = most_displacement;
+    return scene;
+}
+
+} // namespace
+
 Trial::Trial(const Scene& scene, const Network& network, const EquivalentJoints& joints, double factor,
-             int threads, const Recording& recording, const Observer& observe)
-    : factor_(factor), scene_(factor == 1 ? scene : joint::with_strength_divided(scene, factor)),
+             double most_displacement, int threads, const Recording& recording, const Observer& observe)
+    : factor_(factor),
+      scene_(limited(factor == 1 ? scene : joint::with_strength_divided(scene, factor), most_displacement)),
       joints_(factor == 1 ? joints : joint::with_strength_divided(joints, factor)),
       analysis_(scene_, network, joints_, threads, recording, observe)
 {
@@ -32,29 +46,38 @@ void Trial::go_on(Result so_far, Checkpoint kept)
     }
 }
 
-Ending Trial::ending() const
+Outcome Trial::outcome() const
 {
-    if (message_.empty())
-        return Ending::stands;
-    return analysis_.result().failure.moves_on ? Ending::falls : Ending::undecided;
+    const Ending ending = message_.empty()                           ? Ending::stands
+                          : analysis_.result().failure.moves_on != 0 ? Ending::falls
+                                                                     : Ending::undecided;
+    return {ending, analysis_.largest_displacement(), rock::largest_plastic_strain(analysis_.rock().zones)};
 }
 
-Bracket bracket_of(const std::function<Ending(double factor)>& trial, double width)
+Bracket bracket_of(const RunWith& run_with, double width, double runs_away)
 {
     constexpr double most = 64;
     Bracket found;
+    double limit = std::numeric_limits<double>::infinity(); // of displacement [m]
     const auto stands = [&](double factor) {
-        const Ending ending = trial(factor);
+        const Outcome outcome = run_with(factor, limit);
+        const bool stood = outcome.ending == Ending::stands;
         found.trials.factor.push_back(factor);
-        found.trials.stands.push_back(ending == Ending::stands ? 1 : ending == Ending::falls ? 0 : -1);
-        (ending == Ending::stands ? found.stands : found.not_above) = factor;
-        return ending == Ending::stands;
+        found.trials.stands.push_back(stood ? 1 : outcome.ending == Ending::falls ? 0 : -1);
+        found.trials.largest_displacement.push_back(outcome.largest_displacement);
+        found.trials.largest_plastic_strain.push_back(outcome.largest_plastic_strain);
+        (stood ? found.stands : found.not_above) = factor;
+        return stood;
     };
+    if (!stands(1 / most))
+        return found;
+    if (const double firm = found.trials.largest_displacement[0]; firm > 0)
+        limit = runs_away * firm;
     if (stands(1))
         for (double factor = 2; factor <= most && stands(factor);)
             factor *= 2;
     else
-        for (double factor = 0.5; factor >= 1 / most && !stands(factor);)
+        for (double factor = 0.5; factor > 1 / most && !stands(factor);)
             factor /= 2;
     while (found.stands && found.not_above && *found.not_above - *found.stands > width * *found.stands)
         stands((*found.stands + *found.not_above) / 2);

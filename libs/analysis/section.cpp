@@ -119,7 +119,7 @@ Findings::Counts yielded_zones(const Section& section)
     for (std::size_t z = 0; z < of.yielding_number.size(); ++z)
         if (const Index number = of.yielding_number[z];
             number >= 0 && of.is_present[z] && !of.yielding[number].plastic.isZero(0)) {
-            const Index block = section.mesh().zone_block[z];
+            const Index block = section.mesh().zone_block[of.zone_of(z)];
             ++zones[section.scene.rocks[section.network.blocks.block_rock[block]].name];
         }
     return zones;

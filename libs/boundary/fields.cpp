@@ -28,6 +28,7 @@ std::vector<Field> fields_of(Mesh& mesh)
          "0 free, 1 fixed in x, 2 fixed in y, 3 fixed in both."},
         {"/mesh/side_gridpoint", &mesh.side_gridpoint, {"side"}, "1", index_of("gridpoint"),
          "Gridpoints of a zone side that lies on a boundary condition."},
+        {"/mesh/side_middle", &mesh.side_middle, {"quadratic_side"}, "1", index_of("gridpoint"), "Gridpoint in its middle."},
         {"/mesh/side_zone", &mesh.side_zone, {"side"}, "1", index_of("zone"), "Its zone."},
         {"/mesh/side_boundary", &mesh.side_boundary, {"side"}, "1", at_least(0),
          "Position of the boundary condition among the scene's [[boundary]] tables."},
@@ -43,6 +44,7 @@ fields::ForceFields fields_in_files()
     return {
         .dimensions = {
             {"side", "a side of a zone that lies on a boundary condition"},
+            {"quadratic_side", "such a side again, if zones are quadratic: all or none"},
         },
         .network = fields_of,
         .mesh = fields_of,

@@ -7,17 +7,25 @@ Loads::Loads(const Scene& scene, const Mesh& mesh) : boundary_(scene.boundaries)
 {
     for (std::size_t s = 0; s < mesh.side_zone.size(); ++s) {
         const auto [a, b] = mesh.side_gridpoint[s];
-        side_.push_back({mesh.side_gridpoint[s], mesh.side_zone[s],
-                         (mesh.gridpoint[a] - mesh.gridpoint[b]).norm(), mesh.side_boundary[s]});
+        Side side{.gridpoint = {a, b},
+                  .share = {0.5, 0.5},
+                  .stress_point = mesh.side_zone[s] * mesh.stress_points_of_zone(),
+                  .length = (mesh.gridpoint[a] - mesh.gridpoint[b]).norm(),
+                  .boundary = mesh.side_boundary[s]};
+        if (mesh.is_quadratic()) { // Simpson's rule: what the shape functions give each
+            side.gridpoint.push_back(mesh.side_middle[s]);
+            side.share = {1. / 6, 1. / 6, 4. / 6};
+        }
+        side_.push_back(side);
     }
 }
 
-void Loads::displace(std::vector<Vector2d>& displacement, const std::vector<char>& zone_is_present,
+void Loads::displace(std::vector<Vector2d>& displacement, const std::vector<char>& is_present,
                      double time) const
 {
     for (const Side& side : side_) {
         const Boundary& boundary = boundary_[side.boundary];
-        if (!boundary.displacement || !zone_is_present[side.zone])
+        if (!boundary.displacement || !is_present[side.stress_point])
             continue;
         const Vector2d u =
             (boundary.load_history.at(time) - boundary.load_history.at(0)) * *boundary.displacement;
@@ -30,15 +38,15 @@ void Loads::displace(std::vector<Vector2d>& displacement, const std::vector<char
     }
 }
 
-void Loads::add_forces(std::vector<Vector2d>& force, const std::vector<char>& zone_is_present,
-                       double time) const
+void Loads::add_forces(std::vector<Vector2d>& force, const std::vector<char>& is_present, double time) const
 {
     for (const Side& side : side_) {
         const Boundary& boundary = boundary_[side.boundary];
-        if (!boundary.traction || !zone_is_present[side.zone])
+        if (!boundary.traction || !is_present[side.stress_point])
             continue;
-        for (const Index g : side.gridpoint)
-            force[g] += boundary.load_history.at(time) * side.length / 2 * *boundary.traction;
+        for (std::size_t i = 0; i < side.gridpoint.size(); ++i)
+            force[side.gridpoint[i]] +=
+                boundary.load_history.at(time) * (side.share[i] * side.length) * *boundary.traction;
     }
 }
 

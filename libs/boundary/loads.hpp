@@ -7,7 +7,6 @@
 
 #include <Eigen/Core>
 
-#include <array>
 #include <set>
 #include <vector>
 
@@ -21,14 +20,14 @@ class Loads
 public:
     Loads(const Scene& scene, const Mesh& mesh);
 
-    // Puts the gridpoints where the sides that are still there have them at `time` since the start [s].
+    // Puts the gridpoints where the sides that are still there have them at `time` since the start [s]. Of all stress
+    // points of zones: whether their rock is there.
     // Displacements count from the start [m].
-    void displace(std::vector<Vector2d>& displacement, const std::vector<char>& zone_is_present,
+    void displace(std::vector<Vector2d>& displacement, const std::vector<char>& is_present,
                   double time) const;
 
     // Adds the tractions of that time to the forces on gridpoints [N/m].
-    void add_forces(std::vector<Vector2d>& force, const std::vector<char>& zone_is_present,
-                    double time) const;
+    void add_forces(std::vector<Vector2d>& force, const std::vector<char>& is_present, double time) const;
 
     // Whether anything changes between two times [s].
     bool changes(double from, double to) const;
@@ -38,8 +37,9 @@ public:
 
 private:
     struct Side {
-        std::array<Index, 2> gridpoint;
-        Index zone;
+        std::vector<Index> gridpoint;
+        std::vector<double> share; // of the side's length, for each of these
+        Index stress_point;        // of its zone
         double length;
         Index boundary;
     };

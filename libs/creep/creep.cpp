@@ -80,8 +80,9 @@ Creep::Creep(const Scene& scene, const Network& network, const EquivalentJoints&
     for (const Rock& rock : scene.rocks)
         of_rock.push_back(number_of(chain_of(rock)));
     units = 0;
-    for (std::size_t z = 0; z < mesh.zone_block.size(); ++z) {
-        const Index chain = of_rock[network.blocks.block_rock[mesh.zone_block[z]]];
+    for (std::size_t z = 0; z < assembly.zones.size(); ++z) {
+        const Index block = mesh.zone_block[assembly.zones.zone_of(z)];
+        const Index chain = of_rock[network.blocks.block_rock[block]];
         if (chain < 0)
             continue;
         const Vector3d& c = assembly.zones.stiffness[z];

@@ -19,7 +19,7 @@ namespace
 using fields::Column;
 using fields::ForceColumns;
 
-enum CellType { vertex = 1, line = 3, triangle = 5, polygon = 7 }; // VTK's numbers
+enum CellType { vertex = 1, line = 3, triangle = 5, polygon = 7, quadratic_triangle = 22 }; // VTK's numbers
 
 // The text of a grid, in the order in which VTK wants its parts.
 class GridText
@@ -289,7 +289,10 @@ std::string zones_vtu(const Network& network, const Result& result, std::size_t 
         if (!states.zone_present[state * zones + zone])
             continue;
         present.push_back(static_cast<Index>(zone));
-        for (const Index gridpoint : mesh.zone_gridpoint[zone]) {
+        std::vector<Index> of_zone(mesh.zone_gridpoint[zone].begin(), mesh.zone_gridpoint[zone].end());
+        if (mesh.is_quadratic())
+            of_zone.insert(of_zone.end(), mesh.zone_middle[zone].begin(), mesh.zone_middle[zone].end());
+        for (const Index gridpoint : of_zone) {
             if (point_of[gridpoint] < 0) {
                 point_of[gridpoint] = static_cast<std::int64_t>(gridpoints.size());
                 gridpoints.push_back(gridpoint);
@@ -326,7 +329,8 @@ std::string zones_vtu(const Network& network, const Result& result, std::size_t 
         grid.add(column, present);
     grid.open("Points");
     grid.add("position", picked(mesh.gridpoint, gridpoints));
-    grid.cells(connectivity, offsets_of(present.size(), 3), triangle);
+    grid.cells(connectivity, offsets_of(present.size(), mesh.is_quadratic() ? 6 : 3),
+               mesh.is_quadratic() ? quadratic_triangle : triangle);
     return grid.finish();
 }
 

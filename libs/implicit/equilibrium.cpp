@@ -26,11 +26,21 @@ constexpr double soft = 1e-6; // share of their springs that open and slipping c
 
 } // namespace
 
+// Whether rock may yield, not only joints.
+bool Solver::yields(const Assembly& assembly)
+{
+    return !assembly.zones.holds_yield && !assembly.zones.yielding.empty();
+}
+
 // Finds forces at the present displacements, as reached straight from the start. Returns the merit: the
 // squared unbalanced forces, each over the stiffness against which it acts.
 double Solver::evaluate(Assembly& assembly, const State& start)
 {
     assembly.contacts.state = start.joint;
+    if (yields(assembly)) {
+        assembly.zones.yielding = start.yielding;
+        assembly.zones.stress = start.stress;
+    }
     for (std::size_t c = 0; c < breaks_.size(); ++c)
         if (breaks_[c])
             assembly.contacts.state[c].is_broken = true;
@@ -108,6 +118,11 @@ VectorXd Solver::correction(const Assembly& assembly, const State& start, const 
                             double enough, double kept_share)
 {
     const std::vector<Tangent> acting = tangents(assembly, start, std::max(soft, kept_share));
+    if (yields(assembly)) {
+        ++factorisations_;
+        ++solves_;
+        return stiffness_.solve_yielding(assembly, acting, start.yielding, force);
+    }
     const auto product = [&](const VectorXd& x) { return stiffness_.times(assembly, acting, x); };
     const auto precondition = [&](const VectorXd& x) {
         ++solves_;
@@ -306,6 +321,10 @@ bool Solver::converge(Assembly& assembly, const State& start, const Equilibrium&
             kept_share = kept_share <= least_kept_share ? 0 : kept_share / 3;
         }
         take_states(assembly, start, false);
+        if (largest_displacement(assembly).first > settings.largest_displacement) {
+            reason_ = "displacement runs away";
+            return false;
+        }
         if (largest_displacement(assembly).first > too_far_) { // increments must not add up to more either
             reason_ = "rock would move by more than a tenth of the section";
             return false;
@@ -333,12 +352,16 @@ bool Solver::is_at_rest(const Assembly& assembly, const State& start, double mea
         for (const Vector2d& one : u)
             convergence.remaining_displacement = std::max(convergence.remaining_displacement, one.norm());
     };
-    ++solves_;
-    take(stiffness_.solve(force_));
-    if (convergence.contact_force_change > tolerance) {
+    if (!yields(assembly)) {
+        ++solves_;
+        take(stiffness_.solve(force_));
+    }
+    if (yields(assembly) || convergence.contact_force_change > tolerance) {
         const VectorXd du = correction(assembly, start, force_, 0.1 * force_.norm(), 0);
         if (du.size() > 0)
             take(du);
+        else if (yields(assembly))
+            return false;
     }
     if (convergence.contact_force_change > tolerance)
         return false;
@@ -419,6 +442,10 @@ std::optional<Convergence> Solver::equilibrate(Assembly& assembly, const Equilib
                 contacts.length[c] *
                 (contacts.traction[c].y() * (contacts.state[c].slip - start.joint[c].slip) +
                  contacts.traction[c].x() * (contacts.state[c].dilation - start.joint[c].dilation));
+    for (std::size_t z = 0; z < assembly.zones.yielding_number.size(); ++z)
+        if (const Index number = assembly.zones.yielding_number[z]; number >= 0)
+            convergence.dissipated += assembly.zones.area[z] * (assembly.zones.yielding[number].dissipated -
+                                                                start.yielding[number].dissipated);
     convergence.work_of_loads = work_of_loads(assembly, start.displacement);
     convergence.damped = convergence.work_of_loads - convergence.stored - convergence.dissipated;
     return convergence;

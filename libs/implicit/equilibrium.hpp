@@ -6,6 +6,9 @@
 // the same law as in dynamic relaxation, each from its state at the start of the equilibrium straight to the one at
 // its end (backward Euler). A contact changes its direction of slip only through sticking.
 //
+// Rock that yields goes straight from its state at the start to that at the end, too. Then K has the consistent tangents of
+// zones, is not symmetric where flow is not associated, and is factorised for each correction.
+//
 // The energy balance is that of backward Euler, too: a contact slips under the traction it ends with. What is
 // neither stored nor dissipated so counts as damped.
 //
@@ -52,6 +55,7 @@ private:
     enum class Active : char { open, stuck, slips_forward, slips_backward };
 
     using State = mechanics::State; // where an equilibrium starts from
+    static bool yields(const Assembly& assembly);
     double evaluate(Assembly& assembly, const State& start);
     void take_states(const Assembly& assembly, const State& start, bool first);
     std::vector<Tangent> tangents(const Assembly& assembly, const State& start, double softness) const;

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <new>
+#include <span>
 
 namespace jointcreep::implicit
 {
@@ -15,16 +16,20 @@ namespace
 {
 
 // The unknowns of some gridpoints, x and y in turn.
-template <std::size_t N>
-std::array<int, 2 * N> unknowns_of(const std::vector<std::array<int, 2>>& unknown,
-                                   const std::array<Index, N>& gridpoints)
+std::vector<int> unknowns_of(const std::vector<std::array<int, 2>>& unknown,
+                             std::span<const Index> gridpoints)
 {
-    std::array<int, 2 * N> all;
-    for (std::size_t k = 0; k < N; ++k) {
-        all[2 * k] = unknown[gridpoints[k]][0];
-        all[2 * k + 1] = unknown[gridpoints[k]][1];
-    }
+    std::vector<int> all;
+    for (const Index g : gridpoints)
+        all.insert(all.end(), unknown[g].begin(), unknown[g].end());
     return all;
+}
+
+// Entries of the stiffness of a zone.
+std::size_t square_of_zone(const rock::Zones& zones)
+{
+    const auto unknowns = static_cast<std::size_t>(2 * zones.gridpoints_of_zone);
+    return unknowns * unknowns;
 }
 
 #ifdef JOINTCREEP_CHOLMOD
@@ -47,6 +52,12 @@ template <class Factor>
 void check_memory(Factor& factor)
 {
     if (factor.cholmod().status == CHOLMOD_OUT_OF_MEMORY)
+        throw std::bad_alloc();
+}
+template <class Matrix>
+void check_memory(Eigen::UmfPackLU<Matrix>& factor)
+{
+    if (factor.umfpackFactorizeReturncode() == UMFPACK_ERROR_out_of_memory)
         throw std::bad_alloc();
 }
 #else
@@ -81,9 +92,9 @@ void Stiffness::number_unknowns(const Assembly& assembly)
 {
     // Gridpoints without rock stay where they are.
     std::vector<char> has_part(assembly.position.size(), 0);
-    for (std::size_t z = 0; z < assembly.zones.gridpoint.size(); ++z)
+    for (std::size_t z = 0; z < assembly.zones.size(); ++z)
         if (assembly.zones.is_present[z])
-            for (const Index g : assembly.zones.gridpoint[z])
+            for (const Index g : assembly.zones.gridpoints(z))
                 has_part[g] = 1;
     std::vector<Index> leader(assembly.position.size());
     for (std::size_t g = 0; g < leader.size(); ++g)
@@ -114,9 +125,9 @@ void Stiffness::find_pattern(const Assembly& assembly)
                 if (row >= 0 && column >= 0)
                     entries.emplace_back(row, column, 0.0);
     };
-    for (std::size_t z = 0; z < zones.gridpoint.size(); ++z)
-        if (zones.is_present[z])
-            couple(unknowns_of(unknown_, zones.gridpoint[z]));
+    for (std::size_t zone = 0; zone < zones.zone_of(zones.size()); ++zone)
+        if (const std::size_t z = zones.first_point_of(zone); zones.is_present[z])
+            couple(unknowns_of(unknown_, zones.gridpoints(z)));
     present_contact_.clear();
     for (std::size_t c = 0; c < contacts.gridpoint.size(); ++c)
         if (contacts.status[c] != ContactStatus::removed) {
@@ -133,21 +144,21 @@ void Stiffness::find_pattern(const Assembly& assembly)
         const int* const end = zones_.innerIndexPtr() + zones_.outerIndexPtr()[column + 1];
         return static_cast<int>(std::lower_bound(begin, end, row) - zones_.innerIndexPtr());
     };
-    const auto list = [&](const auto& unknowns, auto& places) {
-        const std::size_t n = unknowns.size();
-        for (std::size_t i = 0; i < n; ++i)
-            for (std::size_t j = 0; j < n; ++j)
-                places[n * i + j] = entry_of(unknowns[i], unknowns[j]);
+    const auto list = [&](const std::vector<int>& unknowns, int* place) {
+        for (const int row : unknowns)
+            for (const int column : unknowns)
+                *place++ = entry_of(row, column);
     };
-    zone_entry_.resize(zones.gridpoint.size());
-    for (std::size_t z = 0; z < zones.gridpoint.size(); ++z)
-        if (zones.is_present[z])
-            list(unknowns_of(unknown_, zones.gridpoint[z]), zone_entry_[z]);
+    const std::size_t square = square_of_zone(zones);
+    zone_entry_.assign(square * zones.zone_of(zones.size()), -1);
+    for (std::size_t zone = 0; zone < zones.zone_of(zones.size()); ++zone)
+        if (const std::size_t z = zones.first_point_of(zone); zones.is_present[z])
+            list(unknowns_of(unknown_, zones.gridpoints(z)), &zone_entry_[square * zone]);
     contact_entry_.resize(contacts.gridpoint.size());
     for (const Index c : present_contact_)
-        list(unknowns_of(unknown_, contacts.gridpoint[c]), contact_entry_[c]);
+        list(unknowns_of(unknown_, contacts.gridpoint[c]), contact_entry_[c].data());
 
-    has_factor_ = false;
+    has_factor_ = has_pattern_of_yielding_ = false;
     factorised_ = zones_;
     if (n_ == 0)
         return;
@@ -156,24 +167,71 @@ void Stiffness::find_pattern(const Assembly& assembly)
     check_memory(factor_);
 }
 
+// Adds the zones' stiffness: block(stress point, i, j) per area between its gridpoints [Pa/m2].
+template <class Block>
+void Stiffness::add_zones(Matrix& matrix, const rock::Zones& zones, const Block& block) const
+{
+    double* const values = matrix.valuePtr();
+    const int n = zones.gridpoints_of_zone;
+    for (std::size_t z = 0; z < zones.size(); ++z) {
+        if (!zones.is_present[z])
+            continue;
+        const int* const entries = &zone_entry_[square_of_zone(zones) * zones.zone_of(z)];
+        const auto of_point = block(z);
+        for (int i = 0; i < n; ++i)
+            for (int j = 0; j < n; ++j) {
+                const Eigen::Matrix2d between = zones.area[z] * of_point(i, j);
+                for (int row = 0; row < 2; ++row)
+                    for (int column = 0; column < 2; ++column)
+                        if (const int entry = entries[2 * n * (2 * i + row) + 2 * j + column]; entry >= 0)
+                            values[entry] += between(row, column);
+            }
+    }
+}
+
 void Stiffness::fill_zones(const Assembly& assembly)
 {
     const rock::Zones& zones = assembly.zones;
-    double* const values = zones_.valuePtr();
-    std::fill(values, values + zones_.nonZeros(), 0.0);
-    for (std::size_t z = 0; z < zones.gridpoint.size(); ++z) {
-        if (!zones.is_present[z])
-            continue;
-        for (int i = 0; i < 3; ++i)
-            for (int j = 0; j < 3; ++j) {
-                const Eigen::Matrix2d block = zones.area[z] * stiffness_between(zones, z, i, j);
-                for (int row = 0; row < 2; ++row)
-                    for (int column = 0; column < 2; ++column)
-                        if (const int entry = zone_entry_[z][6 * (2 * i + row) + 2 * j + column]; entry >= 0)
-                            values[entry] += block(row, column);
-            }
-    }
+    std::fill(zones_.valuePtr(), zones_.valuePtr() + zones_.nonZeros(), 0.0);
+    add_zones(zones_, zones, [&zones](std::size_t z) {
+        return [&zones, z](int i, int j) { return stiffness_between(zones, z, i, j); };
+    });
     has_factor_ = false;
+}
+
+VectorXd Stiffness::solve_yielding(const Assembly& assembly, const std::vector<Tangent>& tangents,
+                                   const std::vector<rock::YieldingZone>& start, const VectorXd& right)
+{
+    const rock::Zones& zones = assembly.zones;
+    const joint::Contacts& contacts = assembly.contacts;
+    Matrix matrix = zones_;
+    std::fill(matrix.valuePtr(), matrix.valuePtr() + matrix.nonZeros(), 0.0);
+    add_zones(matrix, zones, [&](std::size_t z) {
+        const Eigen::Matrix3d tangent = tangent_at(zones, z, assembly.displacement, start);
+        return [&zones, z, tangent](int i, int j) { return stiffness_between(zones, z, i, j, tangent); };
+    });
+    for (const Index c : present_contact_) {
+        const Vector2d &normal = contacts.normal[c], tangent = along(normal);
+        const Tangent& of = tangents[c];
+        const Eigen::Matrix2d block =
+            contacts.length[c] *
+            (of.normal * normal * normal.transpose() + of.shear * tangent * tangent.transpose() +
+             of.friction * tangent * normal.transpose() + of.dilation * normal * tangent.transpose());
+        for (int i = 0; i < 4; ++i)
+            for (int j = 0; j < 4; ++j)
+                if (const int entry = contact_entry_[c][4 * i + j]; entry >= 0)
+                    matrix.valuePtr()[entry] += (i / 2 == j / 2 ? 1 : -1) * block(i % 2, j % 2);
+    }
+    check_room_for_blas();
+    if (!has_pattern_of_yielding_)
+        yielding_factor_.analyzePattern(matrix);
+    has_pattern_of_yielding_ = true;
+    yielding_factor_.factorize(matrix);
+    check_memory(yielding_factor_);
+    if (yielding_factor_.info() != Eigen::Success)
+        return {};
+    VectorXd x = yielding_factor_.solve(right);
+    return yielding_factor_.info() == Eigen::Success && x.allFinite() ? x : VectorXd();
 }
 
 VectorXd Stiffness::gathered(const Assembly& assembly, const std::vector<Vector2d>& over_gridpoints) const

@@ -16,8 +16,10 @@
 
 #ifdef JOINTCREEP_CHOLMOD
 #include <Eigen/CholmodSupport>
+#include <Eigen/UmfPackSupport>
 #else
 #include <Eigen/SparseCholesky>
+#include <Eigen/SparseLU>
 #endif
 
 #include <vector>
@@ -43,6 +45,11 @@ public:
     // (displacements: 0 where fixed).
     VectorXd gathered(const Assembly& assembly, const std::vector<Vector2d>& over_gridpoints) const;
     void add_to(std::vector<Vector2d>& over_gridpoints, const VectorXd& unknowns, double factor) const;
+
+    // The solution of K x = right where rock yields: K with these tangents of contacts and, from `start`, of zones, not
+    // symmetric, and factorised for this one. Empty if K has no inverse.
+    VectorXd solve_yielding(const Assembly& assembly, const std::vector<Tangent>& tangents,
+                            const std::vector<rock::YieldingZone>& start, const VectorXd& right);
 
     // K x with the tangents given, one for each contact.
     VectorXd times(const Assembly& assembly, const std::vector<Tangent>& tangents, const VectorXd& x) const;
@@ -74,22 +81,28 @@ private:
     using Matrix = Eigen::SparseMatrix<double, Eigen::ColMajor, int>;
 #ifdef JOINTCREEP_CHOLMOD
     using Factor = Eigen::CholmodDecomposition<Matrix, Eigen::Lower>;
+    using UnsymmetricFactor = Eigen::UmfPackLU<Matrix>;
 #else
     using Factor = Eigen::SimplicialLLT<Matrix, Eigen::Lower>;
+    using UnsymmetricFactor = Eigen::SparseLU<Matrix>;
 #endif
 
     void number_unknowns(const Assembly& assembly);
     void find_pattern(const Assembly& assembly);
     void fill_zones(const Assembly& assembly);
+    template <class Block>
+    void add_zones(Matrix& matrix, const rock::Zones& zones, const Block& block) const;
 
     Eigen::Index n_ = 0;
     std::vector<std::array<int, 2>> unknown_; // of each gridpoint's {x, y}; -1 fixed
     Matrix zones_;                            // of the zones alone, with all contacts' entries in the pattern
-    std::vector<std::array<int, 36>> zone_entry_;    // where a zone's 6 x 6 goes in zones_; -1 nowhere
+    std::vector<int> zone_entry_; // where the square of each zone goes in zones_, row by row; -1 nowhere
     std::vector<std::array<int, 16>> contact_entry_; // where a contact's 4 x 4 goes
     std::vector<Index> present_contact_;
     Matrix factorised_;
     Factor factor_;
+    UnsymmetricFactor yielding_factor_;
+    bool has_pattern_of_yielding_ = false;
     std::vector<Tangent> factor_of_;
     bool has_factor_ = false;
 

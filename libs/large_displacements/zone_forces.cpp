@@ -3,6 +3,7 @@
 #include "large_displacements/in_chunks.hpp"
 #include "model/error.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -26,11 +27,11 @@ Dynamics::Yielding* Dynamics::yielding(std::size_t z)
 // Zones with the stress that they have in the assembly, in the shape that they have there.
 void Dynamics::make_zones()
 {
-    for (std::size_t z = 0; z < rock_.zones.gridpoint.size(); ++z) {
+    for (std::size_t z = 0; z < rock_.zones.size(); ++z) {
         const Vector3d& stiffness = rock_.zones.stiffness[z];
         const Matrix2d stretch = stretch_for(stiffness, rock_.zones.stress[z]);
         Zone zone;
-        zone.gridpoint = rock_.zones.gridpoint[z];
+        std::copy_n(rock_.zones.gridpoints(z).begin(), 3, zone.gridpoint.begin());
         zone.inverse = edges_of(zone.gridpoint, place_).inverse() * stretch;
         zone.area = rock_.zones.area[z] / stretch.determinant();
         zone.stiffness = stiffness;

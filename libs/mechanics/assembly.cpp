@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <span>
 
 namespace jointcreep::mechanics
 {
@@ -10,22 +11,19 @@ namespace jointcreep::mechanics
 namespace
 {
 
-// Lists of (item, corner) per gridpoint, in the order of items.
-template <std::size_t N>
-void list_by_gridpoint(const std::vector<std::array<Index, N>>& gridpoints, std::size_t n_gridpoints,
-                       std::vector<Index>& start, std::vector<Index>& entry)
+// The places of each gridpoint in a list, in its order.
+void list_by_gridpoint(std::span<const Index> gridpoints, std::size_t n_gridpoints, std::vector<Index>& start,
+                       std::vector<Index>& entry)
 {
     start.assign(n_gridpoints + 1, 0);
-    for (const auto& item : gridpoints)
-        for (const Index g : item)
-            ++start[g + 1];
+    for (const Index g : gridpoints)
+        ++start[g + 1];
     for (std::size_t g = 0; g < n_gridpoints; ++g)
         start[g + 1] += start[g];
-    entry.resize(N * gridpoints.size());
+    entry.resize(gridpoints.size());
     std::vector<Index> next(start.begin(), start.end() - 1);
     for (std::size_t i = 0; i < gridpoints.size(); ++i)
-        for (std::size_t k = 0; k < N; ++k)
-            entry[next[gridpoints[i][k]]++] = static_cast<Index>(N * i + k);
+        entry[next[gridpoints[i]]++] = static_cast<Index>(i);
 }
 
 void add_up_forces(Assembly& assembly)
@@ -65,9 +63,8 @@ Assembly assemble(const Scene& scene, const Network& network, const EquivalentJo
     assembly.zones = rock::zones_of(scene, network, mesh);
     assembly.contacts = joint::contacts_of(scene, equivalent, mesh);
     find_incidence(assembly);
-    for (std::size_t z = 0; z < assembly.zones.gridpoint.size(); ++z)
-        for (const Index g : assembly.zones.gridpoint[z])
-            assembly.load[g].y() -= assembly.zones.weight[z] / 3;
+    for (std::size_t z = 0; z < assembly.zones.size(); ++z)
+        rock::add_weight(assembly.zones, z, 1, assembly.load);
     for (std::size_t t = 0; t < mesh.tie_stage.size(); ++t)
         assembly.ties.push_back({mesh.tie_gridpoint[t], mesh.tie_stage[t]});
     part_ties(assembly, -1);
@@ -78,11 +75,13 @@ void find_incidence(Assembly& assembly)
 {
     const std::size_t n = assembly.position.size();
     Incidence& incidence = assembly.incidence;
-    const auto& zones = assembly.zones.gridpoint;
-    list_by_gridpoint(zones, n, incidence.zone_start, incidence.zone_corner);
-    list_by_gridpoint(assembly.contacts.gridpoint, n, incidence.contact_start, incidence.contact_side);
+    list_by_gridpoint(assembly.zones.gridpoint, n, incidence.zone_start, incidence.zone_corner);
+    std::vector<Index> sides;
+    for (const auto& [a, b] : assembly.contacts.gridpoint)
+        sides.insert(sides.end(), {a, b});
+    list_by_gridpoint(sides, n, incidence.contact_start, incidence.contact_side);
 
-    std::vector<std::array<Index, 1>> gridpoint_of_slot;
+    std::vector<Index> gridpoint_of_slot;
     assembly.slots = rock::slots_of(assembly.zones, n, gridpoint_of_slot);
     list_by_gridpoint(gridpoint_of_slot, n, incidence.slot_start, incidence.slot);
     assembly.contacts.force.assign(assembly.contacts.gridpoint.size(), Vector2d::Zero());

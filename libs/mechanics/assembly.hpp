@@ -26,7 +26,7 @@ using Eigen::Vector3d;
 // gridpoint adds up its slots (rock/zones.hpp), then its contacts.
 struct Incidence {
     std::vector<Index> zone_start;    // [gridpoints + 1]
-    std::vector<Index> zone_corner;   // 3 zone + corner
+    std::vector<Index> zone_corner;   // place in Zones::gridpoint
     std::vector<Index> contact_start; // [gridpoints + 1]
     std::vector<Index> contact_side;  // 2 contact + side (0 a, 1 b)
     std::vector<Index> slot_start;    // [gridpoints + 1]

@@ -10,11 +10,10 @@ std::vector<Vector2d> excavate(Assembly& assembly, const Blocks& blocks, const M
     std::vector<Vector2d> released = assembly.force;
     rock::Zones& zones = assembly.zones;
     joint::Contacts& contacts = assembly.contacts;
-    for (std::size_t z = 0; z < zones.gridpoint.size(); ++z) {
-        if (!zones.is_present[z] || blocks.block_stage[mesh.zone_block[z]] != stage)
+    for (std::size_t z = 0; z < zones.size(); ++z) {
+        if (!zones.is_present[z] || blocks.block_stage[mesh.zone_block[zones.zone_of(z)]] != stage)
             continue;
-        for (const Index g : zones.gridpoint[z])
-            assembly.load[g].y() += zones.weight[z] / 3;
+        rock::add_weight(zones, z, -1, assembly.load);
         zones.is_present[z] = 0;
         zones.stress[z].setZero();
     }
@@ -23,7 +22,7 @@ std::vector<Vector2d> excavate(Assembly& assembly, const Blocks& blocks, const M
         const Incidence& incidence = assembly.incidence;
         bool had_zones = false;
         for (Index k = incidence.zone_start[g]; k < incidence.zone_start[g + 1]; ++k) {
-            if (zones.is_present[incidence.zone_corner[k] / 3])
+            if (zones.is_present[incidence.zone_corner[k] / zones.gridpoints_of_zone])
                 return false;
             had_zones = true;
         }

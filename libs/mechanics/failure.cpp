@@ -29,13 +29,14 @@ Rock rock_of(const Mesh& mesh, const Assembly& assembly, const std::vector<Vecto
         static_cast<std::size_t>(1 + *std::max_element(mesh.zone_block.begin(), mesh.zone_block.end()));
     Rock rock{std::vector<double>(n, 0), std::vector<Vector2d>(n, Vector2d::Zero()),
               std::vector<Vector2d>(n, Vector2d::Zero())};
-    for (std::size_t z = 0; z < mesh.zone_block.size(); ++z) {
-        if (!assembly.zones.is_present[z])
+    const rock::Zones& zones = assembly.zones;
+    for (std::size_t z = 0; z < zones.size(); ++z) { // stress points, three of which are a quadratic zone
+        if (!zones.is_present[z])
             continue;
-        const auto b = static_cast<std::size_t>(mesh.zone_block[z]);
-        const double third = assembly.zones.area[z] / 3;
+        const auto b = static_cast<std::size_t>(mesh.zone_block[zones.zone_of(z)]);
+        const double third = zones.area[z] / 3;
         rock.area[b] += 3 * third;
-        for (const Index g : mesh.zone_gridpoint[z]) {
+        for (const Index g : zones.gridpoints(z).first(3)) {
             rock.centre[b] += third * assembly.position[g];
             if (!displacement.empty())
                 rock.displacement[b] += third * displacement[g];
@@ -83,10 +84,11 @@ Failure failure_of_unsupported(const Mesh& mesh, const Assembly& assembly)
 {
     // Pieces of rock: gridpoints joined by zones, ties and contacts that are not removed.
     DisjointSets sets(assembly.position.size());
-    for (std::size_t z = 0; z < mesh.zone_gridpoint.size(); ++z)
-        if (assembly.zones.is_present[z])
-            for (const Index g : mesh.zone_gridpoint[z])
-                sets.join(g, mesh.zone_gridpoint[z][0]);
+    const rock::Zones& zones = assembly.zones;
+    for (std::size_t z = 0; z < zones.size(); ++z)
+        if (zones.is_present[z])
+            for (const Index g : zones.gridpoints(z))
+                sets.join(g, zones.gridpoints(z)[0]);
     for (const auto& [a, b] : assembly.tied)
         sets.join(a, b);
     for (std::size_t c = 0; c < assembly.contacts.gridpoint.size(); ++c)
@@ -110,7 +112,8 @@ Failure failure_of_unsupported(const Mesh& mesh, const Assembly& assembly)
     for (std::size_t z = 0; z < mesh.zone_gridpoint.size(); ++z) {
         const Piece& piece = pieces[sets.root(mesh.zone_gridpoint[z][0])];
         const Vector2d push = piece.resultant.cwiseProduct(piece.free);
-        if (assembly.zones.is_present[z] && push.lpNorm<Eigen::Infinity>() > 1e-9 * piece.magnitudes)
+        if (zones.is_present[zones.first_point_of(z)] &&
+            push.lpNorm<Eigen::Infinity>() > 1e-9 * piece.magnitudes)
             is_unsupported[mesh.zone_block[z]] = 1;
     }
     Failure failure;

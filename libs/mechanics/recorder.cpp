@@ -19,6 +19,20 @@ std::string named_place(const std::string& what, const std::string& name, const 
 
 } // namespace
 
+Recorder::Place Recorder::place_in_zone(const Mesh& mesh, std::size_t z, const std::array<double, 3>& share)
+{
+    const auto& corners = mesh.zone_gridpoint[z];
+    Place place{{corners.begin(), corners.end()}, {share.begin(), share.end()}, static_cast<Index>(z)};
+    if (!mesh.is_quadratic())
+        return place;
+    place.gridpoint.insert(place.gridpoint.end(), mesh.zone_middle[z].begin(), mesh.zone_middle[z].end());
+    for (int i = 0; i < 3; ++i) {
+        place.share[i] = share[i] * (2 * share[i] - 1);
+        place.share.push_back(4 * share[i] * share[(i + 1) % 3]);
+    }
+    return place;
+}
+
 Recorder::Recorder(const Scene& scene, const Blocks& blocks, const Mesh& mesh)
 {
     Vector2d low = mesh.gridpoint[0], high = low;
@@ -85,7 +99,7 @@ std::optional<Recorder::Place> Recorder::find(const Vector2d& at, double reach, 
             continue;
         const Index stage = blocks.block_stage[mesh.zone_block[z]];
         if (!best || stays_longer(stage, best_stage) || (stage == best_stage && outside < best_outside)) {
-            best = {corners, share, static_cast<Index>(z)};
+            best = place_in_zone(mesh, z, share);
             best_outside = outside;
             best_stage = stage;
         }
@@ -95,7 +109,7 @@ std::optional<Recorder::Place> Recorder::find(const Vector2d& at, double reach, 
 
 bool Recorder::is_present(const Place& place, const Assembly& assembly)
 {
-    return assembly.zones.is_present[place.zone] != 0;
+    return assembly.zones.is_present[assembly.zones.first_point_of(place.zone)] != 0;
 }
 
 void Recorder::append(std::vector<Vector2d>& rows, const std::vector<Vector2d>& before,
@@ -107,7 +121,7 @@ void Recorder::append(std::vector<Vector2d>& rows, const std::vector<Vector2d>& 
         const Place& place = point_[p];
         Vector2d u = Vector2d::Zero();
         if (is_present(place, assembly))
-            for (int i = 0; i < 3; ++i)
+            for (std::size_t i = 0; i < place.share.size(); ++i)
                 u += place.share[i] * of_gridpoints[place.gridpoint[i]];
         else if (last_row + p < before.size())
             u = before[last_row + p];
@@ -153,19 +167,11 @@ void Recorder::record_state(Result& result, double time, const std::string& even
     states.event.push_back(event);
     const auto append = [](auto& to, const auto& from) { to.insert(to.end(), from.begin(), from.end()); };
     append(states.displacement, assembly.displacement);
-    append(states.stress, assembly.zones.stress);
-    append(states.zone_present, assembly.zones.is_present);
+    rock::record_state(assembly.zones, states);
     append(states.traction, assembly.contacts.traction);
     append(states.relative_displacement, assembly.contacts.relative_displacement);
     for (const ContactStatus status : assembly.contacts.status)
         states.contact_status.push_back(static_cast<Index>(status));
-    states.yielding_zone.clear();
-    for (std::size_t z = 0; z < assembly.zones.yielding_number.size(); ++z)
-        if (const Index number = assembly.zones.yielding_number[z]; number >= 0) {
-            const Eigen::Vector4d& plastic = assembly.zones.yielding[number].plastic;
-            states.yielding_zone.push_back(static_cast<Index>(z));
-            states.plastic_strain.emplace_back(plastic[0], plastic[1], plastic[3] / 2);
-        }
     states.reset_state.push_back(states.reset_state.empty() ? 0 : states.reset_state.back());
 }
 

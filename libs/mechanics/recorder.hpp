@@ -4,6 +4,7 @@
 
 #include "mechanics/assembly.hpp"
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
@@ -46,10 +47,12 @@ public:
 
 private:
     struct Place {
-        std::array<Index, 3> gridpoint;
-        std::array<double, 3> share;
+        std::vector<Index> gridpoint;
+        std::vector<double> share; // what the shape functions of these are there
         Index zone;
     };
+    // The shares of a zone's corners are those of its area.
+    static Place place_in_zone(const Mesh& mesh, std::size_t zone, const std::array<double, 3>& share);
     static bool is_present(const Place& place, const Assembly& assembly);
     // The zone that holds a place, or that comes within `reach` of it [m]; of several the one that stays
     // longest.

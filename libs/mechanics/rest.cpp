@@ -51,10 +51,10 @@ std::vector<Piece> pieces_of(const Assembly& assembly, std::vector<Index>& piece
     const std::size_t n = assembly.position.size();
     DisjointSets sets(n);
     std::vector<char> is_rock(n, 0);
-    for (std::size_t z = 0; z < assembly.zones.gridpoint.size(); ++z)
+    for (std::size_t z = 0; z < assembly.zones.size(); ++z)
         if (assembly.zones.is_present[z])
-            for (const Index g : assembly.zones.gridpoint[z]) {
-                sets.join(g, assembly.zones.gridpoint[z][0]);
+            for (const Index g : assembly.zones.gridpoints(z)) {
+                sets.join(g, assembly.zones.gridpoints(z)[0]);
                 is_rock[g] = 1;
             }
     for (const auto& [follower, leader] : assembly.tied)

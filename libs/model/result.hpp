@@ -15,18 +15,22 @@ enum class ContactStatus : Index {
     open = 3
 };
 
-// Zones (constant-strain triangles), the gridpoints that carry them, and the contacts between gridpoints that
+// Zones (triangles), the gridpoints that carry them, and the contacts between gridpoints that
 // a joint has split.
 struct Mesh {
     std::vector<Eigen::Vector2d> gridpoint;           // position at the start [m]
     std::vector<Index> gridpoint_fixed;               // 0 free, 1 fixed in x, 2 in y, 3 in both
     std::vector<std::array<Index, 3>> zone_gridpoint; // counter-clockwise
-    std::vector<Index> zone_block;                    // into Blocks
+    std::vector<std::array<Index, 3>>
+        zone_middle;               // gridpoints in the middles of its sides 0-1, 1-2, 2-0; none where
+                                   // strain is constant
+    std::vector<Index> zone_block; // into Blocks
     // Ties: two gridpoints that move as one until a stage excavates the rock that connects them (at a joint's tip,
     // for example).
     std::vector<std::array<Index, 2>> tie_gridpoint;
     std::vector<Index> tie_stage;                     // into Names::stage
     std::vector<std::array<Index, 2>> side_gridpoint; // zone sides on a boundary condition
+    std::vector<Index> side_middle; // gridpoints in their middles; none where strain is constant
     std::vector<Index> side_zone;
     std::vector<Index> side_boundary;                    // into the scene's [[boundary]]
     std::vector<std::array<Index, 2>> contact_gridpoint; // {on side a, on side b}
@@ -34,6 +38,9 @@ struct Mesh {
     std::vector<Eigen::Vector2d> contact_normal;         // unit, from side a to side b
     std::vector<double> contact_length;                  // tributary length [m]
     std::vector<Eigen::Vector2d> contact_centre;         // where a traction linear in space has its mean [m]
+
+    bool is_quadratic() const { return !zone_middle.empty(); }
+    Index stress_points_of_zone() const { return is_quadratic() ? 3 : 1; }
 };
 
 // Displacements of the monitoring points, one row a recorded time: the start, the two sides of every stage,
@@ -130,6 +137,8 @@ struct Failure {
 struct Safety {
     std::vector<double> factor{}; // that strengths were divided by [-]
     std::vector<Index> stands{};  // 1 every equilibrium was found, 0 rock slides or falls, -1 undecided
+    std::vector<double> largest_displacement{};   // since the in-situ equilibrium, at the end [m]
+    std::vector<double> largest_plastic_strain{}; // shear strain of a zone, at the end [-]
 };
 
 struct Result {

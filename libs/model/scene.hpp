@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -285,6 +286,8 @@ struct Equilibrium {
     double local_damping = 0;     // with damping "local" or "combined" [-]
     std::int32_t unloading_increments = 1; // increments of excavation, and of loads that change between dates
     std::int32_t most_steps = 0;           // largest number of steps for an equilibrium
+    // Rock that has moved farther since the in-situ state fails; no key: analysis::Trial sets it [m].
+    double largest_displacement = std::numeric_limits<double>::infinity();
 };
 
 // Dynamic analysis with large displacements: Newton's law with real masses, in place of the search for
@@ -348,6 +351,7 @@ struct Scene {
 
     std::uint64_t seed = 0; // needed by joint sets only
     std::optional<CreepSettings> creep;
+    bool zones_are_quadratic = false;    // six gridpoints a zone; else three, and constant strain
     double zone_size = 0;                // longest zone side aimed at [m]
     std::optional<Polygon> fine_zones{}; // where zones have that size, or else everywhere
     double zone_coarsening = 0;          // distance from there in which the size grows by `zone_size` [m]

@@ -165,17 +165,22 @@ public:
             give_up("the rock at " + shown(a_.position[g]) + " has moved " + shown_length(moved) +
                         " and is still moving; does anything support it?",
                     true, steps);
-        if (const auto [in_all, h] = largest_displacement(a_); in_all > too_far_)
+        const auto [in_all, h] = largest_displacement(a_);
+        if (in_all > settings_.largest_displacement)
+            give_up("the displacement of the rock at " + shown(a_.position[h]) + " runs away: more than " +
+                        shown_length(settings_.largest_displacement),
+                    true, steps);
+        if (in_all > too_far_)
             give_up("the rock at " + shown(a_.position[h]) + " has moved " + shown_length(in_all) +
                         " since the in-situ state, by more than a tenth of the section: too far for small "
                         "displacements",
                     false, steps);
         if (steps % patience != 0)
             return;
-        const auto [lately, h] = mechanics::largest_move(patience_ago_, a_.displacement);
+        const auto [lately, k] = mechanics::largest_move(patience_ago_, a_.displacement);
         checks_in_movement_ = slides_or_falls() ? checks_in_movement_ + 1 : 0;
         if (checks_in_movement_ == looks_enough)
-            give_up("the rock at " + shown(a_.position[h]) + " slides or falls: " + shown_length(lately) +
+            give_up("the rock at " + shown(a_.position[k]) + " slides or falls: " + shown_length(lately) +
                         " in the last " + std::to_string(patience) +
                         " steps, and the unbalanced forces do not decrease enough "
                         "to stop it",

@@ -15,6 +15,8 @@ std::vector<Field> fields_of(Mesh& mesh)
     return {
         {"/mesh/zone_gridpoint", &mesh.zone_gridpoint, {"zone"}, "1", index_of("gridpoint"),
          "Corners of the zone, counter-clockwise."},
+        {"/mesh/zone_middle", &mesh.zone_middle, {"quadratic_zone"}, "1", index_of("gridpoint"),
+         "Gridpoints in the middles of its sides from corner 0 to 1, 1 to 2 and 2 to 0."},
         {"/mesh/zone_block", &mesh.zone_block, {"zone"}, "1", index_of("block"),
          "Block the zone is part of."},
     };
@@ -41,7 +43,7 @@ std::vector<Field> fields_of(States& states)
 std::vector<Field> fields_of(Checkpoint& checkpoint)
 {
     using namespace fields;
-    const std::vector<std::string> zone = {"zone"}, yields = {"yielding_zone"};
+    const std::vector<std::string> zone = {"stress_point"}, yields = {"yielding_point"};
     // clang-format off
     return {
         {"/checkpoint/zone_present", &checkpoint.zone_present, zone, "1", between(0, 1),
@@ -102,9 +104,12 @@ fields::ForceFields fields_in_files()
     // clang-format off
     return {
         .dimensions = {
-            {"zone", "a constant-strain triangle"},
+            {"zone", "a triangle, of constant strain or quadratic"},
+            {"quadratic_zone", "a zone again, if zones are quadratic: all or none"},
             {"yielding_zone", "a zone of rock that yields"},
-            {"creeping_zone", "a zone of rock that creeps"},
+            {"stress_point", "a point of a zone at which its stress is computed: one of a zone of constant strain, three of a quadratic one"},
+            {"yielding_point", "a stress point of rock that yields"},
+            {"creeping_zone", "a stress point of rock that creeps"},
             {"zone_unit", "a Kelvin unit or dashpot of one of these"},
         },
         .mesh = fields_of,

@@ -2,6 +2,7 @@
 
 #include <Eigen/LU>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <limits>
@@ -27,7 +28,7 @@ Returned returned(const MohrCoulomb& law, const Elasticity& c, const Eigen::Vect
         return Vector3d((c[0] - c[1]) * strain + Vector3d::Constant(c[1] * strain.sum()));
     };
     const double rounding = 1e-11 * (trial.cwiseAbs().maxCoeff() + law.shear);
-    Returned best{Vector3d::Constant(law.tension), Vector3d::Zero()};
+    Returned best{Vector3d::Constant(law.tension), Vector3d::Zero(), Eigen::Matrix3d::Zero()};
     double least = std::numeric_limits<double>::infinity(); // excess
     for (int together = 1; together <= 3; ++together)
         for (unsigned set = 1; set < 64; ++set) {
@@ -57,18 +58,59 @@ Returned returned(const MohrCoulomb& law, const Elasticity& c, const Eigen::Vect
             for (int i = 0; i < together; ++i)
                 plastic += multiplier[i] * planes[active[i]].flow;
             const Vector3d stress = trial - elastic(plastic);
+            const auto with_tangent = [&] {
+                Eigen::Matrix3d tangent = Eigen::Matrix3d::Identity();
+                const Matrix inverse = factor.inverse();
+                for (int i = 0; i < together; ++i)
+                    for (int j = 0; j < together; ++j)
+                        tangent -= inverse(i, j) * elastic(planes[active[i]].flow) *
+                                   planes[active[j]].normal.transpose();
+                return Returned{stress, plastic, tangent};
+            };
             double most = 0;
             for (const Plane& plane : planes)
                 most = std::max(most, plane.normal.dot(stress) - plane.limit);
             if (most <= rounding)
-                return {stress, plastic};
+                return with_tangent();
             if (most < least) {
                 least = most;
-                best = {stress, plastic};
+                best = with_tangent();
             }
         }
     return best; // of rounding at a corner
 }
+
+namespace
+{
+
+// Trial stresses beyond the strength, in principal axes, and what they return to.
+struct Return {
+    Eigen::Vector3d trial;      // the larger and the smaller one in the section, and that across [Pa]
+    std::array<int, 3> order{}; // of these, the largest first
+    Returned found;             // in that order
+    double cos2, sin2;          // of twice the angle of the first
+
+    Return(const MohrCoulomb& law, const Elasticity& c, const Eigen::Vector4d& s)
+        : trial(principal(s)), order{0, 1, 2}
+    {
+        std::sort(order.begin(), order.end(), [this](int a, int b) { return trial[a] > trial[b]; });
+        found = returned(law, c, {trial[order[0]], trial[order[1]], trial[order[2]]});
+        const double radius = (trial[0] - trial[1]) / 2;
+        cos2 = radius > 0 ? (s[0] - s[1]) / 2 / radius : 1.0;
+        sin2 = radius > 0 ? s[2] / radius : 0.0;
+    }
+
+    // As `trial`.
+    Eigen::Vector3d in_order_of_trial(const Eigen::Vector3d& values) const
+    {
+        Eigen::Vector3d all;
+        for (int i = 0; i < 3; ++i)
+            all[order[i]] = values[i];
+        return all;
+    }
+};
+
+} // namespace
 
 Eigen::Vector3d yielded(YieldingZone& zone, const Elasticity& c, const Eigen::Vector3d& initial,
                         const Eigen::Vector3d& last, const Eigen::Vector3d& strain)
@@ -76,21 +118,12 @@ Eigen::Vector3d yielded(YieldingZone& zone, const Elasticity& c, const Eigen::Ve
     using Eigen::Vector3d, Eigen::Vector4d;
     Vector4d s = elastic_stress(zone, c, initial, strain);
     if (excess(zone.law, s) > 0) {
-        const Vector3d trial = principal(s);
-        std::array<int, 3> order{0, 1, 2};
-        std::sort(order.begin(), order.end(), [&](int a, int b) { return trial[a] > trial[b]; });
-        const Returned found = returned(zone.law, c, {trial[order[0]], trial[order[1]], trial[order[2]]});
-        Vector3d stress, plastic; // as `trial`
-        for (int i = 0; i < 3; ++i) {
-            stress[order[i]] = found.stress[i];
-            plastic[order[i]] = found.plastic[i];
-        }
-        const double radius = (trial[0] - trial[1]) / 2;
-        const double cos2 = radius > 0 ? (s[0] - s[1]) / 2 / radius : 1.0,
-                     sin2 = radius > 0 ? s[2] / radius : 0.0;
+        const Return to(zone.law, c, s);
+        const Vector3d stress = to.in_order_of_trial(to.found.stress),
+                       plastic = to.in_order_of_trial(to.found.plastic);
         const auto turned = [&](const Vector3d& p) { // {xx, yy, xy}
             const double mean = (p[0] + p[1]) / 2, half = (p[0] - p[1]) / 2;
-            return Vector3d(mean + half * cos2, mean - half * cos2, half * sin2);
+            return Vector3d(mean + half * to.cos2, mean - half * to.cos2, half * to.sin2);
         };
         const Vector3d in_section = turned(plastic), now = turned(stress);
         const double last_zz = zone.stress_zz;
@@ -102,6 +135,39 @@ Eigen::Vector3d yielded(YieldingZone& zone, const Elasticity& c, const Eigen::Ve
     }
     zone.stress_zz = s[3];
     return {s[0], s[1], s[2]};
+}
+
+Eigen::Matrix3d tangent_of_yield(const YieldingZone& zone, const Elasticity& c,
+                                 const Eigen::Vector3d& initial, const Eigen::Vector3d& strain)
+{
+    using Eigen::Matrix3d, Eigen::Matrix4d;
+    Eigen::Matrix<double, 4, 3> elastic; // trial stress {xx, yy, xy, zz}
+    elastic << c[0], c[1], 0, c[1], c[0], 0, 0, 0, c[2], c[1], c[1], 0;
+    const Eigen::Vector4d s = elastic_stress(zone, c, initial, strain);
+    if (!(excess(zone.law, s) > 0))
+        return elastic.topRows<3>();
+    const Return to(zone.law, c, s);
+    const double cos2 = to.cos2, sin2 = to.sin2;
+    Matrix4d turn,
+        back; // {xx, yy, xy, zz} to principal {first, second, shear, zz} of the trial stress, and back
+    turn << (1 + cos2) / 2, (1 - cos2) / 2, sin2, 0, //
+        (1 - cos2) / 2, (1 + cos2) / 2, -sin2, 0,    //
+        -sin2 / 2, sin2 / 2, cos2, 0,                //
+        0, 0, 0, 1;
+    back << (1 + cos2) / 2, (1 - cos2) / 2, -sin2, 0, //
+        (1 - cos2) / 2, (1 + cos2) / 2, sin2, 0,      //
+        sin2 / 2, -sin2 / 2, cos2, 0,                 //
+        0, 0, 0, 1;
+    constexpr std::array<int, 3> place{0, 1, 3}; // of the principal stresses in these
+    Matrix4d change = Matrix4d::Zero();
+    for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j)
+            change(place[to.order[i]], place[to.order[j]]) = to.found.tangent(i, j);
+    // The axes turn with the trial stress: its shear keeps the share that the difference of stresses keeps.
+    const Eigen::Vector3d stress = to.in_order_of_trial(to.found.stress);
+    const double apart = to.trial[0] - to.trial[1], size = to.trial.cwiseAbs().maxCoeff();
+    change(2, 2) = apart > 1e-9 * size ? (stress[0] - stress[1]) / apart : change(0, 0) - change(0, 1);
+    return (back * change * turn * elastic).topRows<3>();
 }
 
 } // namespace jointcreep::rock

@@ -51,6 +51,7 @@ using Elasticity = Eigen::Vector3d;
 struct Returned {
     Eigen::Vector3d stress;  // principal [Pa]
     Eigen::Vector3d plastic; // strain on the way there, in the same directions [-]
+    Eigen::Matrix3d tangent; // change of the stress over that of the trial stress [-]
 };
 
 // From trial stresses s1 >= s2 >= s3 beyond the strength.
@@ -93,6 +94,12 @@ inline double excess(const MohrCoulomb& law, const Eigen::Vector4d& s)
 // `last` is the stress before. Asked twice for the same strain, it changes nothing more.
 Eigen::Vector3d yielded(YieldingZone& zone, const Elasticity& c, const Eigen::Vector3d& initial,
                         const Eigen::Vector3d& last, const Eigen::Vector3d& strain);
+
+// Change of the stress {xx, yy, xy} that yielded() finds over that of the strain {xx, yy, gamma_xy} (consistent tangent:
+// Simo and Taylor 1985) [Pa]. Where the stress is elastic, its elasticity. Not symmetric where the dilation angle is not
+// the friction angle.
+Eigen::Matrix3d tangent_of_yield(const YieldingZone& zone, const Elasticity& c,
+                                 const Eigen::Vector3d& initial, const Eigen::Vector3d& strain);
 
 // What its springs hold, per area [J/m2]: only differences mean anything.
 inline double stored(const Elasticity& c, const Eigen::Vector3d& s, double zz)

@@ -36,15 +36,15 @@ Two ys_of(const Vector2d& one, const Vector2d& next)
     return Two{one.y(), next.y()};
 }
 
-template <bool any_yields, bool forces_alone> // branches less for each zone
+template <int n_gridpoints, bool any_yields, bool forces_alone> // branches less for each zone
 void pull(Zones& zones, Slots& slots, std::span<const Vector2d> displacements, double damping)
 {
-    const auto n = static_cast<Index>(zones.gridpoint.size());
+    const auto n = static_cast<Index>(zones.size());
     const auto n_parts = static_cast<Index>(slots.part_start.size()) - 1;
     // Plain pointers: through the arrays themselves, what is written might always be what is read next.
     const Vector2d* const displacement = displacements.data();
-    const std::array<Index, 3>*const gridpoint = zones.gridpoint.data(), *const slot = slots.of_zone.data();
-    const std::array<Vector2d, 3>* const gradient = zones.gradient.data();
+    const Index *const gridpoint = zones.gridpoint.data(), *const slot = slots.of_zone.data();
+    const Vector2d* const gradient = zones.gradient.data();
     const Vector3d *const stiffness = zones.stiffness.data(), *const initial = zones.initial_stress.data();
     const double* const area = zones.area.data();
     const char* const is_present = zones.is_present.data();
@@ -62,22 +62,25 @@ void pull(Zones& zones, Slots& slots, std::span<const Vector2d> displacements, d
             const std::array<bool, 2> is_there{is_present[z] != 0, z + 1 < end && is_present[z + 1] != 0};
             if (!is_there[0] && !is_there[1])
                 continue;
-            std::array<Two, 3> ux, uy, bx, by; // of the corners
-            for (int i = 0; i < 3; ++i) {
-                const Vector2d &u = displacement[gridpoint[both[0]][i]],
-                               &v = displacement[gridpoint[both[1]][i]];
+            std::array<Two, n_gridpoints> ux, uy, bx, by;
+            const Index first = n_gridpoints * both[0], second = n_gridpoints * both[1];
+            for (int i = 0; i < n_gridpoints; ++i) {
+                const Vector2d &u = displacement[gridpoint[first + i]],
+                               &v = displacement[gridpoint[second + i]];
                 ux[i] = xs_of(u, v);
                 uy[i] = ys_of(u, v);
-                bx[i] = xs_of(gradient[both[0]][i], gradient[both[1]][i]);
-                by[i] = ys_of(gradient[both[0]][i], gradient[both[1]][i]);
+                bx[i] = xs_of(gradient[first + i], gradient[second + i]);
+                by[i] = ys_of(gradient[first + i], gradient[second + i]);
             }
             const auto of_both = [&](const Vector3d* of, int i) {
                 return Two{of[both[0]][i], of[both[1]][i]};
             };
-            const Two exx = bx[0] * ux[0] + bx[1] * ux[1] + bx[2] * ux[2];
-            const Two eyy = by[0] * uy[0] + by[1] * uy[1] + by[2] * uy[2];
-            const Two gxy = (by[0] * ux[0] + bx[0] * uy[0]) + (by[1] * ux[1] + bx[1] * uy[1]) +
-                            (by[2] * ux[2] + bx[2] * uy[2]);
+            Two exx = bx[0] * ux[0], eyy = by[0] * uy[0], gxy = by[0] * ux[0] + bx[0] * uy[0];
+            for (int i = 1; i < n_gridpoints; ++i) {
+                exx += bx[i] * ux[i];
+                eyy += by[i] * uy[i];
+                gxy += by[i] * ux[i] + bx[i] * uy[i];
+            }
             const Two c11 = of_both(stiffness, 0), c12 = of_both(stiffness, 1), c33 = of_both(stiffness, 2);
             Two xx = of_both(initial, 0) + (c11 * exx + c12 * eyy),
                 yy = of_both(initial, 1) + (c12 * exx + c11 * eyy), xy = of_both(initial, 2) + c33 * gxy;
@@ -108,15 +111,15 @@ void pull(Zones& zones, Slots& slots, std::span<const Vector2d> displacements, d
             xx *= pull;
             yy *= pull;
             xy *= pull;
-            std::array<Two, 3> x, y;
-            for (int i = 0; i < 3; ++i) {
+            std::array<Two, n_gridpoints> x, y;
+            for (int i = 0; i < n_gridpoints; ++i) {
                 x[i] = xx * bx[i] + xy * by[i];
                 y[i] = xy * bx[i] + yy * by[i];
             }
             for (int k = 0; k < 2; ++k)
                 if (is_there[k])
-                    for (int i = 0; i < 3; ++i) {
-                        const Index s = slot[both[k]][i];
+                    for (int i = 0; i < n_gridpoints; ++i) {
+                        const Index s = slot[n_gridpoints * both[k] + i];
                         force[s].x() += x[i][k];
                         force[s].y() += y[i][k];
                         if (!forces_alone)
@@ -126,68 +129,98 @@ void pull(Zones& zones, Slots& slots, std::span<const Vector2d> displacements, d
     }
 }
 
+// A stress point of a zone of this rock, but for its gridpoints.
+void add_point(Zones& zones, const Scene& scene, const Rock& rock, double area, const Vector2d& place,
+               bool any_yields)
+{
+    const double E = rock.youngs_modulus, nu = rock.poissons_ratio;
+    const double factor = E / ((1 + nu) * (1 - 2 * nu));
+    zones.area.push_back(area);
+    zones.mass.push_back(rock.density * area);
+    zones.weight.push_back(rock.density * area * scene.gravity);
+    zones.stiffness.emplace_back(factor * (1 - nu), factor * nu, E / (2 * (1 + nu)));
+    const Vector3d initial = scene.in_situ_stress.at(place);
+    zones.initial_stress.push_back(initial);
+    const bool yields = rock.law == RockLaw::mohr_coulomb;
+    if (any_yields)
+        zones.yielding_number.push_back(yields ? static_cast<Index>(zones.yielding.size()) : -1);
+    // No scene says what acts across the section: the mean is never the largest or the smallest.
+    if (yields)
+        zones.yielding.push_back(
+            {.law = MohrCoulomb::of(rock.strength->cohesion, rock.strength->friction_angle,
+                                    rock.strength->tensile_strength, rock.dilation_angle),
+             .initial_zz = (initial[0] + initial[1]) / 2});
+}
+
 } // namespace
 
 Zones zones_of(const Scene& scene, const Network& network, const Mesh& mesh)
 {
     Zones zones;
     const std::size_t n = mesh.zone_gridpoint.size();
-    zones.gridpoint = mesh.zone_gridpoint;
-    zones.is_present.assign(n, 1);
-    const bool any_yields = std::any_of(scene.rocks.begin(), scene.rocks.end(),
-                                        [](const Rock& rock) { return rock.law == RockLaw::mohr_coulomb; });
+    const bool is_quadratic = !mesh.zone_middle.empty(),
+               any_yields = std::any_of(scene.rocks.begin(), scene.rocks.end(),
+                                        [](const Rock&rock) { return rock.law == RockLaw::mohr_coulomb; });
+    if (is_quadratic) {
+        zones.gridpoints_of_zone = 6;
+        zones.points_of_zone = 3;
+    }
     for (std::size_t z = 0; z < n; ++z) {
+        const auto& corners = mesh.zone_gridpoint[z];
         std::array<Vector2d, 3> p;
         for (int i = 0; i < 3; ++i)
-            p[i] = mesh.gridpoint[mesh.zone_gridpoint[z][i]];
+            p[i] = mesh.gridpoint[corners[i]];
         const Vector2d d1 = p[1] - p[0], d2 = p[2] - p[0];
         const double twice_area = d1.x() * d2.y() - d1.y() * d2.x();
-        std::array<Vector2d, 3> gradient;
+        std::array<Vector2d, 3> gradient; // of the share of each corner
         for (int i = 0; i < 3; ++i) {
             const Vector2d opposite = p[(i + 2) % 3] - p[(i + 1) % 3];
             gradient[i] = normal_of(opposite) / twice_area;
         }
         const Rock& rock = scene.rocks[network.blocks.block_rock[mesh.zone_block[z]]];
-        const double E = rock.youngs_modulus, nu = rock.poissons_ratio;
-        const double factor = E / ((1 + nu) * (1 - 2 * nu));
-        zones.gradient.push_back(gradient);
-        zones.area.push_back(twice_area / 2);
-        zones.mass.push_back(rock.density * twice_area / 2);
-        zones.weight.push_back(rock.density * twice_area / 2 * scene.gravity);
-        zones.stiffness.emplace_back(factor * (1 - nu), factor * nu, E / (2 * (1 + nu)));
-        const Vector3d initial = scene.in_situ_stress.at((p[0] + p[1] + p[2]) / 3);
-        zones.initial_stress.push_back(initial);
-        const bool yields = rock.law == RockLaw::mohr_coulomb;
-        if (any_yields)
-            zones.yielding_number.push_back(yields ? static_cast<Index>(zones.yielding.size()) : -1);
-        // No scene says what acts across the section: the mean is never the largest or the smallest.
-        if (yields)
-            zones.yielding.push_back(
-                {.law = MohrCoulomb::of(rock.strength->cohesion, rock.strength->friction_angle,
-                                        rock.strength->tensile_strength, rock.dilation_angle),
-                 .initial_zz = (initial[0] + initial[1]) / 2});
+        if (!is_quadratic) {
+            zones.gridpoint.insert(zones.gridpoint.end(), corners.begin(), corners.end());
+            zones.gradient.insert(zones.gradient.end(), gradient.begin(), gradient.end());
+            add_point(zones, scene, rock, twice_area / 2, (p[0] + p[1] + p[2]) / 3, any_yields);
+            continue;
+        }
+        for (int point = 0; point < 3; ++point) {
+            std::array<double, 3> share{1. / 6, 1. / 6, 1. / 6}; // of the corners in the stress point
+            share[point] = 2. / 3;
+            zones.gridpoint.insert(zones.gridpoint.end(), corners.begin(), corners.end());
+            zones.gridpoint.insert(zones.gridpoint.end(), mesh.zone_middle[z].begin(),
+                                   mesh.zone_middle[z].end());
+            for (int i = 0; i < 3; ++i)
+                zones.gradient.emplace_back((4 * share[i] - 1) * gradient[i]);
+            for (int i = 0; i < 3; ++i) {
+                const int j = (i + 1) % 3;
+                zones.gradient.emplace_back(4 * (share[i] * gradient[j] + share[j] * gradient[i]));
+            }
+            add_point(zones, scene, rock, twice_area / 6, share[0] * p[0] + share[1] * p[1] + share[2] * p[2],
+                      any_yields);
+        }
     }
     zones.stress = zones.initial_stress;
+    zones.is_present.assign(zones.size(), 1);
     return zones;
 }
 
-Slots slots_of(const Zones& zones, std::size_t n_gridpoints, std::vector<std::array<Index, 1>>& gridpoint)
+Slots slots_of(const Zones& zones, std::size_t n_gridpoints, std::vector<Index>& gridpoint)
 {
     Slots slots;
     std::vector<Index> slot_of(n_gridpoints,
                                -1); // in this part; less than its first one where it has none yet
     slots.part_start.assign(1, 0);
-    slots.of_zone.resize(zones.gridpoint.size());
-    for (std::size_t z = 0; z < zones.gridpoint.size(); ++z) {
+    for (std::size_t z = 0; z < zones.size(); ++z) {
         if (z > 0 && z % zones_of_part == 0)
             slots.part_start.push_back(static_cast<Index>(gridpoint.size()));
-        for (int i = 0; i < 3; ++i) {
-            Index& slot = slot_of[zones.gridpoint[z][i]];
+        for (const Index g : zones.gridpoints(z)) {
+            Index& slot = slot_of[g];
             if (slot < slots.part_start.back()) {
                 slot = static_cast<Index>(gridpoint.size());
-                gridpoint.push_back({zones.gridpoint[z][i]});
+                gridpoint.push_back(g);
             }
-            slots.of_zone[z][i] = slot;
+            slots.of_zone.push_back(slot);
         }
     }
     slots.part_start.push_back(static_cast<Index>(gridpoint.size()));
@@ -196,46 +229,86 @@ Slots slots_of(const Zones& zones, std::size_t n_gridpoints, std::vector<std::ar
     return slots;
 }
 
+namespace
+{
+
+template <int n_gridpoints>
+void find_forces_of(Zones& zones, Slots& slots, std::span<const Vector2d> displacement, double damping,
+                    bool forces_alone)
+{
+    if (!zones.yielding.empty())
+        forces_alone ? pull<n_gridpoints, true, true>(zones, slots, displacement, damping)
+                     : pull<n_gridpoints, true, false>(zones, slots, displacement, damping);
+    else
+        forces_alone ? pull<n_gridpoints, false, true>(zones, slots, displacement, damping)
+                     : pull<n_gridpoints, false, false>(zones, slots, displacement, damping);
+}
+
+} // namespace
+
 void find_forces_in_team(Zones& zones, Slots& slots, std::span<const Vector2d> displacement, double damping,
                          bool forces_alone)
 {
-    if (!zones.yielding.empty())
-        forces_alone ? pull<true, true>(zones, slots, displacement, damping)
-                     : pull<true, false>(zones, slots, displacement, damping);
+    if (zones.gridpoints_of_zone == 3)
+        find_forces_of<3>(zones, slots, displacement, damping, forces_alone);
     else
-        forces_alone ? pull<false, true>(zones, slots, displacement, damping)
-                     : pull<false, false>(zones, slots, displacement, damping);
+        find_forces_of<6>(zones, slots, displacement, damping, forces_alone);
 }
 
 Eigen::Matrix2d stiffness_between(const Zones& zones, std::size_t z, int i, int j)
 {
     const Vector3d& c = zones.stiffness[z];
-    const Vector2d &p = zones.gradient[z][i], &q = zones.gradient[z][j];
+    const Vector2d &p = zones.gradients(z)[i], &q = zones.gradients(z)[j];
     Eigen::Matrix2d block;
     block << c[0] * p.x() * q.x() + c[2] * p.y() * q.y(), c[1] * p.x() * q.y() + c[2] * p.y() * q.x(),
         c[1] * p.y() * q.x() + c[2] * p.x() * q.y(), c[0] * p.y() * q.y() + c[2] * p.x() * q.x();
     return block;
 }
 
-Vector3d stress_by(const Zones& zones, std::size_t z, std::span<const Vector2d> displacement,
-                   const Vector3d& stiffness)
+Eigen::Matrix2d stiffness_between(const Zones& zones, std::size_t z, int i, int j,
+                                  const Eigen::Matrix3d& tangent)
+{
+    const auto strain_of = [&](int corner) { // by a displacement of the gridpoint
+        const Vector2d& p = zones.gradients(z)[corner];
+        return (Eigen::Matrix<double, 3, 2>() << p.x(), 0, 0, p.y(), p.y(), p.x()).finished();
+    };
+    return strain_of(i).transpose() * tangent * strain_of(j);
+}
+
+Vector3d strain_at(const Zones& zones, std::size_t z, std::span<const Vector2d> displacement)
 {
     double exx = 0, eyy = 0, gxy = 0;
-    for (int i = 0; i < 3; ++i) {
-        const Vector2d &u = displacement[zones.gridpoint[z][i]], &gradient = zones.gradient[z][i];
+    for (int i = 0; i < zones.gridpoints_of_zone; ++i) {
+        const Vector2d &u = displacement[zones.gridpoints(z)[i]], &gradient = zones.gradients(z)[i];
         exx += gradient.x() * u.x();
         eyy += gradient.y() * u.y();
         gxy += gradient.y() * u.x() + gradient.x() * u.y();
     }
-    const Vector3d& c = stiffness;
-    return {c[0] * exx + c[1] * eyy, c[1] * exx + c[0] * eyy, c[2] * gxy};
+    return {exx, eyy, gxy};
+}
+
+Eigen::Matrix3d tangent_at(const Zones& zones, std::size_t z, std::span<const Vector2d> displacement,
+                           const std::vector<YieldingZone>& start)
+{
+    const Vector3d& c = zones.stiffness[z];
+    if (start.empty() || zones.yielding_number[z] < 0 || zones.holds_yield)
+        return (Eigen::Matrix3d() << c[0], c[1], 0, c[1], c[0], 0, 0, 0, c[2]).finished();
+    return tangent_of_yield(start[zones.yielding_number[z]], c, zones.initial_stress[z],
+                            strain_at(zones, z, displacement));
+}
+
+Vector3d stress_by(const Zones& zones, std::size_t z, std::span<const Vector2d> displacement,
+                   const Vector3d& stiffness)
+{
+    const Vector3d strain = strain_at(zones, z, displacement), &c = stiffness;
+    return {c[0] * strain[0] + c[1] * strain[1], c[1] * strain[0] + c[0] * strain[1], c[2] * strain[2]};
 }
 
 void add_force(const Zones& zones, std::size_t z, const Vector3d& stress, std::vector<Vector2d>& force)
 {
-    for (int i = 0; i < 3; ++i) {
-        const Vector2d& gradient = zones.gradient[z][i];
-        force[zones.gridpoint[z][i]] -=
+    for (int i = 0; i < zones.gridpoints_of_zone; ++i) {
+        const Vector2d& gradient = zones.gradients(z)[i];
+        force[zones.gridpoints(z)[i]] -=
             zones.area[z] * Vector2d(stress[0] * gradient.x() + stress[2] * gradient.y(),
                                      stress[2] * gradient.x() + stress[1] * gradient.y());
     }
@@ -243,28 +316,42 @@ void add_force(const Zones& zones, std::size_t z, const Vector3d& stress, std::v
 
 void add_row_sums(const Zones& zones, std::vector<Vector2d>& sums)
 {
-    for (std::size_t z = 0; z < zones.gridpoint.size(); ++z) {
+    for (std::size_t z = 0; z < zones.size(); ++z) {
         if (!zones.is_present[z])
             continue;
-        for (int i = 0; i < 3; ++i)
-            for (int j = 0; j < 3; ++j)
-                sums[zones.gridpoint[z][i]] +=
+        for (int i = 0; i < zones.gridpoints_of_zone; ++i)
+            for (int j = 0; j < zones.gridpoints_of_zone; ++j)
+                sums[zones.gridpoints(z)[i]] +=
                     zones.area[z] * stiffness_between(zones, z, i, j).cwiseAbs().rowwise().sum();
     }
 }
 
 void add_masses(const Zones& zones, std::vector<double>& mass)
 {
-    for (std::size_t z = 0; z < zones.gridpoint.size(); ++z)
-        if (zones.is_present[z])
-            for (const Index g : zones.gridpoint[z])
+    for (std::size_t z = 0; z < zones.size(); ++z) {
+        if (!zones.is_present[z])
+            continue;
+        const auto gridpoints = zones.gridpoints(z);
+        if (gridpoints.size() == 3)
+            for (const Index g : gridpoints)
                 mass[g] += zones.mass[z] / 3;
+        else
+            for (std::size_t i = 0; i < gridpoints.size(); ++i)
+                mass[gridpoints[i]] += zones.mass[z] * (i < 3 ? 1. / 19 : 16. / 57);
+    }
+}
+
+void add_weight(const Zones& zones, std::size_t z, double share, std::vector<Vector2d>& load)
+{
+    const auto gridpoints = zones.gridpoints(z);
+    for (const Index g : gridpoints.last(3)) // all, or the middles of the sides
+        load[g].y() -= share * (zones.weight[z] / 3);
 }
 
 double stored_energy(const Zones& zones)
 {
     double energy = 0;
-    for (std::size_t z = 0; z < zones.gridpoint.size(); ++z) {
+    for (std::size_t z = 0; z < zones.size(); ++z) {
         if (!zones.is_present[z])
             continue;
         if (!zones.yielding.empty() && zones.yielding_number[z] >= 0) {
@@ -297,6 +384,17 @@ void forget_dissipated(Zones& zones)
         zone.dissipated = 0;
 }
 
+double largest_plastic_strain(const Zones& zones)
+{
+    double largest = 0;
+    for (std::size_t z = 0; z < zones.yielding_number.size(); ++z)
+        if (const Index number = zones.yielding_number[z]; number >= 0 && zones.is_present[z]) {
+            const Eigen::Vector4d& plastic = zones.yielding[number].plastic;
+            largest = std::max(largest, std::hypot(plastic[0] - plastic[1], plastic[3]));
+        }
+    return largest;
+}
+
 Index weakest(const Zones& zones)
 {
     Index weakest = -1;
@@ -320,6 +418,29 @@ void start_from_here(Zones& zones)
     for (YieldingZone& zone : zones.yielding) {
         zone.initial_zz = zone.stress_zz;
         zone.plastic.setZero();
+    }
+}
+
+void record_state(const Zones& zones, States& states)
+{
+    const auto mean_over = [&zones](std::size_t first, const auto& value) {
+        Vector3d sum = value(first);
+        for (int i = 1; i < zones.points_of_zone; ++i)
+            sum += value(first + i);
+        return Vector3d(sum / zones.points_of_zone);
+    };
+    states.yielding_zone.clear();
+    for (std::size_t zone = 0; zone < zones.zone_of(zones.size()); ++zone) {
+        const std::size_t first = zones.first_point_of(zone);
+        states.stress.push_back(mean_over(first, [&](std::size_t z) { return zones.stress[z]; }));
+        states.zone_present.push_back(zones.is_present[first]);
+        if (zones.yielding.empty() || zones.yielding_number[first] < 0)
+            continue;
+        states.yielding_zone.push_back(static_cast<Index>(zone));
+        states.plastic_strain.push_back(mean_over(first, [&](std::size_t z) {
+            const Eigen::Vector4d& plastic = zones.yielding[zones.yielding_number[z]].plastic;
+            return Vector3d(plastic[0], plastic[1], plastic[3] / 2);
+        }));
     }
 }
 

@@ -20,21 +20,38 @@ namespace jointcreep::rock
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-// Zones: constant-strain triangles, elastic or yielding, plane strain, small strain.
+// Zones: triangles, elastic or yielding, plane strain, small strain. A zone of constant strain has three gridpoints and
+// one stress. A quadratic one has six, its corners and then the middles of its sides, and its stress at three points, each
+// of which stands for a third of it (Zienkiewicz and Taylor, The Finite Element Method, volume 1: exact for straight
+// sides). All arrays below but `gridpoint` and `gradient` have a row for each stress point; those of a zone follow each
+// other.
 struct Zones {
-    std::vector<std::array<Index, 3>> gridpoint;
-    std::vector<std::array<Vector2d, 3>> gradient; // of each corner's shape function [1/m]
-    std::vector<double> area;                      // [m2]
-    std::vector<double> weight;                    // area x density x gravity, downward [N/m]
-    std::vector<double> mass;                      // [kg/m]
-    std::vector<Vector3d> stiffness;               // {C11, C12, C33} of the rock [Pa]
-    std::vector<Vector3d> initial_stress;          // {xx, yy, xy} at zero displacement [Pa]
-    std::vector<Vector3d> stress;                  // now [Pa]
-    std::vector<Vector3d> last_stress;             // before; kept only with stiffness damping [Pa]
+    int gridpoints_of_zone = 3, points_of_zone = 1;
+    std::vector<Index> gridpoint;         // [stress point, gridpoint of its zone]
+    std::vector<Vector2d> gradient;       // [the same] of each gridpoint's shape function [1/m]
+    std::vector<double> area;             // [m2]
+    std::vector<double> weight;           // area x density x gravity, downward [N/m]
+    std::vector<double> mass;             // [kg/m]
+    std::vector<Vector3d> stiffness;      // {C11, C12, C33} of the rock [Pa]
+    std::vector<Vector3d> initial_stress; // {xx, yy, xy} at zero displacement [Pa]
+    std::vector<Vector3d> stress;         // now [Pa]
+    std::vector<Vector3d> last_stress;    // before; kept only with stiffness damping [Pa]
     std::vector<char> is_present;
 
+    std::size_t size() const { return area.size(); } // stress points
+    std::span<const Index> gridpoints(std::size_t z) const
+    {
+        return {gridpoint.data() + z * gridpoints_of_zone, static_cast<std::size_t>(gridpoints_of_zone)};
+    }
+    std::span<const Vector2d> gradients(std::size_t z) const
+    {
+        return {gradient.data() + z * gridpoints_of_zone, static_cast<std::size_t>(gridpoints_of_zone)};
+    }
+    std::size_t zone_of(std::size_t z) const { return z / points_of_zone; } // in the mesh
+    std::size_t first_point_of(std::size_t zone) const { return zone * points_of_zone; }
+
     // Of rock that yields; empty where none does.
-    std::vector<Index> yielding_number; // into yielding, of every zone; -1 elastic
+    std::vector<Index> yielding_number; // into yielding, of every stress point; -1 elastic
     std::vector<YieldingZone> yielding;
     bool holds_yield = false; // all rock is elastic for now, from the plastic strain it has
 };
@@ -45,14 +62,14 @@ Zones zones_of(const Scene& scene, const Network& network, const Mesh& mesh);
 // Where zones add their forces, in an order that is the same for any number of threads: zones that follow each other make
 // a part, and add their forces into slots, one for each gridpoint of the part.
 struct Slots {
-    std::vector<Index> part_start; // [parts + 1] the slots of each part
-    std::vector<std::array<Index, 3>> of_zone;
+    std::vector<Index> part_start;  // [parts + 1] the slots of each part
+    std::vector<Index> of_zone;     // [stress point, gridpoint of its zone]
     std::vector<Vector2d> force;    // [N/m]
     std::vector<double> magnitudes; // sums of the magnitudes of what zones add [N/m]
 };
 
 // The slots of some zones; takes the gridpoint of each slot into `gridpoint`.
-Slots slots_of(const Zones& zones, std::size_t n_gridpoints, std::vector<std::array<Index, 1>>& gridpoint);
+Slots slots_of(const Zones& zones, std::size_t n_gridpoints, std::vector<Index>& gridpoint);
 
 // Stresses and forces at the displacements of all gridpoints [m]. By a team of threads that is at work already: each calls
 // it, in an OpenMP parallel region, and forces are there after a barrier. `damping` is the rate of stiffness damping over
@@ -60,21 +77,39 @@ Slots slots_of(const Zones& zones, std::size_t n_gridpoints, std::vector<std::ar
 void find_forces_in_team(Zones& zones, Slots& slots, std::span<const Vector2d> displacement, double damping,
                          bool forces_alone);
 
-// Stiffness of a zone between its corners i and j, per area [Pa/m2].
+// Stiffness of a zone between its gridpoints i and j, at a stress point, per area [Pa/m2].
 Eigen::Matrix2d stiffness_between(const Zones& zones, std::size_t z, int i, int j);
 
-// Stress {xx, yy, xy} of a zone by elasticity of stiffness {C11, C12, C33} at the displacements of all gridpoints [Pa].
+// The same for any change of stress {xx, yy, xy} over strain {xx, yy, gamma_xy} [Pa].
+Eigen::Matrix2d stiffness_between(const Zones& zones, std::size_t z, int i, int j,
+                                  const Eigen::Matrix3d& tangent);
+
+// Strain {xx, yy, gamma_xy} at a stress point at the displacements of all gridpoints [-].
+Vector3d strain_at(const Zones& zones, std::size_t z, std::span<const Vector2d> displacement);
+
+// Change of the stress at a stress point over that of its strain, at the displacements of all gridpoints, if it goes
+// straight there from `start`, as yielding zones were [Pa].
+Eigen::Matrix3d tangent_at(const Zones& zones, std::size_t z, std::span<const Vector2d> displacement,
+                           const std::vector<YieldingZone>& start);
+
+// Stress {xx, yy, xy} at a stress point by elasticity of stiffness {C11, C12, C33} at the displacements of all gridpoints [Pa].
 Vector3d stress_by(const Zones& zones, std::size_t z, std::span<const Vector2d> displacement,
                    const Vector3d& stiffness);
 
-// Adds the forces of a zone with that stress to those on its gridpoints [N/m].
+// Adds the forces of a stress point with that stress to those on its gridpoints [N/m].
 void add_force(const Zones& zones, std::size_t z, const Vector3d& stress, std::vector<Vector2d>& force);
 
 // Adds the row sums of the magnitudes of the zones' stiffness {x, y} to those of their gridpoints [Pa].
 void add_row_sums(const Zones& zones, std::vector<Vector2d>& sums);
 
-// Adds a third of each present zone's mass to its gridpoints [kg/m].
+// Adds the masses of present zones to their gridpoints [kg/m]: a third of a zone of constant strain to each; of a
+// quadratic one 1/19 to its corners and 16/57 to the middles of its sides, in proportion to the diagonal of its mass
+// matrix (Hinton, Rock and Zienkiewicz 1976).
 void add_masses(const Zones& zones, std::vector<double>& mass);
+
+// Adds the weight of a stress point, `share` times, to the loads of its gridpoints [N/m]: a third to each; of a quadratic
+// zone to the middles of the sides only, as its shape functions have it.
+void add_weight(const Zones& zones, std::size_t z, double share, std::vector<Vector2d>& load);
 
 // Energy that present zones have stored [J/m]; only differences mean anything. What yielding zones have lost since this was
 // forgotten [J/m].
@@ -82,11 +117,17 @@ double stored_energy(const Zones& zones);
 double dissipated(const Zones& zones);
 void forget_dissipated(Zones& zones);
 
-// The zone that is farthest beyond its strength; -1 if none is.
+// The largest plastic shear strain at a stress point that is there, in the section [-].
+double largest_plastic_strain(const Zones& zones);
+
+// The stress point that is farthest beyond its strength; -1 if none is.
 Index weakest(const Zones& zones);
 
 // Makes the present stresses those at zero displacement.
 void start_from_here(Zones& zones);
+
+// Appends the stress and plastic strain of all zones, a mean over each, and whether they are there.
+void record_state(const Zones& zones, States& states);
 
 // What differs from new zones of the same section when a stage begins.
 void transfer(const Transfer& to, Zones& zones, Checkpoint& kept);

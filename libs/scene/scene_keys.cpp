@@ -684,8 +684,14 @@ Table<CreepSettings> creep()
 Table<Scene> zones()
 {
     return {
-        {"zones", once, required, "Zones: the constant-strain triangles inside the blocks."},
-        {number("size_m", &Scene::zone_size, metres, zone_sizes, "Longest zone side aimed at."),
+        {"zones", once, required, "Zones: the triangles inside the blocks."},
+        {choice(
+             "kind", &Scene::zones_are_quadratic, {{"constant strain", false}, {"quadratic", true}},
+             "Displacements in a zone: linear between its three corners, so that its strain is constant, or "
+             "quadratic, with three more gridpoints in the middles of its sides. Quadratic zones are for small "
+             "displacements.")
+             .optional("constant strain"),
+         number("size_m", &Scene::zone_size, metres, zone_sizes, "Longest zone side aimed at."),
          polygon("fine_m", &Scene::fine_zones,
                  "Where zones are of that size; outside they are larger. Without it they are of that "
                  "size everywhere.")

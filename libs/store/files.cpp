@@ -40,6 +40,8 @@ struct Contents {
         : fields(fields_of(reading(provenance))), invariants(invariants_of(network))
     {
         append(fields, fields_of(reading(network)));
+        if (!provenance.warnings.text.empty())
+            add(provenance.warnings);
     }
     void add(const EquivalentJoints& equivalent)
     {
@@ -63,6 +65,7 @@ struct Contents {
         if (with_dynamics)
             append(fields, fields_of(reading(checkpoint.dynamics)));
     }
+    void add(const Warnings& warnings) { append(fields, fields_of(reading(warnings))); }
     void add(const Safety& safety) { append(fields, fields_of(reading(safety))); }
 };
 
@@ -130,8 +133,10 @@ Contents contents_of(const ResultFile& file, const hdf5::Source& source)
     return contents;
 }
 
-void fill(const hdf5::Source& source, Provenance& provenance, const Contents& contents)
+void fill(const hdf5::Source& source, Provenance& provenance, Contents contents)
 {
+    if (source.has_group("/warnings"))
+        contents.add(provenance.warnings);
     provenance.seed = source.natural("seed");
     provenance.realization = source.integers("realization", 1)[0];
     Dimensions dimensions;

@@ -52,7 +52,7 @@ ResultFile read_result(const std::string& path);
 CheckpointFile read_checkpoint(const std::string& path);
 
 // The records must keep to the schema too. What was under `path` stays if writing fails. The step
-// history, the failure and the runs of a factor of safety are written only if there are any.
+// history, warnings, the failure and the runs of a factor of safety are written only if there are any.
 void write_network(const std::string& path, const Provenance& provenance, const Network& network);
 void write_joints(const std::string& path, const Provenance& provenance, const Network& network,
                   const EquivalentJoints& equivalent);

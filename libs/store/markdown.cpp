@@ -120,6 +120,8 @@ with h5py.File("result.h5") as file:
             "\"+1\" is one more.\n\n";
     list(page, "dimension", schema::dimensions());
     list(page, "Provenance", schema::fields_of(provenance));
+    list(page, "Warnings", schema::fields_of(provenance.warnings));
+    page << "\nThe group `/warnings` is there only if a program of the chain warned.\n";
     list(page, "Network", schema::fields_of(network), schema::invariants_of(network));
     list(page, "Equivalent joints", schema::fields_of(equivalent), schema::invariants_of(equivalent));
     page << "\nRows of edges that are neither a joint nor rest on one are 0.\n";

@@ -280,6 +280,16 @@ std::vector<Field> fields_of(Provenance& provenance)
     // clang-format on
 }
 
+std::vector<Field> fields_of(Warnings& warnings)
+{
+    // clang-format off
+    return {
+        {"/warnings/program", &warnings.program, {"warning"}, "1", any(), "Program that warned."},
+        {"/warnings/text", &warnings.text, {"warning"}, "1", any(), "What it said on stderr."},
+    };
+    // clang-format on
+}
+
 std::vector<Field> fields_of(Network& network)
 {
     std::vector<Field> fields = fields_of(network.names);
@@ -376,7 +386,11 @@ std::vector<Field> fields_of(Safety& safety)
         {"/safety/factor", &safety.factor, {"trial"}, "1", positive(),
          "Factor that all strengths of joints were divided by."},
         {"/safety/stands", &safety.stands, {"trial"}, "1", between(-1, 1),
-         "1 every equilibrium was found, 0 rock was seen to slide or fall, -1 undecided."},
+         "1 every equilibrium was found, 0 rock was seen to slide or fall, or its displacement runs away, -1 undecided."},
+        {"/safety/largest_displacement", &safety.largest_displacement, {"trial"}, "m", at_least(0),
+         "Largest displacement since the in-situ equilibrium, at the end of the run."},
+        {"/safety/largest_plastic_strain", &safety.largest_plastic_strain, {"trial"}, "1", at_least(0),
+         "Largest plastic shear strain of a zone, at the end of the run."},
     };
     // clang-format on
 }
@@ -495,6 +509,7 @@ const std::vector<Described>& dimensions()
         {"moving_block", "a block that had no equilibrium"},
         {"trial", "a run by which a factor of safety was found"},
         {"remark", "a line of the summary so far"},
+        {"warning", "a warning of a program"},
     };
     static const std::vector<Described> all = [] {
         std::vector<Described> list = own;

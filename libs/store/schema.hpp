@@ -13,11 +13,12 @@
 namespace jointcreep::store::schema
 {
 
-inline constexpr Index major_version = 2, minor_version = 2;
+inline constexpr Index major_version = 2, minor_version = 3;
 
 // The fields point into the record. A record that is only read may be given too, as `fields::reading(record)`.
 // Own rows and those of the forces that have a part in the record (store/forces.hpp).
-std::vector<fields::Field> fields_of(Provenance& provenance);
+std::vector<fields::Field> fields_of(Provenance& provenance); // without its warnings
+std::vector<fields::Field> fields_of(Warnings& warnings);
 std::vector<fields::Field> fields_of(Network& network);
 std::vector<fields::Field> fields_of(EquivalentJoints& equivalent);
 std::vector<fields::Field> fields_of(Result& result); // without its step history, dynamics and failure

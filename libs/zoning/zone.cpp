@@ -93,6 +93,45 @@ private:
     std::vector<Tie> ties_;
 };
 
+// Puts a gridpoint in the middle of each side of a zone, two where a joint runs between.
+void add_middles(Mesh& mesh, const Triangulation& t, const Blocks& blocks)
+{
+    const auto place_of = [&t](Index z, Index a, Index b) { // of the side {a, b} of vertices in its zone
+        const Index i = corner_at(t.triangle[z], a), j = corner_at(t.triangle[z], b);
+        return static_cast<std::size_t>((i + 1) % 3 == j ? i : j);
+    };
+    mesh.zone_middle.assign(t.triangle.size(), {-1, -1, -1});
+    std::vector<std::array<Index, 3>> across(t.triangle.size(),
+                                             {-1, -1, -1}); // {zone across each side}, if it holds together
+    for (std::size_t z = 0; z < t.triangle.size(); ++z)
+        for (int i = 0; i < 3; ++i)
+            across[z][(i + 1) % 3] = t.neighbour[z][i];
+    for (const Side& side : t.side)
+        if (blocks.edge_kind[side.edge] == static_cast<Index>(EdgeKind::bonded))
+            for (int i = 0; i < 2; ++i)
+                across[side.triangle[i]][place_of(side.triangle[i], side.vertex[0], side.vertex[1])] =
+                    side.triangle[1 - i];
+    for (Index z = 0; z < static_cast<Index>(t.triangle.size()); ++z)
+        for (std::size_t i = 0; i < 3; ++i) {
+            if (mesh.zone_middle[z][i] >= 0)
+                continue;
+            const Index a = t.triangle[z][i], b = t.triangle[z][(i + 1) % 3];
+            const auto middle = static_cast<Index>(mesh.gridpoint.size());
+            mesh.gridpoint.push_back((t.vertex[a] + t.vertex[b]) / 2);
+            mesh.zone_middle[z][i] = middle;
+            if (const Index other = across[z][i]; other >= 0)
+                mesh.zone_middle[other][place_of(other, a, b)] = middle;
+        }
+}
+
+// What a side of a zone gives to its ends and, if there is one, its middle, where a traction is linear along it: a share of
+// its length, and the place where the traction has its mean over that share.
+struct OfSide {
+    double share;
+    double end, other_end; // weights of the two ends in the place
+};
+constexpr OfSide linear_end{1. / 2, 2, 1}, quadratic_end{1. / 6, 1, 0}, quadratic_middle{4. / 6, 1, 1};
+
 } // namespace
 
 Mesh zone(const Scene& scene, const Blocks& blocks)
@@ -120,6 +159,8 @@ Mesh zone(const Scene& scene, const Blocks& blocks)
         mesh.zone_gridpoint.push_back(of_zone);
         mesh.zone_block.push_back(t.block[z]);
     }
+    if (scene.zones_are_quadratic)
+        add_middles(mesh, t, blocks);
     mesh.gridpoint_fixed.assign(mesh.gridpoint.size(), 0);
     for (const auto& tie : corners.ties()) {
         mesh.tie_gridpoint.push_back({gridpoint[root(tie.a)], gridpoint[root(tie.b)]});
@@ -128,6 +169,12 @@ Mesh zone(const Scene& scene, const Blocks& blocks)
 
     const auto gridpoint_of = [&](Index z, Index vertex) {
         return gridpoint[root(3 * z + corner_at(t.triangle[z], vertex))];
+    };
+    // The middle of a side of the triangulation, in a zone beside it.
+    const auto middle_of = [&](Index z, const Side& side) {
+        const Index i = corner_at(t.triangle[z], side.vertex[0]),
+                    j = corner_at(t.triangle[z], side.vertex[1]);
+        return mesh.zone_middle[z][(i + 1) % 3 == j ? i : j];
     };
     std::map<std::tuple<Index, Index, Index>, Index> contact_of; // {edge, a or -1 for the ground, b}
     for (const Side& side : t.side) {
@@ -139,10 +186,14 @@ Mesh zone(const Scene& scene, const Blocks& blocks)
                 (scene.boundaries[boundary].fix_x ? 1 : 0) | (scene.boundaries[boundary].fix_y ? 2 : 0);
             for (const Index v : side.vertex)
                 mesh.gridpoint_fixed[gridpoint_of(side.triangle[0], v)] |= held;
+            if (mesh.is_quadratic())
+                mesh.gridpoint_fixed[middle_of(side.triangle[0], side)] |= held;
         }
         if (boundary >= 0) {
             mesh.side_gridpoint.push_back({gridpoint_of(side.triangle[0], side.vertex[0]),
                                            gridpoint_of(side.triangle[0], side.vertex[1])});
+            if (mesh.is_quadratic())
+                mesh.side_middle.push_back(middle_of(side.triangle[0], side));
             mesh.side_zone.push_back(side.triangle[0]);
             mesh.side_boundary.push_back(boundary);
         }
@@ -150,13 +201,13 @@ Mesh zone(const Scene& scene, const Blocks& blocks)
             continue;
         const auto [first, second] = blocks.edge_vertex[e];
         const Eigen::Vector2d normal = normal_of(tangent_of(blocks.vertex[first], blocks.vertex[second]));
-        const double half = (t.vertex[side.vertex[1]] - t.vertex[side.vertex[0]]).norm() / 2;
-        for (int i = 0; i < 2; ++i) {
-            const Index v = side.vertex[i];
-            const Index b = gridpoint_of(side.triangle[0], v);
-            const Index a = rests_on_joint ? -1 : gridpoint_of(side.triangle[1], v);
+        const Eigen::Vector2d from = t.vertex[side.vertex[0]], to = t.vertex[side.vertex[1]];
+        const double length = (to - from).norm();
+        // A contact of the gridpoint `b` to `a`, or to the ground below it, at `place`.
+        const auto add = [&](Index a, Index b, const Eigen::Vector2d& place, const Eigen::Vector2d& other,
+                             const OfSide& of_side) {
             if (a == b)
-                continue; // the tip of a joint: the rock is connected there
+                return; // the tip of a joint: the rock holds together there
             const auto [found, is_new] =
                 contact_of.try_emplace({e, a, b}, static_cast<Index>(mesh.contact_edge.size()));
             const Index c = found->second;
@@ -164,7 +215,7 @@ Mesh zone(const Scene& scene, const Blocks& blocks)
                 Index ground = a;
                 if (rests_on_joint) {
                     ground = static_cast<Index>(mesh.gridpoint.size());
-                    mesh.gridpoint.push_back(t.vertex[v]);
+                    mesh.gridpoint.push_back(mesh.gridpoint[b]);
                     mesh.gridpoint_fixed.push_back(3);
                 }
                 mesh.contact_gridpoint.push_back({ground, b});
@@ -173,13 +224,20 @@ Mesh zone(const Scene& scene, const Blocks& blocks)
                 mesh.contact_length.push_back(0);
                 mesh.contact_centre.push_back(Eigen::Vector2d::Zero());
             }
-            // A linear traction along the side acts on this end at a third of the side's length.
-            const Eigen::Vector2d centre = (2 * t.vertex[v] + t.vertex[side.vertex[1 - i]]) / 3;
-            const double total = mesh.contact_length[c] + half;
+            const Eigen::Vector2d centre =
+                (of_side.end * place + of_side.other_end * other) / (of_side.end + of_side.other_end);
+            const double part = of_side.share * length, total = mesh.contact_length[c] + part;
             mesh.contact_centre[c] =
-                (mesh.contact_length[c] * mesh.contact_centre[c] + half * centre) / total;
+                (mesh.contact_length[c] * mesh.contact_centre[c] + part * centre) / total;
             mesh.contact_length[c] = total;
-        }
+        };
+        const OfSide& end = mesh.is_quadratic() ? quadratic_end : linear_end;
+        for (int i = 0; i < 2; ++i)
+            add(rests_on_joint ? -1 : gridpoint_of(side.triangle[1], side.vertex[i]),
+                gridpoint_of(side.triangle[0], side.vertex[i]), i == 0 ? from : to, i == 0 ? to : from, end);
+        if (mesh.is_quadratic())
+            add(rests_on_joint ? -1 : middle_of(side.triangle[1], side), middle_of(side.triangle[0], side),
+                from, to, quadratic_middle);
     }
     return mesh;
 }

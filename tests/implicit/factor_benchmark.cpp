@@ -76,18 +76,18 @@ Matrix matrix_of(const Assembly& assembly, const std::vector<joint::Tangent>& ta
                     entries.emplace_back(rows[a][i], rows[b][j], block(i, j));
     };
     const rock::Zones& zones = assembly.zones;
-    for (std::size_t z = 0; z < zones.gridpoint.size(); ++z) {
+    for (std::size_t z = 0; z < zones.size(); ++z) {
         const mechanics::Vector3d& c = zones.stiffness[z];
         Eigen::Matrix3d elastic;
         elastic << c[0], c[1], 0, c[1], c[0], 0, 0, 0, c[2];
         std::array<Eigen::Matrix<double, 3, 2>, 3> strain;
         for (int i = 0; i < 3; ++i) {
-            const Vector2d& slope = zones.gradient[z][i];
+            const Vector2d& slope = zones.gradients(z)[i];
             strain[i] << slope.x(), 0, 0, slope.y(), slope.y(), slope.x();
         }
         for (int i = 0; i < 3; ++i)
             for (int j = 0; j < 3; ++j)
-                add(zones.gridpoint[z][i], zones.gridpoint[z][j],
+                add(zones.gridpoints(z)[i], zones.gridpoints(z)[j],
                     zones.area[z] * strain[i].transpose() * elastic * strain[j]);
     }
     const joint::Contacts& contacts = assembly.contacts;

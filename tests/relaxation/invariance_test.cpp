@@ -49,7 +49,7 @@ Assembly at_rest(
     const Section& s = plate();
     Assembly rock = mechanics::assemble(s.scene, s.network, s.equivalent, mesh);
     for (std::size_t z = 0; z < rock.zones.area.size(); ++z)
-        for (const Index g : rock.zones.gridpoint[z])
+        for (const Index g : rock.zones.gridpoints(z))
             rock.load[g] += rock.zones.area[z] / 3 * weight;
     change(rock);
     relaxation::relax(rock, settings);

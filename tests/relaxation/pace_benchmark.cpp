@@ -61,12 +61,12 @@ struct Bare {
     Bare(const Assembly& a, int threads)
     {
         gridpoints = static_cast<int>(a.position.size());
-        for (std::size_t z = 0; z < a.zones.gridpoint.size(); ++z) {
+        for (std::size_t z = 0; z < a.zones.size(); ++z) {
             if (!a.zones.is_present[z])
                 continue;
             for (int i = 0; i < 3; ++i) {
-                zone.push_back(a.zones.gridpoint[z][i]);
-                slope.insert(slope.end(), a.zones.gradient[z][i].begin(), a.zones.gradient[z][i].end());
+                zone.push_back(a.zones.gridpoints(z)[i]);
+                slope.insert(slope.end(), a.zones.gradients(z)[i].begin(), a.zones.gradients(z)[i].end());
                 modulus.push_back(a.zones.stiffness[z][i]);
                 in_situ.push_back(a.zones.initial_stress[z][i]);
             }

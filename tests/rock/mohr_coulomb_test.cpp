@@ -124,6 +124,33 @@ TEST(mohr_coulomb, squeezed_along_any_axis_and_unloaded)
 }
 
 // Work = stored + dissipated, along a path of strain that turns round, in many small steps.
+// Of a zone with some plastic strain, on any plane, edge or corner; where the tangent changes within the step of the
+// differences there is none to compare.
+RC_GTEST_PROP(mohr_coulomb, tangent_is_what_differences_give, ())
+{
+    const double phi = number(0, 45) * deg;
+    const MohrCoulomb law = MohrCoulomb::of(number(1e5, 1e7), phi, number(0, 1e6), number(0, 1) * phi);
+    const Vector3d initial = admissible(law);
+    YieldingZone zone{.law = law, .initial_zz = (initial[0] + initial[1]) / 2};
+    zone.plastic = {number(-1e-3, 1e-3), number(-1e-3, 1e-3), number(-1e-3, 1e-3), number(-1e-3, 1e-3)};
+    const Vector3d strain(number(-5e-3, 5e-3), number(-5e-3, 5e-3), number(-5e-3, 5e-3));
+    const auto stress_at = [&](const Vector3d& at) {
+        YieldingZone copy = zone;
+        return yielded(copy, elasticity, initial, initial, at);
+    };
+    const auto differences = [&](double step) {
+        Eigen::Matrix3d all;
+        for (int i = 0; i < 3; ++i) {
+            const Vector3d by = step * Vector3d::Unit(i);
+            all.col(i) = (stress_at(strain + by) - stress_at(strain - by)) / (2 * step);
+        }
+        return all;
+    };
+    const Eigen::Matrix3d coarse = differences(2e-8), fine = differences(1e-8);
+    RC_PRE((coarse - fine).norm() < 1e-5 * elasticity[0]);
+    RC_ASSERT((tangent_of_yield(zone, elasticity, initial, strain) - fine).norm() < 1e-4 * elasticity[0]);
+}
+
 TEST(mohr_coulomb, energy)
 {
     YieldingZone zone{.law = MohrCoulomb::of(1e6, 35 * deg, 3e5, 12 * deg), .initial_zz = -1e6};

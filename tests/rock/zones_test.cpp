@@ -176,7 +176,7 @@ RC_GTEST_PROP(zones, stiffness_is_symmetric_and_gives_the_forces, ())
                 const Eigen::Matrix2d block = stiffness_between(patch.zones, z, i, j);
                 RC_ASSERT((block - stiffness_between(patch.zones, z, j, i).transpose()).norm() < 1e-5);
                 moved += block;
-                const auto& corner = patch.zones.gridpoint[z];
+                const auto corner = patch.zones.gridpoints(z);
                 wanted[corner[i]] -= patch.zones.area[z] * block * displacement[corner[j]];
                 turned.col(0) += block * normal_of(patch.mesh.gridpoint[corner[j]]);
             }
@@ -209,7 +209,7 @@ RC_GTEST_PROP(zones, row_sums_bound_the_forces, ())
     for (Vector2d& sum : sums)
         sum.setZero();
     add_row_sums(patch.zones, sums);
-    const auto& corner = patch.zones.gridpoint[z];
+    const auto corner = patch.zones.gridpoints(z);
     for (int i = 0; i < 3; ++i)
         for (int row = 0; row < 2; ++row) {
             Displacements signs(sums.size(), Vector2d::Zero());
