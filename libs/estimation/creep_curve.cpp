@@ -18,7 +18,7 @@ namespace
 constexpr double shortest_share = 0.05, longest_share = 100;
 
 constexpr const char* same_way =
-    " m; wanted both in one direction, as those of a joint under one load are (displacements count from "
+    " m; wanted both in one direction, as those of a joint under one load are (count displacements from "
     "before the load, not from a reading after it)";
 
 double shortest_interval(const CreepCurve& curve)
