@@ -203,6 +203,9 @@ struct InSituStress {
     // {sigma_xx, sigma_yy, sigma_xy}, tension positive [Pa]. Above its first level and below its last one a
     // profile goes straight on.
     Eigen::Vector3d at(const Eigen::Vector2d& place) const;
+
+    // Makes sigma_xx a factor times what it is, everywhere.
+    void multiply_horizontal(double factor);
 };
 
 // A factor that goes piecewise straight through (time since start [s], factor) pairs, and stays what it is at

@@ -217,30 +217,6 @@ Eigen::Matrix2d stiffness_between(const Zones& zones, std::size_t z, int i, int 
     return block;
 }
 
-Vector3d stress_by(const Zones& zones, std::size_t z, std::span<const Vector2d> displacement,
-                   const Vector3d& stiffness)
-{
-    double exx = 0, eyy = 0, gxy = 0;
-    for (int i = 0; i < 3; ++i) {
-        const Vector2d &u = displacement[zones.gridpoint[z][i]], &gradient = zones.gradient[z][i];
-        exx += gradient.x() * u.x();
-        eyy += gradient.y() * u.y();
-        gxy += gradient.y() * u.x() + gradient.x() * u.y();
-    }
-    const Vector3d& c = stiffness;
-    return {c[0] * exx + c[1] * eyy, c[1] * exx + c[0] * eyy, c[2] * gxy};
-}
-
-void add_force(const Zones& zones, std::size_t z, const Vector3d& stress, std::vector<Vector2d>& force)
-{
-    for (int i = 0; i < 3; ++i) {
-        const Vector2d& gradient = zones.gradient[z][i];
-        force[zones.gridpoint[z][i]] -=
-            zones.area[z] * Vector2d(stress[0] * gradient.x() + stress[2] * gradient.y(),
-                                     stress[2] * gradient.x() + stress[1] * gradient.y());
-    }
-}
-
 void add_row_sums(const Zones& zones, std::vector<Vector2d>& sums)
 {
     for (std::size_t z = 0; z < zones.gridpoint.size(); ++z) {

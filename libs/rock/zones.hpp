@@ -63,13 +63,6 @@ void find_forces_in_team(Zones& zones, Slots& slots, std::span<const Vector2d> d
 // Stiffness of a zone between its corners i and j, per area [Pa/m2].
 Eigen::Matrix2d stiffness_between(const Zones& zones, std::size_t z, int i, int j);
 
-// Stress {xx, yy, xy} of a zone by elasticity of stiffness {C11, C12, C33} at the displacements of all gridpoints [Pa].
-Vector3d stress_by(const Zones& zones, std::size_t z, std::span<const Vector2d> displacement,
-                   const Vector3d& stiffness);
-
-// Adds the forces of a zone with that stress to those on its gridpoints [N/m].
-void add_force(const Zones& zones, std::size_t z, const Vector3d& stress, std::vector<Vector2d>& force);
-
 // Adds the row sums of the magnitudes of the zones' stiffness {x, y} to those of their gridpoints [Pa].
 void add_row_sums(const Zones& zones, std::vector<Vector2d>& sums);
 
