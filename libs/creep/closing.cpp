@@ -6,18 +6,6 @@
 namespace jointcreep::creep
 {
 
-namespace
-{
-
-// How far a contact is open beyond where it touches; below 0: how much it is closed, springs and all [m].
-double opening_of(const joint::Contacts& contacts, std::size_t c)
-{
-    return joint::opening(contacts.law[c], contacts.initial_traction[c].x()) +
-           contacts.relative_displacement[c].x() - contacts.offset[c].x() - contacts.state[c].dilation;
-}
-
-} // namespace
-
 void Closing::start(const mechanics::Assembly& assembly)
 {
     const joint::Contacts& contacts = assembly.contacts;

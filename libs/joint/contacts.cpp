@@ -62,13 +62,10 @@ void find_forces_in_team(Contacts& contacts, std::span<const Vector2d> displacem
     }
 }
 
-void add_force(const Contacts& contacts, std::size_t c, const Vector2d& traction,
-               std::vector<Vector2d>& force)
+double opening_of(const Contacts& contacts, std::size_t c)
 {
-    const Vector2d &normal = contacts.normal[c],
-                   on_a = contacts.length[c] * (traction.x() * normal + traction.y() * along(normal));
-    force[contacts.gridpoint[c][0]] += on_a;
-    force[contacts.gridpoint[c][1]] -= on_a;
+    return opening(contacts.law[c], contacts.initial_traction[c].x()) +
+           contacts.relative_displacement[c].x() - contacts.offset[c].x() - contacts.state[c].dilation;
 }
 
 ContactResponse respond(const Contacts& contacts, std::size_t c, const State& start, const ContactChange& by)
@@ -145,9 +142,15 @@ void start_from_here(Contacts& contacts)
                                               contacts.relative_displacement[c].x() - contacts.offset[c].x() -
                                                   contacts.state[c].dilation);
         contacts.initial_traction[c] = {normal, contacts.traction[c].y()};
-        contacts.state[c].slip = contacts.state[c].dilation = 0;
         contacts.offset[c].setZero();
     }
+    forget_slip(contacts.state);
+}
+
+void forget_slip(std::vector<State>& states)
+{
+    for (State& state : states)
+        state.slip = state.dilation = 0;
 }
 
 void transfer(const Transfer& to, Contacts& contacts, Checkpoint& kept)

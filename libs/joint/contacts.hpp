@@ -44,9 +44,8 @@ Contacts contacts_of(const Scene& scene, const EquivalentJoints& joints, const M
 // calling it again changes nothing more. `damping` is the rate of stiffness damping over the step [-].
 void find_forces_in_team(Contacts& contacts, std::span<const Vector2d> displacement, double damping);
 
-// Adds the force of a contact with a traction {normal, shear} [Pa] to those on its two gridpoints [N/m].
-void add_force(const Contacts& contacts, std::size_t c, const Vector2d& traction,
-               std::vector<Vector2d>& force);
+// How far a contact is open beyond where it touches; below 0: how much it is closed, springs and all [m].
+double opening_of(const Contacts& contacts, std::size_t c);
 
 // What the response of a contact starts with changes by this: its springs, initial traction, the stretch of its springs,
 // and what it remembers. Pairs are {normal, shear}.
@@ -96,6 +95,8 @@ void forget_work(Contacts& contacts);
 
 // Makes the present tractions those at zero displacement.
 void start_from_here(Contacts& contacts);
+// What states lose then.
+void forget_slip(std::vector<State>& states);
 
 // What differs from new contacts of the same section when a stage begins.
 void transfer(const Transfer& to, Contacts& contacts, Checkpoint& kept);

@@ -1,3 +1,4 @@
+#include "joint/moving_contact.hpp"
 #include "large_displacements/face_contacts.hpp"
 #include "large_displacements/face_overlap.hpp"
 #include "model/signs.hpp"
@@ -51,26 +52,10 @@ bool is_deep(const FacePair& pair, const Overlap& found, const Faces& faces,
     return std::min(found.sunk(), -std::min(before[0], before[1])) > deepest_new * depth_of(pair, faces);
 }
 
-// The part of an overlap that is closed.
-struct ClosedPart {
-    std::array<double, 2> closing;       // at its ends [m]
-    std::array<double, 2> ends = {0, 1}; // as fractions of the overlap
-
-    // Without bonds only what is pressed together.
-    void leave_bonds()
-    {
-        const double zero = closing[0] / (closing[0] - closing[1]);
-        if (closing[0] < 0)
-            ends[0] = zero;
-        else if (closing[1] < 0)
-            ends[1] = zero;
-        closing = {std::max(closing[0], 0.0), std::max(closing[1], 0.0)};
-    }
-};
-
-// The force-displacement law of a contact in one step: forces, and what becomes of energy. Between two moments
-// a force works as the mean of both: the constructor takes the first one's half. What dilation opens, neither
-// springs nor dashpots do, and friction pays for it.
+// A contact in one step: where its faces are closed and how they move there, the forces that its joint
+// (joint/moving_contact.hpp) then has on them, and what becomes of energy. Between two moments a force works as the mean of
+// both: the constructor takes the first one's half. What dilation opens, neither springs nor dashpots do, and friction pays
+// for it.
 class ContactForce
 {
 public:
@@ -96,10 +81,9 @@ public:
     // The forces where faces overlap, with the closing at both ends of the overlap [m].
     void press(const Overlap& found, const std::array<double, 2>& closing)
     {
-        ClosedPart part{closing};
+        joint::ClosedPart part{closing};
         double in_bonds = 0; // what springs hold that is lost with the bonds, if they break now [J/m]
-        if (!pair_.is_broken &&
-            -joint::k_n(law_) * std::min(closing[0], closing[1]) > joint::tensile_strength(law_))
+        if (!pair_.is_broken && joint::breaks(law_, closing))
             in_bonds = break_bonds(closing, found.length);
         if (pair_.is_broken) {
             if (std::max(closing[0], closing[1]) <= 0) {
@@ -110,13 +94,13 @@ public:
         }
         close(found, part);
         const joint::AlongOverlap closed = along_overlap(law_, pair_.state(), part.closing, pair_.length);
-        const Shear shear = shear_of(at(found.gap, (part.ends[0] + part.ends[1]) / 2));
+        const joint::ShearMove shear = shear_move(at(found.gap, (part.ends[0] + part.ends[1]) / 2));
         const bool was_broken = pair_.is_broken;
         const bool weakens =
             !was_broken && joint::weakens_by_slip(law_) && std::abs(shear.trial) > closed.strength[0];
         if (weakens)
             in_bonds = break_bonds(part.closing, found.length);
-        find_normal_force(closed, part.closing, was_broken);
+        find_normal_force(closed, part, was_broken);
         const double sheared = find_shear_force(shear, closed.strength[pair_.is_broken ? 1 : 0]);
         pair_.friction -= work_of_dilation_ + work_of_dilation();
         if (weakens)
@@ -127,7 +111,7 @@ public:
                                    : closed.stored;
         if (in_bonds > 0)
             pair_.friction += in_bonds - pair_.pressed_in;
-        pair_.sheared_in = stored_in_shear(sheared);
+        pair_.sheared_in = joint::stored_in_shear(law_, sheared, pair_.length);
     }
 
 private:
@@ -135,11 +119,6 @@ private:
         Vector2d normal;
         double length, tau, pressed_in, sheared_in;
         bool was_closed;
-    };
-    struct Shear {
-        double slid;        // [m]
-        double last;        // force a step before [N/m]
-        double kept, trial; // force on what is still closed: before the slip, and if it is elastic [N/m]
     };
 
     // How far the two faces have moved apart in this step at an end of the closed part.
@@ -150,12 +129,6 @@ private:
         return pair_.is_closed && pair_.raised > 0
                    ? -(pair_.force[0] + pair_.force[1]).dot(pair_.normal) * pair_.raised / 2
                    : 0.0;
-    }
-
-    double stored_in_shear(double force) const // [J/m]
-    {
-        const double k_s = joint::k_s(law_);
-        return k_s > 0 && pair_.length > 0 ? force * force / (2 * k_s * pair_.length) : 0.0;
     }
 
     void open(double lost)
@@ -174,7 +147,7 @@ private:
         return along_overlap(law_, pair_.state(), closing, length).stored;
     }
 
-    void close(const Overlap& found, const ClosedPart& part)
+    void close(const Overlap& found, const joint::ClosedPart& part)
     {
         pair_.is_closed = true;
         pair_.length = (part.ends[1] - part.ends[0]) * found.length;
@@ -186,82 +159,48 @@ private:
     }
 
     // `gap`: in the middle of the closed part [m].
-    Shear shear_of(double gap) const
+    joint::ShearMove shear_move(double gap) const
     {
         // Two points a gap apart that turn together move along each other, too; that is no slip.
         const Vector2d tangent = along(pair_.normal);
         const double turned =
             pair_.is_new || last_.length == 0 ? 0.0 : gap * (pair_.normal - last_.normal).dot(tangent);
         const double slid = (parted_at(0) + parted_at(1)).dot(tangent) / 2 - turned;
-        // A part that opens takes along the shear that it has; one that closes has none yet.
-        const double last = pair_.is_new ? 0.0 : last_.tau * last_.length;
-        const double kept = last_.tau * (pair_.is_new ? pair_.length : std::min(last_.length, pair_.length));
-        return {slid, last, kept, kept + joint::k_s(law_) * slid * pair_.length};
-    }
-
-    // In the step in which it closes, and in the one before it opens, a contact is closed for a part of the
-    // time that its force acts. `deep`: its closing, `opened`: by how much it opened in this step [m].
-    double part_of_time(double deep, double opened) const
-    {
-        if (!last_.was_closed && deep < -opened)
-            return (1 - deep / opened) / 2;
-        if (last_.was_closed && opened > 0) {
-            const double next = opened + (opened - pair_.opened) * deep / (deep + opened); // as forces do
-            if (next > deep)
-                return (opened + deep) / (opened + next);
-        }
-        return 1;
+        return pair_.is_new ? joint::first_shear_move(law_, last_.tau, pair_.length, slid)
+                            : joint::shear_move(law_, last_.tau, last_.length, pair_.length, slid);
     }
 
     // Forces on the ends that are as the traction between them.
-    void find_normal_force(const joint::AlongOverlap& closed, const std::array<double, 2>& closing,
-                           bool was_broken)
+    void find_normal_force(const joint::AlongOverlap& closed, const joint::ClosedPart& part, bool was_broken)
     {
-        const std::array<double, 2> opening{parted_at(0).dot(pair_.normal), parted_at(1).dot(pair_.normal)};
-        const double deep = (closing[0] + closing[1]) / 2,
-                     opened = (opening[0] + opening[1]) / 2 - pair_.raised;
-        const double acts = was_broken ? part_of_time(deep, opened) : 1.0;
-        pair_.opened = opened;
+        const joint::NormalMove move{{parted_at(0).dot(pair_.normal), parted_at(1).dot(pair_.normal)},
+                                     pair_.raised,
+                                     pair_.opened,
+                                     last_.was_closed};
+        const joint::NormalForce force =
+            joint::normal_force(closed, part, pair_.length, move, dashpots_, !was_broken);
+        pair_.opened = move.opened();
         for (int i = 0; i < 2; ++i) {
-            const double pressed = acts * closed.force_on_ends[i];
-            double held = dashpots_ * closed.stiffness * pair_.length / 2 * (opening[i] - pair_.raised);
-            if (was_broken)
-                held = std::min(held, pressed);
-            pair_.force[i] = (held - pressed) * pair_.normal;
-            pair_.held[i] = held * pair_.normal;
+            pair_.force[i] = (force.held[i] - force.pressed[i]) * pair_.normal;
+            pair_.held[i] = force.held[i] * pair_.normal;
         }
         pair_.sigma = pair_.length > 0 ? -closed.force / pair_.length : 0.0;
         pair_.stiffest = closed.stiffest;
     }
 
-    // Within its limit [N/m]; what the joint remembers changes with it.
-    double within_strength(const Shear& shear, double limit)
-    {
-        if (!joint::remembers(law_) || !(pair_.length > 0))
-            return std::clamp(shear.trial, -limit, limit);
-        joint::State state = pair_.state();
-        const double tau =
-            joint::shear(law_, state, shear.kept / pair_.length, shear.slid, limit / pair_.length);
-        pair_.memory = state.memory;
-        const double force = tau * pair_.length;
-        return std::abs(force - shear.trial) <= 1e-12 * limit ? shear.trial : force; // but for rounding
-    }
-
     // Adds it to the forces on the ends; returns it, without that of dashpots [N/m].
-    double find_shear_force(const Shear& shear, double limit)
+    double find_shear_force(const joint::ShearMove& move, double limit)
     {
-        const double k_s = joint::k_s(law_), force = within_strength(shear, limit);
-        pair_.is_slipping = force != shear.trial;
+        joint::State state = pair_.state();
+        const double force = joint::shear_force(law_, state, move, limit),
+                     held = joint::shear_held(law_, move, force, limit, dashpots_);
+        pair_.memory = state.memory;
+        pair_.is_slipping = force != move.trial;
         if (!pair_.is_new)
-            pair_.friction =
-                last_.sheared_in - stored_in_shear(shear.kept) + (shear.last - shear.kept) / 2 * shear.slid;
-        if (pair_.is_slipping && k_s > 0 && pair_.length > 0)
-            pair_.friction += (shear.kept + force) / 2 * (shear.trial - force) / (k_s * pair_.length);
+            pair_.friction = joint::taken_by_opening(law_, move, last_.sheared_in);
+        pair_.friction += joint::taken_by_slip(law_, move, force);
         pair_.is_new = false;
         pair_.tau = pair_.length > 0 ? force / pair_.length : 0.0;
-        double held = 0;
-        if (!pair_.is_slipping)
-            held = std::clamp(force + dashpots_ * k_s * pair_.length * shear.slid, -limit, limit) - force;
         const Vector2d tangent = along(pair_.normal);
         for (int i = 0; i < 2; ++i) {
             pair_.force[i] += (force + held) / 2 * tangent;

@@ -93,7 +93,7 @@ Dynamics::Dynamics(mechanics::Assembly& rock, const Mesh& mesh, const std::vecto
     for (std::size_t g = 0; g < place_.size(); ++g)
         place_[g] += rock.displacement[g];
     velocity_.assign(place_.size(), Vector2d::Zero());
-    make_zones();
+    zones_ = moving_zones_of(rock.zones, place_);
     const Vector2d diagonal = Vector2d::Constant((high_ - low_).norm());
     low_ -= middle_ + diagonal;
     high_ += diagonal - middle_;
@@ -137,10 +137,10 @@ void Dynamics::start()
     checks_in_balance_ = 0;
     last_contact_force_.clear();
     in_zones_ = {};
-    corner_force_.assign(3 * zones_.size(), Vector2d::Zero());
+    zones_.corner_force.assign(3 * zones_.zone.size(), Vector2d::Zero());
     velocity_.assign(place_.size(), Vector2d::Zero());
     any_deforms_ = false;
-    for (std::size_t z = 0; z < zones_.size(); ++z)
+    for (std::size_t z = 0; z < rock_.zones.size(); ++z)
         any_deforms_ = any_deforms_ || deforms(z);
     find_faces();
     find_bodies();
@@ -170,11 +170,11 @@ std::vector<Index> Dynamics::leaders() const
 std::vector<double> Dynamics::stiffness_sums() const
 {
     std::vector<double> sums(place_.size(), 0.0);
-    for (std::size_t z = 0; z < zones_.size(); ++z)
+    for (std::size_t z = 0; z < rock_.zones.size(); ++z)
         if (deforms(z))
             for (int i = 0; i < 3; ++i)
                 for (int j = 0; j < 3; ++j)
-                    sums[zones_[z].gridpoint[i]] +=
+                    sums[rock_.zones.gridpoints(z)[i]] +=
                         rock_.zones.area[z] * stiffness_between(rock_.zones, z, i, j).norm();
     for (const auto& [from, to] : contacts_.faces().gridpoint)
         for (const Index g : {from, to})
@@ -241,7 +241,7 @@ void Dynamics::find_forces(const std::vector<Vector2d>& move)
         Vector2d force = rock_.load[g] + rock_.applied[g] + held * released_[g];
         if (any_deforms_)
             for (Index k = incidence.zone_start[g]; k < incidence.zone_start[g + 1]; ++k)
-                force += corner_force_[incidence.zone_corner[k]];
+                force += zones_.corner_force[incidence.zone_corner[k]];
         force_[g] = force;
     });
     contacts_.add_forces(force_, rock_.threads);
@@ -430,7 +430,7 @@ Dynamics::Balance Dynamics::balance(const std::vector<Vector2d>& contact_force) 
         found.farthest = std::max(found.farthest, place_[g].norm());
         double all = rock_.load[g].norm() + rock_.applied[g].norm() + contact_force[g].norm();
         for (Index k = incidence.zone_start[g]; k < incidence.zone_start[g + 1]; ++k)
-            all += corner_force_[incidence.zone_corner[k]].norm();
+            all += zones_.corner_force[incidence.zone_corner[k]].norm();
         if (all > 0) {
             sum += all;
             ++n;

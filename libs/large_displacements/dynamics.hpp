@@ -1,16 +1,15 @@
 // Dynamic analysis with large displacements: Newton's law for gridpoints, large displacements and rotations,
 // until rest.
 //
-// Zones are elastic in the frame that turns with them (Biot's stress over Biot's strain, from a shape without
-// stress that has the in-situ stress in the shape they start from), so turning costs nothing and the forces
-// have a potential. Rock that yields has its plastic strain taken off Biot's strain there. Joints are
-// libs/large_displacements/face_contacts. Real masses; velocities are half a step behind displacements.
+// Zones are libs/rock/moving_zones, joints libs/large_displacements/face_contacts. Real masses; velocities are half a step
+// behind displacements.
 
 #pragma once
 
 #include "large_displacements/face_contacts.hpp"
 #include "mechanics/failure.hpp"
 #include "model/network.hpp"
+#include "rock/moving_zones.hpp"
 
 #include <map>
 #include <optional>
@@ -49,8 +48,6 @@ struct Settings {
     double release = 0;           // time in which excavation's forces fade away [s]
     double tolerance = 1e-5;      // of the unbalanced force ratio at rest [-]
 };
-
-struct Polar; // of a zone: finite_strain.hpp
 
 // A section that moves. Works on an assembly whose displacements count from the start; takes its zones' and
 // contacts' state from there, and puts displacements, stresses and contacts back.
@@ -101,37 +98,6 @@ public:
     void put_back();
 
 private:
-    struct Zone {
-        std::array<Index, 3> gridpoint;
-        Eigen::Matrix2d inverse;       // of the edges {1 - 0, 2 - 0} in the shape without stress [1/m]
-        double area = 0;               // of that shape [m2]
-        Eigen::Vector3d stiffness;     // {C11, C12, C33} [Pa]
-        Eigen::Vector3d strain;        // Biot's {xx, yy, 2 xy} in the last step
-        Eigen::Vector3d held{0, 0, 0}; // stress of dashpots now [Pa]
-    };
-
-    // Of all zones [J/m].
-    struct ZoneSums {
-        double stored = 0;               // now
-        double friction = 0, damped = 0; // in the last step
-        Index torn = -1;                 // one strained by more than a zone can be
-
-        void operator+=(const ZoneSums& other)
-        {
-            stored += other.stored;
-            friction += other.friction;
-            damped += other.damped;
-            torn = torn < 0 ? other.torn : torn;
-        }
-    };
-
-    // Of rock that yields, in the frame that turns with its zone.
-    struct Yielding {
-        rock::YieldingZone
-            zone;               // strains since the shape without stress; its dissipation is of one step
-        Eigen::Vector3d stress; // Biot's {xx, yy, xy} now [Pa]
-    };
-
     // Rock that does not deform: gridpoints that zones of rigid rock connect.
     struct Body {
         std::vector<Index> gridpoint; // leaders of ties
@@ -168,14 +134,9 @@ private:
     void check_rounding(double of_springs, double rounding) const;
 
     // Zones that deform: zone_forces.cpp.
-    void make_zones();
-    Yielding* yielding(std::size_t z);
     bool deforms(std::size_t z) const { return rock_.zones.is_present[z] && !is_rigid_[z]; }
     void find_zone_forces();
-    void find_zone_force(Index z, double viscosity, ZoneSums& sums);
     void check_strain() const;
-    void take_corner_forces(Index z, const Polar& polar, const Eigen::Vector3d& acting, bool yields);
-    void put_back_zone(std::size_t z);
 
     // Rock that does not deform: rigid_bodies.cpp.
     void find_bodies();
@@ -205,12 +166,10 @@ private:
     Settings settings_;
     FaceContacts contacts_;
     std::vector<Body> bodies_;
-    std::vector<char> is_rigid_;         // zones
-    bool any_deforms_ = false;           // of the zones that are there
-    std::vector<Index> body_of_;         // of gridpoints; -1 none
-    std::vector<Zone> zones_;            // of the assembly
-    std::vector<Vector2d> corner_force_; // on the three corners of each zone [N/m]
-    std::vector<Yielding> yielding_;     // by the assembly's yielding_number
+    std::vector<char> is_rigid_; // zones
+    bool any_deforms_ = false;   // of the zones that are there
+    std::vector<Index> body_of_; // of gridpoints; -1 none
+    rock::MovingZones zones_;    // of the assembly
     // Places are counted from the section's middle: what they are rounded to must not depend on where it is.
     std::vector<Vector2d> place_, velocity_, move_, force_, released_;
     std::vector<Vector2d> lost_;       // of places by rounding, until now [m]
@@ -229,7 +188,7 @@ private:
     bool starts_from_rest_ = true, has_moved_ = false;
     Energy energy_;
     double stored_at_start_ = 0;
-    ZoneSums in_zones_;
+    rock::ZoneSums in_zones_;
     double last_kinetic_ = 0, stiffest_ = 0, largest_mean_ = 0;
     double ratio_ = 0, force_change_ = 0, fastest_ = 0;
     Index fastest_gridpoint_ = 0, stiffest_gridpoint_ = 0, checks_in_balance_ = 0;

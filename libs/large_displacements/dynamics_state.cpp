@@ -18,38 +18,17 @@ struct Dynamics::Carried {
 void Dynamics::transfer(const Transfer& to, DynamicsState& kept)
 {
     // All members, so that no new one is forgotten.
-    auto& [rock, mesh, settings, contacts, bodies, is_rigid, any_deforms, body_of, zones, corner_force,
-           yielding, place, velocity, move, force, released, lost, origin, middle, low, high, inverse_mass,
-           law_of_edge, ground, wall_law, face_of_mesh, zone_of_face, dt, last_dt, time, time_lost,
-           stiffest_allowed, starts_from_rest, has_moved, energy, stored_at_start, in_zones, last_kinetic,
-           stiffest, largest_mean, ratio, force_change, fastest, fastest_gridpoint, stiffest_gridpoint,
+    auto& [rock, mesh, settings, contacts, bodies, is_rigid, any_deforms, body_of, zones, place, velocity,
+           move, force, released, lost, origin, middle, low, high, inverse_mass, law_of_edge, ground,
+           wall_law, face_of_mesh, zone_of_face, dt, last_dt, time, time_lost, stiffest_allowed,
+           starts_from_rest, has_moved, energy, stored_at_start, in_zones, last_kinetic, stiffest,
+           largest_mean, ratio, force_change, fastest, fastest_gridpoint, stiffest_gridpoint,
            checks_in_balance, last_contact_force] = *this;
     to.values(origin, kept.origin);
     to.values(place, kept.place);
     for (std::size_t g = 0; g < origin.size(); ++g)
         rock.position[g] = middle + origin[g];
-    std::vector<Eigen::Vector4d> inverse;
-    for (const Zone& zone : zones)
-        inverse.emplace_back(zone.inverse.reshaped());
-    to.values(inverse, kept.inverse);
-    for (std::size_t z = 0; z < zones.size(); ++z)
-        zones[z].inverse = inverse[z].reshaped(2, 2);
-    for (Zone& zone : zones)
-        [[maybe_unused]] auto& [gridpoint, of_edges, area, stiffness, strain, held] = zone;
-    to.values(zones, kept.area, &Zone::area);
-    to.values(zones, kept.strain, &Zone::strain);
-    for (Yielding& one : yielding)
-        [[maybe_unused]] auto& [zone, stress] = one;
-    const auto of_zone = [](auto member) {
-        return [member](Yielding & one) -> auto&
-        {
-            return one.zone.*member;
-        };
-    };
-    to.values(yielding, kept.plastic_strain, of_zone(&rock::YieldingZone::plastic));
-    to.values(yielding, kept.initial_zz, of_zone(&rock::YieldingZone::initial_zz));
-    to.values(yielding, kept.stress_zz, of_zone(&rock::YieldingZone::stress_zz));
-    to.values(yielding, kept.stress, &Yielding::stress);
+    rock::transfer(to, zones, kept);
     to.size(face_of_mesh, kept.face);
     to.values(face_of_mesh, kept.face);
     contacts.transfer(to, kept);
@@ -92,12 +71,12 @@ void Dynamics::put_back()
 {
     for (std::size_t g = 0; g < place_.size(); ++g)
         rock_.displacement[g] = place_[g] - origin_[g];
-    for (std::size_t z = 0; z < zones_.size(); ++z)
+    for (std::size_t z = 0; z < rock_.zones.size(); ++z)
         if (rock_.zones.is_present[z]) {
             if (is_rigid_[z])
                 rock_.zones.stress[z].setZero(); // unknown
             else
-                put_back_zone(z);
+                rock::put_back(zones_, static_cast<Index>(z), place_, rock_.zones);
         }
     put_back_contacts();
 }

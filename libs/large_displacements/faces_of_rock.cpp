@@ -92,9 +92,11 @@ void Dynamics::find_walls()
         if (most > 0)
             wall_law_[{from, to}] = wall_law_[opposite->second] = law_of_edge_[mesh_.contact_edge[best]];
     };
-    for (const Zone& zone : zones_)
+    for (std::size_t z = 0; z < rock_.zones.size(); ++z) {
+        const auto corners = rock_.zones.gridpoints(z);
         for (int i = 0; i < 3; ++i)
-            take(zone.gridpoint[i], zone.gridpoint[(i + 1) % 3]);
+            take(corners[i], corners[(i + 1) % 3]);
+    }
     for (const auto& [from, to] : ground_)
         take(from, to);
 }
@@ -123,10 +125,10 @@ Faces Dynamics::faces_now(std::vector<std::array<Index, 2>>& of_mesh)
 
     std::map<std::array<Index, 2>, int> sides; // by leaders
     const auto key = [&](Index from, Index to) { return std::array<Index, 2>{leader[from], leader[to]}; };
-    for (std::size_t z = 0; z < zones_.size(); ++z)
+    for (std::size_t z = 0; z < rock_.zones.size(); ++z)
         if (rock_.zones.is_present[z])
             for (int i = 0; i < 3; ++i)
-                ++sides[key(zones_[z].gridpoint[i], zones_[z].gridpoint[(i + 1) % 3])];
+                ++sides[key(rock_.zones.gridpoints(z)[i], rock_.zones.gridpoints(z)[(i + 1) % 3])];
     Faces faces;
     zone_of_face_.clear();
     const auto add = [&](Index from, Index to, Index zone, double depth) {
@@ -137,10 +139,10 @@ Faces Dynamics::faces_now(std::vector<std::array<Index, 2>>& of_mesh)
         const auto wall = wall_law_.find({from, to});
         faces.law.push_back(wall == wall_law_.end() ? contacts_.laws().size() - 1 : wall->second);
     };
-    for (std::size_t z = 0; z < zones_.size(); ++z)
+    for (std::size_t z = 0; z < rock_.zones.size(); ++z)
         if (rock_.zones.is_present[z])
             for (int i = 0; i < 3; ++i) {
-                const Index from = zones_[z].gridpoint[i], to = zones_[z].gridpoint[(i + 1) % 3];
+                const Index from = rock_.zones.gridpoints(z)[i], to = rock_.zones.gridpoints(z)[(i + 1) % 3];
                 if (!sides.contains(key(to, from)))
                     add(from, to, static_cast<Index>(z),
                         2 * rock_.zones.area[z] / (origin_[to] - origin_[from]).norm());

@@ -18,11 +18,11 @@ void Dynamics::find_bodies()
     const std::vector<double> masses = lumped_masses(rock_);
     DisjointSets sets(place_.size());
     std::vector<char> is_of_body(place_.size(), 0);
-    for (std::size_t z = 0; z < zones_.size(); ++z)
+    for (std::size_t z = 0; z < rock_.zones.size(); ++z)
         if (is_rigid_[z] && rock_.zones.is_present[z])
-            for (const Index g : zones_[z].gridpoint) {
+            for (const Index g : rock_.zones.gridpoints(z)) {
                 is_of_body[g] = 1;
-                sets.join(g, zones_[z].gridpoint[0]);
+                sets.join(g, rock_.zones.gridpoints(z)[0]);
             }
     for (const auto& [follower, first] : rock_.tied)
         if (is_of_body[follower] || is_of_body[first]) {
@@ -62,12 +62,12 @@ void Dynamics::find_inertia(const std::vector<double>& masses)
 {
     const std::vector<Index> leader = leaders();
     std::vector<double> lumped = masses;
-    for (std::size_t z = 0; z < zones_.size(); ++z) {
+    for (std::size_t z = 0; z < rock_.zones.size(); ++z) {
         if (!is_rigid_[z] || !rock_.zones.is_present[z])
             continue;
-        Body& body = bodies_[body_of_[leader[zones_[z].gridpoint[0]]]];
+        Body& body = bodies_[body_of_[leader[rock_.zones.gridpoints(z)[0]]]];
         Vector2d sum(0, 0);
-        for (const Index g : zones_[z].gridpoint) {
+        for (const Index g : rock_.zones.gridpoints(z)) {
             const Vector2d arm = place_[g] - body.centre;
             body.inertia += rock_.zones.mass[z] / 12 * arm.squaredNorm();
             sum += arm;

@@ -30,4 +30,12 @@ Eigen::Vector3d InSituStress::at(const Eigen::Vector2d& place) const
             -between(high.compression_yy, low.compression_yy), between(high.shear_xy, low.shear_xy)};
 }
 
+void InSituStress::multiply_horizontal(double factor)
+{
+    compression_xx *= factor;
+    gradient_xx *= factor;
+    for (Level& level : profile)
+        level.compression_xx *= factor;
+}
+
 } // namespace jointcreep

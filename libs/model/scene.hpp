@@ -204,6 +204,9 @@ struct InSituStress {
     // {sigma_xx, sigma_yy, sigma_xy}, tension positive [Pa]. Above its first level and below its last one a
     // profile continues in a straight line.
     Eigen::Vector3d at(const Eigen::Vector2d& place) const;
+
+    // Makes sigma_xx a factor times what it is, everywhere.
+    void multiply_horizontal(double factor);
 };
 
 // A factor that is linear between (time since start [s], factor) pairs, and constant before and after them. Without

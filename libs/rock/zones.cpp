@@ -297,23 +297,6 @@ Eigen::Matrix3d tangent_at(const Zones& zones, std::size_t z, std::span<const Ve
                             strain_at(zones, z, displacement));
 }
 
-Vector3d stress_by(const Zones& zones, std::size_t z, std::span<const Vector2d> displacement,
-                   const Vector3d& stiffness)
-{
-    const Vector3d strain = strain_at(zones, z, displacement), &c = stiffness;
-    return {c[0] * strain[0] + c[1] * strain[1], c[1] * strain[0] + c[0] * strain[1], c[2] * strain[2]};
-}
-
-void add_force(const Zones& zones, std::size_t z, const Vector3d& stress, std::vector<Vector2d>& force)
-{
-    for (int i = 0; i < zones.gridpoints_of_zone; ++i) {
-        const Vector2d& gradient = zones.gradients(z)[i];
-        force[zones.gridpoints(z)[i]] -=
-            zones.area[z] * Vector2d(stress[0] * gradient.x() + stress[2] * gradient.y(),
-                                     stress[2] * gradient.x() + stress[1] * gradient.y());
-    }
-}
-
 void add_row_sums(const Zones& zones, std::vector<Vector2d>& sums)
 {
     for (std::size_t z = 0; z < zones.size(); ++z) {

@@ -92,13 +92,6 @@ Vector3d strain_at(const Zones& zones, std::size_t z, std::span<const Vector2d> 
 Eigen::Matrix3d tangent_at(const Zones& zones, std::size_t z, std::span<const Vector2d> displacement,
                            const std::vector<YieldingZone>& start);
 
-// Stress {xx, yy, xy} at a stress point by elasticity of stiffness {C11, C12, C33} at the displacements of all gridpoints [Pa].
-Vector3d stress_by(const Zones& zones, std::size_t z, std::span<const Vector2d> displacement,
-                   const Vector3d& stiffness);
-
-// Adds the forces of a stress point with that stress to those on its gridpoints [N/m].
-void add_force(const Zones& zones, std::size_t z, const Vector3d& stress, std::vector<Vector2d>& force);
-
 // Adds the row sums of the magnitudes of the zones' stiffness {x, y} to those of their gridpoints [Pa].
 void add_row_sums(const Zones& zones, std::vector<Vector2d>& sums);
 

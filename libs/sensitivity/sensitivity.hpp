@@ -4,8 +4,9 @@
 //     K du/dp = -dr/dp ,     K the tangent stiffness, from the factor that found the equilibrium,
 // and the states that contacts and creep go on with are differentiated by the formulas that made them.
 //
-// Contacts are differentiated by the joint law itself, in dual numbers (joint/dual.hpp), on the branch that they
-// are on: at the border between two branches there are two derivatives, and this is one of them. Where a creep step ends
+// What contacts, zones and creep change by is theirs: joint/contact_changes.hpp, rock/zone_changes.hpp,
+// creep/creep_changes.hpp. At the border between two branches of a joint law there are two derivatives, and this is one of
+// them. Where a creep step ends
 // because a contact closes, a parameter moves that moment, too. Steps chosen by their error are taken as long
 // as they are. Where loads change during a step that is cut, what they change by until then is left out.
 //
@@ -14,16 +15,17 @@
 #pragma once
 
 #include "creep/closing.hpp"
-#include "creep/creep.hpp"
+#include "creep/creep_changes.hpp"
 #include "implicit/equilibrium.hpp"
-#include "joint/law.hpp"
+#include "joint/contact_changes.hpp"
+#include "rock/zone_changes.hpp"
 
 #include <vector>
 
 namespace jointcreep::sensitivity
 {
 
-using Eigen::Vector2d, Eigen::Vector3d;
+using Eigen::Vector2d;
 
 // Factors on what all joints have, in normal and shear direction alike.
 enum class Parameter {
@@ -82,31 +84,24 @@ public:
     }
 
 private:
-    // What the assembly's arrays of the same names change by, per unit of the logarithm.
+    // Per unit of the logarithm.
     struct Change {
-        std::vector<Vector2d> displacement, released;
-        std::vector<Vector2d> stiffness, initial_traction, offset, traction;
-        std::vector<double> slip, dilation;
-        std::vector<std::array<double, 3>> memory; // of joint::State
-        std::vector<Vector3d> initial_stress, stress;
-        std::vector<double> shear_modulus; // zones
-        // Of creep::Creep.
-        std::vector<double> reference, before, crept;                        // springs; springs; units
-        std::vector<Vector3d> reference_stress, before_stress, crept_strain; // zones; zones; units
+        std::vector<Vector2d> displacement,
+            released; // of gridpoints: [m], forces that a stage releases [N/m]
+        joint::ContactChanges contacts;
+        rock::ZoneChanges zones;
+        creep::CreepChanges creep;
         // Of creep::Closing, and times.
         std::vector<double> opening_before, opening, rate; // contacts
         double now = 0, duration = 0;                      // [s]
     };
 
-    creep::Chain change_of(const creep::Chain& chain, Parameter parameter) const;
     static double opening(const mechanics::Assembly& assembly, const Change& change, std::size_t c);
-    // Forces on gridpoints, as settled; or before, at displacements as they are.
-    std::vector<Vector2d> forces(const mechanics::Assembly& assembly, const Change& change,
-                                 bool is_settled) const;
-    joint::ContactResponse response(const mechanics::Assembly& assembly, const Change& change, std::size_t c,
-                                    bool with_displacement) const;
-    Vector3d stress(const mechanics::Assembly& assembly, const Change& change, std::size_t z,
-                    bool with_displacement) const;
+    static void find_openings(const mechanics::Assembly& assembly, Change& change);
+    // Forces on gridpoints: now, and if all stayed where they are [N/m].
+    static std::vector<Vector2d> forces(const mechanics::Assembly& assembly, const Change& change);
+    std::vector<Vector2d> forces_at_fixed_gridpoints(const mechanics::Assembly& assembly,
+                                                     const Change& change) const;
 
     std::vector<Parameter> parameters_;
     std::vector<Change> changes_;     // of the parameters

@@ -1,6 +1,6 @@
 // Strain and stress of a zone under large displacements: F = R U, Biot's strain U - 1 and Biot's stress in the
 // frame that turns with the zone. Stresses are {xx, yy, xy} [Pa], strains {xx, yy, 2 xy}; tension and extension
-// positive. Inside libs/large_displacements only.
+// positive. Inside libs/rock only.
 
 #pragma once
 
@@ -14,7 +14,7 @@
 #include <cmath>
 #include <vector>
 
-namespace jointcreep::large_displacements
+namespace jointcreep::rock
 {
 
 using Eigen::Matrix2d;
@@ -87,4 +87,4 @@ inline Matrix2d edges_of(const std::array<Index, 3>& g, const std::vector<Vector
     return edges;
 }
 
-} // namespace jointcreep::large_displacements
+} // namespace jointcreep::rock

@@ -1,0 +1,141 @@
+#include "joint/contact_changes.hpp"
+
+#include "model/error.hpp"
+#include "model/signs.hpp"
+
+#include <string>
+
+namespace jointcreep::joint
+{
+
+namespace
+{
+
+// Displacement of b minus that of a.
+Vector2d apart(const Contacts& contacts, std::span<const Vector2d> displacement, std::size_t c)
+{
+    const auto [a, b] = contacts.gridpoint[c];
+    return displacement[b] - displacement[a];
+}
+
+// `spring`: what the stretch of its springs changes by [m].
+ContactResponse response(const Contacts& contacts, const ContactChanges& changes, const State& start,
+                         const Vector2d& spring, std::size_t c)
+{
+    return respond(contacts, c, start,
+                   {changes.stiffness[c], changes.initial_traction[c], spring, changes.slip[c],
+                    changes.dilation[c], changes.memory[c]});
+}
+
+} // namespace
+
+void check_sensitivities(const Contacts& contacts)
+{
+    for (const Law& law : contacts.law)
+        if (const LawInfo& info = laws()[law.index()]; !info.no_sensitivities.empty()) {
+            const std::string joints = std::string(info.name) + " joints";
+            throw input_error("no sensitivities of " + joints + ": " + std::string(info.no_sensitivities) +
+                              "; wanted a scene without " + joints);
+        }
+}
+
+ContactChanges unchanged(const Contacts& contacts)
+{
+    const std::size_t n = contacts.law.size();
+    const std::vector<Vector2d> none(n, Vector2d::Zero());
+    return {.stiffness = none,
+            .initial_traction = none,
+            .traction = none,
+            .offset = none,
+            .slip = std::vector<double>(n, 0.0),
+            .dilation = std::vector<double>(n, 0.0),
+            .memory = std::vector<std::array<double, 3>>(n)};
+}
+
+ContactChanges changed_by_stiffness(const Contacts& contacts)
+{
+    ContactChanges changes = unchanged(contacts);
+    for (std::size_t c = 0; c < contacts.law.size(); ++c)
+        changes.stiffness[c] = {k_n(contacts.law[c]), k_s(contacts.law[c])};
+    return changes;
+}
+
+ContactChanges changed_by_horizontal_stress(const Contacts& contacts, const InSituStress& stress,
+                                            const Mesh& mesh)
+{
+    ContactChanges changes = unchanged(contacts);
+    for (std::size_t c = 0; c < contacts.law.size(); ++c) {
+        const double sigma_xx = stress.at(mesh.contact_centre[c]).x();
+        const Vector2d &normal = contacts.normal[c], tangent = along(normal);
+        changes.initial_traction[c] = sigma_xx * normal.x() * Vector2d(normal.x(), tangent.x());
+    }
+    return changes;
+}
+
+std::vector<Vector2d> tractions_at_fixed_gridpoints(const Contacts& contacts, const ContactChanges& changes,
+                                                    const std::vector<State>& start)
+{
+    std::vector<Vector2d> tractions;
+    for (std::size_t c = 0; c < contacts.law.size(); ++c)
+        tractions.push_back(response(contacts, changes, start[c], -changes.offset[c], c).traction);
+    return tractions;
+}
+
+void take_response(const Contacts& contacts, const std::vector<State>& start,
+                   std::span<const Vector2d> displacement, ContactChanges& changes)
+{
+    for (std::size_t c = 0; c < contacts.law.size(); ++c) {
+        const Vector2d &normal = contacts.normal[c], moved = apart(contacts, displacement, c);
+        const Vector2d spring = -changes.offset[c] + Vector2d(normal.dot(moved), along(normal).dot(moved));
+        const ContactResponse found = response(contacts, changes, start[c], spring, c);
+        changes.traction[c] = found.traction;
+        changes.slip[c] = found.slip;
+        changes.dilation[c] = found.dilation;
+        changes.memory[c] = found.memory;
+    }
+}
+
+void add_forces(const Contacts& contacts, const std::vector<Vector2d>& traction, std::vector<Vector2d>& force)
+{
+    for (std::size_t c = 0; c < contacts.length.size(); ++c) {
+        if (contacts.status[c] == ContactStatus::removed)
+            continue;
+        const Vector2d &normal = contacts.normal[c],
+                       on_a =
+                           contacts.length[c] * (traction[c].x() * normal + traction[c].y() * along(normal));
+        force[contacts.gridpoint[c][0]] += on_a;
+        force[contacts.gridpoint[c][1]] -= on_a;
+    }
+}
+
+void start_from_here(const Contacts& contacts, std::span<const Vector2d> displacement,
+                     ContactChanges& changes)
+{
+    for (std::size_t c = 0; c < contacts.law.size(); ++c) {
+        const Law& law = contacts.law[c];
+        const Dual sigma_0(contacts.initial_traction[c].x(), changes.initial_traction[c].x()),
+            u(contacts.relative_displacement[c].x() - contacts.offset[c].x() - contacts.state[c].dilation,
+              contacts.normal[c].dot(apart(contacts, displacement, c)) - changes.offset[c].x() -
+                  changes.dilation[c]);
+        const double normal = with_derivatives(
+            law, Dual(k_n(law), changes.stiffness[c].x()), Dual(k_s(law), changes.stiffness[c].y()),
+            [&](const auto& one) { return normal_traction(one, sigma_0, u).slope; });
+        changes.initial_traction[c] = {normal, changes.traction[c].y()};
+        changes.slip[c] = changes.dilation[c] = 0;
+    }
+}
+
+double change_of_opening(const Contacts& contacts, const ContactChanges& changes,
+                         std::span<const Vector2d> displacement, std::size_t c)
+{
+    const Law& law = contacts.law[c];
+    const double at_start =
+        with_derivatives(law, Dual(k_n(law), changes.stiffness[c].x()), Dual(k_s(law)), [&](const auto& one) {
+            return opening(one, Dual(contacts.initial_traction[c].x(), changes.initial_traction[c].x()))
+                .slope;
+        });
+    return at_start + contacts.normal[c].dot(apart(contacts, displacement, c)) - changes.offset[c].x() -
+           changes.dilation[c];
+}
+
+} // namespace jointcreep::joint

@@ -1,0 +1,19 @@
+// Joints with springs and dashpots times one factor, in normal and shear direction alike: what back-analysis looks for.
+
+#pragma once
+
+#include "model/network.hpp"
+
+namespace jointcreep::joint
+{
+
+// Joint stiffness K, with E / K and eta / E kept: all that is elastic or creeps.
+void multiply_stiffness(EquivalentJoints& joints, double factor);
+
+// E of Kelvin units.
+void multiply_kelvin_stiffness(EquivalentJoints& joints, double factor);
+
+// eta of Kelvin units and Maxwell dashpots.
+void multiply_viscosity(EquivalentJoints& joints, double factor);
+
+} // namespace jointcreep::joint
