@@ -21,6 +21,12 @@ std::vector<Field> fields_of(States& states)
          "Zones of rock that yields; none where all is elastic."},
         {"/states/plastic_strain", &states.plastic_strain, {"state", "yielding_zone"}, "1", any(),
          "Plastic strain {xx, yy, xy} since the in-situ equilibrium, extension positive."},
+        {"/states/stress_zz", &states.stress_zz, {"state", "yielding_zone"}, "Pa", any(),
+         "Stress across the section, which these zones' strength depends on, too."},
+        {"/states/creeping_zone", &states.creeping_zone, {"creeping_zone"}, "1", index_of("zone"),
+         "Zones of rock that creeps."},
+        {"/states/crept_strain", &states.crept_strain, {"state", "creeping_zone"}, "1", any(),
+         "Deviatoric strain {xx, yy, xy} that has crept since the in-situ equilibrium; its zz is -(xx + yy)."},
     };
     // clang-format on
 }

@@ -166,6 +166,8 @@ Zones zones_of(const Scene& scene, const Network& network, const Mesh& mesh)
                 {.law = MohrCoulomb::of(rock.strength->cohesion, rock.strength->friction_angle,
                                         rock.strength->tensile_strength, rock.dilation_angle),
                  .initial_zz = (initial[0] + initial[1]) / 2});
+        if (scene.creep && (rock.kelvin || rock.maxwell_viscosity))
+            zones.creeping.push_back(static_cast<Index>(z));
     }
     zones.stress = zones.initial_stress;
     return zones;
@@ -321,6 +323,25 @@ void start_from_here(Zones& zones)
         zone.initial_zz = zone.stress_zz;
         zone.plastic.setZero();
     }
+}
+
+void record_state(const Zones& zones, States& states)
+{
+    states.stress.insert(states.stress.end(), zones.stress.begin(), zones.stress.end());
+    states.zone_present.insert(states.zone_present.end(), zones.is_present.begin(), zones.is_present.end());
+    states.yielding_zone.clear();
+    for (std::size_t z = 0; z < zones.yielding_number.size(); ++z)
+        if (const Index number = zones.yielding_number[z]; number >= 0) {
+            const YieldingZone& zone = zones.yielding[number];
+            states.yielding_zone.push_back(static_cast<Index>(z));
+            states.plastic_strain.emplace_back(zone.plastic[0], zone.plastic[1], zone.plastic[3] / 2);
+            states.stress_zz.push_back(zone.stress_zz);
+        }
+    // Creep takes 2 G times its strain off the stress at zero displacement, which is that of the first state.
+    states.creeping_zone = zones.creeping;
+    for (const Index z : zones.creeping)
+        states.crept_strain.emplace_back((states.stress[z] - zones.initial_stress[z]) /
+                                         (2 * zones.stiffness[z][2]));
 }
 
 void transfer(const Transfer& to, Zones& zones, Checkpoint& kept)

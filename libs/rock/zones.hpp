@@ -37,6 +37,8 @@ struct Zones {
     std::vector<Index> yielding_number; // into yielding, of every zone; -1 elastic
     std::vector<YieldingZone> yielding;
     bool holds_yield = false; // all rock is elastic for now, from the plastic strain it has
+
+    std::vector<Index> creeping; // zones of rock that creeps
 };
 
 // All zones of a mesh, under the scene's in-situ stress, at zero displacement.
@@ -87,6 +89,9 @@ Index weakest(const Zones& zones);
 
 // Makes the present stresses those at zero displacement.
 void start_from_here(Zones& zones);
+
+// Appends the present stresses and strains to the states of a result.
+void record_state(const Zones& zones, States& states);
 
 // What differs from new zones of the same section when a stage begins.
 void transfer(const Transfer& to, Zones& zones, Checkpoint& kept);
