@@ -195,6 +195,8 @@ bool CreepSteps::settles_at(double end, bool by_relaxation, const mechanics::Sta
         engines_.settle_by_relaxation(end);
         return true;
     } catch (const equilibrium_error&) {
+        if (creeps())
+            creep_->cancel(section_.rock);
         go_back(section_.rock, start);
         watchers_.tell(&Watcher::state_is_due, "");
         throw;

@@ -153,6 +153,27 @@ void forget_slip(std::vector<State>& states)
         state.slip = state.dilation = 0;
 }
 
+void record_state(const Contacts& contacts, States& states)
+{
+    const std::vector<State>& remembered =
+        contacts.state_by_faces.empty() ? contacts.state : contacts.state_by_faces;
+    const bool is_first = states.initial_gap.empty();
+    for (std::size_t c = 0; c < contacts.gridpoint.size(); ++c) {
+        states.traction.push_back(contacts.traction[c]);
+        states.relative_displacement.push_back(contacts.relative_displacement[c]);
+        states.contact_status.push_back(static_cast<Index>(contacts.status[c]));
+        states.slip.push_back(remembered[c].slip);
+        states.dilation.push_back(remembered[c].dilation);
+        states.bond_broken.push_back(remembered[c].is_broken ? 1 : 0);
+        states.crept.push_back(contacts.offset[c]);
+        if (is_first) // a bonded contact in tension is closed
+            states.initial_gap.push_back(
+                contacts.status[c] == ContactStatus::open
+                    ? std::max(0.0, opening(contacts.law[c], contacts.initial_traction[c].x()))
+                    : 0.0);
+    }
+}
+
 void transfer(const Transfer& to, Contacts& contacts, Checkpoint& kept)
 {
     to.values(contacts.status, kept.contact_status);

@@ -34,6 +34,8 @@ struct Contacts {
     std::vector<ContactStatus> status;           // now; removed once a side is gone
     std::vector<double> work;    // done on it since this was last set to 0, by the trapezoidal rule [J/m]
     std::vector<Vector2d> force; // on side a; filled with the tractions [N/m]
+    // In place of `state` in records: what a dynamic analysis with large displacements has found; else empty.
+    std::vector<State> state_by_faces;
 };
 
 // All contacts of a mesh, with the scene's in-situ stress at their centres, at zero displacement.
@@ -97,6 +99,9 @@ void forget_work(Contacts& contacts);
 void start_from_here(Contacts& contacts);
 // What states lose then.
 void forget_slip(std::vector<State>& states);
+
+// Appends the present tractions, and what contacts remember, to the states of a result.
+void record_state(const Contacts& contacts, States& states);
 
 // What differs from new contacts of the same section when a stage begins.
 void transfer(const Transfer& to, Contacts& contacts, Checkpoint& kept);

@@ -156,6 +156,19 @@ std::vector<Field> fields_of(States& states)
          "Displacement of side b minus that of side a {normal, shear}, opening positive."},
         {"/states/contact_status", &states.contact_status, {"state", "contact"}, "1", between(0, 3),
          "0 removed (a side has been excavated), 1 stuck, 2 slipping, 3 open."},
+        {"/states/slip", &states.slip, {"state", "contact"}, "m", any(),
+         "Slip since the in-situ equilibrium: shear_stiffness times (relative_displacement - crept - slip) is the change of "
+         "shear traction since then. In a dynamic analysis with large displacements it is found from that."},
+        {"/states/dilation", &states.dilation, {"state", "contact"}, "m", any(),
+         "Opening by slip since then; in a dynamic analysis the mean of the faces that meet at the contact."},
+        {"/states/bond_broken", &states.bond_broken, {"state", "contact"}, "1", between(0, 1),
+         "1 once the bonds of the contact are broken: it has its strength without bonds. In a dynamic analysis on more than "
+         "half of the faces that meet there."},
+        {"/states/crept", &states.crept, {"state", "contact"}, "m", any(),
+         "What of the relative displacement has crept {normal, shear}."},
+        {"/states/initial_gap", &states.initial_gap, {"contact"}, "m", at_least(0),
+         "Gap at the in-situ equilibrium, 0 where the contact is closed. The gap of a contact that is open later is this, "
+         "or minus the closure of its spring then, plus relative_displacement - crept - dilation."},
     };
     // clang-format on
 }

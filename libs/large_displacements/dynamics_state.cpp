@@ -13,6 +13,8 @@ namespace jointcreep::large_displacements
 struct Dynamics::Carried {
     Vector2d force{0, 0};            // {normal, shear} [N/m]
     double length = 0, slipping = 0; // of all faces, and of those that slip [m]
+    double broken = 0;               // of those without bonds [m]
+    double dilation = 0;             // times length [m2]
 };
 
 void Dynamics::transfer(const Transfer& to, DynamicsState& kept)
@@ -69,8 +71,10 @@ std::vector<Touching> Dynamics::touching() const
 
 void Dynamics::put_back()
 {
-    for (std::size_t g = 0; g < place_.size(); ++g)
+    for (std::size_t g = 0; g < place_.size(); ++g) {
         rock_.displacement[g] = place_[g] - origin_[g];
+        rock_.force[g] = force_[g];
+    }
     for (std::size_t z = 0; z < rock_.zones.size(); ++z)
         if (rock_.zones.is_present[z]) {
             if (is_rigid_[z])
@@ -94,6 +98,8 @@ std::map<std::array<Index, 2>, Dynamics::Carried> Dynamics::carried_by_pairs() c
                     there.force += pair.length * Vector2d(pair.sigma, pair.tau);
                     there.length += pair.length;
                     there.slipping += pair.is_slipping ? pair.length : 0.0;
+                    there.broken += pair.is_broken ? pair.length : 0.0;
+                    there.dilation += pair.length * pair.dilation;
                 }
     return carried;
 }
@@ -103,6 +109,14 @@ void Dynamics::put_back_contacts()
     const std::vector<Index> leader = leaders();
     joint::Contacts& contacts = rock_.contacts;
     const std::map<std::array<Index, 2>, Carried> carried = carried_by_pairs();
+    contacts.state_by_faces = contacts.state;
+    // What the shear springs do not take up.
+    const auto slip_of = [&](std::size_t c) {
+        const double k_s = joint::k_s(contacts.law[c]);
+        return k_s > 0 ? contacts.relative_displacement[c].y() -
+                             (contacts.traction[c].y() - contacts.initial_traction[c].y()) / k_s
+                       : 0.0;
+    };
     for (std::size_t c = 0; c < contacts.gridpoint.size(); ++c) {
         if (contacts.status[c] == ContactStatus::removed)
             continue;
@@ -116,9 +130,13 @@ void Dynamics::put_back_contacts()
                 continue;
             contacts.traction[c].setZero();
             contacts.status[c] = ContactStatus::open;
+            contacts.state_by_faces[c] = {.slip = slip_of(c), .is_broken = true};
             continue;
         }
         contacts.traction[c] = found->second.force / found->second.length;
+        contacts.state_by_faces[c] = {.slip = slip_of(c),
+                                      .dilation = found->second.dilation / found->second.length,
+                                      .is_broken = 2 * found->second.broken > found->second.length};
         contacts.status[c] = 2 * found->second.slipping > found->second.length ? ContactStatus::slipping
                                                                                : ContactStatus::stuck;
     }

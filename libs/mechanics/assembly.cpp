@@ -263,6 +263,7 @@ template <class OfState, class OfAssembly, class Copy>
 void for_each_member(OfState& state, OfAssembly& assembly, const Copy& copy)
 {
     copy(state.displacement, assembly.displacement);
+    copy(state.force, assembly.force);
     copy(state.offset, assembly.contacts.offset);
     copy(state.traction, assembly.contacts.traction);
     copy(state.relative_displacement, assembly.contacts.relative_displacement);
@@ -271,7 +272,7 @@ void for_each_member(OfState& state, OfAssembly& assembly, const Copy& copy)
     copy(state.stress, assembly.zones.stress);
     copy(state.yielding, assembly.zones.yielding);
 }
-static_assert(sizeof(State) == 8 * sizeof(std::vector<double>), "for_each_member() has all of them");
+static_assert(sizeof(State) == 9 * sizeof(std::vector<double>), "for_each_member() has all of them");
 
 } // namespace
 

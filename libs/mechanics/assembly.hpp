@@ -124,7 +124,7 @@ void start_from_here(Assembly& assembly);
 
 // What equilibria and creep change, for going back to it.
 struct State {
-    std::vector<Vector2d> displacement, offset, traction, relative_displacement;
+    std::vector<Vector2d> displacement, force, offset, traction, relative_displacement;
     std::vector<joint::State> joint;
     std::vector<ContactStatus> status;
     std::vector<Vector3d> stress;

@@ -165,13 +165,13 @@ void Recorder::record_state(Result& result, double time, const std::string& even
     States& states = result.states;
     states.time.push_back(time / unit::day);
     states.event.push_back(event);
-    const auto append = [](auto& to, const auto& from) { to.insert(to.end(), from.begin(), from.end()); };
-    append(states.displacement, assembly.displacement);
+    for (std::size_t g = 0; g < assembly.position.size(); ++g) {
+        states.displacement.push_back(assembly.displacement[g]);
+        // Also of rock that is gone, which nothing pulls.
+        states.reaction.emplace_back((assembly.is_free[g].array() > 0).select(0, -assembly.force[g]));
+    }
     rock::record_state(assembly.zones, states);
-    append(states.traction, assembly.contacts.traction);
-    append(states.relative_displacement, assembly.contacts.relative_displacement);
-    for (const ContactStatus status : assembly.contacts.status)
-        states.contact_status.push_back(static_cast<Index>(status));
+    joint::record_state(assembly.contacts, states);
     states.reset_state.push_back(states.reset_state.empty() ? 0 : states.reset_state.back());
 }
 

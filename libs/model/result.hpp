@@ -62,15 +62,25 @@ struct States {
     std::vector<double> time;                  // since start [day]
     std::vector<std::string> event;            // as in History
     std::vector<Eigen::Vector2d> displacement; // [state, gridpoint] since the in-situ equilibrium [m]
+    std::vector<Eigen::Vector2d> reaction;     // [state, gridpoint] of supports on the rock {x, y} [N/m]
     std::vector<Eigen::Vector3d> stress;       // [state, zone] {xx, yy, xy} [Pa]
     std::vector<Index> zone_present;           // [state, zone] 0 or 1
     std::vector<Eigen::Vector2d> traction;     // [state, contact] {normal, shear} [Pa]
     std::vector<Eigen::Vector2d>
         relative_displacement; // [state, contact] displacement of side b minus side a {normal, shear} [m]
-    std::vector<Index> contact_status; // [state, contact] ContactStatus
-    std::vector<Index> yielding_zone;  // zones of rock that yields
+    std::vector<Index> contact_status;  // [state, contact] ContactStatus
+    std::vector<double> slip, dilation; // [state, contact] since the in-situ equilibrium [m]
+    std::vector<Index> bond_broken;     // [state, contact] 0 or 1
+    std::vector<Eigen::Vector2d> crept; // [state, contact] of the relative displacement {normal, shear} [m]
+    std::vector<double> initial_gap;    // [contact] at the in-situ equilibrium; 0 where closed [m]
+    std::vector<Index> yielding_zone;   // zones of rock that yields
     std::vector<Eigen::Vector3d>
-        plastic_strain;             // [state, yielding zone] {xx, yy, xy} since the in-situ equilibrium [-]
+        plastic_strain; // [state, yielding zone] {xx, yy, xy} since the in-situ equilibrium [-]
+    std::vector<Eigen::Vector3d> point_stress; // [state, stress point of quadratic zones] {xx, yy, xy} [Pa]
+    std::vector<double> stress_zz;             // [state, yielding zone] across the section [Pa]
+    std::vector<Index> creeping_zone;          // zones of rock that creeps
+    std::vector<Eigen::Vector3d>
+        crept_strain;               // [state, creeping zone] deviatoric {xx, yy, xy} since then [-]
     std::vector<Index> reset_state; // [state] the state displacements are to count from, as in History
 };
 

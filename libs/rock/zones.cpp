@@ -139,6 +139,7 @@ void add_point(Zones& zones, const Scene& scene, const Rock& rock, double area, 
     zones.mass.push_back(rock.density * area);
     zones.weight.push_back(rock.density * area * scene.gravity);
     zones.stiffness.emplace_back(factor * (1 - nu), factor * nu, E / (2 * (1 + nu)));
+    zones.creeps.push_back(scene.creep && (rock.kelvin || rock.maxwell_viscosity) ? 1 : 0);
     const Vector3d initial = scene.in_situ_stress.at(place);
     zones.initial_stress.push_back(initial);
     const bool yields = rock.law == RockLaw::mohr_coulomb;
@@ -406,25 +407,44 @@ void start_from_here(Zones& zones)
 
 void record_state(const Zones& zones, States& states)
 {
-    const auto mean_over = [&zones](std::size_t first, const auto& value) {
-        Vector3d sum = value(first);
+    const auto mean_over = [&zones](std::size_t zone, const auto& value) { // stress points
+        const std::size_t first = zones.first_point_of(zone);
+        auto sum = value(first);
         for (int i = 1; i < zones.points_of_zone; ++i)
             sum += value(first + i);
-        return Vector3d(sum / zones.points_of_zone);
+        return decltype(sum)(sum / zones.points_of_zone);
     };
+    const std::size_t n = zones.zone_of(zones.size());
     states.yielding_zone.clear();
-    for (std::size_t zone = 0; zone < zones.zone_of(zones.size()); ++zone) {
+    states.creeping_zone.clear();
+    // At zero displacement, as in the first state.
+    const std::vector<Vector3d> at_start(states.stress.begin(),
+                                         states.stress.begin() +
+                                             static_cast<std::ptrdiff_t>(std::min(n, states.stress.size())));
+    for (std::size_t zone = 0; zone < n; ++zone) {
         const std::size_t first = zones.first_point_of(zone);
-        states.stress.push_back(mean_over(first, [&](std::size_t z) { return zones.stress[z]; }));
+        states.stress.push_back(mean_over(zone, [&](std::size_t z) { return zones.stress[z]; }));
         states.zone_present.push_back(zones.is_present[first]);
-        if (zones.yielding.empty() || zones.yielding_number[first] < 0)
-            continue;
-        states.yielding_zone.push_back(static_cast<Index>(zone));
-        states.plastic_strain.push_back(mean_over(first, [&](std::size_t z) {
-            const Eigen::Vector4d& plastic = zones.yielding[zones.yielding_number[z]].plastic;
-            return Vector3d(plastic[0], plastic[1], plastic[3] / 2);
-        }));
+        if (!zones.yielding.empty() && zones.yielding_number[first] >= 0) {
+            const auto of = [&](std::size_t z) -> const YieldingZone& {
+                return zones.yielding[zones.yielding_number[z]];
+            };
+            states.yielding_zone.push_back(static_cast<Index>(zone));
+            states.plastic_strain.push_back(mean_over(zone, [&](std::size_t z) {
+                return Vector3d(of(z).plastic[0], of(z).plastic[1], of(z).plastic[3] / 2);
+            }));
+            states.stress_zz.push_back(mean_over(zone, [&](std::size_t z) { return of(z).stress_zz; }));
+        }
+        if (zones.creeps[first]) {
+            states.creeping_zone.push_back(static_cast<Index>(zone));
+            const Vector3d initial = mean_over(zone, [&](std::size_t z) { return zones.initial_stress[z]; });
+            // Creep takes 2 G times its strain off the stress at zero displacement.
+            const Vector3d& start = at_start.empty() ? initial : at_start[zone];
+            states.crept_strain.emplace_back((start - initial) / (2 * zones.stiffness[first][2]));
+        }
     }
+    if (zones.points_of_zone > 1)
+        states.point_stress.insert(states.point_stress.end(), zones.stress.begin(), zones.stress.end());
 }
 
 void transfer(const Transfer& to, Zones& zones, Checkpoint& kept)

@@ -54,6 +54,8 @@ struct Zones {
     std::vector<Index> yielding_number; // into yielding, of every stress point; -1 elastic
     std::vector<YieldingZone> yielding;
     bool holds_yield = false; // all rock is elastic for now, from the plastic strain it has
+
+    std::vector<char> creeps; // whether the rock of a stress point does
 };
 
 // All zones of a mesh, under the scene's in-situ stress, at zero displacement.
@@ -119,7 +121,8 @@ Index weakest(const Zones& zones);
 // Makes the present stresses those at zero displacement.
 void start_from_here(Zones& zones);
 
-// Appends the stress and plastic strain of all zones, a mean over each, and whether they are there.
+// Appends the present stresses and strains to the states of a result: of a quadratic zone means over its stress points,
+// and the stresses there beside.
 void record_state(const Zones& zones, States& states);
 
 // What differs from new zones of the same section when a stage begins.

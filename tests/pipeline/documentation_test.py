@@ -72,7 +72,7 @@ class Documentation(ChainTest):
         (chain,) = (block for block in code_blocks(readme, "sh") if "demsolve" in block)
         path, *commands = chain.splitlines()
         self.assertEqual(path, 'export PATH="$PWD/build/release/apps:$PATH"')
-        self.assertEqual([command.split()[0] for command in commands], CHAIN)
+        self.assertEqual([command.split()[0] for command in commands], [*CHAIN, "jointverify"])
 
         folder = self.chain.new_folder()
         (folder / "two.toml").write_text(scene)

@@ -24,14 +24,16 @@ class Install(ChainTest):
 
     def test_nothing_else_is_installed(self):
         files = sorted(str(path.relative_to(self.prefix)) for path in self.prefix.rglob("*") if path.is_file())
-        self.assertEqual(files, sorted([f"bin/{app}" for app in APPS] + [f"share/man/man1/{app}.1" for app in APPS] +
+        self.assertEqual(files, sorted(["bin/jointverify"] + [f"bin/{app}" for app in APPS] +
+                                       [f"share/man/man1/{app}.1" for app in APPS] +
                                        [f"share/bash-completion/completions/{app}" for app in APPS]))
 
     def test_the_chain_runs_there(self):
         scene = self.chain.new_folder() / "scene.toml"
         scene.write_text(self.chain.text("data/column/scene.toml"))
         for command in (["jointgen", scene, "-o", "n.h5"], ["strength-averaging", "n.h5", "-o", "j.h5"],
-                        ["demsolve", "j.h5", "-q", "-o", "r.h5"], ["jointexport", "r.h5", "-q", "-o", "r.csv"]):
+                        ["demsolve", "j.h5", "-q", "-o", "r.h5"], ["jointexport", "r.h5", "-q", "-o", "r.csv"],
+                        ["jointverify", "r.h5"]):
             done = self.installed(*command, cwd=scene.parent)
             self.assertEqual(done.returncode, 0, done.stderr)
         self.assertTrue((scene.parent / "r.csv").read_text().startswith("time_day"))

@@ -1,0 +1,1123 @@
+#!/usr/bin/python3
+"""jointverify: Recomputes equilibrium, stresses and joint laws of a result from the file alone.
+
+usage: jointverify RESULT.h5
+
+Reads a result file of demsolve (format 2.3 or later) and computes with formulas of its own what the states must
+fulfil. It shares no code with the solver. It writes nothing but a table: a line for each check, with the largest
+deviation, what is allowed, and where it is.
+
+What is allowed follows from the run:
+  equilibrium    the run's tolerance of the unbalanced force ratio
+  energies       that tolerance times the sum of their magnitudes; 1 percent in a dynamic analysis
+  everything     rounding: 1e-12 of the terms that are added, some thousand times the rounding of one number
+
+At large displacements, equilibrium, stresses and joint laws are not verified. Lines "not verified" say what else is not.
+
+Options:
+  -h [ --help ]  this text
+
+Exit codes:
+  0  verified: every check passed
+  2  the command line or the file is not what was wanted
+  3  a check failed
+  4  the file cannot be read
+  5  internal error, or out of memory
+
+Example:
+  jointverify result.h5
+"""
+
+import datetime
+import os
+import sys
+import tomllib
+
+import h5py
+import numpy as np
+
+MAJOR, MINOR = 2, 3  # of the format; older files lack what is checked
+ROUNDING = 1e-12
+ENERGY_OF_DYNAMICS = 0.01  # demsolve warns above this
+AT_STRENGTH = 1e-6  # a contact this near its strength counts as slipping
+REMOVED, STUCK, SLIPPING, OPEN = range(4)
+COULOMB, RESIDUAL, BARTON_BANDIS, WEARING, YIELDING = range(5)
+DEGREE = np.pi / 180
+
+
+class NotWanted(Exception):
+    """The file is not what was wanted: exit code 2."""
+
+
+class NotReadable(Exception):
+    """Exit code 4."""
+
+
+# --- The file -------------------------------------------------------------------------------------------------------
+
+
+class File:
+    """Datasets of an HDF5 file. Sizes of dimensions are those of the first dataset that has them."""
+
+    def __init__(self, path):
+        try:
+            with open(path, "rb"):
+                pass
+        except OSError as error:
+            raise NotReadable(f"{path}: cannot be opened: {error.strerror}") from None
+        self.path, self.size = path, {}
+        try:
+            self.file = h5py.File(path, "r")
+        except OSError:
+            raise NotWanted(f"{path}: is no HDF5 file, or a damaged one; expected a result file of demsolve") from None
+        kind = self.attribute("filetype")
+        kind = kind.decode("utf-8", "replace") if isinstance(kind, bytes) else str(kind)
+        if kind not in ("jointcreep result", "jointcreep checkpoint"):
+            raise NotWanted(f'{path}: is a "{kind}" file; expected a "jointcreep result" file, which demsolve makes')
+        version = [int(part) for part in self.integers_of("format_version", 2)]
+        if version[0] != MAJOR or version[1] < MINOR:
+            raise NotWanted(f"{path}: has format version {version[0]}.{version[1]}; expected {MAJOR}.{MINOR} or a later "
+                            f"{MAJOR}. Run demsolve again.")
+        if self.integers_of("complete", 1)[0] != 1:
+            raise NotWanted(f"{path}: is not complete")
+
+    def attribute(self, name):
+        try:
+            return self.file.attrs[name]
+        except (KeyError, OSError, TypeError, ValueError, RuntimeError):
+            raise NotWanted(f"{self.path}: has no attribute {name} that can be read; expected a result file of demsolve") \
+                from None
+
+    def integers_of(self, name, count):
+        values = np.atleast_1d(self.attribute(name))
+        if values.dtype.kind not in "iu" or values.shape != (count,):
+            raise NotWanted(f"{self.path}: attribute {name}: expected {count} whole numbers")
+        return values
+
+    def has(self, group):
+        return group in self.file
+
+    def read(self, name):
+        try:
+            item = self.file[name]
+        except (KeyError, OSError, RuntimeError):
+            raise NotWanted(f"{self.path}: {name}: is missing; expected a result file of format {MAJOR}.{MINOR}") from None
+        if not isinstance(item, h5py.Dataset):
+            raise NotWanted(f"{self.path}: {name}: is no dataset")
+        try:
+            if h5py.check_string_dtype(item.dtype) is not None:
+                return np.array([text.rstrip("\0") for text in np.atleast_1d(item.asstr()[...])], dtype=object)
+            return np.asarray(item[...])
+        except UnicodeDecodeError:
+            raise NotWanted(f"{self.path}: {name}: is not UTF-8") from None
+        except (OSError, RuntimeError) as error:
+            raise NotReadable(f"{self.path}: {name}: cannot be read: {error}") from None
+        except (TypeError, ValueError) as error:
+            raise NotWanted(f"{self.path}: {name}: {error}") from None
+
+    def array(self, name, kind, *shape):
+        """Of these dimensions, each a name or a number; kind "f", "i" or "text"."""
+        values = self.read(name)
+        is_kind = {"f": values.dtype == np.float64, "i": values.dtype.kind == "i", "text": values.dtype == object}[kind]
+        if not is_kind:
+            what = {"f": "64-bit floating-point numbers", "i": "whole numbers", "text": "text"}[kind]
+            raise NotWanted(f"{self.path}: {name}: has the type {values.dtype}; expected {what}")
+        if values.ndim != len(shape):
+            raise NotWanted(f"{self.path}: {name}: has {values.ndim} dimensions; expected {len(shape)}")
+        for found, dimension in zip(values.shape, shape):
+            more = 0
+            if isinstance(dimension, str) and dimension.endswith("+1"):
+                dimension, more = dimension[:-2], 1
+            wanted = dimension if isinstance(dimension, int) else self.size.setdefault(dimension, found - more) + more
+            if found != wanted or wanted < more:
+                raise NotWanted(f"{self.path}: {name}: has {found} rows of {dimension}; expected {wanted}")
+        return values.astype(np.int64) if kind == "i" else values
+
+    def numbers(self, name, *shape):
+        return self.array(name, "f", *shape)
+
+    def index(self, name, of, *shape, least=0):
+        """Whole numbers from `least` up to the size of a dimension, or to a number."""
+        values = self.array(name, "i", *shape)
+        end = of if isinstance(of, int) else self.size[of]
+        wrong = np.argwhere((values < least) | (values >= end))
+        if len(wrong):
+            place = tuple(wrong[0])
+            raise NotWanted(f"{self.path}: {name}{list(map(int, place))}: is {values[place]}; expected {least} to {end - 1}")
+        return values
+
+    def texts(self, name, *shape):
+        return self.array(name, "text", *shape)
+
+    def all_datasets(self):
+        names = []
+        try:
+            self.file.visititems(lambda name, item: names.append("/" + name) if isinstance(item, h5py.Dataset) else None)
+        except (OSError, RuntimeError) as error:
+            raise NotReadable(f"{self.path}: cannot be read: {error}") from None
+        return names
+
+
+# --- The scene ------------------------------------------------------------------------------------------------------
+
+
+class Scene:
+    """What the scene's text and the options of the run say. Stresses in Pa, lengths in m, angles in rad, times in days."""
+
+    def __init__(self, file):
+        self.place = f"{file.path}: /scene"
+        try:
+            self.tables = tomllib.loads("\n".join(file.texts("/scene", 1)))
+        except (tomllib.TOMLDecodeError, RecursionError) as error:
+            raise NotWanted(f"{self.place}: {error}") from None
+        program = file.texts("/provenance/program", "program")
+        options = file.texts("/provenance/options", "program")
+        if "demsolve" not in program:
+            raise NotWanted(f"{file.path}: /provenance/program: has no demsolve")
+        words = str(options[list(program).index("demsolve")]).split()
+        self.options = {}
+        for word, value in zip(words, [*words[1:], ""]):
+            if word.startswith("--"):
+                self.options[word] = "" if value.startswith("--") else value
+
+        self.gravity = self.number(self.table("section"), "gravity_m_per_s2")
+        equilibrium = self.table("equilibrium", {})
+        self.tolerance = self.option("--tolerance", self.number(equilibrium, "tolerance", 1e-6))
+        self.divisor = self.option("--strength-factor", 1.0)
+        self.has_dashpots = "stiffness_damping_s" in equilibrium  # which the report's forces have, too
+        self.large_displacements = "large_displacements" in self.tables
+        creep = self.table("creep", {})
+        self.creeps = "creep" in self.tables and "--no-creep" not in self.options
+        self.scheme = self.options.get("--creep-scheme", str(creep.get("scheme", "fitted"))).replace("-", " ")
+        if not self.tolerance > 0 or not self.divisor > 0:
+            raise NotWanted(f"{self.place}: tolerance {self.tolerance}, strength factor {self.divisor}; expected more than 0")
+        self.rocks = {rock.get("name"): rock for rock in self.list("rock")}
+        self.start = self.table("schedule").get("start", 0)
+        self.boundaries = [self.boundary(table) for table in self.list("boundary")]
+
+    def table(self, name, default=None):
+        value = self.tables.get(name, default)
+        if not isinstance(value, dict):
+            raise NotWanted(f"{self.place}: [{name}]: expected this table")
+        return value
+
+    def list(self, name):
+        value = self.tables.get(name, [])
+        if not isinstance(value, list) or not all(isinstance(one, dict) for one in value):
+            raise NotWanted(f"{self.place}: [[{name}]]: expected a list of tables")
+        return value
+
+    def number(self, table, key, default=None):
+        value = table.get(key, default)
+        if isinstance(value, bool) or not isinstance(value, (int, float)):
+            raise NotWanted(f"{self.place}: {key}: expected a number")
+        return float(value)
+
+    def pair(self, value, key):
+        if not isinstance(value, list) or len(value) != 2:
+            raise NotWanted(f"{self.place}: {key}: expected two numbers")
+        return np.array([self.number({key: part}, key) for part in value])
+
+    def option(self, name, default):
+        if name not in self.options:
+            return default
+        try:
+            return float(self.options[name])
+        except ValueError:
+            raise NotWanted(f"{self.place}: option {name} of demsolve: expected a number") from None
+
+    def day(self, value, key):
+        """Days since the start, of a date or a number."""
+        if isinstance(value, datetime.date) and isinstance(self.start, datetime.date):
+            return float((value - self.start).days)
+        start = 0.0 if isinstance(self.start, datetime.date) else self.number({"start": self.start}, "start")
+        return self.number({key: value}, key) - start
+
+    def boundary(self, table):
+        history = table.get("load_history")
+        points = None
+        if history is not None:
+            if not isinstance(history, list) or not history or \
+                    not all(isinstance(pair, list) and len(pair) == 2 for pair in history):
+                raise NotWanted(f"{self.place}: load_history: expected pairs of a date and a number")
+            points = np.array([[self.day(pair[0], "load_history"), self.number({"load_history": pair[1]}, "load_history")]
+                               for pair in history])
+        return {"fix": str(table.get("fix", "")),
+                "traction": 1e6 * self.pair(table["traction_MPa"], "traction_MPa") if "traction_MPa" in table else None,
+                "displacement": 1e-3 * self.pair(table["displacement_mm"], "displacement_mm")
+                if "displacement_mm" in table else None,
+                "factor": lambda day: 1.0 if points is None else float(np.interp(day, points[:, 0], points[:, 1]))}
+
+    def of_rock(self, name, key, default=None):
+        if name not in self.rocks:
+            raise NotWanted(f'{self.place}: has no [[rock]] "{name}", which /names/rock has')
+        return self.number(self.rocks[name], key, default)
+
+
+# --- Checks ---------------------------------------------------------------------------------------------------------
+
+
+class Checks:
+    """The worst of what each check has seen."""
+
+    def __init__(self):
+        self.rows, self.left_out = {}, []
+
+    def see(self, name, unit, deviation, allowed, where):
+        """Deviations that must be at most the allowed ones; where(i) says what value i is."""
+        deviation, allowed = np.broadcast_arrays(np.asarray(deviation, float), np.asarray(allowed, float))
+        deviation, allowed = deviation.ravel(), allowed.ravel()
+        if not len(deviation):
+            return
+        share = np.where(deviation <= 0, 0.0, np.divide(deviation, allowed, out=np.full(len(deviation), np.inf),
+                                                       where=allowed > 0))
+        share[np.isnan(deviation) | np.isnan(allowed)] = np.inf
+        worst = int(np.argmax(share))
+        row = self.rows.setdefault(name, {"share": -1.0, "count": 0})
+        row["count"] += len(share)
+        if share[worst] > row["share"]:
+            row.update(share=share[worst], deviation=deviation[worst], allowed=allowed[worst], unit=unit,
+                       where=where(worst))
+
+    def leave_out(self, what):
+        if what not in self.left_out:
+            self.left_out.append(what)
+
+    def report(self):
+        """Whether all passed; prints the table."""
+        heads = ("check", "values", "largest deviation", "allowed", "verdict", "where")
+        table = [heads]
+        for name, row in self.rows.items():
+            passed = row["share"] <= 1
+            off = row["deviation"] if row["share"] > 0 else 0.0
+            table.append((name, str(row["count"]), f"{off:.3g} {row['unit']}".strip(),
+                          f"{row['allowed']:.3g} {row['unit']}".strip(), "ok" if passed else "FAILED",
+                          row["where"] if row["share"] > 0 else ""))
+        widths = [max(len(line[i]) for line in table) for i in range(len(heads) - 1)]
+        for line in table:
+            print(("  ".join(cell.ljust(width) for cell, width in zip(line, widths)) + "  " + line[-1]).rstrip())
+        for what in self.left_out:
+            print(f"not verified: {what}")
+        good = sum(row["share"] <= 1 for row in self.rows.values())
+        print(f"verified: {good} checks of {len(self.rows)}")
+        return good == len(self.rows)
+
+
+# --- The section ----------------------------------------------------------------------------------------------------
+
+
+def norm(vectors):
+    return np.hypot(vectors[..., 0], vectors[..., 1])
+
+
+def cross(a, b):
+    return a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
+
+
+class Section:
+    """Mesh, rocks and joints."""
+
+    def __init__(self, file, scene):
+        number, index = file.numbers, file.index
+        self.position = number("/mesh/gridpoint_position", "gridpoint", 2)
+        self.fixed = index("/mesh/gridpoint_fixed", 4, "gridpoint")
+        rock_names = file.texts("/names/rock", "rock")
+        file.texts("/names/stage", "stage")
+        self.block_rock = index("/blocks/rock", "rock", "block")
+        self.block_stage = index("/blocks/stage", "stage", "block", least=-1)
+        self.block_area = number("/blocks/area", "block")
+        self.zone = index("/mesh/zone_gridpoint", "gridpoint", "zone", 3)
+        self.zone_block = index("/mesh/zone_block", "block", "zone")
+        self.zone_stage = self.block_stage[self.zone_block]
+        self.tie = index("/mesh/tie_gridpoint", "gridpoint", "tie", 2)
+        self.tie_stage = index("/mesh/tie_stage", "stage", "tie")
+        self.side = index("/mesh/side_gridpoint", "gridpoint", "side", 2)
+        self.side_zone = index("/mesh/side_zone", "zone", "side")
+        self.side_boundary = index("/mesh/side_boundary", len(scene.boundaries), "side")
+        vertex = number("/vertices/position", "vertex", 2)
+        edge_vertex = index("/edges/vertex", "vertex", "edge", 2)
+        self.contact = index("/mesh/contact_gridpoint", "gridpoint", "contact", 2)
+        self.edge = index("/mesh/contact_edge", "edge", "contact")
+        self.normal = number("/mesh/contact_normal", "contact", 2)
+        self.tangent = np.stack([self.normal[:, 1], -self.normal[:, 0]], axis=1)
+        self.length = number("/mesh/contact_length", "contact")
+        self.centre = number("/mesh/contact_centre", "contact", 2)
+        if not len(self.position) or not len(self.zone):
+            raise NotWanted(f"{file.path}: /mesh/zone_gridpoint: has no zones")
+
+        corner = self.position[self.zone]
+        self.area = cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]) / 2
+        opposite = np.roll(corner, -2, axis=1) - np.roll(corner, -1, axis=1)  # the side across from each corner
+        self.gradient = np.stack([-opposite[..., 1], opposite[..., 0]], axis=-1) / (2 * self.area)[:, None, None]
+        self.perimeter = norm(opposite).sum(axis=1)
+        self.zone_centre = corner.mean(axis=1)
+        self.has_zones = np.zeros(len(self.position), bool)
+        self.has_zones[self.zone] = True
+
+        def of_zones(key, unit=1.0, default=None):
+            used = np.unique(self.block_rock[self.zone_block])
+            values = np.zeros(len(rock_names))
+            for rock in used:
+                values[rock] = unit * scene.of_rock(rock_names[rock], key, default)
+            return values[self.block_rock[self.zone_block]]
+
+        modulus, poisson = of_zones("youngs_modulus_GPa", 1e9), of_zones("poissons_ratio")
+        self.weight = of_zones("density_kg_per_m3") * self.area * scene.gravity
+        factor = modulus / ((1 + poisson) * (1 - 2 * poisson))
+        self.c11, self.c12, self.c33 = factor * (1 - poisson), factor * poisson, modulus / (2 * (1 + poisson))
+        # Mohr-Coulomb; 0 of rock without strength, which does not yield.
+        friction = np.arctan(np.tan(of_zones("friction_angle_deg", DEGREE, 0)) / scene.divisor)
+        cohesion = of_zones("cohesion_MPa", 1e6, 0) / scene.divisor
+        self.n_phi = (1 + np.sin(friction)) / (1 - np.sin(friction))
+        self.uniaxial = 2 * cohesion * np.sqrt(self.n_phi)
+        apex = np.divide(self.uniaxial, self.n_phi - 1, out=np.full(len(friction), np.inf), where=self.n_phi > 1)
+        self.tension = np.minimum(of_zones("tensile_strength_MPa", 1e6, 0) / scene.divisor, apex)
+
+        # Joints, of every edge and then of every contact.
+        def of_edges(name):
+            return number("/equivalent/" + name, "edge")[self.edge]
+
+        def divided(name):
+            return np.tan(of_edges(name)) / scene.divisor
+
+        self.law = index("/equivalent/law", 5, "edge")[self.edge]
+        self.k_n, self.k_s = of_edges("normal_stiffness"), of_edges("shear_stiffness")
+        self.cohesion, self.strength_in_tension = (of_edges(name) / scene.divisor for name in ("cohesion", "tensile_strength"))
+        self.tan_phi, self.tan_psi = divided("friction_angle"), divided("dilation_angle")
+        self.dilation_until = of_edges("dilation_until")
+        self.residual_cohesion = of_edges("residual_cohesion") / scene.divisor
+        self.residual_tan_phi = divided("residual_friction_angle")
+        self.initial_tan_phi = divided("initial_friction_angle")
+        self.residual_angle = of_edges("friction_angle")  # of Barton and Bandis, whose strength is divided as a whole
+        self.roughness, self.wall = of_edges("roughness"), of_edges("wall_strength")
+        self.largest_closure = of_edges("largest_closure")
+        self.divisor = scene.divisor
+        self.units = {}
+        for direction in ("normal", "shear"):
+            kelvin = [number(f"/equivalent/{direction}_kelvin_{what}", "edge", "kelvin_unit")[self.edge]
+                      for what in ("stiffness", "viscosity")]
+            maxwell = number(f"/equivalent/{direction}_maxwell_viscosity", "edge")[self.edge]
+            stiffness = np.column_stack([kelvin[0], np.zeros(len(maxwell))])
+            viscosity = np.column_stack([np.where(kelvin[0] > 0, kelvin[1], 0), maxwell])
+            self.units[direction] = stiffness, viscosity  # a viscosity of 0 is no unit
+
+        run = vertex[edge_vertex[:, 1]] - vertex[edge_vertex[:, 0]]
+        self.edge_length = norm(run)[self.edge]
+        self.normal_of_edge = np.stack([-run[:, 1], run[:, 0]], axis=1)[self.edge]
+        self.reach = np.abs(self.position).max()  # of coordinates, which rounding goes with
+        self.size = float(norm(np.ptp(self.position, axis=0)))
+
+    # Laws.
+
+    def is_barton_bandis(self):
+        return self.law == BARTON_BANDIS
+
+    def closure(self, p):
+        """Closure at a pressure, of Barton and Bandis's law; a negative one is a gap."""
+        p = np.asarray(p, float)
+        scale = self.k_n * self.largest_closure
+        on_curve = np.clip(p, 0, self.wall)
+        stiffest = self.k_n * (1 + self.wall / scale) ** 2
+        closed = on_curve * self.largest_closure / (scale + on_curve) + np.maximum(p - self.wall, 0) / stiffest
+        return np.where(p < 0, p / self.k_n, closed)
+
+    def pressure(self, v):
+        scale = self.k_n * self.largest_closure
+        crushed = self.wall * self.largest_closure / (scale + self.wall)
+        stiffest = self.k_n * (1 + self.wall / scale) ** 2
+        on_curve = self.k_n * v / (1 - np.minimum(v, crushed) / self.largest_closure)
+        return np.where(v < 0, self.k_n * v, np.where(v < crushed, on_curve, self.wall + stiffest * (v - crushed)))
+
+    def strength(self, normal, broken):
+        """Largest shear traction under a normal traction. Of a continuously yielding joint that before it has slipped."""
+        weakened = broken & (self.law == RESIDUAL)
+        cohesion = np.where(broken, np.where(self.law == RESIDUAL, self.residual_cohesion, 0.0), self.cohesion)
+        tan_phi = np.where(weakened, self.residual_tan_phi, self.tan_phi)
+        limit = np.maximum(0, cohesion - normal * tan_phi)
+        p = np.maximum(-normal, 0)
+        angle = self.residual_angle + self.roughness * DEGREE * np.maximum(0, np.log10(self.wall / np.maximum(p, 1e-300)))
+        steepest = np.maximum(70 * DEGREE, self.residual_angle)
+        limit = np.where(self.is_barton_bandis(), p * np.tan(np.minimum(angle, steepest)) / self.divisor, limit)
+        return np.where(self.law == YIELDING, p * self.initial_tan_phi, limit)
+
+
+class States:
+    def __init__(self, file):
+        number, index = file.numbers, file.index
+        self.time = number("/states/time", "state")
+        self.event = file.texts("/states/event", "state")
+        self.displacement = number("/states/displacement", "state", "gridpoint", 2)
+        self.reaction = number("/states/reaction", "state", "gridpoint", 2)
+        self.stress = number("/states/stress", "state", "zone", 3)
+        self.present = index("/states/zone_present", 2, "state", "zone") > 0
+        self.traction = number("/states/traction", "state", "contact", 2)
+        self.relative = number("/states/relative_displacement", "state", "contact", 2)
+        self.status = index("/states/contact_status", 4, "state", "contact")
+        self.slip = number("/states/slip", "state", "contact")
+        self.dilation = number("/states/dilation", "state", "contact")
+        self.broken = index("/states/bond_broken", 2, "state", "contact") > 0
+        self.crept = number("/states/crept", "state", "contact", 2)
+        self.initial_gap = number("/states/initial_gap", "contact")
+        self.yielding = index("/states/yielding_zone", "zone", "yielding_zone")
+        self.plastic = number("/states/plastic_strain", "state", "yielding_zone", 3)
+        self.stress_zz = number("/states/stress_zz", "state", "yielding_zone")
+        self.creeping = index("/states/creeping_zone", "zone", "creeping_zone")
+        self.crept_strain = number("/states/crept_strain", "state", "creeping_zone", 3)
+        if not len(self.time):
+            raise NotWanted(f"{file.path}: /states/time: has no states")
+
+
+class Verification:
+    def __init__(self, path):
+        self.file = File(path)
+        self.scene = Scene(self.file)
+        self.section = Section(self.file, self.scene)
+        self.states = States(self.file)
+        self.checks = Checks()
+        self.stage_names = list(self.file.texts("/names/stage", "stage"))
+        self.equilibria = {name: self.file.numbers("/equilibria/" + name, "equilibrium") for name in (
+            "time", "unbalanced_force_ratio", "contact_force_change", "work_of_loads", "stored_energy", "dissipated_energy",
+            "damped_energy")}
+        # The state of equilibrium in situ is at small displacements in any scene.
+        self.n_small = 1 if self.scene.large_displacements else len(self.states.time)
+        self.is_at_rest = len(self.equilibria["time"]) > 0 or not self.file.has("/failure")
+
+    # Where a value is.
+
+    def day(self, s):
+        event = f', after "{self.states.event[s]}"' if self.states.event[s] else ""
+        return f"day {self.states.time[s]:.6g}{event}"
+
+    def in_state(self, dataset, s, places, what, numbers=None, beside=""):
+        """Says where value i of a state is: numbers[i], or i itself, at one of the places; and what it was held against."""
+        def where(i):
+            n = i if numbers is None else int(numbers[i])
+            x, y = places[n]
+            return f"{dataset}[{s}, {n}]{beside and ' by ' + beside}: {what} {n} at [{x:.6g}, {y:.6g}] m, {self.day(s)}"
+        return where
+
+    def run(self):
+        with np.errstate(all="ignore"):
+            self.check_finite()
+            self.check_mesh()
+            self.check_excavation()
+            for s in range(len(self.states.time)):
+                self.check_kinematics(s)
+                if s < self.n_small and self.is_at_rest:
+                    self.check_stress(s)
+                    self.check_joints(s)
+                    self.check_equilibrium(s)
+                else:
+                    self.check_moving(s)
+            for s in range(1, self.n_small):
+                self.check_history_of_contacts(s)
+                self.check_creep(s)
+            self.check_points()
+            self.check_report()
+            if self.file.has("/dynamics"):
+                self.check_dynamics()
+        self.say_what_is_left_out()
+        return self.checks.report()
+
+    def check_finite(self):
+        for name in self.file.all_datasets():
+            values = self.file.read(name)
+            if values.dtype.kind != "f":
+                continue
+            wrong = ~np.isfinite(values)
+
+            def where(i, name=name, shape=values.shape):
+                return f"{name}{list(map(int, np.unravel_index(i, shape)))}"
+            if values.size:
+                self.checks.see("values are finite", "", wrong.ravel(), 0.5, where)
+
+    def check_mesh(self):
+        m, see = self.section, self.checks.see
+        see("zones have an area, counter-clockwise", "m2", np.where(m.area > 0, 0, np.maximum(-m.area, 1e-300)), 0,
+            lambda z: f"/mesh/gridpoint_position: zone {z}")
+        sums = np.bincount(m.zone_block, m.area, len(m.block_area))
+        rounding = np.bincount(m.zone_block, m.area + m.reach * m.perimeter, len(m.block_area))
+        see("areas of a block's zones sum to its own", "m2", np.abs(sums - m.block_area),
+            ROUNDING * (m.block_area + rounding), lambda b: f"/blocks/area[{b}] by /mesh/gridpoint_position")
+        if len(m.edge):
+            off = np.abs(norm(m.normal) - 1) + np.abs(cross(m.normal, m.normal_of_edge)) / m.edge_length + \
+                np.where((m.normal * m.normal_of_edge).sum(axis=1) > 0, 0, 1)
+            see("normals of contacts are those of their edges", "", off, ROUNDING * (1 + m.reach / m.edge_length),
+                lambda c: f"/mesh/contact_normal[{c}]")
+            sums = np.bincount(m.edge, m.length)
+            lengths = np.zeros(len(sums))
+            lengths[m.edge] = m.edge_length
+            see("contacts are no longer than their edge", "m", np.where(sums > 0, sums - lengths, 0),
+                ROUNDING * (lengths + m.reach), lambda e: f"/mesh/contact_length: on edge {e}")
+            see("contacts have a length", "m", np.where(m.length > 0, 0, np.maximum(-m.length, 1e-300)), 0,
+                lambda c: f"/mesh/contact_length[{c}]")
+
+    def check_excavation(self):
+        """Which stages have been excavated; zones go with their stage, and contacts with their zones."""
+        m, st, see = self.section, self.states, self.checks.see
+        self.gone = []  # for each state the last stage excavated so far
+        last = -1
+        for s in range(len(st.time)):
+            if st.event[s] and st.event[s] in self.stage_names:
+                last = max(last, self.stage_names.index(st.event[s]))
+            elif self.scene.large_displacements and not st.present[s].all():
+                last = max(last, int(m.zone_stage[~st.present[s]].max()))
+            self.gone.append(last)
+            expected = (m.zone_stage < 0) | (m.zone_stage > last)
+            see("zones are removed by their stage, and no others", "", st.present[s] != expected, 0.5,
+                self.in_state("/states/zone_present", s, m.zone_centre, "zone"))
+            has_rock = np.zeros(len(m.position), bool)
+            has_rock[m.zone[st.present[s]]] = True
+            is_gone = m.has_zones & ~has_rock
+            self_gone = is_gone[m.contact].any(axis=1)
+            see("contacts are removed with the rock of a side", "", (st.status[s] == REMOVED) != self_gone, 0.5,
+                self.in_state("/states/contact_status", s, m.centre, "contact"))
+
+    def leaders(self, s):
+        """The gridpoint that holds the sums of each one: the lowest of those that ties hold together."""
+        m = self.section
+        leader = np.arange(len(m.position))
+
+        def root(g):
+            while leader[g] != g:
+                g = leader[g]
+            return g
+        for (a, b), stage in zip(m.tie, m.tie_stage):
+            if stage > self.gone[s]:
+                low, high = sorted((root(a), root(b)))
+                leader[high] = low
+        for g in np.unique(m.tie):
+            leader[g] = root(g)
+        return leader
+
+    def check_kinematics(self, s):
+        m, st, see = self.section, self.states, self.checks.see
+        u = st.displacement[s]
+        if s == 0:
+            see("displacements count from the in-situ equilibrium", "m", norm(u), 0,
+                self.in_state("/states/displacement", s, m.position, "gridpoint"))
+        # Fixed gridpoints are where the boundaries put them; the last one counts. Where rock has been removed they stay.
+        for axis in (0, 1):
+            wanted = np.where(m.fixed & (1 << axis), 0.0, np.nan)
+            stays = np.zeros(len(wanted), bool)
+            for number, boundary in enumerate(self.scene.boundaries):
+                if boundary["displacement"] is None or "xy"[axis] not in boundary["fix"]:
+                    continue
+                value = (boundary["factor"](st.time[s]) - boundary["factor"](0.0)) * boundary["displacement"][axis]
+                on = m.side_boundary == number
+                there = st.present[s][m.side_zone]
+                stays[m.side[on & ~there]] = True
+                wanted[m.side[on & there]] = value
+            held = ~np.isnan(wanted) & ~stays
+            see("fixed gridpoints are where supports hold them", "m", np.abs(u[held, axis] - wanted[held]),
+                ROUNDING * np.abs(wanted[held]),
+                self.in_state("/states/displacement", s, m.position, "gridpoint", np.flatnonzero(held)))
+        here = np.flatnonzero(st.status[s] != REMOVED)
+        apart = (u[m.contact[:, 1]] - u[m.contact[:, 0]])[here]
+        relative = np.stack([(apart * m.normal[here]).sum(axis=1), (apart * m.tangent[here]).sum(axis=1)], axis=1)
+        scale = norm(u)[m.contact[here]].sum(axis=1)
+        see("relative displacements are those of the gridpoints", "m", np.abs(relative - st.relative[s][here]).max(axis=1,
+            initial=0), ROUNDING * scale,
+            self.in_state("/states/relative_displacement", s, m.centre, "contact", here, "/states/displacement"))
+        removed = ~st.present[s]
+        see("removed zones have no stress", "Pa", np.abs(st.stress[s][removed]).max(axis=1, initial=0), 0,
+            self.in_state("/states/stress", s, m.zone_centre, "zone", np.flatnonzero(removed)))
+        nothing = np.flatnonzero((st.status[s] == OPEN) | (st.status[s] == REMOVED))
+        see("open and removed contacts carry no traction", "Pa", np.abs(st.traction[s][nothing]).max(axis=1, initial=0), 0,
+            self.in_state("/states/traction", s, m.centre, "contact", nothing))
+
+    def strain(self, s):
+        """Strain {xx, yy, 2 xy} of the zones, and the sum of the magnitudes that it is made of."""
+        m = self.section
+        u, b = self.states.displacement[s][m.zone], m.gradient
+        parts = [b[..., 0] * u[..., 0], b[..., 1] * u[..., 1], b[..., 1] * u[..., 0], b[..., 0] * u[..., 1]]
+        strain = np.stack([parts[0].sum(axis=1), parts[1].sum(axis=1), (parts[2] + parts[3]).sum(axis=1)], axis=1)
+        return strain, sum(np.abs(part).sum(axis=1) for part in parts)
+
+    def check_stress(self, s):
+        m, st, see = self.section, self.states, self.checks.see
+        strain, terms = self.strain(s)
+        offset = np.zeros_like(strain)  # what of it is crept or plastic, {xx, yy, 2 xy}
+        across = np.zeros(len(strain))  # and its zz where that counts
+        factors = np.array([1.0, 1.0, 2.0])
+        # Crept strain is deviatoric; the solver takes 2 G times it off the stress.
+        change = np.zeros_like(strain)
+        change[st.creeping] = -2 * m.c33[st.creeping, None] * st.crept_strain[s]
+        # The stress across the section shows the plastic strain there: zz = zz_0 - C11 e_zz + C12 (e_xx + e_yy).
+        y = st.yielding
+        offset[y] = factors * st.plastic[s]
+        elastic = strain - offset
+        across[y] = (m.c12[y] * (elastic[y, 0] + elastic[y, 1]) - (st.stress_zz[s] - st.stress_zz[0])) / m.c11[y]
+        volume = elastic[:, 0] + elastic[:, 1] - across
+        stress = st.stress[0] + change
+        for i in (0, 1):
+            stress[:, i] += (m.c11 - m.c12) * elastic[:, i] + m.c12 * volume
+        stress[:, 2] += m.c33 * elastic[:, 2]
+        scale = np.abs(st.stress[0]).max(axis=1) + np.abs(change).max(axis=1) + (m.c11 + m.c12) * (
+            terms + np.abs(offset).sum(axis=1) + np.abs(across))
+        off = np.abs(stress - st.stress[s]).max(axis=1)
+        there = st.present[s]
+        yields = np.zeros(len(there), bool)
+        yields[y] = True
+        for chosen, name, beside in (
+                (there & ~yields, "stress of elastic zones is Hooke's", "/states/displacement, /states/crept_strain"),
+                (there & yields, "stress of yielding zones is Hooke's, less plastic strain",
+                 "/states/displacement, /states/plastic_strain, /states/stress_zz")):
+            see(name, "Pa", off[chosen], ROUNDING * scale[chosen],
+                self.in_state("/states/stress", s, m.zone_centre, "zone", np.flatnonzero(chosen), beside))
+        if len(y):
+            chosen = there[y]
+            xx, yy, xy = st.stress[s][y].T
+            mean, radius = (xx + yy) / 2, np.hypot((xx - yy) / 2, xy)
+            high, low = np.maximum(mean + radius, st.stress_zz[s]), np.minimum(mean - radius, st.stress_zz[s])
+            beyond = np.maximum(m.n_phi[y] * high - low - m.uniaxial[y], high - m.tension[y])
+            # The solver calls less than 1e-10 of it rounding.
+            see("stress is within Mohr and Coulomb's strength", "Pa", beyond[chosen],
+                (1e-10 + ROUNDING) * (np.abs(high) + np.abs(low) + m.uniaxial[y])[chosen],
+                self.in_state("/states/stress", s, m.zone_centre, "zone", y[chosen], "/states/stress_zz"))
+        if s == 0:
+            see("nothing has crept or yielded at the in-situ equilibrium", "", np.abs(np.concatenate(
+                [st.crept_strain[0].ravel(), st.plastic[0].ravel()])), 0,
+                lambda i: "/states/crept_strain[0]" if i < st.crept_strain[0].size else "/states/plastic_strain[0]")
+
+    def opening_at_start(self):
+        """Of every contact: its gap in situ, or minus the closure of its spring."""
+        m, st = self.section, self.states
+        normal = st.traction[0, :, 0]
+        closed = np.where(m.is_barton_bandis(), -m.closure(-normal), normal / m.k_n)
+        return np.where(st.status[0] == OPEN, st.initial_gap, closed)
+
+    def check_joints(self, s):
+        m, st, see = self.section, self.states, self.checks.see
+        status, traction, broken = st.status[s], st.traction[s], st.broken[s]
+        closed = (status == STUCK) | (status == SLIPPING)
+        here = status != REMOVED
+        bb = m.is_barton_bandis()
+        spring = st.relative[s] - st.crept[s]
+        spring[:, 0] -= st.dilation[s]
+        spring[:, 1] -= st.slip[s]
+        size = np.abs(st.relative[s]) + np.abs(st.crept[s]) + np.stack([st.dilation[s], np.abs(st.slip[s])], axis=1)
+        opening_0 = self.opening_at_start()
+        opening = opening_0 + spring[:, 0]
+        p = np.maximum(-traction[:, 0], 0)
+        p_0 = np.maximum(-st.traction[0, :, 0], 0)
+
+        def at(dataset, chosen, beside=""):
+            return self.in_state(dataset, s, m.centre, "contact", np.flatnonzero(chosen), beside)
+
+        # Springs. A Barton-Bandis joint is k_n (1 + p / (k_n V_m))^2 stiff, and rounding of a displacement counts so often.
+        stiff = np.where(bb, m.k_n * (1 + np.minimum(np.maximum(p, p_0), m.wall) / (m.k_n * m.largest_closure)) ** 2, m.k_n)
+        normal = np.where(bb, -m.pressure(-opening), m.k_n * opening)
+        rounding_n = ROUNDING * (np.abs(traction[:, 0]) + np.abs(st.traction[0, :, 0]) +
+                                 stiff * (size[:, 0] + np.abs(opening_0)))
+        see("normal traction is that of the springs' closing", "Pa", np.abs(normal - traction[:, 0])[closed],
+            rounding_n[closed], at("/states/traction", closed,
+                                   "/states/relative_displacement, /states/crept, /states/dilation, /states/initial_gap"))
+        shear = st.traction[0, :, 1] + m.k_s * spring[:, 1]
+        rounding_s = ROUNDING * (np.abs(st.traction[0, :, 1]) + m.k_s * size[:, 1])
+        sheared = here & ((m.k_s > 0) | closed)
+        see("shear traction is that of the springs, less slip", "Pa", np.abs(shear - traction[:, 1])[sheared],
+            rounding_s[sheared], at("/states/traction", sheared,
+                                    "/states/relative_displacement, /states/crept, /states/slip"))
+        is_open = status == OPEN
+        see("open contacts have a gap", "m", -opening[is_open], (rounding_n / stiff)[is_open],
+            at("/states/contact_status", is_open, "/states/relative_displacement, /states/initial_gap"))
+        if s == 0:
+            see("gaps in situ are of open contacts alone", "m", np.where(is_open, 0, np.abs(st.initial_gap)), 0,
+                lambda c: f"/states/initial_gap[{c}]")
+            counted = np.abs(st.slip[0]) + np.abs(st.dilation[0]) + np.abs(st.crept[0]).sum(axis=1)
+            see("nothing has slipped, dilated or crept at the in-situ equilibrium", "m", counted, 0,
+                lambda c: f"/states/slip, dilation or crept[0, {c}]")
+
+        # Strength.
+        limit = m.strength(traction[:, 0], broken)
+        slope = np.maximum(np.maximum(m.tan_phi, m.residual_tan_phi), np.where(bb, np.tan(70 * DEGREE), m.initial_tan_phi))
+        rounding = rounding_s + slope * rounding_n + ROUNDING * m.cohesion
+        tau = np.abs(traction[:, 1])
+        see("shear traction is within the strength", "Pa", (tau - limit)[closed], rounding[closed],
+            at("/states/traction", closed, "/states/bond_broken"))
+        tension = np.where(broken | bb | (m.law == YIELDING), 0.0, m.strength_in_tension)
+        see("normal traction is within the tensile strength", "Pa", (traction[:, 0] - tension)[closed], rounding_n[closed],
+            at("/states/traction", closed, "/states/bond_broken"))
+        known = m.law != YIELDING  # whose strength is between two bounds
+        stuck = (status == STUCK) & known & (traction[:, 1] != 0)
+        see("stuck contacts are below their strength", "Pa", (tau - (1 - AT_STRENGTH) * limit)[stuck], rounding[stuck],
+            at("/states/contact_status", stuck, "/states/traction"))
+        slips = status == SLIPPING
+        least = np.where(known, (1 - AT_STRENGTH) * limit, 0.999 * p * m.tan_phi)
+        see("slipping contacts are at their strength", "Pa", (least - tau)[slips], rounding[slips],
+            at("/states/contact_status", slips, "/states/traction"))
+
+        # Bonds, dilation.
+        bonded = np.isin(m.law, (COULOMB, RESIDUAL, WEARING))
+        breaks = is_open | ((m.law == RESIDUAL) & (st.slip[s] != 0))
+        must = here & bonded & breaks
+        see("bonds of contacts that opened, or slipped with a residual strength, are broken", "", ~broken[must], 0.5,
+            at("/states/bond_broken", must, "/states/contact_status, /states/slip"))
+        see("only joints that dilate have dilation", "m", np.abs(st.dilation[s])[here & ~(m.tan_psi > 0)], 0,
+            at("/states/dilation", here & ~(m.tan_psi > 0)))
+        ends = here & (m.tan_psi > 0) & (m.dilation_until > 0)
+        most = m.tan_psi * m.dilation_until
+        see("dilation ends", "m", (st.dilation[s] - most)[ends], ROUNDING * most[ends], at("/states/dilation", ends))
+
+    def check_history_of_contacts(self, s):
+        m, st, see = self.section, self.states, self.checks.see
+        here = st.status[s] != REMOVED
+        if not self.is_at_rest:
+            return
+
+        def at(dataset, chosen, beside=""):
+            return self.in_state(dataset, s, m.centre, "contact", np.flatnonzero(chosen), beside)
+        see("broken bonds stay broken", "", (st.broken[s - 1] & ~st.broken[s])[here], 0.5, at("/states/bond_broken", here))
+        more = st.dilation[s] - st.dilation[s - 1]
+        scale = np.abs(st.dilation[s]) + np.abs(st.slip[s]) + np.abs(st.slip[s - 1])
+        see("dilation does not go back", "m", -more[here], ROUNDING * scale[here], at("/states/dilation", here))
+        # While a joint stays closed, every slip dilates it: Coulomb's by tan(psi) times the slip at least.
+        until = np.where(m.dilation_until > 0, m.tan_psi * m.dilation_until, np.inf)
+        slip = np.abs(st.slip[s] - st.slip[s - 1])
+        least = np.minimum(m.tan_psi * slip, until - st.dilation[s - 1])
+        coulomb = here & (m.law == COULOMB) & (m.tan_psi > 0) & ~st.broken[s]
+        see("slip dilates", "m", (least - more)[coulomb], ROUNDING * scale[coulomb], at("/states/dilation", coulomb, "/states/slip"))
+
+    # Creep of joints: d' = (F - E d) / eta of each unit, during a step F = F_0 + (F_1 - F_0) phi.
+
+    def weights(self, stiffness, viscosity, spring, days):
+        """decay, first and last of d_1 = decay d_0 + first F_0 + last F_1 of each unit in a step."""
+        time = 86400 * days
+        is_unit = viscosity > 0
+        fluidity = np.divide(1.0, viscosity, out=np.zeros_like(viscosity), where=is_unit)
+        rate = spring * fluidity.sum(axis=1) + (stiffness * fluidity**2).sum(axis=1) / fluidity.sum(axis=1)
+        x, r = stiffness * fluidity * time, np.broadcast_to((rate * time)[:, None], stiffness.shape)
+        x, r = np.minimum(x, 1e12), np.minimum(r, 1e12)
+        flow = np.where(stiffness > 0, x / np.where(stiffness > 0, stiffness, 1), fluidity * time)
+
+        def mean_decay(y):
+            return np.where(y == 0, 1, -np.expm1(-y) / np.where(y == 0, 1, y))
+
+        def exactly(phi):  # the mean of exp(-x (1 - s)) phi(s) where neither x nor r is large
+            points, weight = np.polynomial.legendre.leggauss(48)
+            return sum(w / 2 * np.exp(-x * (1 - s)) * phi(s) for s, w in zip((points + 1) / 2, weight))
+        whole = mean_decay(x)
+        if self.scene.scheme == "published":
+            last = 0 * x
+        elif self.scene.scheme == "backward":
+            last = whole
+        else:
+            large = np.maximum(x, 20)
+            straight_of_large = (1 - mean_decay(large)) / large
+            straight = np.where(x < 20, exactly(lambda s: s), straight_of_large)
+            if self.scene.scheme == "linear force":
+                last = straight
+            elif self.scene.scheme == "fitted":
+                closed = (whole - np.exp(-np.minimum(x, r)) * mean_decay(np.abs(x - r))) / -np.expm1(-r)
+                near = exactly(lambda s: np.where(r == 0, s, np.expm1(-r * s) / np.expm1(-np.where(r == 0, 1, r))))
+                nearly_straight = straight_of_large + r / 2 * (straight_of_large - (1 - 2 * straight_of_large) / large)
+                last = np.where((x < 20) & (r < 20), near, np.where(r < 1e-5, nearly_straight, closed))
+            else:
+                raise NotWanted(f'{self.scene.place}: creep scheme "{self.scene.scheme}" is not known')
+        return np.exp(-x), flow * (whole - last), flow * last
+
+    def check_creep(self, s):
+        m, st, see = self.section, self.states, self.checks.see
+        if not self.is_at_rest:
+            return
+        here = st.status[s] != REMOVED
+        days = st.time[s] - st.time[s - 1]
+        times = self.equilibria["time"]
+        is_one_step = not ((times > st.time[s - 1]) & (times < st.time[s])).any()
+        for axis, direction in enumerate(("normal", "shear")):
+            spring = m.k_n if axis == 0 else m.k_s
+            stiffness, viscosity = m.units[direction]
+            creeps = (viscosity > 0).any(axis=1) & (spring > 0) & self.scene.creeps
+            still = here & ~creeps if days > 0 else here
+            see("only joints with Kelvin units or dashpots creep, and only in time", "m",
+                np.abs(st.crept[s] - st.crept[s - 1])[still, axis], 0,
+                self.in_state("/states/crept", s, m.centre, "contact", np.flatnonzero(still)))
+            moving = np.flatnonzero(here & creeps)
+            if not len(moving) or days <= 0:
+                continue
+            single = (viscosity[moving] > 0).sum(axis=1) == 1
+            if not is_one_step or not single.all():
+                self.checks.leave_out("displacement that joints have crept, " + (
+                    "where a joint has several Kelvin units or dashpots: the file has their sum alone" if is_one_step else
+                    "where the file has no state between creep steps (demsolve --states 1 records all)"))
+            moving = moving[single]
+            if not is_one_step or not len(moving):
+                continue
+            unit = (viscosity[moving] > 0).argmax(axis=1)[:, None]
+            decay, first, last = (part[:, 0] for part in self.weights(
+                np.take_along_axis(stiffness[moving], unit, 1), np.take_along_axis(viscosity[moving], unit, 1),
+                spring[moving], days))
+            since = st.traction[:, moving, axis] - st.traction[0, moving, axis]
+            parts = [decay * st.crept[s - 1][moving, axis], first * since[s - 1], last * since[s]]
+            # Rounding of tractions, which the change since the start is small beside; the closed form loses some digits.
+            scale = sum(np.abs(part) for part in parts) * 1e-9 + (first + last) * ROUNDING * (
+                np.abs(st.traction[0, moving, axis]) + np.abs(since[s]) + np.abs(since[s - 1]))
+            see("crept displacement of a step is that of the Kelvin unit or dashpot", "m",
+                np.abs(sum(parts) - st.crept[s][moving, axis]), scale + ROUNDING * np.abs(st.crept[s][moving, axis]),
+                self.in_state("/states/crept", s, m.centre, "contact", moving, "/states/traction"))
+
+    # Equilibrium.
+
+    def stiffest_row(self, s):
+        """Largest sum of the magnitudes in a row of the stiffness matrix."""
+        m = self.section
+        sums = np.zeros((len(m.position), 2))
+        b, c11, c12, c33 = m.gradient, m.c11[:, None], m.c12[:, None], m.c33[:, None]
+        for i in range(3):
+            p = b[:, i, None, :]
+            x = np.abs(c11 * p[..., 0] * b[..., 0] + c33 * p[..., 1] * b[..., 1]) + \
+                np.abs(c12 * p[..., 0] * b[..., 1] + c33 * p[..., 1] * b[..., 0])
+            y = np.abs(c12 * p[..., 1] * b[..., 0] + c33 * p[..., 0] * b[..., 1]) + \
+                np.abs(c11 * p[..., 1] * b[..., 1] + c33 * p[..., 0] * b[..., 0])
+            row = (m.area[:, None] * np.stack([x.sum(axis=1), y.sum(axis=1)], axis=1))[self.states.present[s]]
+            np.add.at(sums, m.zone[self.states.present[s], i], row)
+        n, t = np.abs(m.normal), np.abs(m.tangent)
+        row = 2 * m.length[:, None] * (m.k_n[:, None] * n * n.sum(axis=1)[:, None] + m.k_s[:, None] * t * t.sum(axis=1)[:, None])
+        for side in (0, 1):
+            np.add.at(sums, m.contact[:, side], row)
+        return sums.max()
+
+    def check_equilibrium(self, s):
+        m, st, see = self.section, self.states, self.checks.see
+        n = len(m.position)
+        force, magnitude = np.zeros((n, 2)), np.zeros(n)
+
+        def add(gridpoints, forces):
+            np.add.at(force, gridpoints, forces)
+            np.add.at(magnitude, gridpoints, norm(forces))
+        load, applied = np.zeros((n, 2)), np.zeros((n, 2))
+        there = st.present[s]
+        for i in range(3):
+            np.add.at(load[:, 1], m.zone[there, i], -m.weight[there] / 3)
+        for number, boundary in enumerate(self.scene.boundaries):
+            if boundary["traction"] is None:
+                continue
+            on = (m.side_boundary == number) & there[m.side_zone]
+            ends = m.side[on]
+            length = norm(m.position[ends[:, 1]] - m.position[ends[:, 0]])
+            each = boundary["factor"](st.time[s]) * length[:, None] / 2 * boundary["traction"]
+            for end in (0, 1):
+                np.add.at(applied, ends[:, end], each)
+        force += load + applied
+        magnitude += norm(load) + norm(applied)
+        xx, yy, xy = st.stress[s][there].T
+        for i in range(3):
+            bx, by = m.gradient[there, i].T
+            add(m.zone[there, i], -m.area[there, None] * np.stack([xx * bx + xy * by, xy * bx + yy * by], axis=1))
+        on_a = m.length[:, None] * (st.traction[s][:, :1] * m.normal + st.traction[s][:, 1:] * m.tangent)
+        add(m.contact[:, 0], on_a)
+        add(m.contact[:, 1], -on_a)
+        mean = magnitude[magnitude > 0].mean() if (magnitude > 0).any() else 0.0
+
+        leader = self.leaders(s)
+        follows = np.flatnonzero(leader != np.arange(n))
+        free = np.stack([(m.fixed & 1) == 0, (m.fixed & 2) == 0], axis=1)
+        has_rock = ~m.has_zones
+        has_rock[m.zone[there]] = True
+        free[~has_rock] = False
+        carried = magnitude.copy()
+        for f in follows:
+            force[leader[f]] += force[f]
+            force[f] = 0
+            carried[leader[f]] += magnitude[f]
+            free[leader[f]] &= free[f]
+        reaction = st.reaction[s]
+        rounding = ROUNDING * carried
+        see("reactions hold the forces on fixed gridpoints, and there are no others", "N/m",
+            norm(np.where(free, reaction, reaction + force)), rounding,
+            self.in_state("/states/reaction", s, m.position, "gridpoint", beside="/states/stress, /states/traction"))
+        # What is below the rounding of stiffness times displacement is in balance.
+        tolerance = self.scene.tolerance
+        unbalanced = norm(np.where(free, force, 0))
+        floor = 1e-15 * self.stiffest_row(s) / tolerance  # times a displacement
+        worst = int(np.argmax(np.where(np.isnan(unbalanced), np.inf, unbalanced)))
+        base = max(mean, floor * norm(st.displacement[s]).max())
+        ratio = unbalanced[worst] / base if base > 0 else unbalanced[worst]
+        rounding = ROUNDING * (1 + magnitude.max() / base) if base > 0 else 0.0
+        # The report is of the last equilibrium before the last state of a time. It may count displacements on the way, which
+        # are a tenth of the section at most.
+        before = np.flatnonzero(self.equilibria["time"] <= st.time[s])
+        is_last = s + 1 == len(st.time) or st.time[s + 1] > st.time[s]
+        if len(before) and is_last and not self.scene.has_dashpots and mean > floor * m.size / 10:
+            reported = self.equilibria["unbalanced_force_ratio"][before[-1]]
+            see("unbalanced force ratio is the reported one", "", abs(ratio - reported), 1e-9 * tolerance + rounding,
+                lambda _: f"/equilibria/unbalanced_force_ratio[{before[-1]}], {self.day(s)}")
+        see("forces are in equilibrium: unbalanced force ratio", "", ratio, tolerance * (1 + 1e-9) + rounding,
+            lambda _: self.in_state("/states/stress", s, m.position, "gridpoint", beside="/states/traction and /mesh")(worst))
+        whole = (load + applied + reaction)
+        see("weight and tractions are held by reactions and ground", "N/m", norm(whole.sum(axis=0)),
+            tolerance * base * np.count_nonzero(free.any(axis=1)) + ROUNDING * magnitude.sum(),
+            lambda _: f"/states/reaction[{s}]: sum over all gridpoints, {self.day(s)}")
+
+    def check_moving(self, s):
+        """What holds at large displacements."""
+        m, st = self.section, self.states
+        corner = (m.position + st.displacement[s])[m.zone]
+        area = cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]) / 2
+        chosen = np.flatnonzero(st.present[s])
+        self.checks.see("displaced zones have an area, counter-clockwise", "m2", np.where(area > 0, 0, np.maximum(
+            -area, 1e-300))[chosen], 0, self.in_state("/states/displacement", s, m.zone_centre, "zone", chosen))
+
+    # Histories and reports.
+
+    def check_points(self):
+        """Histories are the states' displacements at the points, where there is a state of a row's time."""
+        m, st, file = self.section, self.states, self.file
+        time = file.numbers("/history/time", "time")
+        event = file.texts("/history/event", "time")
+        names = file.texts("/history/point", "point")
+        places = file.numbers("/history/point_position", "point", 2)
+        history = file.numbers("/history/displacement", "time", "point", 2)
+        present = file.index("/history/present", 2, "time", "point")
+        # Cutting may have moved the face that a point lies on by so much.
+        cutting, zones = self.scene.table("cutting", {}), self.scene.table("zones")
+        shortest = self.scene.number(cutting, "shortest_edge_m", 0.02 * self.scene.number(zones, "size_m"))
+        self.checks.see("displacement of removed points is held", "m", np.where(present[1:] == 0, norm(
+            history[1:] - history[:-1]), 0), 0, lambda i: f"/history/displacement[{i // max(len(names), 1) + 1}, "
+            f"{i % max(len(names), 1)}]")
+        corner = m.position[m.zone]
+        side = np.roll(corner, -2, axis=1) - np.roll(corner, -1, axis=1)
+        # Moments of a dynamic analysis have no row, but for its end.
+        moments = set(file.index("/dynamics/state", "state", "moment")) if file.has("/dynamics") else set()
+        with_row = [s for s in range(len(st.time)) if st.event[s] or s not in moments]
+        unmatched = set(range(len(time)))
+        for p, place in enumerate(places):
+            share = np.stack([cross(side[:, i], place - np.roll(corner, -1, axis=1)[:, i]) for i in range(3)], axis=1) / \
+                (2 * m.area)[:, None]
+            outside = np.maximum(-share * (2 * m.area)[:, None] / norm(side), 0).max(axis=1)
+            near = np.flatnonzero(outside <= max(1e-6 * m.size, shortest))
+            for s in with_row:
+                rows = np.flatnonzero((time == st.time[s]) & (event == st.event[s]))
+                unmatched -= set(rows)
+                rows = [row for row in rows if present[row, p]]
+                if not rows:
+                    continue
+                zones = near[st.present[s][near]]
+                if not len(zones):
+                    self.checks.see("points are where there is rock", "", [1.0], 0.5,
+                                    lambda _, s=s, p=p, row=rows[0]: f"/history/present[{row}, {p}]: point {names[p]}")
+                    continue
+                u = (share[zones, :, None] * st.displacement[s][m.zone[zones]]).sum(axis=1)
+                off = norm(history[rows][:, p][:, None, :] - u[None]).min()
+                self.checks.see("histories are the states' displacements at the points", "m", off,
+                                ROUNDING * norm(st.displacement[s][m.zone[zones]]).max() * (
+                                    1 + np.abs(share[zones]).max() * m.reach / np.sqrt(m.area[zones].min())),
+                                lambda _, s=s, p=p, row=rows[0]: f"/history/displacement[{row}, {p}]: point {names[p]}, "
+                                f"{self.day(s)}")
+        if unmatched and len(places):
+            self.checks.leave_out(f"{len(unmatched)} of {len(time)} rows of the history, which have no state of their time")
+
+    def check_report(self):
+        e, tolerance = self.equilibria, self.scene.tolerance
+        for name in ("unbalanced_force_ratio", "contact_force_change"):
+            self.checks.see(f"report: {name.replace('_', ' ')} is within the tolerance", "", e[name], tolerance,
+                            lambda i, name=name: f"/equilibria/{name}[{i}], day {e['time'][i]:.6g}")
+        parts = [e[name] for name in ("stored_energy", "dissipated_energy", "damped_energy")]
+        size = np.abs(e["work_of_loads"]) + sum(np.abs(part) for part in parts)
+        # What is stored is a small difference of all that rock and joints have stored.
+        whole = self.stored_energy()
+        self.checks.see("report: work of loads is stored, dissipated or damped", "J/m", np.abs(e["work_of_loads"] - sum(parts)),
+                        (ENERGY_OF_DYNAMICS if self.scene.large_displacements else tolerance) * size + ROUNDING * whole,
+                        lambda i: f"/equilibria/work_of_loads[{i}], day {e['time'][i]:.6g}")
+
+    def stored_energy(self):
+        """Largest energy that zones and contacts have stored in a state."""
+        m, st = self.section, self.states
+        xx, yy, xy = np.moveaxis(st.stress, 2, 0)
+        determinant = m.c11**2 - m.c12**2
+        zones = m.area / 2 * ((m.c11 * (xx**2 + yy**2) - 2 * m.c12 * xx * yy) / determinant + xy**2 / m.c33)
+        shear = np.divide(st.traction[..., 1] ** 2, m.k_s, out=np.zeros_like(st.traction[..., 1]), where=m.k_s > 0)
+        contacts = m.length / 2 * (st.traction[..., 0] ** 2 / m.k_n + shear)
+        return (zones.sum(axis=1) + contacts.sum(axis=1)).max()
+
+    def check_dynamics(self):
+        file, st = self.file, self.states
+        time = file.numbers("/dynamics/time", "moment")
+        state = file.index("/dynamics/state", "state", "moment")
+        self.checks.see("moments of a dynamic analysis have their states", "day", np.abs(time - st.time[state]), 0,
+                        lambda i: f"/dynamics/time[{i}]")
+        energy = {name: file.numbers(f"/dynamics/{name}", "moment") for name in (
+            "work_of_loads", "kinetic_energy", "stored_energy", "friction_energy", "damped_energy")}
+        dynamic_time = file.numbers("/dynamics/dynamic_time", "moment")
+        fastest = file.numbers("/dynamics/fastest", "moment")
+        begins = np.flatnonzero(np.concatenate([[True], dynamic_time[1:] <= dynamic_time[:-1]])) if len(time) else []
+        for first, end in zip(begins, [*begins[1:], len(time)]):
+            rows = slice(first, end)
+            parts = [values[rows] for values in energy.values()]
+            largest = max(np.abs(part).max() for part in parts)
+            if not fastest[rows].max() > 0.01:
+                self.checks.leave_out(f"energy of the dynamic analysis on day {time[first]:.6g}, in which nothing was faster "
+                                      "than 0.01 m/s")
+                continue
+            self.checks.see("dynamics: work of loads is kinetic, stored, lost or damped", "J/m",
+                            np.abs(parts[0] - sum(parts[1:])), ENERGY_OF_DYNAMICS * largest,
+                            lambda i, first=first: f"/dynamics/work_of_loads[{first + i}], day {time[first + i]:.6g}, "
+                            f"{dynamic_time[first + i]:.3g} s")
+        n = file.array("/dynamics/first_contact", "i", "moment+1")
+        traction = file.numbers("/dynamics/contact_traction", "moving_contact", 2)
+        if len(n) and (n[0] != 0 or (np.diff(n) < 0).any() or n[-1] != len(traction)):
+            raise NotWanted(f"{file.path}: /dynamics/first_contact: expected rows from 0 to {len(traction)}, not decreasing")
+
+    def say_what_is_left_out(self):
+        m, st, leave_out = self.section, self.states, self.checks.leave_out
+        if not self.is_at_rest:
+            leave_out("equilibrium, stresses and joint laws: the run found no equilibrium in situ")
+        if self.n_small < len(st.time):
+            leave_out(f"equilibrium, stresses, reactions and joint laws of the {len(st.time) - self.n_small} states at large "
+                      "displacements")
+        if (m.law == YIELDING).any():
+            leave_out("strength of continuously yielding joints beyond its bounds: the file has no plastic displacement")
+        if (m.law == WEARING).any():
+            leave_out("dilation that wears off, but that it does not go back: the file has no work of slip")
+        if len(st.creeping):
+            leave_out("strain that rock has crept, but that the stress fits it")
+
+
+def verify(path):
+    """Exit code of the verification of a file, which prints its table."""
+    try:
+        return 0 if Verification(path).run() else 3
+    except NotWanted as error:
+        print(f"jointverify: {error}", file=sys.stderr)
+        return 2
+    except NotReadable as error:
+        print(f"jointverify: {error}", file=sys.stderr)
+        return 4
+    except MemoryError:
+        print(f"jointverify: {path}: out of memory", file=sys.stderr)
+        return 5
+    except Exception as error:  # whatever a damaged file may bring about
+        print(f"jointverify: {path}: internal error: {type(error).__name__}: {error}", file=sys.stderr)
+        return 5
+
+
+def main(arguments):
+    if arguments in (["-h"], ["--help"]):
+        print(__doc__, end="")
+        return 0
+    if len(arguments) != 1 or arguments[0].startswith("-"):
+        print("jointverify: expected one result file\nusage: jointverify RESULT.h5\nMore: jointverify --help", file=sys.stderr)
+        return 2
+    # In a process of its own: a damaged file can end the HDF5 library, and Python with it.
+    child = os.fork()
+    if child == 0:
+        code = 4
+        try:
+            code = verify(arguments[0])
+            sys.stdout.flush()
+        except OSError:
+            print("jointverify: the table cannot be written", file=sys.stderr)
+            code = 4
+        finally:
+            os._exit(code)
+    status = os.waitpid(child, 0)[1]
+    if os.WIFSIGNALED(status):
+        print(f"jointverify: {arguments[0]}: cannot be read: the HDF5 library ended by signal {os.WTERMSIG(status)}; the file "
+              "is damaged", file=sys.stderr)
+        return 4
+    return os.WEXITSTATUS(status)
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
