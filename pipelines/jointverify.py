@@ -348,11 +348,27 @@ class Section:
         corner = self.position[self.zone]
         self.area = cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]) / 2
         opposite = np.roll(corner, -2, axis=1) - np.roll(corner, -1, axis=1)  # the side across from each corner
-        self.gradient = np.stack([-opposite[..., 1], opposite[..., 0]], axis=-1) / (2 * self.area)[:, None, None]
+        of_corners = np.stack([-opposite[..., 1], opposite[..., 0]], axis=-1) / (2 * self.area)[:, None, None]
+        # Of each stress point the slopes of the shape functions, [zone, point, gridpoint, 2], and of a zone their mean.
+        middle = index("/mesh/zone_middle", "gridpoint", "quadratic_zone", 3)
+        self.side_middle = index("/mesh/side_middle", "gridpoint", "quadratic_side")
+        self.is_quadratic = len(middle) > 0
+        if self.is_quadratic and (len(middle) != len(self.zone) or len(self.side_middle) != len(self.side)):
+            raise NotWanted(f"{file.path}: /mesh/zone_middle, /mesh/side_middle: expected a row a zone and a row a side, or none")
+        self.node = np.concatenate([self.zone, middle], axis=1) if self.is_quadratic else self.zone
+        self.slopes = of_corners[:, None]
+        if self.is_quadratic:
+            share = np.full((3, 3), 1 / 6) + np.eye(3) / 2  # of corners, at each stress point
+            after = np.roll(np.arange(3), -1)
+            self.slopes = np.concatenate([
+                (4 * share - 1)[None, :, :, None] * of_corners[:, None],
+                4 * (share[None, :, :, None] * of_corners[:, None, after] + share[None, :, after, None] * of_corners[:, None])],
+                axis=2)
+        self.gradient = self.slopes.mean(axis=1)
         self.perimeter = norm(opposite).sum(axis=1)
         self.zone_centre = corner.mean(axis=1)
         self.has_zones = np.zeros(len(self.position), bool)
-        self.has_zones[self.zone] = True
+        self.has_zones[self.node] = True
 
         def of_zones(key, unit=1.0, default=None):
             used = np.unique(self.block_rock[self.zone_block])
@@ -449,6 +465,9 @@ class States:
         self.displacement = number("/states/displacement", "state", "gridpoint", 2)
         self.reaction = number("/states/reaction", "state", "gridpoint", 2)
         self.stress = number("/states/stress", "state", "zone", 3)
+        self.point_stress = number("/states/point_stress", "state", "quadratic_point", 3)
+        if self.point_stress.shape[1] not in (0, 3 * self.stress.shape[1]):
+            raise NotWanted(f"{file.path}: /states/point_stress: expected three rows a zone, or none")
         self.present = index("/states/zone_present", 2, "state", "zone") > 0
         self.traction = number("/states/traction", "state", "contact", 2)
         self.relative = number("/states/relative_displacement", "state", "contact", 2)
@@ -465,6 +484,11 @@ class States:
         self.crept_strain = number("/states/crept_strain", "state", "creeping_zone", 3)
         if not len(self.time):
             raise NotWanted(f"{file.path}: /states/time: has no states")
+
+
+    def stress_at_points(self, s):
+        """Of the zones, [zone, point, 3]."""
+        return self.point_stress[s].reshape(-1, 3, 3) if self.point_stress.shape[1] else self.stress[s][:, None]
 
 
 class Verification:
@@ -567,7 +591,7 @@ class Verification:
             see("zones are removed by their stage, and no others", "", st.present[s] != expected, 0.5,
                 self.in_state("/states/zone_present", s, m.zone_centre, "zone"))
             has_rock = np.zeros(len(m.position), bool)
-            has_rock[m.zone[st.present[s]]] = True
+            has_rock[m.node[st.present[s]]] = True
             is_gone = m.has_zones & ~has_rock
             self_gone = is_gone[m.contact].any(axis=1)
             see("contacts are removed with the rock of a side", "", (st.status[s] == REMOVED) != self_gone, 0.5,
@@ -606,8 +630,9 @@ class Verification:
                 value = (boundary["factor"](st.time[s]) - boundary["factor"](0.0)) * boundary["displacement"][axis]
                 on = m.side_boundary == number
                 there = st.present[s][m.side_zone]
-                stays[m.side[on & ~there]] = True
-                wanted[m.side[on & there]] = value
+                ends = m.side if not m.is_quadratic else np.column_stack([m.side, m.side_middle])
+                stays[ends[on & ~there]] = True
+                wanted[ends[on & there]] = value
             held = ~np.isnan(wanted) & ~stays
             see("fixed gridpoints are where supports hold them", "m", np.abs(u[held, axis] - wanted[held]),
                 ROUNDING * np.abs(wanted[held]),
@@ -629,7 +654,7 @@ class Verification:
     def strain(self, s):
         """Strain {xx, yy, 2 xy} of the zones, and the sum of the magnitudes that it is made of."""
         m = self.section
-        u, b = self.states.displacement[s][m.zone], m.gradient
+        u, b = self.states.displacement[s][m.node], m.gradient
         parts = [b[..., 0] * u[..., 0], b[..., 1] * u[..., 1], b[..., 1] * u[..., 0], b[..., 0] * u[..., 1]]
         strain = np.stack([parts[0].sum(axis=1), parts[1].sum(axis=1), (parts[2] + parts[3]).sum(axis=1)], axis=1)
         return strain, sum(np.abs(part).sum(axis=1) for part in parts)
@@ -657,6 +682,8 @@ class Verification:
             terms + np.abs(offset).sum(axis=1) + np.abs(across))
         off = np.abs(stress - st.stress[s]).max(axis=1)
         there = st.present[s]
+        if m.is_quadratic:
+            self.check_points(s)
         yields = np.zeros(len(there), bool)
         yields[y] = True
         for chosen, name, beside in (
@@ -679,6 +706,29 @@ class Verification:
             see("nothing has crept or yielded at the in-situ equilibrium", "", np.abs(np.concatenate(
                 [st.crept_strain[0].ravel(), st.plastic[0].ravel()])), 0,
                 lambda i: "/states/crept_strain[0]" if i < st.crept_strain[0].size else "/states/plastic_strain[0]")
+
+    def check_points(self, s):
+        """The stress points of quadratic zones: their mean is the zone's stress, and elastic ones follow Hooke's law."""
+        m, st, see = self.section, self.states, self.checks.see
+        stress = st.stress_at_points(s)
+        size = np.abs(stress).max(axis=(1, 2))
+        there = np.flatnonzero(st.present[s])
+        where = self.in_state("/states/point_stress", s, m.zone_centre, "zone", there, "/states/stress")
+        see("stresses at points have the zone's mean", "Pa", np.abs(stress.mean(axis=1) - st.stress[s]).max(axis=1)[there],
+            ROUNDING * size[there], where)
+        special = np.zeros(len(m.zone), bool)
+        special[st.yielding] = special[st.creeping] = True
+        u, b = st.displacement[s][m.node][:, None], m.slopes
+        parts = [b[..., 0] * u[..., 0], b[..., 1] * u[..., 1], b[..., 1] * u[..., 0] + b[..., 0] * u[..., 1]]
+        xx, yy, xy = (part.sum(axis=2) for part in parts)
+        c11, c12, c33 = (c[:, None] for c in (m.c11, m.c12, m.c33))
+        change = np.stack([c11 * xx + c12 * yy, c12 * xx + c11 * yy, c33 * xy], axis=2)
+        off = np.abs(st.stress_at_points(0) + change - stress).max(axis=(1, 2))
+        terms = sum(np.abs(part).sum(axis=2) for part in parts).max(axis=1)
+        chosen = there[~special[there]]
+        see("stress at points of elastic zones is Hooke's", "Pa", off[chosen], (ROUNDING * (
+            size + np.abs(st.stress_at_points(0)).max(axis=(1, 2)) + (m.c11 + m.c12) * terms))[chosen],
+            self.in_state("/states/point_stress", s, m.zone_centre, "zone", chosen, "/states/displacement"))
 
     def opening_at_start(self):
         """Of every contact: its gap in situ, or minus the closure of its spring."""
@@ -863,15 +913,15 @@ class Verification:
         """Largest sum of the magnitudes in a row of the stiffness matrix."""
         m = self.section
         sums = np.zeros((len(m.position), 2))
-        b, c11, c12, c33 = m.gradient, m.c11[:, None], m.c12[:, None], m.c33[:, None]
-        for i in range(3):
-            p = b[:, i, None, :]
+        b, c11, c12, c33 = m.slopes, m.c11[:, None, None], m.c12[:, None, None], m.c33[:, None, None]
+        for i in range(m.node.shape[1]):
+            p = b[:, :, i, None, :]
             x = np.abs(c11 * p[..., 0] * b[..., 0] + c33 * p[..., 1] * b[..., 1]) + \
                 np.abs(c12 * p[..., 0] * b[..., 1] + c33 * p[..., 1] * b[..., 0])
             y = np.abs(c12 * p[..., 1] * b[..., 0] + c33 * p[..., 0] * b[..., 1]) + \
                 np.abs(c11 * p[..., 1] * b[..., 1] + c33 * p[..., 0] * b[..., 0])
-            row = (m.area[:, None] * np.stack([x.sum(axis=1), y.sum(axis=1)], axis=1))[self.states.present[s]]
-            np.add.at(sums, m.zone[self.states.present[s], i], row)
+            row = m.area[:, None] * np.stack([x.sum(axis=2).mean(axis=1), y.sum(axis=2).mean(axis=1)], axis=1)
+            np.add.at(sums, m.node[self.states.present[s], i], row[self.states.present[s]])
         n, t = np.abs(m.normal), np.abs(m.tangent)
         row = 2 * m.length[:, None] * (m.k_n[:, None] * n * n.sum(axis=1)[:, None] + m.k_s[:, None] * t * t.sum(axis=1)[:, None])
         for side in (0, 1):
@@ -888,23 +938,28 @@ class Verification:
             np.add.at(magnitude, gridpoints, norm(forces))
         load, applied = np.zeros((n, 2)), np.zeros((n, 2))
         there = st.present[s]
-        for i in range(3):
-            np.add.at(load[:, 1], m.zone[there, i], -m.weight[there] / 3)
+        for i in (-3, -2, -1):  # on all gridpoints of a zone, or on the middles of its sides
+            np.add.at(load[:, 1], m.node[there, i], -m.weight[there] / 3)
         for number, boundary in enumerate(self.scene.boundaries):
             if boundary["traction"] is None:
                 continue
             on = (m.side_boundary == number) & there[m.side_zone]
             ends = m.side[on]
             length = norm(m.position[ends[:, 1]] - m.position[ends[:, 0]])
-            each = boundary["factor"](st.time[s]) * length[:, None] / 2 * boundary["traction"]
+            whole = boundary["factor"](st.time[s]) * length[:, None] * boundary["traction"]
             for end in (0, 1):
-                np.add.at(applied, ends[:, end], each)
+                np.add.at(applied, ends[:, end], whole / (6 if m.is_quadratic else 2))
+            if m.is_quadratic:
+                np.add.at(applied, m.side_middle[on], whole * 4 / 6)
         force += load + applied
         magnitude += norm(load) + norm(applied)
-        xx, yy, xy = st.stress[s][there].T
-        for i in range(3):
-            bx, by = m.gradient[there, i].T
-            add(m.zone[there, i], -m.area[there, None] * np.stack([xx * bx + xy * by, xy * bx + yy * by], axis=1))
+        points = m.slopes.shape[1]
+        for point in range(points):
+            xx, yy, xy = st.stress_at_points(s)[there, point].T
+            for i in range(m.node.shape[1]):
+                bx, by = m.slopes[there, point, i].T
+                add(m.node[there, i],
+                    -m.area[there, None] / points * np.stack([xx * bx + xy * by, xy * bx + yy * by], axis=1))
         on_a = m.length[:, None] * (st.traction[s][:, :1] * m.normal + st.traction[s][:, 1:] * m.tangent)
         add(m.contact[:, 0], on_a)
         add(m.contact[:, 1], -on_a)
@@ -914,7 +969,7 @@ class Verification:
         follows = np.flatnonzero(leader != np.arange(n))
         free = np.stack([(m.fixed & 1) == 0, (m.fixed & 2) == 0], axis=1)
         has_rock = ~m.has_zones
-        has_rock[m.zone[there]] = True
+        has_rock[m.node[there]] = True
         free[~has_rock] = False
         carried = magnitude.copy()
         for f in follows:
@@ -998,10 +1053,14 @@ class Verification:
                     self.checks.see("points are where there is rock", "", [1.0], 0.5,
                                     lambda _, s=s, p=p, row=rows[0]: f"/history/present[{row}, {p}]: point {names[p]}")
                     continue
-                u = (share[zones, :, None] * st.displacement[s][m.zone[zones]]).sum(axis=1)
+                shape = share[zones]
+                if m.is_quadratic:
+                    after = np.roll(np.arange(3), -1)
+                    shape = np.concatenate([shape * (2 * shape - 1), 4 * shape * shape[:, after]], axis=1)
+                u = (shape[:, :, None] * st.displacement[s][m.node[zones]]).sum(axis=1)
                 off = norm(history[rows][:, p][:, None, :] - u[None]).min()
                 self.checks.see("histories are the states' displacements at the points", "m", off,
-                                ROUNDING * norm(st.displacement[s][m.zone[zones]]).max() * (
+                                ROUNDING * norm(st.displacement[s][m.node[zones]]).max() * (
                                     1 + np.abs(share[zones]).max() * m.reach / np.sqrt(m.area[zones].min())),
                                 lambda _, s=s, p=p, row=rows[0]: f"/history/displacement[{row}, {p}]: point {names[p]}, "
                                 f"{self.day(s)}")

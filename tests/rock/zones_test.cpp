@@ -1,5 +1,6 @@
 // Zones: exact for uniform strain, forces that are the slope of their energy, in balance, within their strength.
 
+#include "rock/zone_changes.hpp"
 #include "rock/zones.hpp"
 
 #include "model/signs.hpp"
@@ -9,6 +10,7 @@
 
 #include <cmath>
 #include <functional>
+#include <map>
 #include <numeric>
 
 namespace zones_test
@@ -41,16 +43,25 @@ Rock yielding()
     return rock;
 }
 
+enum class Kind { constant_strain, quadratic };
+
+Kind any_kind()
+{
+    return *rc::gen::element(Kind::constant_strain, Kind::quadratic);
+}
+
 // A rectangle of `nx` x `ny` cells of 2 m x 1.5 m, two zones each; what is inside is moved about by up to `uneven` [m].
 struct Patch {
     Mesh mesh;
     Zones zones;
     Slots slots;
-    std::vector<std::array<Index, 1>> of_slot;
+    std::vector<Index> of_slot;
     double area;
+    Vector2d end; // the corner across from the origin
 
-    Patch(int nx, int ny, double uneven, const Rock& rock = elastic, const InSituStress& stress = {})
-        : area(2.0 * nx * 1.5 * ny)
+    Patch(int nx, int ny, double uneven, Kind kind, const Rock& rock = elastic,
+          const InSituStress& stress = {})
+        : area(2.0 * nx * 1.5 * ny), end(2.0 * nx, 1.5 * ny)
     {
         for (int j = 0; j <= ny; ++j)
             for (int i = 0; i <= nx; ++i) {
@@ -65,6 +76,8 @@ struct Patch {
                 mesh.zone_gridpoint.push_back({g, above + 1, above});
             }
         mesh.zone_block.assign(mesh.zone_gridpoint.size(), 0);
+        if (kind == Kind::quadratic)
+            add_middles();
         Scene scene;
         scene.gravity = 9.81;
         scene.rocks = {rock};
@@ -75,9 +88,26 @@ struct Patch {
         slots = slots_of(zones, mesh.gridpoint.size(), of_slot);
     }
 
+    void add_middles()
+    {
+        std::map<std::pair<Index, Index>, Index> of_side;
+        for (const auto& corners : mesh.zone_gridpoint) {
+            std::array<Index, 3> middle{};
+            for (int i = 0; i < 3; ++i) {
+                const Index a = corners[i], b = corners[(i + 1) % 3];
+                const auto [found, is_new] =
+                    of_side.try_emplace(std::minmax(a, b), static_cast<Index>(mesh.gridpoint.size()));
+                if (is_new)
+                    mesh.gridpoint.push_back((mesh.gridpoint[a] + mesh.gridpoint[b]) / 2);
+                middle[i] = found->second;
+            }
+            mesh.zone_middle.push_back(middle);
+        }
+    }
+
     bool is_inside(std::size_t g) const
     {
-        const Vector2d &p = mesh.gridpoint[g], &corner = mesh.gridpoint.back();
+        const Vector2d &p = mesh.gridpoint[g], corner = end;
         return p.minCoeff() > 0 && p.x() < corner.x() && p.y() < corner.y();
     }
     // On gridpoints [N/m].
@@ -86,7 +116,7 @@ struct Patch {
         find_forces_in_team(zones, slots, displacement, damping, false);
         Displacements force(mesh.gridpoint.size(), Vector2d::Zero());
         for (std::size_t slot = 0; slot < of_slot.size(); ++slot)
-            force[of_slot[slot][0]] += slots.force[slot];
+            force[of_slot[slot]] += slots.force[slot];
         return force;
     }
     Displacements any_displacements(double scale) const
@@ -116,7 +146,7 @@ double work(const Displacements& force, const Displacements& by)
 // stress asks for: the sum of force times place is -area x stress.
 RC_GTEST_PROP(zones, uniform_strain_gives_hookes_stress, ())
 {
-    Patch patch(4, 3, 0.4);
+    Patch patch(4, 3, 0.4, any_kind());
     const double exx = any_number(1e-3), eyy = any_number(1e-3), gxy = any_number(1e-3),
                  turn = any_number(1e-3);
     Displacements displacement;
@@ -144,7 +174,7 @@ RC_GTEST_PROP(zones, uniform_strain_gives_hookes_stress, ())
 // Also under stress in situ, and where some zones are gone. The energy is quadratic: central differences are exact.
 RC_GTEST_PROP(zones, forces_are_the_slope_of_stored_energy, ())
 {
-    Patch patch(4, 3, 0.4, elastic, squeezed());
+    Patch patch(4, 3, 0.4, any_kind(), elastic, squeezed());
     for (char& is_present : patch.zones.is_present)
         is_present = *rc::gen::weightedElement<char>({{5, 1}, {1, 0}});
     const Displacements at = patch.any_displacements(1e-3), by = patch.any_displacements(1e-3);
@@ -165,14 +195,15 @@ RC_GTEST_PROP(zones, forces_are_the_slope_of_stored_energy, ())
 // Newton's third law inside, and forces that go with displacements by the stiffness.
 RC_GTEST_PROP(zones, stiffness_is_symmetric_and_gives_the_forces, ())
 {
-    Patch patch(2, 2, 0.4);
+    Patch patch(2, 2, 0.4, any_kind());
     const Displacements displacement = patch.any_displacements(1e-3);
-    Displacements wanted(displacement.size(), Vector2d::Zero()), added = wanted;
+    Displacements wanted(displacement.size(), Vector2d::Zero());
+    const int n = patch.zones.gridpoints_of_zone;
     for (std::size_t z = 0; z < patch.zones.area.size(); ++z) {
         Eigen::Matrix2d turned = Eigen::Matrix2d::Zero();
-        for (int i = 0; i < 3; ++i) {
+        for (int i = 0; i < n; ++i) {
             Eigen::Matrix2d moved = Eigen::Matrix2d::Zero();
-            for (int j = 0; j < 3; ++j) {
+            for (int j = 0; j < n; ++j) {
                 const Eigen::Matrix2d block = stiffness_between(patch.zones, z, i, j);
                 RC_ASSERT((block - stiffness_between(patch.zones, z, j, i).transpose()).norm() < 1e-5);
                 moved += block;
@@ -183,19 +214,16 @@ RC_GTEST_PROP(zones, stiffness_is_symmetric_and_gives_the_forces, ())
             RC_ASSERT(moved.norm() < 1e-4); // all corners alike, of 1e10
             RC_ASSERT(turned.norm() < 1e-4);
         }
-        add_force(patch.zones, z, stress_by(patch.zones, z, displacement, patch.zones.stiffness[z]), added);
     }
     const Displacements force = patch.forces(displacement);
-    for (std::size_t g = 0; g < force.size(); ++g) {
+    for (std::size_t g = 0; g < force.size(); ++g)
         RC_ASSERT((force[g] - wanted[g]).norm() < 1e-9 * 1e7);
-        RC_ASSERT((force[g] - added[g]).norm() < 1e-9 * 1e7);
-    }
 }
 
 // They bound the force that displacements of 1 m give; of a zone alone, moved as the signs of a row, they are it.
 RC_GTEST_PROP(zones, row_sums_bound_the_forces, ())
 {
-    Patch patch(3, 3, 0.4);
+    Patch patch(3, 3, 0.4, any_kind());
     patch.zones.is_present[*rc::gen::inRange<std::size_t>(0, patch.zones.is_present.size())] = 0;
     Displacements sums(patch.mesh.gridpoint.size(), Vector2d::Zero());
     add_row_sums(patch.zones, sums);
@@ -210,10 +238,11 @@ RC_GTEST_PROP(zones, row_sums_bound_the_forces, ())
         sum.setZero();
     add_row_sums(patch.zones, sums);
     const auto corner = patch.zones.gridpoints(z);
-    for (int i = 0; i < 3; ++i)
+    const int n = patch.zones.gridpoints_of_zone;
+    for (int i = 0; i < n; ++i)
         for (int row = 0; row < 2; ++row) {
             Displacements signs(sums.size(), Vector2d::Zero());
-            for (int j = 0; j < 3; ++j)
+            for (int j = 0; j < n; ++j)
                 for (int column = 0; column < 2; ++column)
                     signs[corner[j]][column] =
                         stiffness_between(patch.zones, z, i, j)(row, column) < 0 ? -1 : 1;
@@ -223,7 +252,7 @@ RC_GTEST_PROP(zones, row_sums_bound_the_forces, ())
 
 TEST(zones, masses_and_weights_sum_to_those_of_the_rock)
 {
-    Patch patch(4, 3, 0); // 8 m x 4.5 m
+    Patch patch(4, 3, 0, Kind::constant_strain); // 8 m x 4.5 m
     EXPECT_NEAR(std::accumulate(patch.zones.weight.begin(), patch.zones.weight.end(), 0.0), 36 * 2700 * 9.81,
                 1e-6);
     const auto mass = [&] {
@@ -240,13 +269,36 @@ TEST(zones, masses_and_weights_sum_to_those_of_the_rock)
     EXPECT_NEAR(all[1], 1.5 * 2700 * 2 / 3, 1e-9);
 }
 
+// Quadratic zones: all of the mass, none of it negative; weight on the middles of sides, and with the stress that it makes
+// no force inside.
+TEST(zones, that_are_quadratic_weigh_as_much)
+{
+    Patch patch(4, 3, 0, Kind::quadratic, elastic, {.elevation = 4.5, .gradient_yy = 2700 * 9.81});
+    std::vector<double> mass(patch.mesh.gridpoint.size(), 0.0);
+    add_masses(patch.zones, mass);
+    EXPECT_NEAR(std::accumulate(mass.begin(), mass.end(), 0.0), 36 * 2700, 1e-6);
+    EXPECT_GT(*std::min_element(mass.begin(), mass.end()), 0);
+    Displacements load(mass.size(), Vector2d::Zero());
+    for (std::size_t z = 0; z < patch.zones.size(); ++z)
+        add_weight(patch.zones, z, 1, load);
+    EXPECT_EQ(load[0], Vector2d(0, 0)); // a corner
+    const Displacements force = patch.forces(Displacements(mass.size(), Vector2d::Zero()));
+    double sum = 0;
+    for (std::size_t g = 0; g < force.size(); ++g) {
+        sum += load[g].y();
+        if (patch.is_inside(g))
+            EXPECT_LT((force[g] + load[g]).norm(), 1e-6);
+    }
+    EXPECT_NEAR(sum, -36 * 2700 * 9.81, 1e-6);
+}
+
 TEST(zones, start_with_the_stress_in_situ)
 {
-    Patch patch(1, 1, 0, elastic, squeezed()); // centroids at 0.5 m and 1 m
+    Patch patch(1, 1, 0, Kind::constant_strain, elastic, squeezed()); // centroids at 0.5 m and 1 m
     EXPECT_LT((patch.zones.stress[0] - Vector3d(-1e6, -(2e6 + 2.5 * 26487), 2e5)).norm(), 1e-6);
     EXPECT_LT((patch.zones.stress[1] - Vector3d(-1e6, -(2e6 + 2 * 26487), 2e5)).norm(), 1e-6);
-    EXPECT_NEAR(Patch(1, 1, 0, yielding(), squeezed()).zones.yielding[1].stress_zz, -(3e6 + 2 * 26487) / 2,
-                1e-6);
+    EXPECT_NEAR(Patch(1, 1, 0, Kind::constant_strain, yielding(), squeezed()).zones.yielding[1].stress_zz,
+                -(3e6 + 2 * 26487) / 2, 1e-6);
     const Displacements none(4, Vector2d::Zero());
     const Displacements force = patch.forces(none);
     EXPECT_NEAR(force[0].x() + force[2].x(), -1.5 * 1e6, 1e-3); // to the left; shear below and above cancels
@@ -256,26 +308,25 @@ TEST(zones, start_with_the_stress_in_situ)
 // sum.
 TEST(zones, slots_give_the_same_sums)
 {
-    Patch patch(40, 30, 0, elastic, squeezed());
+    Patch patch(40, 30, 0, Kind::constant_strain, elastic, squeezed());
     const std::vector<Index>& start = patch.slots.part_start;
     ASSERT_GT(start.size(), 3U);
     auto part = start.begin();
-    for (const auto& of_zone : patch.slots.of_zone) {
-        part = of_zone[0] < *std::next(part) ? part : std::next(part);
-        for (const Index slot : of_zone)
-            ASSERT_TRUE(*part <= slot && slot < *std::next(part));
+    for (auto slot = patch.slots.of_zone.begin(); slot != patch.slots.of_zone.end(); slot += 3) {
+        part = *slot < *std::next(part) ? part : std::next(part);
+        for (int i = 0; i < 3; ++i)
+            ASSERT_TRUE(*part <= slot[i] && slot[i] < *std::next(part));
     }
     Displacements displacement, plain(patch.mesh.gridpoint.size(), Vector2d::Zero());
     for (const Vector2d& p : patch.mesh.gridpoint)
         displacement.push_back(1e-3 * Vector2d(std::sin(p.x() + 2 * p.y()), std::cos(3 * p.x() - p.y())));
     const Displacements force = patch.forces(displacement);
-    for (std::size_t z = 0; z < patch.zones.area.size(); ++z)
-        add_force(patch.zones, z, patch.zones.stress[z], plain);
+    add_forces(patch.zones, patch.zones.stress, plain);
     for (std::size_t g = 0; g < force.size(); ++g)
         EXPECT_LT((force[g] - plain[g]).norm(), 1e-2); // of 1e7
     std::vector<double> magnitudes(patch.mesh.gridpoint.size(), 0.0);
     for (std::size_t slot = 0; slot < patch.of_slot.size(); ++slot)
-        magnitudes[patch.of_slot[slot][0]] += patch.slots.magnitudes[slot];
+        magnitudes[patch.of_slot[slot]] += patch.slots.magnitudes[slot];
     for (std::size_t g = 0; g < force.size(); ++g)
         EXPECT_GE(magnitudes[g], force[g].norm() * (1 - 1e-9));
 }
@@ -283,7 +334,7 @@ TEST(zones, slots_give_the_same_sums)
 // Dashpots: as much of the stress's change again.
 RC_GTEST_PROP(zones, damping_adds_a_share_of_the_change, ())
 {
-    Patch patch(2, 2, 0.4, elastic, squeezed());
+    Patch patch(2, 2, 0.4, any_kind(), elastic, squeezed());
     patch.zones.last_stress = patch.zones.stress;
     const Displacements first = patch.any_displacements(1e-3), second = patch.any_displacements(1e-3),
                         before = patch.forces(first), now = patch.forces(second);
@@ -296,7 +347,7 @@ RC_GTEST_PROP(zones, damping_adds_a_share_of_the_change, ())
 // Along any path no zone is beyond its strength, and asked twice it changes nothing more.
 RC_GTEST_PROP(zones, that_yield_stay_within_their_strength, ())
 {
-    Patch patch(3, 2, 0.4, yielding(), squeezed());
+    Patch patch(3, 2, 0.4, any_kind(), yielding(), squeezed());
     for (int i = 0; i < 4; ++i) {
         const Displacements displacement = patch.any_displacements(2e-3), force = patch.forces(displacement);
         RC_ASSERT(weakest(patch.zones) == -1);
@@ -315,10 +366,49 @@ RC_GTEST_PROP(zones, that_yield_stay_within_their_strength, ())
     }
 }
 
+// From the displacements of a yielding patch on, in a direction: the tangents of all stress points beside central
+// differences of the forces. Where a point begins to yield within the step there is nothing to compare.
+RC_GTEST_PROP(zones, tangent_at_yield_is_what_forces_change_by, ())
+{
+    Patch patch(2, 2, 0.4, any_kind(), yielding(), squeezed());
+    const std::vector<YieldingZone> start = patch.zones.yielding;
+    const Displacements at = patch.any_displacements(2e-3), by = patch.any_displacements(1);
+    const auto forces_at = [&](double way) {
+        patch.zones.yielding = start;
+        Displacements there = at;
+        for (std::size_t g = 0; g < there.size(); ++g)
+            there[g] += way * by[g];
+        return patch.forces(there);
+    };
+    const auto differences = [&](double step) {
+        Displacements high = forces_at(step);
+        const Displacements low = forces_at(-step);
+        for (std::size_t g = 0; g < high.size(); ++g)
+            high[g] = (high[g] - low[g]) / (2 * step);
+        return high;
+    };
+    const Displacements coarse = differences(2e-8), fine = differences(1e-8);
+    Displacements change(at.size(), Vector2d::Zero());
+    for (std::size_t z = 0; z < patch.zones.size(); ++z) {
+        const Eigen::Matrix3d tangent = tangent_at(patch.zones, z, at, start);
+        const auto gridpoints = patch.zones.gridpoints(z);
+        for (std::size_t i = 0; i < gridpoints.size(); ++i)
+            for (std::size_t j = 0; j < gridpoints.size(); ++j)
+                change[gridpoints[i]] -=
+                    patch.zones.area[z] *
+                    stiffness_between(patch.zones, z, static_cast<int>(i), static_cast<int>(j), tangent) *
+                    by[gridpoints[j]];
+    }
+    for (std::size_t g = 0; g < at.size(); ++g) {
+        RC_PRE((coarse[g] - fine[g]).norm() < 1e5); // of 1e10
+        RC_ASSERT((change[g] - fine[g]).norm() < 1e6);
+    }
+}
+
 // Work on rock that yields = what it stores + what it loses, in small steps.
 TEST(zones, that_yield_account_for_their_work)
 {
-    Patch patch(2, 2, 0, yielding(), squeezed());
+    Patch patch(2, 2, 0, Kind::constant_strain, yielding(), squeezed());
     Displacements displacement(patch.mesh.gridpoint.size(), Vector2d::Zero()),
         force = patch.forces(displacement);
     const double at_start = stored_energy(patch.zones);
@@ -347,7 +437,7 @@ TEST(zones, that_yield_account_for_their_work)
 // Held, it is elastic from the plastic strain it has; the zone that is farthest beyond its strength is found.
 TEST(zones, that_hold_their_yield_are_elastic)
 {
-    Patch patch(2, 2, 0, yielding(), squeezed());
+    Patch patch(2, 2, 0, Kind::constant_strain, yielding(), squeezed());
     Displacements displacement(9, Vector2d::Zero());
     patch.forces(displacement);
     patch.zones.holds_yield = true;
@@ -368,7 +458,7 @@ TEST(zones, that_hold_their_yield_are_elastic)
 // The stresses stay, and it goes on as if it had not been: elastic or yielding.
 RC_GTEST_PROP(zones, go_on_as_before_once_they_start_from_here, ())
 {
-    Patch patch(3, 2, 0.4, *rc::gen::arbitrary<bool>() ? yielding() : elastic, squeezed());
+    Patch patch(3, 2, 0.4, any_kind(), *rc::gen::arbitrary<bool>() ? yielding() : elastic, squeezed());
     const Displacements at = patch.any_displacements(1e-3), by = patch.any_displacements(1e-3),
                         none(at.size(), Vector2d::Zero());
     const Displacements force = patch.forces(at);
