@@ -480,6 +480,7 @@ class Verification:
             "time", "unbalanced_force_ratio", "contact_force_change", "work_of_loads", "stored_energy", "dissipated_energy",
             "damped_energy")}
         # The state of equilibrium in situ is at small displacements in any scene.
+        self.unit_crept, self.all_steps_known = {}, True
         self.n_small = 1 if self.scene.large_displacements else len(self.states.time)
         # Moments of a dynamic analysis have no row of the history and are not at rest, but for its end.
         moments = self.file.index("/dynamics/state", "state", "moment") if self.file.has("/dynamics") else []
@@ -840,25 +841,29 @@ class Verification:
             moving = np.flatnonzero(here & creeps)
             if not len(moving) or days <= 0:
                 continue
-            single = (viscosity[moving] > 0).sum(axis=1) == 1
-            if not is_one_step or not single.all():
-                self.checks.leave_out("displacement that joints have crept, " + (
-                    "where a joint has several Kelvin units or dashpots: the file has their sum alone" if is_one_step else
-                    "where the file has no state between creep steps (demsolve --states 1 records all)"))
-            moving = moving[single]
-            if not is_one_step or not len(moving):
+            # What each unit has crept; of several the file has the sum, but they are known while all steps are.
+            units = self.unit_crept.setdefault(direction, np.zeros(stiffness.shape))
+            single = (viscosity > 0).sum(axis=1) == 1
+            units[single] = np.where(viscosity[single] > 0, st.crept[s - 1][single, axis, None], 0)
+            if not is_one_step:
+                self.all_steps_known = False
+            if not is_one_step or not (self.all_steps_known or single[moving].all()):
+                self.checks.leave_out("displacement that joints have crept, where the file has no state between creep steps "
+                                      "(demsolve --states 1 records all)")
+            if not is_one_step:
                 continue
-            unit = (viscosity[moving] > 0).argmax(axis=1)[:, None]
-            decay, first, last = (part[:, 0] for part in self.weights(
-                np.take_along_axis(stiffness[moving], unit, 1), np.take_along_axis(viscosity[moving], unit, 1),
-                spring[moving], days))
-            since = st.traction[:, moving, axis] - st.traction[0, moving, axis]
-            parts = [decay * st.crept[s - 1][moving, axis], first * since[s - 1], last * since[s]]
+            if not self.all_steps_known:
+                moving = moving[single[moving]]
+            decay, first, last = self.weights(stiffness[moving], viscosity[moving], spring[moving], days)
+            since = st.traction[:, moving, axis, None] - st.traction[0, moving, axis, None]
+            parts = [decay * units[moving], first * since[s - 1], last * since[s]]
+            units[moving] = sum(parts)
             # Rounding of tractions, which the change since the start is small beside; the closed form loses some digits.
-            scale = sum(np.abs(part) for part in parts) * 1e-9 + (first + last) * ROUNDING * (
-                np.abs(st.traction[0, moving, axis]) + np.abs(since[s]) + np.abs(since[s - 1]))
-            see("crept displacement of a step is that of the Kelvin unit or dashpot", "m",
-                np.abs(sum(parts) - st.crept[s][moving, axis]), scale + ROUNDING * np.abs(st.crept[s][moving, axis]),
+            force = np.abs(st.traction[0, moving, axis, None]) + np.abs(since[s]) + np.abs(since[s - 1])
+            scale = (sum(np.abs(part) for part in parts) * 1e-9 + (first + last) * ROUNDING * force).sum(axis=1)
+            see("crept displacement of a step is that of the Kelvin units and dashpots", "m",
+                np.abs(units[moving].sum(axis=1) - st.crept[s][moving, axis]),
+                scale + ROUNDING * np.abs(st.crept[s][moving, axis]),
                 self.in_state("/states/crept", s, m.centre, "contact", moving, "/states/traction"))
 
     # Equilibrium.
