@@ -143,6 +143,7 @@ private:
     void find_inertia(const std::vector<double>& masses);
     double move(Body& body, double keep, double gain);
     std::pair<Vector2d, double> load_on(const Body& body) const;
+    void put_back_forces();
 
     // Faces and what lies on them: faces_of_rock.cpp.
     void find_ground();

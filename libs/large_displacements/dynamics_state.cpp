@@ -71,10 +71,9 @@ std::vector<Touching> Dynamics::touching() const
 
 void Dynamics::put_back()
 {
-    for (std::size_t g = 0; g < place_.size(); ++g) {
+    for (std::size_t g = 0; g < place_.size(); ++g)
         rock_.displacement[g] = place_[g] - origin_[g];
-        rock_.force[g] = force_[g];
-    }
+    put_back_forces();
     for (std::size_t z = 0; z < rock_.zones.size(); ++z)
         if (rock_.zones.is_present[z]) {
             if (is_rigid_[z])

@@ -118,4 +118,22 @@ double Dynamics::move(Body& body, double keep, double gain)
     return (body.mass * last.dot(body.velocity) + body.inertia * last_spin * body.spin) / 2;
 }
 
+// What acts on a body in a direction in which it is held goes to its gridpoints that are, in equal parts.
+void Dynamics::put_back_forces()
+{
+    rock_.force = force_;
+    for (const Body& body : bodies_)
+        for (int i = 0; i < 2; ++i) {
+            if (body.is_free[i] > 0)
+                continue;
+            double force = 0, held = 0;
+            for (const Index g : body.gridpoint) {
+                force += force_[g][i];
+                held += 1 - rock_.is_free[g][i];
+            }
+            for (const Index g : body.gridpoint)
+                rock_.force[g][i] = (1 - rock_.is_free[g][i]) * force / held;
+        }
+}
+
 } // namespace jointcreep::large_displacements

@@ -214,8 +214,8 @@ std::vector<Field> fields_of(States& states)
          "Displacement {x, y} since the in-situ equilibrium."},
         {"/states/reaction", &states.reaction, {"state", "gridpoint"}, "N/m", any(),
          "Force {x, y} by which supports hold a fixed gridpoint, 0 elsewhere; of gridpoints that a tie holds together, at the "
-         "lowest one. In a dynamic analysis with large displacements, of a gridpoint of a rigid block that is held, what "
-         "holds against forces on this gridpoint alone."},
+         "lowest one. In a dynamic analysis with large displacements a rigid block is held by equal parts of the reaction at "
+         "its fixed gridpoints."},
     };
     // clang-format on
     append(all, of_forces(&ForceFields::states, states));

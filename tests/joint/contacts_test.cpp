@@ -36,7 +36,8 @@ Contacts contact(const Law& law, const Vector2d& normal = {0, 1}, const Vector2d
             .relative_displacement = {Vector2d(0, 0)},
             .status = {ContactStatus::stuck},
             .work = {0},
-            .force = {Vector2d(0, 0)}};
+            .force = {Vector2d(0, 0)},
+            .state_by_faces = {}};
 }
 
 // Its forces where side b has moved by {normal, shear} beside side a [m].

@@ -83,6 +83,8 @@ class Verify(ChainTest):
             return run(text("data/column/scene.toml"), "--states", 1)
         if name == "creeping rock":
             return run(with_stage(), "--states", 1)
+        if name == "chain":
+            return run(creep_test.SCENE.replace("# joint creep", creep_test.CHAIN), "--states", 1)
         if name == "kinds":
             folder = self.chain.new_folder()
             for file in "scene.toml", "poles.csv", "traces.geojson":
@@ -115,7 +117,7 @@ class Verify(ChainTest):
                               ENGINE="auto", INCREMENTS="4"))
         raise KeyError(name)
 
-    RESULTS = ("slope", "weaker slope", "column", "creeping rock", "short step", "kinds", "collapse", "opening", "dilation",
+    RESULTS = ("slope", "weaker slope", "column", "creeping rock", "chain", "short step", "kinds", "collapse", "opening", "dilation",
                "dilation that ends", "wearing", "continuously yielding", "residual", "Barton-Bandis", "yield")
 
     def verified(self, path):
@@ -143,7 +145,8 @@ class Verify(ChainTest):
                            ("continuously yielding", "plastic displacement"), ("wearing", "work of slip"),
                            ("creeping rock", "rock has crept")):
             self.assertRegex(self.verified(self.result(name))[2], f"not verified: .*{part}")
-        self.assertNotIn("not verified", self.verified(self.result("column"))[2])
+        for name in "column", "chain":
+            self.assertNotIn("not verified", self.verified(self.result(name))[2])
 
     # The name of the check, the result, the dataset, where (a function of the file), and the value that is put there (of
     # the one that was).
@@ -227,7 +230,8 @@ class Verify(ChainTest):
             ("slip dilates", "dilation", s + "slip", at(-1, 0), times(1.01)),
             ("only joints with Kelvin units or dashpots creep, and only in time", "dilation", s + "crept", at(1, 0, 0),
              put(1e-6)),
-            ("crept displacement of a step is that of the Kelvin unit or dashpot", "column", s + "crept", crept, times(1.0001)),
+            ("crept displacement of a step is that of the Kelvin units and dashpots", "column", s + "crept", crept, times(1.0001)),
+            ("crept displacement of a step is that of the Kelvin units and dashpots", "chain", s + "crept", crept, times(1.0001)),
             ("reactions hold the forces on fixed gridpoints, and there are no others", "slope", s + "reaction", held,
              times(1.0001)),
             ("forces are in equilibrium: unbalanced force ratio", "slope", "/mesh/contact_length",
