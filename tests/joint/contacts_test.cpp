@@ -1,5 +1,6 @@
 // Contacts: springs worked out by hand, forces in balance, tangents and energies of any law.
 
+#include "joint/contact_changes.hpp"
 #include "joint/contacts.hpp"
 
 #include "any_law.hpp"
@@ -175,7 +176,7 @@ RC_GTEST_PROP(contacts, action_is_reaction, ())
     part(contacts, by);
     part(other, by); // seen from side b
     std::vector<Vector2d> force(2, Vector2d(1, 2));
-    add_force(contacts, 0, contacts.traction[0], force);
+    add_forces(contacts, contacts.traction, force);
     const double rounding = 1e-9 * 2.5e6;
     RC_ASSERT((force[0] - Vector2d(1, 2) - contacts.force[0]).norm() < rounding);
     RC_ASSERT((force[1] - Vector2d(1, 2) + contacts.force[0]).norm() < rounding);

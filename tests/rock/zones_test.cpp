@@ -286,8 +286,9 @@ TEST(zones, that_are_quadratic_weigh_as_much)
     double sum = 0;
     for (std::size_t g = 0; g < force.size(); ++g) {
         sum += load[g].y();
-        if (patch.is_inside(g))
+        if (patch.is_inside(g)) {
             EXPECT_LT((force[g] + load[g]).norm(), 1e-6);
+        }
     }
     EXPECT_NEAR(sum, -36 * 2700 * 9.81, 1e-6);
 }
