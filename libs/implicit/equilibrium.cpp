@@ -380,6 +380,7 @@ std::optional<Convergence> Solver::equilibrate(Assembly& assembly, const Equilib
                                                const std::vector<Vector2d>& guess)
 {
     joint::Contacts& contacts = assembly.contacts;
+    rock::forget_dissipated(assembly.zones);
     const State start = state_of(assembly);
     const auto give_up = [&] {
         go_back(assembly, start);
@@ -442,10 +443,7 @@ std::optional<Convergence> Solver::equilibrate(Assembly& assembly, const Equilib
                 contacts.length[c] *
                 (contacts.traction[c].y() * (contacts.state[c].slip - start.joint[c].slip) +
                  contacts.traction[c].x() * (contacts.state[c].dilation - start.joint[c].dilation));
-    for (std::size_t z = 0; z < assembly.zones.yielding_number.size(); ++z)
-        if (const Index number = assembly.zones.yielding_number[z]; number >= 0)
-            convergence.dissipated += assembly.zones.area[z] * (assembly.zones.yielding[number].dissipated -
-                                                                start.yielding[number].dissipated);
+    convergence.dissipated += rock::dissipated(assembly.zones);
     convergence.work_of_loads = work_of_loads(assembly, start.displacement);
     convergence.damped = convergence.work_of_loads - convergence.stored - convergence.dissipated;
     return convergence;

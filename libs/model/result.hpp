@@ -22,9 +22,10 @@ struct Mesh {
     std::vector<Index> gridpoint_fixed;               // 0 free, 1 fixed in x, 2 in y, 3 in both
     std::vector<std::array<Index, 3>> zone_gridpoint; // counter-clockwise
     std::vector<std::array<Index, 3>>
-        zone_middle;               // gridpoints in the middles of its sides 0-1, 1-2, 2-0; none where
-                                   // strain is constant
-    std::vector<Index> zone_block; // into Blocks
+        zone_middle; // gridpoints in the middles of its sides 0-1, 1-2, 2-0; none where
+                     // strain is constant
+    std::vector<Eigen::Vector2d> stress_point; // of quadratic zones, three a zone [m]
+    std::vector<Index> zone_block;             // into Blocks
     // Ties: two gridpoints that move as one until a stage excavates the rock that connects them (at a joint's tip,
     // for example).
     std::vector<std::array<Index, 2>> tie_gridpoint;

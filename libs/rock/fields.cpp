@@ -17,6 +17,8 @@ std::vector<Field> fields_of(Mesh& mesh)
          "Corners of the zone, counter-clockwise."},
         {"/mesh/zone_middle", &mesh.zone_middle, {"quadratic_zone"}, "1", index_of("gridpoint"),
          "Gridpoints in the middles of its sides from corner 0 to 1, 1 to 2 and 2 to 0."},
+        {"/mesh/stress_point_position", &mesh.stress_point, {"quadratic_point"}, "m", any(),
+         "Stress points of quadratic zones {x, y}, three a zone, each nearest to a corner."},
         {"/mesh/zone_block", &mesh.zone_block, {"zone"}, "1", index_of("block"),
          "Block the zone is part of."},
     };
@@ -101,6 +103,10 @@ std::vector<fields::Invariant> invariants_of(const Mesh& mesh)
              const Eigen::Vector2d to_second = mesh.gridpoint[second] - mesh.gridpoint[first];
              const Eigen::Vector2d to_third = mesh.gridpoint[third] - mesh.gridpoint[first];
              return to_second.x() * to_third.y() - to_second.y() * to_third.x() > 0;
+         }},
+        {"/mesh/zone_middle", "all zones have gridpoints in the middles of their sides, or none has", "zone",
+         [&mesh](std::size_t) {
+             return mesh.zone_middle.empty() || mesh.zone_middle.size() == mesh.zone_gridpoint.size();
          }},
     };
 }

@@ -197,8 +197,7 @@ Zones zones_of(const Scene& scene, const Network& network, const Mesh& mesh)
                 const int j = (i + 1) % 3;
                 zones.gradient.emplace_back(4 * (share[i] * gradient[j] + share[j] * gradient[i]));
             }
-            add_point(zones, scene, rock, twice_area / 6, share[0] * p[0] + share[1] * p[1] + share[2] * p[2],
-                      any_yields);
+            add_point(zones, scene, rock, twice_area / 6, mesh.stress_point[3 * z + point], any_yields);
         }
     }
     zones.stress = zones.initial_stress;

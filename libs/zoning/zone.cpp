@@ -100,6 +100,11 @@ void add_middles(Mesh& mesh, const Triangulation& t, const Blocks& blocks)
         const Index i = corner_at(t.triangle[z], a), j = corner_at(t.triangle[z], b);
         return static_cast<std::size_t>((i + 1) % 3 == j ? i : j);
     };
+    for (const auto& corners : t.triangle)
+        for (int i = 0; i < 3; ++i)
+            mesh.stress_point.push_back(
+                (4 * t.vertex[corners[i]] + t.vertex[corners[(i + 1) % 3]] + t.vertex[corners[(i + 2) % 3]]) /
+                6);
     mesh.zone_middle.assign(t.triangle.size(), {-1, -1, -1});
     std::vector<std::array<Index, 3>> across(t.triangle.size(),
                                              {-1, -1, -1}); // {zone across each side}, if it holds together

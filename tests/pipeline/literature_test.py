@@ -36,10 +36,11 @@ class Literature(ChainTest):
 
     def test_cantilever(self):
         self.hold(literature.cantilever)
-        found = literature.cantilevers(self.programs)
+        found = literature.cantilevers_of_both_kinds(self.programs)
         self.assertIn(literature.cantilever_table(found), self.page)
         for coarse, fine in zip(found, found[1:]):  # too stiff, less and less
-            self.assertLess(coarse.share, fine.share)
+            if coarse.kind == fine.kind:
+                self.assertLess(coarse.share, fine.share)
 
     def test_plane_of_weakness(self):
         self.hold(literature.weakness)

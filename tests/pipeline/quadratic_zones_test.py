@@ -51,7 +51,8 @@ class QuadraticZones(ChainTest):
             self.assertLess(np.abs(one - other).max(), 1e-4 * np.abs(one).max(), name)
 
     def test_it_goes_on_from_a_checkpoint_and_by_any_number_of_threads(self):
-        joints = self.chain.joints(quadratic(EVERYTHING))
+        joints = self.chain.joints(quadratic(changed(EVERYTHING, "^cohesion_MPa = 0.05\nfriction_angle_deg = 28",
+                                                     "cohesion_MPa = 0.2\nfriction_angle_deg = 28")))
         kept = joints.with_name("kept.h5")
         whole = datasets(self.chain.run("demsolve", joints, joints.with_name("whole.h5"), "--checkpoint", kept))
         threads = datasets(self.chain.run("demsolve", joints, joints.with_name("threads.h5"), "--threads", 2))
@@ -84,7 +85,7 @@ class QuadraticZones(ChainTest):
         self.assertLess(np.abs(one - other).max(), 1e-3 * np.abs(one).max())
 
     def test_large_displacements_refuse_them(self):
-        text = quadratic(self.chain.text("data/collapse/scene.toml"))
+        text = quadratic(self.chain.text("data/collapse/sliding.toml"))
         path = self.chain.new_folder() / "scene.toml"
         path.write_text(text)
         done = self.chain.answer("jointgen", path, "--check")

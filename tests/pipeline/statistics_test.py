@@ -18,7 +18,7 @@ class Report(ChainTest):
         folder = self.chain.new_folder()
         (folder / "scene.toml").write_text(text)
         done = self.chain.answer("jointgen", folder / "scene.toml", "-o", folder / "network.h5", "--report", *arguments)
-        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        self.assertEqual(done.returncode, 0, done.stderr)
         return folder / "network.h5", datasets(folder / "network.h5"), done.stdout
 
     def test_on_request(self):

@@ -102,6 +102,11 @@ struct Patch {
                 middle[i] = found->second;
             }
             mesh.zone_middle.push_back(middle);
+            for (int i = 0; i < 3; ++i)
+                mesh.stress_point.push_back((4 * mesh.gridpoint[corners[i]] +
+                                             mesh.gridpoint[corners[(i + 1) % 3]] +
+                                             mesh.gridpoint[corners[(i + 2) % 3]]) /
+                                            6);
         }
     }
 

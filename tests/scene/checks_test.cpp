@@ -73,7 +73,7 @@ TEST(checks, a_word_of_earlier_versions_is_refused_with_its_new_name)
 
 TEST(checks, a_missing_key_is_refused_at_its_table)
 {
-    expect_refused("[zones]\nsize_m = 4\n", "[zones]\n", "[zones] has no size_m: wanted a number");
+    expect_refused("[zones]\nkind = \"constant strain\"\nsize_m = 4\n", "[zones]\n", "[zones] has no size_m: wanted a number");
     expect_refused("cohesion_MPa = 0.5\n", "", "has no cohesion_MPa", "[[rock]]\nname = \"soft\"");
     expect_part(refusal(replaced(text, "shear_kelvin_stiffness_MPa_per_m = 8000\n", "")),
                 "comes together with");

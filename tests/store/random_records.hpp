@@ -184,6 +184,9 @@ private:
             std::rotate(corners.begin(), corners.begin() + static_cast<std::ptrdiff_t>(random_() % 3),
                         corners.end());
         }
+        const bool is_quadratic = random_() % 2 == 0;
+        mesh.zone_middle.resize(is_quadratic ? mesh.zone_gridpoint.size() : 0, {2, 0, 1});
+        mesh.side_middle.resize(is_quadratic ? mesh.side_gridpoint.size() : 0, 1);
         for (auto& gridpoints : mesh.contact_gridpoint)
             gridpoints = two_of(mesh.gridpoint.size());
         for (auto& normal : mesh.contact_normal) {

@@ -17,8 +17,8 @@ std::vector<fields::Field> all_fields(CheckpointFile& file)
 {
     std::vector<fields::Field> all;
     for (const auto& fields :
-         {schema::fields_of(file.provenance), schema::fields_of(file.network),
-          schema::fields_of(file.equivalent), schema::fields_of(file.result),
+         {schema::fields_of(file.provenance), schema::fields_of(file.provenance.warnings),
+          schema::fields_of(file.network), schema::fields_of(file.equivalent), schema::fields_of(file.result),
           schema::fields_of(file.result.step_history), schema::fields_of(file.result.failure),
           schema::fields_of(file.result.dynamics), schema::fields_of(file.safety),
           schema::fields_of(file.checkpoint), schema::fields_of(file.checkpoint.dynamics)})
