@@ -90,7 +90,8 @@ class QuadraticZones(ChainTest):
         path.write_text(text)
         done = self.chain.answer("jointgen", path, "--check")
         self.assertEqual(done.returncode, 2)
-        self.assertRegex(done.stderr, r'scene.toml:[0-9]+: \[zones\] kind.*wanted "constant strain" with \[large_displacements\]')
+        self.assertRegex(done.stderr, r'scene.toml, line [0-9]+: \[zones\] kind = "quadratic": wanted "constant strain" with '
+                                      r'\[large_displacements\]')
 
     def test_exports_have_their_six_gridpoints(self):
         result = self.chain.result(quadratic(self.chain.text("data/verification/cantilever/scene.toml")))
