@@ -17,19 +17,7 @@ namespace jointcreep::creepfit
 // Throws file_error.
 std::string text_of(const std::string& path);
 
-// Calls read(). Messages of input_error begin with the file's name.
-template <class Read>
-auto of_file(const std::string& path, const Read& read)
-{
-    try {
-        return read();
-    } catch (const input_error& error) {
-        const std::string_view message = error.what();
-        throw input_error(path + (message.starts_with("line ") ? ", " : ": ") + error.what());
-    }
-}
-
-// The same. But only messages of lines are the file's.
+// As of_file(). But only messages of lines are the file's.
 template <class Read>
 auto of_lines_of_file(const std::string& path, const Read& read)
 {

@@ -88,7 +88,7 @@ void fit_section(const Arguments& arguments)
 
     // 1. The section, and its measurements.
     const store::JointsFile file = store::read_joints(input);
-    const Scene scene = scene::parse_scene(file.provenance.scene, input + ": /scene");
+    const Scene scene = scene::parse_scene_of_file(file.provenance.scene, input, file.network);
     const Measurements measurements = read_measurements(measured, scene, settings.factors.size());
 
     // 2. The factors that fit the measurements.

@@ -92,7 +92,7 @@ void solve(const Arguments& arguments)
 
     // 1. The section, with the settings of the command line in place of its scene's.
     const store::JointsFile file = store::read_joints(input);
-    Scene scene = scene::parse_scene(file.provenance.scene, input + ": /scene");
+    Scene scene = scene::parse_scene_of_file(file.provenance.scene, input, file.network);
     const std::string end = demsolve::end_scene(arguments, scene);
     const std::string options = demsolve::replace_settings(arguments, scene);
     const demsolve::Files files(arguments, program.name, file, options, end);
@@ -115,16 +115,18 @@ void solve(const Arguments& arguments)
     const RunWith run_with = [&, is_bracket = search.has_value()](double divisor, double most_displacement) {
         Progress progress(arguments.quiet());
         const std::string which = is_bracket ? "strengths / " + shown(divisor) + ", " : "";
-        auto run =
-            std::make_unique<Trial>(scene, file.network, file.equivalent, divisor, most_displacement, threads,
-                                    recording, [&progress, which](double fraction, const std::string& what) {
-                                        progress.show(fraction, which + what);
-                                    });
-        if (kept)
-            run->go_on(std::move(kept->result), std::move(kept->checkpoint));
-        else
-            run->run();
-        return run;
+        return of_file(input, [&] {
+            auto run = std::make_unique<Trial>(scene, file.network, file.equivalent, divisor,
+                                               most_displacement, threads, recording,
+                                               [&progress, which](double fraction, const std::string& what) {
+                                                   progress.show(fraction, which + what);
+                                               });
+            if (kept)
+                run->go_on(std::move(kept->result), std::move(kept->checkpoint));
+            else
+                run->run();
+            return run;
+        });
     };
 
     // 4. Once, or with strengths divided by factors until rock moves.

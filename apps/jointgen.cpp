@@ -131,14 +131,10 @@ void generate(const Arguments& arguments)
     // 2. Its joints.
     Network network;
     network.names = names_of(scene);
-    try {
-        network.joints = sampling::sample_joints(scene, seed, realization);
+    network.joints = of_file(input, [&] { return sampling::sample_joints(scene, seed, realization); });
 
-        // 3. Its blocks.
-        network.blocks = blocks::cut(scene, network.joints);
-    } catch (const input_error& error) { // of several keys together
-        throw input_error(input + ": " + error.what());
-    }
+    // 3. Its blocks.
+    network.blocks = of_file(input, [&] { return blocks::cut(scene, network.joints); });
 
     // 4. Statistics of the network, beside the scene's laws.
     if (arguments.has("report"))

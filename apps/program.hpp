@@ -15,6 +15,7 @@
 
 #pragma once
 
+#include "model/error.hpp"
 #include "model/quantity.hpp"
 #include "scene/shared_settings.hpp"
 
@@ -78,6 +79,18 @@ void refuse_overwriting(const std::vector<NamedFile>& read, const std::vector<Na
 
 // Writes a text as a file that appears when it is whole. Throws file_error.
 void write_text(const std::string& path, const std::string& text);
+
+// Calls read(). Messages of input_error begin with the file's name.
+template <class Read>
+auto of_file(const std::string& path, const Read& read)
+{
+    try {
+        return read();
+    } catch (const input_error& error) {
+        const std::string_view message = error.what();
+        throw input_error(path + (message.starts_with("line ") ? ", " : ": ") + error.what());
+    }
+}
 
 // What was given on the command line. Every accessor throws input_error when what is given is not what is
 // wanted.

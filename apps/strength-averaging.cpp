@@ -103,10 +103,11 @@ void average_and_write(const Arguments& arguments)
 
     // 1. Joints, blocks, and the scene they were made from.
     store::NetworkFile file = store::read_network(input);
-    const Scene scene = scene::parse_scene(file.provenance.scene, input + ": /scene");
+    const Scene scene = scene::parse_scene_of_file(file.provenance.scene, input, file.network);
 
     // 2. The equivalent joint of every edge.
-    const EquivalentJoints joints = joint::average_strength(scene, file.network);
+    const EquivalentJoints joints =
+        of_file(input, [&] { return joint::average_strength(scene, file.network); });
 
     Provenance provenance = file.provenance;
     provenance.program.push_back(program.name);

@@ -16,7 +16,7 @@ def write_variant(parser, change):
     parser.add_argument("-o", "--output", metavar="NAME.toml", required=True)
     arguments = parser.parse_args()
     try:
-        with open(arguments.scene, encoding="utf-8") as file:
+        with open(arguments.scene, encoding="utf-8-sig") as file:
             text = change(file.read(), arguments)
         tomllib.loads(text)
         partial = f"{arguments.output}.partial-{os.getpid()}"

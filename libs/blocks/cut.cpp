@@ -603,12 +603,6 @@ private:
             blocks.block_rock.push_back(other_rock < 0 ? rock : other_rock);
             blocks.block_stage.push_back(stages_.first_around(inside));
         }
-        for (std::size_t s = 0; s < scene_.stages.size(); ++s)
-            if (std::find(blocks.block_stage.begin(), blocks.block_stage.end(), static_cast<Index>(s)) ==
-                blocks.block_stage.end())
-                throw input_error(
-                    "stage \"" + scene_.stages[s].name +
-                    "\" removes nothing: its remove_m contains no rock that earlier stages leave");
         blocks.fates = fates_.table(reach_);
         blocks.report = report_;
         measure_moves(blocks);
@@ -683,11 +677,39 @@ private:
     CuttingReport report_;
 };
 
+bool has_rock(const Blocks& blocks, std::size_t stage)
+{
+    return std::ranges::find(blocks.block_stage, static_cast<Index>(stage)) != blocks.block_stage.end();
+}
+
+// Whether there is rock of the stage if next to nothing is merged.
+bool is_merged_away(Scene scene, std::size_t stage)
+{
+    scene.stages.resize(stage + 1);
+    scene.boundaries.clear();
+    scene.cutting = {.shortest_edge = 1e-6 * scene.cutting.shortest_edge, .smallest_angle = 0};
+    try {
+        return has_rock(Cutter(scene, Joints()).blocks(), stage);
+    } catch (const input_error&) { // of cutting
+        return false;
+    }
+}
+
 } // namespace
 
 Blocks cut(const Scene& scene, const Joints& joints)
 {
-    return Cutter(scene, joints).blocks();
+    Blocks blocks = Cutter(scene, joints).blocks();
+    for (std::size_t s = 0; s < scene.stages.size(); ++s)
+        if (!has_rock(blocks, s))
+            throw input_error(
+                "stage \"" + scene.stages[s].name + "\" removes nothing: " +
+                (is_merged_away(scene, s)
+                     ? "its rock is merged with that beside it, as [cutting] shortest_edge_m is " +
+                           shown(scene.cutting.shortest_edge) +
+                           " m; wanted a smaller one (0.02 x [zones] size_m where it is not given)"
+                     : "its remove_m contains no rock that earlier stages leave"));
+    return blocks;
 }
 
 } // namespace jointcreep::blocks

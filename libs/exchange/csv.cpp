@@ -89,7 +89,9 @@ std::string suffix(std::string unit)
 
 std::string csv_field(const std::string& text)
 {
-    if (text.find_first_of(",\"\r\n") == std::string::npos)
+    const bool is_like_formula =
+        !text.empty() && std::string_view("=+-@\t").find(text[0]) != std::string_view::npos;
+    if (text.find_first_of(",\"\r\n") == std::string::npos && !is_like_formula)
         return text;
     std::string quoted = "\"";
     for (const char c : text)

@@ -1,7 +1,7 @@
 // Joints, blocks, edges and histories as tables for spreadsheets and scripts: comma-separated, one line of
-// headings with units, names in quotes where they need it (RFC 4180), every number so that it reads back as
-// the same double. Indices are those of the records; a field without a value (an edge without a joint) is
-// empty.
+// headings with units, names in quotes where they need it (RFC 4180) or begin as a formula does, every number
+// so that it reads back as the same double. Indices are those of the records; a field without a value (an edge
+// without a joint) is empty.
 
 #pragma once
 
@@ -13,7 +13,8 @@
 namespace jointcreep::exchange
 {
 
-// Text as one field of such a table.
+// Text as one field of such a table. Quotes do not change what is read. Spreadsheets can be told to take fields in quotes
+// as text; without quotes, one that begins with = + - @ or a tab may be taken for a formula.
 std::string csv_field(const std::string& text);
 
 // One row a joint trace: set, number (of its joint within the set), x1_m, y1_m, x2_m, y2_m.

@@ -2,6 +2,7 @@
 
 #include "exchange/forces.hpp"
 #include "model/error.hpp"
+#include "model/utf8.hpp"
 
 #include <algorithm>
 #include <initializer_list>
@@ -31,8 +32,13 @@ std::string text_of(std::initializer_list<std::size_t> numbers)
     return text;
 }
 
+// A name of a file as text of XML, which has no way to write most control characters.
 std::string escaped(const std::string& text)
 {
+    if (!is_plain_text(text))
+        throw input_error(
+            text + ": an .xdmf2 file cannot refer to a name with control characters, or one that is not "
+                   "UTF-8. Rename the file");
     std::string safe;
     for (const char c : text) {
         switch (c) {
@@ -44,6 +50,9 @@ std::string escaped(const std::string& text)
             break;
         case '>':
             safe += "&gt;";
+            break;
+        case '"':
+            safe += "&quot;";
             break;
         default:
             safe += c;

@@ -20,7 +20,8 @@ namespace jointcreep::exchange
 {
 
 // The zones, at their positions at the start. `result_file` is where readers find result.h5: a path relative
-// to the folder of the XDMF file, so that both can move together. A result without states throws input_error.
+// to the folder of the XDMF file, so that both can move together. A result without states throws input_error, and so
+// does a name that XML cannot have.
 // Points: displacement [m]. Cells: the columns of forces, zone_present, block, vtkGhostType.
 std::string zones_xdmf(const Result& result, const std::string& result_file);
 

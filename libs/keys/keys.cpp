@@ -1,6 +1,7 @@
 #include "keys/keys.hpp"
 
 #include "model/error.hpp"
+#include "model/utf8.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -142,9 +143,7 @@ std::int64_t read_integer(const KeyInfo& key, const TomlValue& value, const Plac
 std::string read_text(const KeyInfo& key, const TomlValue& value, const Place& place)
 {
     const auto* const text = std::get_if<std::string>(&value.content);
-    const auto is_control = [](char c) { return (c >= 0 && c < 0x20) || c == 0x7f; };
-    if (!text || text->empty() || text->size() > longest_text ||
-        std::any_of(text->begin(), text->end(), is_control))
+    if (!text || text->empty() || text->size() > longest_text || !is_plain_text(*text))
         place.refuse(key, value);
     return *text;
 }

@@ -1,12 +1,12 @@
 #include "keys/toml_text.hpp"
 
 #include "model/error.hpp"
+#include "model/utf8.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cstdio>
 #include <cstdlib>
-#include <optional>
 
 // toml++ 3.3 meets some broken texts with an assertion, or with "cannot be reached", inside functions that
 // may not throw. Both become a clear end of the process here, and assertions stay on in every kind of build.
@@ -63,29 +63,6 @@ std::string shortened(std::string text)
         if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f)
             c = '?';
     return text;
-}
-
-// How many bytes the UTF-8 character at the start of `text` has; none if it is not one.
-std::optional<std::size_t> utf8_length(std::string_view text)
-{
-    const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-    const auto first = byte(0);
-    const std::size_t length = first < 0x80   ? 1
-                               : first < 0xc2 ? 0
-                               : first < 0xe0 ? 2
-                               : first < 0xf0 ? 3
-                               : first < 0xf5 ? 4
-                                              : 0;
-    if (length == 0 || text.size() < length)
-        return {};
-    for (std::size_t i = 1; i < length; ++i)
-        if ((byte(i) & 0xc0) != 0x80)
-            return {};
-    const bool overlong = (first == 0xe0 && byte(1) < 0xa0) || (first == 0xf0 && byte(1) < 0x90);
-    const bool outside = (first == 0xed && byte(1) > 0x9f) || (first == 0xf4 && byte(1) > 0x8f);
-    if (overlong || outside)
-        return {};
-    return length;
 }
 
 // Refuses what toml++ cannot be trusted with: control characters, what is not UTF-8, characters beyond ASCII
@@ -306,8 +283,11 @@ std::string shown(const TomlValue& value)
 
 TomlValue parse_toml(std::string_view text, const std::string& name)
 {
-    if (text.starts_with("\xef\xbb\xbf"))
-        text.remove_prefix(3);
+    try {
+        text = without_byte_order_mark(text);
+    } catch (const input_error& error) {
+        refuse(name, 1, error.what());
+    }
     TextCheck(text, name).check();
     text_name = name;
     try {

@@ -2,6 +2,7 @@
 
 #include "keys/keys.hpp"
 #include "model/error.hpp"
+#include "model/utf8.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -56,8 +57,7 @@ void refuse_line(std::size_t line, const std::string& what)
 
 Csv::Csv(std::string_view text)
 {
-    if (text.starts_with("\xef\xbb\xbf")) // a byte order mark
-        text.remove_prefix(3);
+    text = without_byte_order_mark(text);
     for (std::size_t line = 1; !text.empty(); ++line) {
         const std::string_view whole = text.substr(0, text.find('\n'));
         text.remove_prefix(std::min(text.size(), whole.size() + 1));

@@ -3,6 +3,7 @@
 #include "keys/keys.hpp"
 #include "model/error.hpp"
 #include "model/units.hpp"
+#include "model/utf8.hpp"
 #include "scene/csv.hpp"
 
 #include <nlohmann/json.hpp>
@@ -187,7 +188,8 @@ std::vector<MeasuredPole> poles_in_csv(std::string_view text)
 
 std::vector<MappedTrace> mapped_traces(std::string_view text, const TraceFilter& filter)
 {
-    const auto begin = text.find_first_not_of(" \t\r\n\xef\xbb\xbf");
+    text = without_byte_order_mark(text);
+    const auto begin = text.find_first_not_of(" \t\r\n");
     const bool is_json = begin != std::string_view::npos && text[begin] == '{';
     const std::vector<FoundTrace> found =
         is_json ? traces_in_geojson(text, filter) : traces_in_csv(Csv(text), filter);

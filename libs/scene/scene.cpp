@@ -1,6 +1,7 @@
 #include "scene/scene.hpp"
 
 #include "model/error.hpp"
+#include "model/utf8.hpp"
 #include "scene/scene_checks.hpp"
 #include "scene/scene_keys.hpp"
 
@@ -68,7 +69,7 @@ std::string as_toml(const std::string& text, const std::string& begin = "\n")
     return out + "\"\"\"\n";
 }
 
-// The text of a file of the given kind, at most so large.
+// The text of a file of the given kind, at most so large, without a byte order mark.
 std::string read_text_file(const std::string& path, const std::string& wanted)
 {
     if (std::error_code ignored; std::filesystem::is_directory(path, ignored))
@@ -85,7 +86,11 @@ std::string read_text_file(const std::string& path, const std::string& wanted)
     }
     if (std::ferror(file.get()))
         throw file_error(path + ": cannot be read: " + std::strerror(errno));
-    return text;
+    try {
+        return std::string(without_byte_order_mark(text));
+    } catch (const input_error& error) {
+        throw input_error(path + ": " + error.what());
+    }
 }
 
 // What the scene at `path` asks for: names and paths. Files that are not there are left out: parse_scene names the
@@ -102,6 +107,8 @@ std::vector<FileBeside> files_beside(const std::string& path, const std::string&
     }
     std::vector<FileBeside> files;
     for (const std::string& name : names) {
+        if (!is_beside_scene(name)) // parse_scene refuses it
+            continue;
         const std::filesystem::path beside = std::filesystem::path(path).parent_path() / name;
         if (std::error_code ignored; std::filesystem::is_regular_file(beside, ignored))
             files.push_back({name, beside.string()});
@@ -120,16 +127,30 @@ std::string table_of(const FileBeside& file)
            "text = " + as_toml(text);
 }
 
-} // namespace
-
-Scene parse_scene(std::string_view text, const std::string& name)
+// Checked against the network that was made from it, too, if there is one.
+Scene parsed(std::string_view text, const std::string& name, const Network* network)
 {
     const TomlValue root = parse_toml(text, name);
     Reading reading{.name = name, .whole = "scene"};
     Scene scene;
     read_parts(scene_parts(), root, reading, scene);
-    check_scene(scene, {root, reading});
+    const Source source{root, reading};
+    check_scene(scene, source);
+    if (network)
+        check_network(scene, source, *network);
     return scene;
+}
+
+} // namespace
+
+Scene parse_scene(std::string_view text, const std::string& name)
+{
+    return parsed(text, name, nullptr);
+}
+
+Scene parse_scene_of_file(std::string_view text, const std::string& path, const Network& network)
+{
+    return parsed(text, path + ": /scene", &network);
 }
 
 SceneText read_scene(const std::string& path)

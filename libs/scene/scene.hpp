@@ -4,6 +4,7 @@
 
 #pragma once
 
+#include "model/network.hpp"
 #include "model/scene.hpp"
 
 #include <string>
@@ -18,14 +19,18 @@ namespace jointcreep::scene
 // itself, ends the process with exit code 2.
 Scene parse_scene(std::string_view text, const std::string& name);
 
-// The text of a scene file, with the files beside it that it names behind it, each as a table [[file]]: so
+// The same of the text in /scene of a file of the chain, whose name messages begin with. Refuses a scene that does not
+// fit the network of that file, as the text was changed.
+Scene parse_scene_of_file(std::string_view text, const std::string& path, const Network& network);
+
+// The text of a scene file without byte order mark, with the files beside it that it names behind it, each as a table [[file]]: so
 // the text says everything, wherever it goes.
 struct SceneText {
     std::string text;
     std::vector<std::string> files; // paths of those that it names
 };
 
-// Throws file_error if it cannot be read, input_error if it is empty or, with those files, larger than 16 MiB.
+// Throws file_error if it cannot be read, input_error if it is empty, UTF-16 or, with those files, larger than 16 MiB.
 SceneText read_scene(const std::string& path);
 std::string read_scene_text(const std::string& path);
 

@@ -7,6 +7,7 @@
 
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <set>
 
 namespace jointcreep::scene
@@ -358,9 +359,30 @@ private:
         }
     }
 
+    // What is smaller than the shortest edge is merged: the whole section, where that is.
+    void check_shortest_edge(const Given& cutting) const
+    {
+        const auto along = [this](const Eigen::Vector2d& axis) {
+            const Interval sides = extent(scene_.outline, axis);
+            return sides.high - sides.low;
+        };
+        const double extent_of_section =
+                         std::min(along(Eigen::Vector2d::UnitX()), along(Eigen::Vector2d::UnitY())),
+                     shortest = scene_.cutting.shortest_edge;
+        if (shortest < extent_of_section)
+            return;
+        const std::string wanted = "less than the extent of the section, " + shown(extent_of_section) + " m";
+        if (cutting.find("shortest_edge_m"))
+            cutting.refuse("shortest_edge_m", "wanted " + wanted);
+        once("zones").refuse("size_m", "edges shorter than 0.02 x size_m, " + shown(shortest) +
+                                           " m, are merged; wanted " + wanted +
+                                           ". Set a smaller size_m, or [cutting] shortest_edge_m");
+    }
+
     void check_numbers() const
     {
         const Given cutting = once("cutting");
+        check_shortest_edge(cutting);
         if (scene_.cutting.shortest_edge > scene_.zone_size)
             cutting.refuse("shortest_edge_m",
                            "wanted at most [zones] size_m, " + shown(scene_.zone_size) + " m");
@@ -441,11 +463,57 @@ private:
     }
 };
 
+constexpr const char* other_scene = ". The file was made from another scene; make it again from this one";
+
+// The names of the scene's tables, in this order, beside those of the file.
+void check_names(const Source& source, const std::vector<std::string>& tables, const std::string& dataset,
+                 const std::vector<std::string>& of_file)
+{
+    std::size_t row = 0;
+    for (const std::string& table : tables) {
+        const TomlValue* const list = source.root.find(table);
+        const std::size_t count = list ? std::get<TomlValue::List>(list->content).size() : 0;
+        for (std::size_t i = 0; i < count; ++i, ++row) {
+            const Given given = source.in_list(table, i);
+            const std::string wanted = row < of_file.size() ? '"' + of_file[row] + '"' : "no more of them";
+            if (row >= of_file.size() || std::get<std::string>(given.find("name")->content) != of_file[row])
+                given.refuse("name",
+                             "wanted " + wanted + ", as " + dataset + " of the file has" + other_scene);
+        }
+    }
+    if (row < of_file.size())
+        Place{source.reading, ""}.refuse(1, "the scene has no \"" + of_file[row] + "\", which " + dataset +
+                                                " of the file has" + other_scene);
+}
+
 } // namespace
 
 void check_scene(const Scene& scene, const Source& source)
 {
     Checker(scene, source).check();
+}
+
+void check_network(const Scene& scene, const Source& source, const Network& network)
+{
+    check_names(source, {"rock"}, "/names/rock", network.names.rock);
+    check_names(source, {"joint_material"}, "/names/joint_material", network.names.joint_material);
+    check_names(source, {"joint_set", "joint", "mapped"}, "/names/joint_set", network.names.joint_set);
+    check_names(source, {"stage"}, "/names/stage", network.names.stage);
+
+    const Blocks& blocks = network.blocks;
+    const auto last = std::ranges::max_element(blocks.edge_boundary);
+    if (last != blocks.edge_boundary.end() && *last >= static_cast<Index>(scene.boundaries.size()))
+        source.in_list("boundary", scene.boundaries.size() - 1)
+            .refuse("from_m", "this is the last [[boundary]], and /edges/boundary of the file has " +
+                                  std::to_string(*last + 1) + " of them" + other_scene);
+    double section = area_of(scene.outline);
+    for (const Polygon& hole : scene.holes)
+        section -= area_of(hole);
+    const double all_blocks = std::accumulate(blocks.block_area.begin(), blocks.block_area.end(), 0.0);
+    if (!(std::abs(section - all_blocks) <= 1e-6 * section))
+        source.once("section").refuse("outline_m", "the section has " + shown(section) +
+                                                       " m2, and the blocks of the file have " +
+                                                       shown(all_blocks) + " m2" + other_scene);
 }
 
 } // namespace jointcreep::scene

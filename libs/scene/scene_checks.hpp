@@ -4,6 +4,7 @@
 #pragma once
 
 #include "keys/source.hpp"
+#include "model/network.hpp"
 #include "model/scene.hpp"
 
 namespace jointcreep::scene
@@ -11,5 +12,9 @@ namespace jointcreep::scene
 
 // Throws input_error naming the line, key, value and what was wanted.
 void check_scene(const Scene& scene, const keys::Source& source);
+
+// That the scene is the one that a network was made from: its names, boundaries and area. Throws input_error naming the
+// line and what was wanted.
+void check_network(const Scene& scene, const keys::Source& source, const Network& network);
 
 } // namespace jointcreep::scene

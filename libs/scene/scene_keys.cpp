@@ -5,6 +5,8 @@
 #include "scene/forces.hpp"
 #include "scene/shared_settings.hpp"
 
+#include <filesystem>
+
 namespace jointcreep::scene
 {
 namespace
@@ -242,10 +244,11 @@ Table<WrittenOrientation> orientation_law()
                    &W::poles, read_poles)
              .asks_for("poles [[dip, dip direction], ...] of numbers in [0, 90] and [0, 360] deg")
              .optional(),
-         text("poles", &W::file,
-              "File beside the scene with the measured planes: CSV with the columns dip_deg, "
-              "dip_direction_deg and, if wanted, weight." +
-                  bootstrap_only)
+         text(
+             "poles", &W::file,
+             "File beside the scene, in its folder or a folder there, with the measured planes: CSV with the "
+             "columns dip_deg, dip_direction_deg and, if wanted, weight." +
+                 bootstrap_only)
              .optional(),
          number<W>(
              "scanline_trend_deg", trend, degrees, from(0).to(360),
@@ -351,10 +354,13 @@ const std::string& text_of_file(const std::string& file, const TomlValue& key_va
 {
     const auto found = place.reading.files.find(file);
     if (found == place.reading.files.end())
-        place.refuse(key_value.line,
-                     place.table + " " + key + " = " + shown(key_value) +
-                         ": wanted the name of a file beside the scene that can be read, or of "
-                         "a [[file]] in it");
+        place.refuse(
+            key_value.line,
+            place.table + " " + key + " = " + shown(key_value) + ": wanted the name of " +
+                (is_beside_scene(file)
+                     ? "a file beside the scene that can be read, or of a [[file]] in it"
+                     : "a file in the folder of the scene, or in a folder there, without \"..\". Copy the "
+                       "file to the scene"));
     return found->second;
 }
 
@@ -576,12 +582,13 @@ Table<WrittenMapped> mapped()
          "bridges."},
         {text("name", &W::name, "Name, once among the joints, joint sets and mapped sets."),
          text("material", &W::material, "Name of the joint material."),
-         text("file", &W::file,
-              "File beside the scene, with coordinates in metres of the section. GeoJSON of LineString and "
-              "MultiLineString; or CSV with the columns x1_m, y1_m, x2_m, y2_m and, if wanted, id; or CSV "
-              "with the columns id, x_m, y_m, a row a place, those of a trace together. Where every id is a "
-              "whole number from 0 to 2097151 it becomes the joint's number; elsewhere the place in the file "
-              "does."),
+         text(
+             "file", &W::file,
+             "File beside the scene, in its folder or a folder there, with coordinates in metres of the "
+             "section. GeoJSON of LineString and MultiLineString; or CSV with the columns x1_m, y1_m, x2_m, "
+             "y2_m and, if wanted, id; or CSV with the columns id, x_m, y_m, a row a place, those of a trace "
+             "together. Where every id is a whole number from 0 to 2097151 it becomes the joint's number; "
+             "elsewhere the place in the file does."),
          text("property", &W::property,
               "Takes only the traces whose property of this name, in CSV a column, has the value below.")
              .together("property"),
@@ -712,7 +719,8 @@ Table<Cutting> cutting()
         {"cutting", once, optional, "What is too small to keep when the section is cut into blocks."},
         {number(
              "shortest_edge_m", &Cutting::shortest_edge, metres, above(0).to(farthest_metre),
-             "Vertices closer than this, or than half of it to an edge, are merged. At most the zone size.")
+             "Vertices closer than this, or than half of it to an edge, are merged. At most the zone size, "
+             "and less than the extent of the section.")
              .optional("0.02 x zones.size_m"),
          number("smallest_angle_deg", &Cutting::smallest_angle, degrees, from(0).to(30),
                 "Narrower wedges between edges are closed where that moves little.")
@@ -978,6 +986,12 @@ const std::vector<Part<Scene>>& scene_parts()
 {
     static const Parts parts = all_parts();
     return parts;
+}
+
+bool is_beside_scene(const std::string& file)
+{
+    const std::filesystem::path path(file);
+    return path.is_relative() && std::find(path.begin(), path.end(), "..") == path.end();
 }
 
 } // namespace jointcreep::scene

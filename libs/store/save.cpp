@@ -10,8 +10,10 @@
 #include <filesystem>
 #include <random>
 #include <utility>
+#include <vector>
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -36,9 +38,13 @@ fs::path folder_of(const fs::path& path)
 class Descriptor
 {
 public:
-    explicit Descriptor(int number) : number_(number) {}
-    Descriptor(const Descriptor&) = delete;
-    Descriptor& operator=(const Descriptor&) = delete;
+    explicit Descriptor(int number = -1) : number_(number) {}
+    Descriptor(Descriptor&& other) noexcept : number_(std::exchange(other.number_, -1)) {}
+    Descriptor& operator=(Descriptor&& other) noexcept
+    {
+        std::swap(number_, other.number_);
+        return *this;
+    }
     ~Descriptor()
     {
         if (number_ >= 0)
@@ -51,17 +57,26 @@ private:
     int number_;
 };
 
-// A file that is removed again unless it is renamed.
+constexpr const char* partial_mark = ".partial-"; // then a number
+
+// A file that is removed again unless it is renamed. Until then it is locked: the lock of a process ends with the
+// process, so a partial file without a lock is one that nobody writes.
 class Partial
 {
 public:
     // A name of its own, so that two programs with the same output do not write into one file.
     explicit Partial(const std::string& path)
-        : name_(path + ".partial-" + std::to_string(std::random_device{}())),
-          file_(::open(name_.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0666))
     {
-        if (file_.number() < 0)
-            fail("create " + name_);
+        do {
+            const std::string name = path + partial_mark + std::to_string(std::random_device{}());
+            file_ = Descriptor(::open(name.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0666));
+            if (file_.number() < 0)
+                fail("create " + name);
+            name_ = name;
+            lock_ = Descriptor(::fcntl(file_.number(), F_DUPFD_CLOEXEC, 0));
+            // Where a file system has no locks, nobody removes the file either.
+            ::flock(lock_.number(), LOCK_EX);
+        } while (is_removed()); // by another program, which took it for a leftover before it was locked
     }
     Partial(const Partial&) = delete;
     Partial& operator=(const Partial&) = delete;
@@ -91,9 +106,44 @@ public:
     }
 
 private:
+    bool is_removed() const
+    {
+        struct stat status {
+        };
+        return ::fstat(file_.number(), &status) == 0 && status.st_nlink == 0;
+    }
+
     std::string name_;
-    Descriptor file_;
+    Descriptor file_, lock_; // one open file: the lock lasts until both are closed
 };
+
+// Whether the name is that of a partial file of this output.
+bool is_partial_of(const std::string& output, const std::string& name)
+{
+    const std::string begin = output + partial_mark;
+    return name.size() > begin.size() && name.starts_with(begin) &&
+           name.find_first_not_of("0123456789", begin.size()) == std::string::npos;
+}
+
+// Removes partial files of the output that a program has left which was killed: those that nobody has locked. What
+// cannot be removed stays; the output can be written all the same.
+void remove_leftovers(const fs::path& path)
+{
+    std::vector<fs::path> partial;
+    std::error_code ignored;
+    for (fs::directory_iterator entry(folder_of(path), ignored), end; !ignored && entry != end;
+         entry.increment(ignored))
+        if (is_partial_of(path.filename().string(), entry->path().filename().string()))
+            partial.push_back(entry->path());
+    for (const fs::path& one : partial) {
+        const Descriptor file(::open(one.c_str(), O_WRONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
+        struct stat status {
+        };
+        if (file.number() >= 0 && ::fstat(file.number(), &status) == 0 && S_ISREG(status.st_mode) &&
+            ::flock(file.number(), LOCK_EX | LOCK_NB) == 0)
+            ::unlink(one.c_str());
+    }
+}
 
 // Makes the renaming itself last. Some file systems cannot; the file is in place all the same.
 void sync_folder(const fs::path& folder)
@@ -127,6 +177,7 @@ void require_place(const std::string& path)
 void save(const std::string& path, std::span<const std::byte> bytes)
 {
     require_place(path);
+    remove_leftovers(path);
     Partial partial(path);
     partial.write(bytes);
     partial.rename_to(path);

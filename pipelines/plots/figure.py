@@ -15,11 +15,13 @@ import h5py
 import matplotlib
 
 matplotlib.use("Agg")
+import matplotlib.axis
 import matplotlib.colors
 import matplotlib.lines
 import matplotlib.patches
 import matplotlib.patheffects
 import matplotlib.pyplot as plt
+import matplotlib.text
 import numpy as np
 
 ONE_COLUMN = 3.35  # [in]
@@ -32,6 +34,7 @@ LINES = ["-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (1, 3))]
 MARKERS = ["o", "s", "^", "D", "v", "P"]
 HALO = [matplotlib.patheffects.withStroke(linewidth=2, foreground="white")]
 ROCKS = ["#dfe3e8", "#e6d3c4", "#f1e6b8", "#dce8d6", "#e5dcec"]  # pale, in the scene's order
+FORMULAS = [r"$\sigma_{xx}$", r"$\sigma_{yy}$", r"$\sigma_n$", r"$\tau$"]  # in labels of the plots
 # Pale where there is little, so that black lines and arrows stay visible over it.
 SHADES = matplotlib.colors.ListedColormap(
     0.2 + 0.8 * matplotlib.colormaps["YlGnBu"](np.linspace(0, 0.95, 256))[:, :3])
@@ -83,11 +86,21 @@ def run(draw, arguments):
     """Opens the file, draws, saves."""
     with opened(arguments.file) as file:
         figure = draw(file, arguments)
+    draw_names_as_they_are(figure)
     try:
         save(figure, Path(arguments.output))
     except (OSError, ValueError) as error:
         print(f"{Path(sys.argv[0]).name}: {arguments.output}: {error}", file=sys.stderr)
         sys.exit(4)
+
+
+def draw_names_as_they_are(figure):
+    """A name with dollar signs is no formula. Formulas are in the plots' own labels, and in ticks."""
+    of_ticks = {id(label) for tick in figure.findobj(matplotlib.axis.Tick) for label in (tick.label1, tick.label2)}
+    of_ticks |= {id(axis.offsetText) for axis in figure.findobj(matplotlib.axis.Axis)}
+    for text in figure.findobj(matplotlib.text.Text):
+        if id(text) not in of_ticks and not any(symbol in text.get_text() for symbol in FORMULAS):
+            text.set_parse_math(False)
 
 
 def save(figure, path):

@@ -25,5 +25,5 @@ def plain(names):
 
 
 if __name__ == "__main__":
-    with open(sys.argv[1], "rb") as scene:
-        print(*plain([str(stage.get("name", "")) for stage in tomllib.load(scene).get("stage", [])]))
+    with open(sys.argv[1], encoding="utf-8-sig") as scene:  # with or without a byte order mark
+        print(*plain([str(stage.get("name", "")) for stage in tomllib.loads(scene.read()).get("stage", [])]))

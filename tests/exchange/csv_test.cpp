@@ -59,6 +59,14 @@ TEST(joints_csv, has_a_row_a_trace)
     EXPECT_EQ(number(rows[2][4]), 1.0 / 3.0 + 9);
 }
 
+TEST(csv_field, is_in_quotes_where_it_begins_as_a_formula_does)
+{
+    for (const std::string name : {"=1+1", "+A", "-10 m", "@x", "\tx"})
+        EXPECT_EQ(csv_field(name), '"' + name + '"');
+    for (const std::string name : {"A", "1", "a=b", " =1", ""})
+        EXPECT_EQ(csv_field(name), name);
+}
+
 TEST(blocks_csv, has_area_and_centroid_with_holes_taken_out)
 {
     Network network = small_network();

@@ -106,6 +106,8 @@ def broken_values(key):
     if kind == "text":
         yield "empty", '""'
         yield "control character", '"a\\u0007"'
+        yield "control character beyond ASCII", '"a\\u0085"'
+        yield "no character of XML", '"a\\uFFFE"'
     if kind.startswith('"'):
         yield "no such word", '"none of these"'
 

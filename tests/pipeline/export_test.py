@@ -6,7 +6,7 @@ import xml.etree.ElementTree
 
 import numpy
 
-from chain import ChainTest, datasets, main
+from chain import ChainTest, changed, datasets, main
 
 KINDS = ["boundary", "joint", "bonded"]
 LINE, POLYGON, TRIANGLE, VERTEX = 3, 7, 5, 1  # cell types of VTK
@@ -210,6 +210,44 @@ class Export(ChainTest):
             by_number = self.export(path, "x.vtu", "--what", "zones", "--state", last).read_bytes()
             self.assertEqual(self.export(path, "x.vtu", "--what", "zones", "--state", "last").read_bytes(), by_number)
             self.assertEqual(self.export(path, "x.vtu").read_bytes(), by_number)
+
+    def test_any_name_is_written_so_that_it_reads_back(self):
+        """Names with what is special in XML, CSV and spreadsheets. A field that begins as a formula does is in quotes."""
+        rock, joint, stage, point = '-10 m <&">', '@bedding, "upper" ', '=1+1 <&">', "+A"
+        text = ChainTest.chain.text("data/column/scene.toml")
+        for old, new, count in [('"rock"$', rock, 2), ('"joint under block 1"', joint, 1), ('"block 1 removed"', stage, 1),
+                                ('"A"', point, 1)]:
+            text = changed(text, old, f"'''{new}'''", count)
+        result = ChainTest.chain.result(text, "--no-creep")
+        self.assertEqual({row["rock"] for row in self.table(result, "blocks")}, {rock})
+        self.assertIn(stage, [row["stage"] for row in self.table(result, "blocks")])
+        self.assertIn(joint, [row["set"] for row in self.table(result, "joints")])
+        histories = self.table(result, "histories")
+        self.assertIn(stage, [row["event"] for row in histories])
+        self.assertIn("+A_x_m", histories[0])
+        raw = self.export(result, "x.csv", "--what", "histories").read_text()
+        self.assertIn(',"+A_x_m",', raw)
+        self.assertIn(',"=1+1 <&"">",', raw)
+        for numbers in "joints", "histories":
+            self.assertNotIn('"-', self.export(result, "x.csv", "--what", numbers).read_text(), "numbers are not names")
+        grid = Grid(self.export(result, "x.vtu", "--what", "blocks"))
+        self.assertEqual((grid.field["rock_names"], grid.field["stage_names"][0]), ([rock], stage))
+
+    def test_the_name_of_the_file_in_xml(self):
+        source = solved("data/column/scene.toml")[0]
+        folder = self.chain.new_folder()
+        for what in "zones", "contacts":
+            name = '<a> & "b" \'c\'.h5'
+            (folder / name).write_bytes(source.read_bytes())
+            path = self.chain.run("jointexport", folder / name, folder / "x.xdmf2", "--what", what)
+            items = [item.text for item in xml.etree.ElementTree.parse(path).iter("DataItem") if item.get("Format") == "HDF"]
+            self.assertTrue(items and all(item.startswith(name + ":/") for item in items))
+            for name in "bell\a.h5", "line\nbreak.h5", "\x85.h5":
+                (folder / name).write_bytes(source.read_bytes())
+                done = self.chain.answer("jointexport", folder / name, "-o", folder / "y.xdmf2", "--what", what)
+                self.assertEqual(done.returncode, 2, done.stderr)
+                self.assertIn("Rename the file", done.stderr)
+                self.assertFalse((folder / "y.xdmf2").exists())
 
     def test_earlier_files(self):
         """Blocks and joints are the same from every file of the chain."""

@@ -102,6 +102,49 @@ class Kinds(ChainTest):
         self.assertEqual(done.returncode, 2)
         self.assertRegex(done.stderr, r"poles\.csv, line 3: .*UTF-8")
 
+    def test_a_byte_order_mark_is_dropped(self):
+        """As editors on Windows write it, before the scene and each of its files: /scene is the same as without."""
+        plain, marked = self.scene(), self.scene()
+        for name in FILES:
+            path = marked.with_name(name)
+            path.write_bytes(b"\xef\xbb\xbf" + path.read_bytes())
+        first, second = datasets(self.network(plain)), datasets(self.network(marked))
+        for name in first:
+            if name != "/provenance/input_sha256":
+                np.testing.assert_array_equal(first[name], second[name], err_msg=name)
+
+    def test_utf_16_is_refused_by_its_name(self):
+        for name in FILES:
+            for code in "utf-16", "utf-16-le", "utf-16-be":
+                with self.subTest(name, code=code):
+                    scene = self.scene()
+                    path = scene.with_name(name)
+                    path.write_text(path.read_text(), encoding=code)
+                    done = self.chain.answer("jointgen", scene, "-o", scene.with_name("network.h5"))
+                    self.assertEqual(done.returncode, 2, done.stderr)
+                    self.assertIn(f"{path}: the text is UTF-16; wanted UTF-8", done.stderr)
+                    self.assertFalse(scene.with_name("network.h5").exists())
+
+    def test_files_are_beside_the_scene(self):
+        """In its folder or a folder there. Another place is refused at the key, and nothing is read from it."""
+        text = self.chain.text("tests/pipeline/kinds/scene.toml")
+        for name in "traces.geojson", "poles.csv":
+            line = 1 + text[:text.index(f'"{name}"')].count("\n")
+            scene = self.scene()
+            folder = scene.parent
+            (folder / "map").mkdir()
+            (folder.parent / name).write_bytes((folder / name).read_bytes())
+            (folder / name).rename(folder / "map" / name)
+            for path in f"map/{name}", f"./map/{name}":
+                scene.write_text(text.replace(f'"{name}"', f'"{path}"'))
+                self.network(scene)
+            for path in f"../{name}", f"map/../map/{name}", f"{folder}/map/{name}", "..":
+                with self.subTest(path):
+                    scene.write_text(text.replace(f'"{name}"', f'"{path}"'))
+                    done = self.chain.answer("jointgen", scene, "--check")
+                    self.assertEqual(done.returncode, 2, done.stderr)
+                    self.assertRegex(done.stderr, rf"scene\.toml, line {line}: .*wanted the name of a file in the folder")
+
     def test_other_sets_stay_the_same(self):
         """Byte for byte, when a set changes, comes, goes or moves; but traces end at other traces."""
         text = self.chain.text("tests/pipeline/kinds/scene.toml")

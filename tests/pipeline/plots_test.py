@@ -7,6 +7,7 @@ import subprocess
 import sys
 import tempfile
 import traceback
+import xml.etree.ElementTree
 
 import numpy
 
@@ -90,6 +91,21 @@ class Plots(ChainTest):
                     self.assertEqual([path.name for path in picture.parent.iterdir()], ["picture.png"])
                     self.assertEqual(picture.read_bytes()[:8], PNG)
 
+    def test_names_in_svg(self):
+        """Whatever the names of a scene have, a picture is XML, and has the names as they are."""
+        text = changed(self.chain.text("data/column/scene.toml"), r"^size_m = \S+", "size_m = 10")
+        text = changed(text, '"rock"$', "'<rock> & \"$x^$\"'", 2)
+        text = changed(text, '"block 1 removed"', "'<stage> & \"$x_$\"'")
+        text = changed(text, '"joint under block 1"', "'<joint> & \"$x^$\"'")
+        result = self.chain.result(changed(text, '"A"', "'<A> & \"$x^$\"'"), "--no-creep")
+        for name, *options in [("section",), ("strength",), ("histories",), ("blocks", "--by", "set"), ("blocks", "--by", "rock"),
+                               ("blocks", "--by", "stage"), ("state", "--field", "displacement", "--state", "1"), ("state", "--field", "contacts")]:
+            with self.subTest(name, options=options):
+                picture = self.chain.new_folder() / "picture.svg"
+                done = self.plot(name, result, picture, *options)
+                self.assertEqual((done.returncode, done.stderr), (0, ""))
+                xml.etree.ElementTree.parse(picture)
+
     def test_names_of_stages_in_makefiles(self):
         """A makefile knows a stage by a plain word: no name of a scene is part of a command."""
         from stage_names import plain
@@ -106,6 +122,11 @@ class Plots(ChainTest):
         self.assertIn("--state bench-touch-a-touch-b-1 ", done.stdout)
         self.assertNotRegex(done.stdout, "`|\\$\\(")
         self.assertEqual([path.name for path in folder.iterdir()], ["scene.toml"])
+        names = [sys.executable, self.plots / "stage_names.py", scene]
+        first = subprocess.run(names, capture_output=True, text=True)
+        scene.write_bytes(b"\xef\xbb\xbf" + scene.read_bytes())
+        self.assertEqual(subprocess.run(names, capture_output=True, text=True).stdout, first.stdout)
+        self.assertIn("bench-touch-a", first.stdout)
 
     def test_picture_of_a_dynamic_analysis(self):
         result = self.chain.result(self.chain.text("data/collapse/toppling.toml"))

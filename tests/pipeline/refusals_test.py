@@ -7,6 +7,8 @@ import resource
 import shutil
 import subprocess
 
+import h5py
+
 from chain import ChainTest, changed, main
 
 BAD_INPUT, NO_EQUILIBRIUM, BAD_FILE = 2, 3, 4  # exit codes, docs/programs.md
@@ -204,6 +206,72 @@ class Refusals(ChainTest):
         """A base that is held only sideways."""
         text = changed(self.chain.text(COLUMN), '^joint = "base joint"', 'fix = "x"')
         self.assert_refuses(NO_EQUILIBRIUM, "demsolve", self.chain.joints(text), says=["no contact supports", "] m"])
+
+    def test_sizes_larger_than_what_they_divide(self):
+        """The message names the key that is too large, not a stage whose rock is merged away."""
+        def refused(text, *says):
+            scene = self.chain.new_folder() / "scene.toml"
+            scene.write_text(text)
+            done = self.chain.answer("jointgen", scene, "--check")
+            self.assertEqual(done.returncode, BAD_INPUT, done.stderr)
+            for one in says:
+                self.assertIn(one, done.stderr)
+
+        text = self.chain.text(COLUMN)
+        line = 1 + text.split("\n").index(next(one for one in text.split("\n") if one.startswith("size_m")))
+        for size in "1e9", "1e6", "2000":
+            refused(changed(text, "^size_m = 2.5 +#.*", f"size_m = {size}"), f"scene.toml, line {line}: [zones] size_m")
+        large = changed(text, "^size_m = 2.5", "size_m = 100")
+        end = len(large.split("\n")) + 1
+        for edge in "1e9", "10":
+            refused(f"{large}\n[cutting]\nshortest_edge_m = {edge}\n",
+                    f"scene.toml, line {end + 1}: [cutting] shortest_edge_m")
+        # A stage that is small beside the shortest edge, and one without rock.
+        small = changed(large, r"\[\[\[0, 30\], \[10, 30\], \[10, 40\], \[0, 40\]\]\]",
+                        "[[[4, 39], [5, 39], [5, 40], [4, 40]]]")
+        refused(small, 'scene.toml: stage "block 1 removed" removes nothing', "[cutting] shortest_edge_m is 2 m")
+        again = changed(text, r"\[\[\[0, 20\], \[10, 20\], \[10, 30\], \[0, 30\]\]\]",
+                        "[[[0, 30], [10, 30], [10, 40], [0, 40]]]")
+        refused(again, 'stage "block 2 removed" removes nothing: its remove_m contains no rock')
+
+    def test_a_scene_that_does_not_fit_its_file(self):
+        """A /scene that was changed after the file was made: the message names file, /scene and line."""
+        column = self.chain.text(COLUMN)
+        two_boundaries = changed(column, r"^\[in_situ_stress\].*", "[[boundary]]\nfrom_m = [0, 0]\nto_m = [0, 10]\n"
+                                                                   'fix = "x"\n\n[in_situ_stress]')
+        joints = self.chain.joints(two_boundaries + "\n#" + 500 * " room for longer texts")
+        files = {"strength-averaging": joints.with_name("network.h5"), "demsolve": joints}
+        for what, old, new, at, says in [
+            ("not TOML", '^rock = "rock"', 'rock = "rock', 'rock = "rock', "without its closing quote"),
+            ("an unknown key", "^density_kg_per_m3", "densty_kg_per_m3", "densty", "did you mean"),
+            ("another rock", '"rock"$', '"stone"', 'name = "stone"', '[[rock]] "stone" name = "stone": wanted "rock", as /names/rock'),
+            ("another material", '"base joint"', '"base"', 'name = "base"', 'wanted "base joint", as /names/joint_material'),
+            ("another joint", '^name = "joint under block 2"', 'name = "F1"', 'name = "F1"',
+             'wanted "joint under block 2", as /names/joint_set'),
+            ("a joint less", r'\[\[joint\]\]\nname = "joint under block 3" .*\n(.+\n)+\n', "", "", 'has no "joint under block 3", which /names/joint_set'),
+            ("a stage less", r'\[\[stage\]\]\nname = "block 3 removed"\n(.+\n)+\n', "", "", '"block 3 removed"'),
+            ("another stage", '^name = "block 3 removed"', 'name = "3"', 'name = "3"', 'wanted "block 3 removed"'),
+            ("a stage more", r"^\[\[gauge\]\]", '[[stage]]\nname = "4"\ndate = 30\nremove_m = [[[0, 0], [9, 0], [9, 9]]]\n\n[[gauge]]',
+             'name = "4"', "wanted no more of them"),
+            ("a boundary less", r'\[\[boundary\]\]\nfrom_m = \[0, 0\]\nto_m = \[0, 10\]\n.*\n', "", "from_m = [0, 0]",
+             "/edges/boundary of the file has 2"),
+            ("a wider section", r"^outline_m = .*", "outline_m = [[0, 0], [12, 0], [12, 40], [0, 40]]", "outline_m = ",
+             "480 m2, and the blocks of the file have 400 m2"),
+        ]:
+            count = 2 if what in ("another rock", "another material") else 1
+            text = changed(two_boundaries, old, new, count)
+            line = 1 + text[:text.index(at)].count("\n") if at else 1
+            for program, file in files.items():
+                with self.subTest(what, program=program):
+                    copy = shutil.copy(file, self.chain.new_folder() / "changed.h5")
+                    with h5py.File(copy, "r+", libver=("v110", "v110")) as opened:
+                        opened["scene"][0] = text
+                    self.assert_refuses(BAD_INPUT, program, copy, says=[f"{copy}: /scene, line {line}: ", says])
+
+    def test_what_shows_only_in_a_run_names_the_file(self):
+        text = changed(self.chain.text(COLUMN), "^step_days = 1", "step_days = 1e-6")
+        joints = self.chain.joints(text)
+        self.assert_refuses(BAD_INPUT, "demsolve", joints, says=f"demsolve: {joints}: creep step of 1e-06 day")
 
     def test_too_few_steps(self):
         text = changed(self.chain.text(COLUMN), '^damping = "mass"', 'damping = "mass"\nmost_steps = 50')

@@ -2,6 +2,7 @@
 
 #include "model/error.hpp"
 #include "model/units.hpp"
+#include "scene/measurements.hpp"
 
 #include <gtest/gtest.h>
 
@@ -65,6 +66,26 @@ TEST(MappedTraces, AreReadFromGeoJson)
     EXPECT_EQ(traces[1].polylines, (std::vector<Polygon>{{{0, 0}, {1, 1}}, {{5, 5}, {6, 7}}}));
     EXPECT_EQ(mapped_traces(line, {}).at(0).id, 0); // a geometry alone
     EXPECT_EQ(mapped_traces(feature(line), {}).size(), 1u);
+}
+
+TEST(MappedTraces, MayBeginWithAByteOrderMark)
+{
+    const std::string mark = "\xef\xbb\xbf", csv = "x1_m,y1_m,x2_m,y2_m\n0,0,1,1\n";
+    EXPECT_EQ(mapped_traces(mark + line, {}).size(), 1u);
+    EXPECT_EQ(mapped_traces(mark + csv, {}).size(), 1u);
+    EXPECT_EQ(poles_in_csv(mark + "dip_deg,dip_direction_deg\n1,2\n").size(), 1u);
+    EXPECT_EQ(creep_curve_in_csv(mark + "time_day,displacement_mm\n1,2\n").size(), 1u);
+}
+
+TEST(MappedTraces, AreNotReadFromUtf16)
+{
+    const std::string wanted = "the text is UTF-16; wanted UTF-8";
+    for (const std::string& text : {std::string("\xff\xfe{\0", 4), std::string("\xfe\xff\0{", 4),
+                                    std::string("{\0\"\0", 4), std::string("\0{\0\"", 4)}) {
+        expect_refused(text, wanted);
+        EXPECT_EQ(refusal([&] { poles_in_csv(text); }).substr(0, wanted.size()), wanted);
+        EXPECT_EQ(refusal([&] { creep_curve_in_csv(text); }).substr(0, wanted.size()), wanted);
+    }
 }
 
 TEST(MappedTraces, TakesThoseOfAProperty)

@@ -44,7 +44,61 @@ int written_with_limit(const std::string& path, const ResultFile& file, rlim_t l
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
+// A child that stops in the middle of writing a file.
+class StoppedWriter
+{
+public:
+    StoppedWriter(const std::string& path, const ResultFile& file, rlim_t bytes) : child_(::fork())
+    {
+        if (child_ == 0) {
+            std::signal(SIGXFSZ, [](int) { ::raise(SIGSTOP); });
+            const rlimit limits{bytes, bytes};
+            ::setrlimit(RLIMIT_FSIZE, &limits);
+            write(path, file);
+            ::_exit(0);
+        }
+        int status = 0;
+        ::waitpid(child_, &status, WUNTRACED);
+        EXPECT_TRUE(WIFSTOPPED(status));
+    }
+    void kill() const
+    {
+        ::kill(child_, SIGKILL);
+        ::waitpid(child_, nullptr, 0);
+    }
+
+private:
+    pid_t child_;
+};
+
 } // namespace
+
+TEST(Saving, RemovesWhatKilledWritersLeft)
+{
+    const TemporaryFolder folder;
+    const std::string path = folder / "result.h5";
+    const ResultFile file = RandomRecords(1, 10).result();
+    const std::vector<std::string> others = {"other.h5.partial-7", "result.h5.partial-",
+                                             "result.h5.partial-7a"};
+    for (const std::string& other : others)
+        std::ofstream(folder / other) << "of another output";
+    write(path, file);
+    const std::size_t whole = folder.files().size();
+    const auto half = std::filesystem::file_size(path) / 2;
+
+    const StoppedWriter killed(path, file, half), living(path, file, half);
+    killed.kill();
+    EXPECT_EQ(folder.files().size(), whole + 2);
+    write(path, file);
+    EXPECT_EQ(folder.files().size(), whole + 1) << "that of the living one stays";
+    living.kill();
+    EXPECT_EQ(folder.files().size(), whole + 1);
+    write(path, file);
+    std::vector<std::string> wanted = others;
+    wanted.insert(wanted.begin() + 1, "result.h5");
+    EXPECT_EQ(folder.files(), wanted);
+    EXPECT_TRUE(same(read_result(path), file));
+}
 
 TEST(Saving, FullDiskLeavesTheOldFile)
 {
