@@ -41,9 +41,9 @@ struct Zone {
         rock.load = rock.applied = rock.force = rock.displacement;
         rock.is_free.assign(3, {1, 1});
         rock.zones.gridpoint = {0, 1, 2};
+        rock.zones.area = {.5};
         find_incidence(rock);
         rock.zones.gradient = {Vector2d(-1, -1), Vector2d(1, 0), Vector2d(0, 1)};
-        rock.zones.area = {.5};
         rock.zones.stiffness = {{B + G * 4 / 3, B - G * 2 / 3, G}};
         rock.zones.initial_stress = rock.zones.stress = {in_situ};
         rock.zones.is_present = {1};
