@@ -1,6 +1,7 @@
 #include "blocks/cut.hpp"
 
 #include "blocks/check.hpp"
+#include "blocks/crossings.hpp"
 #include "blocks/extend.hpp"
 #include "blocks/fate.hpp"
 #include "blocks/graph.hpp"
@@ -146,6 +147,7 @@ public:
 
     Blocks blocks()
     {
+        check_crossings(scene_, joints_, section_box());
         draw_lines();
         const int most_passes = 60;
         for (int pass = 0;; ++pass) {
