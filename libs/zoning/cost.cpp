@@ -17,15 +17,15 @@ using Eigen::Vector2d;
 namespace
 {
 
-constexpr double share = 0.2, per_corner = 3;
+constexpr double share = 0.2, least_per_corner = 0.5, most_per_corner = 3;
 
 // Integral of 1/size^2 over the section. Triangles between the first corner and the sides of a polygon, with their sign,
 // make its area whatever its shape. They are halved until the size hardly changes in them.
 class Integral
 {
 public:
-    Integral(const Scene& scene, const Blocks& blocks)
-        : size_(scene, blocks), least_(scene.smallest_zone_size()),
+    Integral(const Scene& scene, const ZoneSize& size)
+        : size_(size), least_(scene.smallest_zone_size()),
           steepest_(std::min(size_.steepest(), 0.5)) // zones beside each other differ by no more
     {
         total_ = of(scene.outline);
@@ -65,7 +65,7 @@ private:
         return of(c, (c + a) / 2, b) + of((c + a) / 2, a, b);
     }
 
-    ZoneSize size_;
+    const ZoneSize& size_;
     double least_, steepest_, total_;
     long halvings_ = 0;
 };
@@ -87,8 +87,17 @@ std::string up_to_two_digits(double value)
 
 double expected_zones(const Scene& scene, const Blocks& blocks)
 {
-    return Integral(scene, blocks).total() / share +
-           per_corner * static_cast<double>(blocks.ring_vertex.size());
+    const ZoneSize size(scene, blocks);
+    double at_corners = 0;
+    for (std::size_t b = 0; b < blocks.block_area.size(); ++b) {
+        const Index from = blocks.ring_start[blocks.block_ring[b]],
+                    to = blocks.ring_start[blocks.block_ring[b + 1]];
+        const double here = size.at(blocks.vertex[blocks.ring_vertex[from]]);
+        at_corners += (to - from) *
+                      std::min(most_per_corner, least_per_corner + (most_per_corner - least_per_corner) *
+                                                                       blocks.block_area[b] / (here * here));
+    }
+    return Integral(scene, size).total() / share + at_corners;
 }
 
 std::string check_cost(const Scene& scene, const Blocks& blocks, const std::string& file)
@@ -101,8 +110,13 @@ std::string check_cost(const Scene& scene, const Blocks& blocks, const std::stri
         (scene.zone_size_at_faces ? ", size_at_faces_m " + shown(*scene.zone_size_at_faces) + " m" : "") +
         ": about " + to_two_digits(zones) + " zones";
     if (!(zones <= most_zones)) {
-        // In proportion. A little more, as the estimate is none to a percent.
-        const double factor = 1.05 * std::sqrt(zones / most_zones);
+        const double least = least_per_corner * static_cast<double>(blocks.ring_vertex.size());
+        if (least > 0.9 * most_zones)
+            throw input_error(found + "; expected at most " + to_two_digits(most_zones) + ". The " +
+                              std::to_string(blocks.block_area.size()) +
+                              " blocks have too many corners for zones of any size: give fewer joints");
+        // All sizes in proportion, and a little more, as the estimate is none to a percent.
+        const double factor = 1.05 * std::sqrt((zones - least) / (most_zones - least));
         throw input_error(found + "; expected at most " + to_two_digits(most_zones) + ". Set size_m to " +
                           up_to_two_digits(factor * scene.zone_size) + " m or more" +
                           (scene.zone_size_at_faces

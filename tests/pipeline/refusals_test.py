@@ -13,6 +13,7 @@ BAD_INPUT, NO_EQUILIBRIUM, BAD_FILE = 2, 3, 4  # exit codes, docs/programs.md
 PROGRAMS = ["jointgen", "strength-averaging", "demsolve", "jointexport"]
 OLD = b"what was there before\n"
 COLUMN = "data/column/scene.toml"
+RANDOM = "tests/pipeline/random_slope.toml"
 
 
 class Refusals(ChainTest):
@@ -210,6 +211,16 @@ class Refusals(ChainTest):
         self.assertIn("jointgen: warning: ", done.stderr)
         self.assertIn("about 5e+06 zones", done.stderr)
         self.assertIn("GB of memory", done.stderr)
+
+    def test_crossings_without_end(self):
+        """Refused before they are found."""
+        text = self.chain.text(RANDOM)
+        for spacing in 'law = "lognormal", mean_m = 7, deviation_m = 2', 'law = "normal", mean_m = 8, deviation_m = 1.5':
+            text = changed(text, f"^spacing = {{ {spacing} }}$", 'spacing = { law = "constant", mean_m = 0.002 }')
+        scene = self.chain.new_folder() / "scene.toml"
+        scene.write_text(text)
+        self.assert_refuses(BAD_INPUT, "jointgen", scene,
+                            says=["scene.toml: about ", "crossings of joints", "at most 5e+07", "Increase its spacing"])
 
     def test_creep_step_beyond_the_limit(self):
         """(1 - exp(-lam dT)) (1 + K/E) < 2 with K/E = 10 and lam = 0.01 per day: dT < 20.067 days."""

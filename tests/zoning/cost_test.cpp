@@ -54,7 +54,7 @@ Scene square(double zone_size)
 
 } // namespace
 
-// Where there are enough of them that it matters. Seen: 0.93 to 1.09.
+// Where there are enough of them that it matters. Seen: 0.87 to 1.15.
 TEST(cost, number_of_zones_in_the_sections_of_data)
 {
     int sections = 0;
@@ -67,7 +67,7 @@ TEST(cost, number_of_zones_in_the_sections_of_data)
         for (int halving = 0; halving < 3; ++halving) {
             if (zoning::expected_zones(scene, blocks) > 1000) {
                 ++sections;
-                EXPECT_NEAR(ratio(scene, blocks), 1, 0.15) << scene.zone_size;
+                EXPECT_NEAR(ratio(scene, blocks), 1, 0.2) << scene.zone_size;
             }
             scene.zone_size /= 2;
             if (scene.zone_size_at_faces)
@@ -90,6 +90,19 @@ TEST(cost, number_of_zones_of_changing_size)
     scene.fine_zones = Polygon{{2, 2}, {6, 2}, {6, 6}, {2, 6}};
     scene.zone_coarsening = 0.5;
     EXPECT_NEAR(ratio(scene, blocks), 1, 0.25);
+}
+
+TEST(cost, number_of_zones_in_blocks_smaller_than_zones)
+{
+    const Scene scene = square(1);
+    Joints joints;
+    for (int i = 1; i < 40; ++i) {
+        add_joint(joints, {0.25 * i, 0}, {0.25 * i, 20});
+        add_joint(joints, {0, 0.5 * i}, {10, 0.5 * i});
+    }
+    const double found = ratio(scene, blocks::cut(scene, joints));
+    EXPECT_GT(found, 0.7);
+    EXPECT_LT(found, 2);
 }
 
 TEST(cost, too_many_zones_are_refused_with_a_size_that_is_not)
