@@ -10,8 +10,10 @@
 #include "scene/measurements.hpp"
 #include "scene/scene.hpp"
 #include "store/files.hpp"
+#include "zoning/cost.hpp"
 
 #include <cmath>
+#include <iostream>
 #include <optional>
 #include <string>
 
@@ -89,6 +91,9 @@ void fit_section(const Arguments& arguments)
     // 1. The section, and its measurements.
     const store::JointsFile file = store::read_joints(input);
     const Scene scene = scene::parse_scene_of_file(file.provenance.scene, input, file.network);
+    if (const std::string cost = zoning::check_cost(scene, file.network.blocks, input + ": /scene");
+        !cost.empty())
+        std::cerr << arguments.program() << ": warning: " << cost << '\n';
     const Measurements measurements = read_measurements(measured, scene, settings.factors.size());
 
     // 2. The factors that fit the measurements.

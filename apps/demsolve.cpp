@@ -22,6 +22,7 @@
 #include "model/units.hpp"
 #include "scene/scene.hpp"
 #include "store/files.hpp"
+#include "zoning/cost.hpp"
 
 #include <functional>
 #include <limits>
@@ -95,9 +96,13 @@ void solve(const Arguments& arguments)
     Scene scene = scene::parse_scene_of_file(file.provenance.scene, input, file.network);
     const std::string end = demsolve::end_scene(arguments, scene);
     const std::string options = demsolve::replace_settings(arguments, scene);
-    const demsolve::Files files(arguments, program.name, file, options, end);
+    demsolve::Files files(arguments, program.name, file, options, end);
     const auto [factor, search] = demsolve::strength_reduction(arguments, scene);
     const int threads = arguments.threads();
+
+    const std::string where = input + (arguments.has("zone-size") ? ", --zone-size" : ": /scene");
+    if (const std::string cost = zoning::check_cost(scene, file.network.blocks, where); !cost.empty())
+        files.warn(cost);
 
     // 2. Recording, and the state of a checkpoint, if there is one.
     analysis::Recording recording = demsolve::recording(arguments);

@@ -7,6 +7,7 @@
 #include "model/version.hpp"
 
 #include <filesystem>
+#include <iostream>
 
 namespace jointcreep::demsolve
 {
@@ -25,6 +26,13 @@ Files::Files(const Arguments& arguments, const std::string& program, const store
     provenance_.program.push_back(program);
     provenance_.version.emplace_back(version());
     provenance_.input_sha256.push_back(store::sha256_of(input_));
+}
+
+void Files::warn(const std::string& text)
+{
+    const std::string& program = provenance_.program.back();
+    std::cerr << program << ": warning: " << text << '\n';
+    provenance_.warnings.add(program, text);
 }
 
 void Files::write_result(const Trial& run, const Safety& safety) const

@@ -22,6 +22,9 @@ public:
     Files(const Arguments& arguments, const std::string& program, const store::JointsFile& file,
           std::string options, std::string end);
 
+    // Says a warning at once, and writes it into all files from now on.
+    void warn(const std::string& text);
+
     void write_result(const analysis::Trial& run, const Safety& safety = {}) const;
 
     // Writes a run without equilibrium. Returns the line of the message that says where it is.

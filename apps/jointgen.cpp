@@ -16,6 +16,7 @@
 #include "scene/scene.hpp"
 #include "statistics/statistics.hpp"
 #include "store/files.hpp"
+#include "zoning/cost.hpp"
 
 #include <algorithm>
 #include <iostream>
@@ -140,7 +141,16 @@ void generate(const Arguments& arguments)
     if (arguments.has("report"))
         network.statistics = statistics::statistics_of(scene, network);
 
-    const Warnings warnings = warnings_of(network);
+    // 5. What its zones will cost. Other sizes may be given to demsolve: a network is refused by --check only.
+    Warnings warnings = warnings_of(network);
+    try {
+        if (const std::string cost = zoning::check_cost(scene, network.blocks, input); !cost.empty())
+            warnings.add(program.name, cost);
+    } catch (const input_error& error) {
+        if (check)
+            throw;
+        warnings.add(program.name, std::string(error.what()) + ". demsolve refuses this");
+    }
     if (!check)
         store::write_network(arguments.output(),
                              {.scene = text,

@@ -247,14 +247,10 @@ void sort_and_unite(Graph& graph, Sources& sources)
         std::sort(sorted.begin() + start[v], sorted.begin() + start[v + 1], [](const Edge& a, const Edge& b) {
             return std::tie(a.second, a.sources) < std::tie(b.second, b.sources);
         });
-        for (Index i = start[v]; i < start[v + 1]; ++i) {
-            if (i == start[v] || graph.edge.back().second != sorted[i].second) {
-                graph.edge.push_back(sorted[i]);
-                continue;
-            }
-            Edge& united = graph.edge.back();
-            united.sources = sources.united(united.sources, sorted[i].sources);
-            united.is_settled = united.is_settled && sorted[i].is_settled;
+        for (Index from = start[v], to = from; from < start[v + 1]; from = to) {
+            while (to < start[v + 1] && sorted[to].second == sorted[from].second)
+                ++to;
+            graph.edge.push_back(united({sorted.data() + from, sorted.data() + to}, sources));
         }
     }
 }

@@ -1,6 +1,7 @@
 #include "blocks/cut.hpp"
 
 #include "blocks/check.hpp"
+#include "blocks/crossings.hpp"
 #include "blocks/extend.hpp"
 #include "blocks/fate.hpp"
 #include "blocks/graph.hpp"
@@ -84,33 +85,23 @@ std::vector<Polygon> outlines_with_boundary_ends(const Scene& scene)
     return outlines;
 }
 
-// What a place is inside of: polygons with a value each, tried by their boxes first.
+// What a place is inside of: polygons with a value each.
 class Areas
 {
 public:
-    void add(const Polygon& polygon, Index value)
-    {
-        Vector2d low = polygon[0], high = polygon[0];
-        for (const Vector2d& p : polygon) {
-            low = low.cwiseMin(p);
-            high = high.cwiseMax(p);
-        }
-        areas_.push_back({&polygon, low, high, value});
-    }
+    void add(const Polygon& polygon, Index value) { areas_.push_back({Inside(polygon), value}); }
     // The value of the first polygon that holds the place, -1 if none does.
     Index first_around(const Vector2d& place) const
     {
         for (const Area& a : areas_)
-            if ((place.array() >= a.low.array()).all() && (place.array() <= a.high.array()).all() &&
-                is_inside(*a.polygon, place))
+            if (a.inside.holds(place))
                 return a.value;
         return -1;
     }
 
 private:
     struct Area {
-        const Polygon* polygon;
-        Vector2d low, high;
+        Inside inside;
         Index value;
     };
     std::vector<Area> areas_;
@@ -141,7 +132,8 @@ class Cutter
 public:
     Cutter(const Scene& scene, const Joints& joints)
         : scene_(scene), joints_(joints), outlines_(outlines_with_boundary_ends(scene)),
-          size_(size_of(outlines_[0])), reach_(scene.cutting.shortest_edge), traces_(joints), fates_(joints)
+          outline_(outlines_[0]), size_(size_of(outlines_[0])), reach_(scene.cutting.shortest_edge),
+          traces_(joints), fates_(joints)
     {
         // Later regions cover earlier ones, earlier stages dig before later ones.
         for (std::size_t r = scene.regions.size(); r-- > 0;)
@@ -155,6 +147,7 @@ public:
 
     Blocks blocks()
     {
+        check_crossings(scene_, joints_, section_box());
         draw_lines();
         const int most_passes = 60;
         for (int pass = 0;; ++pass) {
@@ -325,7 +318,7 @@ private:
 
     bool is_in_section(const Vector2d& place) const
     {
-        return is_inside(outlines_[0], place) && holes_.first_around(place) < 0;
+        return outline_.holds(place) && holes_.first_around(place) < 0;
     }
 
     Box section_box() const
@@ -667,6 +660,7 @@ private:
     const Scene& scene_;
     const Joints& joints_;
     std::vector<Polygon> outlines_; // of the section, then of its holes
+    Inside outline_;                // of the section
     double size_, reach_;
     Areas regions_, stages_, holes_;
     std::vector<Line> lines_;

@@ -21,7 +21,7 @@ namespace jointcreep::blocks
 //  - An edge on several joints belongs to the one with the largest joint fraction, then to the first.
 //  - Joint edges have the direction of their joint; boundary edges have the rock on their left.
 //
-// Throws input_error where a boundary condition does not lie on the outline, where merging does not settle,
+// Throws input_error where there are more crossings than can be found, where a boundary condition does not lie on the outline, where merging does not settle,
 // or where the check fails.
 Blocks cut(const Scene& scene, const Joints& joints);
 

@@ -223,11 +223,52 @@ double ring_area(const std::vector<Vector2d>& vertex, std::span<const Index> rin
     return twice / 2;
 }
 
-bool is_inside(const Polygon& polygon, const Vector2d& place)
+Inside::Inside(const Polygon& polygon) : polygon_(polygon), low_(polygon[0]), high_(polygon[0])
 {
-    bool inside = false;
+    double climb = 0;
     for (std::size_t i = 0; i < polygon.size(); ++i) {
-        const Vector2d &p = polygon[i], &q = polygon[i + 1 < polygon.size() ? i + 1 : 0];
+        low_ = low_.cwiseMin(polygon[i]);
+        high_ = high_.cwiseMax(polygon[i]);
+        climb += std::abs(polygon[i + 1 < polygon.size() ? i + 1 : 0].y() - polygon[i].y());
+    }
+    // As many as there are sides, but a side of average height is in five of them at most.
+    if (climb > 0)
+        strips_ += static_cast<Index>(static_cast<double>(polygon.size()) *
+                                      std::min(1.0, 4 * (high_.y() - low_.y()) / climb));
+    start_.assign(static_cast<std::size_t>(strips_) + 1, 0);
+    for (std::size_t i = 0; i < polygon.size(); ++i)
+        for (auto [strip, last] = strips_of(i); strip <= last; ++strip)
+            ++start_[strip + 1];
+    std::partial_sum(start_.begin(), start_.end(), start_.begin());
+    side_.resize(start_.back());
+    std::vector<Index> next(start_.begin(), start_.end() - 1);
+    for (std::size_t i = 0; i < polygon.size(); ++i)
+        for (auto [strip, last] = strips_of(i); strip <= last; ++strip)
+            side_[next[strip]++] = static_cast<Index>(i);
+}
+
+Index Inside::strip_of(double y) const
+{
+    const double height = high_.y() - low_.y(), strip = height > 0 ? (y - low_.y()) / height * strips_ : 0;
+    return std::min(static_cast<Index>(strip), strips_ - 1);
+}
+
+std::array<Index, 2> Inside::strips_of(std::size_t side) const
+{
+    const Vector2d &p = polygon_[side], &q = polygon_[side + 1 < polygon_.size() ? side + 1 : 0];
+    const auto [low, high] = std::minmax({strip_of(p.y()), strip_of(q.y())});
+    return {low, high};
+}
+
+bool Inside::holds(const Vector2d& place) const
+{
+    if (!((place.array() >= low_.array()).all() && (place.array() <= high_.array()).all()))
+        return false;
+    bool inside = false;
+    const Index strip = strip_of(place.y());
+    for (Index s = start_[strip]; s < start_[strip + 1]; ++s) {
+        const auto i = static_cast<std::size_t>(side_[s]);
+        const Vector2d &p = polygon_[i], &q = polygon_[i + 1 < polygon_.size() ? i + 1 : 0];
         const bool p_above = p.y() > place.y(), q_above = q.y() > place.y();
         if (p_above == q_above) {
             // Neither crosses the ray to the right; but the place may be on a level side, or at a corner.

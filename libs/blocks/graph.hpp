@@ -8,6 +8,7 @@
 
 #include <Eigen/Core>
 
+#include <array>
 #include <functional>
 #include <map>
 #include <optional>
@@ -35,7 +36,7 @@ public:
     const Source& operator[](Index line) const { return lines_[line]; }
     Index count() const { return static_cast<Index>(lines_.size()); }
 
-    Index united(Index a, Index b) { return a == b ? a : united_sets(a, b); }
+    Index united(std::vector<Index> sets);            // of at least one
     std::span<const Index> lines_of(Index set) const; // ascending
     bool has_outline(Index set) const { return has_[set] & bit(Source::Kind::outline); }
     bool has_bonded(Index set) const { return has_[set] & bit(Source::Kind::bonded); }
@@ -46,7 +47,8 @@ private:
     {
         return static_cast<unsigned char>(1 << static_cast<int>(kind));
     }
-    Index united_sets(Index a, Index b);
+    Index number_of(std::vector<Index> lines, unsigned char has);
+    Index united_pair(Index low, Index high);
 
     std::vector<Source> lines_;
     std::vector<Index> own_;                        // 0, 1, 2 ...: a line as the set of itself
@@ -61,6 +63,9 @@ struct Edge {
     Index sources;           // a set of Sources
     bool is_settled = false; // known to have nothing but ends in common with any other settled edge
 };
+
+// One edge in place of some with the same ends, at least one.
+Edge united(std::span<const Edge> edges, Sources& sources);
 
 struct Graph {
     std::vector<Eigen::Vector2d> vertex; // [m]
@@ -124,8 +129,24 @@ void remove_faces(Faces& faces, const std::vector<char>& is_gone);
 // blocks far from the origin keep their digits [m2].
 double ring_area(const std::vector<Eigen::Vector2d>& vertex, std::span<const Index> ring);
 
-// Whether a place is inside a polygon, exactly; places on its border count as inside.
-bool is_inside(const Polygon& polygon, const Eigen::Vector2d& place);
+// Tells which places are inside a polygon, exactly; places on its border count as inside. Asks only sides at about the
+// height of the place.
+class Inside
+{
+public:
+    explicit Inside(const Polygon& polygon);
+    bool holds(const Eigen::Vector2d& place) const;
+
+private:
+    Index strip_of(double y) const;
+    std::array<Index, 2> strips_of(std::size_t side) const; // {first, last}
+
+    Polygon polygon_;
+    Eigen::Vector2d low_, high_;
+    Index strips_ = 1;         // of equal height
+    std::vector<Index> start_; // of each strip's sides
+    std::vector<Index> side_;  // by its first corner
+};
 
 // A place well inside a face, found from its rings alone.
 Eigen::Vector2d place_inside(const std::vector<Eigen::Vector2d>& vertex, const Faces& faces, Index face);

@@ -3,6 +3,7 @@
 #include "blocks/predicates.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <numeric>
@@ -33,7 +34,8 @@ Level level_of(const Edge& edge, const Sources& sources)
 class VertexGrid
 {
 public:
-    VertexGrid(const std::vector<Vector2d>& vertex, std::vector<Index> which, double least_cell)
+    // With room for these vertices, and empty.
+    VertexGrid(const std::vector<Vector2d>& vertex, const std::vector<Index>& which, double least_cell)
     {
         if (which.empty())
             return;
@@ -49,18 +51,15 @@ public:
         per_cell_ = 1 / cell_;
         columns_ = static_cast<Index>(extent.x() * per_cell_) + 1;
         rows_ = static_cast<Index>(extent.y() * per_cell_) + 1;
-        const auto cell_of = [&](Index v) {
-            return static_cast<std::size_t>(column(vertex[v].x())) * rows_ + row(vertex[v].y());
-        };
         start_.assign(static_cast<std::size_t>(columns_) * rows_ + 1, 0);
         for (const Index v : which)
-            ++start_[cell_of(v) + 1];
+            ++start_[cell_of(vertex[v]) + 1];
         std::partial_sum(start_.begin(), start_.end(), start_.begin());
         entry_.resize(which.size());
-        std::vector<Index> next(start_.begin(), start_.end() - 1);
-        for (const Index v : which)
-            entry_[next[cell_of(v)]++] = {vertex[v], v};
+        end_.assign(start_.begin(), start_.end() - 1);
     }
+
+    void add(Index v, const Vector2d& place) { entry_[end_[cell_of(place)]++] = {place, v}; }
 
     double cell() const { return cell_; }
 
@@ -73,8 +72,9 @@ public:
         const Index first = row(low.y()), last = row(high.y());
         for (Index c = column(low.x()); c <= column(high.x()); ++c) {
             const std::size_t base = static_cast<std::size_t>(c) * rows_;
-            for (Index i = start_[base + first]; i < start_[base + last + 1]; ++i)
-                found(entry_[i].vertex, entry_[i].place);
+            for (std::size_t r = base + first; r <= base + last; ++r)
+                for (Index i = start_[r]; i < end_[r]; ++i)
+                    found(entry_[i].vertex, entry_[i].place);
         }
     }
 
@@ -91,11 +91,15 @@ private:
     {
         return std::clamp(static_cast<Index>((y - low_.y()) * per_cell_), 0, rows_ - 1);
     }
+    std::size_t cell_of(const Vector2d& place) const
+    {
+        return static_cast<std::size_t>(column(place.x())) * rows_ + row(place.y());
+    }
 
     Vector2d low_;
     double cell_ = 1, per_cell_ = 1;
     Index columns_ = 1, rows_ = 1;
-    std::vector<Index> start_;
+    std::vector<Index> start_, end_; // of the entries in each cell
     std::vector<Entry> entry_;
 };
 
@@ -156,15 +160,12 @@ void unite(std::vector<Edge>& edges, const std::vector<Vector2d>& vertex, Source
     if (!std::is_sorted(edges.begin(), edges.end(), is_less))
         std::stable_sort(edges.begin(), edges.end(), is_less);
     std::size_t count = 0;
-    for (const Edge& e : edges) {
-        if (count > 0 && edges[count - 1].first == e.first && edges[count - 1].second == e.second) {
-            Edge& united = edges[count - 1];
-            united.sources = sources.united(united.sources, e.sources);
-            united.is_settled = united.is_settled && e.is_settled;
-            report.merged_edge_length += (vertex[e.first] - vertex[e.second]).norm();
-            continue;
-        }
-        edges[count++] = e;
+    for (auto from = edges.begin(); from != edges.end();) {
+        const auto to = std::find_if(from + 1, edges.end(), [&](const Edge& e) { return is_less(*from, e); });
+        for (auto e = from + 1; e != to; ++e)
+            report.merged_edge_length += (vertex[e->first] - vertex[e->second]).norm();
+        edges[count++] = united({from, to}, sources);
+        from = to;
     }
     edges.resize(count);
 }
@@ -201,90 +202,62 @@ std::vector<Index> used_vertices(const Graph& graph)
     return used;
 }
 
-// Two vertices within reach of each other.
-struct ClosePair {
-    Index vertex, other;
-    double distance; // [m]
-};
-
-// Every pair twice, once from either vertex.
-std::vector<ClosePair> close_pairs(const std::vector<Vector2d>& vertex, const std::vector<Index>& used,
-                                   double reach)
+// The neighbours along the outline of its vertices, each with the vertex first; sorted.
+std::vector<std::array<Index, 2>> neighbours_along_outline(const Graph& graph, const Sources& sources,
+                                                           const std::vector<Level>& level)
 {
-    std::vector<ClosePair> close;
-    const VertexGrid grid(vertex, used, reach);
-    const Vector2d around(reach, reach);
-    for (const Index v : used)
-        grid.in_rectangle(vertex[v] - around, vertex[v] + around, [&](Index w, const Vector2d& place) {
-            if (w == v)
-                return;
-            const double squared = (place - vertex[v]).squaredNorm();
-            if (squared >= 1.001 * reach * reach)
-                return;
-            if (const double d = std::sqrt(squared); d < reach)
-                close.push_back({v, w, d});
-        });
-    return close;
-}
-
-// The neighbours along the outline of those close vertices that lie on it.
-using OutlineNeighbours = std::map<Index, std::vector<Index>>;
-
-OutlineNeighbours neighbours_along_outline(const Graph& graph, const Sources& sources,
-                                           const std::vector<ClosePair>& close,
-                                           const std::vector<Level>& level)
-{
-    OutlineNeighbours along;
-    for (const ClosePair& pair : close)
-        if (level[pair.vertex] >= on_outline)
-            along[pair.vertex] = {};
-    if (along.empty())
-        return along;
+    std::vector<std::array<Index, 2>> along;
     for (const Edge& e : graph.edge)
-        if (level_of(e, sources) == on_outline)
-            for (const auto& [v, other] : {std::pair(e.first, e.second), std::pair(e.second, e.first)})
-                if (const auto found = along.find(v); found != along.end())
-                    found->second.push_back(other);
+        if (level[e.first] >= on_outline && level_of(e, sources) == on_outline) {
+            along.push_back({e.first, e.second});
+            along.push_back({e.second, e.first});
+        }
+    std::sort(along.begin(), along.end());
     return along;
 }
 
-// The vertex that each one joins: the nearest within reach that does not move itself, or none but itself.
-std::vector<Index> join_vertices(std::vector<ClosePair> close, const std::vector<Level>& level,
-                                 const OutlineNeighbours& along_outline, double reach, CuttingReport& report)
+// The vertex that each one joins: the nearest within reach that does not move itself, or none but itself. Vertices of a
+// higher level choose first, then those of a lower number. Only vertices that stay are in the grid, no two of them within
+// reach but on the outline: so it takes no longer where thousands lie together.
+std::vector<Index> join_vertices(const Graph& graph, const Sources& sources, const std::vector<Index>& used,
+                                 const std::vector<Level>& level, double reach, CuttingReport& report)
 {
     // Vertices on the outline may only join a neighbour along it: two sides of the section never meet.
+    const std::vector<std::array<Index, 2>> along = neighbours_along_outline(graph, sources, level);
     const auto may_join = [&](Index v, Index target) {
-        if (level[v] < on_outline)
-            return true;
-        const auto& along = along_outline.at(v);
-        return level[v] != outline_corner && std::find(along.begin(), along.end(), target) != along.end();
-    };
-    const auto comes_before = [&](Index a, Index b) { // in that order
-        return level[a] != level[b] ? level[a] > level[b] : a < b;
+        return level[v] < on_outline ||
+               (level[v] != outline_corner &&
+                std::binary_search(along.begin(), along.end(), std::array{v, target}));
     };
     std::vector<Index> joined(level.size());
     std::iota(joined.begin(), joined.end(), 0);
-    std::stable_sort(close.begin(), close.end(), [&](const ClosePair& a, const ClosePair& b) {
-        return level[a.vertex] > level[b.vertex];
-    });
-    for (auto from = close.begin(); from != close.end();) {
-        const Index v = from->vertex;
-        Index nearest = -1;
-        double distance = reach;
-        for (; from != close.end() && from->vertex == v; ++from) {
-            const auto [same, w, d] = *from;
-            if (comes_before(w, v) && joined[w] == w && (d < distance || (d == distance && w < nearest)) &&
-                may_join(v, w)) {
-                distance = d;
-                nearest = w;
+    VertexGrid stay(graph.vertex, used, reach);
+    const Vector2d around(reach, reach);
+    for (const Level choosing : {outline_corner, on_outline, on_bonded, free_vertex})
+        for (const Index v : used) {
+            if (level[v] != choosing)
+                continue;
+            const Vector2d& from = graph.vertex[v];
+            Index nearest = -1;
+            double distance = reach;
+            stay.in_rectangle(from - around, from + around, [&](Index w, const Vector2d& place) {
+                const double squared = (place - from).squaredNorm();
+                if (squared >= 1.001 * reach * reach)
+                    return;
+                const double d = std::sqrt(squared);
+                if ((d < distance || (d == distance && w < nearest)) && may_join(v, w)) {
+                    distance = d;
+                    nearest = w;
+                }
+            });
+            if (nearest < 0) {
+                stay.add(v, from);
+                continue;
             }
+            joined[v] = nearest;
+            ++report.merged_vertices;
+            report.largest_move = std::max(report.largest_move, distance);
         }
-        if (nearest < 0)
-            continue;
-        joined[v] = nearest;
-        ++report.merged_vertices;
-        report.largest_move = std::max(report.largest_move, distance);
-    }
     return joined;
 }
 
@@ -316,7 +289,9 @@ std::vector<NearEdge> vertices_near_edges(const std::vector<Vector2d>& vertex, c
                                           const std::vector<Index>& used, double reach)
 {
     std::vector<NearEdge> near;
-    const VertexGrid grid(vertex, used, 2 * reach);
+    VertexGrid grid(vertex, used, 2 * reach);
+    for (const Index v : used)
+        grid.add(v, vertex[v]);
     const double margin = (0.5 + 1e-6) * reach, pieces_per_length = 0.5 / grid.cell();
     for (std::size_t e = 0; e < edges.size(); ++e) {
         const Index first = edges[e].first, second = edges[e].second;
@@ -605,9 +580,7 @@ bool merge_pass(Graph& graph, Sources& sources, const std::vector<Polygon>& outl
 
     // 1. Vertices within reach of one that does not move join it.
     std::vector<Index> used = used_vertices(graph);
-    std::vector<ClosePair> close = close_pairs(graph.vertex, used, reach);
-    const OutlineNeighbours along_outline = neighbours_along_outline(graph, sources, close, level);
-    const std::vector<Index> joined = join_vertices(std::move(close), level, along_outline, reach, report);
+    const std::vector<Index> joined = join_vertices(graph, sources, used, level, reach, report);
     std::vector<Edge> edges = joined_edges(graph, joined, sources, report);
 
     // 2. Edges go through vertices close to them.

@@ -68,4 +68,10 @@ double ZoneSize::at(const Vector2d& place) const
     return size;
 }
 
+double ZoneSize::steepest() const
+{
+    return std::max(scene_.fine_zones ? scene_.zone_size / scene_.zone_coarsening : 0.0,
+                    scene_.zone_size_at_faces ? grading : 0.0);
+}
+
 } // namespace jointcreep::zoning

@@ -18,6 +18,8 @@ public:
     // Longest zone side aimed at, at the middle of a zone [m].
     double at(const Eigen::Vector2d& place) const;
 
+    double steepest() const; // change of the size with the distance, at most [-]
+
 private:
     // A straight piece of a face, or a place of measurement, where both ends are one [m].
     struct Stretch {

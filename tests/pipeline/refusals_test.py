@@ -9,12 +9,13 @@ import subprocess
 
 import h5py
 
-from chain import ChainTest, changed, main
+from chain import ChainTest, changed, datasets, main
 
 BAD_INPUT, NO_EQUILIBRIUM, BAD_FILE = 2, 3, 4  # exit codes, docs/programs.md
 PROGRAMS = ["jointgen", "strength-averaging", "demsolve", "jointexport"]
 OLD = b"what was there before\n"
 COLUMN = "data/column/scene.toml"
+RANDOM = "tests/pipeline/random_slope.toml"
 
 
 class Refusals(ChainTest):
@@ -190,6 +191,38 @@ class Refusals(ChainTest):
                 done = self.chain.answer(program, *arguments)
                 self.assertEqual(done.returncode, BAD_INPUT, done.stderr)
                 self.assertNotEqual(done.stderr, "")
+
+    def test_zones_without_end(self):
+        """Refused before they are made, with a size that would do; by jointgen when it is asked to check."""
+        scene = self.chain.new_folder() / "scene.toml"
+        scene.write_text(changed(self.chain.text(COLUMN), "^size_m = 2.5 ", "size_m = 1e-9 "))
+        refusal = ["size_m is 1e-09 m", "about 2e+21 zones", "at most 2e+07", "Set size_m to 0.011 m or more"]
+        self.assert_refuses(BAD_INPUT, "jointgen", scene, "--check", says=["scene.toml: [zones]", *refusal])
+        joints = self.chain.joints(scene.read_text())
+        self.assert_refuses(BAD_INPUT, "demsolve", joints, says=["joints.h5: /scene: [zones]", *refusal])
+        self.assert_refuses(BAD_INPUT, "demsolve", self.files["demsolve"], "--zone-size", "1e-9",
+                            says=["joints.h5, --zone-size: [zones]", *refusal])
+        warnings = datasets(joints)["/warnings/text"]
+        self.assertTrue(any(refusal[0] in str(warning) for warning in warnings), warnings)
+
+    def test_many_zones_are_warned_of(self):
+        scene = self.chain.new_folder() / "scene.toml"
+        scene.write_text(changed(self.chain.text(COLUMN), "^size_m = 2.5 ", "size_m = 0.02 "))
+        done = self.chain.answer("jointgen", scene, "--check")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("jointgen: warning: ", done.stderr)
+        self.assertIn("about 5e+06 zones", done.stderr)
+        self.assertIn("GB of memory", done.stderr)
+
+    def test_crossings_without_end(self):
+        """Refused before they are found."""
+        text = self.chain.text(RANDOM)
+        for spacing in 'law = "lognormal", mean_m = 7, deviation_m = 2', 'law = "normal", mean_m = 8, deviation_m = 1.5':
+            text = changed(text, f"^spacing = {{ {spacing} }}$", 'spacing = { law = "constant", mean_m = 0.002 }')
+        scene = self.chain.new_folder() / "scene.toml"
+        scene.write_text(text)
+        self.assert_refuses(BAD_INPUT, "jointgen", scene,
+                            says=["scene.toml: about ", "crossings of joints", "at most 5e+07", "Increase its spacing"])
 
     def test_creep_step_beyond_the_limit(self):
         """(1 - exp(-lam dT)) (1 + K/E) < 2 with K/E = 10 and lam = 0.01 per day: dT < 20.067 days."""

@@ -1,0 +1,89 @@
+#include "blocks/crossings.hpp"
+
+#include "model/error.hpp"
+#include "model/polygon.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <map>
+#include <random>
+
+namespace jointcreep::blocks
+{
+
+using Eigen::Vector2d;
+
+namespace
+{
+
+bool cross_in(const Box& box, const Vector2d& p, const Vector2d& p_to, const Vector2d& q,
+              const Vector2d& q_to)
+{
+    const Vector2d d = p_to - p, e = q_to - q, o = q - p;
+    const double below = cross(d, e);
+    if (below == 0)
+        return false;
+    const double along = cross(o, e) / below, along_other = cross(o, d) / below;
+    const Vector2d place = p + along * d;
+    return along >= 0 && along <= 1 && along_other >= 0 && along_other <= 1 &&
+           (place.array() >= box.low.array()).all() && (place.array() <= box.high.array()).all();
+}
+
+// What makes joints of a set fewer or shorter.
+std::string advice_for(const Scene& scene, Index set)
+{
+    const auto row = static_cast<std::size_t>(set);
+    if (row >= scene.joint_sets.size())
+        return "Give fewer or shorter joints";
+    const JointSet& of = scene.joint_sets[row];
+    if (of.kind == SetKind::lines)
+        return of.density ? "Reduce its density" : "Increase its spacing";
+    return std::string("Reduce its density or its ") + (of.kind == SetKind::discs ? "diameter" : "length");
+}
+
+} // namespace
+
+ExpectedCrossings expected_crossings(const Joints& joints, const Box& box)
+{
+    const std::size_t count = joints.set.size();
+    const double pairs = static_cast<double>(count) * (static_cast<double>(count) - 1) / 2;
+    if (pairs <= most_crossings)
+        return {};
+    // A hundred hits or more where there are too many crossings.
+    const auto tries = static_cast<std::size_t>(std::clamp(100 * pairs / most_crossings, 1e5, 3e7));
+    std::mt19937_64 random;       // NOLINT: the same pairs in every run
+    std::map<Index, double> hits; // of sets
+    double all = 0;
+    for (std::size_t i = 0; i < tries; ++i) {
+        const std::size_t a = random() % count, b = random() % count;
+        if (a == b || !cross_in(box, joints.from[a], joints.to[a], joints.from[b], joints.to[b]))
+            continue;
+        ++all;
+        ++hits[joints.set[a]];
+        ++hits[joints.set[b]];
+    }
+    ExpectedCrossings expected;
+    expected.number = all / static_cast<double>(tries) * pairs;
+    if (!hits.empty())
+        expected.set = std::ranges::max_element(hits, {}, [](const auto& of) { return of.second; })->first;
+    return expected;
+}
+
+void check_crossings(const Scene& scene, const Joints& joints, const Box& box)
+{
+    const ExpectedCrossings expected = expected_crossings(joints, box);
+    if (!(expected.number > most_crossings))
+        return;
+    const auto shown_short = [](double number) {
+        std::array<char, 32> text{};
+        std::snprintf(text.data(), text.size(), "%.2g", number);
+        return std::string(text.data());
+    };
+    throw input_error("about " + shown_short(expected.number) +
+                      " crossings of joints in the section; expected at most " + shown_short(most_crossings) +
+                      ". Most are on joint set \"" + names_of(scene).joint_set[expected.set] + "\". " +
+                      advice_for(scene, expected.set));
+}
+
+} // namespace jointcreep::blocks

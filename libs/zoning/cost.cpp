@@ -1,0 +1,134 @@
+#include "zoning/cost.hpp"
+
+#include "model/error.hpp"
+#include "zoning/size.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <vector>
+
+namespace jointcreep::zoning
+{
+
+using Eigen::Vector2d;
+
+namespace
+{
+
+constexpr double share = 0.2, least_per_corner = 0.5, most_per_corner = 3;
+
+// Integral of 1/size^2 over the section. Triangles between the first corner and the sides of a polygon, with their sign,
+// make its area whatever its shape. They are halved until the size hardly changes in them.
+class Integral
+{
+public:
+    Integral(const Scene& scene, const ZoneSize& size)
+        : size_(size), least_(scene.smallest_zone_size()),
+          steepest_(std::min(size_.steepest(), 0.5)) // zones beside each other differ by no more
+    {
+        total_ = of(scene.outline);
+        for (const Polygon& hole : scene.holes)
+            total_ -= of(hole);
+    }
+
+    double total() const { return std::max(total_, 0.0); }
+
+private:
+    double of(const Polygon& polygon)
+    {
+        double sum = 0;
+        for (std::size_t i = 1; i + 1 < polygon.size(); ++i)
+            sum += of(polygon[0], polygon[i], polygon[i + 1]);
+        return std::abs(sum);
+    }
+
+    double of(const Vector2d& a, const Vector2d& b, const Vector2d& c)
+    {
+        const double area = cross(b - a, c - a) / 2;
+        const Vector2d middle = (a + b + c) / 3;
+        const std::array<double, 3> side{(b - a).norm(), (c - b).norm(), (a - c).norm()};
+        const double longest = *std::max_element(side.begin(), side.end());
+        const double size = size_.at(middle), change = steepest_ * longest;
+        if (change <= size / 2)
+            return area / (size * size);
+        // Beyond this number there are too many zones anyway; the bound is larger than the integral.
+        if (++halvings_ > 10'000'000) {
+            const double bound = std::max(size - change, least_);
+            return area / (bound * bound);
+        }
+        if (longest == side[0])
+            return of(a, (a + b) / 2, c) + of((a + b) / 2, b, c);
+        if (longest == side[1])
+            return of(b, (b + c) / 2, a) + of((b + c) / 2, c, a);
+        return of(c, (c + a) / 2, b) + of((c + a) / 2, a, b);
+    }
+
+    const ZoneSize& size_;
+    double least_, steepest_, total_;
+    long halvings_ = 0;
+};
+
+std::string to_two_digits(double value)
+{
+    std::array<char, 32> text{};
+    std::snprintf(text.data(), text.size(), "%.2g", value);
+    return text.data();
+}
+
+std::string up_to_two_digits(double value)
+{
+    const double unit = std::pow(10, std::floor(std::log10(value)) - 1);
+    return to_two_digits(std::ceil(value / unit - 1e-9) * unit);
+}
+
+} // namespace
+
+double expected_zones(const Scene& scene, const Blocks& blocks)
+{
+    const ZoneSize size(scene, blocks);
+    double at_corners = 0;
+    for (std::size_t b = 0; b < blocks.block_area.size(); ++b) {
+        const Index from = blocks.ring_start[blocks.block_ring[b]],
+                    to = blocks.ring_start[blocks.block_ring[b + 1]];
+        const double here = size.at(blocks.vertex[blocks.ring_vertex[from]]);
+        at_corners += (to - from) *
+                      std::min(most_per_corner, least_per_corner + (most_per_corner - least_per_corner) *
+                                                                       blocks.block_area[b] / (here * here));
+    }
+    return Integral(scene, size).total() / share + at_corners;
+}
+
+std::string check_cost(const Scene& scene, const Blocks& blocks, const std::string& file)
+{
+    const double zones = expected_zones(scene, blocks);
+    if (!(zones > many_zones))
+        return "";
+    const std::string found =
+        file + ": [zones] size_m is " + shown(scene.zone_size) + " m" +
+        (scene.zone_size_at_faces ? ", size_at_faces_m " + shown(*scene.zone_size_at_faces) + " m" : "") +
+        ": about " + to_two_digits(zones) + " zones";
+    if (!(zones <= most_zones)) {
+        const double least = least_per_corner * static_cast<double>(blocks.ring_vertex.size());
+        if (least > 0.9 * most_zones)
+            throw input_error(found + "; expected at most " + to_two_digits(most_zones) + ". The " +
+                              std::to_string(blocks.block_area.size()) +
+                              " blocks have too many corners for zones of any size: give fewer joints");
+        // All sizes in proportion, and a little more, as the estimate is none to a percent.
+        const double factor = 1.05 * std::sqrt((zones - least) / (most_zones - least));
+        throw input_error(found + "; expected at most " + to_two_digits(most_zones) + ". Set size_m to " +
+                          up_to_two_digits(factor * scene.zone_size) + " m or more" +
+                          (scene.zone_size_at_faces
+                               ? ", and size_at_faces_m to " +
+                                     up_to_two_digits(factor * *scene.zone_size_at_faces) + " m or more"
+                               : ""));
+    }
+    // Measured: zones of three gridpoints, elastic, in one block, by the implicit engine.
+    constexpr double bytes = 2300, seconds = 30e-6;
+    return found + ". They need about " + to_two_digits(zones * bytes / 1e9) +
+           " GB of memory, and the in-situ equilibrium of elastic rock about " +
+           to_two_digits(zones * seconds) + " s; stages, creep and rock that yields take longer";
+}
+
+} // namespace jointcreep::zoning
