@@ -12,7 +12,7 @@ Loads::Loads(const Scene& scene, const Mesh& mesh) : boundary_(scene.boundaries)
                   .stress_point = mesh.side_zone[s] * mesh.stress_points_of_zone(),
                   .length = (mesh.gridpoint[a] - mesh.gridpoint[b]).norm(),
                   .boundary = mesh.side_boundary[s]};
-        if (mesh.is_quadratic()) { // Simpson's rule: what the shape functions give each
+        if (mesh.is_quadratic()) { // Simpson's rule: shares by the shape functions
             side.gridpoint.push_back(mesh.side_middle[s]);
             side.share = {1. / 6, 1. / 6, 4. / 6};
         }

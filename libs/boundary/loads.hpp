@@ -1,4 +1,4 @@
-// Tractions and displacements that the outline is given, over time.
+// Boundary conditions over time: tractions and prescribed displacements of the outline.
 
 #pragma once
 
@@ -20,16 +20,15 @@ class Loads
 public:
     Loads(const Scene& scene, const Mesh& mesh);
 
-    // Puts the gridpoints where the sides that are still there have them at `time` since the start [s]. Of all stress
-    // points of zones: whether their rock is there.
-    // Displacements count from the start [m].
+    // Sets the displacements [m, from the start] of gridpoints with prescribed displacements at `time` [s, from the
+    // start]. `is_present` has an entry for each stress point of the zones. Sides of excavated zones are left out.
     void displace(std::vector<Vector2d>& displacement, const std::vector<char>& is_present,
                   double time) const;
 
-    // Adds the tractions of that time to the forces on gridpoints [N/m].
+    // Adds the tractions at `time` to the forces on gridpoints [N/m].
     void add_forces(std::vector<Vector2d>& force, const std::vector<char>& is_present, double time) const;
 
-    // Whether anything changes between two times [s].
+    // Whether tractions or prescribed displacements change between two times [s].
     bool changes(double from, double to) const;
 
     // The times at which a load history has a corner [s].
@@ -38,7 +37,7 @@ public:
 private:
     struct Side {
         std::vector<Index> gridpoint;
-        std::vector<double> share; // of the side's length, for each of these
+        std::vector<double> share; // of the side's length, for each gridpoint
         Index stress_point;        // of its zone
         double length;
         Index boundary;

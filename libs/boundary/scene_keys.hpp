@@ -1,5 +1,5 @@
-// Scene keys of what holds, moves or loads the outline, and what is
-// checked of them alone. Units and ranges are declared with each key.
+// Scene keys of boundary conditions, and their checks that need no other part of the scene.
+// Units and ranges are declared with each key.
 
 #pragma once
 

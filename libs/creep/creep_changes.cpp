@@ -8,13 +8,13 @@ namespace jointcreep::creep
 namespace
 {
 
-// Of a unit at the start of a step (creep/scheme.hpp): its displacement d_0 or strain, and the force F_0 on it.
+// A unit at the start of a step (creep/scheme.hpp): its displacement d_0 or strain, and the force F_0 on it.
 template <class Value>
 struct AtStart {
     Value d, F;
 };
 
-// What a d_0 + c_0 F_0 changes by: the change of the one times the other, and the other way round.
+// Change of a d_0 + c_0 F_0 by the product rule: weights times changed values, plus changed weights times values.
 template <class Value>
 Value change_by_start(const Step::Weights& one, const AtStart<Value>& of_one, const Step::Weights& other,
                       const AtStart<Value>& of_other)
@@ -22,19 +22,19 @@ Value change_by_start(const Step::Weights& one, const AtStart<Value>& of_one, co
     return one.decay * of_one.d + other.decay * of_other.d + one.first * of_one.F + other.first * of_other.F;
 }
 
-// A chain of the same units that changes by nothing.
+// The chain with zero changes, of the same units.
 Chain no_change(Chain chain)
 {
     std::fill(chain.units.begin(), chain.units.end(), KelvinUnit{0, 0});
     return {0, chain.units};
 }
 
-// Of Creep::deviatoric(), with the shear modulus, the offset and the stress `now`.
+// Change of Creep::deviatoric(), with the shear modulus, the offset and the stress `now`.
 Eigen::Vector3d change_of_deviatoric(double bulk_modulus, double modulus, double modulus_change,
                                      const Eigen::Vector3d& offset, const Eigen::Vector3d& offset_change,
                                      const Eigen::Vector3d& now, const Eigen::Vector3d& now_change)
 {
-    // With the modulus it changes by its mean stress, B t.
+    // The derivative by the modulus is the mean stress, B t.
     const double mean = now[0] - Creep::deviatoric(bulk_modulus, modulus, offset, now)[0];
     const double mean_change =
         (bulk_modulus * (offset[0] + offset[1]) - mean / 3) / (bulk_modulus + modulus / 3) * modulus_change;
@@ -143,7 +143,7 @@ void CreepChanges::begin_shears(const Creep& creep, const StepChanges& steps, co
     }
 }
 
-// Creep follows, and contacts get their own stiffnesses back, with the offset crept so far.
+// Creep is updated. Contacts have their own stiffnesses again, with the creep displacement so far as offset.
 void CreepChanges::end_springs(const Creep& creep, const StepChanges& steps, const joint::Contacts& contacts,
                                joint::ContactChanges& changes)
 {
@@ -169,7 +169,7 @@ void CreepChanges::end_springs(const Creep& creep, const StepChanges& steps, con
     }
 }
 
-// Creep follows, and zones get their own shear moduli back, with the offset crept so far.
+// Creep is updated. Zones have their own shear moduli again, with the creep strain so far as offset.
 void CreepChanges::end_shears(const Creep& creep, const StepChanges& steps, const rock::Zones& zones,
                               rock::ZoneChanges& changes)
 {

@@ -1,5 +1,5 @@
-// What creep changes by, to first order, when a parameter does: the derivatives of creep/creep.hpp, by the formulas that let
-// it follow tractions and stresses. Changes are per unit of the logarithm of the parameter, which is a factor.
+// Derivatives of creep (creep/creep.hpp) by a parameter, by the formulas with which creep follows tractions and
+// stresses. A parameter is a factor. Changes are of the first order, per unit of its logarithm.
 
 #pragma once
 
@@ -10,10 +10,10 @@
 namespace jointcreep::creep
 {
 
-// The weights of a step for each chain of a Creep, and what they change by.
+// The weights of a step for each chain of a Creep, and their changes.
 struct StepChanges {
     std::vector<Step> step;
-    std::vector<Chain> chain_change; // where it is a joint's; those of rock stay
+    std::vector<Chain> chain_change; // for chains of joints; those of rock do not change
     std::vector<Step> joint_change;
     std::vector<Step> rock_change; // by the duration only
 };
@@ -28,8 +28,8 @@ public:
     // After the constructor of Creep.
     CreepChanges(const Creep& creep, const joint::ContactChanges& contacts, const rock::ZoneChanges& zones);
 
-    // What Creep::begin() and Creep::end() change by. Both come after Creep::begin() and the equilibrium at the step's end,
-    // and before Creep::end(); between them, `contacts` and `zones` take the response.
+    // Changes of Creep::begin() and Creep::end(). Call both after Creep::begin() and the equilibrium at the step's end,
+    // and before Creep::end(). Between the two calls `contacts` and `zones` take the response.
     void begin(const Creep& creep, const StepChanges& steps, const mechanics::Assembly& assembly,
                joint::ContactChanges& contacts, rock::ZoneChanges& zones);
     void end(const Creep& creep, const StepChanges& steps, const mechanics::Assembly& assembly,
@@ -47,9 +47,9 @@ private:
     void end_shears(const Creep& creep, const StepChanges& steps, const rock::Zones& zones,
                     rock::ZoneChanges& changes);
 
-    // Of springs and of their units: what Creep::Spring has of these names [Pa], and creep displacements [m].
+    // Springs and their units: stiffnesses as in Creep::Spring [Pa], and creep displacements [m].
     std::vector<double> reference_, before_, crept_;
-    // Of shears and of their units: what Creep::Shear has of these names [Pa], and creep strains [-].
+    // Shears and their units: moduli as in Creep::Shear [Pa], and creep strains [-].
     std::vector<Vector3d> reference_stress_, before_stress_, crept_strain_;
 };
 

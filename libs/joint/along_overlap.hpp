@@ -1,5 +1,5 @@
-// A joint law along an overlap of two faces on which the closing goes straight from one end to the other: the
-// pointwise law summed up at five points (Gauss). For laws without an exact integral of their own.
+// A joint law along an overlap of two faces with linear closing: the law at a point, integrated with five Gauss points.
+// For laws without an exact integral of their own.
 
 #pragma once
 

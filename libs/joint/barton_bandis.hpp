@@ -1,16 +1,15 @@
-// Barton and Bandis's joint: the more it is closed the stiffer it is, and the more it is pressed the less
-// friction it has.
+// Barton and Bandis's joint: its stiffness grows with closure, and its friction angle falls with pressure.
 //
 //     p     = k_ni v / (1 - v / V_m)                                      (Bandis, Lumsden, Barton 1983)
 //     |tau| <= p tan(phi_r + JRC log10(JCS / p)),  the angle at most 70 degrees and at least phi_r
 //                                                                         (Barton, Choubey 1977)
 //
-// with the pressure p = -sigma_n and the closure v, counted from where it carries no load. k_ni is the
-// stiffness there, V_m the largest closure, JRC the roughness and JCS the strength of the walls, both for
-// joints as long as those of the section. It unloads along the curve it was loaded along: that of the first
-// cycle. At p = JCS the walls are crushed; from there on the curve goes straight on, as stiff as it is there.
-// Shear is a spring k_s up to that limit, without dilation, cohesion or tension. Where strengths are divided
-// (strength_factor.hpp) the limit is; closing stays as it is. Signs as in model/signs.hpp.
+// with the pressure p = -sigma_n and the closure v from the point without load. k_ni is the stiffness there and V_m the
+// largest closure. JRC is the roughness and JCS the strength of the walls, both for joints as long as those of the
+// section. Unloading follows the loading curve: that of the first cycle. At p = JCS the walls are crushed; beyond it
+// the curve is linear, with the stiffness at that point. Shear is a spring k_s up to the limit, without dilation,
+// cohesion or tension. A strength factor (strength_factor.hpp) divides the limit; closing does not change. Signs as in
+// model/signs.hpp.
 
 #pragma once
 
@@ -67,7 +66,7 @@ struct BartonBandisOf {
         const T growth = 1 + std::clamp<T>(p, 0, wall_strength) / (k_n * largest_closure);
         return k_n * growth * growth;
     }
-    // Closure at a pressure; a negative one is a gap, which counts as k_n times that [m].
+    // Closure at a pressure [m]; for a tension it is negative, a gap of tension over k_n.
     T closure(const T& p) const
     {
         if (p < 0)
@@ -135,7 +134,7 @@ struct BartonBandisOf {
     static const LawInfo& info()
     {
         using namespace parameters;
-        // The friction angle phi_r alone says nothing: the strength as a whole is divided.
+        // phi_r alone is not the strength: the strength as a whole is divided.
         static const LawInfo info{
             .name = "Barton-Bandis",
             .about =

@@ -16,16 +16,16 @@ namespace
 constexpr double pi = std::numbers::pi;
 constexpr double ellipse = 32 / (3 * pi * pi); // mean square over square of the mean, 1.081
 constexpr int terms = 8;
-constexpr double last_argument = 200; // of the Bessel functions: from there on their mean decay is taken
+constexpr double last_argument = 200; // of the Bessel functions: beyond it their mean decay is used
 constexpr double equal_rates = 1e-9;
-constexpr double fewest_traces = 0.01; // persistence from which on staggered lines feel each other
+constexpr double fewest_traces = 0.01; // persistence above which staggered lines interact
 
 using Matrix = Eigen::Matrix<double, terms, terms>;
 
 // K_0 L / (k E') of one line.
 double empty_stiffness(double k)
 {
-    // Of 1 / cos(pi k / 2) with k near 1, whose cosine is a sine of what is missing.
+    // The secant 1 / cos(pi k / 2) as a sine of pi (1 - k) / 2: accurate for k near 1.
     return -pi / (4 * std::log(std::sin(pi * (1 - k) / 2)));
 }
 
@@ -59,8 +59,8 @@ Eigen::Matrix<double, terms, 1> odd_bessel(double x)
     return values;
 }
 
-// How much more the traction is than on a single line, for the m-th wave along lines the spacing `s` apart
-// (lengths over the period).
+// Ratio of the traction to that of a single line, for the m-th wave along lines the spacing `s` apart (lengths over the
+// period).
 double sum_over_lines(int m, double s, Direction direction)
 {
     const double half = pi * m * s;
@@ -81,7 +81,7 @@ double staggered_stiffness(double persistence, double spacing, double stiffness,
     for (int i = 0; i < terms; ++i)
         order[i] = (i % 2 == 0 ? 1 : -1) * (2 * i + 1);
 
-    // The rock's energy: wave by wave, and from the last one on by the Bessel functions' mean decay.
+    // The rock's energy: wave by wave, and beyond the last one by the mean decay of the Bessel functions.
     Matrix energy = Matrix::Zero();
     const int waves = static_cast<int>(std::ceil(last_argument / (pi * k)));
     for (int m = 1; m <= waves; ++m) {
@@ -97,7 +97,7 @@ double staggered_stiffness(double persistence, double spacing, double stiffness,
             const double p = 2 * i + 1, q = 2 * j + 1;
             energy(i, j) += stiffness * k / 2 * (1 / (1 - (p - q) * (p - q)) - 1 / (1 - (p + q) * (p + q)));
         }
-    // Mean opening along the line: of the first term only.
+    // Mean opening along the line: only the first term has one.
     Eigen::Matrix<double, terms, 1> mean = Eigen::Matrix<double, terms, 1>::Zero();
     mean[0] = pi * k / 4;
     return 1 / mean.dot(energy.ldlt().solve(mean));
@@ -141,8 +141,8 @@ JointChain bridged(const JointChain& joint, const Bridging& bridging)
         return chain;
     }
 
-    // The joint's compliance under a traction that goes as exp(-x t): 1/K + sum of 1 / (eta (rate - x)), with
-    // a Maxwell dashpot at the rate 0. Units of equal rates are one.
+    // The joint's compliance under a traction proportional to exp(-x t): 1/K + sum of 1 / (eta (rate - x)), with a
+    // Maxwell dashpot as rate 0. Units with equal rates are merged.
     struct Pole {
         double rate, fluidity; // E / eta [1/s], 1 / eta [m/(Pa s)]
     };
@@ -159,8 +159,8 @@ JointChain bridged(const JointChain& joint, const Bridging& bridging)
         else
             distinct.push_back(pole);
 
-    // Beside the bridges, 1 / (bridges + share / J) has its poles where J = -share / bridges. J rises all the
-    // way from a pole to the next, from minus to plus infinity, and after the last one to 1/K.
+    // With the bridges beside it, 1 / (bridges + share / J) has its poles where J = -share / bridges. J rises from
+    // minus to plus infinity between two poles, and after the last pole to 1/K.
     const double wanted = 1 / joint.spring + share / bridges;
     for (std::size_t i = 0; i < distinct.size(); ++i) {
         const auto excess = [&](double beyond) { // at the rate of this pole plus `beyond`

@@ -18,7 +18,7 @@ Vector2d apart(const Contacts& contacts, std::span<const Vector2d> displacement,
     return displacement[b] - displacement[a];
 }
 
-// `spring`: what the stretch of its springs changes by [m].
+// `spring`: change of the stretch of its springs [m].
 ContactResponse response(const Contacts& contacts, const ContactChanges& changes, const State& start,
                          const Vector2d& spring, std::size_t c)
 {

@@ -57,7 +57,7 @@ void find_forces_in_team(Contacts& contacts, std::span<const Vector2d> displacem
         contacts.status[c] = response.status;
         Vector2d acting = traction;
         if (damping > 0 && response.status == ContactStatus::stuck)
-            acting += damping * (traction - last); // dashpots; none where it slips or is open
+            acting += damping * (traction - last); // dashpots; none if it slips or is open
         contacts.force[c] = length * (acting.x() * normal + acting.y() * tangent);
     }
 }
@@ -137,7 +137,7 @@ void forget_work(Contacts& contacts)
 void start_from_here(Contacts& contacts)
 {
     for (std::size_t c = 0; c < contacts.gridpoint.size(); ++c) {
-        // An open contact keeps its gap as the tension its spring would have.
+        // The gap of an open contact is kept as the tension that its spring would have.
         const double normal = normal_traction(contacts.law[c], contacts.initial_traction[c].x(),
                                               contacts.relative_displacement[c].x() - contacts.offset[c].x() -
                                                   contacts.state[c].dilation);

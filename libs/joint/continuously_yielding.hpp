@@ -1,21 +1,21 @@
 // The continuously yielding joint (Cundall and Hart 1984; Cundall and Lemos 1990: Numerical simulation of fault
-// instabilities with the continuously yielding joint model): it yields from the first shear on, and is worn
-// smooth as it does.
+// instabilities with the continuously yielding joint model). It yields from the first shear on, and shear makes it
+// smooth.
 //
 //     d(tau) = F k_s d(u_s),    F = (1 - tau / tau_m) / (1 - r) <= 1,   tau_m = p tan(phi_m), along d(u_s)
 //     phi_m  = phi + (phi_i - phi) exp(-u_p / R),                       d(u_p) = (1 - F) |d(u_s)|
 //
-// and |tau| <= tau_m, also where tau_m falls, with the pressure p = -sigma_n, the friction angle phi of the smooth
-// joint, the initial one phi_i of the rough joint, and the roughness R, a length. r is tau / tau_m where the shear
-// last turned round, at most 0.75, and 0 before it first does: the joint is as stiff as its spring there. The
-// springs are constant (the exponents of Cundall and Lemos are 0), the joint does not dilate, and has neither
-// cohesion nor tensile strength.
+// The limit |tau| <= tau_m also holds where tau_m falls. The pressure is p = -sigma_n, phi the friction angle of the
+// smooth joint, phi_i that of the rough joint at the start, and R the roughness, a length. r is tau / tau_m at the last
+// reversal of shear, at most 0.75, and 0 before the first one. At a reversal the joint is as stiff as its spring. The
+// springs are constant (the exponents of Cundall and Lemos are 0). The joint has no dilation, cohesion or tensile
+// strength.
 //
-// Creep changes the spring that the response sees, and leaves the plastic part of the displacement as it is:
+// Creep changes the spring of the response. It does not change the plastic part of the displacement:
 //
 //     d(u_s) = d(tau) / k_s + d(u_p),    d(u_p) = (1 / F - 1) d(tau) / k_p,    k_p the spring without creep
 //
-// The path is integrated in parts shorter than a fortieth of R (1000 at most), each exactly for the phi_m of its middle.
+// The path is integrated in parts shorter than a fortieth of R (1000 at most), each exactly, with phi_m at its middle.
 
 #pragma once
 
@@ -47,8 +47,8 @@ inline const Parameter roughness_length{
 
 } // namespace parameters
 
-// memory: u_p [m]; tau as it was last [Pa]; the sense of shear, 1 or -1, times 2 + r [-], or 0 where it has not
-// been sheared: tau is the initial one then.
+// memory: u_p [m]; the last tau [Pa]; the direction of shear, 1 or -1, times 2 + r [-], or 0 before any shear: tau is
+// then the initial one.
 template <class T = double>
 struct ContinuouslyYieldingOf {
     T k_n, k_s;              // [Pa/m]
@@ -71,20 +71,20 @@ struct ContinuouslyYieldingOf {
         return p > 0 ? p * tan_phi_m(state.memory[0]) : 0.0;
     }
 
-    // The traction along the shear after `by` [m] more, from `tau`, where tau_m stays as it is.
+    // The traction along the shear after `by` [m] more, from `tau`, with constant tau_m.
     T after(const T& tau, const T& by, const T& tau_m, const T& r) const
     {
         using std::exp;
         if (tau >= tau_m)
             return tau_m;
-        const T elastic = std::max<T>(0, r * tau_m - tau); // until then F would be above 1
+        const T elastic = std::max<T>(0, r * tau_m - tau); // before it, F would be above 1
         if (elastic >= k_s * by)
             return tau + k_s * by;
         // by = (1 / k_s - 1 / k_p) d(tau) + (1 - r) tau_m / k_p  y,   y = -log(1 - d(tau) / left)
         const T from = tau + elastic, left = tau_m - from, rest = by - elastic / k_s;
         const T gives = std::max<T>(0, 1 / k_s - 1 / plastic_k_s) * left,
                 bends = (1 - r) * tau_m / plastic_k_s;
-        T y = rest / (gives + bends); // below the root, and Newton's steps stay there
+        T y = rest / (gives + bends); // below the root; Newton's steps stay there
         for (int i = 0; i < 20 && value_of(gives) > 0; ++i) {
             const T e = exp(-y), step = (rest - gives * (1 - e) - bends * y) / (gives * e + bends);
             y += step;
@@ -94,7 +94,7 @@ struct ContinuouslyYieldingOf {
         return tau_m - left * exp(-y);
     }
 
-    // tau after it was sheared by u from `last`, under the pressure p > 0.
+    // tau after shear by u from `last`, under the pressure p > 0.
     T sheared(std::array<T, 3>& memory, const T& last, const T& u, const T& p) const
     {
         using std::abs, std::copysign;
@@ -108,8 +108,8 @@ struct ContinuouslyYieldingOf {
                 memory[2] = value_of(last) > 0 ? 2 : -2;
         }
         const double sense = value_of(u) > 0 ? 1 : -1;
-        const bool turns = value_of(memory[2]) * sense <= 0; // or begins
-        // So little is no turn, but what equilibria leave: it is elastic.
+        const bool turns = value_of(memory[2]) * sense <= 0; // or the first shear
+        // So small a reversal is an error of equilibria, not a reversal: it is elastic.
         if (turns && value_of(abs(u) * k_s) <= 1e-4 * value_of(most))
             return std::clamp<T>(tau + k_s * u, -most, most);
         if (turns) {
@@ -127,7 +127,7 @@ struct ContinuouslyYieldingOf {
                     next = after(along, by, p * tan_phi_m(in_middle), r);
             u_p += std::max<T>(0, by - (next - along) / k_s);
             along = next;
-            // Down to tau_m, which falls with that: the displacements rise until they fit.
+            // Returns to tau_m, which falls in turn: the displacements are increased until they fit.
             const T so_far = u_p;
             for (int k = 0; k < 100 && along > p * tan_phi_m(u_p); ++k) {
                 along = p * tan_phi_m(u_p);
@@ -216,14 +216,14 @@ inline bool stiffens(const ContinuouslyYielding&)
 {
     return false;
 }
-// Under the pressure at which the strength is the one given.
+// At the pressure for which the strength is the given one.
 inline double shear(const ContinuouslyYielding& law, State& state, double last, double slid, double strength)
 {
     const double p = strength / law.tan_phi_m(state.memory[0]);
     if (!(p > 0))
         return 0;
-    // What was too little for a turn counts with what comes. A traction far from the kept one is the initial one, or
-    // that of another overlap.
+    // A displacement too small for a reversal is added to the next one. A traction far from the kept one is the initial
+    // one, or that of another overlap.
     if (std::abs(last - state.memory[1]) > 1e-4 * strength)
         state.memory[1] = last;
     const double kept = state.memory[1];

@@ -3,17 +3,17 @@
 //
 //     sigma_n = sigma_0 + k_n (u_n - dilation)   up to the tensile strength; beyond, the joint opens
 //     tau     = tau_0   + k_s (u_s - slip)       with |tau| <= c - sigma_n tan(phi)
-//     d(dilation) = tan(psi) |d(slip)|           whichever way it slips
+//     d(dilation) = tan(psi) |d(slip)|           in both directions of slip
 //
-// psi is at most phi, or slip would give energy. That is the plastic flow of Coulomb's law with a potential
-// of its own, psi in place of phi. A joint that is open shears without dilating. Where an end is given, slip
-// dilates until dilation / tan(psi) has reached it, and no farther.
+// psi is at most phi: otherwise slip would create energy. This is the plastic flow of Coulomb's law, non-associated:
+// with psi in place of phi in the potential. An open joint shears without dilating. With a limit of dilation, slip
+// dilates until dilation / tan(psi) has reached it.
 //
-// Opening breaks the joint's bonds: its cohesion and tensile strength are lost for good. (A cohesion that
-// came back on closing would let a contact flicker between open and closed.) Slip alone leaves them, but
-// where the joint `weakens` (joint/residual_strength.hpp): then the first slip breaks them too, and what is
-// left at once, by either way, is the residual cohesion and friction, c_r <= c and tan(phi_r) <= tan(phi),
-// with tan(psi) <= tan(phi_r). Signs as in model/signs.hpp: tension and opening positive.
+// Opening breaks the bonds of the joint: cohesion and tensile strength are lost for good. (With cohesion restored at
+// closing, a contact could alternate between open and closed.) Slip alone does not break bonds, unless the joint
+// `weakens` (joint/residual_strength.hpp): then the first slip breaks them, too. In both cases the residual cohesion
+// and friction are left at once, c_r <= c and tan(phi_r) <= tan(phi), with tan(psi) <= tan(phi_r). Signs as in
+// model/signs.hpp: tension and opening positive.
 
 #pragma once
 
@@ -27,7 +27,7 @@
 namespace jointcreep::joint
 {
 
-// What all joints have (their values are members of JointMaterial and EquivalentJoints).
+// Parameters of all joints (their values are members of JointMaterial and EquivalentJoints).
 namespace parameters
 {
 
@@ -120,30 +120,30 @@ inline std::vector<Parameter> of_all_joints_and(std::vector<Parameter> own)
 
 } // namespace parameters
 
-// How slip dilates: in proportion, by tan(psi), up to an end.
+// Dilation in proportion to slip, by tan(psi), up to an end.
 template <class T>
 struct DilationInProportion {
     double tan_psi; // [-]
     double end;     // of the dilation [m]
-    T left;         // until there [m]
+    T left;         // dilation left until there [m]
 
     bool dilates() const { return tan_psi > 0 && left > 0; }
 
-    // Slip that leaves no shear traction above the strength, where `excess` was above it: slip x presses the
-    // joint together, and leaves excess - k_s x - tan(phi) press(x); at most `most` [m].
+    // Slip after which the shear traction is at the strength, from an `excess` above it. Slip x increases the pressure,
+    // and leaves the excess - k_s x - tan(phi) press(x). At most `most` [m].
     T slip(const T& excess, const T& most, const T& k_n, const T& k_s, double tan_phi) const
     {
         const T slip = std::clamp<T>(excess / (k_s + k_n * tan_psi * tan_phi), 0, most);
         if (slip * tan_psi <= left)
             return slip;
-        return std::clamp<T>((excess - k_n * left * tan_phi) / k_s, 0, most); // dilation ends on the way
+        return std::clamp<T>((excess - k_n * left * tan_phi) / k_s, 0, most); // dilation ends before
     }
-    // Normal traction that slip to the shear traction tau brings [Pa].
+    // Change of normal traction by slip to the shear traction tau [Pa].
     T press(const T& slip, const T& /*tau*/, const T& k_n) const
     {
         return slip * tan_psi <= left ? k_n * tan_psi * slip : k_n * left;
     }
-    // Takes what slip to the shear traction tau has raised into `state`.
+    // Adds the dilation by slip to the shear traction tau to `state`.
     void raise(StateOf<T>& state, const T& slip, const T& /*tau*/) const
     {
         state.dilation = std::min<T>(state.dilation + slip * tan_psi, end);
@@ -157,7 +157,7 @@ struct CoulombOf {
     double tan_phi;               // [-]
     double tensile_strength;      // [Pa]
     double tan_psi = 0;           // of the dilation angle [-]
-    bool weakens = false;         // by slip; else a broken joint has no cohesion, and the friction it had
+    bool weakens = false;         // by slip; else a broken joint keeps its friction, without cohesion
     double residual_cohesion = 0; // [Pa]
     double residual_tan_phi = 0;  // [-]
     double dilation_until = 0;    // slip at which dilation ends; 0: it does not [m]
@@ -173,7 +173,7 @@ struct CoulombOf {
         const double end = dilation_end();
         return {tan_psi, end, std::max<T>(0, end - state.dilation)};
     }
-    // tan(psi) of now [-], and the dilation still to come at most [m].
+    // Present tan(psi) [-], and the largest dilation still to come [m].
     double tan_psi_at(const State& state) const { return state.dilation < dilation_end() ? tan_psi : 0.0; }
 
     static CoulombOf from(const ValueOf& value, double)
@@ -196,7 +196,7 @@ struct CoulombOf {
                                   .check = check};
         return info;
     }
-    // Of any law with Coulomb's strength.
+    // For any law with Coulomb's strength.
     static std::optional<Complaint> check(const ValueOf& value)
     {
         using namespace parameters;
@@ -216,10 +216,9 @@ struct CoulombOf {
 };
 using Coulomb = CoulombOf<>;
 
-// The traction at displacements u_n, u_s [m] from a state of traction sigma_0, tau_0 [Pa]; takes slip,
-// dilation and breaking into `state`. The slip is found at once, with the traction it ends with (backward
-// Euler). sigma_0 may be above the tensile strength: the joint is open then, by sigma_0 / k_n. For any law
-// with Coulomb's strength, whose dilation() says how slip dilates.
+// The traction at displacements u_n, u_s [m] from a state with traction sigma_0, tau_0 [Pa]; updates slip, dilation and
+// breaking in `state`. Slip and the final traction are solved together (backward Euler). sigma_0 may be above the
+// tensile strength: the joint is then open, by sigma_0 / k_n. For any law with Coulomb's strength and a dilation().
 template <class T, class Law>
 ResponseOf<T> respond_by_coulomb(const Law& law, StateOf<T>& state, const Value<T>& sigma_0,
                                  const Value<T>& tau_0, const Value<T>& u_n, const Value<T>& u_s)
@@ -227,9 +226,9 @@ ResponseOf<T> respond_by_coulomb(const Law& law, StateOf<T>& state, const Value<
     using std::abs, std::copysign;
     const T sigma_trial = sigma_0 + law.k_n * (u_n - state.dilation);
     const T tau_trial = tau_0 + law.k_s * (u_s - state.slip);
-    const auto give = [&] { return law.k_s > 0 ? T(1 / law.k_s) : T(0); }; // asked for where it slips only
-    // Slip presses a joint that dilates together, and its strength grows with that; where it has none to
-    // begin with, under tension, it slips until no shear is left at most.
+    const auto give = [&] { return law.k_s > 0 ? T(1 / law.k_s) : T(0); }; // needed only where it slips
+    // Slip presses a dilating joint together, which increases its strength. If it has no strength to begin with, under
+    // tension, it slips at most until no shear is left.
     const auto dilation = law.dilation(state);
     const bool dilates = law.k_s > 0 && dilation.dilates();
     double cohesion = law.cohesion_of(state.is_broken), tan_phi = law.tan_phi_of(state.is_broken);
@@ -256,7 +255,7 @@ ResponseOf<T> respond_by_coulomb(const Law& law, StateOf<T>& state, const Value<
         }
     }
     const T limit = std::max<T>(0, cohesion - sigma_trial * tan_phi);
-    // A joint at its limit counts as slipping, also while it stands still there.
+    // A joint at its limit counts as slipping, even without motion.
     if (abs(tau_trial) < (1 - 1e-6) * limit || tau_trial == 0)
         return {sigma_trial, tau_trial, ContactStatus::stuck};
     if (!dilates) {
@@ -284,27 +283,27 @@ inline Slopes slopes(const Coulomb& law, const State& state, double)
             law.cohesion_of(state.is_broken)};
 }
 
-// Normal traction at an opening u [m] since it was sigma_0; positive where the joint is open, by it / k_n.
+// Normal traction at an opening u [m] since the traction sigma_0; where positive, the joint is open, by it / k_n.
 template <class T>
 T normal_traction(const CoulombOf<T>& law, const Value<T>& sigma_0, const Value<T>& u)
 {
     return sigma_0 + law.k_n * u;
 }
 
-// The opening at which a contact of the traction sigma_0 would just touch: below 0 where it is closed [m].
+// The opening at which a contact with the traction sigma_0 just touches; negative where it is closed [m].
 template <class T>
 T opening(const CoulombOf<T>& law, const Value<T>& sigma_0)
 {
     return sigma_0 / law.k_n;
 }
 
-// What the springs hold, per area [J/m2].
+// Energy stored in the springs, per area [J/m2].
 inline double stored(const Coulomb& law, double sigma_n, double tau)
 {
     return (sigma_n * sigma_n / law.k_n + (law.k_s > 0 ? tau * tau / law.k_s : 0.0)) / 2;
 }
 
-// Along an overlap on which the closing goes straight from closing[0] to closing[1] [m]: exactly.
+// Along an overlap with linear closing, from closing[0] to closing[1] [m]; exact.
 inline AlongOverlap along_overlap(const Coulomb& law, const State&, const std::array<double, 2>& closing,
                                   double length)
 {
@@ -322,7 +321,7 @@ inline AlongOverlap along_overlap(const Coulomb& law, const State&, const std::a
             law.k_n};
 }
 
-// Whether its normal spring grows stiffer as it closes; its bonds [Pa]; what slip does to it.
+// Whether its normal spring grows stiffer as it closes; its bonds [Pa]; effects of slip.
 inline bool stiffens(const Coulomb&)
 {
     return false;

@@ -1,9 +1,9 @@
-// Numbers that carry their derivative by one variable (forward differentiation): a joint law computed with
-// them gives its response and how fast the response changes, from the one place where the law is written.
+// Numbers with their derivative by one variable (forward differentiation). A joint law computed with them gives its
+// response and the derivative of the response, from one formula.
 //
 //     f(x + e) = f(x) + f'(x) e,    e^2 = 0
 //
-// Comparisons ask the value alone: at a kink the derivative is the one of the branch that is taken.
+// Comparisons use the value alone: at a kink the derivative is that of the branch taken.
 
 #pragma once
 

@@ -19,7 +19,7 @@ namespace jointcreep::joint
 namespace
 {
 
-// A persistence is a sum of lengths over a length: closer to 0 or 1 it is that.
+// A persistence is a ratio of sums of lengths: nearer than this to 0 or 1 it counts as 0 or 1.
 constexpr double rounding = 1e-9;
 constexpr double stiffest = 10; // of a zone's stiffness
 
@@ -88,7 +88,7 @@ Strength bridge_strength(const Scene& scene, const Network& network, std::size_t
     return *weakest;
 }
 
-// What averages of an edge are taken with.
+// Input of the averages of an edge.
 struct Share {
     double persistence;  // [-]
     double trace_length; // mean by length; 0 without traces [m]
@@ -143,7 +143,7 @@ double area_of_set(const Scene& scene, const Network& network, const std::string
     return found != scene.joint_sets.end() && found->region ? area_of(*found->region) : all;
 }
 
-// How much of an edge lies on its joint's own line. The rest is where the joint was carried on [-].
+// Share of an edge between the ends of its joint as sampled [-]. The rest is the extension of the joint.
 double share_on_line(const Network& network, std::size_t edge)
 {
     const Blocks& blocks = network.blocks;
@@ -159,11 +159,11 @@ double share_on_line(const Network& network, std::size_t edge)
     if (!(high > low))
         return 1;
     const double on_line = std::max(0.0, std::min(high, 1.0) - std::max(low, 0.0)) / (high - low);
-    // What the cutter found to be joint trace is on the line, also where merging has moved its other end.
+    // Joint trace found by the cutter is on the line, also where merging has moved its other end.
     return std::min(1.0, std::max(on_line, blocks.edge_joint_fraction[edge]));
 }
 
-// Sums over the lines of a set, and what averages over lines and sets are taken with.
+// Sums over the lines of a set, for averages over lines and sets.
 class Lines
 {
 public:
@@ -222,7 +222,7 @@ private:
     std::vector<double> area_; // where a set may be [m2]
 };
 
-// The springs of edges: a rule's answers, each found once.
+// The springs of edges by a rule; each is computed once.
 class Stiffnesses
 {
 public:
@@ -307,7 +307,7 @@ EquivalentJoints without_joints(std::size_t edges, std::size_t kelvin_units)
     return joints;
 }
 
-// Rock bridges make a Kelvin unit of a Maxwell dashpot.
+// With rock bridges, a Maxwell dashpot becomes a Kelvin unit.
 std::size_t most_kelvin_units(const Scene& scene)
 {
     std::size_t most = 0;
@@ -318,7 +318,7 @@ std::size_t most_kelvin_units(const Scene& scene)
     return most;
 }
 
-// A value of the joint beside bridges of the share 1 - k; a mean with rock is in `strength` already.
+// A parameter of the joint with bridges of the share 1 - k. Means with rock are already in `strength`.
 double with_bridges(const Parameter& parameter, double own, const Strength& strength, double k)
 {
     switch (parameter.with_bridges) {
@@ -360,8 +360,8 @@ void set_joint(EquivalentJoints& joints, std::size_t edge, const Stiffnesses::Fo
     joints.shear_maxwell_viscosity[edge] = shear.maxwell_viscosity;
 }
 
-// Bridges may make a joint that its law does not allow: one that dilates more than it rubs once it has slipped
-// would give energy.
+// With bridges, a joint may become one that its law does not allow: a dilation angle above the residual friction angle
+// would create energy.
 void check(const Network& network, const EquivalentJoints& joints, std::size_t edge)
 {
     const LawInfo& law = laws()[static_cast<std::size_t>(joints.law[edge])];
@@ -410,7 +410,7 @@ struct StrengthSum {
     }
 };
 
-// What the edges of a set add up to.
+// Sums over the edges of a set.
 struct SetSum {
     StrengthSum joint, bridge, equivalent;
     double joint_length = 0, limited = 0;                   // [m]

@@ -1,6 +1,5 @@
-// Rows in files of joints: their equivalent properties, contacts in the mesh and in states, what contacts and
-// pairs of faces remember. Paths, units and ranges are declared
-// with each row.
+// Rows in files of joints: equivalent properties, contacts in the mesh and in states, and the state of contacts and of
+// pairs of faces. Paths, units and ranges are declared with each row.
 
 #pragma once
 

@@ -1,5 +1,5 @@
-// What laws have in common whose joints have friction only: neither bonds nor dilation. Such a law gives the
-// pressure p at a closing, its stiffness(p), the energy stored(p) and the strength(p, state).
+// Common part of laws with friction only, without bonds and dilation. Such a law gives the pressure p at a closing, its
+// stiffness(p), the energy stored(p) and the strength(p, state).
 
 #pragma once
 
@@ -21,7 +21,7 @@ concept FrictionOnly = requires(const Law& law, double number, const State& stat
     law.strength(number, state);
 };
 
-// What a law of that name finds wrong with a material that has bonds or dilation.
+// The error for a material of this law with bonds or dilation.
 inline std::optional<Complaint> complaint_of_more_than_friction(std::string_view law, const ValueOf& value)
 {
     using namespace parameters;

@@ -9,7 +9,7 @@ namespace jointcreep::joint
 namespace
 {
 
-// What `answer` says of each law, as of a type.
+// The result of `answer` for the type of each law.
 template <class Answer, std::size_t... Places>
 auto of_each(const Answer& answer, std::index_sequence<Places...>)
 {

@@ -1,6 +1,6 @@
-// The joint laws: this is the one list of them. Each has a header of its own: its parameters in a table, its
-// response to a displacement at a point, and what else is asked of any law. A law that lacks one of these
-// functions does not compile.
+// The joint laws: this is the one list of them. Each law has a header of its own, with a table of its parameters, its
+// response to a displacement at a point, and the other functions required of a law. A law that lacks one of these does
+// not compile.
 //
 // To add a law: write its header, and add it to the list. Scene keys, datasets, columns of exports, strength
 // averaging, strength reduction, checkpoints, the engines and sensitivities follow.
@@ -25,7 +25,7 @@ using Law = std::variant<Coulomb, ResidualStrength, BartonBandis, WearingDilatio
 // All of them, in that order.
 const std::vector<LawInfo>& laws();
 
-// The parameters of all laws, each once.
+// The parameters of all laws, without repetition.
 const std::vector<Parameter>& all_parameters();
 
 // The law of a joint, by its place in the list, with its parameters [SI] and the divisor of all strengths.
@@ -33,12 +33,12 @@ Law law_of(Index law, const ValueOf& value, double strength_divisor);
 Law law_of(const JointMaterial& material);
 Law law_of(const EquivalentJoints& joints, std::size_t edge);
 
-// The list itself, and not one of the laws: that would turn into it where a function of its own is missing,
-// which would call itself for ever.
+// The list itself, not one law. Otherwise a law that lacks a function would convert to the list, whose function would
+// call itself without end.
 template <class Any>
 concept AnyLaw = std::same_as<Any, Law>;
 
-// Of any of them; Coulomb's first, as nearly all are.
+// For any law; Coulomb's first, as it is the most frequent.
 inline Response respond(const AnyLaw auto& law, State& state, double sigma_0, double tau_0, double u_n,
                         double u_s)
 {
@@ -46,8 +46,7 @@ inline Response respond(const AnyLaw auto& law, State& state, double sigma_0, do
         return respond(*coulomb, state, sigma_0, tau_0, u_n, u_s);
     return std::visit([&](const auto& one) { return respond(one, state, sigma_0, tau_0, u_n, u_s); }, law);
 }
-// What `ask` says of the law in numbers with derivatives, for springs that change: k_n and k_s in place of its
-// own.
+// Calls `ask` for the law in numbers with derivatives, with k_n and k_s in place of its own springs.
 template <class Ask>
 auto with_derivatives(const AnyLaw auto& law, const Dual& k_n, const Dual& k_s, const Ask& ask)
 {
@@ -79,7 +78,7 @@ inline AlongOverlap along_overlap(const AnyLaw auto& law, const State& state,
     return std::visit([&](const auto& one) { return along_overlap(one, state, closing, length); }, law);
 }
 
-// A spring as given, normal or shear; the normal one of Barton and Bandis is that without pressure [Pa/m].
+// A spring as given, normal or shear; for Barton and Bandis, the normal one at no pressure [Pa/m].
 template <class Any>
 auto& k_n(Any& law)
 {
@@ -114,12 +113,12 @@ inline bool dilates(const AnyLaw auto& law)
 {
     return std::visit([](const auto& one) { return dilates(one); }, law);
 }
-// Whether it has friction only: no bonds that could break.
+// Whether the law has friction only: no bonds that could break.
 inline bool has_friction_only(const AnyLaw auto& law)
 {
     return std::visit([]<class One>(const One&) { return FrictionOnly<One>; }, law);
 }
-// Whether its shear traction depends on how it got there by more than slip: then it has a shear() of its own.
+// Whether its shear traction depends on the path by more than slip: such a law has its own shear().
 template <class One>
 concept Remembers = requires(const One& law, State& state, double number)
 {
@@ -129,8 +128,8 @@ inline bool remembers(const AnyLaw auto& law)
 {
     return std::visit([]<class One>(const One&) { return Remembers<One>; }, law);
 }
-// The mean shear traction along an overlap [Pa] after it slid by `slid` [m] from the traction `last`, with the
-// shear strength that it has now; takes what the law remembers into `state`.
+// The mean shear traction along an overlap [Pa] after a slide of `slid` [m] from the traction `last`, with the present
+// shear strength; updates the law's memory in `state`.
 inline double shear(const AnyLaw auto& law, State& state, double last, double slid, double strength)
 {
     return std::visit(
@@ -142,7 +141,7 @@ inline double shear(const AnyLaw auto& law, State& state, double last, double sl
         },
         law);
 }
-// What is left of it where there are no bonds (any more): the law of contacts that form between moving blocks.
+// The law without bonds: for contacts that form between moving blocks.
 inline Law unbonded(const AnyLaw auto& law)
 {
     return std::visit([](const auto& one) -> Law { return unbonded(one); }, law);

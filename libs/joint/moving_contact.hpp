@@ -1,8 +1,8 @@
-// A joint between two faces that slide, turn and part: a joint at large displacements, in one step.
+// A joint between two faces at large displacements, in one time step.
 //
-// Along the overlap of the faces the closing goes straight from one end to the other. Springs and strength are integrated
-// over the part that is closed (along_overlap() of the law). Forces are per depth of the section; those on the two ends are as
-// the traction between them. Where the faces are, and which way the normal points, is not known here.
+// The closing is linear along the overlap of the faces. Springs and strength are integrated over the closed part
+// (along_overlap() of the law). Forces are per depth of the section. Forces on the two ends follow from the traction
+// between them. Positions of the faces and the direction of the normal are not known here.
 
 #pragma once
 
@@ -20,7 +20,7 @@ struct ClosedPart {
     std::array<double, 2> closing;       // at its ends [m]
     std::array<double, 2> ends = {0, 1}; // as fractions of the overlap
 
-    // Without bonds only what is pressed together.
+    // Without bonds, only where closing is positive.
     void leave_bonds()
     {
         const double zero = closing[0] / (closing[0] - closing[1]);
@@ -38,17 +38,17 @@ inline bool breaks(const Law& law, const std::array<double, 2>& closing)
     return -k_n(law) * std::min(closing[0], closing[1]) > tensile_strength(law);
 }
 
-// How a closed part moves along its normal in a step.
+// Motion of a closed part along its normal in a step.
 struct NormalMove {
     std::array<double, 2> opening; // of its ends [m]
-    double raised;                 // of that, by dilation: springs and dashpots do without [m]
-    double opened_before;          // its middle in the step before, dilation aside [m]
+    double raised;                 // of that, by dilation: not counted for springs and dashpots [m]
+    double opened_before;          // of its middle in the step before, without dilation [m]
     bool was_closed;               // in the step before
 
     double opened() const { return (opening[0] + opening[1]) / 2 - raised; } // its middle [m]
 
-    // In the step in which it closes, and in the one before it opens, a contact is closed for a part of the
-    // time that its force acts. `deep`: its closing in the middle [m].
+    // A contact is closed for only a part of a step if it closes in this step, or opens in the next. `deep`: its
+    // closing in the middle [m].
     double part_of_time(double deep) const
     {
         const double now = opened();
@@ -63,7 +63,7 @@ struct NormalMove {
     }
 };
 
-// Of springs, which press, and of dashpots, which hold, on each end [N/m].
+// Forces on each end: of springs, which press, and of dashpots [N/m].
 struct NormalForce {
     std::array<double, 2> pressed, held;
 };
@@ -83,40 +83,40 @@ inline NormalForce normal_force(const AlongOverlap& closed, const ClosedPart& pa
     return force;
 }
 
-// The shear force of a closed part, on the way from the step before.
+// The shear force of a closed part in a step.
 struct ShearMove {
     double length; // of the part [m]
     double slid;   // [m]
     double last;   // force a step before [N/m]
-    double kept;   // of that, on what is still closed [N/m]
-    double trial;  // force if it is elastic [N/m]
+    double kept;   // of that, on the part still closed [N/m]
+    double trial;  // force without slip [N/m]
 };
 
 // From the traction `tau` [Pa] on the part that was closed a step before.
 inline ShearMove shear_move(const Law& law, double tau, double last_length, double length, double slid)
 {
-    // A part that opens takes along the shear that it has; one that closes has none yet.
+    // A part that opens loses its shear force; a part that closes starts with none.
     const double kept = tau * std::min(last_length, length);
     return {length, slid, tau * last_length, kept, kept + k_s(law) * slid * length};
 }
-// Of one that has not carried a force yet, but has the traction `tau` [Pa].
+// For a pair that has not carried a force yet, but has the traction `tau` [Pa].
 inline ShearMove first_shear_move(const Law& law, double tau, double length, double slid)
 {
     const double kept = tau * length;
     return {length, slid, 0, kept, kept + k_s(law) * slid * length};
 }
 
-// Within its limit [N/m]; takes what the joint remembers into `state`.
+// The shear force, limited by the strength [N/m]; updates the joint's memory in `state`.
 inline double shear_force(const Law& law, State& state, const ShearMove& move, double limit)
 {
     if (!remembers(law) || !(move.length > 0))
         return std::clamp(move.trial, -limit, limit);
     const double tau = shear(law, state, move.kept / move.length, move.slid, limit / move.length);
     const double force = tau * move.length;
-    return std::abs(force - move.trial) <= 1e-12 * limit ? move.trial : force; // but for rounding
+    return std::abs(force - move.trial) <= 1e-12 * limit ? move.trial : force; // equal within rounding
 }
 
-// What dashpots add to that force [N/m]; none where it slips.
+// Force of dashpots to add to it [N/m]; 0 where it slips.
 inline double shear_held(const Law& law, const ShearMove& move, double force, double limit, double dashpots)
 {
     if (force != move.trial)
@@ -124,13 +124,13 @@ inline double shear_held(const Law& law, const ShearMove& move, double force, do
     return std::clamp(force + dashpots * k_s(law) * move.length * move.slid, -limit, limit) - force;
 }
 
-// What the shear springs hold at a force [N/m] along a length [J/m].
+// Energy of the shear springs at a force [N/m] along a length [J/m].
 inline double stored_in_shear(const Law& law, double force, double length)
 {
     return k_s(law) > 0 && length > 0 ? force * force / (2 * k_s(law) * length) : 0.0;
 }
 
-// What slip takes to this force [J/m].
+// Energy lost by slip to this force [J/m].
 inline double taken_by_slip(const Law& law, const ShearMove& move, double force)
 {
     return force != move.trial && k_s(law) > 0 && move.length > 0
@@ -138,7 +138,7 @@ inline double taken_by_slip(const Law& law, const ShearMove& move, double force)
                : 0.0;
 }
 
-// What a part that opens takes of the energy that springs held, `sheared_in` [J/m].
+// Energy lost with the part that opens, of the energy `sheared_in` of the shear springs [J/m].
 inline double taken_by_opening(const Law& law, const ShearMove& move, double sheared_in)
 {
     return sheared_in - stored_in_shear(law, move.kept, move.length) +

@@ -1,6 +1,6 @@
-// Parameters of joint laws. A law's header lists its own in a table, and all that is done with a parameter
-// follows from its row: the scene's key with its check, the dataset, the column in exports, strength averaging
-// with rock bridges, and the division of strengths.
+// Parameters of joint laws. A law's header lists its own parameters in a table. A parameter's row gives all uses of it:
+// the scene's key with its check, the dataset, the column in exports, strength averaging with rock bridges, and the
+// division of strengths.
 
 #pragma once
 
@@ -17,21 +17,21 @@
 namespace jointcreep::joint
 {
 
-// What rock bridges make of a parameter on an edge of which the share k is joint (joint/equivalent.hpp).
+// The parameter's value on an edge with rock bridges, of which the share k is joint (joint/equivalent.hpp).
 enum class WithBridges {
     spring,  // a stiffness: by the scene's stiffness rule
-    mean,    // k times the joint's and 1 - k times the rock's; of an angle its tangent
-    share,   // k times the joint's: bridges have none of it
-    weaker,  // the joint's own, an angle, or that of the mean friction if it is less
+    mean,    // k times the joint's and 1 - k times the rock's; for an angle, of its tangent
+    share,   // k times the joint's: bridges count as 0
+    weaker,  // the joint's own angle, or the mean friction angle if that is less
     own,     // the joint's own
-    refused, // it has no average with rock: such joints must have no bridges
+    refused, // no average with rock: such joints must have no bridges
 };
 
-// What a strength factor F makes of a parameter.
+// The parameter's value under a strength factor F.
 enum class WithStrengthDivided {
     same,
-    value,   // it is divided by F
-    tangent, // an angle, the tangent of which is divided by F
+    value,   // divided by F
+    tangent, // an angle: its tangent is divided by F
 };
 
 struct Parameter {
@@ -42,8 +42,8 @@ struct Parameter {
     WithBridges with_bridges;
     WithStrengthDivided with_strength_divided;
     std::string_view meaning;
-    std::optional<double> otherwise{}; // the default, in the key's unit; none: the scene has to say it
-    // Where its values are, of what all joints have; else among the own parameters of the law.
+    std::optional<double> otherwise{}; // the default, in the key's unit; none: the scene must give it
+    // Where its values are, for parameters of all joints; else they are among the own parameters of the law.
     double JointMaterial::*in_material = nullptr;
     std::vector<double> EquivalentJoints::*in_joints = nullptr;
 
@@ -73,7 +73,7 @@ struct Parameter {
     bool is_angle() const { return unit.symbol == degrees.symbol; }
 };
 
-// The same parameter with another fate in a law of its own.
+// The same parameter with other rules for bridges and strength factors, in a law of its own.
 inline Parameter changed(Parameter parameter, WithBridges with_bridges, WithStrengthDivided divided)
 {
     parameter.with_bridges = with_bridges;
@@ -81,7 +81,7 @@ inline Parameter changed(Parameter parameter, WithBridges with_bridges, WithStre
     return parameter;
 }
 
-// What a law finds wrong with a material: the key at fault and what is expected.
+// An error that a law finds in a material: the wrong key and the expected value.
 struct Complaint {
     Parameter parameter;
     std::string wanted;
@@ -90,7 +90,7 @@ struct Complaint {
 // The value of a parameter, in SI units.
 using ValueOf = std::function<double(const Parameter&)>;
 
-// What is known of a law without computing with it.
+// Properties of a law for scene keys, pages and checks.
 struct LawInfo {
     std::string_view name;             // as in messages: "Barton-Bandis"
     std::string_view about;            // in a few words, for the pages of keys and files
@@ -100,7 +100,7 @@ struct LawInfo {
     bool creeps = true;                // whether creep may act in series with its springs
     std::string_view
         no_sensitivities{}; // why sensitivities refuse such joints: "their ..."; empty: they do not
-    // Asked of a material, and of the joint that it makes with rock bridges.
+    // Checks a material, and the equivalent joint of it with rock bridges.
     std::function<std::optional<Complaint>(const ValueOf&)> check{};
 };
 

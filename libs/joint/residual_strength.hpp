@@ -1,8 +1,8 @@
-// Coulomb's joint with a residual strength: the first slip, or opening, breaks its bonds, and leaves the
-// residual cohesion and friction for good.
+// Coulomb's joint with a residual strength: the first slip or opening breaks its bonds. Residual cohesion and friction
+// remain. In other Coulomb joints only opening removes the cohesion.
 //
 //     |tau| <= c - sigma_n tan(phi)        until then
-//     |tau| <= c_r - sigma_n tan(phi_r)    from then on        c_r <= c,  tan(psi) <= tan(phi_r) <= tan(phi)
+//     |tau| <= c_r - sigma_n tan(phi_r)    afterwards        c_r <= c,  tan(psi) <= tan(phi_r) <= tan(phi)
 //
 // The response is that of joint/coulomb.hpp.
 

@@ -102,7 +102,7 @@ Table<JointMaterial> joint_material(const Table<Kelvin>& chain)
         keys};
 }
 
-// By the keys that are given.
+// Finds the law from the given keys.
 void find_law(JointMaterial& material)
 {
     for (std::size_t law = 0; law < laws().size(); ++law)

@@ -1,5 +1,5 @@
-// Scene keys of what joints are made of, which follow from the list of joint laws (joint/law.hpp), and what is
-// checked of them alone. Units and ranges are declared with each key.
+// Scene keys of joint materials, which follow from the list of joint laws (joint/law.hpp), and their checks that need
+// no other part of the scene. Units and ranges are declared with each key.
 
 #pragma once
 

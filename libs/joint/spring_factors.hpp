@@ -1,4 +1,5 @@
-// Joints with springs and dashpots times one factor, in normal and shear direction alike: what back-analysis looks for.
+// Springs and dashpots of all joints times one factor, in normal and shear direction alike: the unknowns of
+// back-analysis.
 
 #pragma once
 
@@ -7,7 +8,7 @@
 namespace jointcreep::joint
 {
 
-// Joint stiffness K, with E / K and eta / E kept: all that is elastic or creeps.
+// Joint stiffness K, with E / K and eta / E kept: all elastic and creep constants.
 void multiply_stiffness(EquivalentJoints& joints, double factor);
 
 // E of Kelvin units.

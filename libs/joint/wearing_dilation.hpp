@@ -28,7 +28,7 @@ inline const Parameter dilation_wear{
 
 } // namespace parameters
 
-// How slip dilates: less and less.
+// Dilation that decreases with the work of slip.
 template <class T>
 struct DilationThatWears {
     double tan_psi; // [-]
@@ -37,7 +37,7 @@ struct DilationThatWears {
 
     bool dilates() const { return tan_psi > 0; }
 
-    // What slip opens under the shear traction tau, which works all along it [m].
+    // Opening by slip under a constant shear traction tau [m].
     T opening_by(const T& slip, const T& tau) const
     {
         using std::exp, std::expm1;
@@ -45,8 +45,8 @@ struct DilationThatWears {
         const T mean = value_of(worn) > 1e-8 ? T(-expm1(-worn) / worn) : T(1 - worn / 2); // of exp(-worn)
         return tan_psi * exp(-wear * work) * mean * slip;
     }
-    // Shear traction above the strength after slip x: slip leaves the shear traction k_s (most - x), and presses
-    // the joint together.
+    // Excess of the shear traction over the strength after slip x: slip leaves the shear traction k_s (most - x), and
+    // presses the joint together.
     T excess_after(const T& x, const T& excess, const T& most, const T& k_n, const T& k_s,
                    double tan_phi) const
     {
@@ -77,7 +77,7 @@ struct DilationThatWears {
             if (change <= 1e-15 * last)
                 break;
         }
-        // One more step, which also carries derivatives.
+        // One more step, for the derivatives.
         return x - excess_after(x, excess, most, k_n, k_s, tan_phi) / slope;
     }
     T press(const T& slip, const T& tau, const T& k_n) const { return k_n * opening_by(slip, tau); }

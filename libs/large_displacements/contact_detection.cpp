@@ -21,7 +21,7 @@ namespace jointcreep::large_displacements
 namespace
 {
 
-constexpr double same_way = 0.7; // cosine between the normals of contacts of which one goes on as the other
+constexpr double same_way = 0.7; // cosine between the normals of contacts where one continues the other
 
 using Box = std::array<Vector2d, 2>; // lowest and highest corner [m]
 using NearFaces = std::vector<std::pair<Index, Index>>;
@@ -31,7 +31,7 @@ bool boxes_overlap(const Box& a, const Box& b)
     return (a[0].array() <= b[1].array()).all() && (b[0].array() <= a[1].array()).all();
 }
 
-// Adds the pairs of boxes that overlap, by a grid of square cells of this size [m].
+// Adds the pairs of boxes that overlap, found by a grid of square cells of this size [m].
 void add_overlapping(const std::vector<Box>& box, double cell, NearFaces& near)
 {
     struct Entry {
@@ -56,7 +56,7 @@ void add_overlapping(const std::vector<Box>& box, double cell, NearFaces& near)
                 near.emplace_back(entries[i].face, entries[j].face);
 }
 
-// How far apart two faces are at least: seen along and across either [m].
+// A lower bound of the distance of two faces: seen along and across each of them [m].
 double least_distance(const std::array<Vector2d, 2>& a, const std::array<Vector2d, 2>& b)
 {
     const Vector2d along_a = a[1] - a[0], along_b = b[0] - b[1];
@@ -72,10 +72,10 @@ double least_distance(const std::array<Vector2d, 2>& a, const std::array<Vector2
 
 } // namespace
 
-// How sharp the outlines turn at the ends of faces, and which faces make a straight side.
+// Sharpness of the outlines at the ends of faces, and the faces that make a straight side.
 void FaceContacts::find_corners(const std::vector<Vector2d>& place)
 {
-    constexpr double corner = 0.35; // a turn by that much, 20 degrees, and more is a corner [rad]
+    constexpr double corner = 0.35; // a turn of this much, 20 degrees, or more is a corner [rad]
     std::unordered_multimap<Index, Index> starting; // faces, by their first gridpoint
     for (std::size_t f = 0; f < faces_.gridpoint.size(); ++f)
         starting.emplace(faces_.gridpoint[f][0], static_cast<Index>(f));
@@ -85,8 +85,8 @@ void FaceContacts::find_corners(const std::vector<Vector2d>& place)
     for (std::size_t f = 0; f < faces_.gridpoint.size(); ++f) {
         const auto p = ends_of(faces_.gridpoint[f], place);
         const Vector2d one = p[1] - p[0];
-        // Where outlines touch at a gridpoint, this one goes on by the sharpest turn to the left: that is
-        // where its rock is.
+        // Where several outlines touch at a gridpoint, this one continues by the sharpest turn to the left: its rock is
+        // there.
         Index next = -1;
         double most = 0;
         for (auto [it, end] = starting.equal_range(faces_.gridpoint[f][1]); it != end; ++it) {
@@ -108,8 +108,8 @@ void FaceContacts::find_corners(const std::vector<Vector2d>& place)
         side_.push_back(sides.root(static_cast<Index>(f)));
 }
 
-// All pairs of faces that carry a load, and those whose boxes come within the skin of each other; what pairs of
-// before remember stays.
+// Finds all pairs of faces that carry load, and those whose boxes are within the skin of each other. Earlier pairs keep
+// their state.
 void FaceContacts::seek(const std::vector<Vector2d>& place, const std::vector<Vector2d>& move)
 {
     ++searches_;
@@ -133,8 +133,8 @@ void FaceContacts::seek(const std::vector<Vector2d>& place, const std::vector<Ve
     find_joints(place);
 }
 
-// How far beyond its face a box reaches: as far as the face is in another one, or off one that it is bonded
-// to, since there lies the next one to slide on to. Returns the pairs of these.
+// Finds how far the box of a face reaches beyond it: its depth in another face, or its distance from a face that it is
+// bonded to, as it may slide on to the face beside that one. Returns these pairs.
 std::vector<std::pair<Index, Index>> FaceContacts::find_reach(const std::vector<Vector2d>& place)
 {
     reach_.assign(faces_.gridpoint.size(), skin_ / 2);
@@ -152,7 +152,7 @@ std::vector<std::pair<Index, Index>> FaceContacts::find_reach(const std::vector<
     return near;
 }
 
-// These pairs, in order, with what those of before remember.
+// Makes these the pairs, in order; earlier pairs keep their state.
 void FaceContacts::take_pairs(const NearFaces& near)
 {
     std::vector<FacePair> pairs;
@@ -175,8 +175,8 @@ void FaceContacts::take_pairs(const NearFaces& near)
     std::iota(active_.begin(), active_.end(), 0);
 }
 
-// The joints that rise as one where any law dilates. What has come near is raised as the rest of its joint is,
-// but for what is nearer than that.
+// Finds the joints that rise as one, if any law dilates. A pair that has come near is raised as the rest of its joint,
+// unless its faces are nearer than that.
 void FaceContacts::find_joints(const std::vector<Vector2d>& place)
 {
     joints_.clear();
@@ -199,11 +199,11 @@ void FaceContacts::find_joints(const std::vector<Vector2d>& place)
     }
 }
 
-// Of all pairs, those that may carry a load before faces are sought again, and how far gridpoints have to go
-// for that at least. The pairs that are left out have been seen once, are open, and would stay as they are.
+// Finds the pairs that may carry load before the next search, and the least displacement of gridpoints before that. The
+// other pairs have been checked once, are open, and would stay as they are.
 void FaceContacts::find_active()
 {
-    double most_lead = 0; // that an unknown pair may inherit
+    double most_lead = 0; // largest that a new pair may inherit
     for (const FacePair& pair : pairs_)
         if (pair.is_known)
             most_lead = std::max({most_lead, pair.lead[0], pair.lead[1]});
@@ -222,9 +222,9 @@ void FaceContacts::find_active()
         take_forces(static_cast<Index>(i));
 }
 
-// How far gridpoints go at least before an open pair touches [m]. Until faces are sought again none is farther
-// than half the skin from where it was, so that faces turn little, and come no nearer than by twice the way;
-// and where one is in another, or comes to be, others come out no farther than that.
+// The least displacement of gridpoints before an open pair touches [m]. Between two searches no gridpoint moves by more
+// than half the skin. So faces turn little, and approach each other by at most twice the displacement. If a face is in
+// another one, or gets into it, faces slide out of it no farther than that.
 double FaceContacts::way_to_touch(const FacePair& pair, double most_lead) const
 {
     constexpr double never = std::numeric_limits<double>::infinity();
@@ -245,7 +245,7 @@ double FaceContacts::way_to_touch(const FacePair& pair, double most_lead) const
     return (apart * (1 - 1e-9) - (reach_[pair.a] + reach_[pair.b] - skin_) - lead) / 4;
 }
 
-// The gridpoints of active pairs, and the places of their corners' forces.
+// Finds the gridpoints of active pairs, and the positions of their corners' forces.
 void FaceContacts::find_touched()
 {
     std::vector<std::array<Index, 2>> corners; // {gridpoint, 4 active + corner}
@@ -271,8 +271,8 @@ void FaceContacts::find_touched()
     touched_start_.push_back(static_cast<Index>(corners.size()));
 }
 
-// The longest closed contact from which a face of this pair slides on to the next one, pressing in about the
-// same direction; none if there is none. The pair's normal is given.
+// The longest closed contact that this pair continues: a face slides on from its face to the next one, with about the
+// same normal. None if there is none. The pair's normal is given.
 const FacePair* FaceContacts::contact_before(const FacePair& pair, const Vector2d& normal,
                                              const std::vector<Vector2d>& place) const
 {
@@ -304,7 +304,7 @@ std::size_t FaceContacts::law_slid_on_to(const FacePair& pair, const FacePair& b
         return laws_.size() - 1;
     if (material_[before.law] == material_[of_a])
         return before.law;
-    return pair.a == before.a || pair.a == before.b ? of_b : of_a; // of the face that is next
+    return pair.a == before.a || pair.a == before.b ? of_b : of_a; // of the next face
 }
 
 } // namespace jointcreep::large_displacements

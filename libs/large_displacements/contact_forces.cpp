@@ -24,7 +24,7 @@ double depth_of(const FacePair& pair, const Faces& faces)
     return std::min(faces.depth[pair.a], faces.depth[pair.b]);
 }
 
-// Gaps at the ends of an overlap a step before [m], and how far the faces have slid since [m].
+// Gaps at the ends of an overlap one step ago [m], and the slide of the faces since then [m].
 struct Gaps {
     std::array<double, 2> gap;
     double slid;
@@ -44,7 +44,7 @@ Gaps gaps_before(const FacePair& pair, const Overlap& found, const Faces& faces,
     return before;
 }
 
-// Whether faces are too far in each other to have come to touch in this step.
+// Whether the overlap is too deep for faces that touch first in this step.
 bool is_deep(const FacePair& pair, const Overlap& found, const Faces& faces,
              const std::vector<Vector2d>& move)
 {
@@ -52,10 +52,10 @@ bool is_deep(const FacePair& pair, const Overlap& found, const Faces& faces,
     return std::min(found.sunk(), -std::min(before[0], before[1])) > deepest_new * depth_of(pair, faces);
 }
 
-// A contact in one step: where its faces are closed and how they move there, the forces that its joint
-// (joint/moving_contact.hpp) then has on them, and what becomes of energy. Between two moments a force works as the mean of
-// both: the constructor takes the first one's half. What dilation opens, neither springs nor dashpots do, and friction pays
-// for it.
+// A contact in one step: the closed part of its faces and its motion, the forces of its joint
+// (joint/moving_contact.hpp), and its energies. Between two moments, a force does work as the mean of both; the
+// constructor adds the half of the first moment. Opening by dilation does not count for springs and dashpots; its work
+// is subtracted from friction.
 class ContactForce
 {
 public:
@@ -74,7 +74,7 @@ public:
         pair.pressed_in = pair.sheared_in = 0;
     }
 
-    // No force any more. Where rock slides off an edge, what the normal springs have stored is lost, too.
+    // Sets the forces to 0. If rock slides off an edge, the energy of the normal springs is lost, too.
     void open() { open(0); }
     void slide_off() { open(last_.pressed_in); }
 
@@ -82,7 +82,7 @@ public:
     void press(const Overlap& found, const std::array<double, 2>& closing)
     {
         joint::ClosedPart part{closing};
-        double in_bonds = 0; // what springs hold that is lost with the bonds, if they break now [J/m]
+        double in_bonds = 0; // energy of the springs lost with the bonds, if they break now [J/m]
         if (!pair_.is_broken && joint::breaks(law_, closing))
             in_bonds = break_bonds(closing, found.length);
         if (pair_.is_broken) {
@@ -121,10 +121,10 @@ private:
         bool was_closed;
     };
 
-    // How far the two faces have moved apart in this step at an end of the closed part.
+    // Relative displacement of the two faces in this step, at an end of the closed part.
     Vector2d parted_at(int i) const { return at(move_b_, pair_.on_b[i]) - at(move_a_, pair_.on_a[i]); }
 
-    double work_of_dilation() const // half of that of the present force [J/m]
+    double work_of_dilation() const // by half the present force [J/m]
     {
         return pair_.is_closed && pair_.raised > 0
                    ? -(pair_.force[0] + pair_.force[1]).dot(pair_.normal) * pair_.raised / 2
@@ -161,7 +161,7 @@ private:
     // `gap`: in the middle of the closed part [m].
     joint::ShearMove shear_move(double gap) const
     {
-        // Two points a gap apart that turn together move along each other, too; that is no slip.
+        // Two points with a gap between them move along each other if both faces rotate together; that is no slip.
         const Vector2d tangent = along(pair_.normal);
         const double turned =
             pair_.is_new || last_.length == 0 ? 0.0 : gap * (pair_.normal - last_.normal).dot(tangent);
@@ -170,7 +170,7 @@ private:
                             : joint::shear_move(law_, last_.tau, last_.length, pair_.length, slid);
     }
 
-    // Forces on the ends that are as the traction between them.
+    // Forces on the ends, by the traction between them.
     void find_normal_force(const joint::AlongOverlap& closed, const joint::ClosedPart& part, bool was_broken)
     {
         const joint::NormalMove move{{parted_at(0).dot(pair_.normal), parted_at(1).dot(pair_.normal)},
@@ -188,7 +188,7 @@ private:
         pair_.stiffest = closed.stiffest;
     }
 
-    // Adds it to the forces on the ends; returns it, without that of dashpots [N/m].
+    // Adds the shear force to the forces on the ends; returns it without the dashpots [N/m].
     double find_shear_force(const joint::ShearMove& move, double limit)
     {
         joint::State state = pair_.state();
@@ -215,7 +215,7 @@ private:
     std::array<Vector2d, 2> move_a_, move_b_; // of the ends of the faces in this step [m]
     double dashpots_;                         // over springs, by displacements in this step [-]
     Last last_;
-    double work_of_dilation_; // as of the force a step before [J/m]
+    double work_of_dilation_; // by half the force a step before [J/m]
 };
 
 } // namespace
@@ -232,7 +232,7 @@ FaceContacts::Touch FaceContacts::find_force(FacePair& pair, const Step& step, b
     for (int i = 0; i < 2; ++i)
         closing[i] = at(pair.lead, found->on_a[i]) - found->gap[i];
     const bool is_too_deep = found->sunk() > deepest * depth_of(pair, faces_), is_bonded = pair.is_bonded();
-    // One that is not known yet may have a lead to inherit.
+    // A pair that has not touched yet may inherit a lead.
     const double most = std::max(closing[0], closing[1]) + (pair.is_known ? 0.0 : most_lead_);
     if (!pair.is_closed && !is_bonded &&
         (most <= 0 || (is_too_deep && is_deep(pair, *found, faces_, step.move)))) {
@@ -247,7 +247,8 @@ FaceContacts::Touch FaceContacts::find_force(FacePair& pair, const Step& step, b
     return Touch::settled;
 }
 
-// Takes what an open pair that comes to touch inherits; false if it stays open, as other faces touch there.
+// Sets the inherited state of an open pair that comes to touch. Returns false if it stays open, because other faces
+// touch there.
 bool FaceContacts::comes_to_touch(FacePair& pair, const Overlap& found, const Step& step) const
 {
     const auto sunk_of = [&](const FacePair& other) {
@@ -261,10 +262,10 @@ bool FaceContacts::comes_to_touch(FacePair& pair, const Overlap& found, const St
     if (before == nullptr && (found.is_behind() || (!pair.is_known && -found.sunk() >= pair.lead[0])))
         return false;
     if (before != nullptr && !pair.is_known) {
-        // What slides on takes along what its joint remembers. A pair's sides may change places: a's first
-        // end looks at b's second one, and `along` turns round with the normal twice over, so that the shear
-        // traction keeps its sign. What was nearer than it is raised before it slid on to there, is raised no
-        // farther than that.
+        // A face that slides on to the next one keeps the memory of its joint. The sides of the pair may change places:
+        // the first end of a is then at the second end of b. `along` reverses twice with the normal, so the shear
+        // traction keeps its sign. The inherited dilation is at most the gap one step ago, less the lead without
+        // dilation.
         const double unraised = (before->lead[0] + before->lead[1]) / 2 - before->dilation;
         const Gaps last = gaps_before(pair, found, faces_, step.move);
         const double room =

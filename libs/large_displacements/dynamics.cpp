@@ -18,14 +18,14 @@ namespace
 
 constexpr double safety = 0.9;   // of the largest stable step
 constexpr double impacts = 4;    // steps are so much shorter for rigid bodies: what one step misses of an
-                                 // impact's beginning is energy that is lost or gained
+                                 // impact's beginning is an error of energy
 constexpr double at_rest = 1e-4; // [m/s]
 constexpr double most_rounding = 1e-3; // of the mean force on a gridpoint
 constexpr double slow = 0.01;          // below this speed everywhere, motion is stopped at its peaks [m/s]
 
 } // namespace
 
-// How fast rock was in a step, and what that costs [J/m].
+// Results of moving the rock by one step: energies [J/m] and the largest speed.
 struct Dynamics::Moved {
     double kinetic = 0, damped = 0;
     double fastest = 0; // [m2/s2]
@@ -49,10 +49,10 @@ struct Dynamics::Moved {
     }
 };
 
-// Of loads in a step [J/m].
+// Work of loads in a step [J/m].
 struct Dynamics::Work {
     double work = 0;
-    bool is_gone = false; // any gridpoint, from the section and its diagonal all round
+    bool is_gone = false; // any gridpoint farther out than the section's diagonal
 
     void operator+=(const Work& other)
     {
@@ -69,7 +69,7 @@ struct Dynamics::Leap {
 
 struct Dynamics::Balance {
     double largest = 0;  // unbalanced force [N/m]
-    double mean = 0;     // of the summed magnitudes of forces on a gridpoint with any [N/m]
+    double mean = 0;     // summed magnitudes of forces, mean of loaded gridpoints [N/m]
     double farthest = 0; // place of a gridpoint from the section's middle [m]
     double change = 0;   // of the contacts' force on a gridpoint since the last check, the largest [N/m]
 };
@@ -148,14 +148,14 @@ void Dynamics::start()
     find_forces(velocity_);
     if (contacts_.stiffest() > stiffest_allowed_)
         find_time_step();
-    if (settings_.release > 0) // what is unbalanced now, the excavated rock has held
+    if (settings_.release > 0) // the excavated rock carried the present unbalanced forces
         for (std::size_t g = 0; g < place_.size(); ++g)
             released_[g] = -force_[g];
     find_forces(velocity_);
     stored_at_start_ = stored();
 }
 
-// The gridpoint that each one moves with: itself, but for those that are tied.
+// The leader of each gridpoint: the gridpoint itself, or the one it is tied to.
 std::vector<Index> Dynamics::leaders() const
 {
     std::vector<Index> leader(place_.size());
@@ -165,8 +165,8 @@ std::vector<Index> Dynamics::leaders() const
     return leader;
 }
 
-// The sums of the magnitudes of all blocks of the stiffness in the rows of gridpoints (Gershgorin), which
-// turning does not change [Pa].
+// Sums of the magnitudes of all stiffness blocks in the rows of gridpoints (Gershgorin) [Pa]. Rotation does not change
+// them.
 std::vector<double> Dynamics::stiffness_sums() const
 {
     std::vector<double> sums(place_.size(), 0.0);
@@ -186,7 +186,7 @@ std::vector<double> Dynamics::stiffness_sums() const
 
 void Dynamics::find_time_step()
 {
-    // Where joints grow stiffer as they close, with room for that.
+    // For joints that grow stiffer as they close, with a margin.
     stiffest_allowed_ =
         contacts_.stiffens() ? joint::room_to_stiffen * contacts_.stiffest() : contacts_.stiffest();
     const std::vector<double> sums = stiffness_sums();
@@ -212,12 +212,12 @@ void Dynamics::find_time_step()
         }
     // Stiffness damping shortens the stable step: (2 / w) (sqrt(1 + xi^2) - xi), xi = beta w / 2.
     const double xi = settings_.stiffness_damping * std::sqrt(highest) / 2;
-    dt_ = highest == 0 ? 1e-3 // all rock is held
+    dt_ = highest == 0 ? 1e-3 // all rock is fixed
                        : safety * 2 / std::sqrt(highest) * (std::sqrt(1 + xi * xi) - xi);
 }
 
-// Of a step's time, by which the force at its beginning counts beside the velocity before: half of this step
-// and half of the last one.
+// Share of a time step that the force at its beginning acts on the velocity before: half of this step and half of the
+// last one.
 double Dynamics::first_half() const
 {
     return starts_from_rest_ ? 0.5 : (last_dt_ + dt_) / (2 * dt_);
@@ -256,15 +256,15 @@ double Dynamics::stored() const
     return in_zones_.stored + contacts_.energy().stored;
 }
 
-// One step of a gridpoint or body from velocities half a step before to those half a step after: `keep` of the
-// former [-], and `gain` over the mass for the force between [s].
+// One step of a gridpoint or body, from velocities half a step before to half a step after: `keep` times the former
+// [-], plus `gain` over the mass times the force between [s].
 Dynamics::Leap Dynamics::leap(double first_half_of_step) const
 {
     const double alpha = settings_.mass_damping;
     return {(1 - alpha * dt_ / 2) / (1 + alpha * dt_ / 2), first_half_of_step * dt_ / (1 + alpha * dt_ / 2)};
 }
 
-// By Newton's law: velocities, and places at the end of the step.
+// Newton's law: velocities, and positions at the end of the step.
 Dynamics::Moved Dynamics::move_rock()
 {
     const auto n = static_cast<Index>(place_.size());
@@ -297,7 +297,7 @@ Dynamics::Moved Dynamics::move_rock()
     return moved;
 }
 
-// Work in this step of loads and of what excavation still holds, of which `held` was left at its beginning.
+// Work in this step of loads and of the forces of excavated rock still applied; `held` is their share at its beginning.
 Dynamics::Work Dynamics::work_of_loads(double held) const
 {
     return sum_in_chunks<Work>(static_cast<Index>(place_.size()), rock_.threads, [&](Index g, Work& some) {
@@ -314,8 +314,7 @@ void Dynamics::step()
     energy_.damped += moved.damped;
     if (moved.fastest_gridpoint >= 0)
         fastest_gridpoint_ = moved.fastest_gridpoint;
-    // After a stop: from then on it is the product of this velocity and its opposite that counts as kinetic
-    // energy (see energy()).
+    // After a stop, the kinetic energy is the product of this velocity and its opposite (see energy()).
     if (starts_from_rest_ && time_ > 0)
         energy_.damped += half_step_energy();
     starts_from_rest_ = false;
@@ -345,8 +344,8 @@ void Dynamics::step()
         find_time_step();
 }
 
-// What is nearly at rest swings about it. Stopped where its kinetic energy is largest, it comes to rest; what
-// slides or falls has no such peak until it is no longer slow.
+// Rock near rest oscillates about it. If it is stopped where its kinetic energy is largest, it stops near rest. Rock
+// that slides or falls has no such peak until it is slow.
 void Dynamics::stop_at_peak(double kinetic)
 {
     if (fastest_ >= slow || kinetic >= last_kinetic_) {
@@ -363,7 +362,7 @@ void Dynamics::stop_at_peak(double kinetic)
     starts_from_rest_ = true;
 }
 
-// Of the velocities as they are, half a step ago [J/m].
+// Kinetic energy of the present velocities, half a step ago [J/m].
 double Dynamics::half_step_energy() const
 {
     auto sum =
@@ -376,8 +375,8 @@ double Dynamics::half_step_energy() const
     return sum;
 }
 
-// Velocities are known half a step before and after now; with their product as the square, work of forces is
-// kinetic energy to the last digit.
+// Velocities are known half a step before and half a step after now. With their product as the square, the work of
+// forces equals the kinetic energy within rounding.
 Energy Dynamics::energy() const
 {
     Energy energy = energy_;
@@ -399,7 +398,7 @@ Energy Dynamics::energy() const
                  keep * body.inertia * body.spin * body.spin + gain * body.spin * moment) /
                 2;
         }
-    // A sum of what shear gains and loses as the length of a contact changes: without slip, rounding about 0.
+    // Shear gains and loses energy as contacts change length. Without slip the sum is 0 within rounding.
     if (energy.friction < 0 &&
         -energy.friction < 1e-12 * std::max({energy.kinetic, std::abs(energy.work), energy.stored}))
         energy.friction = 0;
@@ -417,7 +416,7 @@ mechanics::no_equilibrium Dynamics::moves_on(const std::string& why) const
     return error;
 }
 
-// Unbalanced forces and those that gridpoints carry, with these of contacts [N/m].
+// Unbalanced forces, and forces on gridpoints, with these forces of contacts [N/m].
 Dynamics::Balance Dynamics::balance(const std::vector<Vector2d>& contact_force) const
 {
     Balance found;
@@ -448,8 +447,8 @@ Dynamics::Balance Dynamics::balance(const std::vector<Vector2d>& contact_force) 
     return found;
 }
 
-// Refuses where rounding errors of forces, those of springs and those with dashpots [N/m], are not small beside
-// the mean force.
+// Throws if rounding errors of forces are not small beside the mean force: those of springs, and those with dashpots
+// [N/m].
 void Dynamics::check_rounding(double of_springs, double rounding) const
 {
     if (largest_mean_ <= of_springs || rounding <= most_rounding * largest_mean_)
@@ -473,9 +472,9 @@ bool Dynamics::is_at_rest()
     std::vector<Vector2d> contact_force(place_.size(), Vector2d::Zero());
     contacts_.add_forces(contact_force, rock_.threads);
     const Balance found = balance(contact_force);
-    // Where forces are almost none, they are rounding errors of stiffness times place; no larger than these,
-    // nothing carries a load. Dashpots multiply them by their time over that of a step: too much for zones
-    // that are tiny, whose forces then say nothing.
+    // Forces near 0 are rounding errors of stiffness times position. Forces no larger than these mean no load. Dashpots
+    // multiply the errors by damping time over step time: too much for very small zones, whose forces are then not
+    // usable.
     const double of_springs = 1e-15 * stiffest_ * found.farthest;
     const double rounding = of_springs * (1 + settings_.stiffness_damping / dt_);
     largest_mean_ = std::max(largest_mean_, found.mean);

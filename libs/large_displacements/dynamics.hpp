@@ -1,8 +1,8 @@
-// Dynamic analysis with large displacements: Newton's law for gridpoints, large displacements and rotations,
-// until rest.
+// Dynamic analysis with large displacements: Newton's law for gridpoints, with large displacements and rotations, until
+// rest.
 //
-// Zones are libs/rock/moving_zones, joints libs/large_displacements/face_contacts. Real masses; velocities are half a step
-// behind displacements.
+// Zones are libs/rock/moving_zones, joints libs/large_displacements/face_contacts. Masses are real. Velocities are half
+// a time step behind displacements.
 
 #pragma once
 
@@ -20,12 +20,12 @@
 namespace jointcreep::large_displacements
 {
 
-// Since the start of a dynamic analysis [J/m]: work = kinetic + stored + friction + damped, but for the error
-// of steps.
+// Energies since the start of a dynamic analysis [J/m]: work = kinetic + stored + friction + damped, within the error
+// of time steps.
 struct Energy {
-    double work = 0; // of weight, tractions on the outline and what excavation still holds
+    double work = 0; // of weight, tractions on the outline and forces of excavated rock
     double kinetic = 0;
-    double stored = 0;   // by zones and contacts, less that at the start
+    double stored = 0;   // by zones and contacts, since the start
     double friction = 0; // lost to slip and yield
     double damped = 0;   // by dashpots, and where motion is stopped (see `settle`)
 
@@ -45,41 +45,39 @@ struct Touching {
 struct Settings {
     double stiffness_damping = 0; // dashpots of zones and closed contacts over their springs [s]
     double mass_damping = 0;      // force over mass and velocity [1/s]
-    double release = 0;           // time in which excavation's forces fade away [s]
+    double release = 0;           // time in which the forces of excavated rock go to 0 [s]
     double tolerance = 1e-5;      // of the unbalanced force ratio at rest [-]
 };
 
-// A section that moves. Works on an assembly whose displacements count from the start; takes its zones' and
-// contacts' state from there, and puts displacements, stresses and contacts back.
+// The moving section. The displacements of its assembly count from the start. Takes the state of zones and contacts
+// from the assembly, and returns displacements, stresses and contacts to it.
 class Dynamics
 {
 public:
-    // `material` numbers what the joint of each contact of the mesh is made of; `found` is the law of
-    // contacts that come about. Zones of rigid rock form bodies that do not deform.
+    // `material`: the number of the joint material of each contact of the mesh. `found`: the law of contacts that form.
+    // Zones of rigid rock form bodies that do not deform.
     Dynamics(mechanics::Assembly& rock, const Mesh& mesh, const std::vector<Index>& material,
              std::vector<char> is_rigid, const joint::Law& found, const Settings& settings);
 
-    // Begins anew after the assembly has lost rock, or gained loads. The unbalanced forces then fade away
-    // within the time of release.
+    // Starts again after an excavation, or with new loads. The unbalanced forces then go to 0 within the time of
+    // release.
     void start();
 
-    // What differs from a new analysis of the same section, to be asked between analyses: start() does the
-    // rest.
+    // State that a new analysis of the same section does not have; call it between analyses. start() sets the rest.
     void transfer(const Transfer& to, DynamicsState& kept);
 
-    // Makes the present places those that displacements count from.
+    // Makes the present positions the reference of displacements.
     void count_from_here();
 
-    // One step of time. Throws no_equilibrium where rock has left the section, farther than its diagonal;
-    // equilibrium_error where faces overlap too much, where rock yields too far, and where places are no
-    // numbers.
+    // One time step. Throws no_equilibrium if rock has left the section by more than its diagonal; equilibrium_error if
+    // faces overlap too much, if the strain of yielding rock is too large, or if positions are not finite.
     void step();
 
-    // That it goes on moving as it does now.
+    // The error that rock keeps moving, with its present motion.
     mechanics::no_equilibrium moves_on(const std::string& why) const;
 
-    // Whether nothing moves any more: forces are in balance to the tolerance, and have been. To be asked
-    // every `check_every` steps. Throws equilibrium_error where forces are mostly rounding.
+    // Whether everything is at rest: forces are in balance to the tolerance, now and at the last check. Call it every
+    // `check_every` steps. Throws equilibrium_error if forces are mostly rounding errors.
     static constexpr Index check_every = 50;
     bool is_at_rest();
 
@@ -89,25 +87,25 @@ public:
     double unbalanced_force_ratio() const { return ratio_; }
     double contact_force_change() const { return force_change_; }
     double fastest() const { return fastest_; } // [m/s]
-    // Faster than where motion is stopped at its peaks, since the start of this dynamic analysis.
+    // Whether it has been faster than the limit for stops at peaks, since the start of this dynamic analysis.
     bool has_moved() const { return has_moved_; }
     std::vector<Touching> touching() const;
 
-    // Puts displacements, stresses and contacts of the mesh into the assembly. A contact of the mesh whose
-    // two faces no longer touch is open.
+    // Returns displacements, stresses and contacts of the mesh to the assembly. A contact of the mesh is open if its
+    // two faces no longer touch.
     void put_back();
 
 private:
-    // Rock that does not deform: gridpoints that zones of rigid rock connect.
+    // Rigid rock: gridpoints connected by zones of rigid rock.
     struct Body {
         std::vector<Index> gridpoint; // leaders of ties
         std::vector<Vector2d> arm;    // of each from the centre, before the body has turned [m]
         double mass = 0, inertia = 0; // [kg/m], [kg m]
         Vector2d centre{0, 0}, velocity{0, 0};
-        Vector2d lost{0, 0};        // of the centre by rounding, until now [m]
+        Vector2d lost{0, 0};        // rounding error of the centre, so far [m]
         double angle = 0, spin = 0; // [rad], [rad/s]
-        Vector2d is_free{1, 1};     // in {x, y}, 0 where any of its gridpoints is held
-        // One that is held somewhere does not turn.
+        Vector2d is_free{1, 1};     // {x, y}: 0 where any of its gridpoints is fixed
+        // A body with a fixed gridpoint does not turn.
         bool turns() const { return is_free.minCoeff() > 0; }
         bool is_held() const { return is_free.maxCoeff() == 0; }
     };
@@ -145,7 +143,7 @@ private:
     std::pair<Vector2d, double> load_on(const Body& body) const;
     void put_back_forces();
 
-    // Faces and what lies on them: faces_of_rock.cpp.
+    // Faces and their laws: faces_of_rock.cpp.
     void find_ground();
     void find_walls();
     void find_faces();
@@ -157,7 +155,7 @@ private:
     pair_on_joint(Index f, Index g, const std::vector<std::array<Index, 2>>& of_mesh,
                   const std::map<std::array<Index, 2>, std::vector<std::size_t>>& between) const;
 
-    // What the assembly takes back: dynamics_state.cpp.
+    // Results for the assembly: dynamics_state.cpp.
     struct Carried;
     std::map<std::array<Index, 2>, Carried> carried_by_pairs() const;
     void put_back_contacts();
@@ -168,16 +166,16 @@ private:
     FaceContacts contacts_;
     std::vector<Body> bodies_;
     std::vector<char> is_rigid_; // zones
-    bool any_deforms_ = false;   // of the zones that are there
+    bool any_deforms_ = false;   // of the present zones
     std::vector<Index> body_of_; // of gridpoints; -1 none
     rock::MovingZones zones_;    // of the assembly
-    // Places are counted from the section's middle: what they are rounded to must not depend on where it is.
+    // Positions count from the section's middle: their rounding errors must not depend on where the section is.
     std::vector<Vector2d> place_, velocity_, move_, force_, released_;
-    std::vector<Vector2d> lost_;       // of places by rounding, until now [m]
-    std::vector<Vector2d> origin_;     // that displacements count from
+    std::vector<Vector2d> lost_;       // rounding errors of positions, so far [m]
+    std::vector<Vector2d> origin_;     // reference of displacements
     Vector2d middle_;                  // of the section, where it is [m]
     Vector2d low_, high_;              // of the section and its diagonal all round
-    std::vector<double> inverse_mass_; // 0 where held by nothing but rock that is gone [m/kg]
+    std::vector<double> inverse_mass_; // 0 if of excavated rock only, or of a body [m/kg]
     std::vector<std::size_t> law_of_edge_;
     std::vector<std::array<Index, 2>> ground_;             // its faces, by gridpoints of the mesh
     std::map<std::array<Index, 2>, std::size_t> wall_law_; // of sides on a joint, by gridpoints of the mesh

@@ -84,8 +84,8 @@ void Dynamics::put_back()
     put_back_contacts();
 }
 
-// What all pairs of faces that meet at two gridpoints carry, over their length: next to the pair that faces
-// each other there are others that overlap by what the joint has sheared. By gridpoints {lower, higher}.
+// Forces of all pairs of faces that meet at two gridpoints, over their length. They include neighbours that overlap
+// after shear of the joint. By gridpoints {lower, higher}.
 std::map<std::array<Index, 2>, Dynamics::Carried> Dynamics::carried_by_pairs() const
 {
     std::map<std::array<Index, 2>, Carried> carried;
@@ -109,7 +109,7 @@ void Dynamics::put_back_contacts()
     joint::Contacts& contacts = rock_.contacts;
     const std::map<std::array<Index, 2>, Carried> carried = carried_by_pairs();
     contacts.state_by_faces = contacts.state;
-    // What the shear springs do not take up.
+    // Shear displacement that is not in the shear springs.
     const auto slip_of = [&](std::size_t c) {
         const double k_s = joint::k_s(contacts.law[c]);
         return k_s > 0 ? contacts.relative_displacement[c].y() -
@@ -125,7 +125,7 @@ void Dynamics::put_back_contacts()
                                              relative.dot(along(contacts.normal[c]))};
         const auto found = carried.find({std::min(a, b), std::max(a, b)});
         if (found == carried.end()) {
-            if (leader[a] == leader[b]) // held together so far: as it was
+            if (leader[a] == leader[b]) // tied so far: no change
                 continue;
             contacts.traction[c].setZero();
             contacts.status[c] = ContactStatus::open;

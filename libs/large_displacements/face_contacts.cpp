@@ -57,7 +57,7 @@ void FaceContacts::set_faces(Faces faces, std::vector<FacePair> known, const std
               [](const FacePair& p, const FacePair& q) { return std::pair(p.a, p.b) < std::pair(q.a, q.b); });
     pairs_ = std::move(known);
     for (FacePair& pair : pairs_)
-        pair.sigma = 0; // of the last update, which a checkpoint does not have
+        pair.sigma = 0; // of the last update; not in a checkpoint
     std::vector<double> lengths;
     for (const auto& [from, to] : faces_.gridpoint)
         lengths.push_back((place[to] - place[from]).norm());
@@ -86,7 +86,7 @@ void FaceContacts::find_shapes(const std::vector<Vector2d>& place, int threads)
     });
 }
 
-// How far gridpoints are from where they were when pairs were sought last, the farthest [m].
+// Largest distance of a gridpoint from its position at the last search for pairs [m].
 double FaceContacts::farthest_since_search(const std::vector<Vector2d>& place, int threads) const
 {
     struct Farthest {
@@ -130,7 +130,7 @@ void FaceContacts::update(const std::vector<Vector2d>& place, const std::vector<
     is_sought_ = false;
 }
 
-// Of active pairs; those that come to touch only say so.
+// Forces of active pairs; pairs that come to touch are marked only.
 FaceContacts::Sum FaceContacts::find_forces(const Step& step, int threads)
 {
     return sum_in_chunks<Sum>(static_cast<Index>(active_.size()), threads, [&](Index i, Sum& some) {
@@ -138,8 +138,7 @@ FaceContacts::Sum FaceContacts::find_forces(const Step& step, int threads)
             return;
         const Index p = active_[i];
         FacePair& pair = pairs_[p];
-        // An open pair that has been seen as such, and whose faces do not face each other: nothing more
-        // happens.
+        // An open pair, found open before, whose faces do not face each other: no force.
         if (!is_sought_ && !pair.is_closed && !pair.is_bonded() &&
             are_apart(pair, faces_, shapes_, step.place)) {
             pair.is_slipping = false;
@@ -158,8 +157,8 @@ FaceContacts::Sum FaceContacts::find_forces(const Step& step, int threads)
     });
 }
 
-// Of pairs that come to touch. Those that lie behind come last: what they may have slid on from must have
-// closed.
+// Forces of pairs that come to touch. Pairs that lie behind are last: the pairs they may have slid on from must be
+// closed first.
 void FaceContacts::find_forces_of_new(const Step& step, Sum& sum)
 {
     for (const bool is_behind : {false, true})

@@ -1,28 +1,25 @@
-// Contacts between faces of rock that move: what touches what is found anew as blocks slide, turn and fall.
+// Contacts between faces of moving blocks: contacts are detected anew as blocks slide, turn and fall.
 //
-// A face is one side of a zone with no rock before it. A contact is a pair of faces that look at each other:
-// on the length that they overlap, the joint closes linearly, and its springs (stiffness per area) are
-// integrated over the part that is closed: linear ones exactly, those of Barton and Bandis's law at five
-// points. So gridpoints of the two faces need not match: a uniform traction stays uniform however far they
-// have slid. A corner that presses into a face is the same with a short closed part.
+// A face is a side of a zone with no rock in front of it. A contact is a pair of faces that face each other. Along
+// their overlap the joint closes linearly. Its springs (stiffness per area) are integrated over the closed part: linear
+// springs exactly, those of Barton and Bandis's law at five points. So gridpoints of the two faces need not match, and
+// a uniform traction stays uniform after any slide. A corner in a face is a contact with a short closed part.
 //
-// The plane of a contact is that of the face into which a corner of the other one sinks. Within a hundredth
-// of the shorter face about two ends that meet, it turns smoothly from one face to the other (corner to
-// corner).
+// The plane of a contact is that of the face into which a corner of the other one sinks. Where two corners meet, within
+// a hundredth of the shorter face, the plane turns smoothly from one face to the other.
 //
-// Closing is counted from the closing of the in-situ joint, `lead`, which stays with a pair of faces, and
-// goes on to the next face when one slides along. The shear traction is kept as a stress along the contact
-// and so turns with it.
+// closing = lead - gap. The lead is the closing of a contact between faces without a gap: that under the in-situ
+// stress, plus dilation since. It belongs to a pair of faces. When a face slides on to the next one, the new pair
+// inherits it. The shear traction is a stress along the contact, so it rotates with the contact.
 //
-// What slides keeps to the law of its joint as long as both faces were walls of joints of one material.
-// Beyond, the contact is one that comes about, as between any two faces that were not: which of the two
-// slides is the same to it, and of two walls that never lay on each other neither one's filling and bonds say
-// anything.
+// A contact keeps the law of its joint while both faces were walls of joints of the same material. Otherwise it has the
+// law of new contacts, as any two faces that were not in contact. So the law does not depend on which face is taken as
+// sliding. Filling and bonds of a joint do not apply between two walls that never were in contact.
 //
-// Slip raises a joint that dilates, by adding to the closing: by one amount all along the joint, which is all
-// pairs between the same two straight sides of outlines, as its walls are rigid beside its springs. This
-// amount is such that it takes the work that the slip of each pair would give it by itself: the mean of
-// tan(psi) |slip|, weighted by pressure. It is found at once with the slip, as in joint/coulomb.hpp.
+// Slip raises a joint that dilates: it adds to the lead. The amount is the same along the whole joint, since its walls
+// are rigid beside its springs. The joint is all pairs between the same two straight sides of outlines. The amount does
+// the same work as the dilation of each pair by its own slip: the mean of tan(psi) |slip|, weighted by pressure. It is
+// computed together with the slip, as in joint/coulomb.hpp.
 
 #pragma once
 
@@ -37,38 +34,38 @@ namespace jointcreep::large_displacements
 
 using mechanics::Vector2d;
 
-// Faces run with their rock on the left. Faces that follow each other share a gridpoint.
+// Faces have their rock on the left. Consecutive faces share a gridpoint.
 struct Faces {
     std::vector<std::array<Index, 2>> gridpoint;
     std::vector<double> depth;      // of the zone behind it [m]
-    std::vector<std::size_t> law{}; // of the joint whose wall it was; that of new contacts where of none
+    std::vector<std::size_t> law{}; // of the joint whose wall it was; else that of new contacts
 };
 
-// What two faces that may touch remember.
+// The state of a pair of faces that may touch.
 struct FacePair {
     Index a, b; // faces, a < b
     std::size_t law = 0;
     std::array<double, 2> lead{0, 0}; // closing without a gap, at the first and the second end of a [m]
-    double dilation = 0;              // in the lead [m]
+    double dilation = 0;              // part of the lead [m]
     double tau = 0;                   // along(normal from a to b), on a [Pa]
-    bool is_known = false;            // has touched since the two came near
+    bool is_known = false;            // has touched since the pair was found
     bool is_new = true;               // has not carried a force yet
     bool is_closed = false;           // over some of its length
     bool is_broken = true;            // has no cohesion and no tensile strength (any more)
     std::array<double, 3> memory{};   // of the law, as in joint::State
     bool is_slipping = false;
 
-    // Now, if closed: the ends of the closed part, as fractions of a and of b, the force on a there, and the
+    // At present, if closed: the ends of the closed part, as fractions of a and of b, the force on a there, and the
     // mean normal traction.
     std::array<double, 2> on_a{}, on_b{};
     std::array<Vector2d, 2> force{};
     Vector2d normal{0, 0};                 // from a to b
     double raised = 0;                     // of the dilation, in the last step [m]
-    double opened = 0;                     // in the last step, dilation aside [m]
+    double opened = 0;                     // in the last step, without dilation [m]
     double length = 0, sigma = 0;          // [m], [Pa]
     double stiffest = 0;                   // of its normal springs [Pa/m]
-    std::array<Vector2d, 2> held{};        // of the force, what dashpots add [N/m]
-    double pressed_in = 0, sheared_in = 0; // what the springs hold [J/m]
+    std::array<Vector2d, 2> held{};        // part of the force by dashpots [N/m]
+    double pressed_in = 0, sheared_in = 0; // energy of the springs [J/m]
     double friction = 0, damped = 0;       // in the last step [J/m]
 
     void raise(double by)
@@ -89,10 +86,10 @@ struct FacePair {
 struct FaceShape {
     Vector2d along;                    // unit, from its first end to its second
     double length;                     // [m]
-    std::array<double, 2> sharp{1, 1}; // of its ends: 0 where the outline runs on straight, 1 a corner
+    std::array<double, 2> sharp{1, 1}; // of its ends: 0 where the outline is straight, 1 at a corner
 };
 
-// A step of time, at whose end forces are found.
+// A time step; forces are computed at its end.
 struct Step {
     const std::vector<Vector2d>& place; // of gridpoints, at its end [m]
     const std::vector<Vector2d>& move;  // their displacements in it [m]
@@ -102,7 +99,7 @@ struct Step {
 
 struct Overlap; // of two faces: face_overlap.hpp
 
-// Of pairs [J/m].
+// Energies of pairs [J/m].
 struct PairEnergy {
     double stored = 0;               // now
     double friction = 0, damped = 0; // in the last step
@@ -118,45 +115,45 @@ struct PairEnergy {
 class FaceContacts
 {
 public:
-    // `laws`: those of the pairs; new contacts have the last one. `material`: numbers of what the joints of
-    // the others are made of. Places are counted from `origin` [m].
+    // `laws`: the laws of pairs; the last one is for new contacts. `material`: the joint material numbers of the other
+    // laws. Positions count from `origin` [m].
     explicit FaceContacts(std::vector<joint::Law> laws, std::vector<Index> material = {},
                           const Vector2d& origin = Vector2d::Zero());
 
-    // Takes these faces instead; pairs of before are forgotten but for `known`, in any order. Faces without
-    // laws are walls of no joint.
+    // Replaces the faces. Of the earlier pairs only `known` are kept, in any order. Faces without laws are walls of no
+    // joint.
     void set_faces(Faces faces, std::vector<FacePair> known, const std::vector<Vector2d>& place);
 
-    // Tractions and forces of all pairs after gridpoints have moved by `move` to `place` [m] within `dt` [s]:
-    // springs, and dashpots of `viscosity` times the springs [s]. Throws equilibrium_error where two faces
-    // overlap too much for this to have a meaning.
+    // Tractions and forces of all pairs after gridpoints have moved by `move` to `place` [m] within `dt` [s]: of
+    // springs, and of dashpots of `viscosity` times the springs [s]. Throws equilibrium_error if two faces overlap too
+    // much for a valid force.
     void update(const std::vector<Vector2d>& place, const std::vector<Vector2d>& move, double dt,
                 double viscosity, int threads);
 
     // Adds the forces of the last update to those on gridpoints [N/m].
     void add_forces(std::vector<Vector2d>& force, int threads) const;
 
-    // Of all pairs, at the last update.
+    // Energies of all pairs, at the last update.
     const PairEnergy& energy() const { return energy_; }
 
-    // What set_faces(), with what is known of before, and update() need.
+    // State for checkpoints, beside set_faces() with the known pairs, and update().
     void transfer(const Transfer& to, DynamicsState& kept);
 
     const Faces& faces() const { return faces_; }
     const std::vector<FacePair>& pairs() const { return pairs_; }
     const std::vector<joint::Law>& laws() const { return laws_; }
-    // Of any spring: while nothing closes, and in the last update [Pa/m].
+    // The stiffest spring: of open pairs, and in the last update [Pa/m].
     double stiffest() const { return stiffest_; }
     bool stiffens() const { return stiffens_; }
-    // How often what may touch was sought.
+    // Number of searches for pairs that may touch.
     Index searches() const { return searches_; }
 
 private:
     struct Sum;
-    // What a pair does in a step: no more, overlaps too much for its force to have a meaning, or comes to touch.
+    // Result for a pair in a step: done, overlap too deep for a valid force, or about to touch.
     enum class Touch { settled, too_deep, comes_about };
 
-    // Which faces may touch: contact_detection.cpp.
+    // Search for pairs that may touch: contact_detection.cpp.
     void find_corners(const std::vector<Vector2d>& place);
     void seek(const std::vector<Vector2d>& place, const std::vector<Vector2d>& move);
     std::vector<std::pair<Index, Index>> find_reach(const std::vector<Vector2d>& place);
@@ -186,8 +183,8 @@ private:
     std::vector<joint::Law> laws_;
     std::vector<Index> material_; // of laws; -1 of new contacts
     Vector2d origin_;
-    bool stiffens_ = false;                   // as it closes, by any law
-    bool dilates_ = false;                    // by any law
+    bool stiffens_ = false;                   // whether any law stiffens as it closes
+    bool dilates_ = false;                    // whether any law dilates
     double stiffest_open_ = 0, stiffest_ = 0; // [Pa/m]
     Faces faces_;
     std::vector<FaceShape> shapes_;
@@ -196,18 +193,18 @@ private:
     std::vector<Index> side_;                 // of each face: the lowest one of its straight side
     std::vector<std::vector<Index>> joints_;  // pairs between the same two sides, if any law dilates
     std::vector<Index> active_;               // pairs that may carry a load before the next search
-    std::vector<double> way_to_;              // how far gridpoints go before they can [m]
+    std::vector<double> way_to_;              // displacement of gridpoints before they can [m]
     std::vector<char> closes_;                // pairs that may in this update
-    // Of active pairs the gridpoints, and what is added to each of them [N/m]: by each corner of each pair
-    // its shares of the two forces.
+    // The gridpoints of active pairs, and the forces added to each of them [N/m]: by each corner of each pair, its
+    // shares of the two forces.
     std::vector<Index> touched_, touched_start_;
     std::vector<std::array<Vector2d, 2>> corner_force_;
     std::vector<Index> corner_place_; // of the corners of each active pair, 0 and 1 of a, 2 and 3 of b, in it
-    std::vector<Vector2d> sought_at_; // places when pairs were sought last
-    double farthest_ = 0;             // that a gridpoint has been from there since [m]
-    double raised_ = 0;               // by the joint that has dilated most, since [m]
+    std::vector<Vector2d> sought_at_; // positions at the last search for pairs
+    double farthest_ = 0;             // largest distance of a gridpoint from there since [m]
+    double raised_ = 0;               // largest dilation of a joint since [m]
     std::vector<double> reach_;       // of faces, then [m]
-    double skin_ = 0;                 // faces come within this of each other are pairs [m]
+    double skin_ = 0;                 // faces within this distance are pairs [m]
     bool is_sought_ = false;          // since the last update
     double most_lead_ = 0;            // of closed pairs [m]
     PairEnergy energy_;

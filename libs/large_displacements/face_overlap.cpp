@@ -18,7 +18,7 @@ std::optional<Overlap> overlap_along(const Vector2d& tangent, const std::array<V
 {
     std::optional<Overlap> overlap;
     const std::array<double, 2> along_a{0, (a[1] - a[0]).dot(tangent)},
-        along_b{(b[0] - a[0]).dot(tangent), (b[1] - a[0]).dot(tangent)}; // runs the other way
+        along_b{(b[0] - a[0]).dot(tangent), (b[1] - a[0]).dot(tangent)}; // in the opposite direction
     if (along_a[1] <= 0 || along_b[0] <= along_b[1])
         return overlap;
     const std::array<double, 2> at{std::max(0.0, along_b[1]), std::min(along_a[1], along_b[0])};
@@ -52,9 +52,8 @@ std::optional<Overlap> overlap_along(const Vector2d& tangent, const std::array<V
     const auto between = overlap_along((along_a + along_b).normalized(), a, b);
     if (!between)
         return {};
-    // Which of the two ends that meet at the deeper side lies inside the other face, and whether it is a
-    // corner: an end where the outline runs on straight belongs to a face that something sinks into farther
-    // on.
+    // Two ends meet at the deeper side. Which one is inside the other face, and is it a corner? Where the outline is
+    // straight at an end, a corner sinks into this face farther along.
     const int deep = between->gap[1] < between->gap[0] ? 1 : 0;
     const double is_end_of_a = std::clamp(
         0.5 + between->inset[deep] / (2 * rounding_of_corners * std::min(shape_a.length, shape_b.length)),

@@ -1,4 +1,4 @@
-// Where two faces overlap, and how deep they are in each other. Inside libs/large_displacements only.
+// Overlap of two faces and its depth. Inside libs/large_displacements only.
 
 #pragma once
 
@@ -12,22 +12,23 @@
 namespace jointcreep::large_displacements
 {
 
-// Cosine between a face's normal and the opposite of the other's: at less, they do not look at each other.
+// Least cosine between a face's normal and the opposite of the other's, for two faces that face each other.
 inline constexpr double least_facing = 0.02;
 
-// The overlap of two faces, seen along one line.
+// The overlap of two faces, projected on one line.
 struct Overlap {
     Vector2d tangent;            // along a
     std::array<double, 2> on_a;  // ends of the overlap in order along the line, as fractions of a
     std::array<double, 2> on_b;  // and of b
     std::array<double, 2> gap;   // along the normal from a to b [m]
-    std::array<double, 2> inset; // at each end: how far the end of a is inside b; below 0: that of b in a [m]
+    std::array<double, 2> inset; // at each end: how far the end of a is inside b; below 0: of b inside a [m]
     double length;               // [m]
 
     Vector2d normal() const { return {tangent.y(), -tangent.x()}; }
-    // Everywhere deeper in each other than they overlap: it is other faces of the two corners that touch.
+    // Whether they are everywhere deeper in each other than their overlap is long: then other faces of the two corners
+    // touch.
     bool is_behind() const { return -std::max(gap[0], gap[1]) > length; }
-    double sunk() const { return -std::min(gap[0], gap[1]); } // the deepest that they are in each other [m]
+    double sunk() const { return -std::min(gap[0], gap[1]); } // the largest depth [m]
 };
 
 // The ends of a face: places or displacements of its gridpoints [m].
@@ -43,12 +44,12 @@ Value at(const std::array<Value, 2>& ends, double fraction)
     return ends[0] + fraction * (ends[1] - ends[0]);
 }
 
-// Seen in the plane of the contact; none where the faces do not look at each other or nothing overlaps.
+// The overlap in the plane of the contact; none if the faces do not face each other or do not overlap.
 std::optional<Overlap> overlap_of(const FacePair& pair, const Faces& faces,
                                   const std::vector<FaceShape>& shapes, const std::vector<Vector2d>& place);
 
-// Whether two faces do not look at each other, or do not overlap by more than rounding: then there is no
-// overlap_of() them. Most pairs that are near each other are like that.
+// Whether two faces do not face each other, or overlap by no more than rounding: then overlap_of() has no result. Most
+// pairs of near faces are like that.
 inline bool are_apart(const FacePair& pair, const Faces& faces, const std::vector<FaceShape>& shapes,
                       const std::vector<Vector2d>& place)
 {

@@ -24,8 +24,7 @@ Gridpoints in_order(Index a, Index b)
     return {std::min(a, b), std::max(a, b)};
 }
 
-// A number that is highest for the contact that lies on both ends of a side, along it. `others`: contacts at
-// its other end.
+// A number that is highest for the contact at both ends of a side and along it. `others`: contacts at its other end.
 double fit(std::size_t c, const std::vector<std::size_t>& others, const Mesh& mesh, const Vector2d& normal)
 {
     const bool is_at_both = std::ranges::any_of(
@@ -35,7 +34,7 @@ double fit(std::size_t c, const std::vector<std::size_t>& others, const Mesh& me
 
 } // namespace
 
-// The fixed ground that boundaries rest on through a joint, along all of them, whatever rock there is.
+// The fixed ground below boundaries with a joint, along all of them, whether rock is there or not.
 void Dynamics::find_ground()
 {
     const joint::Contacts& contacts = rock_.contacts;
@@ -60,7 +59,7 @@ void Dynamics::find_ground()
     }
 }
 
-// The laws of the joints that sides of zones and of the ground lie on, whatever rock there is.
+// The laws of the joints along sides of zones and of the ground, whether rock is there or not.
 void Dynamics::find_walls()
 {
     ContactsBetween between;
@@ -101,8 +100,8 @@ void Dynamics::find_walls()
         take(from, to);
 }
 
-// The faces of what rock there is, and of the ground. Where both of two faces were not there before, a joint
-// of the mesh between them makes them a pair; other pairs stay what they are.
+// The faces of the present rock and of the ground. Two new faces on the two sides of a joint of the mesh become a pair.
+// Other pairs do not change.
 void Dynamics::find_faces()
 {
     std::vector<std::array<Index, 2>> of_mesh;
@@ -113,11 +112,11 @@ void Dynamics::find_faces()
     contacts_.set_faces(std::move(faces), std::move(known), place_);
 }
 
-// `of_mesh`: takes their gridpoints before leaders.
+// `of_mesh`: receives their own gridpoints, not those of leaders().
 Faces Dynamics::faces_now(std::vector<std::array<Index, 2>>& of_mesh)
 {
     std::vector<Index> leader = leaders();
-    std::map<std::array<double, 2>, Index> ground_at; // every side has its own gridpoints there
+    std::map<std::array<double, 2>, Index> ground_at; // each side has its own gridpoints there
     for (const auto& side : ground_)
         for (const Index g : side)
             leader[g] =
@@ -152,7 +151,7 @@ Faces Dynamics::faces_now(std::vector<std::array<Index, 2>>& of_mesh)
     return faces;
 }
 
-// The pairs of before whose faces are still there.
+// The earlier pairs whose faces are still present.
 std::vector<FacePair> Dynamics::known_pairs(const std::vector<std::array<Index, 2>>& of_mesh) const
 {
     std::map<std::array<Index, 2>, Index> face_of; // by gridpoints of the mesh
@@ -175,7 +174,7 @@ std::vector<FacePair> Dynamics::known_pairs(const std::vector<std::array<Index, 
     return known;
 }
 
-// Adds those of new faces on the two sides of a joint.
+// Adds the pairs of new faces on the two sides of a joint.
 void Dynamics::add_pairs_on_joints(const std::vector<std::array<Index, 2>>& of_mesh,
                                    std::vector<FacePair>& known) const
 {
@@ -200,7 +199,7 @@ void Dynamics::add_pairs_on_joints(const std::vector<std::array<Index, 2>>& of_m
     }
 }
 
-// With closing and shear as at the joint's contacts at both ends; none without contacts.
+// Takes closing and shear from the joint's contacts at both ends; none without contacts.
 std::optional<FacePair> Dynamics::pair_on_joint(Index f, Index g,
                                                 const std::vector<std::array<Index, 2>>& of_mesh,
                                                 const ContactsBetween& between) const

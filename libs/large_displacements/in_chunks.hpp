@@ -1,5 +1,5 @@
-// Loops and sums over many things by several threads, with the same bits for any number of them: things that
-// follow each other make a chunk, a chunk is one thread's, and the sums of chunks are added in their order.
+// Loops and sums by several threads, with bitwise the same result for any number of threads. Consecutive items make a
+// chunk. One thread does a chunk. The sums of chunks are added in their order.
 
 #pragma once
 
@@ -13,7 +13,7 @@ namespace jointcreep::large_displacements
 
 constexpr Index chunk = 128;
 
-// Does `one(from, to)` for every chunk of n things.
+// Calls `one(from, to)` for each chunk of n items.
 template <class Function>
 void in_chunks(Index n, int threads, const Function& one)
 {
@@ -23,12 +23,12 @@ void in_chunks(Index n, int threads, const Function& one)
 #pragma omp parallel for schedule(static) num_threads(threads)
         for (Index k = 0; k < n_chunks; ++k)
             of(k);
-    } else // a team of one would cost a call of the system
+    } else // with one thread, a team would cost a system call
         for (Index k = 0; k < n_chunks; ++k)
             of(k);
 }
 
-// Does `one(i)` for i from 0 to n.
+// Calls `one(i)` for i from 0 to n - 1.
 template <class Function>
 void for_each(Index n, int threads, const Function& one)
 {
@@ -38,7 +38,7 @@ void for_each(Index n, int threads, const Function& one)
     });
 }
 
-// Does `one(i, sum)` for i from 0 to n, which adds to the sum of its chunk.
+// Calls `one(i, sum)` for i from 0 to n - 1, which adds to the sum of its chunk.
 template <class Sum, class Function>
 Sum sum_in_chunks(Index n, int threads, const Function& one)
 {

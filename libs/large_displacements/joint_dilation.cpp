@@ -13,20 +13,20 @@ namespace jointcreep::large_displacements
 namespace
 {
 
-// A pair that slips or may do so, where its joint rises by x.
+// A pair that slips, or may slip, if its joint rises by x.
 struct Sheared {
-    double share;          // of the work, F tan(psi) [N/m]
-    double trial, carries; // without slip, and the strength, where it is not raised [N/m]
-    double rises, shears;  // the strength by x, the shear by slip [Pa]
+    double share;          // F tan(psi), for the work [N/m]
+    double trial, carries; // shear force without slip, and strength, at x = 0 [N/m]
+    double rises, shears;  // strength over x, shear force over slip [Pa]
 };
 
 // The pairs of one joint.
 struct Dilating {
     std::vector<Sheared> sheared;
     double pressed = 0; // sum of F [N/m]
-    double left = 0;    // to dilate before all asperities are sheared off [m]
+    double left = 0;    // dilation left until asperities are sheared off [m]
 
-    // sum of F tan(psi) slip(x) over sum of F [m], and how fast it falls [-].
+    // sum of F tan(psi) slip(x) over sum of F [m], and the rate at which it falls [-].
     std::array<double, 2> raising(double x) const
     {
         std::array<double, 2> sum{0, 0};
@@ -39,13 +39,13 @@ struct Dilating {
         return sum;
     }
 
-    // The x at which that is x [m].
+    // The x that equals it [m].
     double rise() const
     {
         double low = 0, high = sheared.empty() ? 0.0 : raising(0)[0], x = 0;
         if (high == 0)
             return 0;
-        for (int i = 0; i < 100; ++i) { // Newton's, which ends as soon as it is on the right straight piece
+        for (int i = 0; i < 100; ++i) { // Newton's method; exact once it is on the right straight piece
             const auto [raised, slope] = raising(x);
             (raised > x ? low : high) = x;
             double next = (raised + slope * x) / (1 + slope);
@@ -60,7 +60,7 @@ struct Dilating {
     }
 };
 
-// What the middle of a closed pair moves in a step [m].
+// Relative displacement of the middle of a closed pair in a step [m].
 struct Moved {
     double opened, slid;
 };
@@ -80,12 +80,12 @@ Moved moved_in_middle(const FacePair& pair, const Faces& faces, const std::vecto
         const Vector2d face = ends[1] - ends[0], by = by_ends[1] - by_ends[0];
         return (face.x() * by.y() - face.y() * by.x()) / face.squaredNorm();
     };
-    // What turns together does not slip, as for the shear force, where the normal turns by this.
+    // Common rotation is no slip, as for the shear force; there the normal rotates by this.
     const double turned = -apart.dot(pair.normal) * (turn(a, move_a) + turn(b, move_b)) / 2;
     return {parted.dot(pair.normal), parted.dot(along(pair.normal)) - turned};
 }
 
-// `slopes`: of the pair as it is; `pressed`: the force that presses it [N/m].
+// `slopes`: of the pair now; `pressed`: its normal force [N/m].
 Sheared sheared_by(const Moved& moved, const FacePair& pair, const joint::Law& law,
                    const joint::Slopes& slopes, double pressed)
 {
@@ -109,8 +109,9 @@ bool wears(const joint::Law& law)
     return joint::dilates(law) && joint::remembers(law);
 }
 
-// Of laws whose dilation wears, tan(psi) is the mean of a joint's pairs, as it is raised as a whole. With one for
-// each pair the rise would change with where the pressure is, and a block that rocks would rock more and more.
+// For laws whose dilation wears off, tan(psi) is the mean over the pairs of a joint, as the joint is raised as a whole.
+// With a tan(psi) for each pair, the rise would depend on where the pressure is. A block that rocks would then rock
+// ever more.
 double mean_tan_psi(const std::vector<Index>& joint, const std::vector<FacePair>& pairs,
                     const std::vector<joint::Law>& laws)
 {
@@ -125,9 +126,9 @@ double mean_tan_psi(const std::vector<Index>& joint, const std::vector<FacePair>
 
 } // namespace
 
-// Raises the joints that dilate, for the slip of this step: by x = sum of F tan(psi) slip(x) over sum of F,
-// with the forces F that press the pairs of a joint, and the slip of each that leaves it the shear that it
-// carries once it is raised. The right side falls with x.
+// Raises the joints that dilate, for the slip of this step: by x = sum of F tan(psi) slip(x) over sum of F. F are the
+// normal forces of the pairs of a joint. slip(x) reduces the shear force of a pair to its strength after the rise. The
+// right side falls with x.
 void FaceContacts::dilate(const std::vector<Vector2d>& place, const std::vector<Vector2d>& move)
 {
     for (FacePair& pair : pairs_)

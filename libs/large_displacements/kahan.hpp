@@ -5,7 +5,7 @@
 namespace jointcreep::large_displacements
 {
 
-// What rounding leaves out is `lost`, and comes with the next one.
+// `lost` is the rounding error so far; it is added with the next number.
 template <class Value>
 void add(const Value& one, Value& sum, Value& lost)
 {

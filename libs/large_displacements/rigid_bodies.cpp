@@ -12,7 +12,7 @@
 namespace jointcreep::large_displacements
 {
 
-// The rock that does not deform, by gridpoints that its zones and ties connect.
+// Bodies of rigid rock: gridpoints connected by its zones and by ties.
 void Dynamics::find_bodies()
 {
     const std::vector<double> masses = lumped_masses(rock_);
@@ -27,7 +27,7 @@ void Dynamics::find_bodies()
     for (const auto& [follower, first] : rock_.tied)
         if (is_of_body[follower] || is_of_body[first]) {
             sets.join(follower, first);
-            is_of_body[follower] = 0; // goes with its leader
+            is_of_body[follower] = 0; // moves with its leader
             is_of_body[first] = 1;
         }
 
@@ -56,8 +56,8 @@ void Dynamics::find_bodies()
     find_inertia(masses);
 }
 
-// Of bodies, about their centres. Deformable rock that is bonded to a body is lumped into gridpoints that the
-// two share. `masses`: of gridpoints [kg/m].
+// Mass and inertia of bodies about their centres. Deformable rock bonded to a body is lumped into their common
+// gridpoints. `masses`: of gridpoints [kg/m].
 void Dynamics::find_inertia(const std::vector<double>& masses)
 {
     const std::vector<Index> leader = leaders();
@@ -80,7 +80,7 @@ void Dynamics::find_inertia(const std::vector<double>& masses)
             body.inertia += std::max(0.0, lumped[body.gridpoint[k]]) * body.arm[k].squaredNorm();
 }
 
-// Force and moment about the centre [N/m], [N].
+// Force [N/m] and moment about the centre [N] on a body.
 std::pair<Vector2d, double> Dynamics::load_on(const Body& body) const
 {
     Vector2d force(0, 0);
@@ -95,7 +95,7 @@ std::pair<Vector2d, double> Dynamics::load_on(const Body& body) const
     return {force.cwiseProduct(body.is_free), moment};
 }
 
-// One step; returns the kinetic energy before it [J/m].
+// One time step; returns the kinetic energy before it [J/m].
 double Dynamics::move(Body& body, double keep, double gain)
 {
     if (body.is_held())
@@ -118,7 +118,7 @@ double Dynamics::move(Body& body, double keep, double gain)
     return (body.mass * last.dot(body.velocity) + body.inertia * last_spin * body.spin) / 2;
 }
 
-// What acts on a body in a direction in which it is held goes to its gridpoints that are, in equal parts.
+// In a direction in which a body is fixed, its load goes to its fixed gridpoints, in equal parts.
 void Dynamics::put_back_forces()
 {
     rock_.force = force_;

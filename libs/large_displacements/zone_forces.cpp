@@ -5,7 +5,7 @@
 namespace jointcreep::large_displacements
 {
 
-// Corner forces and energies of all zones, at the present places.
+// Corner forces and energies of all zones, at the present positions.
 void Dynamics::find_zone_forces()
 {
     if (!any_deforms_)
@@ -20,7 +20,7 @@ void Dynamics::find_zone_forces()
     in_zones_.friction += lost_before;
 }
 
-// Refuses rock that yields too far.
+// Throws where the strain of yielding rock is too large.
 void Dynamics::check_strain() const
 {
     if (in_zones_.torn >= 0)

@@ -1,6 +1,6 @@
-// Strain and stress of a zone under large displacements: F = R U, Biot's strain U - 1 and Biot's stress in the
-// frame that turns with the zone. Stresses are {xx, yy, xy} [Pa], strains {xx, yy, 2 xy}; tension and extension
-// positive. Inside libs/rock only.
+// Strain and stress of a zone at large displacements: F = R U, Biot's strain U - 1 and Biot's stress in the frame that
+// rotates with the zone. Stresses are {xx, yy, xy} [Pa], strains {xx, yy, 2 xy}; tension and extension positive.
+// Inside libs/rock only.
 
 #pragma once
 
@@ -33,7 +33,7 @@ inline Matrix2d tensor(const Vector3d& stress)
     return (Matrix2d() << stress[0], stress[2], stress[2], stress[1]).finished();
 }
 
-// The stretch from the shape without stress in which Cauchy's stress is as given. In principal axes Biot's
+// The stretch from the shape without stress at which Cauchy's stress has the given value. In principal axes Biot's
 // stress is Cauchy's times the other stretch.
 inline Matrix2d stretch_for(const Vector3d& stiffness, const Vector3d& stress)
 {
@@ -48,16 +48,16 @@ inline Matrix2d stretch_for(const Vector3d& stiffness, const Vector3d& stress)
     return principal.eigenvectors() * stretch.asDiagonal() * principal.eigenvectors().transpose();
 }
 
-// F = rotation * stretch, by numbers of their own: what goes through matrices goes through memory.
+// F = rotation * stretch, in plain numbers: faster than matrices, which go through memory.
 struct Polar {
     double cos, sin;       // of the rotation
-    double xx, xy, yx, yy; // of the stretch; xy and yx are the same but for rounding
+    double xx, xy, yx, yy; // of the stretch; xy and yx differ by rounding only
 
     Matrix2d rotation() const { return (Matrix2d() << cos, -sin, sin, cos).finished(); }
     Matrix2d stretch() const { return (Matrix2d() << xx, xy, yx, yy).finished(); }
 };
 
-// Of a zone, from the inverse of its edges in the shape without stress.
+// F of a zone, from the inverse of its edges in the shape without stress.
 inline Polar polar_of(const std::array<Index, 3>& g, const std::vector<Vector2d>& place,
                       const Matrix2d& inverse)
 {
@@ -70,9 +70,9 @@ inline Polar polar_of(const std::array<Index, 3>& g, const std::vector<Vector2d>
     return {cos, sin, cos * xx + sin * yx, cos * xy + sin * yy, -sin * xx + cos * yx, -sin * xy + cos * yy};
 }
 
-// The part of R' P, P being the first Piola-Kirchhoff stress, that does no work on the stretch U but keeps
-// Cauchy's stress symmetric: the skew W with W U + U W = U T - T U. None where Biot's stress T has the axes
-// of U, as without plastic strain.
+// The part of R' P (P: first Piola-Kirchhoff stress) that does no work on the stretch U but keeps Cauchy's stress
+// symmetric: the skew W with W U + U W = U T - T U. It is 0 where Biot's stress T has the axes of U, as without plastic
+// strain.
 inline Matrix2d skew_part(const Matrix2d& stretch, const Matrix2d& stress)
 {
     const double w = (stretch * stress - stress * stretch)(1, 0) / stretch.trace();

@@ -83,9 +83,9 @@ Returned returned(const MohrCoulomb& law, const Elasticity& c, const Eigen::Vect
 namespace
 {
 
-// Trial stresses beyond the strength, in principal axes, and what they return to.
+// Trial stresses that exceed the strength, in principal axes, and the stresses they return to.
 struct Return {
-    Eigen::Vector3d trial;      // the larger and the smaller one in the section, and that across [Pa]
+    Eigen::Vector3d trial;      // the larger and the smaller one in the section, and the one across [Pa]
     std::array<int, 3> order{}; // of these, the largest first
     Returned found;             // in that order
     double cos2, sin2;          // of twice the angle of the first
@@ -163,7 +163,7 @@ Eigen::Matrix3d tangent_of_yield(const YieldingZone& zone, const Elasticity& c,
     for (int i = 0; i < 3; ++i)
         for (int j = 0; j < 3; ++j)
             change(place[to.order[i]], place[to.order[j]]) = to.found.tangent(i, j);
-    // The axes turn with the trial stress: its shear keeps the share that the difference of stresses keeps.
+    // The axes rotate with the trial stress. Its shear is scaled as the difference of the principal stresses.
     const Eigen::Vector3d stress = to.in_order_of_trial(to.found.stress);
     const double apart = to.trial[0] - to.trial[1], size = to.trial.cwiseAbs().maxCoeff();
     change(2, 2) = apart > 1e-9 * size ? (stress[0] - stress[1]) / apart : change(0, 0) - change(0, 1);

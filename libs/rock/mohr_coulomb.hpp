@@ -1,15 +1,15 @@
-// Rock that yields: Mohr and Coulomb's strength with a tension cut-off, elastic and perfectly plastic, in the
-// plane strain of zones with the stress across the section beside those in it.
+// Rock that yields: Mohr-Coulomb strength with a tension cut-off, elastic and perfectly plastic, in plane strain. The
+// stress across the section is one of the three principal stresses.
 //
 //     N s1 - s3 <= 2 c sqrt(N)    N = (1 + sin(phi)) / (1 - sin(phi))      s1 >= s2 >= s3, tension positive
 //     s1 <= T                     T at most c cot(phi), where the shear strength ends
 //
-// Plastic strain goes along N_psi s1 - s3 in shear, psi the dilation angle in place of phi, and along s1 in
-// tension. Where edges or corners of the strength meet, it is a sum over those that do (Koiter). From a trial
-// stress, elastic from the last plastic strain, the new stress is found at once (backward Euler): in
-// principal stresses every surface is a plane, and the answer is the one set of active planes whose
-// multipliers are positive while no plane is exceeded. It is exact on faces, edges and corners alike. (De
-// Souza Neto, Peric, Owen: Computational Methods for Plasticity, 2008, ch. 8, look for it case by case.)
+// Plastic flow is along N_psi s1 - s3 in shear, with the dilation angle psi in place of phi, and along s1 in tension.
+// At edges and corners of the yield surface it is the sum over the active planes (Koiter). The new stress is the return
+// of the trial stress, which is elastic from the last plastic strain (backward Euler). In principal stresses each yield
+// surface is a plane. The solution is the one set of active planes with positive multipliers and no plane exceeded. It
+// is exact on faces, edges and corners. (De Souza Neto, Peric, Owen: Computational Methods for Plasticity, 2008, ch. 8,
+// treat the cases one by one.)
 
 #pragma once
 
@@ -26,7 +26,7 @@ struct MohrCoulomb {
     double shear;        // 2 c sqrt(N) [Pa]
     double tension;      // T [Pa]
 
-    // Of cohesion [Pa], friction angle [rad], tensile strength [Pa] and dilation angle [rad].
+    // From cohesion [Pa], friction angle [rad], tensile strength [Pa] and dilation angle [rad].
     static MohrCoulomb of(double cohesion, double friction_angle, double tensile_strength,
                           double dilation_angle)
     {
@@ -36,8 +36,7 @@ struct MohrCoulomb {
         return {n_phi, n(dilation_angle), shear, std::min(tensile_strength, apex)};
     }
 
-    // By how much a largest and a smallest principal stress exceed the strength [Pa]; what is rounding does
-    // not count.
+    // Excess of the largest and smallest principal stress over the strength [Pa]; excess within rounding counts as 0.
     double excess(double s1, double s3) const
     {
         const double most = std::max(n_phi * s1 - s3 - shear, s1 - tension);
@@ -50,11 +49,11 @@ using Elasticity = Eigen::Vector3d;
 
 struct Returned {
     Eigen::Vector3d stress;  // principal [Pa]
-    Eigen::Vector3d plastic; // strain on the way there, in the same directions [-]
+    Eigen::Vector3d plastic; // plastic strain in this step, in the same directions [-]
     Eigen::Matrix3d tangent; // change of the stress over that of the trial stress [-]
 };
 
-// From trial stresses s1 >= s2 >= s3 beyond the strength.
+// Returns trial stresses s1 >= s2 >= s3 that exceed the strength.
 Returned returned(const MohrCoulomb& law, const Elasticity& c, const Eigen::Vector3d& trial);
 
 // A zone of rock that yields.
@@ -63,11 +62,10 @@ struct YieldingZone {
     double initial_zz;                   // across the section, at zero displacement [Pa]
     Eigen::Vector4d plastic{0, 0, 0, 0}; // strain {xx, yy, zz, gamma_xy} since then [-]
     double stress_zz = initial_zz;       // now [Pa]
-    double dissipated = 0;               // work per area that it has not stored [J/m2]
+    double dissipated = 0;               // plastic work per area [J/m2]
 };
 
-// Stress {xx, yy, xy, zz} of its zone by elasticity from the present plastic strain, at a strain {xx, yy,
-// gamma_xy}.
+// Elastic stress {xx, yy, xy, zz} of a zone at a strain {xx, yy, gamma_xy}, with its present plastic strain.
 inline Eigen::Vector4d elastic_stress(const YieldingZone& zone, const Elasticity& c,
                                       const Eigen::Vector3d& initial, const Eigen::Vector3d& strain)
 {
@@ -77,7 +75,7 @@ inline Eigen::Vector4d elastic_stress(const YieldingZone& zone, const Elasticity
             zone.initial_zz + c[0] * zz + c[1] * (xx + yy)};
 }
 
-// Principal stresses of {xx, yy, xy, zz}: the larger and the smaller one in the section, and that across.
+// Principal stresses of {xx, yy, xy, zz}: the larger and the smaller one in the section, and the one across it.
 inline Eigen::Vector3d principal(const Eigen::Vector4d& s)
 {
     const double mean = (s[0] + s[1]) / 2, radius = std::hypot((s[0] - s[1]) / 2, s[2]);
@@ -90,18 +88,18 @@ inline double excess(const MohrCoulomb& law, const Eigen::Vector4d& s)
     return law.excess(std::max(p[0], p[2]), std::min(p[1], p[2]));
 }
 
-// The stress {xx, yy, xy} at a strain; takes plastic strain, the stress across and dissipation into `zone`.
-// `last` is the stress before. Asked twice for the same strain, it changes nothing more.
+// The stress {xx, yy, xy} at a strain; updates plastic strain, the stress across and the dissipation in `zone`.
+// `last` is the stress before. A second call with the same strain changes nothing.
 Eigen::Vector3d yielded(YieldingZone& zone, const Elasticity& c, const Eigen::Vector3d& initial,
                         const Eigen::Vector3d& last, const Eigen::Vector3d& strain);
 
-// Change of the stress {xx, yy, xy} that yielded() finds over that of the strain {xx, yy, gamma_xy} (consistent tangent:
-// Simo and Taylor 1985) [Pa]. Where the stress is elastic, its elasticity. Not symmetric where the dilation angle is not
-// the friction angle.
+// Change of the stress {xx, yy, xy} of yielded() over change of the strain {xx, yy, gamma_xy} (consistent tangent: Simo
+// and Taylor 1985) [Pa]. Where the stress is elastic, it is the elastic stiffness. It is unsymmetric unless the
+// dilation angle equals the friction angle.
 Eigen::Matrix3d tangent_of_yield(const YieldingZone& zone, const Elasticity& c,
                                  const Eigen::Vector3d& initial, const Eigen::Vector3d& strain);
 
-// What its springs hold, per area [J/m2]: only differences mean anything.
+// Elastic energy per area [J/m2]; only differences have a meaning.
 inline double stored(const Elasticity& c, const Eigen::Vector3d& s, double zz)
 {
     const double mean = (s[0] + s[1] + zz) / 3, bulk = (c[0] + 2 * c[1]) / 3;

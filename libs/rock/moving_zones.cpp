@@ -10,14 +10,14 @@ namespace jointcreep::rock
 namespace
 {
 
-// None where it is elastic.
+// Null where the zone is elastic.
 template <class Yielding>
 auto* yield_of(const Zones& zones, Yielding& yielding, Index z)
 {
     return yielding.empty() || zones.yielding_number[z] < 0 ? nullptr : &yielding[zones.yielding_number[z]];
 }
 
-// `acting`: Biot's stress with that of dashpots [Pa]. `force`: on the three corners.
+// `acting`: Biot's stress with the stress of dashpots [Pa]. `force`: on the three corners.
 inline void take_corner_forces(const MovingZone& zone, const Polar& polar, const Vector3d& acting,
                                bool yields, Vector2d* force)
 {
@@ -57,7 +57,7 @@ MovingZones moving_zones_of(const Zones& zones, const std::vector<Vector2d>& pla
         if (yields == nullptr)
             continue;
         YieldingZone yielding = *yields;
-        yielding.plastic.setZero(); // is in the shape without stress
+        yielding.plastic.setZero(); // is part of the shape without stress
         yielding.dissipated = 0;
         yielding.initial_zz = yielding.stress_zz - stiffness[1] * (zone.strain[0] + zone.strain[1]);
         moving.yielding.push_back({yielding, stress_of(stiffness, zone.strain)});

@@ -1,8 +1,8 @@
-// Zones of rock that slides, turns and falls: rock at large displacements.
+// Zones of rock at large displacements and rotations.
 //
-// They are elastic in the frame that turns with the zone, Biot's stress over Biot's strain (rock/finite_strain.hpp), from a
-// shape without stress that has the in-situ stress in the shape they start from. So turning costs nothing, and the forces have
-// a potential. Rock that yields has its plastic strain taken off Biot's strain there.
+// Zones are elastic in the frame that rotates with them: Biot's stress from Biot's strain (rock/finite_strain.hpp).
+// Strain counts from a shape without stress; the start shape has the in-situ stress. So rotation alone changes no
+// stress, and the forces have a potential. In rock that yields, the plastic strain is subtracted from Biot's strain.
 
 #pragma once
 
@@ -29,7 +29,7 @@ struct MovingZone {
 
 // Of rock that yields, in the frame that turns with its zone.
 struct MovingYieldingZone {
-    YieldingZone zone; // strains since the shape without stress; its dissipation is of one step
+    YieldingZone zone; // strains since the shape without stress; dissipation of one step
     Vector3d stress;   // Biot's {xx, yy, xy} now [Pa]
 };
 
@@ -42,7 +42,7 @@ struct MovingZones {
 // Sums over zones [J/m].
 struct ZoneSums {
     double stored = 0;               // now
-    double friction = 0, damped = 0; // in the last step; friction is what yielding takes
+    double friction = 0, damped = 0; // in the last step; friction is the energy lost by yielding
     Index torn = -1;                 // a zone strained by more than `most_strain`
 
     void operator+=(const ZoneSums& other)
@@ -54,18 +54,18 @@ struct ZoneSums {
     }
 };
 
-// With the stress that zones have, in the shape that they have where gridpoints are at `place` [m].
+// Zones with their present stress, in their present shape: gridpoints are at `place` [m].
 MovingZones moving_zones_of(const Zones& zones, const std::vector<Vector2d>& place);
 
-// Stress and corner forces of one zone where gridpoints are at `place` [m]; adds its energies. `viscosity`: of dashpots over
-// springs, by strains in this step [-].
+// Stress and corner forces of one zone with gridpoints at `place` [m]; adds its energies. `viscosity`: stiffness of
+// dashpots over that of springs, for the strain of this step [-].
 void find_force(const Zones& zones, MovingZones& moving, Index z, const std::vector<Vector2d>& place,
                 double viscosity, ZoneSums& sums);
 
-// Cauchy's stress, and plastic strain, of one zone into `zones`.
+// Writes Cauchy's stress and the plastic strain of one zone to `zones`.
 void put_back(const MovingZones& moving, Index z, const std::vector<Vector2d>& place, Zones& zones);
 
-// What moving_zones_of() and find_force() cannot find anew.
+// State for checkpoints: all that moving_zones_of() and find_force() cannot compute again.
 void transfer(const Transfer& to, MovingZones& moving, DynamicsState& kept);
 
 } // namespace jointcreep::rock

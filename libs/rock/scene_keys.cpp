@@ -169,8 +169,7 @@ void check_outlines_of_regions(const Scene& scene, const Source& source)
         check_polygon(source.in_list("region", i), "outline_m", scene.regions[i].outline);
 }
 
-// Both lines are straight between their corners: where the section is highest above the ground, one of
-// them has one.
+// Both lines are straight between their corners. So the largest height above the ground is at a corner of one of them.
 void check_below_ground(const Scene& scene, const Given& given)
 {
     const double tolerance = outline_tolerance(scene.outline);

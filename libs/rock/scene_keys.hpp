@@ -1,5 +1,5 @@
-// Scene keys of rock, of the regions it fills, and of the stress in it before excavation, and what is
-// checked of them alone. Units and ranges are declared with each key.
+// Scene keys of rock, of its regions and of the in-situ stress, and their checks that need no other part of the scene.
+// Units and ranges are declared with each key.
 
 #pragma once
 

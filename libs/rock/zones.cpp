@@ -23,8 +23,8 @@ Vector3d stress_of_yielding(Zones& zones, std::size_t z, const Vector3d& strain)
     return s.head<3>();
 }
 
-// A number of one zone and the same of the next: two zones at a time go through one instruction. Every one of
-// the two is rounded as it would be alone.
+// A number of one zone and the same number of the next zone, for instructions on two numbers at once. Each is rounded
+// as it would be alone.
 using Two = double __attribute__((vector_size(16)));
 
 Two xs_of(const Vector2d& one, const Vector2d& next)
@@ -41,7 +41,7 @@ void pull(Zones& zones, Slots& slots, std::span<const Vector2d> displacements, d
 {
     const auto n = static_cast<Index>(zones.size());
     const auto n_parts = static_cast<Index>(slots.part_start.size()) - 1;
-    // Plain pointers: through the arrays themselves, what is written might always be what is read next.
+    // Plain pointers, so that the compiler need not assume that a write changes the arrays read next.
     const Vector2d* const displacement = displacements.data();
     const Index *const gridpoint = zones.gridpoint.data(), *const slot = slots.of_zone.data();
     const Vector2d* const gradient = zones.gradient.data();
@@ -92,7 +92,7 @@ void pull(Zones& zones, Slots& slots, std::span<const Vector2d> displacements, d
                         yy[k] = now[1];
                         xy[k] = now[2];
                     }
-            if (any_yields || !forces_alone) // the account of what yielding takes wants the last stress
+            if (any_yields || !forces_alone) // the energy of yielding needs the last stress
                 for (int k = 0; k < 2; ++k)
                     if (is_there[k])
                         stress[both[k]] = {xx[k], yy[k], xy[k]};
@@ -129,7 +129,7 @@ void pull(Zones& zones, Slots& slots, std::span<const Vector2d> displacements, d
     }
 }
 
-// A stress point of a zone of this rock, but for its gridpoints.
+// A stress point of a zone of this rock, without its gridpoints.
 void add_point(Zones& zones, const Scene& scene, const Rock& rock, double area, const Vector2d& place,
                bool any_yields)
 {
@@ -145,7 +145,7 @@ void add_point(Zones& zones, const Scene& scene, const Rock& rock, double area, 
     const bool yields = rock.law == RockLaw::mohr_coulomb;
     if (any_yields)
         zones.yielding_number.push_back(yields ? static_cast<Index>(zones.yielding.size()) : -1);
-    // No scene says what acts across the section: the mean is never the largest or the smallest.
+    // Scenes do not give the stress across the section: the mean is never the largest or the smallest.
     if (yields)
         zones.yielding.push_back(
             {.law = MohrCoulomb::of(rock.strength->cohesion, rock.strength->friction_angle,
@@ -173,7 +173,7 @@ Zones zones_of(const Scene& scene, const Network& network, const Mesh& mesh)
             p[i] = mesh.gridpoint[corners[i]];
         const Vector2d d1 = p[1] - p[0], d2 = p[2] - p[0];
         const double twice_area = d1.x() * d2.y() - d1.y() * d2.x();
-        std::array<Vector2d, 3> gradient; // of the share of each corner
+        std::array<Vector2d, 3> gradient; // of each corner's shape function
         for (int i = 0; i < 3; ++i) {
             const Vector2d opposite = p[(i + 2) % 3] - p[(i + 1) % 3];
             gradient[i] = normal_of(opposite) / twice_area;
@@ -186,7 +186,7 @@ Zones zones_of(const Scene& scene, const Network& network, const Mesh& mesh)
             continue;
         }
         for (int point = 0; point < 3; ++point) {
-            std::array<double, 3> share{1. / 6, 1. / 6, 1. / 6}; // of the corners in the stress point
+            std::array<double, 3> share{1. / 6, 1. / 6, 1. / 6}; // corners' shape functions at the point
             share[point] = 2. / 3;
             zones.gridpoint.insert(zones.gridpoint.end(), corners.begin(), corners.end());
             zones.gridpoint.insert(zones.gridpoint.end(), mesh.zone_middle[z].begin(),
@@ -268,7 +268,7 @@ Eigen::Matrix2d stiffness_between(const Zones& zones, std::size_t z, int i, int 
 Eigen::Matrix2d stiffness_between(const Zones& zones, std::size_t z, int i, int j,
                                   const Eigen::Matrix3d& tangent)
 {
-    const auto strain_of = [&](int corner) { // by a displacement of the gridpoint
+    const auto strain_of = [&](int corner) { // for a displacement of the gridpoint
         const Vector2d& p = zones.gradients(z)[corner];
         return (Eigen::Matrix<double, 3, 2>() << p.x(), 0, 0, p.y(), p.y(), p.x()).finished();
     };
@@ -437,7 +437,7 @@ void record_state(const Zones& zones, States& states)
         if (zones.creeps[first]) {
             states.creeping_zone.push_back(static_cast<Index>(zone));
             const Vector3d initial = mean_over(zone, [&](std::size_t z) { return zones.initial_stress[z]; });
-            // Creep takes 2 G times its strain off the stress at zero displacement.
+            // Creep subtracts 2 G times its strain from the stress at zero displacement.
             const Vector3d& start = at_start.empty() ? initial : at_start[zone];
             states.crept_strain.emplace_back((start - initial) / (2 * zones.stiffness[first][2]));
         }

@@ -20,15 +20,15 @@ namespace jointcreep::rock
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-// Zones: triangles, elastic or yielding, plane strain, small strain. A zone of constant strain has three gridpoints and
-// one stress. A quadratic one has six, its corners and then the middles of its sides, and its stress at three points, each
-// of which stands for a third of it (Zienkiewicz and Taylor, The Finite Element Method, volume 1: exact for straight
-// sides). All arrays below but `gridpoint` and `gradient` have a row for each stress point; those of a zone follow each
-// other.
+// Zones: triangles in plane strain and small strain, elastic or yielding. A zone of constant strain has three
+// gridpoints and one stress. A quadratic zone has six gridpoints, its corners and then the middles of its sides, and
+// three stress points; each stress point has a third of the area (Zienkiewicz and Taylor, The Finite Element Method,
+// volume 1: exact for straight sides). All arrays below but `gridpoint` and `gradient` have a row for each stress
+// point. The stress points of a zone follow each other.
 struct Zones {
     int gridpoints_of_zone = 3, points_of_zone = 1;
     std::vector<Index> gridpoint;         // [stress point, gridpoint of its zone]
-    std::vector<Vector2d> gradient;       // [the same] of each gridpoint's shape function [1/m]
+    std::vector<Vector2d> gradient;       // [the same] gradient of each gridpoint's shape function [1/m]
     std::vector<double> area;             // [m2]
     std::vector<double> weight;           // area x density x gravity, downward [N/m]
     std::vector<double> mass;             // [kg/m]
@@ -50,47 +50,47 @@ struct Zones {
     std::size_t zone_of(std::size_t z) const { return z / points_of_zone; } // in the mesh
     std::size_t first_point_of(std::size_t zone) const { return zone * points_of_zone; }
 
-    // Of rock that yields; empty where none does.
-    std::vector<Index> yielding_number; // into yielding, of every stress point; -1 elastic
+    // For rock that yields; empty where none yields.
+    std::vector<Index> yielding_number; // index into `yielding` for each stress point; -1 elastic
     std::vector<YieldingZone> yielding;
-    bool holds_yield = false; // all rock is elastic for now, from the plastic strain it has
+    bool holds_yield = false; // no yielding for now: plastic strain stays as it is
 
-    std::vector<char> creeps; // whether the rock of a stress point does
+    std::vector<char> creeps; // whether the rock of a stress point creeps
 };
 
-// All zones of a mesh, under the scene's in-situ stress, at zero displacement.
+// All zones of a mesh under the scene's in-situ stress, at zero displacement.
 Zones zones_of(const Scene& scene, const Network& network, const Mesh& mesh);
 
-// Where zones add their forces, in an order that is the same for any number of threads: zones that follow each other make
-// a part, and add their forces into slots, one for each gridpoint of the part.
+// Sums of the forces of zones in an order that does not depend on the number of threads. Consecutive zones make a part.
+// A part adds its forces into slots, one for each of its gridpoints.
 struct Slots {
     std::vector<Index> part_start;  // [parts + 1] the slots of each part
     std::vector<Index> of_zone;     // [stress point, gridpoint of its zone]
     std::vector<Vector2d> force;    // [N/m]
-    std::vector<double> magnitudes; // sums of the magnitudes of what zones add [N/m]
+    std::vector<double> magnitudes; // sums of the magnitudes of the zones' forces [N/m]
 };
 
-// The slots of some zones; takes the gridpoint of each slot into `gridpoint`.
+// The slots of some zones; writes the gridpoint of each slot to `gridpoint`.
 Slots slots_of(const Zones& zones, std::size_t n_gridpoints, std::vector<Index>& gridpoint);
 
-// Stresses and forces at the displacements of all gridpoints [m]. By a team of threads that is at work already: each calls
-// it, in an OpenMP parallel region, and forces are there after a barrier. `damping` is the rate of stiffness damping over
-// the step [-]. Forces alone leave out the stresses of elastic zones and the magnitudes.
+// Stresses and forces at the displacements of all gridpoints [m]. Call it from every thread of an OpenMP parallel
+// region; the forces are complete after a barrier. `damping` is the rate of stiffness damping over the step [-]. With
+// forces alone, stresses of elastic zones and magnitudes are left out.
 void find_forces_in_team(Zones& zones, Slots& slots, std::span<const Vector2d> displacement, double damping,
                          bool forces_alone);
 
 // Stiffness of a zone between its gridpoints i and j, at a stress point, per area [Pa/m2].
 Eigen::Matrix2d stiffness_between(const Zones& zones, std::size_t z, int i, int j);
 
-// The same for any change of stress {xx, yy, xy} over strain {xx, yy, gamma_xy} [Pa].
+// The same for any matrix of stress {xx, yy, xy} over strain {xx, yy, gamma_xy} [Pa].
 Eigen::Matrix2d stiffness_between(const Zones& zones, std::size_t z, int i, int j,
                                   const Eigen::Matrix3d& tangent);
 
 // Strain {xx, yy, gamma_xy} at a stress point at the displacements of all gridpoints [-].
 Vector3d strain_at(const Zones& zones, std::size_t z, std::span<const Vector2d> displacement);
 
-// Change of the stress at a stress point over that of its strain, at the displacements of all gridpoints, if it goes
-// straight there from `start`, as yielding zones were [Pa].
+// Change of the stress at a stress point over change of its strain, at the displacements of all gridpoints [Pa]. The
+// strain path is straight from `start`, the yielding zones at the start.
 Eigen::Matrix3d tangent_at(const Zones& zones, std::size_t z, std::span<const Vector2d> displacement,
                            const std::vector<YieldingZone>& start);
 
@@ -102,30 +102,30 @@ void add_row_sums(const Zones& zones, std::vector<Vector2d>& sums);
 // matrix (Hinton, Rock and Zienkiewicz 1976).
 void add_masses(const Zones& zones, std::vector<double>& mass);
 
-// Adds the weight of a stress point, `share` times, to the loads of its gridpoints [N/m]: a third to each; of a quadratic
-// zone to the middles of the sides only, as its shape functions have it.
+// Adds `share` times the weight of a stress point to the loads of its gridpoints [N/m]: a third to each. For a
+// quadratic zone only to the middles of the sides, by its shape functions.
 void add_weight(const Zones& zones, std::size_t z, double share, std::vector<Vector2d>& load);
 
-// Energy that present zones have stored [J/m]; only differences mean anything. What yielding zones have lost since this was
-// forgotten [J/m].
+// Energy stored in present zones [J/m]; only differences have a meaning. Energy lost by yielding since
+// forget_dissipated() [J/m].
 double stored_energy(const Zones& zones);
 double dissipated(const Zones& zones);
 void forget_dissipated(Zones& zones);
 
-// The largest plastic shear strain at a stress point that is there, in the section [-].
+// The largest plastic shear strain in the section at a present stress point [-].
 double largest_plastic_strain(const Zones& zones);
 
-// The stress point that is farthest beyond its strength; -1 if none is.
+// The stress point most beyond its strength; -1 if none is beyond.
 Index weakest(const Zones& zones);
 
 // Makes the present stresses those at zero displacement.
 void start_from_here(Zones& zones);
 
-// Appends the present stresses and strains to the states of a result: of a quadratic zone means over its stress points,
-// and the stresses there beside.
+// Appends the present stresses and strains to the states of a result. For a quadratic zone these are means over its
+// stress points; the stresses at the points are appended, too.
 void record_state(const Zones& zones, States& states);
 
-// What differs from new zones of the same section when a stage begins.
+// State at the start of a stage that new zones of the same section do not have.
 void transfer(const Transfer& to, Zones& zones, Checkpoint& kept);
 
 } // namespace jointcreep::rock

@@ -1,16 +1,14 @@
-// Sensitivities of an analysis: what displacements, tractions, slip and creep change by, to first order, when
-// a parameter does. Found along with the analysis by direct differentiation: each equilibrium r(u, p) = 0
-// gives
-//     K du/dp = -dr/dp ,     K the tangent stiffness, from the factor that found the equilibrium,
-// and the states that contacts and creep go on with are differentiated by the formulas that made them.
+// Sensitivities of an analysis: derivatives of displacements, tractions, slip and creep by a parameter. They are
+// computed along with the analysis by direct differentiation. Each equilibrium r(u, p) = 0 gives
+//     K du/dp = -dr/dp ,     K the tangent stiffness, from the factor that found the equilibrium.
+// The states that contacts and creep continue with are differentiated by the formulas that made them.
 //
-// What contacts, zones and creep change by is theirs: joint/contact_changes.hpp, rock/zone_changes.hpp,
-// creep/creep_changes.hpp. At the border between two branches of a joint law there are two derivatives, and this is one of
-// them. Where a creep step ends
-// because a contact closes, a parameter moves that moment, too. Steps chosen by their error are taken as long
-// as they are. Where loads change during a step that is cut, what they change by until then is left out.
+// Derivatives of contacts, zones and creep: joint/contact_changes.hpp, rock/zone_changes.hpp, creep/creep_changes.hpp.
+// At the border between two branches of a joint law there are two derivatives; this computes one of them. Where a creep
+// step ends because a contact closes, the derivative of that moment is included. Left out: changes of the lengths of
+// steps chosen by their error, and changes of loads in the cut part of a step.
 //
-// Parameters are factors, and sensitivities those to their logarithms: du/dp at p = 1.
+// Parameters are factors. Sensitivities are by their logarithms: du/dp at p = 1.
 
 #pragma once
 
@@ -27,7 +25,7 @@ namespace jointcreep::sensitivity
 
 using Eigen::Vector2d;
 
-// Factors on what all joints have, in normal and shear direction alike.
+// Factors on properties of all joints, in normal and shear direction alike.
 enum class Parameter {
     kelvin_stiffness,  // E
     kelvin_viscosity,  // eta, of Kelvin units and Maxwell dashpots
@@ -35,34 +33,34 @@ enum class Parameter {
     horizontal_stress, // in situ: sigma_xx and its gradient
 };
 
-// The joints and the in-situ stress times a factor.
+// The scene's joints and in-situ stress times a factor.
 void scale(EquivalentJoints& joints, InSituStress& stress, Parameter parameter, double factor);
 
 class Sensitivity
 {
 public:
-    // Of an assembly before its in-situ equilibrium.
+    // Start from an assembly before its in-situ equilibrium.
     Sensitivity(std::vector<Parameter> parameters, const Scene& scene, const Mesh& mesh,
                 const mechanics::Assembly& assembly);
 
-    // After an equilibrium in which `held` is the share of the last stage's forces that still act; `time` [s]
-    // is for messages. Throws equilibrium_error where there is none nearby for other parameters: rock that
-    // only slip holds.
+    // After an equilibrium; `held` is the share of the last stage's forces that still act, `time` [s] is for messages.
+    // Throws equilibrium_error where other parameters have no equilibrium nearby: rock that is fixed by slipping
+    // contacts only.
     void settle(const mechanics::Assembly& assembly, implicit::Solver& engine, double time, double held = 0);
 
     // Before mechanics::start_from_here.
     void start_from_here(const mechanics::Assembly& assembly);
-    // After that, with what creeps.
+    // After it, with what creeps.
     void start_creep(const creep::Creep& creep);
 
     // Before a step, with the assembly's own stiffnesses.
     void start_step(const mechanics::Assembly& assembly);
-    // The step will be shorter: by a share, or to where a contact closes, after the equilibrium at the end of
-    // `duration` [s].
+    // The step is shortened: by a share, or to the moment at which a contact closes, after the equilibrium at the end
+    // of `duration` [s].
     void shorten(double share);
     void cut(const creep::Closing::Cut& cut, const creep::Creep& creep, double duration,
              const mechanics::Assembly& assembly, implicit::Solver& engine, double time);
-    // It stands, up to where it was to end if it `is_whole`.
+    // The step is accepted; `is_whole`: to the end that it was planned to have.
     void finish_step(const creep::Closing& closing, double duration, bool is_whole,
                      const mechanics::Assembly& assembly);
     // After a sudden change of loads.
@@ -72,12 +70,12 @@ public:
     void creep_step(const creep::Creep& creep, double duration, const mechanics::Assembly& assembly,
                     implicit::Solver& engine, double time);
 
-    // Before and after a stage's rock is taken away.
+    // Before and after a stage's rock is excavated.
     void before_excavation(const mechanics::Assembly& assembly);
     void after_excavation(const mechanics::Assembly& assembly);
 
     std::size_t size() const { return parameters_.size(); }
-    // Of every gridpoint, per unit of the parameter's logarithm [m].
+    // Derivatives for each gridpoint, per unit of the parameter's logarithm [m].
     const std::vector<Vector2d>& displacement(std::size_t parameter) const
     {
         return changes_[parameter].displacement;
@@ -91,14 +89,14 @@ private:
         joint::ContactChanges contacts;
         rock::ZoneChanges zones;
         creep::CreepChanges creep;
-        // Of creep::Closing, and times.
+        // For creep::Closing, and times.
         std::vector<double> opening_before, opening, rate; // contacts
         double now = 0, duration = 0;                      // [s]
     };
 
     static double opening(const mechanics::Assembly& assembly, const Change& change, std::size_t c);
     static void find_openings(const mechanics::Assembly& assembly, Change& change);
-    // Forces on gridpoints: now, and if all stayed where they are [N/m].
+    // Forces on gridpoints: now, and at fixed displacements [N/m].
     static std::vector<Vector2d> forces(const mechanics::Assembly& assembly, const Change& change);
     std::vector<Vector2d> forces_at_fixed_gridpoints(const mechanics::Assembly& assembly,
                                                      const Change& change) const;
