@@ -13,7 +13,6 @@
 #include "zoning/cost.hpp"
 
 #include <cmath>
-#include <iostream>
 #include <optional>
 #include <string>
 
@@ -93,7 +92,7 @@ void fit_section(const Arguments& arguments)
     const Scene scene = scene::parse_scene_of_file(file.provenance.scene, input, file.network);
     if (const std::string cost = zoning::check_cost(scene, file.network.blocks, input + ": /scene");
         !cost.empty())
-        std::cerr << arguments.program() << ": warning: " << cost << '\n';
+        print_warning(arguments.program(), cost);
     const Measurements measurements = read_measurements(measured, scene, settings.factors.size());
 
     // 2. The factors that fit the measurements.

@@ -7,7 +7,6 @@
 #include "model/version.hpp"
 
 #include <filesystem>
-#include <iostream>
 
 namespace jointcreep::demsolve
 {
@@ -31,7 +30,7 @@ Files::Files(const Arguments& arguments, const std::string& program, const store
 void Files::warn(const std::string& text)
 {
     const std::string& program = provenance_.program.back();
-    std::cerr << program << ": warning: " << text << '\n';
+    print_warning(program, text);
     provenance_.warnings.add(program, text);
 }
 

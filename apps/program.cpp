@@ -446,6 +446,11 @@ void Summary::add(std::string label, std::int32_t value, const std::string& unit
     add(std::move(label), std::to_string(value), unit);
 }
 
+void print_warning(const std::string& program, const std::string& text)
+{
+    std::cerr << program << ": warning: " << text << '\n';
+}
+
 void Summary::print(const Arguments& arguments) const
 {
     std::size_t width = 0;
@@ -457,7 +462,7 @@ void Summary::print(const Arguments& arguments) const
         std::cout.flush(); // before what comes on stderr
     }
     for (const std::string& text : warnings_)
-        std::cerr << arguments.program() << ": warning: " << text << '\n';
+        print_warning(arguments.program(), text);
 }
 
 } // namespace jointcreep

@@ -149,6 +149,9 @@ private:
     std::chrono::steady_clock::time_point next_{};
 };
 
+// Says a warning on stderr: "demsolve: warning: ...".
+void print_warning(const std::string& program, const std::string& text);
+
 // The summary at the end of a run: lines "label   value unit", their values aligned; and warnings: what a person should
 // look at, although the run came to its end.
 class Summary

@@ -35,7 +35,7 @@ bool Engines::settles_nearby(const std::vector<Vector2d>& guess)
         return find(guess);
     const mechanics::State start = state_of(rock);
     rock.zones.holds_yield = true;
-    bool found = find(guess);
+    const bool found = find(guess);
     rock.zones.holds_yield = false;
     if (found && rock::weakest(rock.zones) < 0)
         return true;
@@ -46,7 +46,7 @@ bool Engines::settles_nearby(const std::vector<Vector2d>& guess)
     return find(found ? elastic : guess);
 }
 
-void Engines::settle_by_relaxation(double time, const std::string& reason)
+void Engines::settle_by_relaxation(double time)
 {
     if (section_.engine == EngineChoice::implicit) {
         const mechanics::no_equilibrium error("none nearby: " + implicit_.reason() +
@@ -54,7 +54,7 @@ void Engines::settle_by_relaxation(double time, const std::string& reason)
         fail(section_, failure_of(error, section_.mesh(), section_.rock), time);
     }
     if (section_.engine == EngineChoice::automatic)
-        ++section_.findings.given_up[reason.empty() ? implicit_.reason() : reason];
+        ++section_.findings.given_up[implicit_.reason()];
     ++section_.settled.effort.searches;
     try {
         section_.settled.convergence = relax(time);

@@ -22,9 +22,8 @@ public:
     // `guess` is how far gridpoints may be expected to move [m], or empty.
     bool settles_nearby(const std::vector<Vector2d>& guess);
 
-    // Equilibrium by dynamic relaxation, unless only the implicit engine is asked for. `reason`: why the implicit
-    // engine was not used; empty: that engine's own message.
-    void settle_by_relaxation(double time, const std::string& reason = {});
+    // Equilibrium by dynamic relaxation, after the implicit engine has found none, unless only that is asked for.
+    void settle_by_relaxation(double time);
 
     // Throws equilibrium_error that names rock without support, which falls without end.
     void check_supported();

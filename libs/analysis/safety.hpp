@@ -53,8 +53,8 @@ private:
 };
 
 struct Bracket {
-    std::optional<double> stands;    // largest factor with every equilibrium [-]; none if no run has
-    std::optional<double> not_above; // smallest factor without; none if all runs have
+    std::optional<double> stands;    // largest factor of a run that did not fail [-]; none if all failed
+    std::optional<double> not_above; // smallest factor of a run that failed; none if none failed
     Safety trials;                   // in the order they were made
 };
 

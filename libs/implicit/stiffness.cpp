@@ -189,6 +189,20 @@ void Stiffness::add_zones(Matrix& matrix, const rock::Zones& zones, const Block&
     }
 }
 
+// Adds the contacts' stiffness: block(contact) of the force on side b by its displacement [Pa].
+template <class Block>
+void Stiffness::add_contacts(Matrix& matrix, const Block& block) const
+{
+    double* const values = matrix.valuePtr();
+    for (const Index c : present_contact_) {
+        const Eigen::Matrix2d of_b = block(c);
+        for (int i = 0; i < 4; ++i)
+            for (int j = 0; j < 4; ++j)
+                if (const int entry = contact_entry_[c][4 * i + j]; entry >= 0)
+                    values[entry] += (i / 2 == j / 2 ? 1 : -1) * of_b(i % 2, j % 2);
+    }
+}
+
 void Stiffness::fill_zones(const Assembly& assembly)
 {
     const rock::Zones& zones = assembly.zones;
@@ -210,18 +224,13 @@ VectorXd Stiffness::solve_yielding(const Assembly& assembly, const std::vector<T
         const Eigen::Matrix3d tangent = tangent_at(zones, z, assembly.displacement, start);
         return [&zones, z, tangent](int i, int j) { return stiffness_between(zones, z, i, j, tangent); };
     });
-    for (const Index c : present_contact_) {
+    add_contacts(matrix, [&](Index c) -> Eigen::Matrix2d {
         const Vector2d &normal = contacts.normal[c], tangent = along(normal);
         const Tangent& of = tangents[c];
-        const Eigen::Matrix2d block =
-            contacts.length[c] *
-            (of.normal * normal * normal.transpose() + of.shear * tangent * tangent.transpose() +
-             of.friction * tangent * normal.transpose() + of.dilation * normal * tangent.transpose());
-        for (int i = 0; i < 4; ++i)
-            for (int j = 0; j < 4; ++j)
-                if (const int entry = contact_entry_[c][4 * i + j]; entry >= 0)
-                    matrix.valuePtr()[entry] += (i / 2 == j / 2 ? 1 : -1) * block(i % 2, j % 2);
-    }
+        return contacts.length[c] *
+               (of.normal * normal * normal.transpose() + of.shear * tangent * tangent.transpose() +
+                of.friction * tangent * normal.transpose() + of.dilation * normal * tangent.transpose());
+    });
     check_room_for_blas();
     if (!has_pattern_of_yielding_)
         yielding_factor_.analyzePattern(matrix);
@@ -273,9 +282,10 @@ Stiffness::Change Stiffness::change(const Assembly& assembly, const std::vector<
         change.contacts.push_back({c,
                                    {to.normal - from.normal, to.shear - from.shear,
                                     to.friction - from.friction, to.dilation - from.dilation}});
-        for (const int unknown : unknowns_of(unknown_, assembly.contacts.gridpoint[c]))
-            if (unknown >= 0)
-                change.unknowns.push_back(unknown);
+        for (const Index g : assembly.contacts.gridpoint[c])
+            for (const int unknown : unknown_[g])
+                if (unknown >= 0)
+                    change.unknowns.push_back(unknown);
     }
     std::sort(change.unknowns.begin(), change.unknowns.end());
     change.unknowns.erase(std::unique(change.unknowns.begin(), change.unknowns.end()), change.unknowns.end());
@@ -304,18 +314,12 @@ void Stiffness::add_contact(const Assembly& assembly, Index contact, const Tange
 bool Stiffness::factorise(const Assembly& assembly, const std::vector<Tangent>& tangents)
 {
     const joint::Contacts& contacts = assembly.contacts;
-    double* const values = factorised_.valuePtr();
-    std::copy(zones_.valuePtr(), zones_.valuePtr() + zones_.nonZeros(), values);
-    for (const Index c : present_contact_) {
+    std::copy(zones_.valuePtr(), zones_.valuePtr() + zones_.nonZeros(), factorised_.valuePtr());
+    add_contacts(factorised_, [&](Index c) -> Eigen::Matrix2d {
         const Vector2d &normal = contacts.normal[c], tangent = along(normal);
-        const Eigen::Matrix2d block =
-            contacts.length[c] * (tangents[c].normal * normal * normal.transpose() +
-                                  tangents[c].shear * tangent * tangent.transpose());
-        for (int i = 0; i < 4; ++i)
-            for (int j = 0; j < 4; ++j)
-                if (const int entry = contact_entry_[c][4 * i + j]; entry >= 0)
-                    values[entry] += (i / 2 == j / 2 ? 1 : -1) * block(i % 2, j % 2);
-    }
+        return contacts.length[c] * (tangents[c].normal * normal * normal.transpose() +
+                                     tangents[c].shear * tangent * tangent.transpose());
+    });
     // Threads inside of the factorisation cost more than they gain at these sizes.
     const int levels = omp_get_max_active_levels();
     omp_set_max_active_levels(0);

@@ -92,6 +92,8 @@ private:
     void fill_zones(const Assembly& assembly);
     template <class Block>
     void add_zones(Matrix& matrix, const rock::Zones& zones, const Block& block) const;
+    template <class Block>
+    void add_contacts(Matrix& matrix, const Block& block) const;
 
     Eigen::Index n_ = 0;
     std::vector<std::array<int, 2>> unknown_; // of each gridpoint's {x, y}; -1 fixed

@@ -36,7 +36,7 @@ struct MohrCoulomb {
         return {n_phi, n(dilation_angle), shear, std::min(tensile_strength, apex)};
     }
 
-    // Excess of the largest and smallest principal stress over the strength [Pa]; excess within rounding counts as 0.
+    // How far the largest and smallest principal stress are beyond the strength [Pa]. Rounding counts as 0.
     double excess(double s1, double s3) const
     {
         const double most = std::max(n_phi * s1 - s3 - shear, s1 - tension);

@@ -416,10 +416,6 @@ void record_state(const Zones& zones, States& states)
     const std::size_t n = zones.zone_of(zones.size());
     states.yielding_zone.clear();
     states.creeping_zone.clear();
-    // At zero displacement, as in the first state.
-    const std::vector<Vector3d> at_start(states.stress.begin(),
-                                         states.stress.begin() +
-                                             static_cast<std::ptrdiff_t>(std::min(n, states.stress.size())));
     for (std::size_t zone = 0; zone < n; ++zone) {
         const std::size_t first = zones.first_point_of(zone);
         states.stress.push_back(mean_over(zone, [&](std::size_t z) { return zones.stress[z]; }));
@@ -437,9 +433,9 @@ void record_state(const Zones& zones, States& states)
         if (zones.creeps[first]) {
             states.creeping_zone.push_back(static_cast<Index>(zone));
             const Vector3d initial = mean_over(zone, [&](std::size_t z) { return zones.initial_stress[z]; });
-            // Creep subtracts 2 G times its strain from the stress at zero displacement.
-            const Vector3d& start = at_start.empty() ? initial : at_start[zone];
-            states.crept_strain.emplace_back((start - initial) / (2 * zones.stiffness[first][2]));
+            // Creep subtracts 2 G times its strain from the stress at zero displacement, which the first state has.
+            states.crept_strain.emplace_back((states.stress[zone] - initial) /
+                                             (2 * zones.stiffness[first][2]));
         }
     }
     if (zones.points_of_zone > 1)
