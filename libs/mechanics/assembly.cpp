@@ -255,37 +255,17 @@ void start_from_here(Assembly& assembly)
     find_forces(assembly);
 }
 
-namespace
-{
-
-// Each member of a State with its place in the assembly.
-template <class OfState, class OfAssembly, class Copy>
-void for_each_member(OfState& state, OfAssembly& assembly, const Copy& copy)
-{
-    copy(state.displacement, assembly.displacement);
-    copy(state.force, assembly.force);
-    copy(state.offset, assembly.contacts.offset);
-    copy(state.traction, assembly.contacts.traction);
-    copy(state.relative_displacement, assembly.contacts.relative_displacement);
-    copy(state.joint, assembly.contacts.state);
-    copy(state.status, assembly.contacts.status);
-    copy(state.stress, assembly.zones.stress);
-    copy(state.yielding, assembly.zones.yielding);
-}
-static_assert(sizeof(State) == 9 * sizeof(std::vector<double>), "for_each_member() has all of them");
-
-} // namespace
-
 State state_of(const Assembly& assembly)
 {
-    State state;
-    for_each_member(state, assembly, [](auto& kept, const auto& live) { kept = live; });
-    return state;
+    return {assembly.displacement, assembly.force, state_of(assembly.zones), state_of(assembly.contacts)};
 }
 
 void go_back(Assembly& assembly, const State& state)
 {
-    for_each_member(state, assembly, [](const auto& kept, auto& live) { live = kept; });
+    assembly.displacement = state.displacement;
+    assembly.force = state.force;
+    go_back(assembly.zones, state.zones);
+    go_back(assembly.contacts, state.contacts);
 }
 
 // What is not passed on is as in a new assembly, or found anew before it is used.

@@ -124,11 +124,9 @@ void start_from_here(Assembly& assembly);
 
 // What equilibria and creep change, for going back to it.
 struct State {
-    std::vector<Vector2d> displacement, force, offset, traction, relative_displacement;
-    std::vector<joint::State> joint;
-    std::vector<ContactStatus> status;
-    std::vector<Vector3d> stress;
-    std::vector<rock::YieldingZone> yielding;
+    std::vector<Vector2d> displacement, force;
+    rock::ZonesState zones;
+    joint::ContactsState contacts;
 };
 State state_of(const Assembly& assembly);
 void go_back(Assembly& assembly, const State& state);

@@ -155,6 +155,22 @@ void add_point(Zones& zones, const Scene& scene, const Rock& rock, double area, 
 
 } // namespace
 
+ZonesState state_of(const Zones& zones)
+{
+    return {zones.stress, zones.yielding};
+}
+
+void go_back(Zones& zones, const ZonesState& state)
+{
+    zones.stress = state.stress;
+    zones.yielding = state.yielding;
+}
+
+bool yields(const Zones& zones)
+{
+    return !zones.holds_yield && !zones.yielding.empty();
+}
+
 Zones zones_of(const Scene& scene, const Network& network, const Mesh& mesh)
 {
     Zones zones;
