@@ -143,7 +143,9 @@ Index chunks_of(const Assembly& assembly)
 
 double stored_energy(const Assembly& assembly)
 {
-    return rock::stored_energy(assembly.zones) + joint::stored_energy(assembly.contacts);
+    double energy = 0;
+    for_each_force(assembly, [&](const auto& one) { energy += stored_energy(one); });
+    return energy;
 }
 
 Balance balance_of(const Assembly& assembly)
@@ -249,8 +251,7 @@ double work_of_loads(const Assembly& assembly, const std::vector<Vector2d>& star
 void start_from_here(Assembly& assembly)
 {
     find_forces(assembly);
-    joint::start_from_here(assembly.contacts);
-    rock::start_from_here(assembly.zones);
+    for_each_force(assembly, [](auto& one) { start_from_here(one); });
     assembly.displacement.assign(assembly.displacement.size(), Vector2d::Zero());
     find_forces(assembly);
 }
@@ -276,15 +277,18 @@ void transfer(const Transfer& to, Assembly& assembly, Checkpoint& kept)
     to.values(assembly.load, kept.load);
     if (to.restores())
         part_ties(assembly, kept.stage - 1);
-    rock::transfer(to, assembly.zones, kept);
-    joint::transfer(to, assembly.contacts, kept);
+    for_each_force(assembly, [&](auto& one) { transfer(to, one, kept); });
+}
+
+void record_state(const Assembly& assembly, States& states)
+{
+    for_each_force(assembly, [&](const auto& one) { record_state(one, states); });
 }
 
 std::vector<double> stiffness_row_sums(const Assembly& assembly)
 {
     std::vector<Vector2d> sums(assembly.position.size(), Vector2d::Zero());
-    rock::add_row_sums(assembly.zones, sums);
-    joint::add_row_sums(assembly.contacts, sums);
+    for_each_force(assembly, [&](const auto& one) { add_row_sums(one, sums); });
     for (const auto& [follower, leader] : assembly.tied)
         sums[leader] += sums[follower];
     std::vector<double> larger;
