@@ -174,7 +174,7 @@ void Analysis::unload(const std::vector<Vector2d>& released)
         for (std::size_t g = 0; g < load.size(); ++g)
             section_.rock.load[g] = load[g] + still_applied * released[g];
         if (!engines_.settles_nearby({})) {
-            if (increment > 1) {
+            if (increment > 1 && !engines_.implicit_engine().collapse()) {
                 increment /= 2;
                 continue;
             }

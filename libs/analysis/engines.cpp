@@ -48,6 +48,8 @@ bool Engines::settles_nearby(const std::vector<Vector2d>& guess)
 
 void Engines::settle_by_relaxation(double time)
 {
+    if (section_.engine != EngineChoice::relaxation && implicit_.collapse())
+        fail(section_, failure_of(*implicit_.collapse(), section_.mesh(), section_.rock), time);
     if (section_.engine == EngineChoice::implicit) {
         const mechanics::no_equilibrium error("none nearby: " + implicit_.reason() +
                                               " (--engine auto would continue by dynamic relaxation)");

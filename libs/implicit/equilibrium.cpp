@@ -18,7 +18,8 @@ namespace
 constexpr int most_corrections = 80, most_corrections_to_mend = 20;
 constexpr int patience = 15; // iterations with an old factor: a new one costs 10 to 20 of them
 constexpr int most_leaps = 5;
-constexpr int most_trials = 50, most_halvings = 6; // along a correction
+constexpr int patience_with_flow = 4; // corrections without gain of rock that yields
+constexpr int most_trials = 50, most_trials_with_flow = 4, most_halvings = 6; // along a correction
 constexpr double least_kept_share = 1e-2;
 constexpr double soft = 1e-6; // share of their springs that open and slipping contacts keep in the factor
 
@@ -46,7 +47,7 @@ VectorXd Solver::correction(const Assembly& assembly, const State& start, const 
     if (yields(assembly.zones)) {
         ++factorisations_;
         ++solves_;
-        return stiffness_.solve_yielding(assembly, acting, start.zones.yielding, force);
+        return stiffness_.solve_yielding(assembly, acting, start.zones.yielding, dashpots_, force);
     }
     const auto product = [&](const VectorXd& x) { return stiffness_.times(assembly, acting, x); };
     const auto precondition = [&](const VectorXd& x) {
@@ -104,7 +105,8 @@ Solver::Advance Solver::go_along(Assembly& assembly, const State& start, const V
     double low = 0, work_low = work, high = share, work_high = force_.dot(correction);
     if (good_at_once || (best_merit < 1.01 * merit && work_high > work / 2))
         return {best_merit, 0}; // also a block that touches nothing yet
-    for (int i = 0; i < most_trials && work_low > 0 && work_high < 0; ++i) {
+    const int trials = yields(assembly.zones) ? most_trials_with_flow : most_trials;
+    for (int i = 0; i < trials && work_low > 0 && work_high < 0; ++i) {
         // Bisection for the kink where it touches, regula falsi for the balance there, in turn.
         share = i % 2 == 0 ? (low + high) / 2 : low + (high - low) * work_low / (work_low - work_high);
         const bool good = is_good(share);
@@ -155,7 +157,8 @@ bool Solver::converge(Assembly& assembly, const State& start, const Equilibrium&
         const bool is_balanced = balance.ratio() <= settings.tolerance;
         if (is_balanced && is_at_rest(assembly, start, balance.mean, settings.tolerance, convergence))
             return true;
-        if (corrections_ - first == most_corrections || since_least == 15) {
+        if (corrections_ - first == most_corrections ||
+            since_least == (yields(assembly.zones) ? patience_with_flow : 15)) {
             reason_ = unsupported_ < 0
                           ? "forces do not come into balance"
                           : "contacts do not carry the weight of, and the loads on, the rock at " +
@@ -304,7 +307,8 @@ std::optional<Convergence> Solver::equilibrate(Assembly& assembly, const Equilib
             return give_up();
         }
     }
-    if (!converge(assembly, start, settings, most_corrections, convergence))
+    if (!converge(assembly, start, settings, most_corrections, convergence) &&
+        !(yields(assembly.zones) && flow_to_rest(assembly, start, settings, convergence)))
         return give_up();
     if (is_balanced && corrections_ == 0)
         return convergence;
@@ -344,6 +348,7 @@ void Solver::prepare(const Assembly& assembly)
         scales.emplace_back(sum, sum);
     scale_ = stiffness_.gathered(assembly, scales);
     contacts_.begin(assembly.contacts);
+    collapse_.reset();
     corrections_ = factorisations_ = solves_ = 0;
 }
 

@@ -7,7 +7,8 @@
 // its end (backward Euler; joint/active_contacts.hpp).
 //
 // Rock that yields goes straight from its state at the start to that at the end, too. Then K has the consistent tangents of
-// zones, is not symmetric where flow is not associated, and is factorised for each correction.
+// zones, is not symmetric where flow is not associated, and is factorised for each correction. Where Newton's method
+// finds no equilibrium, rock flows against dashpots: to an equilibrium, or on without bound (implicit/flow.cpp).
 //
 // The energy balance is that of backward Euler, too: a contact slips under the traction it ends with. What is
 // neither stored nor dissipated so counts as damped.
@@ -17,6 +18,7 @@
 #include "implicit/krylov.hpp"
 #include "implicit/stiffness.hpp"
 #include "joint/active_contacts.hpp"
+#include "mechanics/failure.hpp"
 
 #include <optional>
 #include <string>
@@ -37,6 +39,8 @@ public:
     std::optional<mechanics::Convergence> equilibrate(Assembly& assembly, const Equilibrium& settings,
                                                       const std::vector<Vector2d>& guess = {});
     const std::string& reason() const { return reason_; }
+    // Set if it has found none because rock that yields flows on without bound.
+    const std::optional<mechanics::no_equilibrium>& collapse() const { return collapse_; }
 
     // After equilibrate(), at the same stiffnesses: the x with K x = right, with K from the given tangents
     // of contacts. Uses the last factor, which is renewed where it is too far off. Empty if K has no inverse.
@@ -65,6 +69,8 @@ private:
                   mechanics::Convergence& convergence);
     bool is_at_rest(const Assembly& assembly, const State& start, double mean_force, double tolerance,
                     mechanics::Convergence& convergence);
+    bool flow_to_rest(Assembly& assembly, const State& start, const Equilibrium& settings,
+                      mechanics::Convergence& convergence);
     double force_change(const Assembly& assembly, const State& start, const VectorXd& displacement) const;
 
     Stiffness stiffness_;
@@ -78,6 +84,8 @@ private:
     Index unsupported_ = -1; // gridpoint of rock without support though forces balance; -1: none
     double too_far_ = 0;     // largest displacement in a search for equilibrium [m]
     VectorXd force_;         // unbalanced, at the last evaluation
+    VectorXd dashpots_;      // over the time of a step, added to the stiffness [Pa]; or empty
+    std::optional<mechanics::no_equilibrium> collapse_;
     Index corrections_ = 0, factorisations_ = 0, solves_ = 0;
     std::string reason_;
 };

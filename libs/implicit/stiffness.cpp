@@ -212,7 +212,8 @@ void Stiffness::fill_zones(const Assembly& assembly)
 }
 
 VectorXd Stiffness::solve_yielding(const Assembly& assembly, const std::vector<Tangent>& tangents,
-                                   const std::vector<rock::YieldingZone>& start, const VectorXd& right)
+                                   const std::vector<rock::YieldingZone>& start, const VectorXd& dashpots,
+                                   const VectorXd& right)
 {
     const rock::Zones& zones = assembly.zones;
     const joint::Contacts& contacts = assembly.contacts;
@@ -223,6 +224,8 @@ VectorXd Stiffness::solve_yielding(const Assembly& assembly, const std::vector<T
         return [&zones, z, tangent](int i, int j) { return stiffness_between(zones, z, i, j, tangent); };
     });
     add_contacts(matrix, [&](Index c) -> Eigen::Matrix2d { return stiffness_of(contacts, c, tangents[c]); });
+    for (Eigen::Index i = 0; i < dashpots.size(); ++i)
+        matrix.coeffRef(i, i) += dashpots[i];
     check_room_for_blas();
     if (!has_pattern_of_yielding_)
         yielding_factor_.analyzePattern(matrix);

@@ -47,9 +47,10 @@ public:
     void add_to(std::vector<Vector2d>& over_gridpoints, const VectorXd& unknowns, double factor) const;
 
     // The solution of K x = right where rock yields: K with these tangents of contacts and, from `start`, of zones, not
-    // symmetric, and factorised for this one. Empty if K has no inverse.
+    // symmetric, and factorised for this one; with `dashpots` on its diagonal [Pa], or none if empty. Empty if K has no inverse.
     VectorXd solve_yielding(const Assembly& assembly, const std::vector<Tangent>& tangents,
-                            const std::vector<rock::YieldingZone>& start, const VectorXd& right);
+                            const std::vector<rock::YieldingZone>& start, const VectorXd& dashpots,
+                            const VectorXd& right);
 
     // K x with the tangents given, one for each contact.
     VectorXd times(const Assembly& assembly, const std::vector<Tangent>& tangents, const VectorXd& x) const;
