@@ -184,94 +184,149 @@ Prediction predict(const Scene& scene, const History& history,
     return found;
 }
 
+namespace
+{
+
+std::vector<double> factors_at(const VectorXd& logarithms)
+{
+    std::vector<double> factors;
+    for (const double logarithm : logarithms)
+        factors.push_back(std::exp(logarithm));
+    return factors;
+}
+
+// Runs of the section by factors, and what they gave.
+class Runs
+{
+public:
+    struct Run {
+        VectorXd logarithms;                                   // of the factors
+        std::vector<double> displacement, interpolation_error; // of each measurement [m]
+    };
+
+    Runs(const Scene& scene, const Network& network, const EquivalentJoints& joints,
+         const std::vector<scene::Measurement>& measurements, const Settings& settings,
+         const RunObserver& observe)
+        : scene_(scene), network_(network), joints_(joints), measurements_(measurements), settings_(settings),
+          observe_(observe), whitening_(scene, measurements, settings.since_first_reading)
+    {
+        if (whitening_.readings().empty())
+            throw input_error("all readings are first readings, from which measurements count");
+        for (const Factor& factor : settings.factors)
+            recording_.parameters.push_back(factor.parameter);
+    }
+
+    std::size_t readings() const { return whitening_.readings().size(); }
+    const Run& first() const { return done_.front(); }
+    const Run& at(const VectorXd& logarithms) const
+    {
+        return *std::find_if(done_.begin(), done_.end(),
+                             [&](const Run& run) { return run.logarithms == logarithms; });
+    }
+    const std::vector<WithoutAnswer>& without_answer() const { return without_answer_; }
+
+    // None where the section has no equilibrium; the first run must have one.
+    std::optional<Evaluation> evaluate(const VectorXd& logarithms)
+    {
+        const bool is_first = count_ == 0;
+        const std::vector<double> factors = factors_at(logarithms);
+        if (observe_)
+            observe_(count_, factors);
+        ++count_;
+        try {
+            Prediction found = predicted(factors);
+            Evaluation at = compared(found);
+            // Before the first stage nothing moves, whatever the factors.
+            if (is_first && at.jacobian.norm() == 0)
+                throw input_error("no factor changes any of the readings; wanted readings from the first "
+                                  "stage on that depend on the factors");
+            whitening_.apply(at);
+            done_.push_back(
+                {logarithms, std::move(found.displacement), std::move(found.interpolation_error)});
+            return at;
+        } catch (const equilibrium_error& error) {
+            if (is_first)
+                throw;
+            without_answer_.push_back({factors, error.what()});
+        } catch (const analysis::unstable_step& error) {
+            if (is_first)
+                throw;
+            without_answer_.push_back({factors, error.what()});
+        }
+        return {};
+    }
+
+private:
+    Prediction predicted(const std::vector<double>& factors) const
+    {
+        Scene changed = scene_;
+        EquivalentJoints stiffer = joints_;
+        for (std::size_t i = 0; i < factors.size(); ++i)
+            sensitivity::scale(stiffer, changed.in_situ_stress, settings_.factors[i].parameter, factors[i]);
+        analysis::Analysis analysis(changed, network_, stiffer, settings_.threads, recording_,
+                                    [](double, const std::string&) {});
+        analysis.run();
+        return predict(scene_, analysis.result().history, analysis.sensitivities(), measurements_,
+                       settings_.since_first_reading);
+    }
+
+    // Residuals over the deviations of the readings, and their derivatives.
+    Evaluation compared(const Prediction& found) const
+    {
+        const auto rows = static_cast<Eigen::Index>(readings());
+        Evaluation at{VectorXd(rows),
+                      estimation::MatrixXd(rows, static_cast<Eigen::Index>(settings_.factors.size()))};
+        for (Eigen::Index row = 0; row < rows; ++row) {
+            const std::size_t m = whitening_.readings()[static_cast<std::size_t>(row)];
+            const double deviation = deviation_of(measurements_[m]);
+            at.residual[row] = (found.displacement[m] - measurements_[m].displacement) / deviation;
+            at.jacobian.row(row) = found.sensitivity.row(static_cast<Eigen::Index>(m)) / deviation;
+        }
+        return at;
+    }
+
+    const Scene& scene_;
+    const Network& network_;
+    const EquivalentJoints& joints_;
+    const std::vector<scene::Measurement>& measurements_;
+    const Settings& settings_;
+    const RunObserver& observe_;
+    Whitening whitening_;
+    analysis::Recording recording_;
+    int count_ = 0;
+    std::vector<Run> done_;
+    std::vector<WithoutAnswer> without_answer_;
+};
+
+} // namespace
+
 Found fit(const Scene& scene, const Network& network, const EquivalentJoints& joints,
           const std::vector<scene::Measurement>& measurements, const Settings& settings,
           const RunObserver& observe)
 {
     const auto n = static_cast<Eigen::Index>(settings.factors.size());
     VectorXd start(n), low(n), high(n);
-    analysis::Recording recording;
     for (Eigen::Index i = 0; i < n; ++i) {
         const Factor& factor = settings.factors[static_cast<std::size_t>(i)];
-        recording.parameters.push_back(factor.parameter);
         start[i] = std::log(factor.start);
         low[i] = std::log(factor.low);
         high[i] = std::log(factor.high);
     }
-    const bool knows_deviations = !measurements.empty() && measurements.front().deviation.has_value();
-    const auto factors_at = [&](const VectorXd& logarithms) {
-        std::vector<double> factors;
-        for (const double logarithm : logarithms)
-            factors.push_back(std::exp(logarithm));
-        return factors;
-    };
-
-    int runs = 0;
-    struct Run {
-        VectorXd logarithms;
-        std::vector<double> displacement, interpolation_error;
-    };
-    std::vector<Run> done;
-    std::vector<WithoutAnswer> without_answer;
-    const Whitening whitening(scene, measurements, settings.since_first_reading);
-    const std::vector<std::size_t>& readings = whitening.readings();
-    if (readings.empty())
-        throw input_error("all readings are first readings, from which measurements count");
-    const estimation::Model model = [&](const VectorXd& logarithms) -> std::optional<Evaluation> {
-        const bool is_first = runs == 0;
-        const std::vector<double> factors = factors_at(logarithms);
-        if (observe)
-            observe(runs, factors);
-        ++runs;
-        Scene changed = scene;
-        EquivalentJoints stiffer = joints;
-        for (std::size_t i = 0; i < factors.size(); ++i)
-            sensitivity::scale(stiffer, changed.in_situ_stress, settings.factors[i].parameter, factors[i]);
-        try {
-            analysis::Analysis analysis(changed, network, stiffer, settings.threads, recording,
-                                        [](double, const std::string&) {});
-            analysis.run();
-            Prediction found = predict(scene, analysis.result().history, analysis.sensitivities(),
-                                       measurements, settings.since_first_reading);
-            const auto rows = static_cast<Eigen::Index>(readings.size());
-            Evaluation at{VectorXd(rows), estimation::MatrixXd(rows, n)};
-            for (Eigen::Index row = 0; row < rows; ++row) {
-                const std::size_t m = readings[static_cast<std::size_t>(row)];
-                const double deviation = deviation_of(measurements[m]);
-                at.residual[row] = (found.displacement[m] - measurements[m].displacement) / deviation;
-                at.jacobian.row(row) = found.sensitivity.row(static_cast<Eigen::Index>(m)) / deviation;
-            }
-            // Before the first stage nothing moves, whatever the factors.
-            if (is_first && at.jacobian.norm() == 0)
-                throw input_error("no factor changes any of the readings; wanted readings from the first "
-                                  "stage on that depend on the factors");
-            whitening.apply(at);
-            done.push_back({logarithms, std::move(found.displacement), std::move(found.interpolation_error)});
-            return at;
-        } catch (const equilibrium_error& error) {
-            if (is_first)
-                throw;
-            without_answer.push_back({factors, error.what()});
-        } catch (const analysis::unstable_step& error) {
-            if (is_first)
-                throw;
-            without_answer.push_back({factors, error.what()});
-        }
-        return {};
-    };
+    Runs runs(scene, network, joints, measurements, settings, observe);
 
     Found found;
     // A step that would win a hundredth of a standard error is not worth a run.
-    found.minimum = estimation::minimise(model, start, low, high, settings.most_runs,
-                                         1e-4 / static_cast<double>(readings.size()));
-    found.without_answer = std::move(without_answer);
+    found.minimum =
+        estimation::minimise([&runs](const VectorXd& logarithms) { return runs.evaluate(logarithms); }, start,
+                             low, high, settings.most_runs, 1e-4 / static_cast<double>(runs.readings()));
+    found.without_answer = runs.without_answer();
     found.factors = factors_at(found.minimum.parameters);
+    const bool knows_deviations = !measurements.empty() && measurements.front().deviation.has_value();
     found.confidence = estimation::confidence_of(found.minimum, knows_deviations);
-    const Run& best = *std::find_if(
-        done.begin(), done.end(), [&](const Run& run) { return run.logarithms == found.minimum.parameters; });
+    const Runs::Run& best = runs.at(found.minimum.parameters);
     found.interpolation_error = best.interpolation_error;
     for (std::size_t m = 0; m < measurements.size(); ++m)
-        found.computed.push_back({done.front().displacement[m], best.displacement[m]});
+        found.computed.push_back({runs.first().displacement[m], best.displacement[m]});
     return found;
 }
 

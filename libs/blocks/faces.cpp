@@ -300,61 +300,93 @@ std::vector<char> slits(const Graph& graph)
     return is_slit;
 }
 
-Faces trace_faces(const Graph& graph)
+namespace
+{
+
+// The rings of a graph: the walks along half-edges with a face on their left.
+struct Traced {
+    Rings rings;
+    std::vector<Index> ring_of; // of each half-edge
+};
+
+Traced traced_rings(const Graph& graph)
 {
     HalfEdges half(graph);
-    Rings rings;
-    rings.vertex.reserve(half.count());
-    std::vector<Index> ring_of(half.count(), -1);
+    Traced traced;
+    traced.rings.vertex.reserve(half.count());
+    traced.ring_of.assign(half.count(), -1);
     for (Index first = 0; first < half.count(); ++first) {
-        if (ring_of[first] >= 0)
+        if (traced.ring_of[first] >= 0)
             continue;
-        for (Index h = first; ring_of[h] < 0; h = half.next(h)) {
-            ring_of[h] = rings.count();
-            rings.vertex.push_back(half.start(h));
+        for (Index h = first; traced.ring_of[h] < 0; h = half.next(h)) {
+            traced.ring_of[h] = traced.rings.count();
+            traced.rings.vertex.push_back(half.start(h));
         }
-        rings.start.push_back(static_cast<Index>(rings.vertex.size()));
+        traced.rings.start.push_back(static_cast<Index>(traced.rings.vertex.size()));
     }
+    return traced;
+}
 
-    std::vector<double> ring_areas(rings.count());
-    std::vector<Index> face_of_ring(rings.count(), -1), rims;
-    std::vector<char> is_outer(rings.count(), 1);
+// The face that each ring bounds: as its outer ring, or as the rim of what lies in a hole of it.
+struct RingFaces {
     Index n_faces = 0;
+    std::vector<double> area;              // of each ring, negative of a rim [m2]
+    std::vector<char> is_outer;            // not a rim
+    std::vector<Index> face;               // of each ring; -1 of the rims of all
+    std::vector<std::vector<Index>> holes; // rims in each face; empty if there are none
+};
+
+// A rim is a hole in the face around it, or the rim of all.
+void place_rims(RingFaces& found, const std::vector<Index>& rims, const Graph& graph, const Traced& traced)
+{
+    found.holes.resize(found.n_faces);
+    const LeftwardRays rays(graph);
+    std::vector<std::pair<Index, Index>> by_tip; // vertex farthest left, rim
+    for (const Index r : rims)
+        by_tip.emplace_back(*std::ranges::min_element(traced.rings[r],
+                                                      [&](Index a, Index b) {
+                                                          return is_before(graph.vertex[a], graph.vertex[b]);
+                                                      }),
+                            r);
+    std::ranges::sort(by_tip, [&](const auto& a, const auto& b) {
+        return is_before(graph.vertex[a.first], graph.vertex[b.first]);
+    });
+    // From the left: the rim that a ray meets has been placed before.
+    for (const auto& [tip, r] : by_tip)
+        if (const Index met = rays.first_met(tip); met >= 0)
+            found.face[r] = found.face[traced.ring_of[met]];
+    for (const Index r : rims)
+        if (found.face[r] >= 0)
+            found.holes[found.face[r]].push_back(r);
+}
+
+RingFaces faces_of_rings(const Graph& graph, const Traced& traced)
+{
+    const Rings& rings = traced.rings;
+    RingFaces found;
+    found.area.resize(rings.count());
+    found.is_outer.assign(rings.count(), 1);
+    found.face.assign(rings.count(), -1);
+    std::vector<Index> rims;
     for (Index r = 0; r < rings.count(); ++r) {
-        ring_areas[r] = ring_area(graph.vertex, rings[r]);
+        found.area[r] = ring_area(graph.vertex, rings[r]);
         if (is_rim(graph.vertex, rings[r])) {
             rims.push_back(r);
-            is_outer[r] = 0;
+            found.is_outer[r] = 0;
         } else {
-            face_of_ring[r] = n_faces++;
+            found.face[r] = found.n_faces++;
         }
     }
+    if (rims.size() > 1)
+        place_rims(found, rims, graph, traced);
+    return found;
+}
 
-    // A rim is a hole in the face around it, or the rim of all.
-    std::vector<std::vector<Index>> holes; // of faces; empty if there are none
-    if (rims.size() > 1) {
-        holes.resize(n_faces);
-        const LeftwardRays rays(graph);
-        std::vector<std::pair<Index, Index>> by_tip; // vertex farthest left, rim
-        for (const Index r : rims)
-            by_tip.emplace_back(
-                *std::ranges::min_element(
-                    rings[r], [&](Index a, Index b) { return is_before(graph.vertex[a], graph.vertex[b]); }),
-                r);
-        std::ranges::sort(by_tip, [&](const auto& a, const auto& b) {
-            return is_before(graph.vertex[a.first], graph.vertex[b.first]);
-        });
-        // From the left: the rim that a ray meets has been placed before.
-        for (const auto& [tip, r] : by_tip)
-            if (const Index met = rays.first_met(tip); met >= 0)
-                face_of_ring[r] = face_of_ring[ring_of[met]];
-        for (const Index r : rims)
-            if (face_of_ring[r] >= 0)
-                holes[face_of_ring[r]].push_back(r);
-    }
-
+// Faces with their areas and rings, the outer one first; a ring visits no vertex twice.
+Faces faces_with_rings(const Graph& graph, const Rings& rings, const RingFaces& found)
+{
     Faces faces;
-    faces.area.reserve(n_faces);
+    faces.area.reserve(found.n_faces);
     faces.first_ring = {0};
     faces.ring_start = {0};
     faces.ring_vertex.reserve(rings.vertex.size());
@@ -365,18 +397,16 @@ Faces trace_faces(const Graph& graph)
         faces.ring_start.push_back(static_cast<Index>(faces.ring_vertex.size()));
     };
     for (Index r = 0; r < rings.count(); ++r) {
-        if (!is_outer[r])
+        if (!found.is_outer[r])
             continue;
-        const Index face = face_of_ring[r];
-        double area = ring_areas[r];
+        double area = found.area[r];
         simple.clear();
         split_at_pinches(rings[r], visited_at, path, simple);
-        if (!holes.empty())
-            for (const Index hole : holes[face]) {
+        if (!found.holes.empty())
+            for (const Index hole : found.holes[found.face[r]]) {
                 split_at_pinches(rings[hole], visited_at, path, simple);
-                area += ring_areas[hole];
+                area += found.area[hole];
             }
-        // The outer ring first.
         Index outer = 0;
         for (Index i = 1; i < simple.count() && ring_area(graph.vertex, simple[outer]) <= 0; ++i)
             outer = i;
@@ -387,10 +417,19 @@ Faces trace_faces(const Graph& graph)
         faces.area.push_back(area);
         faces.first_ring.push_back(static_cast<Index>(faces.ring_start.size()) - 1);
     }
+    return faces;
+}
 
+} // namespace
+
+Faces trace_faces(const Graph& graph)
+{
+    const Traced traced = traced_rings(graph);
+    const RingFaces found = faces_of_rings(graph, traced);
+    Faces faces = faces_with_rings(graph, traced.rings, found);
     faces.sides.resize(graph.edge.size());
     for (std::size_t e = 0; e < graph.edge.size(); ++e)
-        faces.sides[e] = {face_of_ring[ring_of[2 * e]], face_of_ring[ring_of[2 * e + 1]]};
+        faces.sides[e] = {found.face[traced.ring_of[2 * e]], found.face[traced.ring_of[2 * e + 1]]};
     return faces;
 }
 

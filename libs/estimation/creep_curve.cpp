@@ -168,79 +168,87 @@ private:
     VectorXd best_;
 };
 
-} // namespace
+// What a curve is fitted over: {d_e unless that is known, d_c, ln tau}. Displacements are in a unit of their own size, so
+// that all unknowns are numbers of about 1.
+struct Unknowns {
+    Eigen::Index elastic, creep, log_tau; // places of d_e, or -1 if it is known, d_c and ln tau
+    double size;                          // unit of displacements [m]
+};
 
-CurveFit fit_curve(const CreepCurve& curve)
+Unknowns unknowns_of(const CreepCurve& curve)
 {
-    check(curve);
-    const auto n = static_cast<Eigen::Index>(curve.time.size());
-    const Eigen::Index elastic = curve.elastic_part ? -1 : 0, creep = elastic + 1, log_tau = elastic + 2;
-    const double shortest = shortest_share * shortest_interval(curve),
-                 longest = longest_share * curve.time.back();
-    // Displacements in a unit of their own size, so that all parameters are numbers of about 1.
     double size = 0;
     for (const double d : curve.displacement)
         size = std::max(size, std::abs(d));
     if (size == 0)
         throw input_error("all displacements are 0");
+    const Eigen::Index elastic = curve.elastic_part ? -1 : 0;
+    return {elastic, elastic + 1, elastic + 2, size};
+}
 
+// d_e [m].
+double elastic_part(const CreepCurve& curve, const Unknowns& u, const VectorXd& p)
+{
+    return u.elastic < 0 ? *curve.elastic_part : p[u.elastic] * u.size;
+}
+
+Evaluation evaluate(const CreepCurve& curve, const Unknowns& u, const VectorXd& p)
+{
+    const auto n = static_cast<Eigen::Index>(curve.time.size());
+    Evaluation at{VectorXd(n), MatrixXd(n, p.size())};
+    for (Eigen::Index i = 0; i < n; ++i) {
+        const auto k = static_cast<std::size_t>(i);
+        const double x = curve.time[k] / std::exp(p[u.log_tau]), crept = -std::expm1(-x),
+                     weight = 1 / deviation_of(curve, k);
+        at.residual[i] =
+            weight * (elastic_part(curve, u, p) + p[u.creep] * u.size * crept - curve.displacement[k]);
+        if (u.elastic >= 0)
+            at.jacobian(i, u.elastic) = weight * u.size;
+        at.jacobian(i, u.creep) = weight * u.size * crept;
+        at.jacobian(i, u.log_tau) = -weight * u.size * p[u.creep] * x * std::exp(-x);
+    }
+    return at;
+}
+
+Minimum best_fit(const CreepCurve& curve, const Unknowns& u)
+{
+    const double shortest = shortest_share * shortest_interval(curve),
+                 longest = longest_share * curve.time.back();
     double sum = 0;
-    const double start_tau = best_on_grid(shortest, longest, [&](double tau) {
-        linear_parts(curve, tau, sum);
+    const double tau = best_on_grid(shortest, longest, [&](double at) {
+        linear_parts(curve, at, sum);
         return sum;
     });
-    VectorXd start(log_tau + 1);
-    start.head(log_tau) = linear_parts(curve, start_tau, sum) / size;
-    start[log_tau] = std::log(start_tau);
-
-    const auto part = [&](const VectorXd& p) {
-        return elastic < 0 ? *curve.elastic_part : p[elastic] * size;
-    };
-    const Model model = [&](const VectorXd& p) -> std::optional<Evaluation> {
-        Evaluation at{VectorXd(n), MatrixXd(n, p.size())};
-        for (Eigen::Index i = 0; i < n; ++i) {
-            const auto k = static_cast<std::size_t>(i);
-            const double x = curve.time[k] / std::exp(p[log_tau]), crept = -std::expm1(-x),
-                         weight = 1 / deviation_of(curve, k);
-            at.residual[i] = weight * (part(p) + p[creep] * size * crept - curve.displacement[k]);
-            if (elastic >= 0)
-                at.jacobian(i, elastic) = weight * size;
-            at.jacobian(i, creep) = weight * size * crept;
-            at.jacobian(i, log_tau) = -weight * size * p[creep] * x * std::exp(-x);
-        }
-        return at;
-    };
+    VectorXd start(u.log_tau + 1);
+    start.head(u.log_tau) = linear_parts(curve, tau, sum) / u.size;
+    start[u.log_tau] = std::log(tau);
     VectorXd low = VectorXd::Constant(start.size(), -1e6), high = -low;
-    low[log_tau] = std::log(shortest);
-    high[log_tau] = std::log(longest);
-    const Minimum minimum = minimise(model, start, low, high, 200, 1e-12);
+    low[u.log_tau] = std::log(shortest);
+    high[u.log_tau] = std::log(longest);
+    return minimise([&](const VectorXd& p) { return evaluate(curve, u, p); }, start, low, high, 200, 1e-12);
+}
 
-    CurveFit fit;
+// Intervals of d_e, d_c, tau, E and eta, and the correlation of the last two.
+void add_intervals(CurveFit& fit, const CreepCurve& curve, const Unknowns& u, const Minimum& minimum)
+{
     const VectorXd& p = minimum.parameters;
-    fit.elastic_part = part(p);
-    fit.creep_part = p[creep] * size;
-    fit.retardation_time = std::exp(p[log_tau]);
-    if (!(fit.creep_part / fit.elastic_part > 0) || !std::isfinite(fit.creep_part / fit.elastic_part))
-        throw input_error("the elastic part is " + shown(fit.elastic_part) + " m and the creep part " +
-                          shown(fit.creep_part) + same_way);
-    fit.confidence = confidence_of(minimum, !curve.deviation.empty());
     const Confidence& confidence = fit.confidence;
     const double quantile = confidence.quantile;
     const auto linear = [&](Eigen::Index i, double value) -> Interval {
         if (i < 0)
             return {value, value};
-        const double half = quantile * confidence.standard_error(i) * size;
+        const double half = quantile * confidence.standard_error(i) * u.size;
         return {value - half, value + half};
     };
-    fit.elastic_interval = linear(elastic, fit.elastic_part);
-    fit.creep_interval = linear(creep, fit.creep_part);
+    fit.elastic_interval = linear(u.elastic, fit.elastic_part);
+    fit.creep_interval = linear(u.creep, fit.creep_part);
 
     // Logarithms of E / K = d_e / d_c and eta / K = tau E / K.
     VectorXd of_stiffness = VectorXd::Zero(p.size()), of_time = of_stiffness;
-    if (elastic >= 0)
-        of_stiffness[elastic] = 1 / p[elastic];
-    of_stiffness[creep] = -1 / p[creep];
-    of_time[log_tau] = 1;
+    if (u.elastic >= 0)
+        of_stiffness[u.elastic] = 1 / p[u.elastic];
+    of_stiffness[u.creep] = -1 / p[u.creep];
+    of_time[u.log_tau] = 1;
     const VectorXd of_viscosity = of_stiffness + of_time;
     const double stiffness_error = confidence.standard_error(of_stiffness),
                  viscosity_error = confidence.standard_error(of_viscosity);
@@ -254,20 +262,80 @@ CurveFit fit_curve(const CreepCurve& curve)
                      profiles.interval(Profiles::viscosity, limit, quantile * viscosity_error)};
     const double product = stiffness_error * viscosity_error;
     fit.correlation = product > 0 ? of_stiffness.dot(confidence.covariance * of_viscosity) / product : 0;
+}
 
+// Computed displacements, and whether what is left of the readings is noise.
+void add_residuals(CurveFit& fit, const CreepCurve& curve, const Minimum& minimum)
+{
     std::vector<double> residuals;
-    for (Eigen::Index i = 0; i < n; ++i) {
-        const auto k = static_cast<std::size_t>(i);
-        residuals.push_back(minimum.there.residual[i]);
-        fit.computed.push_back(curve.displacement[k] + minimum.there.residual[i] * deviation_of(curve, k));
+    for (std::size_t k = 0; k < curve.time.size(); ++k) {
+        residuals.push_back(minimum.there.residual[static_cast<Eigen::Index>(k)]);
+        fit.computed.push_back(curve.displacement[k] + residuals.back() * deviation_of(curve, k));
     }
     fit.lag_one = lag_one_correlation(residuals);
+}
+
+// What the record does not give.
+void add_doubts(CurveFit& fit, const CreepCurve& curve, AtBound of_time)
+{
     fit.record_length = curve.time.back() / fit.retardation_time;
     const auto second = std::find_if(curve.time.begin(), curve.time.end(), [](double t) { return t > 0; });
     fit.is_too_coarse = *second > 4 * fit.retardation_time; // 98 percent of creep
-    fit.is_stiffness_open = minimum.at_bound[static_cast<std::size_t>(log_tau)] == AtBound::high ||
-                            fit.stiffness.interval.low < ratio / 2 || fit.stiffness.interval.high > 2 * ratio;
+    fit.is_stiffness_open = of_time == AtBound::high ||
+                            fit.stiffness.interval.low < fit.stiffness.value / 2 ||
+                            fit.stiffness.interval.high > 2 * fit.stiffness.value;
     fit.is_too_short = fit.is_stiffness_open && fit.record_length < 2;
+}
+
+// d_e and d_c must have one direction.
+void check_parts(double elastic_part, double creep_part)
+{
+    const double ratio = elastic_part / creep_part;
+    if (!(ratio > 0) || !std::isfinite(ratio))
+        throw input_error("the elastic part is " + shown(elastic_part) + " m and the creep part " +
+                          shown(creep_part) + same_way);
+}
+
+// tau, with d_e and d_c fixed; over {ln tau}.
+Minimum solve_for_time(const CreepCurve& curve, double elastic_part, double creep_part)
+{
+    const Model model = [&](const VectorXd& p) -> std::optional<Evaluation> {
+        const auto n = static_cast<Eigen::Index>(curve.time.size());
+        Evaluation at{VectorXd(n), MatrixXd(n, 1)};
+        for (Eigen::Index i = 0; i < n; ++i) {
+            const auto k = static_cast<std::size_t>(i);
+            const double x = curve.time[k] / std::exp(p[0]), weight = 1 / deviation_of(curve, k);
+            at.residual[i] = weight * (elastic_part - creep_part * std::expm1(-x) - curve.displacement[k]);
+            at.jacobian(i, 0) = -weight * creep_part * x * std::exp(-x);
+        }
+        return at;
+    };
+    const double shortest = shortest_share * shortest_interval(curve),
+                 longest = longest_share * curve.time.back();
+    const auto vector = [](double value) { return VectorXd::Constant(1, value); };
+    const double start = best_on_grid(
+        shortest, longest, [&](double tau) { return model(vector(std::log(tau)))->residual.squaredNorm(); });
+    return minimise(model, vector(std::log(start)), vector(std::log(shortest)), vector(std::log(longest)),
+                    200, 1e-12);
+}
+
+} // namespace
+
+CurveFit fit_curve(const CreepCurve& curve)
+{
+    check(curve);
+    const Unknowns u = unknowns_of(curve);
+    const Minimum minimum = best_fit(curve, u);
+    const VectorXd& p = minimum.parameters;
+    CurveFit fit;
+    fit.elastic_part = elastic_part(curve, u, p);
+    fit.creep_part = p[u.creep] * u.size;
+    fit.retardation_time = std::exp(p[u.log_tau]);
+    check_parts(fit.elastic_part, fit.creep_part);
+    fit.confidence = confidence_of(minimum, !curve.deviation.empty());
+    add_intervals(fit, curve, u, minimum);
+    add_residuals(fit, curve, minimum);
+    add_doubts(fit, curve, minimum.at_bound[static_cast<std::size_t>(u.log_tau)]);
     return fit;
 }
 
@@ -288,35 +356,15 @@ ClosedEstimate closed_estimate(const CreepCurve& curve, double end)
     const double at_end =
         curve.displacement[after - 1] + share * (curve.displacement[after] - curve.displacement[after - 1]);
     found.creep_part = at_end - found.elastic_part;
+    check_parts(found.elastic_part, found.creep_part);
     const double ratio = found.elastic_part / found.creep_part;
-    if (!(ratio > 0) || !std::isfinite(ratio))
-        throw input_error("the elastic part is " + shown(found.elastic_part) + " m and the creep part " +
-                          shown(found.creep_part) + same_way);
 
-    // tau, with d_e and d_c fixed.
-    const auto n = static_cast<Eigen::Index>(curve.time.size());
-    const Model model = [&](const VectorXd& p) -> std::optional<Evaluation> {
-        Evaluation at{VectorXd(n), MatrixXd(n, 1)};
-        for (Eigen::Index i = 0; i < n; ++i) {
-            const auto k = static_cast<std::size_t>(i);
-            const double x = curve.time[k] / std::exp(p[0]), weight = 1 / deviation_of(curve, k);
-            at.residual[i] =
-                weight * (found.elastic_part - found.creep_part * std::expm1(-x) - curve.displacement[k]);
-            at.jacobian(i, 0) = -weight * found.creep_part * x * std::exp(-x);
-        }
-        return at;
-    };
-    const double shortest = shortest_share * shortest_interval(curve),
-                 longest = longest_share * curve.time.back();
-    const auto vector = [](double value) { return VectorXd::Constant(1, value); };
-    const double start = best_on_grid(
-        shortest, longest, [&](double tau) { return model(vector(std::log(tau)))->residual.squaredNorm(); });
-    const Minimum minimum = minimise(model, vector(std::log(start)), vector(std::log(shortest)),
-                                     vector(std::log(longest)), 200, 1e-12);
+    const Minimum minimum = solve_for_time(curve, found.elastic_part, found.creep_part);
     const double tau = std::exp(minimum.parameters[0]);
     const Confidence confidence = confidence_of(minimum, !curve.deviation.empty());
 
     // What an error of d(T_c), and of d_e where it is a reading, makes of the logarithms of E and tau.
+    const auto n = static_cast<Eigen::Index>(curve.time.size());
     const VectorXd of_tau = minimum.there.jacobian.col(0);
     VectorXd of_end(n), of_elastic(n);
     for (Eigen::Index i = 0; i < n; ++i) {

@@ -32,10 +32,10 @@ struct CurveFit {
     Interval elastic_interval, creep_interval;
     Estimate time;                 // tau [s]
     Estimate stiffness, viscosity; // E / K [-], eta / K [s]
-    double correlation;            // of the logarithms of E and eta
+    double correlation;            // of the logarithms of E and eta [-]
     Confidence confidence;
     std::vector<double> computed; // [m]
-    double lag_one;               // correlation of neighbouring residuals
+    double lag_one;               // correlation of neighbouring residuals [-]
 
     // What the record does not give.
     bool is_stiffness_open = false; // E: its interval is wider than a factor of 2 up or down,

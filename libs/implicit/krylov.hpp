@@ -43,11 +43,28 @@ public:
                  double enough, int most, VectorXd& x);
 
 private:
+    // A new direction of a solve: raw = precondition(...). Their products are made orthonormal to each other and to the
+    // space:
+    //   length * image = product(raw) - images of the space * of_space - earlier new images * of_new.
+    struct Direction {
+        VectorXd raw, image, of_space, of_new;
+        double length, share; // share: of the image in the residual before
+    };
+
+    auto solutions() const { return solution_.leftCols(size_); }
+    auto images() const { return image_.leftCols(size_); }
+
     // The share of each solution in what comes nearest to y.
     VectorXd shares_in(const VectorXd& y) const
     {
         return factor_.solve(image_.leftCols(size_).transpose() * y);
     }
+    // The best there is in the space: takes it off the residual, and returns its shares.
+    VectorXd project(VectorXd& residual, double norm_of_right);
+    // Makes `next` of its raw direction and product. Returns false if that leaves nothing new.
+    bool orthonormalise(Direction& next, const std::vector<Direction>& found) const;
+    // The part of the solution that the new directions give, in terms of raw directions and of the space; keeps it.
+    VectorXd join(const std::vector<Direction>& found, double norm_of_right, Eigen::Index rows);
     void keep(const VectorXd& solution, const VectorXd& image, double help);
     void factorise();
 
@@ -79,59 +96,30 @@ template <class Product, class Precondition>
 double KrylovSpace::solve(const Product& product, const Precondition& precondition, const VectorXd& right,
                           double enough, int most, VectorXd& x)
 {
-    constexpr double rounding = 1e-14; // left of a product that lies in the space
-    constexpr double little = 0.9;     // is left of the residual by an iteration that gains enough
+    constexpr double little = 0.9; // is left of the residual by an iteration that gains enough
     x = VectorXd::Zero(right.size());
     const double norm_of_right = right.norm();
     double norm = norm_of_right;
     if (!(norm > enough))
         return norm;
-    const auto solutions = [&] { return solution_.leftCols(size_); };
-    const auto images = [&] { return image_.leftCols(size_); };
     VectorXd residual = right, in_space = VectorXd::Zero(size_);
     if (size_ > 0) {
-        in_space = shares_in(residual);
-        residual.noalias() -= images() * in_space;
+        in_space = project(residual, norm_of_right);
         norm = residual.norm();
-        help_ = 0.5 * help_ + in_space.cwiseAbs() / norm_of_right;
     }
 
-    // New directions. Their products are made orthonormal to each other and to the space:
-    //   length * image = product(raw) - images of the space * of_space - earlier new images * of_new.
-    struct Direction {
-        VectorXd raw, image, of_space, of_new;
-        double length, share;
-    };
     std::vector<Direction> found;
     bool by_residual = true;
     for (int n = 0; n < most && norm > enough; ++n) {
         Direction next;
         next.raw = precondition(by_residual ? VectorXd(residual / norm) : found.back().image);
         next.image = product(next.raw);
-        next.of_space = VectorXd::Zero(size_);
-        next.of_new = VectorXd::Zero(static_cast<Eigen::Index>(found.size()));
-        const double whole = next.image.norm();
-        next.length = whole;
-        for (int pass = 0; pass < 2 && (pass == 0 || next.length < 0.5 * whole); ++pass) {
-            if (size_ > 0) {
-                const VectorXd shares = shares_in(next.image);
-                next.image.noalias() -= images() * shares;
-                next.of_space += shares;
-            }
-            for (std::size_t i = 0; i < found.size(); ++i) {
-                const double share = found[i].image.dot(next.image);
-                next.image -= share * found[i].image;
-                next.of_new[static_cast<Eigen::Index>(i)] += share;
-            }
-            next.length = next.image.norm();
-        }
-        if (!(next.length > rounding * whole) || !std::isfinite(next.length)) {
+        if (!orthonormalise(next, found)) {
             if (!by_residual || found.empty())
                 break; // no new direction is left
             by_residual = false;
             continue;
         }
-        next.image /= next.length;
         next.share = next.image.dot(residual);
         residual -= next.share * next.image;
         found.push_back(std::move(next));
@@ -139,30 +127,9 @@ double KrylovSpace::solve(const Product& product, const Precondition& preconditi
         norm = residual.norm();
         by_residual = norm < little * before;
     }
-
-    // Their part of the solution, in terms of raw directions and of the space.
-    VectorXd part = VectorXd::Zero(right.size()), image = part, back = VectorXd::Zero(size_),
-             weight(static_cast<Eigen::Index>(found.size()));
-    double help = 0;
-    for (std::size_t j = 0; j < found.size(); ++j) {
-        weight[static_cast<Eigen::Index>(j)] = found[j].share;
-        image += found[j].share * found[j].image;
-        help = std::hypot(help, found[j].share);
-    }
-    for (auto j = static_cast<Eigen::Index>(found.size()); j-- > 0;) {
-        const Direction& direction = found[static_cast<std::size_t>(j)];
-        const double times = weight[j] / direction.length;
-        part += times * direction.raw;
-        back += times * direction.of_space;
-        weight.head(j) -= times * direction.of_new;
-    }
-    if (size_ > 0) {
-        part.noalias() -= solutions() * back;
+    if (size_ > 0)
         x.noalias() = solutions() * in_space;
-    }
-    x += part;
-    if (help > 0)
-        keep(part / help, image / help, help / norm_of_right);
+    x += join(found, norm_of_right, right.size());
     return norm;
 }
 

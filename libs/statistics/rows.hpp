@@ -25,6 +25,13 @@ struct Row {
     std::optional<double> p_value{}; // judged by it; or
     std::optional<bool> is_exact{};  // a target that leaves nothing to chance is met
     bool is_judged = false;          // too few, if neither is there
+
+    // By a test of its law.
+    void judge(const Fit& fit)
+    {
+        achieved = fit.distance;
+        p_value = fit.p_value;
+    }
 };
 
 void add(Statistics& statistics, const std::string& subject, const Row& row);

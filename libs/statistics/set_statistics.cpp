@@ -14,6 +14,8 @@
 #include <map>
 #include <numbers>
 #include <numeric>
+#include <optional>
+#include <set>
 
 namespace jointcreep::statistics
 {
@@ -125,6 +127,64 @@ InCircle in_circle(const Circle& circle, const Vector2d& from, const Vector2d& t
     return {is_cut ? 2.0 : 0.0, 0};
 }
 
+// Where a joint crosses the scanline: along the joint from its first end, and along the mean normal [m].
+struct OnScanline {
+    double along, place;
+};
+
+std::optional<OnScanline> crossing_of(const Scanline& scanline, const MeanTrace& mean, const Vector2d& from,
+                                      const Vector2d& direction, double length)
+{
+    const double advance = direction.dot(mean.along);
+    const double at = (scanline.offset - from.dot(mean.along)) / advance;
+    if (advance == 0 || !(at >= 0 && at <= length))
+        return {};
+    const double where = (from + at * direction).dot(mean.across());
+    if (!(where >= scanline.reach.low && where <= scanline.reach.high))
+        return {};
+    return OnScanline{at, where};
+}
+
+// Adds a joint of a line of a set, with its traces, to what is seen of the line.
+void add_to_line(Tally& tally, Seen& seen, const JointSet& set, const std::vector<Interval>& stretches,
+                 double length, const std::vector<Interval>& traces)
+{
+    const auto common = [](const Interval& stretch, double low, double high) {
+        return std::max(0.0, std::min(stretch.high, high) - std::max(stretch.low, low));
+    };
+    for (const Interval& stretch : stretches) {
+        tally.length += common(stretch, 0.0, length);
+        for (const Interval& trace : traces) {
+            tally.open += common(stretch, trace.low, trace.high);
+            const auto is_inside = [&](double end) { return end > stretch.low && end < stretch.high; };
+            const bool begins = is_inside(trace.low), ends = is_inside(trace.high);
+            tally.ends += begins + ends;
+            if (begins && ends && set.length) {
+                const double trace_length = trace.high - trace.low;
+                seen.lengths.push_back(trace_length);
+                seen.lengths_as_uniform.push_back(
+                    std::min(1.0, positive_distribution(*set.length, trace_length) /
+                                      positive_distribution(*set.length, stretch.high - trace.low)));
+            }
+        }
+    }
+}
+
+// Adds the spacings of lines that follow each other by number; `places`: of lines by number, along the mean normal [m].
+void add_spacings(Seen& seen, const JointSet& set, const MeanTrace& mean, const Interval& extent,
+                  const std::map<Index, double>& places)
+{
+    for (auto here = places.begin(); here != places.end(); ++here)
+        if (const auto next = std::next(here); next != places.end() && next->first == here->first + 1) {
+            const double spacing = (next->second - here->second) * mean.normal_part;
+            const double farthest = (extent.high - here->second) * mean.normal_part;
+            seen.spacings.push_back(spacing);
+            seen.spacings_as_uniform.push_back(
+                std::min(1.0, positive_distribution(set.spacing, spacing) /
+                                  positive_distribution(set.spacing, farthest)));
+        }
+}
+
 Seen look_at(const JointSet& set, const Window& window, const MeanTrace& mean, const Circle& circle,
              const Joints& joints, const TraceRows& traces, Index index)
 {
@@ -138,15 +198,13 @@ Seen look_at(const JointSet& set, const Window& window, const MeanTrace& mean, c
         if (joints.set[j] != index)
             continue;
         const Vector2d from = joints.from[j], to = joints.to[j], direction = (to - from).normalized();
+        const double length = (to - from).norm();
         const Index number = line_of(joints.number[j]);
         const double place = joints.point[j].dot(mean.across());
         if (place >= extent.low && place <= extent.high)
             places[number] = place;
 
-        struct Trace {
-            double low, high;
-        };
-        std::vector<Trace> open;
+        std::vector<Interval> open;
         for (std::size_t t = traces.first[j]; t < traces.first[j + 1]; ++t) {
             const Vector2d &begin = joints.trace_from[traces.row[t]], &end = joints.trace_to[traces.row[t]];
             open.push_back({(begin - from).dot(direction), (end - from).dot(direction)});
@@ -154,52 +212,19 @@ Seen look_at(const JointSet& set, const Window& window, const MeanTrace& mean, c
             seen.in_circle_crossings += here.crossings;
             seen.in_circle_ends += here.ends;
         }
-
-        const double advance = direction.dot(mean.along);
-        const double at = (scanline.offset - from.dot(mean.along)) / advance;
-        if (advance != 0 && at >= 0 && at <= (to - from).norm()) {
-            const double where = (from + at * direction).dot(mean.across());
-            if (where >= scanline.reach.low && where <= scanline.reach.high)
-                seen.crossings.push_back(
-                    {turn_from(mean.along, direction), joints.pole[j],
-                     std::any_of(open.begin(), open.end(),
-                                 [at](const Trace& trace) { return trace.low <= at && at <= trace.high; }),
-                     where - place});
+        if (const auto met = crossing_of(scanline, mean, from, direction, length)) {
+            const bool is_open = std::any_of(open.begin(), open.end(), [&](const Interval& trace) {
+                return trace.low <= met->along && met->along <= trace.high;
+            });
+            seen.crossings.push_back(
+                {turn_from(mean.along, direction), joints.pole[j], is_open, met->place - place});
         }
-
-        Tally& tally = lines[number];
-        for (const Interval& stretch : window.stretches({from, direction})) {
-            tally.length +=
-                std::max(0.0, std::min(stretch.high, (to - from).norm()) - std::max(stretch.low, 0.0));
-            for (const Trace& trace : open) {
-                tally.open +=
-                    std::max(0.0, std::min(stretch.high, trace.high) - std::max(stretch.low, trace.low));
-                const bool begins = trace.low > stretch.low &&
-                                    trace.low<stretch.high, ends = trace.high> stretch.low &&
-                                    trace.high < stretch.high;
-                tally.ends += begins + ends;
-                if (begins && ends && set.length) {
-                    const double length = trace.high - trace.low;
-                    seen.lengths.push_back(length);
-                    seen.lengths_as_uniform.push_back(
-                        std::min(1.0, positive_distribution(*set.length, length) /
-                                          positive_distribution(*set.length, stretch.high - trace.low)));
-                }
-            }
-        }
+        add_to_line(lines[number], seen, set, window.stretches({from, direction}), length, open);
     }
     for (const auto& [number, tally] : lines)
         if (tally.length > 0)
             seen.lines.push_back(tally);
-    for (auto here = places.begin(); here != places.end(); ++here)
-        if (const auto next = std::next(here); next != places.end() && next->first == here->first + 1) {
-            const double spacing = (next->second - here->second) * mean.normal_part;
-            const double farthest = (extent.high - here->second) * mean.normal_part;
-            seen.spacings.push_back(spacing);
-            seen.spacings_as_uniform.push_back(
-                std::min(1.0, positive_distribution(set.spacing, spacing) /
-                                  positive_distribution(set.spacing, farthest)));
-        }
+    add_spacings(seen, set, mean, extent, places);
     return seen;
 }
 
@@ -256,13 +281,37 @@ void add_angles(Statistics& statistics, const std::string& subject, const std::s
         std::vector<double> uniforms;
         for (const double x : values)
             uniforms.push_back(distribution(law, x));
-        const Fit fit = kolmogorov_smirnov(uniforms);
-        of_law.achieved = fit.distance;
-        of_law.p_value = fit.p_value;
+        of_law.judge(kolmogorov_smirnov(uniforms));
     }
     add(statistics, subject, of_mean);
     add(statistics, subject, of_deviation);
     add(statistics, subject, of_law);
+}
+
+// Poles of a set with Fisher's law, turned toward its mean.
+struct SeenPoles {
+    double resultant = 0, along = 0;   // length of their sum R, and its part C along the mean
+    std::vector<double> angles, turns; // from the mean, and around it, as uniform numbers by the law
+};
+
+SeenPoles poles_of(const FisherLaw& law, double azimuth, const std::vector<Crossing>& crossings)
+{
+    const Vector3d mean = pole_of(law.dip, law.dip_direction, azimuth);
+    const Vector3d first = mean.unitOrthogonal(), second = mean.cross(first);
+    const double kappa = law.concentration;
+    SeenPoles seen;
+    Vector3d sum(0, 0, 0);
+    for (const Crossing& crossing : crossings) {
+        const Vector3d pole = crossing.pole.dot(mean) < 0 ? -crossing.pole : crossing.pole;
+        sum += pole;
+        const double w = (pole - mean).squaredNorm() / 2; // 1 - cos(t)
+        seen.angles.push_back((std::expm1(-kappa * w) - std::exp(-kappa * (2 - w)) + std::exp(-2 * kappa)) /
+                              std::expm1(-2 * kappa));
+        seen.turns.push_back(std::atan2(pole.dot(second), pole.dot(first)) / (2 * pi) + 0.5);
+    }
+    seen.resultant = sum.norm();
+    seen.along = sum.dot(mean);
+    return seen;
 }
 
 // Rows of Fisher's law. A plane has two poles. The file has the upward one, which may lie more than 90
@@ -273,49 +322,28 @@ void add_angles(Statistics& statistics, const std::string& subject, const std::s
 void add_poles(Statistics& statistics, const std::string& subject, const FisherLaw& law, double azimuth,
                const std::vector<Crossing>& crossings)
 {
-    const Vector3d mean = pole_of(law.dip, law.dip_direction, azimuth);
-    const Vector3d first = mean.unitOrthogonal(), second = mean.cross(first);
     const double kappa = law.concentration;
     const auto n = static_cast<double>(crossings.size());
-    Vector3d sum(0, 0, 0);
-    std::vector<double> angles, turns;
-    for (const Crossing& crossing : crossings) {
-        const Vector3d pole = crossing.pole.dot(mean) < 0 ? -crossing.pole : crossing.pole;
-        sum += pole;
-        const double w = (pole - mean).squaredNorm() / 2; // 1 - cos(t)
-        angles.push_back((std::expm1(-kappa * w) - std::exp(-kappa * (2 - w)) + std::exp(-2 * kappa)) /
-                         std::expm1(-2 * kappa));
-        turns.push_back(std::atan2(pole.dot(second), pole.dot(first)) / (2 * pi) + 0.5);
-    }
-    const double resultant = sum.norm(), along = sum.dot(mean);
+    const SeenPoles seen = poles_of(law, azimuth, crossings);
+    const double resultant = seen.resultant, along = seen.along;
     const bool is_enough = crossings.size() >= least_sample, is_narrow = kappa >= 5;
-
-    Row off{.quantity = "mean pole, off its target",
-            .unit = "rad",
-            .sample_size = crossings.size(),
-            .target = 0,
-            .is_judged = is_narrow};
-    Row concentration{.quantity = "pole concentration",
-                      .unit = "1",
-                      .sample_size = crossings.size(),
-                      .target = kappa,
-                      .is_judged = is_narrow};
-    Row of_angles{.quantity = "poles off the mean, law",
-                  .unit = "1",
-                  .sample_size = crossings.size(),
-                  .is_judged = true};
-    Row of_turns{.quantity = "poles around the mean, law",
-                 .unit = "1",
-                 .sample_size = crossings.size(),
-                 .is_judged = true};
+    const auto row = [&](const char* quantity, const char* unit, std::optional<double> target,
+                         bool is_judged) {
+        return Row{.quantity = quantity,
+                   .unit = unit,
+                   .sample_size = crossings.size(),
+                   .target = target,
+                   .is_judged = is_judged};
+    };
+    Row off = row("mean pole, off its target", "rad", 0, is_narrow),
+        concentration = row("pole concentration", "1", kappa, is_narrow),
+        of_angles = row("poles off the mean, law", "1", {}, true),
+        of_turns = row("poles around the mean, law", "1", {}, true);
     if (is_enough) {
         off.achieved = std::acos(std::clamp(along / resultant, -1.0, 1.0));
         concentration.achieved = (n - 2) / (n - resultant);
-        const Fit of_sizes = kolmogorov_smirnov(angles), around = kuiper(turns);
-        of_angles.achieved = of_sizes.distance;
-        of_angles.p_value = of_sizes.p_value;
-        of_turns.achieved = around.distance;
-        of_turns.p_value = around.p_value;
+        of_angles.judge(kolmogorov_smirnov(seen.angles));
+        of_turns.judge(kuiper(seen.turns));
     }
     if (is_enough && is_narrow) {
         // (n - 1) (R - C) / (n - R) is F distributed with 2 and 2 (n - 1) degrees (Watson, Williams 1956).
@@ -330,10 +358,8 @@ void add_poles(Statistics& statistics, const std::string& subject, const FisherL
                                        chi_squared_quantile((1 - confidence) / 2, degrees) / spread};
         concentration.p_value = chi_squared_p(spread * kappa, degrees);
     }
-    add(statistics, subject, off);
-    add(statistics, subject, concentration);
-    add(statistics, subject, of_angles);
-    add(statistics, subject, of_turns);
+    for (const Row& one : {off, concentration, of_angles, of_turns})
+        add(statistics, subject, one);
 }
 
 // Rows of dip and dip direction as drawn. A pole has two such pairs, {dip, direction} and {-dip, direction + pi},
@@ -435,9 +461,7 @@ void add_spacing(Statistics& statistics, const JointSet& set, const MeanTrace& m
             return std::abs(spacing / moments.mean - 1) < rounding;
         });
     } else if (seen.spacings.size() >= least_sample) {
-        const Fit fit = kolmogorov_smirnov(seen.spacings_as_uniform);
-        of_law.achieved = fit.distance;
-        of_law.p_value = fit.p_value;
+        of_law.judge(kolmogorov_smirnov(seen.spacings_as_uniform));
     }
     add(statistics, set.name, of_law);
 
@@ -549,11 +573,42 @@ void add_lengths(Statistics& statistics, const JointSet& set, const Seen& seen)
             return std::abs(length / target - 1) < rounding;
         });
     } else if (seen.lengths.size() >= least_sample) {
-        const Fit fit = kolmogorov_smirnov(seen.lengths_as_uniform);
-        of_law.achieved = fit.distance;
-        of_law.p_value = fit.p_value;
+        of_law.judge(kolmogorov_smirnov(seen.lengths_as_uniform));
     }
     add(statistics, set.name, of_law);
+}
+
+// Rows of the circle, by the joint traces that cross it and their ends in it; without P20 if that is not given.
+void add_in_circle(Statistics& statistics, const std::string& subject, const Circle& circle, double crossings,
+                   double ends, std::optional<double> p20, double p21)
+{
+    const double r = circle.radius;
+    if (p20)
+        add(statistics, subject,
+            {.quantity = "P20 in a circle",
+             .unit = "1/m2",
+             .achieved = ends / (2 * pi * r * r),
+             .sample_size = static_cast<std::size_t>(ends),
+             .target = *p20});
+    add(statistics, subject,
+        {.quantity = "P21 in a circle",
+         .unit = "1/m",
+         .achieved = crossings / (4 * r),
+         .sample_size = static_cast<std::size_t>(crossings),
+         .target = p21});
+}
+
+// P21 of lines by their laws [1/m].
+double p21_by_law(const Scene& scene, const JointSet& set, const MeanTrace& mean)
+{
+    if (!set.poles.empty())
+        return sampling::density_of(set, scene).p21;
+    double stretched = 0; // length of lines inside, for their number along the mean normal
+    const std::vector<double> turns = turns_by_law(scene, set);
+    for (const double turn : turns)
+        stretched +=
+            1 / std::cos(std::min(std::abs(turn), 85 * pi / 180)) / static_cast<double>(turns.size());
+    return set.persistence * mean.normal_part / positive_moments(set.spacing).mean * stretched;
 }
 
 // The variance of a sum over the lines: what chance does on a line, and what the number of lines does, with
@@ -565,17 +620,7 @@ void add_densities(Statistics& statistics, const Scene& scene, const JointSet& s
     if (k == 0)
         return;
     const double spread = dispersion_of(set, mean, window.extent(mean.across()), seen);
-    double p21 = 0;
-    if (set.poles.empty()) {
-        double stretched = 0; // length of lines inside, for their number along the mean normal
-        const std::vector<double> turns = turns_by_law(scene, set);
-        for (const double turn : turns)
-            stretched +=
-                1 / std::cos(std::min(std::abs(turn), 85 * pi / 180)) / static_cast<double>(turns.size());
-        p21 = k * mean.normal_part / positive_moments(set.spacing).mean * stretched;
-    } else {
-        p21 = sampling::density_of(set, scene).p21;
-    }
+    const double p21 = p21_by_law(scene, set, mean);
     const double mean_length = set.length ? positive_moments(*set.length).mean : 0;
     const double area = window.area();
     if (area <= 0)
@@ -591,15 +636,15 @@ void add_densities(Statistics& statistics, const Scene& scene, const JointSet& s
             ends_variance += spread * std::pow(wanted / mean_length, 2) +
                              std::pow(line.ends / 2 - wanted / mean_length, 2);
     }
+    const auto half_ends = static_cast<std::size_t>(ends / 2);
     if (k < 1)
         add_ratio(statistics, set.name,
                   {.quantity = "P20",
                    .unit = "1/m2",
                    .achieved = ends / 2 / area,
-                   .sample_size = static_cast<std::size_t>(ends / 2),
+                   .sample_size = half_ends,
                    .target = p21 / mean_length},
-                  std::sqrt(ends_variance) / area,
-                  std::min(seen.lines.size(), static_cast<std::size_t>(ends / 2)));
+                  std::sqrt(ends_variance) / area, std::min(seen.lines.size(), half_ends));
     add_ratio(statistics, set.name,
               {.quantity = "P21",
                .unit = "1/m",
@@ -610,27 +655,15 @@ void add_densities(Statistics& statistics, const Scene& scene, const JointSet& s
 
     if (circle.radius <= 0)
         return;
-    const double r = circle.radius, n = seen.in_circle_crossings, m = seen.in_circle_ends;
-    const auto sample = static_cast<std::size_t>(n);
-    if (k < 1)
-        add(statistics, set.name,
-            {.quantity = "P20 in a circle",
-             .unit = "1/m2",
-             .achieved = m / (2 * pi * r * r),
-             .sample_size = static_cast<std::size_t>(m),
-             .target = p21 / mean_length});
-    add(statistics, set.name,
-        {.quantity = "P21 in a circle",
-         .unit = "1/m",
-         .achieved = n / (4 * r),
-         .sample_size = sample,
-         .target = p21});
+    const double n = seen.in_circle_crossings, m = seen.in_circle_ends;
+    add_in_circle(statistics, set.name, circle, n, m, k < 1 ? std::optional(p21 / mean_length) : std::nullopt,
+                  p21);
     if (k < 1 && m > 0)
         add(statistics, set.name,
             {.quantity = "trace length in a circle, mean",
              .unit = "m",
-             .achieved = pi * r * n / (2 * m),
-             .sample_size = sample,
+             .achieved = pi * circle.radius * n / (2 * m),
+             .sample_size = static_cast<std::size_t>(n),
              .target = mean_length});
 }
 
@@ -705,19 +738,20 @@ std::vector<double> turns_as_uniform(const sampling::Orientations& orientations,
     return uniforms;
 }
 
-// A set of segments or discs: traces about Poisson points, /joints/point. Those whose point is inside are a
-// fair sample of orientations and lengths, however far they reach.
-void add_traces(Statistics& statistics, const Scene& scene, const JointSet& set, const MeanTrace& mean,
-                const Window& window, const Circle& circle, const Joints& joints, Index index)
+// All that is seen of a set of segments or discs.
+struct SeenTraces {
+    std::map<Index, double> inside; // length of each in the window [m]
+    std::vector<double> turns;      // from the mean trace, of those whose point is inside [rad]
+    std::vector<double> lengths;    // of these [m]
+    std::size_t crossings = 0;      // of the scanline
+    double in_circle_crossings = 0, in_circle_ends = 0;
+};
+
+SeenTraces look_at_traces(const Window& window, const MeanTrace& mean, const Scanline& scanline,
+                          const Circle& circle, const Joints& joints, Index index)
 {
-    const bool are_discs = set.kind == SetKind::discs, are_whole = !set.region && set.terminates_at.empty();
-    const Scanline scanline = scanline_of(window, mean);
-    const sampling::SetDensity wanted = sampling::density_of(set, scene);
-    std::map<Index, double> inside; // length of each trace [m]
-    std::map<Index, bool> has_point;
-    std::vector<double> turns, lengths;
-    std::size_t crossings = 0;
-    double n = 0, m = 0;
+    SeenTraces seen;
+    std::set<Index> have_point;
     for (std::size_t j = 0; j < joints.set.size(); ++j) {
         if (joints.set[j] != index)
             continue;
@@ -725,132 +759,137 @@ void add_traces(Statistics& statistics, const Scene& scene, const JointSet& set,
         const double length = (to - from).norm();
         const Index number = line_of(joints.number[j]);
         for (const Interval& stretch : window.stretches({from, direction}))
-            inside[number] += std::max(0.0, std::min(stretch.high, length) - std::max(stretch.low, 0.0));
-        if (window.contains(joints.point[j]) && !has_point[number]) {
-            has_point[number] = true;
-            turns.push_back(turn_from(mean.along, direction));
-            lengths.push_back(length);
+            seen.inside[number] += std::max(0.0, std::min(stretch.high, length) - std::max(stretch.low, 0.0));
+        if (window.contains(joints.point[j]) && have_point.insert(number).second) {
+            seen.turns.push_back(turn_from(mean.along, direction));
+            seen.lengths.push_back(length);
         }
         const InCircle here = in_circle(circle, from, to);
-        n += here.crossings;
-        m += here.ends;
-        const double advance = direction.dot(mean.along);
-        const double at = (scanline.offset - from.dot(mean.along)) / advance;
-        if (advance != 0 && at >= 0 && at <= length) {
-            const double where = (from + at * direction).dot(mean.across());
-            crossings += where >= scanline.reach.low && where <= scanline.reach.high;
-        }
+        seen.in_circle_crossings += here.crossings;
+        seen.in_circle_ends += here.ends;
+        seen.crossings += crossing_of(scanline, mean, from, direction, length).has_value();
     }
-    const bool is_enough = turns.size() >= least_sample;
+    return seen;
+}
+
+void add_trace_angles(Statistics& statistics, const Scene& scene, const JointSet& set, const MeanTrace& mean,
+                      const std::vector<double>& turns)
+{
     if (set.trace_angle) {
         std::vector<double> angles;
         for (const double turn : turns)
             angles.push_back(set.trace_angle->mean + turn);
-        add_angles(statistics, set.name, "trace angle", *set.trace_angle, angles);
-    } else if (set.poles.empty()) {
-        Row row{.quantity = "trace angle, law", .unit = "1", .sample_size = turns.size(), .is_judged = true};
-        const bool is_constant = set.dip && set.dip->deviation == 0 && set.dip_direction->deviation == 0;
-        if (is_constant) {
-            row.is_exact = std::all_of(turns.begin(), turns.end(),
-                                       [](double turn) { return std::abs(turn) < rounding; });
-        } else if (is_enough) {
-            const Fit fit =
-                kolmogorov_smirnov(turns_as_uniform(sampling::Orientations(set, scene), mean, turns));
-            row.achieved = fit.distance;
-            row.p_value = fit.p_value;
-        }
-        add(statistics, set.name, row);
+        return add_angles(statistics, set.name, "trace angle", *set.trace_angle, angles);
     }
-
-    const bool are_ended = !set.terminates_at.empty(); // then targets are those before
-    const double area = window.area();
-    if (area <= 0)
+    if (!set.poles.empty())
         return;
-    // Where a region cuts traces off, those whose point it leaves no piece of are missing: nothing is judged.
+    Row row{.quantity = "trace angle, law", .unit = "1", .sample_size = turns.size(), .is_judged = true};
+    const bool is_constant = set.dip && set.dip->deviation == 0 && set.dip_direction->deviation == 0;
+    if (is_constant)
+        row.is_exact =
+            std::all_of(turns.begin(), turns.end(), [](double turn) { return std::abs(turn) < rounding; });
+    else if (turns.size() >= least_sample)
+        row.judge(kolmogorov_smirnov(turns_as_uniform(sampling::Orientations(set, scene), mean, turns)));
+    add(statistics, set.name, row);
+}
+
+// Where a region cuts traces off, those whose point it leaves no piece of are missing: P20 is not judged. Where traces
+// end at other joints, the laws are those before: P21 and P10 are not.
+void add_trace_densities(Statistics& statistics, const Scene& scene, const JointSet& set,
+                         const MeanTrace& mean, const Scanline& scanline, double area, const SeenTraces& seen)
+{
+    const bool are_ended = !set.terminates_at.empty();
+    const sampling::SetDensity wanted = sampling::density_of(set, scene);
     add_poisson(statistics, set.name,
                 {.quantity = "P20",
                  .unit = "1/m2",
-                 .sample_size = turns.size(),
+                 .sample_size = seen.turns.size(),
                  .target = set.region ? std::optional<double>() : wanted.p20},
                 area);
     double total = 0, squares = 0;
-    for (const auto& [number, length] : inside) {
+    for (const auto& [number, length] : seen.inside) {
         total += length;
         squares += length * length;
     }
-    Row p21{.quantity = "P21", .unit = "1/m", .achieved = total / area, .sample_size = inside.size()};
+    Row p21{.quantity = "P21", .unit = "1/m", .achieved = total / area, .sample_size = seen.inside.size()};
     if (are_ended) {
         add(statistics, set.name, p21);
     } else {
         p21.target = wanted.p21;
-        add_ratio(statistics, set.name, p21, std::sqrt(squares) / area, inside.size());
+        add_ratio(statistics, set.name, p21, std::sqrt(squares) / area, seen.inside.size());
     }
     const Vector2d across = mean.across();
     add_poisson(statistics, set.name,
                 {.quantity = "P10 along the mean normal",
                  .unit = "1/m",
-                 .sample_size = crossings,
+                 .sample_size = seen.crossings,
                  .target = are_ended ? std::optional<double>()
                                      : sampling::expected_p10(set, scene, {across.x(), across.y(), 0})},
                 scanline.reach.high - scanline.reach.low);
+}
 
+// Of traces that nothing cuts off.
+void add_whole_lengths(Statistics& statistics, const JointSet& set, const std::vector<double>& lengths)
+{
+    const bool are_discs = set.kind == SetKind::discs;
     const ProbabilityLaw& size = are_discs ? *set.diameter : *set.length;
     const Moments moments = positive_moments(size);
     const double c = moments.squared_variation, second = 1 + c, third = moments.third + 3 * c + 1;
     const double target = moments.mean * (are_discs ? pi / 4 * second : 1);
     const double variance =
         moments.mean * moments.mean * (are_discs ? 2.0 / 3 * third - std::pow(pi / 4 * second, 2) : c);
-    if (are_whole) {
-        const auto count = static_cast<double>(lengths.size());
-        Row of_mean{.quantity = "trace length, mean",
-                    .unit = "m",
-                    .achieved = lengths.empty() ? 0 : mean_of(lengths),
-                    .sample_size = lengths.size(),
-                    .target = target};
-        double off = 0;
-        for (const double length : lengths)
-            off += std::pow(length - of_mean.achieved, 2);
-        Row of_law{
-            .quantity = "trace length, law", .unit = "1", .sample_size = lengths.size(), .is_judged = true};
-        if (!are_discs && (size.kind == ProbabilityLaw::Kind::constant || size.deviation == 0)) {
-            of_mean.is_exact = of_law.is_exact =
-                std::all_of(lengths.begin(), lengths.end(),
-                            [&](double length) { return std::abs(length / target - 1) < rounding; });
-            add(statistics, set.name, of_mean);
-        } else {
-            add_ratio(statistics, set.name, of_mean,
-                      lengths.size() > 1 ? std::sqrt(off / (count - 1) / count) : 0, lengths.size(),
-                      std::sqrt(variance / std::max(1.0, count)));
-            if (is_enough) {
-                std::vector<double> uniforms;
-                if (are_discs)
-                    uniforms = chords_as_uniform(size, lengths);
-                else
-                    for (const double length : lengths)
-                        uniforms.push_back(positive_distribution(size, length));
-                const Fit fit = kolmogorov_smirnov(uniforms);
-                of_law.achieved = fit.distance;
-                of_law.p_value = fit.p_value;
-            }
-        }
-        add(statistics, set.name, of_law);
+    const auto count = static_cast<double>(lengths.size());
+    Row of_mean{.quantity = "trace length, mean",
+                .unit = "m",
+                .achieved = lengths.empty() ? 0 : mean_of(lengths),
+                .sample_size = lengths.size(),
+                .target = target};
+    Row of_law{
+        .quantity = "trace length, law", .unit = "1", .sample_size = lengths.size(), .is_judged = true};
+    if (!are_discs && (size.kind == ProbabilityLaw::Kind::constant || size.deviation == 0)) {
+        of_mean.is_exact = of_law.is_exact = std::all_of(lengths.begin(), lengths.end(), [&](double length) {
+            return std::abs(length / target - 1) < rounding;
+        });
+        add(statistics, set.name, of_mean);
+        return add(statistics, set.name, of_law);
     }
+    double off = 0;
+    for (const double length : lengths)
+        off += std::pow(length - of_mean.achieved, 2);
+    add_ratio(statistics, set.name, of_mean, lengths.size() > 1 ? std::sqrt(off / (count - 1) / count) : 0,
+              lengths.size(), std::sqrt(variance / std::max(1.0, count)));
+    if (lengths.size() >= least_sample) {
+        std::vector<double> uniforms;
+        if (are_discs)
+            uniforms = chords_as_uniform(size, lengths);
+        else
+            for (const double length : lengths)
+                uniforms.push_back(positive_distribution(size, length));
+        of_law.judge(kolmogorov_smirnov(uniforms));
+    }
+    add(statistics, set.name, of_law);
+}
+
+// A set of segments or discs: traces about Poisson points, /joints/point. Those whose point is inside are a
+// fair sample of orientations and lengths, however far they reach.
+void add_traces(Statistics& statistics, const Scene& scene, const JointSet& set, const MeanTrace& mean,
+                const Window& window, const Circle& circle, const Joints& joints, Index index)
+{
+    const Scanline scanline = scanline_of(window, mean);
+    const SeenTraces seen = look_at_traces(window, mean, scanline, circle, joints, index);
+    add_trace_angles(statistics, scene, set, mean, seen.turns);
+    const double area = window.area();
+    if (area <= 0)
+        return;
+    add_trace_densities(statistics, scene, set, mean, scanline, area, seen);
+    const bool are_ended = !set.terminates_at.empty();
+    if (!set.region && !are_ended)
+        add_whole_lengths(statistics, set, seen.lengths);
     if (circle.radius <= 0 || are_ended)
         return;
-    const double r = circle.radius;
-    if (!set.region)
-        add(statistics, set.name,
-            {.quantity = "P20 in a circle",
-             .unit = "1/m2",
-             .achieved = m / (2 * pi * r * r),
-             .sample_size = static_cast<std::size_t>(m),
-             .target = wanted.p20});
-    add(statistics, set.name,
-        {.quantity = "P21 in a circle",
-         .unit = "1/m",
-         .achieved = n / (4 * r),
-         .sample_size = static_cast<std::size_t>(n),
-         .target = wanted.p21});
+    const sampling::SetDensity wanted = sampling::density_of(set, scene);
+    add_in_circle(statistics, set.name, circle, seen.in_circle_crossings, seen.in_circle_ends,
+                  set.region ? std::nullopt : std::optional(wanted.p20), wanted.p21);
 }
 
 ProbabilityLaw times(ProbabilityLaw law, double factor)

@@ -111,74 +111,54 @@ Cdt::Edge next_piece(const Cdt& cdt, Cdt::Vertex_handle at, Cdt::Vertex_handle t
     return piece;
 }
 
-} // namespace
-
-Triangulation triangulate(const Blocks& blocks, double least, const SizeAt& size)
+// All block edges as constraints; `corner`: the vertices of the blocks.
+void insert_edges(Cdt& cdt, std::vector<Cdt::Vertex_handle>& corner, const Blocks& blocks)
 {
-    Cdt cdt;
-    std::vector<Cdt::Vertex_handle> corner;
     corner.reserve(blocks.vertex.size());
     for (const Eigen::Vector2d& v : blocks.vertex)
         corner.push_back(cdt.insert({v.x(), v.y()}, corner.empty() ? nullptr : corner.back()->face()));
     for (const auto& [a, b] : blocks.edge_vertex)
         cdt.insert_constraint(corner[a], corner[b]);
+}
 
-    // Inside and outside by flooding, not by CGAL's seeds: an outline with holes needs no further thought
-    // then.
-    for (const auto f : cdt.all_face_handles())
-        f->info() = -2;
-    std::vector<Cdt::Face_handle> front;
-    for (std::size_t e = 0; e < blocks.edge_vertex.size(); ++e) {
-        const auto [a, b] = blocks.edge_vertex[e];
-        const Cdt::Edge left = next_piece(cdt, corner[a], corner[b]);
-        left.first->info() = blocks.edge_block[e][0];
-        cdt.mirror_edge(left).first->info() = blocks.edge_block[e][1];
-        front.push_back(left.first);
-        front.push_back(cdt.mirror_edge(left).first);
-    }
-    while (!front.empty()) {
-        const auto f = front.back();
-        front.pop_back();
-        for (int i = 0; i < 3; ++i) {
-            const auto g = f->neighbor(i);
-            if (f->is_constrained(i) || g->info() != -2)
-                continue;
-            g->info() = f->info();
-            front.push_back(g);
-        }
-    }
-    for (const auto f : cdt.all_face_handles())
-        f->set_in_domain(f->info() >= 0);
+// A piece of a block edge between two neighbouring vertices.
+struct Piece {
+    Index edge;
+    Cdt::Vertex_handle from, to;
+    Cdt::Face_handle left, right;
+};
 
-    const double floor = std::min(least, blocks.report.shortest_edge) / 4;
-    CGAL::Delaunay_mesher_2<Cdt, Criteria> mesher(cdt, Criteria(0.125, size, floor));
-    mesher.init(true); // the domain is marked already
-    mesher.refine_mesh();
-
-    // Refinement makes new faces: the blocks are found again from their edges, piece by piece.
-    for (const auto f : cdt.all_face_handles())
-        f->info() = -2;
-    struct Piece {
-        Index edge;
-        Cdt::Vertex_handle from, to;
-        Cdt::Face_handle left, right;
-    };
+// All pieces of all block edges, in order.
+std::vector<Piece> pieces_of(const Cdt& cdt, const std::vector<Cdt::Vertex_handle>& corner,
+                             const Blocks& blocks)
+{
     std::vector<Piece> pieces;
     for (std::size_t e = 0; e < blocks.edge_vertex.size(); ++e) {
         const auto [a, b] = blocks.edge_vertex[e];
         for (Cdt::Vertex_handle at = corner[a]; at != corner[b];) {
             const Cdt::Edge left = next_piece(cdt, at, corner[b]);
-            const Cdt::Edge right = cdt.mirror_edge(left);
             const auto to = left.first->vertex(cdt.cw(left.second));
-            pieces.push_back({static_cast<Index>(e), at, to, left.first, right.first});
-            for (const auto& [face, block] : {std::pair(left.first, blocks.edge_block[e][0]),
-                                              std::pair(right.first, blocks.edge_block[e][1])}) {
-                face->info() = block;
-                front.push_back(face);
-            }
+            pieces.push_back({static_cast<Index>(e), at, to, left.first, cdt.mirror_edge(left).first});
             at = to;
         }
     }
+    return pieces;
+}
+
+// Gives each face the number of its block, -1 outside the section: from the pieces of the edges on, by flooding. (CGAL's
+// seeds would need a place inside each hole of the outline.)
+void find_blocks(const Cdt& cdt, const std::vector<Piece>& pieces, const Blocks& blocks)
+{
+    constexpr Index unknown = -2;
+    for (const auto f : cdt.all_face_handles())
+        f->info() = unknown;
+    std::vector<Cdt::Face_handle> front;
+    for (const Piece& piece : pieces)
+        for (const auto& [face, block] : {std::pair(piece.left, blocks.edge_block[piece.edge][0]),
+                                          std::pair(piece.right, blocks.edge_block[piece.edge][1])}) {
+            face->info() = block;
+            front.push_back(face);
+        }
     while (!front.empty()) {
         const auto f = front.back();
         front.pop_back();
@@ -186,7 +166,7 @@ Triangulation triangulate(const Blocks& blocks, double least, const SizeAt& size
             const auto g = f->neighbor(i);
             if (f->is_constrained(i))
                 continue;
-            if (g->info() == -2) {
+            if (g->info() == unknown) {
                 g->info() = f->info();
                 front.push_back(g);
             } else if (g->info() != f->info()) {
@@ -195,9 +175,12 @@ Triangulation triangulate(const Blocks& blocks, double least, const SizeAt& size
             }
         }
     }
+}
 
-    Triangulation result;
-    // CGAL keeps its own order; ours is by block and place, a property of the triangulation alone.
+// The faces inside blocks. CGAL keeps its own order; this one is by block and place, a property of the triangulation
+// alone.
+std::vector<Cdt::Face_handle> in_order(const Cdt& cdt)
+{
     std::vector<Cdt::Face_handle> faces;
     for (const auto f : cdt.finite_face_handles())
         if (f->info() >= 0)
@@ -206,6 +189,12 @@ Triangulation triangulate(const Blocks& blocks, double least, const SizeAt& size
         const Eigen::Vector2d a = middle_of(f), b = middle_of(g);
         return std::tuple(f->info(), a.x(), a.y()) < std::tuple(g->info(), b.x(), b.y());
     });
+    return faces;
+}
+
+// Adds the triangles with their vertices and blocks; gives each vertex its number.
+void number_vertices(Triangulation& result, const Cdt& cdt, const std::vector<Cdt::Face_handle>& faces)
+{
     for (const auto v : cdt.finite_vertex_handles())
         v->info() = -1;
     for (const auto f : faces) {
@@ -226,6 +215,11 @@ Triangulation triangulate(const Blocks& blocks, double least, const SizeAt& size
         result.triangle.push_back(triangle);
         result.block.push_back(f->info());
     }
+}
+
+// Adds the neighbours of the triangles; gives each face the number of its triangle, -1 outside the section.
+void number_faces(Triangulation& result, const Cdt& cdt, const std::vector<Cdt::Face_handle>& faces)
+{
     for (const auto f : cdt.all_face_handles())
         f->info() = -1;
     for (std::size_t t = 0; t < faces.size(); ++t)
@@ -233,13 +227,38 @@ Triangulation triangulate(const Blocks& blocks, double least, const SizeAt& size
     for (std::size_t t = 0; t < faces.size(); ++t) {
         std::array<Index, 3> neighbour{};
         for (int i = 0; i < 3; ++i) {
-            int corner_of = 0;
-            while (result.triangle[t][corner_of] != faces[t]->vertex(i)->info())
-                ++corner_of;
-            neighbour[corner_of] = faces[t]->is_constrained(i) ? -1 : faces[t]->neighbor(i)->info();
+            int corner = 0;
+            while (result.triangle[t][corner] != faces[t]->vertex(i)->info())
+                ++corner;
+            neighbour[corner] = faces[t]->is_constrained(i) ? -1 : faces[t]->neighbor(i)->info();
         }
         result.neighbour.push_back(neighbour);
     }
+}
+
+} // namespace
+
+Triangulation triangulate(const Blocks& blocks, double least, const SizeAt& size)
+{
+    Cdt cdt;
+    std::vector<Cdt::Vertex_handle> corner;
+    insert_edges(cdt, corner, blocks);
+    find_blocks(cdt, pieces_of(cdt, corner, blocks), blocks);
+    for (const auto f : cdt.all_face_handles())
+        f->set_in_domain(f->info() >= 0);
+
+    const double floor = std::min(least, blocks.report.shortest_edge) / 4;
+    CGAL::Delaunay_mesher_2<Cdt, Criteria> mesher(cdt, Criteria(0.125, size, floor));
+    mesher.init(true); // the domain is marked already
+    mesher.refine_mesh();
+
+    // Refinement makes new faces: the blocks are found again.
+    const std::vector<Piece> pieces = pieces_of(cdt, corner, blocks);
+    find_blocks(cdt, pieces, blocks);
+    Triangulation result;
+    const std::vector<Cdt::Face_handle> faces = in_order(cdt);
+    number_vertices(result, cdt, faces);
+    number_faces(result, cdt, faces);
     for (const Piece& piece : pieces)
         result.side.push_back(
             {piece.edge, {piece.from->info(), piece.to->info()}, {piece.left->info(), piece.right->info()}});

@@ -19,12 +19,12 @@ struct Side {
 };
 
 struct Triangulation {
-    std::vector<Eigen::Vector2d> vertex;
+    std::vector<Eigen::Vector2d> vertex;        // [m]
     std::vector<std::array<Index, 3>> triangle; // counter-clockwise
     std::vector<Index> block;                   // of each triangle
     std::vector<Side> side;                     // all pieces of all block edges
-    std::vector<std::array<Index, 3>>
-        neighbour; // across the side opposite each corner; -1 across block edges
+    // Across the side opposite each corner; -1 across block edges.
+    std::vector<std::array<Index, 3>> neighbour;
 };
 
 // Delaunay refinement of all blocks at once, with the block edges kept: no side longer than the size at the

@@ -81,10 +81,8 @@ public:
         }
     }
 
-    Index gridpoint(Index corner) const
-    {
-        return same_.root(corner);
-    } // the same number for corners that are one
+    // The same number for corners that are one.
+    Index gridpoint(Index corner) const { return same_.root(corner); }
     const std::vector<Tie>& ties() const { return ties_; }
 
 private:
@@ -106,8 +104,8 @@ void add_middles(Mesh& mesh, const Triangulation& t, const Blocks& blocks)
                 (4 * t.vertex[corners[i]] + t.vertex[corners[(i + 1) % 3]] + t.vertex[corners[(i + 2) % 3]]) /
                 6);
     mesh.zone_middle.assign(t.triangle.size(), {-1, -1, -1});
-    std::vector<std::array<Index, 3>> across(t.triangle.size(),
-                                             {-1, -1, -1}); // {zone across each side}, if it holds together
+    // The zone across each side, if the rock holds together there.
+    std::vector<std::array<Index, 3>> across(t.triangle.size(), {-1, -1, -1});
     for (std::size_t z = 0; z < t.triangle.size(); ++z)
         for (int i = 0; i < 3; ++i)
             across[z][(i + 1) % 3] = t.neighbour[z][i];
@@ -132,10 +130,154 @@ void add_middles(Mesh& mesh, const Triangulation& t, const Blocks& blocks)
 // What a side of a zone gives to its ends and, if there is one, its middle, where a traction is linear along it: a share of
 // its length, and the place where the traction has its mean over that share.
 struct OfSide {
-    double share;
-    double end, other_end; // weights of the two ends in the place
+    double share;          // [-]
+    double end, other_end; // weights of the two ends in the place [-]
 };
 constexpr OfSide linear_end{1. / 2, 2, 1}, quadratic_end{1. / 6, 1, 0}, quadratic_middle{4. / 6, 1, 1};
+
+// A mesh while it is made of a triangulation.
+class Meshing
+{
+public:
+    Meshing(const Scene& scene, const Blocks& blocks, const Triangulation& t)
+        : scene_(scene), blocks_(blocks), t_(t), corners_(t, blocks), gridpoint_(3 * t.triangle.size(), -1)
+    {
+    }
+
+    Mesh mesh()
+    {
+        add_zones();
+        if (scene_.zones_are_quadratic)
+            add_middles(mesh_, t_, blocks_);
+        mesh_.gridpoint_fixed.assign(mesh_.gridpoint.size(), 0);
+        for (const auto& tie : corners_.ties()) {
+            mesh_.tie_gridpoint.push_back({gridpoint_at(tie.a), gridpoint_at(tie.b)});
+            mesh_.tie_stage.push_back(tie.stage);
+        }
+        for (const Side& side : t_.side) {
+            if (blocks_.edge_boundary[side.edge] >= 0)
+                add_boundary(side);
+            if (blocks_.edge_kind[side.edge] == static_cast<Index>(EdgeKind::joint) || rests_on_joint(side))
+                add_contacts(side);
+        }
+        return std::move(mesh_);
+    }
+
+private:
+    // Of the corner 3 z + i; numbered once add_zones() has come by.
+    Index& gridpoint_at(Index corner) { return gridpoint_[corners_.gridpoint(corner)]; }
+    Index gridpoint_of(Index z, Index vertex)
+    {
+        return gridpoint_at(3 * z + corner_at(t_.triangle[z], vertex));
+    }
+    // The middle of a side of the triangulation, in a zone beside it.
+    Index middle_of(Index z, const Side& side) const
+    {
+        const Index i = corner_at(t_.triangle[z], side.vertex[0]),
+                    j = corner_at(t_.triangle[z], side.vertex[1]);
+        return mesh_.zone_middle[z][(i + 1) % 3 == j ? i : j];
+    }
+    bool rests_on_joint(const Side& side) const
+    {
+        const Index boundary = blocks_.edge_boundary[side.edge];
+        return boundary >= 0 && !scene_.boundaries[boundary].joint.empty();
+    }
+
+    void add_zones();
+    void add_boundary(const Side& side);
+    void add_contacts(const Side& side);
+    void add_contact(const Side& side, Index a, Index b, const Eigen::Vector2d& place,
+                     const Eigen::Vector2d& other, const OfSide& of_side);
+
+    const Scene& scene_;
+    const Blocks& blocks_;
+    const Triangulation& t_;
+    const Corners corners_;
+    std::vector<Index> gridpoint_; // of each group of corners, at its root
+    Mesh mesh_;
+    std::map<std::tuple<Index, Index, Index>, Index> contact_of_; // {edge, a or -1 for the ground, b}
+};
+
+void Meshing::add_zones()
+{
+    for (Index z = 0; z < static_cast<Index>(t_.triangle.size()); ++z) {
+        std::array<Index, 3> of_zone{};
+        for (Index i = 0; i < 3; ++i) {
+            Index& g = gridpoint_at(3 * z + i);
+            if (g < 0) {
+                g = static_cast<Index>(mesh_.gridpoint.size());
+                mesh_.gridpoint.push_back(t_.vertex[t_.triangle[z][i]]);
+            }
+            of_zone[i] = g;
+        }
+        mesh_.zone_gridpoint.push_back(of_zone);
+        mesh_.zone_block.push_back(t_.block[z]);
+    }
+}
+
+// A side on a boundary: what its boundary condition fixes, unless it rests on a joint.
+void Meshing::add_boundary(const Side& side)
+{
+    const Index boundary = blocks_.edge_boundary[side.edge], z = side.triangle[0];
+    if (!rests_on_joint(side)) {
+        const Index fixed =
+            (scene_.boundaries[boundary].fix_x ? 1 : 0) | (scene_.boundaries[boundary].fix_y ? 2 : 0);
+        for (const Index v : side.vertex)
+            mesh_.gridpoint_fixed[gridpoint_of(z, v)] |= fixed;
+        if (mesh_.is_quadratic())
+            mesh_.gridpoint_fixed[middle_of(z, side)] |= fixed;
+    }
+    mesh_.side_gridpoint.push_back({gridpoint_of(z, side.vertex[0]), gridpoint_of(z, side.vertex[1])});
+    if (mesh_.is_quadratic())
+        mesh_.side_middle.push_back(middle_of(z, side));
+    mesh_.side_zone.push_back(z);
+    mesh_.side_boundary.push_back(boundary);
+}
+
+void Meshing::add_contacts(const Side& side)
+{
+    const bool on_ground = rests_on_joint(side);
+    const Eigen::Vector2d from = t_.vertex[side.vertex[0]], to = t_.vertex[side.vertex[1]];
+    const OfSide& end = mesh_.is_quadratic() ? quadratic_end : linear_end;
+    for (int i = 0; i < 2; ++i)
+        add_contact(side, on_ground ? -1 : gridpoint_of(side.triangle[1], side.vertex[i]),
+                    gridpoint_of(side.triangle[0], side.vertex[i]), i == 0 ? from : to, i == 0 ? to : from,
+                    end);
+    if (mesh_.is_quadratic())
+        add_contact(side, on_ground ? -1 : middle_of(side.triangle[1], side),
+                    middle_of(side.triangle[0], side), from, to, quadratic_middle);
+}
+
+// The share of a side in the contact of the gridpoint `b`, at `place`, to `a`, or to the ground below it.
+void Meshing::add_contact(const Side& side, Index a, Index b, const Eigen::Vector2d& place,
+                          const Eigen::Vector2d& other, const OfSide& of_side)
+{
+    if (a == b)
+        return; // the tip of a joint: the rock holds together there
+    const auto [found, is_new] =
+        contact_of_.try_emplace({side.edge, a, b}, static_cast<Index>(mesh_.contact_edge.size()));
+    const Index c = found->second;
+    if (is_new) {
+        Index ground = a;
+        if (rests_on_joint(side)) {
+            ground = static_cast<Index>(mesh_.gridpoint.size());
+            mesh_.gridpoint.push_back(mesh_.gridpoint[b]);
+            mesh_.gridpoint_fixed.push_back(3);
+        }
+        const auto [first, second] = blocks_.edge_vertex[side.edge];
+        mesh_.contact_gridpoint.push_back({ground, b});
+        mesh_.contact_edge.push_back(side.edge);
+        mesh_.contact_normal.push_back(normal_of(tangent_of(blocks_.vertex[first], blocks_.vertex[second])));
+        mesh_.contact_length.push_back(0);
+        mesh_.contact_centre.push_back(Eigen::Vector2d::Zero());
+    }
+    const double length = (t_.vertex[side.vertex[1]] - t_.vertex[side.vertex[0]]).norm();
+    const Eigen::Vector2d centre =
+        (of_side.end * place + of_side.other_end * other) / (of_side.end + of_side.other_end);
+    const double part = of_side.share * length, total = mesh_.contact_length[c] + part;
+    mesh_.contact_centre[c] = (mesh_.contact_length[c] * mesh_.contact_centre[c] + part * centre) / total;
+    mesh_.contact_length[c] = total;
+}
 
 } // namespace
 
@@ -144,107 +286,7 @@ Mesh zone(const Scene& scene, const Blocks& blocks)
     const ZoneSize size(scene, blocks);
     const Triangulation t = triangulate(blocks, scene.smallest_zone_size(),
                                         [&size](const Eigen::Vector2d& place) { return size.at(place); });
-    const auto n_zones = static_cast<Index>(t.triangle.size());
-
-    const Corners corners(t, blocks);
-    const auto root = [&](Index c) { return corners.gridpoint(c); };
-
-    Mesh mesh;
-    std::vector<Index> gridpoint(3 * t.triangle.size(), -1);
-    for (Index z = 0; z < n_zones; ++z) {
-        std::array<Index, 3> of_zone{};
-        for (Index i = 0; i < 3; ++i) {
-            Index& g = gridpoint[root(3 * z + i)];
-            if (g < 0) {
-                g = static_cast<Index>(mesh.gridpoint.size());
-                mesh.gridpoint.push_back(t.vertex[t.triangle[z][i]]);
-            }
-            of_zone[i] = g;
-        }
-        mesh.zone_gridpoint.push_back(of_zone);
-        mesh.zone_block.push_back(t.block[z]);
-    }
-    if (scene.zones_are_quadratic)
-        add_middles(mesh, t, blocks);
-    mesh.gridpoint_fixed.assign(mesh.gridpoint.size(), 0);
-    for (const auto& tie : corners.ties()) {
-        mesh.tie_gridpoint.push_back({gridpoint[root(tie.a)], gridpoint[root(tie.b)]});
-        mesh.tie_stage.push_back(tie.stage);
-    }
-
-    const auto gridpoint_of = [&](Index z, Index vertex) {
-        return gridpoint[root(3 * z + corner_at(t.triangle[z], vertex))];
-    };
-    // The middle of a side of the triangulation, in a zone beside it.
-    const auto middle_of = [&](Index z, const Side& side) {
-        const Index i = corner_at(t.triangle[z], side.vertex[0]),
-                    j = corner_at(t.triangle[z], side.vertex[1]);
-        return mesh.zone_middle[z][(i + 1) % 3 == j ? i : j];
-    };
-    std::map<std::tuple<Index, Index, Index>, Index> contact_of; // {edge, a or -1 for the ground, b}
-    for (const Side& side : t.side) {
-        const Index e = side.edge;
-        const Index boundary = blocks.edge_boundary[e];
-        const bool rests_on_joint = boundary >= 0 && !scene.boundaries[boundary].joint.empty();
-        if (boundary >= 0 && !rests_on_joint) {
-            const Index held =
-                (scene.boundaries[boundary].fix_x ? 1 : 0) | (scene.boundaries[boundary].fix_y ? 2 : 0);
-            for (const Index v : side.vertex)
-                mesh.gridpoint_fixed[gridpoint_of(side.triangle[0], v)] |= held;
-            if (mesh.is_quadratic())
-                mesh.gridpoint_fixed[middle_of(side.triangle[0], side)] |= held;
-        }
-        if (boundary >= 0) {
-            mesh.side_gridpoint.push_back({gridpoint_of(side.triangle[0], side.vertex[0]),
-                                           gridpoint_of(side.triangle[0], side.vertex[1])});
-            if (mesh.is_quadratic())
-                mesh.side_middle.push_back(middle_of(side.triangle[0], side));
-            mesh.side_zone.push_back(side.triangle[0]);
-            mesh.side_boundary.push_back(boundary);
-        }
-        if (blocks.edge_kind[e] != static_cast<Index>(EdgeKind::joint) && !rests_on_joint)
-            continue;
-        const auto [first, second] = blocks.edge_vertex[e];
-        const Eigen::Vector2d normal = normal_of(tangent_of(blocks.vertex[first], blocks.vertex[second]));
-        const Eigen::Vector2d from = t.vertex[side.vertex[0]], to = t.vertex[side.vertex[1]];
-        const double length = (to - from).norm();
-        // A contact of the gridpoint `b` to `a`, or to the ground below it, at `place`.
-        const auto add = [&](Index a, Index b, const Eigen::Vector2d& place, const Eigen::Vector2d& other,
-                             const OfSide& of_side) {
-            if (a == b)
-                return; // the tip of a joint: the rock holds together there
-            const auto [found, is_new] =
-                contact_of.try_emplace({e, a, b}, static_cast<Index>(mesh.contact_edge.size()));
-            const Index c = found->second;
-            if (is_new) {
-                Index ground = a;
-                if (rests_on_joint) {
-                    ground = static_cast<Index>(mesh.gridpoint.size());
-                    mesh.gridpoint.push_back(mesh.gridpoint[b]);
-                    mesh.gridpoint_fixed.push_back(3);
-                }
-                mesh.contact_gridpoint.push_back({ground, b});
-                mesh.contact_edge.push_back(e);
-                mesh.contact_normal.push_back(normal);
-                mesh.contact_length.push_back(0);
-                mesh.contact_centre.push_back(Eigen::Vector2d::Zero());
-            }
-            const Eigen::Vector2d centre =
-                (of_side.end * place + of_side.other_end * other) / (of_side.end + of_side.other_end);
-            const double part = of_side.share * length, total = mesh.contact_length[c] + part;
-            mesh.contact_centre[c] =
-                (mesh.contact_length[c] * mesh.contact_centre[c] + part * centre) / total;
-            mesh.contact_length[c] = total;
-        };
-        const OfSide& end = mesh.is_quadratic() ? quadratic_end : linear_end;
-        for (int i = 0; i < 2; ++i)
-            add(rests_on_joint ? -1 : gridpoint_of(side.triangle[1], side.vertex[i]),
-                gridpoint_of(side.triangle[0], side.vertex[i]), i == 0 ? from : to, i == 0 ? to : from, end);
-        if (mesh.is_quadratic())
-            add(rests_on_joint ? -1 : middle_of(side.triangle[1], side), middle_of(side.triangle[0], side),
-                from, to, quadratic_middle);
-    }
-    return mesh;
+    return Meshing(scene, blocks, t).mesh();
 }
 
 MeshQuality quality_of(const Mesh& mesh)

@@ -1,4 +1,4 @@
-// What holds of every law in the list: its derivatives, its integral along an overlap, its table.
+// What holds of every law in the list: its derivatives, its slopes, its integral along an overlap, its table.
 
 #include "any_law.hpp"
 
@@ -61,15 +61,128 @@ RC_GTEST_PROP(law, its_derivatives_are_those_of_its_response, ())
     }
 }
 
-// The slopes that the implicit engine takes are those of the response, where it sticks and where it slips.
-RC_GTEST_PROP(law, its_slopes_are_those_of_its_response, ())
+// A joint after a few displacements, some of which open it, and a last shear.
+struct Sheared {
+    Law law;
+    double p;        // initial pressure [Pa]
+    State state;     // after the last shear
+    double u_n, u_s; // of the last shear [m]
+    Response now;
+
+    // The response to another displacement from here [m]; updates `from`.
+    Response moved(State& from, double opened, double slid) const
+    {
+        return respond(law, from, -p, 0, u_n + opened, u_s + slid);
+    }
+    double sense() const { return now.tau < 0 ? -1 : 1; }
+};
+
+Sheared any_sheared()
+{
+    Law law = some_law(any_in(0, places()));
+    for (Coulomb* const one :
+         {std::get_if<Coulomb>(&law), static_cast<Coulomb*>(std::get_if<ResidualStrength>(&law))})
+        if (one && *rc::gen::arbitrary<bool>())
+            one->dilation_until = 7.77e-3;
+    Sheared joint{law, std::pow(10, any_in(3000, 8700) / 1000.0), {}, 0, 0, {}};
+    const auto share = [] { return any_in(-1000, 1001) / 1000.0; };
+    const double closed = joint.p / slopes(law, {}, -joint.p).k_n, sheared = joint.p / k_s(law);
+    for (Index left = any_in(0, 4); left >= 0; --left) {
+        joint.u_n = closed * (left > 0 && any_in(0, 4) == 0 ? 2 : 0.3 * share());
+        joint.u_s += (left > 0 ? 3 : 10) * sheared * share();
+        joint.now = respond(law, joint.state, -joint.p, 0, joint.u_n, joint.u_s);
+    }
+    return joint;
+}
+
+// The slopes of a law are those of its response. Its springs: closing, and shear back, of a joint at its strength.
+RC_GTEST_PROP(law, its_springs_are_those_of_its_response, ())
+{
+    const Sheared joint = any_sheared();
+    RC_PRE(joint.now.status == ContactStatus::slipping);
+    const Slopes slopes = joint::slopes(joint.law, joint.state, joint.now.sigma_n);
+    const double closing = 1e-6 * -joint.now.sigma_n / slopes.k_n,
+                 back = (*rc::gen::arbitrary<bool>() ? 3e-5 : 3e-4) * std::abs(joint.now.tau) / slopes.k_s;
+    State closed = joint.state, unloaded = joint.state;
+    const double pressed = joint.now.sigma_n - joint.moved(closed, -closing, 0).sigma_n;
+    RC_ASSERT(std::abs(pressed / closing - slopes.k_n) < 1e-4 * slopes.k_n);
+    const Response after = joint.moved(unloaded, 0, -joint.sense() * back);
+    RC_ASSERT(std::abs(joint.sense() * (joint.now.tau - after.tau) / back - slopes.k_s) < 1e-3 * slopes.k_s);
+    RC_ASSERT(std::abs(after.sigma_n - joint.now.sigma_n) < 1e-9 * joint.p);
+    RC_ASSERT(unloaded.dilation == joint.state.dilation);
+}
+
+// The strength: where a joint at its strength opens a little, its shear traction falls with the pressure by tan(phi),
+// and is on the straight line that the slopes say.
+RC_GTEST_PROP(law, its_friction_is_that_of_its_response, ())
+{
+    const Sheared joint = any_sheared();
+    RC_PRE(joint.now.status == ContactStatus::slipping);
+    const double opens =
+        2e-3 * -joint.now.sigma_n / joint::slopes(joint.law, joint.state, joint.now.sigma_n).k_n;
+    std::array<State, 3> state;
+    std::array<Response, 3> at{};
+    std::array<Slopes, 3> slopes{};
+    for (int i = 0; i < 3; ++i) {
+        state[i] = joint.state;
+        at[i] = joint.moved(state[i], opens * (1 + 0.5 * i), 0);
+        slopes[i] = joint::slopes(joint.law, state[i], at[i].sigma_n);
+    }
+    RC_PRE(std::abs(slopes[0].tan_phi - slopes[2].tan_phi) < 0.01 * slopes[1].tan_phi); // no kink between
+    const double falls = std::abs(at[0].tau) - std::abs(at[2].tau), by = at[2].sigma_n - at[0].sigma_n;
+    RC_ASSERT(by > 0);
+    RC_ASSERT(std::abs(falls / by - slopes[1].tan_phi) < 1e-4 * slopes[1].tan_phi);
+    const double line = slopes[1].cohesion - at[1].sigma_n * slopes[1].tan_phi;
+    RC_ASSERT(std::abs(std::abs(at[1].tau) - line) < 1e-6 * line);
+}
+
+// Before it has slipped, too: it is elastic below that strength, and slips above. (A continuously yielding joint slips
+// from the first shear on, and never reaches it.)
+RC_GTEST_PROP(law, its_first_slip_is_at_the_strength_of_its_slopes, ())
+{
+    const Law law = some_law(any_in(0, places()));
+    const double p = std::pow(10, any_in(3000, 8700) / 1000.0);
+    const Slopes slopes = joint::slopes(law, {}, -p);
+    const double strength = slopes.cohesion + p * slopes.tan_phi;
+    State below, above;
+    const Response sticks = respond(law, below, -p, 0, 0, 0.999 * strength / slopes.k_s),
+                   slips = respond(law, above, -p, 0, 0, 1.001 * strength / slopes.k_s);
+    RC_ASSERT(sticks.status == ContactStatus::stuck);
+    if (std::holds_alternative<ContinuouslyYielding>(law)) {
+        RC_ASSERT(slips.tau < strength);
+        return;
+    }
+    RC_ASSERT(std::abs(sticks.tau - 0.999 * strength) < 1e-9 * strength);
+    RC_ASSERT(slips.status == ContactStatus::slipping);
+}
+
+// Dilation: a joint at its strength opens by tan(psi) times the slip, and without slip not at all.
+RC_GTEST_PROP(law, its_dilation_is_that_of_its_response, ())
+{
+    const Sheared joint = any_sheared();
+    RC_PRE(joint.now.status == ContactStatus::slipping);
+    constexpr double by = 1e-8;
+    State middle = joint.state, end = joint.state;
+    const Response half = joint.moved(middle, 0, joint.sense() * by);
+    joint.moved(end, 0, joint.sense() * 2 * by);
+    const double tan_psi = joint::slopes(joint.law, middle, half.sigma_n).tan_psi;
+    const double before = joint::slopes(joint.law, joint.state, joint.now.sigma_n).tan_psi;
+    RC_PRE(before <= 1.01 * tan_psi); // no kink between
+    const double slip = std::abs(end.slip - joint.state.slip);
+    RC_ASSERT(slip > 0);
+    RC_ASSERT(std::abs((end.dilation - joint.state.dilation) / slip - tan_psi) < 1e-4 * tan_psi + 1e-9);
+}
+
+// The tangents that the implicit engine makes of the slopes are those of the response, where it sticks and where it
+// slips. Of a law that remembers it takes the derivatives of the response instead.
+RC_GTEST_PROP(law, tangents_of_its_slopes_are_those_of_its_response, ())
 {
     const Law law = some_law(*rc::gen::inRange<Index>(0, places()));
     const double u_s = 3e-3 * (*rc::gen::inRange(-1000, 1001)) / 1000.0;
     State state;
     const Response now = respond(law, state, -1e6, 0, 0, u_s);
     RC_PRE(now.status != ContactStatus::open);
-    RC_PRE(!remembers(law)); // the engine takes the tangents of its response
+    RC_PRE(!remembers(law));
     const Slopes slopes = joint::slopes(law, state, now.sigma_n);
     const auto slope = [&](double by_n, double by_s) {
         StateOf<Dual> start;
@@ -87,8 +200,6 @@ RC_GTEST_PROP(law, its_slopes_are_those_of_its_response, ())
         RC_ASSERT(std::abs(slope(1, 0).sigma_n.slope - k) < 1e-6 * k);
         RC_ASSERT(std::abs(slope(1, 0).tau.slope + sense * k * slopes.tan_phi) < 1e-6 * k);
         RC_ASSERT(std::abs(slope(0, 1).sigma_n.slope + sense * k * slopes.tan_psi) < 1e-6 * k);
-        // Where it slips, the strength is the straight line that the slopes say.
-        RC_ASSERT(std::abs(std::abs(now.tau) - (slopes.cohesion - now.sigma_n * slopes.tan_phi)) < 1e-3);
     }
 }
 
