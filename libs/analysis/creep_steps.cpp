@@ -163,7 +163,8 @@ Step CreepSteps::settle(double target, const mechanics::State& start, int& cuts_
     for (;;) {
         const double duration = end - section_.now;
         if (!settles_at(end, halvings == most_halvings_of_a_step, start)) {
-            ++halvings;
+            // Rock that flows on without bound at the end of the step does so after smaller ones, too.
+            halvings = engines_.implicit_engine().collapse() ? most_halvings_of_a_step : halvings + 1;
             end = halvings < most_halvings_of_a_step ? section_.now + duration / 2 : target;
             watchers_.tell(&Watcher::step_is_halved);
             continue;
