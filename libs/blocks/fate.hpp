@@ -58,7 +58,7 @@ public:
 private:
     struct Stretch {
         double low, high;   // [m]
-        double highest_yet; // of this and all before
+        double highest_yet; // of this and all before [m]
     };
     const Joints& joints_;
     std::vector<Index> start_; // [joints + 1]
