@@ -125,7 +125,7 @@ void generate(const Arguments& arguments)
         refuse_overwriting(read, arguments.files({"output"}));
     const Scene scene = scene::parse_scene(text, input);
     const std::uint64_t seed =
-        arguments.whole_number("seed", 0, std::numeric_limits<std::uint64_t>::max()).value_or(scene.seed);
+        arguments.whole_number("seed", 0, static_cast<std::uint64_t>(scene::seeds.most)).value_or(scene.seed);
     const auto realization = static_cast<std::int32_t>(
         arguments.whole_number("realization", 0, std::numeric_limits<std::int32_t>::max()).value_or(0));
 

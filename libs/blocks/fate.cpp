@@ -8,14 +8,7 @@
 namespace jointcreep::blocks
 {
 
-namespace
-{
-
 using Eigen::Vector2d;
-
-constexpr std::size_t fates = 5;
-
-} // namespace
 
 void FateRecord::add(Index joint, Fate fate, const Vector2d& from, const Vector2d& to)
 {
@@ -29,6 +22,41 @@ void FateRecord::extend(Index joint)
 {
     is_extended_.resize(joints_.set.size(), 0);
     is_extended_[joint] = 1;
+}
+
+// Lengths of the pieces of a joint of the length `length`. Where pieces overlap, the first of their fates counts.
+FateRecord::Lengths FateRecord::lengths_of(std::span<const Piece> pieces, double length)
+{
+    struct End {
+        double place; // [m]
+        std::size_t fate;
+        int change; // of how many pieces with that fate there are
+    };
+    std::vector<End> ends;
+    Lengths sum;
+    for (const auto& [joint, fate, low, high] : pieces) {
+        if (fate == Fate::kept || fate == Fate::shared)
+            sum.extended +=
+                std::max(0.0, std::min(high, 0.0) - low) + std::max(0.0, high - std::max(low, length));
+        const double from = std::clamp(low, 0.0, length), to = std::clamp(high, 0.0, length);
+        if (from < to) {
+            ends.push_back({from, static_cast<std::size_t>(fate), 1});
+            ends.push_back({to, static_cast<std::size_t>(fate), -1});
+        }
+    }
+    std::sort(ends.begin(), ends.end(), [](const End& a, const End& b) { return a.place < b.place; });
+    std::array<int, fates> open{};
+    double place = 0;
+    for (const End& end : ends) {
+        const auto first = std::find_if(open.begin(), open.end(), [](int n) { return n > 0; });
+        if (first != open.end()) {
+            sum.by_fate[static_cast<std::size_t>(first - open.begin())] += end.place - place;
+            sum.covered += end.place - place;
+        }
+        open[end.fate] += end.change;
+        place = end.place;
+    }
+    return sum;
 }
 
 JointFates FateRecord::table(double tolerance) const
@@ -50,48 +78,20 @@ JointFates FateRecord::table(double tolerance) const
         for (const Piece& piece : pieces_)
             sorted[next[piece.joint]++] = piece;
     }
-    struct End {
-        double place;
-        std::size_t fate;
-        int change; // of how many pieces with that fate there are
-    };
-    std::vector<End> ends;
     for (std::size_t j = 0; j < count; ++j) {
         const double length = (joints_.to[j] - joints_.from[j]).norm();
-        ends.clear();
-        for (std::size_t i = start[j]; i < start[j + 1]; ++i) {
-            const auto [joint, fate, low, high] = sorted[i];
-            if (fate == Fate::kept || fate == Fate::shared)
-                table.extended[j] +=
-                    std::max(0.0, std::min(high, 0.0) - low) + std::max(0.0, high - std::max(low, length));
-            const double from = std::clamp(low, 0.0, length), to = std::clamp(high, 0.0, length);
-            if (from < to) {
-                ends.push_back({from, static_cast<std::size_t>(fate), 1});
-                ends.push_back({to, static_cast<std::size_t>(fate), -1});
-            }
-        }
-        std::sort(ends.begin(), ends.end(), [](const End& a, const End& b) { return a.place < b.place; });
-        std::array<double, fates> sum{};
-        std::array<int, fates> open{};
-        double place = 0, covered = 0;
-        for (const End& end : ends) {
-            const auto first = std::find_if(open.begin(), open.end(), [](int n) { return n > 0; });
-            if (first != open.end()) {
-                sum[static_cast<std::size_t>(first - open.begin())] += end.place - place;
-                covered += end.place - place;
-            }
-            open[end.fate] += end.change;
-            place = end.place;
-        }
-        const auto of = [&](Fate fate) { return sum[static_cast<std::size_t>(fate)]; };
+        const std::span<const Piece> pieces(sorted.data() + start[j], sorted.data() + start[j + 1]);
+        const Lengths sum = lengths_of(pieces, length);
+        const auto of = [&](Fate fate) { return sum.by_fate[static_cast<std::size_t>(fate)]; };
         table.kept[j] = of(Fate::kept);
         table.shared[j] = of(Fate::shared);
         table.on_outline[j] = of(Fate::on_outline);
         table.outside[j] = of(Fate::outside);
         table.dangling_end[j] = of(Fate::dangling_end);
-        table.merged[j] = std::max(0.0, length - covered);
-        if (is_extended_.empty() || !is_extended_[j])
-            table.extended[j] = 0; // the overlap at its ends, or merging has moved an end
+        table.merged[j] = std::max(0.0, length - sum.covered);
+        // Elsewhere it is the overlap at its ends, or merging has moved an end.
+        if (!is_extended_.empty() && is_extended_[j])
+            table.extended[j] = sum.extended;
 
         JointFate fate = JointFate::kept;
         if (of(Fate::kept) + of(Fate::shared) == 0)

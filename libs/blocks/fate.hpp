@@ -6,6 +6,8 @@
 
 #include <Eigen/Core>
 
+#include <array>
+#include <span>
 #include <vector>
 
 namespace jointcreep::blocks
@@ -36,6 +38,12 @@ private:
         Fate fate;
         double low, high; // along the joint from its first end [m]
     };
+    static constexpr std::size_t fates = 5;
+    struct Lengths {
+        std::array<double, fates> by_fate{};
+        double covered = 0, extended = 0; // by any of them; beyond the joint's ends [m]
+    };
+    static Lengths lengths_of(std::span<const Piece> pieces, double length);
     const Joints& joints_;
     std::vector<Piece> pieces_;
     std::vector<char> is_extended_; // by joint; empty if none is
@@ -58,7 +66,7 @@ public:
 private:
     struct Stretch {
         double low, high;   // [m]
-        double highest_yet; // of this and all before
+        double highest_yet; // of this and all before [m]
     };
     const Joints& joints_;
     std::vector<Index> start_; // [joints + 1]

@@ -85,7 +85,7 @@ struct Graph {
 // What lies outside a window, if one is given, need not be arranged: crossings there may be left out, and
 // what is called settled is so inside only.
 struct Box {
-    Eigen::Vector2d low, high;
+    Eigen::Vector2d low, high; // [m]
 };
 Graph arrange(const Graph& lines, Sources& sources, const std::optional<Box>& window = {});
 
@@ -100,8 +100,7 @@ struct Faces {
     std::vector<Index> first_ring; // [faces + 1] of each face
     std::vector<Index> ring_start; // [rings + 1] into ring_vertex
     std::vector<Index> ring_vertex;
-    std::vector<std::array<Index, 2>>
-        sides; // of each edge: face on its {left, right}; -1 is the unbounded one
+    std::vector<std::array<Index, 2>> sides; // of each edge: face on its {left, right}; -1: the unbounded one
 
     std::size_t size() const { return area.size(); }
     std::span<const Index> ring(Index r) const
@@ -142,10 +141,10 @@ private:
     std::array<Index, 2> strips_of(std::size_t side) const; // {first, last}
 
     Polygon polygon_;
-    Eigen::Vector2d low_, high_;
-    Index strips_ = 1;         // of equal height
-    std::vector<Index> start_; // of each strip's sides
-    std::vector<Index> side_;  // by its first corner
+    Eigen::Vector2d low_, high_; // [m]
+    Index strips_ = 1;           // of equal height
+    std::vector<Index> start_;   // of each strip's sides
+    std::vector<Index> side_;    // by its first corner
 };
 
 // A place well inside a face, found from its rings alone.

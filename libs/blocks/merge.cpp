@@ -365,8 +365,8 @@ void sort_near(std::vector<NearEdge>& near, std::ptrdiff_t in_order)
 struct Bent {
     std::vector<Vector2d> place; // of vertices [m]
     std::vector<char> has_moved; // vertices, onto an edge
-    std::map<std::pair<Index, Index>, std::vector<Index>>
-        via; // vertices that an edge, by its ends, goes through
+    // Vertices that an edge, by its ends, goes through.
+    std::map<std::pair<Index, Index>, std::vector<Index>> via;
 
     const std::vector<Index>* through(Index a, Index b) const // in order from the lower of its ends
     {

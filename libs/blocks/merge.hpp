@@ -9,10 +9,11 @@ namespace jointcreep::blocks
 {
 
 struct MergeLimits {
-    double shortest_edge; // vertices closer than this to each other, or than half of it to an edge, merge [m]
-    double smallest_angle; // wedges narrower than this are closed if that moves no vertex by more than
-                           // `farthest_closing` shortest edges [rad]
-    static constexpr double farthest_closing = 5;
+    // Vertices closer than this to each other, or than half of it to an edge, merge [m].
+    double shortest_edge;
+    // Wedges narrower than this are closed if that moves no vertex by more than `farthest_closing` shortest edges [rad].
+    double smallest_angle;
+    static constexpr double farthest_closing = 5; // [-]
 };
 
 // One pass of merging over a planar graph. Vertices move in this order: a vertex between joints moves to

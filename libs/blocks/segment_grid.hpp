@@ -15,7 +15,7 @@ namespace jointcreep::blocks
 {
 
 struct Segment {
-    Eigen::Vector2d from, to;
+    Eigen::Vector2d from, to; // [m]
 };
 
 // Every segment is listed in all cells it has a place in, and in some it only passes close by: margin() is
@@ -73,8 +73,8 @@ private:
         return static_cast<Index>(std::clamp(offset / cell_, 0.0, static_cast<double>(count - 1)));
     }
 
-    Eigen::Vector2d low_{0, 0}, extent_{0, 0};
-    double cell_ = 1, margin_ = 0, farthest_ = 0;
+    Eigen::Vector2d low_{0, 0}, extent_{0, 0};    // [m]
+    double cell_ = 1, margin_ = 0, farthest_ = 0; // [m]
     Index columns_ = 0, rows_ = 0;
     std::vector<std::size_t> start_;
     std::vector<Index> entry_;

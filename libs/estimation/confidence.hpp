@@ -18,13 +18,13 @@ namespace jointcreep::estimation
 {
 
 struct Interval {
-    double low, high;
+    double low, high; // in the unit of the estimate
 };
 
 struct Confidence {
     Eigen::Index readings = 0, parameters = 0; // the latter that are free
     double sum_of_squares = 0;                 // chi squared where deviations are known [-]
-    double p_value = 1;                        // of so much or more; 1 where deviations are not known
+    double p_value = 1;                        // of so much or more; 1 where deviations are not known [-]
     double noise_factor = 1;                   // s [-]
     bool is_noise_from_residuals = false;
 
@@ -32,8 +32,8 @@ struct Confidence {
     MatrixXd correlation; // the same
     std::vector<bool> is_fixed;
 
-    double quantile = 0;     // standard errors on each side of one parameter's interval of 95 percent
-    double quantile_all = 0; // of intervals that hold all together with 95 percent (Bonferroni)
+    double quantile = 0;     // standard errors on each side of one parameter's interval of 95 percent [-]
+    double quantile_all = 0; // of intervals that hold all together with 95 percent (Bonferroni) [-]
 
     // For J with its columns scaled to length 1: similar effects on the readings make it small.
     double smallest_eigenvalue = 1; // of their products with each other [-]

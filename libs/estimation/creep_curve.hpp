@@ -18,7 +18,7 @@ struct CreepCurve {
     std::optional<double> elastic_part{}; // d_e, where it is known [m]
 };
 
-// A value above 0 with its interval of 95 percent.
+// A value above 0 with its interval of 95 percent, in the same unit.
 struct Estimate {
     double value;
     Interval interval;
@@ -29,10 +29,10 @@ struct Estimate {
 // chance (Student's t, squared). In short records these are far from even; an end may be 0 or infinite.
 struct CurveFit {
     double elastic_part, creep_part, retardation_time; // d_e [m], d_c [m], tau [s]
-    Interval elastic_interval, creep_interval;
-    Estimate time;                 // tau [s]
-    Estimate stiffness, viscosity; // E / K [-], eta / K [s]
-    double correlation;            // of the logarithms of E and eta [-]
+    Interval elastic_interval, creep_interval;         // [m]
+    Estimate time;                                     // tau [s]
+    Estimate stiffness, viscosity;                     // E / K [-], eta / K [s]
+    double correlation;                                // of the logarithms of E and eta [-]
     Confidence confidence;
     std::vector<double> computed; // [m]
     double lag_one;               // correlation of neighbouring residuals [-]

@@ -95,11 +95,11 @@ struct LawInfo {
     std::string_view name;             // as in messages: "Barton-Bandis"
     std::string_view about;            // in a few words, for the pages of keys and files
     std::vector<Parameter> parameters; // all of them
-    std::vector<std::string_view> own; // names of those that make a material one of this law: the scene gives
-                                       // all of them or none
-    bool creeps = true;                // whether creep may act in series with its springs
-    std::string_view
-        no_sensitivities{}; // why sensitivities refuse such joints: "their ..."; empty: they do not
+    // Names of those that make a material one of this law: the scene gives all of them or none.
+    std::vector<std::string_view> own;
+    bool creeps = true; // whether creep may act in series with its springs
+    // Why sensitivities refuse such joints: "their ..."; empty: they do not.
+    std::string_view no_sensitivities{};
     // Checks a material, and the equivalent joint of it with rock bridges.
     std::function<std::optional<Complaint>(const ValueOf&)> check{};
 };

@@ -45,14 +45,14 @@ struct Checkpoint {
 
     // Gridpoints.
     std::vector<Eigen::Vector2d> displacement; // [m]
-    std::vector<Eigen::Vector2d> is_free;      // 1 or 0 in {x, y}, but for ties
+    std::vector<Eigen::Vector2d> is_free;      // 1 or 0 in {x, y}, but for ties [-]
     std::vector<Eigen::Vector2d> load;         // [N/m]
 
     // Zones.
     std::vector<Index> zone_present;
     std::vector<Eigen::Vector3d> stress, initial_stress; // [Pa]
-    std::vector<Eigen::Vector3d>
-        stiffness; // {C11, C12, C33}: creep leaves it as it was, but for rounding [Pa]
+    // {C11, C12, C33}: creep leaves it as it was, but for rounding [Pa].
+    std::vector<Eigen::Vector3d> stiffness;
     std::vector<Eigen::Vector4d> plastic_strain; // of zones that yield {xx, yy, zz, 2 xy} [-]
     std::vector<double> stress_zz, initial_zz;   // of these [Pa]
 
@@ -62,8 +62,8 @@ struct Checkpoint {
     std::vector<Eigen::Vector2d> relative_displacement, offset; // [m]
     std::vector<double> slip, dilation;                         // [m]
     std::vector<Index> is_broken;
-    std::vector<double> first_memory, second_memory,
-        third_memory; // of laws that remember more (their headers say what) [SI]
+    // Of laws that remember more (their headers say what) [SI].
+    std::vector<double> first_memory, second_memory, third_memory;
 
     // Creep: a direction of a contact, and its units; a zone, and its units.
     std::vector<double> reference;               // [Pa]

@@ -27,8 +27,7 @@ enum class EdgeKind : Index {
 struct Names {
     std::vector<std::string> rock;           // as in the scene's [[rock]]
     std::vector<std::string> joint_material; // [[joint_material]]
-    std::vector<std::string> joint_set;      // [[joint_set]], then each single [[joint]] as a set of its own,
-                                             // then [[mapped]]
+    std::vector<std::string> joint_set;      // [[joint_set]], then each [[joint]], then [[mapped]]
     std::vector<std::string> stage;          // [[stage]]
 };
 
@@ -73,7 +72,7 @@ enum class JointFate : Index {
     dropped = 4  // none of it is on block edges
 };
 
-// Fates by lengths; rows are joints. All lengths but the last add up to the joint's line, traces and bridges [m].
+// Fates by lengths [m]; rows are joints. All lengths but the last add up to the joint's line, traces and bridges.
 struct JointFates {
     std::vector<Index> fate;          // JointFate
     std::vector<double> kept;         // on block edges that have its properties
@@ -106,9 +105,9 @@ struct Blocks {
     std::vector<Index> block_rock;  // into Names::rock
     std::vector<Index> block_stage; // that removes it, into Names::stage; -1 stays
     std::vector<double> block_area; // [m2]
-    std::vector<Index>
-        block_ring; // [blocks + 1] its rings are rows block_ring[i] .. block_ring[i + 1] of ring_start;
-                    // the first is the outer one, counter-clockwise, the others are holes, clockwise
+    // [blocks + 1] The rings of block i are rows block_ring[i] .. block_ring[i + 1] of ring_start. The first is the outer
+    // one, counter-clockwise, the others are holes, clockwise.
+    std::vector<Index> block_ring;
     std::vector<Index> ring_start;  // [rings + 1] its vertices are rows ring_start[r] .. of ring_vertex
     std::vector<Index> ring_vertex; // into vertex
 
@@ -147,12 +146,13 @@ struct SetAverages {
     std::vector<double> edge_persistence;         // on the edges of blocks [-]
     std::vector<double> line_length, edge_length; // [m]
 
-    std::vector<double> joint_cohesion, joint_friction_angle, joint_tensile_strength;    // [Pa], [rad], [Pa]
-    std::vector<double> bridge_cohesion, bridge_friction_angle, bridge_tensile_strength; // 0 without bridges
-    std::vector<double> cohesion, friction_angle, tensile_strength;                      // of the averages
-    std::vector<double> joint_dilation_angle, bridge_dilation_angle, dilation_angle;     // [rad]
-    std::vector<double> joint_normal_stiffness, joint_shear_stiffness;                   // [Pa/m]
-    std::vector<double> normal_stiffness, shear_stiffness; // of the averages [Pa/m]
+    // Cohesion [Pa], friction angle [rad] and tensile strength [Pa]: of joints, of rock bridges (0 without), averaged.
+    std::vector<double> joint_cohesion, joint_friction_angle, joint_tensile_strength;
+    std::vector<double> bridge_cohesion, bridge_friction_angle, bridge_tensile_strength;
+    std::vector<double> cohesion, friction_angle, tensile_strength;
+    std::vector<double> joint_dilation_angle, bridge_dilation_angle, dilation_angle; // [rad]
+    std::vector<double> joint_normal_stiffness, joint_shear_stiffness;               // [Pa/m]
+    std::vector<double> normal_stiffness, shear_stiffness;                           // of the averages [Pa/m]
     std::vector<double> limited_length; // of edges that are stiffer than zones can tell [m]
 };
 
@@ -172,9 +172,8 @@ struct EquivalentJoints {
     std::vector<double> normal_maxwell_viscosity, shear_maxwell_viscosity; // [Pa s/m]
 
     std::vector<Index> law{}; // into joint::laws() (libs/joint/law.hpp)
-    std::map<std::string, std::vector<double>, std::less<>>
-        own{};                   // parameters of single laws, by their names; 0 on
-                                 // edges of other laws [SI]
+    // Parameters of single laws, by their names; 0 on edges of other laws [SI].
+    std::map<std::string, std::vector<double>, std::less<>> own{};
     double strength_divisor = 1; // of all strengths, for a run with strengths divided; in no file [-]
 
     // What was averaged, and with which persistence; 0 without joint [-].

@@ -17,7 +17,7 @@ struct Interval {
 };
 
 struct Line {
-    Eigen::Vector2d point, direction; // unit
+    Eigen::Vector2d point, direction; // [m], unit vector [-]
     Eigen::Vector2d at(double distance) const { return point + distance * direction; }
 };
 

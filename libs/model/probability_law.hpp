@@ -10,13 +10,14 @@
 namespace jointcreep
 {
 
+// Values in the unit of what the law is of: m of lengths and spacings, rad of angles.
 struct ProbabilityLaw {
     enum class Kind { constant, normal, lognormal, negative_exponential, uniform, power };
     Kind kind = Kind::constant;
     double mean = 0;
     double deviation = 0;       // standard deviation; 0 for a constant, the mean for the negative exponential
     double least = 0, most = 0; // ends of the uniform and the power law
-    double exponent = 0;        // of the power law, whose density falls as x^-exponent
+    double exponent = 0;        // of the power law, whose density falls as x^-exponent [-]
 };
 
 // Every value from `least` to `most` as likely as another.

@@ -21,9 +21,8 @@ struct Mesh {
     std::vector<Eigen::Vector2d> gridpoint;           // position at the start [m]
     std::vector<Index> gridpoint_fixed;               // 0 free, 1 fixed in x, 2 in y, 3 in both
     std::vector<std::array<Index, 3>> zone_gridpoint; // counter-clockwise
-    std::vector<std::array<Index, 3>>
-        zone_middle; // gridpoints in the middles of its sides 0-1, 1-2, 2-0; none where
-                     // strain is constant
+    // Gridpoints in the middles of its sides 0-1, 1-2, 2-0; none where strain is constant.
+    std::vector<std::array<Index, 3>> zone_middle;
     std::vector<Eigen::Vector2d> stress_point; // of quadratic zones, three a zone [m]
     std::vector<Index> zone_block;             // into Blocks
     // Ties: two gridpoints that move as one until a stage excavates the rock that connects them (at a joint's tip,
@@ -54,8 +53,8 @@ struct History {
     std::vector<Index> first_reading_row;        // [point] the row a point's own readings count from
     std::vector<Eigen::Vector2d> displacement;   // [time, point] since the in-situ equilibrium [m]
     std::vector<Index> present; // [time, point] 0 once removed; the last displacement is kept
-    std::vector<Index>
-        reset_row; // [time] the row displacements are to count from since the last reset, 0 before one
+    // [time] The row that displacements are to count from since the last reset, 0 before one.
+    std::vector<Index> reset_row;
 };
 
 // The whole section at chosen times: the in-situ equilibrium, after every stage, before the next, the end.
@@ -67,16 +66,16 @@ struct States {
     std::vector<Eigen::Vector3d> stress;       // [state, zone] {xx, yy, xy} [Pa]
     std::vector<Index> zone_present;           // [state, zone] 0 or 1
     std::vector<Eigen::Vector2d> traction;     // [state, contact] {normal, shear} [Pa]
-    std::vector<Eigen::Vector2d>
-        relative_displacement; // [state, contact] displacement of side b minus side a {normal, shear} [m]
+    // [state, contact] Displacement of side b minus side a {normal, shear} [m].
+    std::vector<Eigen::Vector2d> relative_displacement;
     std::vector<Index> contact_status;  // [state, contact] ContactStatus
     std::vector<double> slip, dilation; // [state, contact] since the in-situ equilibrium [m]
     std::vector<Index> bond_broken;     // [state, contact] 0 or 1
     std::vector<Eigen::Vector2d> crept; // [state, contact] of the relative displacement {normal, shear} [m]
     std::vector<double> initial_gap;    // [contact] at the in-situ equilibrium; 0 where closed [m]
     std::vector<Index> yielding_zone;   // zones of rock that yields
-    std::vector<Eigen::Vector3d>
-        plastic_strain; // [state, yielding zone] {xx, yy, xy} since the in-situ equilibrium [-]
+    // [state, yielding zone] {xx, yy, xy} since the in-situ equilibrium [-].
+    std::vector<Eigen::Vector3d> plastic_strain;
     std::vector<Eigen::Vector3d> point_stress; // [state, stress point of quadratic zones] {xx, yy, xy} [Pa]
     std::vector<double> stress_zz;             // [state, yielding zone] across the section [Pa]
     std::vector<Index> creeping_zone;          // zones of rock that creeps
@@ -94,8 +93,8 @@ struct Equilibria {
     std::vector<Index> steps;    // of dynamic relaxation, and corrections of the implicit engine
     std::vector<Index> factorisations, solves;  // of the implicit engine; solves are back-substitutions
     std::vector<double> unbalanced_force_ratio; // [-]
-    std::vector<double>
-        contact_force_change; // over the last 100 steps or by one more correction, over the mean force [-]
+    // Over the last 100 steps or by one more correction, over the mean force [-].
+    std::vector<double> contact_force_change;
     std::vector<double> remaining_displacement; // largest, by estimate [m]
     // Energy balance: work_of_loads = stored + dissipated (by contacts) + damped [J/m].
     std::vector<double> work_of_loads, stored_energy, dissipated_energy, damped_energy;

@@ -117,7 +117,7 @@ struct Density {
         p32  // joint area per volume [1/m]
     };
     Measure measure = Measure::p21;
-    double value = 0;
+    double value = 0;    // in the unit of its measure
     Scanline scanline{}; // of p10
 };
 
@@ -142,10 +142,10 @@ struct JointSet {
     std::vector<MeasuredPole> poles{}; // drawn from by weight
 
     std::optional<Density> density{}; // with lines it sets the mean of `spacing`, which gives the shape alone
-    ProbabilityLaw spacing{ProbabilityLaw::Kind::negative_exponential, 1,
-                           1}; // of lines, along the set's mean normal in space [m]
-    std::optional<ProbabilityLaw>
-        length{}; // of traces [m]; of lines it is needed unless persistence is 0 or 1
+    // Of lines, along the set's mean normal in space [m].
+    ProbabilityLaw spacing{ProbabilityLaw::Kind::negative_exponential, 1, 1};
+    // Of traces [m]; of lines it is needed unless persistence is 0 or 1.
+    std::optional<ProbabilityLaw> length{};
     std::optional<ProbabilityLaw> diameter{}; // of discs [m]
     double persistence = 0;                   // of lines: fraction of a line that is joint [-]
 

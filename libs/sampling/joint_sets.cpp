@@ -64,6 +64,56 @@ std::vector<Interval> pieces(const JointSet& set, const Scene& scene, const Line
     return {{reach.low - origin, reach.high - origin}};
 }
 
+// Midpoints of traces whose size (of a segment its length, of a disc its diameter) is x have the density
+// P20 x^o f(x) / E[x^o] over sizes, o = 0 for segments and 1 for discs, which a section meets by their size.
+// The number of those in the box of w by h, widened by x/2 on every side, is Poisson distributed, with the mean
+//     P20 E[x^o (w + x) (h + x)] / E[x^o]
+// and hold every trace that comes into the box, however large sizes can be. A size of theirs has the density
+// x^o (w + x) (h + x) f(x), a mixture of powers of x.
+class TracesInBox
+{
+public:
+    TracesInBox(const Polygon& bounds, const ProbabilityLaw& law, bool discs)
+        : law_(law), order_(discs ? 1 : 0), x_(sides(bounds, Vector2d::UnitX())),
+          y_(sides(bounds, Vector2d::UnitY())), w_(x_.high - x_.low),
+          h_(y_.high - y_.low), share_{w_ * h_ * moment(order_), (w_ + h_) * moment(order_ + 1),
+                                       moment(order_ + 2)}
+    {
+    }
+
+    double expected(double p20) const { return p20 * all() / moment(order_); } // number of traces [-]
+
+    struct Drawn {
+        Vector2d middle; // [m]
+        double half;     // of the length of the trace [m]
+    };
+    Drawn draw(Stream& sizes, Stream& position) const
+    {
+        const double part = uniform(sizes) * all();
+        const int more = part < share_[0] ? 0 : part < share_[0] + share_[1] ? 1 : 2;
+        const double size = draw_biased(law_, order_ + more, sizes);
+        const double off = 2 * uniform(sizes) - 1; // of the section from a disc's centre, over its radius
+        const double half = size / 2 * (order_ == 1 ? std::sqrt(1 - off * off) : 1);
+        const double across = x_.low - size / 2 + uniform(position) * (w_ + size);
+        return {{across, y_.low - size / 2 + uniform(position) * (h_ + size)}, half};
+    }
+
+private:
+    static Interval sides(const Polygon& bounds, const Vector2d& axis)
+    {
+        const Interval side = extent(bounds, axis);
+        return widened_to_multiples(side, power_of_two_above(side) / 8);
+    }
+    double moment(int of) const { return moment_of_positive(law_, of); }
+    double all() const { return share_[0] + share_[1] + share_[2]; }
+
+    const ProbabilityLaw& law_;
+    int order_;                   // o
+    Interval x_, y_;              // sides of the box [m]
+    double w_, h_;                // [m]
+    std::array<double, 3> share_; // of the powers of x [m^(o + 2)]
+};
+
 class Sampler
 {
 public:
@@ -82,6 +132,11 @@ public:
 private:
     void add_lines(const JointSet& set, Index index);
     void add_traces(const JointSet& set, Index index, const TraceIndex& stops);
+
+    // The stretches that are left of a segment or the trace of a disc, which reaches `half` to both sides.
+    std::vector<Interval> kept_of_trace(const JointSet& set, const TraceIndex& stops,
+                                        const SetStreams& streams, Index number, const Line& line,
+                                        double half) const;
 
     // Calls visit(number, place along the mean normal) for all lines with a place in `reach`.
     template <class Visit>
@@ -163,12 +218,6 @@ void Sampler::add_lines(const JointSet& set, Index index)
     });
 }
 
-// Midpoints of traces whose size (of a segment its length, of a disc its diameter) is x have the density
-// P20 x^o f(x) / E[x^o] over sizes, o = 0 for segments and 1 for discs, which a section meets by their size.
-// The number of those in the box of w by h, widened by x/2 on every side, is Poisson distributed, with the mean
-//     P20 E[x^o (w + x) (h + x)] / E[x^o]
-// and hold every trace that comes into the box, however large sizes can be. A size of theirs has the density
-// x^o (w + x) (h + x) f(x), a mixture of powers of x.
 void Sampler::add_traces(const JointSet& set, Index index, const TraceIndex& stops)
 {
     const bool discs = set.kind == SetKind::discs;
@@ -178,19 +227,8 @@ void Sampler::add_traces(const JointSet& set, Index index, const TraceIndex& sto
                                                : " is of segments, and needs a length"));
     const SetStreams streams{seed_, realization_, set_key(set.name)};
     const Orientations orientations(set, scene_);
-    const double p20 = density_of(set, scene_).p20;
-
-    const Polygon& bounds = bounds_of(set, scene_);
-    const auto sides_of = [&](const Vector2d& axis) {
-        const Interval side = extent(bounds, axis);
-        return widened_to_multiples(side, power_of_two_above(side) / 8);
-    };
-    const Interval x = sides_of(Vector2d::UnitX()), y = sides_of(Vector2d::UnitY());
-    const double w = x.high - x.low, h = y.high - y.low;
-    const int order = discs ? 1 : 0;
-    const auto moment = [&](int of) { return moment_of_positive(*law, of); };
-    const std::array<double, 3> share{w * h * moment(order), (w + h) * moment(order + 1), moment(order + 2)};
-    const double all = share[0] + share[1] + share[2], expected = p20 * all / moment(order);
+    const TracesInBox box(bounds_of(set, scene_), *law, discs);
+    const double expected = box.expected(density_of(set, scene_).p20);
     if (!(expected <= static_cast<double>(most_joints)))
         throw input_error(
             quoted(set) + ": its density is too large for the section, or its sizes: " +
@@ -202,33 +240,10 @@ void Sampler::add_traces(const JointSet& set, Index index, const TraceIndex& sto
     for (Index number = 0; number < joints_drawn; ++number) {
         Stream sizes(streams, number, Purpose::size), position(streams, number, Purpose::position),
             orientation(streams, number, Purpose::orientation);
-        const double part = uniform(sizes) * all;
-        const int more = part < share[0] ? 0 : part < share[0] + share[1] ? 1 : 2;
-        const double size = draw_biased(*law, order + more, sizes);
-        const double off = 2 * uniform(sizes) - 1; // of the section from a disc's centre, over its radius
-        const double half = size / 2 * (discs ? std::sqrt(1 - off * off) : 1);
-        const double across = x.low - size / 2 + uniform(position) * (w + size);
-        const Vector2d middle(across, y.low - size / 2 + uniform(position) * (h + size));
+        const auto [middle, half] = box.draw(sizes, position);
         const Orientations::Drawn drawn = orientations.draw_joint(orientation);
         const Line line{middle, drawn.trace};
-
-        Interval trace{-half, half};
-        std::vector<Interval> kept;
-        const auto ends_at_outline = overlap(inside(scene_.outline, line), trace);
-        if (ends_at_outline.empty())
-            continue;
-        if (!stops.empty()) {
-            Stream ahead(streams, number, Purpose::ends_ahead), behind(streams, number, Purpose::ends_behind);
-            trace.high = stops.end_of(line, half, set.termination_probability, ends_at_outline, ahead);
-            trace.low = -stops.end_of({middle, -line.direction}, half, set.termination_probability,
-                                      turned_round(ends_at_outline), behind);
-        }
-        if (!set.region && set.rocks.empty()) {
-            if (!overlap(ends_at_outline, trace).empty())
-                kept = {trace};
-        } else {
-            kept = overlap(where_set_exists(set, scene_, line), trace);
-        }
+        const std::vector<Interval> kept = kept_of_trace(set, stops, streams, number, line, half);
         check_pieces(set, kept.size());
         for (std::size_t p = 0; p < kept.size(); ++p) {
             const Vector2d from = line.at(kept[p].low), to = line.at(kept[p].high);
@@ -237,6 +252,27 @@ void Sampler::add_traces(const JointSet& set, Index index, const TraceIndex& sto
             add_trace(from, to);
         }
     }
+}
+
+std::vector<Interval> Sampler::kept_of_trace(const JointSet& set, const TraceIndex& stops,
+                                             const SetStreams& streams, Index number, const Line& line,
+                                             double half) const
+{
+    Interval trace{-half, half};
+    const auto ends_at_outline = overlap(inside(scene_.outline, line), trace);
+    if (ends_at_outline.empty())
+        return {};
+    if (!stops.empty()) {
+        Stream ahead(streams, number, Purpose::ends_ahead), behind(streams, number, Purpose::ends_behind);
+        trace.high = stops.end_of(line, half, set.termination_probability, ends_at_outline, ahead);
+        trace.low = -stops.end_of({line.point, -line.direction}, half, set.termination_probability,
+                                  turned_round(ends_at_outline), behind);
+    }
+    if (set.region || !set.rocks.empty())
+        return overlap(where_set_exists(set, scene_, line), trace);
+    if (overlap(ends_at_outline, trace).empty())
+        return {};
+    return {trace};
 }
 
 void Sampler::add(const SingleJoint& joint, Index index)

@@ -42,8 +42,8 @@ Eigen::Vector3d direction_of(const Scanline& scanline, const Scene& scene);
 // All the joints of a set by their unit normals, each with its share of the joint area. Laws other than the
 // bootstrap are laid out on a grid, close enough for means to 1e-3.
 struct Rose {
-    std::vector<Eigen::Vector3d> pole;
-    std::vector<double> share; // sums to 1
+    std::vector<Eigen::Vector3d> pole; // unit vectors [-]
+    std::vector<double> share;         // sums to 1 [-]
 
     // Mean of |n.v|: joints met by a scanline along the unit vector v, per area of joint in a volume.
     double along(const Eigen::Vector3d& v) const;
@@ -82,7 +82,7 @@ private:
     Eigen::Vector3d draw_pole(Stream& stream) const;
 
     const JointSet& set_;
-    double azimuth_ = 0;
+    double azimuth_ = 0;                // [rad]
     std::vector<Eigen::Vector3d> pole_; // of a bootstrap
     std::vector<double> sum_;           // of shares up to each
     Eigen::Vector3d mean_pole_;

@@ -814,9 +814,9 @@ Table<LargeDisplacements> large_displacements()
 
 Table<Scene> random_numbers()
 {
-    return {{"random", once, optional, "Needed by joint sets."},
-            {integer("seed", &Scene::seed, from(0).to(9007199254740992.0),
-                     "Another seed gives another network of the same statistics.")}};
+    return {
+        {"random", once, optional, "Needed by joint sets."},
+        {integer("seed", &Scene::seed, seeds, "Another seed gives another network of the same statistics.")}};
 }
 
 // The mapped set that a table of the scene, at `place`, stands for, from the file that it names.

@@ -9,6 +9,7 @@
 namespace jointcreep::scene
 {
 
+inline constexpr Range seeds = from(0).to(9007199254740992.0); // 2^53: up to it each whole number is a double
 inline constexpr Range zone_sizes = above(0).to(keys::farthest_metre); // [m]
 inline constexpr Range equilibrium_tolerances = from(1e-12).to(1e-2);  // [-]
 inline constexpr Range creep_steps = above(0).to(keys::farthest_day);  // [day]

@@ -26,17 +26,17 @@ double kurtosis(const ProbabilityLaw& law);
 
 // Moments of the law's values above 0.
 struct Moments {
-    double mean;
-    double squared_variation; // variance / mean^2
-    double third;             // third central moment / mean^3
+    double mean;              // in the unit of the values
+    double squared_variation; // variance / mean^2 [-]
+    double third;             // third central moment / mean^3 [-]
 };
 Moments positive_moments(const ProbabilityLaw& law);
 
 // How well a sample fits that by its law is uniform in [0, 1], by Kolmogorov and Smirnov; and one on a circle
 // of circumference 1, by Kuiper. Limit distributions with the correction of Stephens 1970 for small samples.
 struct Fit {
-    double distance; // the largest between the two distributions; Kuiper: above plus below
-    double p_value;
+    double distance; // the largest between the two distributions; Kuiper: above plus below [-]
+    double p_value;  // [-]
 };
 Fit kolmogorov_smirnov(std::vector<double> uniforms);
 Fit kuiper(std::vector<double> uniforms);
@@ -56,9 +56,9 @@ double fisher_f_quantile(double p, double degrees_above, double degrees_below);
 // How many points of a stationary renewal process lie on a scanline.
 struct Renewal {
     double mean;              // of the intervals [m]
-    double squared_variation; // of the intervals: variance / mean^2
-    double third;             // third central moment / mean^3
-    double blur = 0;          // variance of the count by points that move across the scanline's ends
+    double squared_variation; // of the intervals: variance / mean^2 [-]
+    double third;             // third central moment / mean^3 [-]
+    double blur = 0;          // variance of the count by points that move across the scanline's ends [-]
 };
 
 // P(at least n points on `length`), n >= 1: that the n-th point comes before the end. The sum of the

@@ -17,12 +17,12 @@ inline constexpr std::size_t least_sample = 10;  // for a verdict
 
 struct Row {
     std::string quantity;
-    std::string unit;
+    std::string unit; // of achieved value, target and interval
     double achieved = 0;
     std::size_t sample_size = 0;
     std::optional<double> target{};
     std::optional<Range> interval{};
-    std::optional<double> p_value{}; // judged by it; or
+    std::optional<double> p_value{}; // judged by it [-]; or
     std::optional<bool> is_exact{};  // a target that leaves nothing to chance is met
     bool is_judged = false;          // too few, if neither is there
 

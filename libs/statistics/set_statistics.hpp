@@ -34,7 +34,7 @@ TraceRows trace_rows(const Joints& joints);
 // Angles from the mean trace to traces, so many that each stands for the same share of the set's law [rad].
 std::vector<double> turns_by_law(const Scene& scene, const JointSet& set);
 
-// Unit vector along the mean trace, and the length of the mean normal's part in the section, |n_p|.
+// Unit vector along the mean trace, and the length of the mean normal's part in the section, |n_p| [-].
 struct MeanTrace {
     Eigen::Vector2d along;
     double normal_part;

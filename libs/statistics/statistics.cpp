@@ -32,6 +32,46 @@ double secant(double turn)
     return 1 / std::max(std::cos(turn), 0.05);
 }
 
+// A set of lines: its frequency along the mean normal, directions of its lines, and how many pieces of them there are.
+struct Lines {
+    double frequency, persistence;     // [1/m], [-]
+    std::vector<double> angles, turns; // of lines, in the section and from the mean trace [rad]
+    double pieces = 0;                 // into which the outline cuts them
+    double dispersion = 0;             // variance of their number over its mean [-]
+};
+
+Lines lines_of(const Scene& scene, const JointSet& set, const Window& window)
+{
+    const MeanTrace mean = mean_trace(scene, set);
+    const Moments spacing = positive_moments(set.spacing);
+    Lines lines{mean.normal_part / spacing.mean, set.persistence, {}, turns_by_law(scene, set)};
+    const double angle = std::atan2(mean.along.y(), mean.along.x());
+    for (const double turn : lines.turns) {
+        lines.angles.push_back(angle + turn);
+        lines.pieces += lines.frequency * secant(turn) *
+                        window.stretches_per_density({std::cos(angle + turn), std::sin(angle + turn)}) /
+                        static_cast<double>(lines.turns.size());
+    }
+    const Renewal renewal{1 / lines.frequency, spacing.squared_variation, spacing.third};
+    const Interval extent = window.extent(mean.across());
+    lines.dispersion =
+        count_variance(extent.high - extent.low, renewal) / ((extent.high - extent.low) * lines.frequency);
+    return lines;
+}
+
+// Crossings of the lines of two sets, or of one with itself [1/m2].
+double crossings_of(const Lines& a, const Lines& b)
+{
+    double mean = 0; // of the sine between two lines, over the cosines of their turns
+    const std::size_t step_a = 1 + a.turns.size() / 256, step_b = 1 + b.turns.size() / 256;
+    std::size_t pairs = 0;
+    for (std::size_t i = step_a / 2; i < a.turns.size(); i += step_a)
+        for (std::size_t j = step_b / 2; j < b.turns.size(); j += step_b, ++pairs)
+            mean += std::abs(std::sin(a.angles[i] - b.angles[j])) * secant(a.turns[i]) * secant(b.turns[j]);
+    return a.frequency * b.frequency * mean / static_cast<double>(pairs) * (&a == &b ? 0.5 : 1);
+}
+
+// Of sets of lines alone, whose number is that of a renewal process.
 std::optional<Expected> expected_of(const Scene& scene)
 {
     const auto is_other = [](const JointSet& set) {
@@ -42,31 +82,13 @@ std::optional<Expected> expected_of(const Scene& scene)
         return {};
     const Window window(scene.outline);
     const double area = window.area();
-    struct Lines {
-        double frequency, persistence;
-        std::vector<double> angles, turns;
-        double pieces = 0, dispersion = 0;
-    };
     std::vector<Lines> sets;
     Expected expected;
     for (const JointSet& set : scene.joint_sets) {
-        const MeanTrace mean = mean_trace(scene, set);
-        const Moments spacing = positive_moments(set.spacing);
-        Lines lines{mean.normal_part / spacing.mean, set.persistence, {}, turns_by_law(scene, set)};
+        Lines lines = lines_of(scene, set, window);
         const bool is_exponential = set.spacing.kind == ProbabilityLaw::Kind::negative_exponential;
         if (set.region || (lines.turns.size() > 1 && !is_exponential))
             return {};
-        const double angle = std::atan2(mean.along.y(), mean.along.x());
-        for (const double turn : lines.turns) {
-            lines.angles.push_back(angle + turn);
-            lines.pieces += lines.frequency * secant(turn) *
-                            window.stretches_per_density({std::cos(angle + turn), std::sin(angle + turn)}) /
-                            static_cast<double>(lines.turns.size());
-        }
-        const Renewal renewal{1 / lines.frequency, spacing.squared_variation, spacing.third};
-        const Interval extent = window.extent(mean.across());
-        lines.dispersion = count_variance(extent.high - extent.low, renewal) /
-                           ((extent.high - extent.low) * lines.frequency);
         expected.pieces += lines.pieces;
         expected.is_cut_through = expected.is_cut_through && set.persistence == 1;
         sets.push_back(std::move(lines));
@@ -74,16 +96,7 @@ std::optional<Expected> expected_of(const Scene& scene)
     std::vector<double> met(sets.size(), 0.0); // crossings of each set's lines with others [1/m2]
     for (std::size_t a = 0; a < sets.size(); ++a)
         for (std::size_t b = 0; b <= a; ++b) {
-            double mean = 0; // of the sine between two lines, over the cosines of their turns
-            const std::size_t step_a = 1 + sets[a].turns.size() / 256,
-                              step_b = 1 + sets[b].turns.size() / 256;
-            std::size_t pairs = 0;
-            for (std::size_t i = step_a / 2; i < sets[a].turns.size(); i += step_a)
-                for (std::size_t j = step_b / 2; j < sets[b].turns.size(); j += step_b, ++pairs)
-                    mean += std::abs(std::sin(sets[a].angles[i] - sets[b].angles[j])) *
-                            secant(sets[a].turns[i]) * secant(sets[b].turns[j]);
-            const double crossings = sets[a].frequency * sets[b].frequency * mean /
-                                     static_cast<double>(pairs) * (a == b ? 0.5 : 1);
+            const double crossings = crossings_of(sets[a], sets[b]);
             expected.line_crossings += crossings;
             expected.crossings += crossings * sets[a].persistence * sets[b].persistence;
             met[a] += crossings;

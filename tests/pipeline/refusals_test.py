@@ -157,6 +157,7 @@ class Refusals(ChainTest):
         cases = [
             ("jointgen", ["--seed", "-1"], "--seed"),
             ("jointgen", ["--seed", "1.5"], "--seed"),
+            ("jointgen", ["--seed", "9007199254740993"], "--seed"),
             ("jointgen", ["--realization", "4294967296"], "--realization"),
             ("jointgen", ["--seed", "1", "--seed", "2"], "seed"),
             ("demsolve", ["--threads", "0"], "--threads"),
