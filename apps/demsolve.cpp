@@ -19,7 +19,6 @@
 
 #include "analysis/safety.hpp"
 #include "model/error.hpp"
-#include "model/units.hpp"
 #include "scene/scene.hpp"
 #include "store/files.hpp"
 #include "zoning/cost.hpp"
@@ -109,8 +108,7 @@ void solve(const Arguments& arguments)
     Summary summary;
     std::optional<store::CheckpointFile> kept = files.kept_before(arguments, scene, factor);
     if (kept)
-        summary.add("continued from", "stage \"" + scene.stages.at(kept->checkpoint.stage).name + "\", day " +
-                                          shown(kept->checkpoint.time / unit::day));
+        summary.add("continued from", demsolve::place_of(kept->checkpoint, scene));
     if (const auto path = arguments.text("checkpoint"))
         recording.keep = [&files, path, factor = factor](const Result& so_far, const Checkpoint& checkpoint) {
             files.write_checkpoint(*path, factor, so_far, checkpoint);

@@ -47,14 +47,16 @@ Analysis::Analysis(const Scene& scene, const Network& network, const EquivalentJ
                    const Recording& recording, const Observer& observe)
     : section_(scene, network, joints, threads, recording, observe),
       step_history_(section_, recording.step_history_every), engines_(section_, step_history_),
-      records_(section_), creep_(section_, engines_, watchers_, recording.state_every)
+      records_(section_),
+      checkpoints_(section_, step_history_, recording,
+                   [this] {
+                       Checkpoint kept;
+                       transfer(Transfer(Transfer::Way::keep), kept);
+                       return kept;
+                   }),
+      creep_(section_, engines_, watchers_, recording.state_every)
 {
-    if (recording.keep)
-        watchers_.add(checkpoints_.emplace(section_, recording.keep, [this] {
-            Checkpoint kept;
-            transfer(Transfer(Transfer::Way::keep), kept);
-            return kept;
-        }));
+    watchers_.add(checkpoints_);
     if (!recording.parameters.empty())
         watchers_.add(sensitivities_.emplace(recording.parameters, section_, engines_.implicit_engine()));
     watchers_.add(records_);
@@ -62,6 +64,9 @@ Analysis::Analysis(const Scene& scene, const Network& network, const EquivalentJ
 
 void Analysis::run()
 {
+    is_in_situ_ = true;
+    watchers_.tell(&Watcher::may_continue_here);
+    is_in_situ_ = false;
     settle_in_situ();
     if (section_.scene.large_displacements)
         dynamics_.emplace(section_, watchers_).settle_in_situ();
@@ -71,15 +76,25 @@ void Analysis::run()
 
 void Analysis::go_on(Result so_far, Checkpoint kept)
 {
-    so_far.mesh = std::move(section_.result.mesh);
-    section_.result = std::move(so_far);
+    const std::vector<Stage>& stages = section_.scene.stages;
+    if (kept.stage < 0 || static_cast<std::size_t>(kept.stage) > stages.size())
+        throw input_error("the state kept is that of another section");
+    if (kept.search.empty()) {
+        so_far.mesh = std::move(section_.result.mesh);
+        section_.result = std::move(so_far);
+        so_far = {};
+    }
+    checkpoints_.continue_from(kept, std::move(so_far));
+    if (kept.is_in_situ != 0) {
+        run();
+        return;
+    }
     if (section_.scene.large_displacements)
         dynamics_.emplace(section_, watchers_);
     creep_.begin();
     transfer(Transfer(Transfer::Way::restore), kept);
-    if (checkpoints_)
-        checkpoints_->skip_next();
-    excavate_stages_of(section_.now);
+    if (next_stage_ < stages.size() && stages[next_stage_].time == section_.now)
+        excavate_stages_of(section_.now);
     follow_schedule(section_.now);
 }
 
@@ -108,24 +123,26 @@ void Analysis::settle_in_situ()
 // The scene's dates after a time [s].
 void Analysis::follow_schedule(double after)
 {
+    double last = 0;
     for (const double date : dates_of(section_)) {
-        if (date <= after)
-            continue;
-        if (creep_.end())
-            break;
-        go_to(date);
-        excavate_stages_of(date);
+        if (date > after) {
+            if (creep_.end())
+                break;
+            go_to(last, date);
+            excavate_stages_of(date);
+        }
+        last = date;
     }
     for (const MonitoringPoint& point : section_.scene.points)
         if (point.first_reading > section_.now) // creep has ended before: nothing moves until then
             section_.recorder.start_readings(section_.result, point.first_reading);
 }
 
-// 3. Creep and changes of load, up to a date. With large displacements nothing moves between stages.
-void Analysis::go_to(double date)
+// 3. Creep and changes of load, from the last date to the next. With large displacements nothing moves between stages.
+void Analysis::go_to(double last, double date)
 {
     if (!dynamics_)
-        creep_.go_to(date, section_.now >= last_event_of(section_));
+        creep_.go_to(last, date, section_.now >= last_event_of(section_));
     else if (date != section_.now) {
         section_.now = date;
         watchers_.row_and_state_are_due("");
@@ -144,6 +161,7 @@ void Analysis::excavate_stages_of(double date)
 // 4. Excavate the rock of a stage, and unload what is left. With large displacements: a dynamic analysis until rest.
 void Analysis::excavate(const Stage& stage)
 {
+    engines_.forget();
     watchers_.tell(&Watcher::stage_begins);
     section_.say(stage.name);
     section_.stage = stage.name;
@@ -185,9 +203,11 @@ void Analysis::unload(const std::vector<Vector2d>& released)
     }
 }
 
-// The state before a stage, part by part. Everything else is made from the scene, or computed again in a stage.
+// The state at a moment from which another run can continue, part by part. Everything else is made from the scene, or
+// found anew.
 void Analysis::transfer(const Transfer& to, Checkpoint& kept)
 {
+    to.value(is_in_situ_, kept.is_in_situ);
     to.value(next_stage_, kept.stage);
     section_.transfer(to, kept);
     step_history_.transfer(to, kept);

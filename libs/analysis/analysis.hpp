@@ -57,7 +57,7 @@ public:
 private:
     void settle_in_situ();
     void follow_schedule(double after);
-    void go_to(double date);
+    void go_to(double last, double date);
     void excavate_stages_of(double date);
     void excavate(const Stage& stage);
     void unload(const std::vector<Vector2d>& released);
@@ -68,10 +68,11 @@ private:
     Engines engines_;
     Records records_;
     std::optional<Sensitivities> sensitivities_;
-    std::optional<Checkpoints> checkpoints_;
+    Checkpoints checkpoints_;
     Watchers watchers_;
     CreepSteps creep_;
     std::optional<DynamicStage> dynamics_;
+    bool is_in_situ_ = false;    // before the in-situ equilibrium
     std::size_t next_stage_ = 0; // to be excavated
 };
 

@@ -40,6 +40,9 @@ public:
                                                       const std::vector<Vector2d>& guess = {});
     const std::string& reason() const { return reason_; }
 
+    // Forgets the factor and solutions: the next equilibrium is found as by a new solver.
+    void forget() { stiffness_.forget_factor(); }
+
     // After equilibrate(), at the same stiffnesses: the x with K x = right, with K from the given tangents
     // of contacts. Uses the last factor, which is renewed where it is too far off. Empty if K has no inverse.
     VectorXd solve_linear(const Assembly& assembly, const std::vector<Tangent>& tangents,

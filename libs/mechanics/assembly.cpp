@@ -294,6 +294,7 @@ void transfer(const Transfer& to, Assembly& assembly, Checkpoint& kept)
     to.values(assembly.displacement, kept.displacement);
     to.values(assembly.is_free_untied, kept.is_free);
     to.values(assembly.load, kept.load);
+    to.values(assembly.force, kept.force);
     if (to.restores())
         part_ties(assembly, kept.stage - 1);
     rock::transfer(to, assembly.zones, kept);
