@@ -204,8 +204,6 @@ std::string replace_settings(const Arguments& arguments, Scene& scene)
         scene.creep.reset();
         noted.add("no-creep");
     }
-    if (arguments.has("checkpoint") && arguments.has("factor-of-safety"))
-        refuse_together("checkpoint", "factor-of-safety");
     for (const char* option : {"states", "step-history"})
         if (const auto every = arguments.whole_number(option, 1, most_steps)) {
             if (scene.large_displacements)
@@ -227,6 +225,14 @@ std::string end_scene(const Arguments& arguments, Scene& scene)
     for (MonitoringPoint& point : scene.points)
         point.first_reading = std::min(point.first_reading, scene.end);
     return "--until " + shown(*day);
+}
+
+std::string StrengthReduction::text() const
+{
+    if (search)
+        return "--factor-of-safety --safety-width " + shown(search->width) + " --safety-displacement " +
+               shown(search->runs_away);
+    return factor == 1 ? "" : "--strength-factor " + shown(factor);
 }
 
 StrengthReduction strength_reduction(const Arguments& arguments, const Scene& scene)

@@ -19,8 +19,8 @@ public:
     // `take` makes a checkpoint of the analysis as it is.
     Checkpoints(Section& section, StepHistory& step_history, const Recording& recording,
                 std::function<Checkpoint()> take)
-        : section_(section), step_history_(step_history), keep_(recording.keep),
-          every_(recording.keep_every), take_(std::move(take))
+        : section_(section), step_history_(step_history), keep_(recording.keep), every_(recording.keep_every),
+          keeps_next_(recording.keep_beginning), take_(std::move(take))
     {
         section.keeper = this;
     }
@@ -31,6 +31,7 @@ public:
     {
         here_ = std::move(kept);
         is_here_ = true;
+        keeps_next_ = false;
         if (here_.search.empty())
             return;
         search_ = std::exchange(here_.search, {});
@@ -73,14 +74,15 @@ private:
     {
         Tape::check(search_.empty() || is_here_); // else the search that was kept has not come
         searches_ = 0;
-        if (std::exchange(is_here_, false)) // the moment that it continues from
+        if (std::exchange(is_here_, false) || !keep_) // the moment that it continues from
             return;
-        if (every_ || (keep_ && is_stage))
+        const bool is_wanted = std::exchange(keeps_next_, false) || is_stage;
+        if (every_ || is_wanted)
             here_ = take_();
-        if (is_due() || (keep_ && is_stage))
+        if (is_wanted || is_due())
             keep();
     }
-    bool is_due() const { return every_ && search_.empty() && Clock::now() - last_ >= *every_; }
+    bool is_due() const { return keep_ && every_ && search_.empty() && Clock::now() - last_ >= *every_; }
     void keep()
     {
         keep_(section_.result, here_);
@@ -91,11 +93,12 @@ private:
     StepHistory& step_history_;
     std::function<void(const Result&, const Checkpoint&)> keep_;
     std::optional<std::chrono::duration<double>> every_;
+    bool keeps_next_; // whether due or not
     std::function<Checkpoint()> take_;
     Clock::time_point last_ = Clock::now();
-    Checkpoint here_;      // at the last moment from which another run can continue
-    bool is_here_ = false; // that moment comes again
-    Index searches_ = 0;   // since then
+    Checkpoint here_;            // at the last moment from which another run can continue
+    bool is_here_ = false;       // that moment comes again
+    Index searches_ = 0;         // since then
     std::vector<double> search_; // that was kept, until it begins again
     Index search_number_ = 0;
     Result so_far_{};

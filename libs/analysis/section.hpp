@@ -31,6 +31,7 @@ struct Recording {
     // Gets the state before every stage, and the result so far; and whenever that much time has passed, if it is given.
     std::function<void(const Result&, const Checkpoint&)> keep{};
     std::optional<std::chrono::duration<double>> keep_every{};
+    bool keep_beginning = false; // also before the in-situ equilibrium
 };
 
 // Called with the progress of an analysis, from 0 to 1, and what is being done.

@@ -50,7 +50,8 @@ void Dynamics::pass(Tape& tape)
            checks_in_balance, last_contact_force] = *this;
     const std::size_t n = place.size();
     tape(contacts);
-    for (auto& [gridpoint, arm, mass, inertia, centre, body_velocity, body_lost, angle, spin, is_free] : bodies)
+    for (auto& [gridpoint, arm, mass, inertia, centre, body_velocity, body_lost, angle, spin, is_free] :
+         bodies)
         tape(centre, body_velocity, body_lost, angle, spin);
     rock::transfer(tape, zones);
     tape(place, velocity, force, lost, inverse_mass, dt, last_dt, time, time_lost, stiffest_allowed,

@@ -229,8 +229,8 @@ void FaceContacts::pass(Tape& tape)
     pairs.resize(tape.size(pairs.size()), FacePair{.a = 0, .b = 0});
     for (FacePair& pair : pairs) {
         auto& [a, b, law, lead, dilation, tau, is_known, is_new, is_closed, is_broken, memory, is_slipping,
-               on_a, on_b, force, normal, raised_by, opened, length, sigma, stiffest_spring, held,
-               pressed_in, sheared_in, friction, damped] = pair;
+               on_a, on_b, force, normal, raised_by, opened, length, sigma, stiffest_spring, held, pressed_in,
+               sheared_in, friction, damped] = pair;
         tape.index(a, n_faces);
         tape.index(b, n_faces);
         tape.index(law, laws.size());

@@ -296,7 +296,7 @@ void transfer(const Transfer& to, Assembly& assembly, Checkpoint& kept)
     to.values(assembly.load, kept.load);
     to.values(assembly.force, kept.force);
     if (to.restores())
-        part_ties(assembly, kept.stage - 1);
+        part_ties(assembly, kept.unloaded > 0 ? kept.stage : kept.stage - 1);
     rock::transfer(to, assembly.zones, kept);
     joint::transfer(to, assembly.contacts, kept);
 }

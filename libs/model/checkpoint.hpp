@@ -5,8 +5,8 @@
 //   - before the in-situ equilibrium and before every stage;
 //   - after every equilibrium by dynamic relaxation;
 //   - after every 50th creep step.
-// Before the in-situ equilibrium, before every stage, and between two creep steps after something was forgotten, a run
-// can continue.
+// Before the in-situ equilibrium, before every stage, and after something was forgotten between two creep steps or two
+// increments of a stage, a run can continue.
 //
 // In the middle of a long search for equilibrium, the search's own state is added (model/tape.hpp). A run from there
 // begins at the moment before, and computes again what leads to that search, but not the search.
@@ -58,6 +58,8 @@ struct Checkpoint {
     std::vector<Eigen::Vector2d> is_free;      // 1 or 0 in {x, y}, but for ties
     std::vector<Eigen::Vector2d> load;         // [N/m]
     std::vector<Eigen::Vector2d> force;        // unbalanced [N/m]
+    std::vector<Eigen::Vector2d> released;     // force of rock excavated in this stage, within it [N/m]
+    Index unloaded = 0, increment = 0; // of that: how much is gone, and goes next, in the finest increments
 
     // Zones.
     std::vector<Index> zone_present;
