@@ -19,7 +19,6 @@
 
 #include "analysis/safety.hpp"
 #include "model/error.hpp"
-#include "model/units.hpp"
 #include "scene/scene.hpp"
 #include "store/files.hpp"
 #include "zoning/cost.hpp"
@@ -47,13 +46,20 @@ const Program program{
     .example = "demsolve joints.h5 --threads 2 -o result.h5",
 };
 
-// A run with strengths divided by a factor, which fails where displacement is more than that [m].
-using RunWith = std::function<std::unique_ptr<Trial>(double factor, double most_displacement)>;
+using Kept = std::optional<store::CheckpointFile>;
+
+// A run with strengths divided by a factor, which fails where displacement is more than that [m]. It continues from a
+// checkpoint, if there is one; its own ones have the runs before, and without these it writes none.
+using RunWith = std::function<std::unique_ptr<Trial>(double factor, double most_displacement, Kept kept,
+                                                     const Safety* runs_before)>;
 
 // One run, written; the run itself.
-std::unique_ptr<Trial> run_once(double factor, const RunWith& run_with, const demsolve::Files& files)
+std::unique_ptr<Trial> run_once(double factor, const RunWith& run_with, const demsolve::Files& files,
+                                Kept kept)
 {
-    std::unique_ptr<Trial> run = run_with(factor, std::numeric_limits<double>::infinity());
+    const Safety none;
+    std::unique_ptr<Trial> run =
+        run_with(factor, std::numeric_limits<double>::infinity(), std::move(kept), &none);
     if (run->outcome().ending != Ending::stands)
         throw equilibrium_error(run->message() + '\n' + files.write_failed(*run) +
                                 demsolve::warning_lines(*run));
@@ -62,19 +68,42 @@ std::unique_ptr<Trial> run_once(double factor, const RunWith& run_with, const de
 }
 
 // Runs with different factors. Writes and returns the run of the largest factor at which every equilibrium is found.
-// Writes the run of the next larger factor as failed.
-std::unique_ptr<Trial> bracket_safety(const demsolve::SafetySearch& safety, const RunWith& run_with,
-                                      const demsolve::Files& files, Summary& summary)
+// Writes the run of the next larger factor as failed. Runs that an earlier search has made are not made again, but for
+// these two, from their last checkpoint.
+std::unique_ptr<Trial> bracket_safety(const demsolve::StrengthReduction& reduction, const Scene& scene,
+                                      const RunWith& run_with, const demsolve::Files& files, Kept kept,
+                                      Summary& summary)
 {
-    std::unique_ptr<Trial> run, failed;
+    const Safety made_before = kept ? kept->safety : Safety{};
+    struct Made {
+        double factor, most_displacement;
+        std::size_t number;
+        std::unique_ptr<Trial> run; // none: by an earlier search
+    };
+    std::optional<Made> stands, falls; // the last ones
     const Bracket bracket = analysis::bracket_of(
-        [&](double factor, double most_displacement) {
-            std::unique_ptr<Trial> made = run_with(factor, most_displacement);
-            const analysis::Outcome outcome = made->outcome();
-            (outcome.ending == Ending::stands ? run : failed) = std::move(made);
+        [&](double factor, double most_displacement, const Safety& so_far) {
+            const std::size_t number = so_far.factor.size();
+            Made made{factor, most_displacement, number, nullptr};
+            analysis::Outcome outcome{};
+            if (number < made_before.factor.size())
+                outcome = analysis::outcome_of(made_before, number);
+            else {
+                made.run = run_with(factor, most_displacement, std::exchange(kept, std::nullopt), &so_far);
+                outcome = made.run->outcome();
+                files.keep_last_checkpoint(outcome.ending == Ending::stands);
+            }
+            (outcome.ending == Ending::stands ? stands : falls) = std::move(made);
             return outcome;
         },
-        safety.width, safety.runs_away);
+        reduction.search->width, reduction.search->runs_away);
+    const auto run_of = [&](std::optional<Made>& made, bool stood) {
+        if (made && !made->run)
+            made->run = run_with(made->factor, made->most_displacement,
+                                 files.kept_run(stood, made->number, scene, reduction), nullptr);
+        return made ? std::move(made->run) : nullptr;
+    };
+    std::unique_ptr<Trial> run = run_of(stands, true), failed = run_of(falls, false);
     if (!run)
         throw equilibrium_error("with strengths " + shown(1 / failed->factor()) +
                                 " times as large there is still " + failed->message() + '\n' +
@@ -97,7 +126,7 @@ void solve(const Arguments& arguments)
     const std::string end = demsolve::end_scene(arguments, scene);
     const std::string options = demsolve::replace_settings(arguments, scene);
     demsolve::Files files(arguments, program.name, file, options, end);
-    const auto [factor, search] = demsolve::strength_reduction(arguments, scene);
+    const demsolve::StrengthReduction reduction = demsolve::strength_reduction(arguments, scene);
     const int threads = arguments.threads();
 
     const std::string where = input + (arguments.has("zone-size") ? ", --zone-size" : ": /scene");
@@ -105,29 +134,32 @@ void solve(const Arguments& arguments)
         files.warn(cost);
 
     // 2. Recording, and the state of a checkpoint, if there is one.
-    analysis::Recording recording = demsolve::recording(arguments);
+    const analysis::Recording recording = demsolve::recording(arguments);
     Summary summary;
-    std::optional<store::CheckpointFile> kept = files.kept_before(arguments, scene, factor);
+    Kept kept = files.kept_before(scene, reduction);
     if (kept)
-        summary.add("continued from", "stage \"" + scene.stages.at(kept->checkpoint.stage).name + "\", day " +
-                                          shown(kept->checkpoint.time / unit::day));
-    if (const auto path = arguments.text("checkpoint"))
-        recording.keep = [&files, path, factor = factor](const Result& so_far, const Checkpoint& checkpoint) {
-            files.write_checkpoint(*path, factor, so_far, checkpoint);
-        };
+        summary.add("continued from", demsolve::place_of(kept->checkpoint, scene));
 
     // 3. The analysis: in-situ equilibrium, excavation in stages, creep.
-    const RunWith run_with = [&, is_bracket = search.has_value()](double divisor, double most_displacement) {
+    const RunWith run_with = [&](double divisor, double most_displacement, Kept from,
+                                 const Safety* runs_before) {
         Progress progress(arguments.quiet());
-        const std::string which = is_bracket ? "strengths / " + shown(divisor) + ", " : "";
+        const std::string which = reduction.search ? "strengths / " + shown(divisor) + ", " : "";
+        analysis::Recording with_checkpoints = recording;
+        if (files.has_checkpoint() && runs_before != nullptr) {
+            with_checkpoints.keep_beginning = reduction.search.has_value();
+            with_checkpoints.keep = [&](const Result& so_far, const Checkpoint& checkpoint) {
+                files.write_checkpoint(reduction, so_far, checkpoint, *runs_before);
+            };
+        }
         return of_file(input, [&] {
             auto run = std::make_unique<Trial>(scene, file.network, file.equivalent, divisor,
-                                               most_displacement, threads, recording,
+                                               most_displacement, threads, with_checkpoints,
                                                [&progress, which](double fraction, const std::string& what) {
                                                    progress.show(fraction, which + what);
                                                });
-            if (kept)
-                run->go_on(std::move(kept->result), std::move(kept->checkpoint));
+            if (from)
+                run->go_on(std::move(from->result), std::move(from->checkpoint));
             else
                 run->run();
             return run;
@@ -136,7 +168,8 @@ void solve(const Arguments& arguments)
 
     // 4. Once, or with strengths divided by factors until rock moves.
     const std::unique_ptr<Trial> run =
-        search ? bracket_safety(*search, run_with, files, summary) : run_once(factor, run_with, files);
+        reduction.search ? bracket_safety(reduction, scene, run_with, files, std::move(kept), summary)
+                         : run_once(reduction.factor, run_with, files, std::move(kept));
     demsolve::add_run(summary, file.network, *run);
     summary.print(arguments);
 }

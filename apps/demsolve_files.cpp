@@ -13,14 +13,31 @@ namespace jointcreep::demsolve
 
 using analysis::Trial;
 
+namespace
+{
+
+// "kept.stands.h5" for "kept.h5".
+std::string name_of_run(const std::string& checkpoint, bool stands)
+{
+    return name_beside(checkpoint, stands ? "stands" : "falls");
+}
+
+} // namespace
+
 Files::Files(const Arguments& arguments, const std::string& program, const store::JointsFile& file,
              std::string options, std::string end)
-    : input_(arguments.input()), output_(arguments.output()), failed_(failed_name(output_)), file_(file),
-      provenance_(file.provenance), options_(std::move(options)), end_(std::move(end))
+    : input_(arguments.input()), output_(arguments.output()), failed_(failed_name(output_)),
+      checkpoint_(arguments.text("checkpoint").value_or("")), file_(file), provenance_(file.provenance),
+      options_(std::move(options)), end_(std::move(end))
 {
     store::check_writable(output_);
     std::vector<NamedFile> written = arguments.files({"output", "checkpoint"});
     written.push_back({failed_, failed_ + ", which a run without equilibrium writes,"});
+    if (has_checkpoint() && arguments.has("factor-of-safety"))
+        for (const bool stands : {true, false}) {
+            const std::string name = name_of_run(checkpoint_, stands);
+            written.push_back({name, name + ", which a search with --checkpoint writes,"});
+        }
     refuse_overwriting(arguments.files({"input"}), written);
     provenance_.program.push_back(program);
     provenance_.version.emplace_back(version());
@@ -54,7 +71,7 @@ std::string Files::write_failed(const Trial& run, const Safety& safety) const
 
 void Files::write(const Trial& run, const Safety& safety, const std::string& path) const
 {
-    std::string options = options_of(run.factor());
+    std::string options = options_of({run.factor(), {}});
     if (!end_.empty())
         options += (options.empty() ? "" : " ") + end_;
     Provenance with_warnings = provenance(options);
@@ -64,33 +81,48 @@ void Files::write(const Trial& run, const Safety& safety, const std::string& pat
                         safety);
 }
 
-void Files::write_checkpoint(const std::string& path, double factor, const Result& so_far,
-                             const Checkpoint& checkpoint) const
+void Files::write_checkpoint(const StrengthReduction& reduction, const Result& so_far,
+                             const Checkpoint& checkpoint, const Safety& runs_before) const
 {
-    store::write_checkpoint(path, provenance(options_of(factor)), file_.network, file_.equivalent, so_far,
-                            checkpoint);
+    store::write_checkpoint(checkpoint_, provenance(options_of(reduction)), file_.network, file_.equivalent,
+                            so_far, checkpoint, runs_before);
 }
 
-std::optional<store::CheckpointFile> Files::kept_before(const Arguments& arguments, const Scene& scene,
-                                                        double factor) const
+void Files::keep_last_checkpoint(bool stands) const
 {
-    const auto path = arguments.text("checkpoint");
-    if (!path)
+    if (has_checkpoint())
+        store::copy(checkpoint_, name_of_run(checkpoint_, stands));
+}
+
+std::optional<store::CheckpointFile> Files::kept_run(bool stands, std::size_t number, const Scene& scene,
+                                                     const StrengthReduction& reduction) const
+{
+    auto kept = kept_in(name_of_run(checkpoint_, stands), scene, reduction);
+    if (kept && kept->safety.factor.size() != number)
+        kept.reset();
+    return kept;
+}
+
+std::optional<store::CheckpointFile> Files::kept_in(const std::string& path, const Scene& scene,
+                                                    const StrengthReduction& reduction) const
+{
+    if (!has_checkpoint())
         return {};
-    store::check_writable(*path);
-    if (!std::filesystem::exists(*path))
+    store::check_writable(path);
+    if (!std::filesystem::exists(path))
         return {};
-    store::CheckpointFile kept = store::read_checkpoint(*path);
-    check_same_run(*path, factor, kept.provenance);
+    store::CheckpointFile kept = store::read_checkpoint(path);
+    check_same_run(path, reduction, kept.provenance);
     if (kept.checkpoint.time > scene.end)
-        throw input_error(*path + ": /checkpoint/time is day " + shown(kept.checkpoint.time / unit::day) +
+        throw input_error(path + ": /checkpoint/time is day " + shown(kept.checkpoint.time / unit::day) +
                           "; wanted not after --until " + shown(scene.end / unit::day));
     return kept;
 }
 
-void Files::check_same_run(const std::string& path, double factor, const Provenance& kept) const
+void Files::check_same_run(const std::string& path, const StrengthReduction& reduction,
+                           const Provenance& kept) const
 {
-    const Provenance here = provenance(options_of(factor));
+    const Provenance here = provenance(options_of(reduction));
     const auto check = [&](const char* dataset, const std::vector<std::string>& of_kept,
                            const std::vector<std::string>& of_here, const std::string& wanted) {
         if (of_kept != of_here)
@@ -105,9 +137,9 @@ void Files::check_same_run(const std::string& path, double factor, const Provena
           "the same options, \"" + here.options.back() + '"');
 }
 
-std::string Files::options_of(double factor) const
+std::string Files::options_of(const StrengthReduction& reduction) const
 {
-    std::string options = factor == 1 ? "" : "--strength-factor " + shown(factor);
+    std::string options = reduction.text();
     if (!options.empty() && !options_.empty())
         options += ' ';
     return options + options_;

@@ -2,6 +2,7 @@
 
 #pragma once
 
+#include "demsolve_settings.hpp"
 #include "program.hpp"
 
 #include "analysis/safety.hpp"
@@ -30,21 +31,36 @@ public:
     // Writes a run without equilibrium. Returns the line of the message that says where it is.
     std::string write_failed(const analysis::Trial& run, const Safety& safety = {}) const;
 
-    void write_checkpoint(const std::string& path, double factor, const Result& so_far,
-                          const Checkpoint& checkpoint) const;
+    bool has_checkpoint() const { return !checkpoint_.empty(); }
+    // Of a search for a factor of safety, with the runs before.
+    void write_checkpoint(const StrengthReduction& reduction, const Result& so_far,
+                          const Checkpoint& checkpoint, const Safety& runs_before = {}) const;
 
-    // The checkpoint of an earlier run, if there is one. Throws if a run with this strength factor would not reach the
-    // same state, bit by bit, or would end before it.
-    std::optional<store::CheckpointFile> kept_before(const Arguments& arguments, const Scene& scene,
-                                                     double factor) const;
+    // The checkpoint of an earlier run, if there is one. Throws if this run would not reach the same state, bit by bit,
+    // or would end before it.
+    std::optional<store::CheckpointFile> kept_before(const Scene& scene,
+                                                     const StrengthReduction& reduction) const
+    {
+        return kept_in(checkpoint_, scene, reduction);
+    }
+
+    // A run of a search has ended: its last checkpoint stays, beside that of the next run, to make the run again.
+    void keep_last_checkpoint(bool stands) const;
+    // That checkpoint, if it is the run's with this number.
+    std::optional<store::CheckpointFile> kept_run(bool stands, std::size_t number, const Scene& scene,
+                                                  const StrengthReduction& reduction) const;
 
 private:
     void write(const analysis::Trial& run, const Safety& safety, const std::string& path) const;
-    void check_same_run(const std::string& path, double factor, const Provenance& kept) const;
-    std::string options_of(double factor) const;
+    std::optional<store::CheckpointFile> kept_in(const std::string& path, const Scene& scene,
+                                                 const StrengthReduction& reduction) const;
+    void check_same_run(const std::string& path, const StrengthReduction& reduction,
+                        const Provenance& kept) const;
+    std::string options_of(const StrengthReduction& reduction) const;
     Provenance provenance(const std::string& options) const;
 
     std::string input_, output_, failed_;
+    std::string checkpoint_; // or ""
     const store::JointsFile& file_;
     Provenance provenance_;
     std::string options_, end_;

@@ -169,7 +169,10 @@ std::vector<Option> options()
         {"safety-displacement", "R",
          "largest displacement that counts as failure, over that with strengths 64 times as large (default 10)"},
         {"until", "DAY", "end there instead of at the scene's end, before or after it [day]"},
-        {"checkpoint", "FILE", "before every stage, write the state there; if FILE exists, continue from it"},
+        {"checkpoint", "FILE",
+         "before every stage, and every now and then, write the state there; if FILE exists, continue from it"},
+        {"checkpoint-every", "MIN",
+         "write it after so many minutes, at the next possible moment (default 10; 0: before stages only)"},
         {"states", "N", "record the whole section every N creep steps too (default: at dates only)"},
         {"step-history", "N", "record points and gauges every N solver steps"}};
     all.insert(all.end(), others.begin(), others.end());
@@ -201,8 +204,6 @@ std::string replace_settings(const Arguments& arguments, Scene& scene)
         scene.creep.reset();
         noted.add("no-creep");
     }
-    if (arguments.has("checkpoint") && arguments.has("factor-of-safety"))
-        refuse_together("checkpoint", "factor-of-safety");
     for (const char* option : {"states", "step-history"})
         if (const auto every = arguments.whole_number(option, 1, most_steps)) {
             if (scene.large_displacements)
@@ -224,6 +225,14 @@ std::string end_scene(const Arguments& arguments, Scene& scene)
     for (MonitoringPoint& point : scene.points)
         point.first_reading = std::min(point.first_reading, scene.end);
     return "--until " + shown(*day);
+}
+
+std::string StrengthReduction::text() const
+{
+    if (search)
+        return "--factor-of-safety --safety-width " + shown(search->width) + " --safety-displacement " +
+               shown(search->runs_away);
+    return factor == 1 ? "" : "--strength-factor " + shown(factor);
 }
 
 StrengthReduction strength_reduction(const Arguments& arguments, const Scene& scene)
@@ -255,8 +264,14 @@ StrengthReduction strength_reduction(const Arguments& arguments, const Scene& sc
 
 analysis::Recording recording(const Arguments& arguments)
 {
-    return {arguments.whole_number("states", 1, most_steps).value_or(0),
-            arguments.whole_number("step-history", 1, most_steps).value_or(0)};
+    analysis::Recording recording{arguments.whole_number("states", 1, most_steps).value_or(0),
+                                  arguments.whole_number("step-history", 1, most_steps).value_or(0)};
+    const double minutes = arguments.number("checkpoint-every", from(0).to(1e6), "min").value_or(10);
+    if (!arguments.has("checkpoint") && arguments.has("checkpoint-every"))
+        throw input_error("--checkpoint-every goes with --checkpoint only");
+    if (arguments.has("checkpoint") && minutes > 0)
+        recording.keep_every = std::chrono::duration<double>(60 * minutes);
+    return recording;
 }
 
 } // namespace jointcreep::demsolve

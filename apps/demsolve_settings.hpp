@@ -37,6 +37,9 @@ struct SafetySearch {
 struct StrengthReduction {
     double factor = 1;                    // [-]
     std::optional<SafetySearch> search{}; // none: one run, with the factor
+
+    // As files record it.
+    std::string text() const;
 };
 StrengthReduction strength_reduction(const Arguments& arguments, const Scene& scene);
 

@@ -199,4 +199,15 @@ std::string warning_lines(const analysis::Trial& run)
     return lines;
 }
 
+std::string place_of(const Checkpoint& kept, const Scene& scene)
+{
+    const std::string within = kept.search.empty() ? "" : ", in the middle of a search for equilibrium";
+    if (kept.is_in_situ != 0)
+        return "the in-situ state" + within;
+    const auto stage = static_cast<std::size_t>(kept.stage);
+    const bool is_stage = stage < scene.stages.size() && scene.stages[stage].time == kept.time;
+    return (is_stage ? "stage \"" + scene.stages[stage].name + "\", " : "") + "day " +
+           shown(kept.time / unit::day) + within;
+}
+
 } // namespace jointcreep::demsolve

@@ -24,4 +24,7 @@ void add_safety(Summary& summary, const analysis::Bracket& bracket, const std::s
 std::vector<std::string> warnings_of(const analysis::Trial& run);
 std::string warning_lines(const analysis::Trial& run);
 
+// Where a checkpoint is in the analysis: stage "A", day 3.
+std::string place_of(const Checkpoint& kept, const Scene& scene);
+
 } // namespace jointcreep::demsolve

@@ -217,10 +217,15 @@ void start_with_short_waits(char** argv)
 
 } // namespace
 
+std::string name_beside(const std::string& name, const std::string& word)
+{
+    const std::filesystem::path path(name);
+    return (path.parent_path() / (path.stem().string() + '.' + word + path.extension().string())).string();
+}
+
 std::string failed_name(const std::string& output)
 {
-    const std::filesystem::path path(output);
-    return (path.parent_path() / (path.stem().string() + ".failed" + path.extension().string())).string();
+    return name_beside(output, "failed");
 }
 
 const std::string& Arguments::wanted(const std::string& name) const

@@ -46,6 +46,9 @@ struct fit_error : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
+// "result.WORD.h5" for "result.h5".
+std::string name_beside(const std::string& name, const std::string& word);
+
 // "result.failed.h5" for "result.h5": the file of a run, or a search, that failed.
 std::string failed_name(const std::string& output);
 

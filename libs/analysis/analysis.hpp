@@ -57,10 +57,11 @@ public:
 private:
     void settle_in_situ();
     void follow_schedule(double after);
-    void go_to(double date);
+    void go_to(double last, double date);
     void excavate_stages_of(double date);
     void excavate(const Stage& stage);
-    void unload(const std::vector<Vector2d>& released);
+    void complete(const Stage& stage);
+    void unload();
     void transfer(const Transfer& to, Checkpoint& kept);
 
     Section section_;
@@ -68,11 +69,16 @@ private:
     Engines engines_;
     Records records_;
     std::optional<Sensitivities> sensitivities_;
-    std::optional<Checkpoints> checkpoints_;
+    Checkpoints checkpoints_;
     Watchers watchers_;
     CreepSteps creep_;
     std::optional<DynamicStage> dynamics_;
+    bool is_in_situ_ = false;    // before the in-situ equilibrium
     std::size_t next_stage_ = 0; // to be excavated
+    // The forces of the rock that this stage excavates, while they are unloaded: how many of the finest increments
+    // are done, and how many the next one is.
+    std::vector<Vector2d> released_; // [N/m]
+    int unloaded_ = 0, increment_ = 0;
 };
 
 } // namespace jointcreep::analysis

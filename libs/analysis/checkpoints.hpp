@@ -1,38 +1,107 @@
-// Keeps the state before every stage, so that another run can continue from there.
+// Keeps the state of an analysis, so that another run can continue from there: before every stage; and, when some time
+// has passed since, at the next moment at which that is possible (model/checkpoint.hpp).
 
 #pragma once
 
 #include "analysis/section.hpp"
+#include "analysis/step_history.hpp"
 #include "analysis/watcher.hpp"
+
+#include <chrono>
+#include <optional>
 
 namespace jointcreep::analysis
 {
 
-class Checkpoints : public Watcher
+class Checkpoints : public Watcher, public SearchKeeper
 {
 public:
-    using Keep = std::function<void(const Result&, const Checkpoint&)>;
-
     // `take` makes a checkpoint of the analysis as it is.
-    Checkpoints(const Section& section, Keep keep, std::function<Checkpoint()> take)
-        : section_(section), keep_(std::move(keep)), take_(std::move(take))
+    Checkpoints(Section& section, StepHistory& step_history, const Recording& recording,
+                std::function<Checkpoint()> take)
+        : section_(section), step_history_(step_history), keep_(recording.keep), every_(recording.keep_every),
+          keeps_next_(recording.keep_beginning), take_(std::move(take))
     {
+        section.keeper = this;
     }
 
-    // The stage that the analysis continues from has its checkpoint already.
-    void skip_next() { skips_next_ = true; }
-
-    void stage_begins() override
+    // The analysis continues from there. Its result up to there is needed when a search that was kept begins again;
+    // what is computed before is in it already.
+    void continue_from(Checkpoint kept, Result so_far)
     {
-        if (!std::exchange(skips_next_, false))
-            keep_(section_.result, take_());
+        here_ = std::move(kept);
+        is_here_ = true;
+        keeps_next_ = false;
+        if (here_.search.empty())
+            return;
+        search_ = std::exchange(here_.search, {});
+        search_number_ = here_.search_number;
+        so_far_ = std::move(so_far);
+    }
+
+    void stage_begins() override { come_to(true); }
+    void may_continue_here() override { come_to(false); }
+
+    bool search_begins(const std::function<void(Tape&)>& pass) override
+    {
+        if (++searches_ - 1 != search_number_ || search_.empty())
+            return false;
+        so_far_.mesh = std::move(section_.result.mesh);
+        section_.result = std::move(so_far_);
+        Tape tape(std::exchange(search_, {}));
+        pass(tape);
+        tape(step_history_);
+        tape.check_end();
+        return true;
+    }
+    void search_goes_on(const std::function<void(Tape&)>& pass) override
+    {
+        if (!is_due())
+            return;
+        Tape tape;
+        pass(tape);
+        tape(step_history_);
+        here_.search_number = searches_ - 1;
+        here_.search = std::move(tape).numbers();
+        keep();
+        here_.search.clear();
     }
 
 private:
-    const Section& section_;
-    Keep keep_;
+    using Clock = std::chrono::steady_clock;
+
+    void come_to(bool is_stage)
+    {
+        Tape::check(search_.empty() || is_here_); // else the search that was kept has not come
+        searches_ = 0;
+        if (std::exchange(is_here_, false) || !keep_) // the moment that it continues from
+            return;
+        const bool is_wanted = std::exchange(keeps_next_, false) || is_stage;
+        if (every_ || is_wanted)
+            here_ = take_();
+        if (is_wanted || is_due())
+            keep();
+    }
+    bool is_due() const { return keep_ && every_ && search_.empty() && Clock::now() - last_ >= *every_; }
+    void keep()
+    {
+        keep_(section_.result, here_);
+        last_ = Clock::now();
+    }
+
+    Section& section_;
+    StepHistory& step_history_;
+    std::function<void(const Result&, const Checkpoint&)> keep_;
+    std::optional<std::chrono::duration<double>> every_;
+    bool keeps_next_; // whether due or not
     std::function<Checkpoint()> take_;
-    bool skips_next_ = false;
+    Clock::time_point last_ = Clock::now();
+    Checkpoint here_;            // at the last moment from which another run can continue
+    bool is_here_ = false;       // that moment comes again
+    Index searches_ = 0;         // since then
+    std::vector<double> search_; // that was kept, until it begins again
+    Index search_number_ = 0;
+    Result so_far_{};
 };
 
 } // namespace jointcreep::analysis

@@ -19,6 +19,10 @@ constexpr int most_halvings_of_a_step = 5;
 // How often one creep step is cut where contacts close. In rock full of open joints some close all the time.
 constexpr int most_cuts = 6;
 
+// After so many steps what the implicit engine has learnt is forgotten (model/checkpoint.hpp). A new factor costs less
+// than two steps.
+constexpr Index steps_to_forgetting = 50;
+
 // Throws if a fixed step length gives too many steps.
 void check_number_of_steps(double from, double to, const CreepSettings& creep)
 {
@@ -74,28 +78,41 @@ void CreepSteps::begin()
         closing_.emplace(length_->closing_tolerance()); // the others are of first order anyway
 }
 
-void CreepSteps::go_to(double date, bool may_stop)
+void CreepSteps::go_to(double last, double date, bool may_stop)
 {
     double& now = section_.now;
-    const bool is_loaded = section_.loading.changes(now, date);
+    const bool is_loaded = section_.loading.changes(last, date);
     const double longest =
-        is_loaded ? (date - now) / section_.scene.equilibrium.unloading_increments : date - now;
-    if (is_loaded)
+        is_loaded ? (date - last) / section_.scene.equilibrium.unloading_increments : date - last;
+    if (is_loaded && now == last)
         start_afresh();
     if (creeps())
-        check_number_of_steps(now, date, *section_.scene.creep);
+        check_number_of_steps(last, date, *section_.scene.creep);
     while (now < date && !end_) {
+        forget_now_and_then();
         section_.say("day " + std::to_string(std::lround(now / unit::day)));
         const double target = next_target(date, longest);
         if (!creeps() && !is_loaded)
             now = target;
         else if (!reaches(target, may_stop))
             continue; // by shorter steps
+        ++steps_since_forgetting_;
         watchers_.tell(&Watcher::row_is_due, "");
         if (state_every_ > 0 && creeps() && ++steps_ % state_every_ == 0 && now < date)
             watchers_.tell(&Watcher::state_is_due, "");
     }
     watchers_.tell(&Watcher::state_is_due, "");
+}
+
+void CreepSteps::forget_now_and_then()
+{
+    if (steps_since_forgetting_ >= steps_to_forgetting)
+        engines_.forget();
+    if (engines_.has_learnt())
+        return;
+    steps_since_forgetting_ = 0;
+    last_move_.clear();
+    watchers_.tell(&Watcher::may_continue_here);
 }
 
 // Where the next step is to end, no longer than `longest` [s].
@@ -223,6 +240,7 @@ bool CreepSteps::is_slower_than(double rate) const
 void CreepSteps::start_afresh()
 {
     last_move_.clear();
+    steps_since_forgetting_ = 0;
     if (length_)
         length_->start_afresh();
     if (closing_)
@@ -236,6 +254,8 @@ void CreepSteps::transfer(const Transfer& to, Checkpoint& kept)
         creep_->transfer(to, kept);
     if (length_)
         length_->transfer(to, kept);
+    if (closing_)
+        closing_->transfer(to, kept);
     // Steps count from the last recorded state.
     steps_ %= std::max<std::uint64_t>(state_every_, 1);
     to.value(steps_, kept.steps_since_state);

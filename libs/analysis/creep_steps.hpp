@@ -36,8 +36,9 @@ public:
     // To be called after the in-situ equilibrium: creep under the in-situ stress has long ended.
     void begin();
 
-    // Steps to a date [s]. If it `may_stop` creep ends where the scene's stop rate is reached.
-    void go_to(double date, bool may_stop);
+    // Steps to a date from the last one [s], or from now between them. If it `may_stop` creep ends where the scene's
+    // stop rate is reached.
+    void go_to(double last, double date, bool may_stop);
 
     // To be called after a sudden change of loads: what earlier steps showed no longer holds.
     void start_afresh();
@@ -52,6 +53,7 @@ public:
     std::optional<double> end() const { return end_; }
 
 private:
+    void forget_now_and_then();
     double next_target(double date, double longest) const;
     bool reaches(double target, bool may_stop);
     bool step_to(double target, int& cuts_left);
@@ -71,6 +73,7 @@ private:
     std::vector<Vector2d> last_move_; // of gridpoints in the last step [m]; none after a sudden change
     double last_duration_ = 0;        // of the last step [s]
     std::uint64_t steps_ = 0;         // of creep, whole ones
+    Index steps_since_forgetting_ = 0;
     std::optional<double> end_;
 };
 

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace jointcreep::analysis
 {
@@ -66,8 +67,21 @@ DynamicStage::DynamicStage(Section& section, const Watchers& watchers)
 {
 }
 
+// Whether this analysis goes on from where an earlier run was.
+bool DynamicStage::goes_on()
+{
+    return section_.keeper != nullptr && section_.keeper->search_begins([this](Tape& tape) { pass(tape); });
+}
+
+void DynamicStage::pass(Tape& tape)
+{
+    tape(due_, largest_energy_, largest_error_, section_.settled.effort.steps, dynamics_);
+    joint::transfer(tape, section_.rock.contacts); // of records so far
+}
+
 void DynamicStage::settle_in_situ()
 {
+    goes_on();
     comes_to_rest(std::numeric_limits<double>::infinity());
     section_.settled.effort = {};
     dynamics_.count_from_here();
@@ -77,15 +91,18 @@ void DynamicStage::run()
 {
     dynamics_.start();
     largest_energy_ = largest_error_ = 0;
-    double due = 0;
+    due_ = 0;
+    bool is_recorded = goes_on();
     do {
-        section_.say(section_.stage + ", " + shown(due) + " s");
-        due = std::max(due + section_.scene.large_displacements->record_every, // once a step at most
-                       std::nextafter(dynamics_.time(), std::numeric_limits<double>::infinity()));
+        section_.say(section_.stage + ", " + shown(due_) + " s");
+        if (std::exchange(is_recorded, false))
+            continue;
+        due_ = std::max(due_ + section_.scene.large_displacements->record_every, // once a step at most
+                        std::nextafter(dynamics_.time(), std::numeric_limits<double>::infinity()));
         dynamics_.put_back();
         watchers_.tell(&Watcher::state_is_due, "");
         record();
-    } while (!comes_to_rest(due));
+    } while (!comes_to_rest(due_));
     dynamics_.put_back();
     note_rest();
     watchers_.tell(&Watcher::equilibrium_ends, 0.0);
@@ -112,6 +129,8 @@ bool DynamicStage::comes_to_rest(double until)
         }
         if (dynamics_.time() > longest)
             give_up(dynamics_.moves_on("no rest within " + shown(longest) + " s"));
+        if (section_.keeper != nullptr && steps % Dynamics::check_every == 0)
+            section_.keeper->search_goes_on([this](Tape& tape) { pass(tape); });
     }
     return false;
 }

@@ -28,7 +28,9 @@ public:
     void transfer(const Transfer& to, Checkpoint& kept) { dynamics_.transfer(to, kept.dynamics); }
 
 private:
+    bool goes_on();
     bool comes_to_rest(double until);
+    void pass(Tape& tape);
     [[noreturn]] void give_up(const mechanics::no_equilibrium& error);
     void note_rest();
     void record();
@@ -38,6 +40,7 @@ private:
     Section& section_;
     const Watchers& watchers_;
     large_displacements::Dynamics dynamics_;
+    double due_ = 0; // time of the next record [s]
     // The energy balance of this dynamic analysis, at recorded moments [J/m].
     double largest_error_ = 0;
     double largest_energy_ = 0; // of its parts

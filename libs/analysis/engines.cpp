@@ -22,6 +22,7 @@ bool Engines::settles_nearby(const std::vector<Vector2d>& guess)
     mechanics::Assembly& rock = section_.rock;
     const auto find = [&](const std::vector<Vector2d>& from) {
         auto& [convergence, effort] = section_.settled;
+        has_learnt_ = true;
         const auto found = implicit_.equilibrate(rock, section_.scene.equilibrium, from);
         ++effort.searches;
         effort.factorisations += implicit_.factorisations();
@@ -64,16 +65,18 @@ void Engines::settle_by_relaxation(double time)
         fail(section_, failure_of(error, section_.mesh(), section_.rock), time);
     }
     section_.settled.effort.steps += section_.settled.convergence.steps;
+    forget();
 }
 
 mechanics::Convergence Engines::relax(double time)
 {
     const Equilibrium& settings = section_.scene.equilibrium;
     if (!step_history_.is_wanted())
-        return relaxation::relax(section_.rock, settings);
+        return relaxation::relax(section_.rock, settings, {}, section_.keeper);
     step_history_.begin(time);
-    const auto convergence = relaxation::relax(section_.rock, settings,
-                                               [&](double since_begin) { step_history_.step(since_begin); });
+    const auto convergence = relaxation::relax(
+        section_.rock, settings, [&](double since_begin) { step_history_.step(since_begin); },
+        section_.keeper);
     step_history_.end();
     return convergence;
 }

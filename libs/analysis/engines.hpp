@@ -25,6 +25,15 @@ public:
     // Equilibrium by dynamic relaxation, after the implicit engine has found none, unless only that is asked for.
     void settle_by_relaxation(double time);
 
+    // Forgets what earlier searches have taught, which speeds up the next ones and changes their last digits. Dynamic
+    // relaxation does that, too.
+    void forget()
+    {
+        implicit_.forget();
+        has_learnt_ = false;
+    }
+    bool has_learnt() const { return has_learnt_; }
+
     // Throws equilibrium_error that names rock without support, which falls without end.
     void check_supported();
 
@@ -36,6 +45,7 @@ private:
     Section& section_;
     StepHistory& step_history_;
     implicit::Solver implicit_;
+    bool has_learnt_ = false;
 };
 
 } // namespace jointcreep::analysis

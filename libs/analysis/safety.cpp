@@ -59,13 +59,21 @@ Outcome Trial::outcome() const
     return {ending, analysis_.largest_displacement(), rock::largest_plastic_strain(analysis_.rock().zones)};
 }
 
+Outcome outcome_of(const Safety& trials, std::size_t i)
+{
+    const Ending ending = trials.stands[i] > 0    ? Ending::stands
+                          : trials.stands[i] == 0 ? Ending::falls
+                                                  : Ending::undecided;
+    return {ending, trials.largest_displacement[i], trials.largest_plastic_strain[i]};
+}
+
 Bracket bracket_of(const RunWith& run_with, double width, double runs_away)
 {
     constexpr double most = 64;
     Bracket found;
     double limit = std::numeric_limits<double>::infinity(); // of displacement [m]
     const auto stands = [&](double factor) {
-        const Outcome outcome = run_with(factor, limit);
+        const Outcome outcome = run_with(factor, limit, found.trials);
         const bool stood = outcome.ending == Ending::stands;
         found.trials.factor.push_back(factor);
         found.trials.stands.push_back(stood ? 1 : outcome.ending == Ending::falls ? 0 : -1);

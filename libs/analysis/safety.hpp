@@ -58,8 +58,11 @@ struct Bracket {
     Safety trials;                   // in the order they were made
 };
 
-// A run with a factor, which fails if its displacement is more than that [m].
-using RunWith = std::function<Outcome(double factor, double most_displacement)>;
+// A run with a factor, which fails if its displacement is more than that [m]; after these.
+using RunWith = std::function<Outcome(double factor, double most_displacement, const Safety& so_far)>;
+
+// Run i of those.
+Outcome outcome_of(const Safety& trials, std::size_t i);
 
 // First a run with strengths 64 times as large; the displacement of others may be `runs_away` times as large as its own.
 // Then doubles or halves the factor from 1, to 64 or 1/64 at most. Then halves the bracket until it is no wider than

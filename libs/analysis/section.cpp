@@ -84,6 +84,7 @@ Section::Section(const Scene& scene_of, const Network& network_of, const Equival
     rock.threads =
         std::min(threads, 1 + static_cast<int>(result.mesh.zone_gridpoint.size()) / zones_per_thread);
     loading.apply(rock, 0);
+    result.states.initial_gap.assign(rock.contacts.gridpoint.size(), 0.0); // until the first state
 }
 
 void Section::transfer(const Transfer& to, Checkpoint& kept)

@@ -10,8 +10,10 @@
 #include "sensitivity/sensitivity.hpp"
 
 #include <array>
+#include <chrono>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,8 +28,10 @@ struct Recording {
     std::uint64_t step_history_every = 0; // solver steps
     // Parameters of sensitivities, found with the histories by the implicit engine alone.
     std::vector<sensitivity::Parameter> parameters{};
-    // Gets the state before every stage, and the result so far.
+    // Gets the state before every stage, and the result so far; and whenever that much time has passed, if it is given.
     std::function<void(const Result&, const Checkpoint&)> keep{};
+    std::optional<std::chrono::duration<double>> keep_every{};
+    bool keep_beginning = false; // also before the in-situ equilibrium
 };
 
 // Called with the progress of an analysis, from 0 to 1, and what is being done.
@@ -85,6 +89,7 @@ struct Section {
     std::string stage; // being excavated, or ""
     Settled settled;
     Findings findings;
+    SearchKeeper* keeper = nullptr; // of long searches for equilibrium, if they are kept
 };
 
 // The name of an edge's joint: its set, or the material of the joint that a boundary rests on.

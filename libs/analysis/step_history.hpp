@@ -29,6 +29,7 @@ public:
             section_.recorder.record_step(section_.result, time_, solver_time_ + since_begin, section_.rock);
     }
     void end() { solver_time_ += since_begin_; }
+    void pass(Tape& tape) { tape(steps_); } // in the middle of it
 
     // What a checkpoint keeps. Steps count from the last recorded one.
     void transfer(const Transfer& to, Checkpoint& kept)

@@ -44,6 +44,9 @@ public:
     virtual void step_is_halved() {}
     virtual void step_is_cut(const Step&) {}
 
+    // Another run could continue from here: what engines have learnt is forgotten.
+    virtual void may_continue_here() {}
+
     // A stage is to be excavated; its rock is removed.
     virtual void stage_begins() {}
     virtual void rock_is_removed() {}

@@ -41,6 +41,15 @@ public:
     bool was_open(std::size_t contact) const { return was_open_[contact] != 0; }
     double rate(std::size_t contact) const { return rate_[contact].x(); }
 
+    // What differs from a new one between steps.
+    void transfer(const Transfer& to, Checkpoint& kept)
+    {
+        if (!kept.opening_rate.empty() && kept.opening_rate.size() != kept.contact_status.size())
+            throw input_error("the state kept is that of another section");
+        to.size(rate_, kept.opening_rate);
+        to.values(rate_, kept.opening_rate);
+    }
+
     // Forgets the rates of closing: to be called after a sudden change of loads.
     void start_afresh() { rate_.clear(); }
 

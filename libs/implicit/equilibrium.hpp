@@ -42,6 +42,9 @@ public:
     // Set if it has found none because rock that yields flows on without bound.
     const std::optional<mechanics::no_equilibrium>& collapse() const { return collapse_; }
 
+    // Forgets the factor and solutions: the next equilibrium is found as by a new solver.
+    void forget() { stiffness_.forget_factor(); }
+
     // After equilibrate(), at the same stiffnesses: the x with K x = right, with K from the given tangents
     // of contacts. Uses the last factor, which is renewed where it is too far off. Empty if K has no inverse.
     VectorXd solve_linear(const Assembly& assembly, const std::vector<Tangent>& tangents,

@@ -73,6 +73,7 @@ public:
     bool factorise(const Assembly& assembly, const std::vector<Tangent>& tangents);
     VectorXd solve(const VectorXd& right) const;
     bool has_factor() const { return has_factor_; }
+    void forget_factor() { has_factor_ = has_pattern_of_yielding_ = false; }
     bool has_factor_of(const std::vector<Tangent>& tangents) const
     {
         return has_factor_ && tangents == factor_of_;

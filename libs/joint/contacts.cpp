@@ -218,7 +218,8 @@ void record_state(const Contacts& contacts, States& states)
 {
     const std::vector<State>& remembered =
         contacts.state_by_faces.empty() ? contacts.state : contacts.state_by_faces;
-    const bool is_first = states.initial_gap.empty();
+    const bool is_first = states.time.size() <= 1;
+    states.initial_gap.resize(contacts.gridpoint.size());
     for (std::size_t c = 0; c < contacts.gridpoint.size(); ++c) {
         states.traction.push_back(contacts.traction[c]);
         states.relative_displacement.push_back(contacts.relative_displacement[c]);
@@ -228,10 +229,10 @@ void record_state(const Contacts& contacts, States& states)
         states.bond_broken.push_back(remembered[c].is_broken ? 1 : 0);
         states.crept.push_back(contacts.offset[c]);
         if (is_first) // a bonded contact in tension is closed
-            states.initial_gap.push_back(
+            states.initial_gap[c] =
                 contacts.status[c] == ContactStatus::open
                     ? std::max(0.0, opening(contacts.law[c], contacts.initial_traction[c].x()))
-                    : 0.0);
+                    : 0.0;
     }
 }
 
@@ -249,6 +250,20 @@ void transfer(const Transfer& to, Contacts& contacts, Checkpoint& kept)
     to.values(contacts.state, kept.first_memory, memory(0));
     to.values(contacts.state, kept.second_memory, memory(1));
     to.values(contacts.state, kept.third_memory, memory(2));
+}
+
+void transfer(Tape& tape, Contacts& contacts)
+{
+    const auto pass = [&](std::vector<State>& states) {
+        for (auto& [slip, dilation, is_broken, memory] : states)
+            tape(slip, dilation, is_broken, memory);
+    };
+    pass(contacts.state);
+    tape(contacts.traction, contacts.relative_displacement, contacts.status, contacts.work);
+    const std::size_t by_faces = tape.size(contacts.state_by_faces.size());
+    Tape::check(by_faces == 0 || by_faces == contacts.state.size());
+    contacts.state_by_faces.resize(by_faces);
+    pass(contacts.state_by_faces);
 }
 
 } // namespace jointcreep::joint

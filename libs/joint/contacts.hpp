@@ -7,6 +7,7 @@
 #include "model/network.hpp"
 #include "model/result.hpp"
 #include "model/scene.hpp"
+#include "model/tape.hpp"
 
 #include <Eigen/Core>
 
@@ -128,5 +129,8 @@ void record_state(const Contacts& contacts, States& states);
 
 // State at the start of a stage that new contacts of the same section do not have.
 void transfer(const Transfer& to, Contacts& contacts, Checkpoint& kept);
+
+// What a search for equilibrium changes.
+void transfer(Tape& tape, Contacts& contacts);
 
 } // namespace jointcreep::joint

@@ -166,6 +166,12 @@ void FaceContacts::take_pairs(const NearFaces& near)
             pairs.push_back({.a = a, .b = b, .law = laws_.size() - 1});
     }
     pairs_ = std::move(pairs);
+    list_pairs();
+}
+
+// The pairs of each face; all of them active.
+void FaceContacts::list_pairs()
+{
     of_face_.assign(faces_.gridpoint.size(), {});
     for (std::size_t p = 0; p < pairs_.size(); ++p)
         for (const Index f : {pairs_[p].a, pairs_[p].b})

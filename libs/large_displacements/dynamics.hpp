@@ -66,6 +66,9 @@ public:
     // State that a new analysis of the same section does not have; call it between analyses. start() sets the rest.
     void transfer(const Transfer& to, DynamicsState& kept);
 
+    // What steps change, all of it.
+    void pass(Tape& tape);
+
     // Makes the present positions the reference of displacements.
     void count_from_here();
 

@@ -39,6 +39,31 @@ void Dynamics::transfer(const Transfer& to, DynamicsState& kept)
     to.value(largest_mean, kept.largest_mean_force);
 }
 
+void Dynamics::pass(Tape& tape)
+{
+    // All members, so that no new one is forgotten. Those not passed on are as start() makes them, or of one step alone.
+    auto& [rock, mesh, settings, contacts, bodies, is_rigid, any_deforms, body_of, zones, place, velocity,
+           move, force, released, lost, origin, middle, low, high, inverse_mass, law_of_edge, ground,
+           wall_law, face_of_mesh, zone_of_face, dt, last_dt, time, time_lost, stiffest_allowed,
+           starts_from_rest, has_moved, energy, stored_at_start, in_zones, last_kinetic, stiffest,
+           largest_mean, ratio, force_change, fastest, fastest_gridpoint, stiffest_gridpoint,
+           checks_in_balance, last_contact_force] = *this;
+    const std::size_t n = place.size();
+    tape(contacts);
+    for (auto& [gridpoint, arm, mass, inertia, centre, body_velocity, body_lost, angle, spin, is_free] :
+         bodies)
+        tape(centre, body_velocity, body_lost, angle, spin);
+    rock::transfer(tape, zones);
+    tape(place, velocity, force, lost, inverse_mass, dt, last_dt, time, time_lost, stiffest_allowed,
+         starts_from_rest, has_moved, last_kinetic, stiffest, largest_mean, ratio, force_change, fastest,
+         checks_in_balance);
+    tape(energy.work, energy.kinetic, energy.stored, energy.friction, energy.damped);
+    tape(in_zones.stored, in_zones.friction, in_zones.damped);
+    tape.index(fastest_gridpoint, n);
+    tape.index(stiffest_gridpoint, n);
+    tape.list_of(n, last_contact_force);
+}
+
 void Dynamics::count_from_here()
 {
     origin_ = place_;

@@ -214,6 +214,45 @@ void FaceContacts::transfer(const Transfer& to, DynamicsState& kept)
     to.values(pairs_, kept.sheared_in, &FacePair::sheared_in);
 }
 
+void FaceContacts::pass(Tape& tape)
+{
+    // All members, so that no new one is forgotten. Those not passed on are as set_faces() makes them, or of one update
+    // alone.
+    auto& [laws, material, origin, stiffens, dilates, stiffest_open, stiffest, faces, shapes, pairs, of_face,
+           side, joints, active, way_to, closes, touched, touched_start, corner_force, corner_place,
+           sought_at, farthest, raised, reach, skin, is_sought, most_lead, energy, searches] = *this;
+    const std::size_t n_faces = faces.gridpoint.size();
+    tape(stiffest, farthest, raised, is_sought, most_lead, energy.stored, energy.friction, energy.damped,
+         searches, sought_at);
+    for (FaceShape& shape : shapes)
+        tape(shape.along, shape.length, shape.sharp);
+    pairs.resize(tape.size(pairs.size()), FacePair{.a = 0, .b = 0});
+    for (FacePair& pair : pairs) {
+        auto& [a, b, law, lead, dilation, tau, is_known, is_new, is_closed, is_broken, memory, is_slipping,
+               on_a, on_b, force, normal, raised_by, opened, length, sigma, stiffest_spring, held, pressed_in,
+               sheared_in, friction, damped] = pair;
+        tape.index(a, n_faces);
+        tape.index(b, n_faces);
+        tape.index(law, laws.size());
+        tape(lead, dilation, tau, is_known, is_new, is_closed, is_broken, memory, is_slipping, on_a, on_b,
+             force, normal, raised_by, opened, length, sigma, stiffest_spring, held, pressed_in, sheared_in,
+             friction, damped);
+    }
+    tape.list_of(n_faces, reach);
+    if (tape.reads())
+        list_pairs();
+    tape.indices(side, n_faces);
+    joints.resize(tape.size(joints.size()));
+    for (std::vector<Index>& joint : joints)
+        tape.indices(joint, pairs.size());
+    tape.indices(active, pairs.size());
+    tape.list(way_to);
+    Tape::check(side.size() == n_faces && (way_to.empty() || way_to.size() == active.size()));
+    if (tape.reads())
+        find_touched();
+    tape(corner_force);
+}
+
 void FaceContacts::take_forces(Index active)
 {
     const FacePair& pair = pairs_[active_[active]];

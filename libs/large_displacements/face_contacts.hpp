@@ -139,6 +139,9 @@ public:
     // State for checkpoints, beside set_faces() with the known pairs, and update().
     void transfer(const Transfer& to, DynamicsState& kept);
 
+    // What updates change, all of it.
+    void pass(Tape& tape);
+
     const Faces& faces() const { return faces_; }
     const std::vector<FacePair>& pairs() const { return pairs_; }
     const std::vector<joint::Law>& laws() const { return laws_; }
@@ -158,6 +161,7 @@ private:
     void seek(const std::vector<Vector2d>& place, const std::vector<Vector2d>& move);
     std::vector<std::pair<Index, Index>> find_reach(const std::vector<Vector2d>& place);
     void take_pairs(const std::vector<std::pair<Index, Index>>& near);
+    void list_pairs();
     void find_joints(const std::vector<Vector2d>& place);
     void find_active();
     double way_to_touch(const FacePair& pair, double most_lead) const;

@@ -275,8 +275,9 @@ void transfer(const Transfer& to, Assembly& assembly, Checkpoint& kept)
     to.values(assembly.displacement, kept.displacement);
     to.values(assembly.is_free_untied, kept.is_free);
     to.values(assembly.load, kept.load);
+    to.values(assembly.force, kept.force);
     if (to.restores())
-        part_ties(assembly, kept.stage - 1);
+        part_ties(assembly, kept.unloaded > 0 ? kept.stage : kept.stage - 1);
     for_each_force(assembly, [&](auto& one) { transfer(to, one, kept); });
 }
 

@@ -1,6 +1,15 @@
-// The state before a stage, from which another run can continue with the same result.
+// The state at a moment of an analysis, from which another run can continue with the same result.
 //
-// Everything else begins anew at a stage: factorisations, what was learnt from earlier steps.
+// Such a moment is one at which the state here is all there is: what the implicit engine has learnt from earlier steps
+// (a factor, solutions, a guess) is forgotten. In any run, with checkpoints or without, it is forgotten
+//   - before the in-situ equilibrium and before every stage;
+//   - after every equilibrium by dynamic relaxation;
+//   - after every 50th creep step.
+// Before the in-situ equilibrium, before every stage, and after something was forgotten between two creep steps or two
+// increments of a stage, a run can continue.
+//
+// In the middle of a long search for equilibrium, the search's own state is added (model/tape.hpp). A run from there
+// begins at the moment before, and computes again what leads to that search, but not the search.
 
 #pragma once
 
@@ -40,13 +49,17 @@ struct DynamicsState {
 };
 
 struct Checkpoint {
-    Index stage = 0; // to be excavated next
-    double time = 0; // since start [s]
+    Index is_in_situ = 0; // 1: before the in-situ equilibrium; then only `search` counts
+    Index stage = 0;      // to be excavated next
+    double time = 0;      // since start [s]
 
     // Gridpoints.
     std::vector<Eigen::Vector2d> displacement; // [m]
     std::vector<Eigen::Vector2d> is_free;      // 1 or 0 in {x, y}, but for ties [-]
     std::vector<Eigen::Vector2d> load;         // [N/m]
+    std::vector<Eigen::Vector2d> force;        // unbalanced [N/m]
+    std::vector<Eigen::Vector2d> released;     // force of rock excavated in this stage, within it [N/m]
+    Index unloaded = 0, increment = 0; // of that: how much is gone, and goes next, in the finest increments
 
     // Zones.
     std::vector<Index> zone_present;
@@ -61,6 +74,7 @@ struct Checkpoint {
     std::vector<Eigen::Vector2d> traction, initial_traction;    // [Pa]
     std::vector<Eigen::Vector2d> relative_displacement, offset; // [m]
     std::vector<double> slip, dilation;                         // [m]
+    std::vector<Eigen::Vector2d> opening_rate;                  // of {opening, shear}, of open ones [m/s]
     std::vector<Index> is_broken;
     // Of laws that remember more (their headers say what) [SI].
     std::vector<double> first_memory, second_memory, third_memory;
@@ -81,6 +95,10 @@ struct Checkpoint {
     std::vector<Index> remark_count;
 
     DynamicsState dynamics;
+
+    // A search for equilibrium under way, which may be none.
+    Index search_number = 0;    // of searches that are kept, since this moment
+    std::vector<double> search; // its state (model/tape.hpp)
 };
 
 // Copies state into a checkpoint, or back from it. So a list of the state is written once, for both.

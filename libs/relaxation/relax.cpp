@@ -51,6 +51,7 @@ public:
         until_ = steps + std::max(patience, steps / 2);
         return stands_still;
     }
+    void pass(Tape& tape) { tape(until_, last_share_); }
 
 private:
     Index until_ = 0;
@@ -74,6 +75,13 @@ public:
         oldest = assembly.contacts.force;
         ++n_;
         return change;
+    }
+    void pass(Tape& tape)
+    {
+        const std::size_t n = kept_[0].size(); // there since the start
+        for (std::vector<Vector2d>& kept : kept_)
+            tape.list_of(n, kept);
+        tape(n_);
     }
 
 private:
@@ -242,6 +250,19 @@ public:
         throw error;
     }
 
+    // All that has changed since the start; the assembly's too.
+    void pass(Tape& tape)
+    {
+        tape(a_.displacement, a_.force);
+        rock::transfer(tape, a_.zones);
+        joint::transfer(tape, a_.contacts);
+        tape(velocity_, patience_ago_, last_force_, older_, newer_, mass_, work_of_changes_, work_,
+             time_before_, steps_since_, dt_, alpha_, checks_in_movement_, last_energy_, starts_from_rest_);
+        for (auto& [contact, stiffest] : stiffening_)
+            tape(stiffest);
+        find_inverse_masses();
+    }
+
     // Ends the movement and settles the energy balance.
     void finish(Convergence& convergence)
     {
@@ -296,15 +317,20 @@ private:
             for (const double sum : row_sums)
                 mass_.push_back(sum * local / (4 * safety * safety));
         }
-        inverse_mass_.clear();
-        for (const double m : mass_)
-            inverse_mass_.push_back(m > 0 ? 1 / m : 0.0); // gridpoints without any rock do not move
-        a_.stiffness_damping_rate = settings_.stiffness_damping / dt_;
+        find_inverse_masses();
         const joint::Contacts& contacts = a_.contacts;
         stiffening_.clear();
         for (std::size_t c = 0; c < contacts.law.size(); ++c)
             if (stiffens(contacts.law[c]) && contacts.status[c] != ContactStatus::removed)
                 stiffening_.emplace_back(c, joint::room_to_stiffen * normal_stiffness(c));
+    }
+
+    void find_inverse_masses()
+    {
+        inverse_mass_.clear();
+        for (const double m : mass_)
+            inverse_mass_.push_back(m > 0 ? 1 / m : 0.0); // gridpoints without any rock do not move
+        a_.stiffness_damping_rate = settings_.stiffness_damping / dt_;
     }
 
     double normal_stiffness(std::size_t contact) const
@@ -338,6 +364,8 @@ private:
         Index steps;
         std::vector<Vector2d> displacement, force;
         double work = 0; // of the unbalanced forces, since the start [J/m]
+
+        void pass(Tape& tape) { tape(steps, displacement, force, work); }
     };
 
     // Over gridpoints, in one step.
@@ -431,7 +459,8 @@ private:
 
 } // namespace
 
-Convergence relax(Assembly& assembly, const Equilibrium& settings, const StepObserver& observe)
+Convergence relax(Assembly& assembly, const Equilibrium& settings, const StepObserver& observe,
+                  SearchKeeper* keeper)
 {
     find_forces(assembly);
     Convergence convergence;
@@ -456,7 +485,18 @@ Convergence relax(Assembly& assembly, const Equilibrium& settings, const StepObs
     Patience with_remaining;
     mechanics::RemainingDisplacement unsupported; // at the last look at pieces
     Index look_again = 0;                         // at them [steps]
+    const auto pass = [&](Tape& tape) {
+        tape(relaxation, memory, steps_in_balance, remaining_displacement, with_remaining,
+             unsupported.displacement, look_again, largest);
+        tape.index(unsupported.gridpoint, assembly.position.size());
+        tape(convergence.steps, convergence.unbalanced_force_ratio, convergence.contact_force_change,
+             convergence.remaining_displacement);
+    };
+    if (keeper != nullptr)
+        keeper->search_begins(pass);
     while (convergence.steps < settings.most_steps) {
+        if (keeper != nullptr && convergence.steps % window == 0)
+            keeper->search_goes_on(pass);
         const Index steps = observe ? 1
                                     : std::min(check_every - convergence.steps % check_every,
                                                settings.most_steps - convergence.steps);

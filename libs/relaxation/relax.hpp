@@ -16,6 +16,7 @@
 #pragma once
 
 #include "mechanics/assembly.hpp"
+#include "model/tape.hpp"
 
 #include <functional>
 
@@ -36,7 +37,9 @@ using StepObserver = std::function<void(double solver_time)>;
 // Throws no_equilibrium when a gridpoint has moved by a tenth of the section's size, in this equilibrium or since
 // the in-situ state; when rock moves steadily while the unbalanced forces do not decrease; when forces are no
 // longer numbers; and after settings.most_steps.
+//
+// With a keeper, it may be kept after every 100 steps, and continued from there: all numbers are then the same.
 mechanics::Convergence relax(mechanics::Assembly& assembly, const Equilibrium& settings,
-                             const StepObserver& observe = {});
+                             const StepObserver& observe = {}, SearchKeeper* keeper = nullptr);
 
 } // namespace jointcreep::relaxation

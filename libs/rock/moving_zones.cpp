@@ -142,4 +142,13 @@ void transfer(const Transfer& to, MovingZones& moving, DynamicsState& kept)
     to.values(yielding, kept.stress, &MovingYieldingZone::stress);
 }
 
+void transfer(Tape& tape, MovingZones& moving)
+{
+    for (auto& [gridpoint, inverse, area, stiffness, strain, held] : moving.zone)
+        tape(strain, held);
+    for (auto& [zone, stress] : moving.yielding)
+        tape(zone.plastic, zone.stress_zz, zone.dissipated, stress);
+    tape(moving.corner_force);
+}
+
 } // namespace jointcreep::rock

@@ -68,4 +68,7 @@ void put_back(const MovingZones& moving, Index z, const std::vector<Vector2d>& p
 // State for checkpoints: all that moving_zones_of() and find_force() cannot compute again.
 void transfer(const Transfer& to, MovingZones& moving, DynamicsState& kept);
 
+// What steps change.
+void transfer(Tape& tape, MovingZones& moving);
+
 } // namespace jointcreep::rock

@@ -467,4 +467,11 @@ void transfer(const Transfer& to, Zones& zones, Checkpoint& kept)
     to.values(zones.yielding, kept.initial_zz, &YieldingZone::initial_zz);
 }
 
+void transfer(Tape& tape, Zones& zones)
+{
+    tape(zones.stress, zones.last_stress);
+    for (auto& [law, initial_zz, plastic, stress_zz, dissipated] : zones.yielding)
+        tape(plastic, stress_zz, dissipated);
+}
+
 } // namespace jointcreep::rock

@@ -6,6 +6,7 @@
 #include "model/network.hpp"
 #include "model/result.hpp"
 #include "model/scene.hpp"
+#include "model/tape.hpp"
 #include "rock/mohr_coulomb.hpp"
 
 #include <Eigen/Core>
@@ -138,5 +139,8 @@ void record_state(const Zones& zones, States& states);
 
 // State at the start of a stage that new zones of the same section do not have.
 void transfer(const Transfer& to, Zones& zones, Checkpoint& kept);
+
+// What a search for equilibrium changes.
+void transfer(Tape& tape, Zones& zones);
 
 } // namespace jointcreep::rock

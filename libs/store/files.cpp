@@ -4,6 +4,10 @@
 #include "store/hdf5.hpp"
 #include "store/save.hpp"
 
+#include <fstream>
+#include <iterator>
+#include <span>
+
 namespace jointcreep::store
 {
 
@@ -236,13 +240,27 @@ void write_result(const std::string& path, const Provenance& provenance, const N
 }
 
 void write_checkpoint(const std::string& path, const Provenance& provenance, const Network& network,
-                      const EquivalentJoints& equivalent, const Result& so_far, const Checkpoint& checkpoint)
+                      const EquivalentJoints& equivalent, const Result& so_far, const Checkpoint& checkpoint,
+                      const Safety& safety)
 {
     Contents contents(provenance, network);
     contents.add(equivalent);
     contents.add(so_far, !so_far.step_history.time.empty(), !so_far.dynamics.time.empty(), false);
     contents.add(checkpoint, !checkpoint.dynamics.place.empty());
+    if (!safety.factor.empty())
+        contents.add(safety);
     write(path, FileKind::checkpoint, provenance, contents);
+}
+
+void copy(const std::string& from, const std::string& to)
+{
+    naming(to, [&] {
+        std::ifstream file(from, std::ios::binary);
+        const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+        if (!file)
+            throw file_error("cannot copy " + from);
+        save(to, std::as_bytes(std::span(bytes)));
+    });
 }
 
 } // namespace jointcreep::store

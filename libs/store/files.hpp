@@ -59,7 +59,11 @@ void write_joints(const std::string& path, const Provenance& provenance, const N
 void write_result(const std::string& path, const Provenance& provenance, const Network& network,
                   const EquivalentJoints& equivalent, const Result& result, const Safety& safety = {});
 void write_checkpoint(const std::string& path, const Provenance& provenance, const Network& network,
-                      const EquivalentJoints& equivalent, const Result& so_far, const Checkpoint& checkpoint);
+                      const EquivalentJoints& equivalent, const Result& so_far, const Checkpoint& checkpoint,
+                      const Safety& safety = {});
+
+// Copies a file, whole or not at all.
+void copy(const std::string& from, const std::string& to);
 
 // Throws file_error if a file could not be written there later; for the start of a long run.
 void check_writable(const std::string& path);

@@ -404,13 +404,23 @@ std::vector<Field> fields_of(Checkpoint& checkpoint)
     const std::vector<std::string> gridpoint = {"gridpoint"}, remark = {"remark"};
     // clang-format off
     std::vector<Field> all = {
-        {"/checkpoint/stage", &checkpoint.stage, {}, "1", index_of("stage"), "Stage that is about to be excavated."},
-        {"/checkpoint/time", &checkpoint.time, {}, "s", at_least(0), "Its time since the start."},
+        {"/checkpoint/is_in_situ", &checkpoint.is_in_situ, {}, "1", between(0, 1),
+         "1 before the in-situ equilibrium, from where a run begins; then only the search below counts."},
+        {"/checkpoint/stage", &checkpoint.stage, {}, "1", at_least(0),
+         "Number of stages that are complete."},
+        {"/checkpoint/time", &checkpoint.time, {}, "s", at_least(0),
+         "Time since the start. If the next stage has it, that is about to be excavated, or under way; otherwise a creep step is about to begin."},
         {"/checkpoint/displacement", &checkpoint.displacement, gridpoint, "m", any(),
          "Displacement {x, y} since the in-situ equilibrium."},
         {"/checkpoint/is_free", &checkpoint.is_free, gridpoint, "1", between(0, 1),
          "In {x, y}: 1 free, 0 fixed itself or without rock."},
         {"/checkpoint/load", &checkpoint.load, gridpoint, "N/m", any(), "Weight {x, y} that the gridpoint has."},
+        {"/checkpoint/force", &checkpoint.force, gridpoint, "N/m", any(), "Unbalanced force {x, y}, also where it is fixed."},
+        {"/checkpoint/released", &checkpoint.released, {"released_gridpoint"}, "N/m", any(),
+         "Within a stage: force {x, y} that the rock it excavates had on the gridpoint."},
+        {"/checkpoint/unloaded", &checkpoint.unloaded, {}, "1", at_least(0),
+         "Finest increments in which that has been unloaded so far, 1/32 of the scene's or with dynamic relaxation alone these; 0 outside of a stage."},
+        {"/checkpoint/increment", &checkpoint.increment, {}, "1", at_least(0), "How many of them are unloaded next."},
     };
     // clang-format on
     append(all, of_forces(&ForceFields::checkpoint, checkpoint));
@@ -429,6 +439,10 @@ std::vector<Field> fields_of(Checkpoint& checkpoint)
          "0 contacts of the joint at yield in the initial stress state, 1 zones of the rock, 2 why the implicit engine found no equilibrium, 3 the stage's "
          "energy balance is off."},
         {"/checkpoint/remark_count", &checkpoint.remark_count, remark, "1", at_least(0), "How often, or by how many percent."},
+        {"/checkpoint/search_number", &checkpoint.search_number, {}, "1", at_least(0),
+         "Of the search for equilibrium that was under way: how many dynamic relaxations or dynamic analyses are before it from here."},
+        {"/checkpoint/search", &checkpoint.search, {"search_value"}, "1", any(),
+         "State of that search, in the order of the program of the same version; none where no search was under way."},
     });
     // clang-format on
     return all;
@@ -503,6 +517,7 @@ const std::vector<Described>& dimensions()
         {"corner", "a corner of a ring"},
         {"statistic", "a row of the report on the network"},
         {"gridpoint", "a corner of zones, split along joints"},
+        {"released_gridpoint", "a gridpoint again, within a stage: all or none"},
         {"tie", "a pair of gridpoints that move as one until a stage"},
         {"time", "a recorded time of the history"},
         {"point", "a monitoring point of the scene"},
@@ -513,6 +528,7 @@ const std::vector<Described>& dimensions()
         {"moving_block", "a block that had no equilibrium"},
         {"trial", "a run by which a factor of safety was found"},
         {"remark", "a line of the summary so far"},
+        {"search_value", "a number of the state of a search for equilibrium"},
         {"warning", "a warning of a program"},
     };
     static const std::vector<Described> all = [] {

@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <numeric>
 
 namespace analysis_test
@@ -297,6 +298,137 @@ TEST(analysis, the_implicit_engine_has_no_step_history)
     EXPECT_NE(refusal_of(study), "");
     study.scene.equilibrium.engine = EngineChoice::automatic;
     EXPECT_EQ(study.analysis().engine(), EngineChoice::relaxation);
+}
+
+// What is written at a moment, and the moment's number among all.
+struct Kept {
+    Result so_far;
+    Checkpoint checkpoint;
+};
+
+std::vector<Kept> kept_by(Study study, std::chrono::duration<double> every)
+{
+    std::vector<Kept> kept;
+    study.recording.keep_every = every;
+    study.recording.keep = [&](const Result& so_far, const Checkpoint& checkpoint) {
+        kept.push_back({so_far, checkpoint});
+    };
+    study.run();
+    return kept;
+}
+
+void expect_same(const Result& a, const Result& b)
+{
+    EXPECT_EQ(a.mesh.gridpoint, b.mesh.gridpoint);
+    EXPECT_EQ(a.history.time, b.history.time);
+    EXPECT_EQ(a.history.displacement, b.history.displacement);
+    EXPECT_EQ(a.history.first_reading_row, b.history.first_reading_row);
+    EXPECT_EQ(a.states.time, b.states.time);
+    EXPECT_EQ(a.states.displacement, b.states.displacement);
+    EXPECT_EQ(a.states.reaction, b.states.reaction);
+    EXPECT_EQ(a.states.stress, b.states.stress);
+    EXPECT_EQ(a.states.traction, b.states.traction);
+    EXPECT_EQ(a.states.initial_gap, b.states.initial_gap);
+    EXPECT_EQ(a.equilibria.steps, b.equilibria.steps);
+    EXPECT_EQ(a.equilibria.searches, b.equilibria.searches);
+    EXPECT_EQ(a.equilibria.solves, b.equilibria.solves);
+    EXPECT_EQ(a.equilibria.damped_energy, b.equilibria.damped_energy);
+    EXPECT_EQ(a.equilibria.remaining_displacement, b.equilibria.remaining_displacement);
+    EXPECT_EQ(a.step_history.solver_time, b.step_history.solver_time);
+    EXPECT_EQ(a.step_history.displacement, b.step_history.displacement);
+    EXPECT_EQ(a.dynamics.stored_energy, b.dynamics.stored_energy);
+    EXPECT_EQ(a.dynamics.damped_energy, b.dynamics.damped_energy);
+    EXPECT_EQ(a.dynamics.contact_traction, b.dynamics.contact_traction);
+}
+
+// Runs continued from some of all moments have the whole run's result. Returns how many moments there are in searches.
+std::ptrdiff_t expect_same_from_everywhere(const Study& study)
+{
+    const Result whole = study.run();
+    const std::vector<Kept> kept = kept_by(study, std::chrono::duration<double>(0));
+    const std::size_t stride = std::max<std::size_t>(1, kept.size() / 23);
+    for (std::size_t i = 0; i < kept.size(); i += stride) {
+        Analysis continued = study.analysis();
+        continued.go_on(kept[i].so_far, kept[i].checkpoint);
+        SCOPED_TRACE("moment " + std::to_string(i) + " of " + std::to_string(kept.size()));
+        expect_same(whole, continued.result());
+        if (testing::Test::HasFailure())
+            break;
+    }
+    return std::count_if(kept.begin(), kept.end(),
+                         [](const Kept& one) { return !one.checkpoint.search.empty(); });
+}
+
+TEST(analysis, continues_from_the_middle_of_a_dynamic_relaxation)
+{
+    for (const Damping damping :
+         {Damping::adaptive, Damping::kinetic, Damping::local, Damping::combined, Damping::mass}) {
+        Study study;
+        study.scene.end = damping == Damping::kinetic ? day : 2 * day; // creep it does not follow
+        study.scene.equilibrium.engine = EngineChoice::relaxation;
+        study.scene.equilibrium.tolerance = 1e-4;
+        study.scene.equilibrium.unloading_increments = 2;
+        study.scene.equilibrium.damping = damping;
+        study.scene.equilibrium.local_damping = 0.8;
+        if (damping == Damping::mass) {
+            study.scene.equilibrium.masses = Masses::real;
+            study.scene.equilibrium.mass_damping = 60;
+            study.scene.equilibrium.stiffness_damping = 1e-4;
+        }
+        if (damping == Damping::local)
+            study.recording.step_history_every = 70;
+        EXPECT_GT(expect_same_from_everywhere(study), 20) << static_cast<int>(damping);
+    }
+}
+
+// The implicit engine forgets what it has learnt after every 50th step.
+TEST(analysis, continues_from_between_two_creep_steps)
+{
+    Study study;
+    study.scene.creep->step = 0.1 * day;
+    study.scene.end = 16 * day;
+    study.recording.state_every = 7;
+    EXPECT_EQ(expect_same_from_everywhere(study), 0);
+    const std::vector<Kept> kept = kept_by(study, std::chrono::duration<double>(0));
+    EXPECT_EQ(kept.size(), 1u + 1 + 2); // the beginning, the stage, and after 50 and 100 steps
+    EXPECT_EQ(kept_by(study, std::chrono::hours(1)).size(), 1u);
+}
+
+TEST(analysis, continues_where_creep_steps_are_chosen_and_cut)
+{
+    Study study;
+    study.choose_steps(1e-6, 0.01 * day);
+    study.scene.creep->scheme = CreepScheme::fitted;
+    EXPECT_EQ(expect_same_from_everywhere(study), 0);
+    study.scene.equilibrium.engine = EngineChoice::relaxation;
+    study.scene.equilibrium.tolerance = 1e-6;
+    study.scene.end = 4 * day;
+    EXPECT_GT(expect_same_from_everywhere(study), 20);
+}
+
+TEST(analysis, a_search_of_another_run_is_refused)
+{
+    Study study;
+    study.scene.end = 2 * day;
+    study.scene.equilibrium.engine = EngineChoice::relaxation;
+    std::vector<Kept> kept = kept_by(study, std::chrono::duration<double>(0));
+    Kept& last = kept.back();
+    ASSERT_FALSE(last.checkpoint.search.empty());
+    const auto refuses = [&](const Checkpoint& checkpoint) {
+        Analysis continued = study.analysis();
+        EXPECT_THROW(continued.go_on(last.so_far, checkpoint), input_error);
+    };
+    Checkpoint other = last.checkpoint;
+    other.search.pop_back();
+    refuses(other);
+    other.search.insert(other.search.end(), 2, 0.0);
+    refuses(other);
+    other = last.checkpoint;
+    other.search[0] += 1; // the number of gridpoints
+    refuses(other);
+    other = last.checkpoint;
+    other.stage = 7;
+    refuses(other);
 }
 
 } // namespace analysis_test

@@ -20,7 +20,7 @@ constexpr double runs_away = 10;
 
 auto falls_above(double threshold)
 {
-    return [=](double factor, double /*most_displacement*/) {
+    return [=](double factor, double /*most_displacement*/, const Safety&) {
         return Outcome{factor <= threshold ? Ending::stands : Ending::falls};
     };
 }
@@ -53,7 +53,7 @@ TEST(bracket_of, says_where_everything_or_nothing_stands)
 TEST(bracket_of, takes_what_is_undecided_as_not_standing_and_says_so)
 {
     const Bracket bracket = bracket_of(
-        [](double factor, double /*most_displacement*/) {
+        [](double factor, double /*most_displacement*/, const Safety&) {
             return Outcome{factor < 1.2 ? Ending::stands : factor < 1.7 ? Ending::undecided : Ending::falls};
         },
         0.1, runs_away);
@@ -69,7 +69,7 @@ TEST(bracket_of, ends_where_displacement_runs_away)
         return 0.01 * std::exp(factor);
     }; // [m], no failure of its own
     const Bracket bracket = bracket_of(
-        [&](double factor, double most) {
+        [&](double factor, double most, const Safety&) {
             return Outcome{displacement(factor) <= most ? Ending::stands : Ending::falls,
                            displacement(factor), factor};
         },

@@ -314,21 +314,77 @@ class Restart(ChainTest):
             is_held = (data["/mesh/gridpoint_fixed"][data["/mesh/tie_gridpoint"]] == 3).all(axis=1)
             self.assertTrue(((abs(at - [3, 0]) < 1e-9).all(axis=(1, 2)) & is_held & (data["/mesh/tie_stage"] == 0)).any())
 
+    def assert_killed_goes_on(self, text, *arguments, kills):
+        """A run that writes all checkpoints it can is killed after so many of them, at some moment, and goes on to the same
+        files and summary. Returns what the runs that went on say of where they do so."""
+        joints = self.chain.joints(text)
+
+        def files_of(name):
+            files = (joints.with_name(f"{name}{end}.h5") for end in ("", ".failed"))
+            return [file.read_bytes() if file.exists() else None for file in files]
+
+        whole = self.chain.answer("demsolve", joints, "-o", joints.with_name("whole.h5"), *arguments)
+        self.assertEqual(whole.returncode, 0, whole.stderr)
+        went_on = []
+        for n in kills:
+            kept, result = joints.with_name(f"kept{n}.h5"), joints.with_name(f"result{n}.h5")
+            command = [self.chain.programs / "demsolve", joints, "-o", result, "--checkpoint", kept, *map(str, arguments)]
+            running = subprocess.Popen([*command, "--checkpoint-every", "1e-9"], stdout=subprocess.DEVNULL,
+                                       stderr=subprocess.DEVNULL)
+            seen = set()
+            while len(seen) < n and running.poll() is None:
+                if kept.exists():
+                    seen.add(kept.stat().st_mtime_ns)
+                time.sleep(0.001)
+            running.kill()
+            running.wait()
+            self.assertFalse(result.exists(), "it was not killed in time")
+            done = subprocess.run(command, capture_output=True, text=True, timeout=300)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            place, summary = done.stdout.split("\n", 1)
+            self.assertRegex(place, "^continued from ")
+            went_on.append(place)
+            self.assertEqual(summary.replace(f"result{n}.failed", "whole.failed").split(), whole.stdout.split())
+            self.assertTrue(files_of(f"result{n}") == files_of("whole"), place)
+        return went_on
+
     def test_a_run_that_is_killed_goes_on(self):
+        self.assert_killed_goes_on(changed(SCENE, "^size_m = 2$", "size_m = 1.4"), kills=(1, 2))
+
+    def test_in_the_middle_of_a_dynamic_relaxation(self):
+        went_on = self.assert_killed_goes_on(SCENE, "--engine", "relaxation", kills=(3, 40, 90))
+        self.assertTrue(any("in the middle of a search" in place for place in went_on), went_on)
+
+    def test_in_the_middle_of_a_stage(self):
+        """Between two increments by dynamic relaxation: these are not made again."""
+        text = changed(SCENE, "^tolerance = 1e-4", "tolerance = 1e-4\nunloading_increments = 40")
+        self.assert_killed_goes_on(text, "--engine", "relaxation", "--no-creep", kills=(20, 60))
+
+    def test_between_creep_steps(self):
+        went_on = self.assert_killed_goes_on(SCENE, "--creep-step", 0.05, kills=(3, 6, 9))
+        self.assertTrue(any("stage" not in place for place in went_on), went_on)
+
+    def test_in_the_middle_of_a_dynamic_analysis(self):
+        for more in 'rigid_rocks = ["rock"]', "stiffness_damping_s = 3e-5\nrelease_s = 0.05":
+            went_on = self.assert_killed_goes_on(sliding_block(more), kills=(10, 200))
+            self.assertTrue(all("in the middle of a search" in place for place in went_on), went_on)
+
+    def test_in_the_middle_of_a_search_for_a_factor_of_safety(self):
+        """The runs that are decided are not made again."""
+        search = ("--factor-of-safety", "--safety-width", 0.2, "--no-creep", "--engine", "relaxation")
+        self.assert_killed_goes_on(SCENE, *search, kills=(10, 60, 150))
         joints = self.chain.joints(SCENE)
-        whole = self.chain.run("demsolve", joints, joints.with_name("whole.h5"), "--engine", "relaxation")
-        kept, result = joints.with_name("kept.h5"), joints.with_name("result.h5")
-        command = [self.chain.programs / "demsolve", joints, "-o", result, "--checkpoint", kept, "--engine", "relaxation"]
-        running = subprocess.Popen(command, stdout=subprocess.DEVNULL)
-        while not kept.exists() and running.poll() is None:
-            time.sleep(0.01)
-        running.kill()
-        running.wait()
-        self.assertFalse(result.exists(), "it was not killed in time")
-        done = subprocess.run(command, capture_output=True, text=True, timeout=300)
-        self.assertEqual(done.returncode, 0, done.stderr)
-        self.assertIn("continued from", done.stdout)
-        self.assertTrue(result.read_bytes() == whole.read_bytes())
+        command = [joints, "-o", joints.with_name("result.h5"), *search, "--checkpoint", joints.with_name("kept.h5")]
+        whole = self.chain.answer("demsolve", *command)
+        self.assertEqual(whole.returncode, 0, whole.stderr)
+        factors = datasets(joints.with_name("result.h5"))["/safety/factor"]
+        kept = datasets(joints.with_name("kept.h5"))
+        np.testing.assert_array_equal(kept["/safety/factor"], factors[:-1])  # before the run under way
+        with h5py.File(joints.with_name("kept.h5"), "r+", libver=("v110", "v110")) as file:
+            file["/safety/largest_displacement"][1] = 7  # of a run that is decided
+        again = self.chain.answer("demsolve", *command)
+        self.assertEqual(again.returncode, 0, again.stderr)
+        self.assertEqual(datasets(joints.with_name("result.h5"))["/safety/largest_displacement"][1], 7)
 
     def test_a_checkpoint_stays_if_the_next_cannot_be_written(self):
         joints = self.chain.joints(SCENE)
@@ -365,7 +421,10 @@ class Restart(ChainTest):
                          r"kept.h5: /checkpoint/time is day 16; wanted not after --until 15.5")
         self.assertIn('this is a "jointcreep result" file; wanted a "jointcreep checkpoint" file',
                       self.refusal(joints, result, "--no-creep", "--until", 17))
-        self.assertIn("do not go together", self.refusal(joints, kept, "--factor-of-safety"))
+        self.assertRegex(self.refusal(joints, kept, "--no-creep", "--factor-of-safety"), "/provenance/options is .*; wanted the same")
+        alone = self.chain.answer("demsolve", joints, "-o", result, "--checkpoint-every", 5)
+        self.assertEqual(alone.returncode, 2)
+        self.assertIn("--checkpoint-every goes with --checkpoint only", alone.stderr)
         self.assertIn("--until is 0 day", self.refusal(joints, kept, "--until", 0))
         same = self.chain.answer("demsolve", joints, "-o", result, "--checkpoint", joints)
         self.assertEqual(same.returncode, 2)
