@@ -103,7 +103,7 @@ void add_yield(Summary& summary, const Analysis& run)
 {
     for (const auto& [rock, n] : run.yielded())
         summary.add("zones yielded since", std::to_string(n) + " of rock \"" + rock + "\"");
-    if (const double strain = rock::largest_plastic_strain(run.rock().zones); strain > 0)
+    if (const double strain = rock::largest_plastic_strain(run.assembly().zones); strain > 0)
         summary.add("largest plastic shear strain", strain);
 }
 
@@ -136,7 +136,7 @@ void add_run(Summary& summary, const Network& network, const analysis::Trial& tr
     summary.add("stages", trial.scene().stages.size());
     add_equilibria(summary, trial.scene(), run);
     add_creep(summary, run);
-    add_contacts(summary, run.rock().contacts.status);
+    add_contacts(summary, run.assembly().contacts.status);
     add_yield(summary, run);
     for (const std::string& warning : warnings_of(trial))
         summary.warn(warning);
@@ -180,10 +180,11 @@ std::vector<std::string> warnings_of(const analysis::Trial& trial)
                            " zones of rock \"" + rock + '"');
     for (const auto& [stage, percent] : findings.energy_off)
         warnings.push_back("energy balance " + off_by(percent, stage));
-    if (const double strain = rock::largest_plastic_strain(run.rock().zones); strain > much_plastic_strain)
+    if (const double strain = rock::largest_plastic_strain(run.assembly().zones);
+        strain > much_plastic_strain)
         warnings.push_back("plastic shear strain of " + shown(strain) +
                            " in a zone: the rock may have failed");
-    if (const double share = run.largest_displacement() / size_of(run.rock());
+    if (const double share = run.largest_displacement() / size_of(run.assembly());
         !trial.scene().large_displacements && share > large_displacement)
         warnings.push_back(
             "displacement of " + shown(run.largest_displacement()) + " m, " + shown(100 * share) +

@@ -96,7 +96,7 @@ void Analysis::go_on(Result so_far, Checkpoint kept)
     transfer(Transfer(Transfer::Way::restore), kept);
     const bool is_at_stage = next_stage_ < stages.size() && stages[next_stage_].time == section_.now;
     if (unloaded_ > 0) {
-        if (!is_at_stage || dynamics_ || released_.size() != section_.rock.load.size() || increment_ < 1)
+        if (!is_at_stage || dynamics_ || released_.size() != section_.assembly.load.size() || increment_ < 1)
             throw input_error(of_another);
         complete(stages[next_stage_]);
         ++next_stage_;
@@ -110,12 +110,12 @@ void Analysis::go_on(Result so_far, Checkpoint kept)
 void Analysis::settle_in_situ()
 {
     section_.say("in-situ equilibrium");
-    const mechanics::State given = state_of(section_.rock);
+    const mechanics::State given = state_of(section_.assembly);
     try {
         engines_.check_supported();
         engines_.settle(0);
     } catch (const equilibrium_error&) {
-        go_back(section_.rock, given);
+        go_back(section_.assembly, given);
         watchers_.row_and_state_are_due("");
         throw;
     }
@@ -123,8 +123,8 @@ void Analysis::settle_in_situ()
     section_.findings.at_yield_in_situ = contacts_at_yield(section_);
     watchers_.tell(&Watcher::equilibrium_ends, 0.0);
     watchers_.tell(&Watcher::displacements_start);
-    start_from_here(section_.rock);
-    section_.loading.apply(section_.rock, 0);
+    start_from_here(section_.assembly);
+    section_.loading.apply(section_.assembly, 0);
     watchers_.row_and_state_are_due("");
 }
 
@@ -171,8 +171,8 @@ void Analysis::excavate(const Stage& stage)
 {
     engines_.forget();
     watchers_.tell(&Watcher::stage_begins);
-    released_ = mechanics::excavate(section_.rock, section_.network.blocks, section_.mesh(), section_.loading,
-                                    static_cast<Index>(next_stage_));
+    released_ = mechanics::excavate(section_.assembly, section_.network.blocks, section_.mesh(),
+                                    section_.loading, static_cast<Index>(next_stage_));
     watchers_.tell(&Watcher::rock_is_removed);
     increment_ = section_.engine == EngineChoice::relaxation ? 1 : 1 << most_halvings_of_an_increment;
     complete(stage);
@@ -201,17 +201,17 @@ void Analysis::complete(const Stage& stage)
 void Analysis::unload()
 {
     engines_.check_supported();
-    const std::vector<Vector2d> load = section_.rock.load;
+    const std::vector<Vector2d> load = section_.assembly.load;
     const int finest = section_.engine == EngineChoice::relaxation ? 1 : 1 << most_halvings_of_an_increment;
     const int n = finest * section_.scene.equilibrium.unloading_increments;
     while (unloaded_ < n) {
         if (unloaded_ > 0 && !engines_.has_learnt()) {
-            section_.rock.load = load;
+            section_.assembly.load = load;
             watchers_.tell(&Watcher::may_continue_here);
         }
         const double still_applied = 1 - static_cast<double>(unloaded_ + increment_) / n;
         for (std::size_t g = 0; g < load.size(); ++g)
-            section_.rock.load[g] = load[g] + still_applied * released_[g];
+            section_.assembly.load[g] = load[g] + still_applied * released_[g];
         if (!engines_.settles_nearby({})) {
             if (increment_ > 1 && !engines_.implicit_engine().collapse()) {
                 increment_ /= 2;

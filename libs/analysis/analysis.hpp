@@ -42,10 +42,10 @@ public:
     // Sensitivities of the histories' displacements, [parameter][time, point]: per unit of the parameter's
     // logarithm [m].
     const std::vector<std::vector<Vector2d>>& sensitivities() const { return section_.sensitivities; }
-    const mechanics::Assembly& rock() const { return section_.rock; }
+    const mechanics::Assembly& assembly() const { return section_.assembly; }
     double largest_displacement() const
     {
-        return mechanics::largest_displacement(section_.rock).first;
+        return mechanics::largest_displacement(section_.assembly).first;
     } // in situ is 0 [m]
     EngineChoice engine() const { return section_.engine; }
     const Findings& findings() const { return section_.findings; }

@@ -68,7 +68,7 @@ void CreepSteps::begin()
     const std::optional<CreepSettings>& settings = section_.scene.creep;
     if (!settings)
         return;
-    creep_.emplace(section_.scene, section_.network, section_.joints, section_.mesh(), section_.rock);
+    creep_.emplace(section_.scene, section_.network, section_.joints, section_.mesh(), section_.assembly);
     watchers_.tell(&Watcher::creep_begins, *creep_);
     if (!creep_->anything_creeps())
         return;
@@ -143,25 +143,25 @@ bool CreepSteps::reaches(double target, bool may_stop)
 // too large: then only the length of the next step has changed.
 bool CreepSteps::step_to(double target, int& cuts_left)
 {
-    mechanics::Assembly& rock = section_.rock;
-    const mechanics::State start = state_of(rock);
+    mechanics::Assembly& assembly = section_.assembly;
+    const mechanics::State start = state_of(assembly);
     const std::optional<creep::Creep> creep_at_start = creep_;
     if (closing_)
-        closing_->start(rock);
+        closing_->start(assembly);
     watchers_.tell(&Watcher::step_begins);
     const Step step = settle(target, start, cuts_left);
     watchers_.tell(&Watcher::step_settles, step);
-    if (creeps() && !length_->stands(step.duration, creep_->end(rock))) {
-        go_back(rock, start);
+    if (creeps() && !length_->stands(step.duration, creep_->end(assembly))) {
+        go_back(assembly, start);
         creep_ = creep_at_start;
-        section_.loading.apply(rock, section_.now);
+        section_.loading.apply(assembly, section_.now);
         watchers_.tell(&Watcher::step_is_rejected);
         return false;
     }
     if (closing_)
-        closing_->finish(rock, step.duration);
+        closing_->finish(assembly, step.duration);
     last_duration_ = step.duration;
-    last_move_ = rock.displacement;
+    last_move_ = assembly.displacement;
     for (std::size_t g = 0; g < last_move_.size(); ++g)
         last_move_[g] -= start.displacement[g];
     section_.now = step.end;
@@ -189,12 +189,12 @@ Step CreepSteps::settle(double target, const mechanics::State& start, int& cuts_
         const Step step{end, duration, end == target, creeps() ? &*creep_ : nullptr,
                         closing_ ? &*closing_ : nullptr};
         const double longest =
-            closing_ && cuts_left > 0 ? closing_->longest_step(section_.rock, duration) : duration;
+            closing_ && cuts_left > 0 ? closing_->longest_step(section_.assembly, duration) : duration;
         if (longest >= duration || longest < 1e-9 * (target - section_.now))
             return step;
         --cuts_left;
         watchers_.tell(&Watcher::step_is_cut, step);
-        go_back(section_.rock, start);
+        go_back(section_.assembly, start);
         end = section_.now + longest;
     }
 }
@@ -205,8 +205,8 @@ bool CreepSteps::settles_at(double end, bool by_relaxation, const mechanics::Sta
 {
     const double duration = end - section_.now;
     if (creeps())
-        creep_->begin(duration, section_.rock);
-    section_.loading.apply(section_.rock, end);
+        creep_->begin(duration, section_.assembly);
+    section_.loading.apply(section_.assembly, end);
     try {
         if (!by_relaxation)
             return engines_.settles_nearby(guess(duration));
@@ -214,8 +214,8 @@ bool CreepSteps::settles_at(double end, bool by_relaxation, const mechanics::Sta
         return true;
     } catch (const equilibrium_error&) {
         if (creeps())
-            creep_->cancel(section_.rock);
-        go_back(section_.rock, start);
+            creep_->cancel(section_.assembly);
+        go_back(section_.assembly, start);
         watchers_.tell(&Watcher::state_is_due, "");
         throw;
     }

@@ -62,7 +62,7 @@ large_displacements::Settings settings_of(const Scene& scene)
 
 DynamicStage::DynamicStage(Section& section, const Watchers& watchers)
     : section_(section), watchers_(watchers),
-      dynamics_(section.rock, section.mesh(), material_of_contacts(section), rigid_zones(section),
+      dynamics_(section.assembly, section.mesh(), material_of_contacts(section), rigid_zones(section),
                 law_of_new_contacts(section.scene), settings_of(section.scene))
 {
 }
@@ -76,7 +76,7 @@ bool DynamicStage::goes_on()
 void DynamicStage::pass(Tape& tape)
 {
     tape(due_, largest_energy_, largest_error_, section_.settled.effort.steps, dynamics_);
-    joint::transfer(tape, section_.rock.contacts); // of records so far
+    joint::transfer(tape, section_.assembly.contacts); // of records so far
 }
 
 void DynamicStage::settle_in_situ()
@@ -142,7 +142,7 @@ void DynamicStage::give_up(const mechanics::no_equilibrium& error)
     watchers_.row_and_state_are_due("");
     record();
     check_energy();
-    fail(section_, failure_of(error, section_.mesh(), section_.rock), section_.now);
+    fail(section_, failure_of(error, section_.mesh(), section_.assembly), section_.now);
 }
 
 // The convergence report of the equilibrium at rest.

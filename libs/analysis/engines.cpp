@@ -19,11 +19,11 @@ bool Engines::settles_nearby(const std::vector<Vector2d>& guess)
 {
     if (section_.engine == EngineChoice::relaxation)
         return false;
-    mechanics::Assembly& rock = section_.rock;
+    mechanics::Assembly& assembly = section_.assembly;
     const auto find = [&](const std::vector<Vector2d>& from) {
         auto& [convergence, effort] = section_.settled;
         has_learnt_ = true;
-        const auto found = implicit_.equilibrate(rock, section_.scene.equilibrium, from);
+        const auto found = implicit_.equilibrate(assembly, section_.scene.equilibrium, from);
         ++effort.searches;
         effort.factorisations += implicit_.factorisations();
         effort.solves += implicit_.solves();
@@ -32,29 +32,29 @@ bool Engines::settles_nearby(const std::vector<Vector2d>& guess)
             convergence = *found;
         return found.has_value();
     };
-    if (rock.zones.yielding.empty())
+    if (assembly.zones.yielding.empty())
         return find(guess);
-    const mechanics::State start = state_of(rock);
-    rock.zones.holds_yield = true;
+    const mechanics::State start = state_of(assembly);
+    assembly.zones.holds_yield = true;
     const bool found = find(guess);
-    rock.zones.holds_yield = false;
-    if (found && rock::weakest(rock.zones) < 0)
+    assembly.zones.holds_yield = false;
+    if (found && rock::weakest(assembly.zones) < 0)
         return true;
-    std::vector<Vector2d> elastic = rock.displacement;
+    std::vector<Vector2d> elastic = assembly.displacement;
     for (std::size_t g = 0; g < elastic.size(); ++g)
         elastic[g] -= start.displacement[g];
-    go_back(rock, start);
+    go_back(assembly, start);
     return find(found ? elastic : guess);
 }
 
 void Engines::settle_by_relaxation(double time)
 {
     if (section_.engine != EngineChoice::relaxation && implicit_.collapse())
-        fail(section_, failure_of(*implicit_.collapse(), section_.mesh(), section_.rock), time);
+        fail(section_, failure_of(*implicit_.collapse(), section_.mesh(), section_.assembly), time);
     if (section_.engine == EngineChoice::implicit) {
         const mechanics::no_equilibrium error("none nearby: " + implicit_.reason() +
                                               " (--engine auto would continue by dynamic relaxation)");
-        fail(section_, failure_of(error, section_.mesh(), section_.rock), time);
+        fail(section_, failure_of(error, section_.mesh(), section_.assembly), time);
     }
     if (section_.engine == EngineChoice::automatic)
         ++section_.findings.given_up[implicit_.reason()];
@@ -62,7 +62,7 @@ void Engines::settle_by_relaxation(double time)
     try {
         section_.settled.convergence = relax(time);
     } catch (const mechanics::no_equilibrium& error) {
-        fail(section_, failure_of(error, section_.mesh(), section_.rock), time);
+        fail(section_, failure_of(error, section_.mesh(), section_.assembly), time);
     }
     section_.settled.effort.steps += section_.settled.convergence.steps;
     forget();
@@ -72,10 +72,10 @@ mechanics::Convergence Engines::relax(double time)
 {
     const Equilibrium& settings = section_.scene.equilibrium;
     if (!step_history_.is_wanted())
-        return relaxation::relax(section_.rock, settings, {}, section_.keeper);
+        return relaxation::relax(section_.assembly, settings, {}, section_.keeper);
     step_history_.begin(time);
     const auto convergence = relaxation::relax(
-        section_.rock, settings, [&](double since_begin) { step_history_.step(since_begin); },
+        section_.assembly, settings, [&](double since_begin) { step_history_.step(since_begin); },
         section_.keeper);
     step_history_.end();
     return convergence;
@@ -84,7 +84,7 @@ mechanics::Convergence Engines::relax(double time)
 // No step is taken.
 void Engines::check_supported()
 {
-    Failure failure = mechanics::failure_of_unsupported(section_.mesh(), section_.rock);
+    Failure failure = mechanics::failure_of_unsupported(section_.mesh(), section_.assembly);
     if (failure.block.empty())
         return;
     failure.moves_on = 1;

@@ -17,11 +17,11 @@ public:
     void step_ends(const Step&) override { record_equilibrium(); }
     void row_is_due(const std::string& event) override
     {
-        section_.recorder.record_history(section_.result, section_.now, event, section_.rock);
+        section_.recorder.record_history(section_.result, section_.now, event, section_.assembly);
     }
     void state_is_due(const std::string& event) override
     {
-        section_.recorder.record_state(section_.result, section_.now, event, section_.rock);
+        section_.recorder.record_state(section_.result, section_.now, event, section_.assembly);
     }
 
 private:

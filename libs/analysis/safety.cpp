@@ -56,7 +56,8 @@ Outcome Trial::outcome() const
     const Ending ending = message_.empty()                           ? Ending::stands
                           : analysis_.result().failure.moves_on != 0 ? Ending::falls
                                                                      : Ending::undecided;
-    return {ending, analysis_.largest_displacement(), rock::largest_plastic_strain(analysis_.rock().zones)};
+    return {ending, analysis_.largest_displacement(),
+            rock::largest_plastic_strain(analysis_.assembly().zones)};
 }
 
 Outcome outcome_of(const Safety& trials, std::size_t i)

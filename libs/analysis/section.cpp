@@ -78,21 +78,21 @@ Section::Section(const Scene& scene_of, const Network& network_of, const Equival
                                                    .equilibria = {},
                                                    .step_history = {},
                                                    .dynamics = {}},
-      rock(mechanics::assemble(scene, network, joints, result.mesh)), loading(scene, result.mesh),
+      assembly(mechanics::assemble(scene, network, joints, result.mesh)), loading(scene, result.mesh),
       recorder(scene, network.blocks, result.mesh)
 {
-    rock.threads =
+    assembly.threads =
         std::min(threads, 1 + static_cast<int>(result.mesh.zone_gridpoint.size()) / zones_per_thread);
-    loading.apply(rock, 0);
-    result.states.initial_gap.assign(rock.contacts.gridpoint.size(), 0.0); // until the first state
+    loading.apply(assembly, 0);
+    result.states.initial_gap.assign(assembly.contacts.gridpoint.size(), 0.0); // until the first state
 }
 
 void Section::transfer(const Transfer& to, Checkpoint& kept)
 {
     to.value(now, kept.time);
     if (to.restores())
-        loading.apply(rock, now);
-    mechanics::transfer(to, rock, kept);
+        loading.apply(assembly, now);
+    mechanics::transfer(to, assembly, kept);
     findings.transfer(to, kept);
 }
 
@@ -106,7 +106,7 @@ std::string joint_name(const Scene& scene, const Network& network, Index edge)
 Findings::Counts contacts_at_yield(const Section& section)
 {
     Findings::Counts contacts;
-    const std::vector<ContactStatus>& status = section.rock.contacts.status;
+    const std::vector<ContactStatus>& status = section.assembly.contacts.status;
     for (std::size_t c = 0; c < status.size(); ++c)
         if (status[c] != ContactStatus::stuck)
             ++contacts[joint_name(section.scene, section.network, section.mesh().contact_edge[c])];
@@ -116,7 +116,7 @@ Findings::Counts contacts_at_yield(const Section& section)
 Findings::Counts yielded_zones(const Section& section)
 {
     Findings::Counts zones;
-    const rock::Zones& of = section.rock.zones;
+    const rock::Zones& of = section.assembly.zones;
     for (std::size_t z = 0; z < of.yielding_number.size(); ++z)
         if (const Index number = of.yielding_number[z];
             number >= 0 && of.is_present[z] && !of.yielding[number].plastic.isZero(0)) {

@@ -82,7 +82,7 @@ struct Section {
     // Sensitivities of the histories' displacements, [parameter][time, point]: per unit of the parameter's
     // logarithm [m].
     std::vector<std::vector<Vector2d>> sensitivities;
-    mechanics::Assembly rock;
+    mechanics::Assembly assembly;
     mechanics::Loading loading;
     mechanics::Recorder recorder;
     double now = 0;    // since start [s]

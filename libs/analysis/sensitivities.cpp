@@ -6,19 +6,19 @@ namespace jointcreep::analysis
 Sensitivities::Sensitivities(std::vector<sensitivity::Parameter> parameters, Section& section,
                              implicit::Solver& engine)
     : section_(section), engine_(engine),
-      sensitivity_(std::move(parameters), section.scene, section.mesh(), section.rock)
+      sensitivity_(std::move(parameters), section.scene, section.mesh(), section.assembly)
 {
     section.sensitivities.resize(sensitivity_.size());
 }
 
 void Sensitivities::equilibrium_ends(double still_applied)
 {
-    sensitivity_.settle(section_.rock, engine_, section_.now, still_applied);
+    sensitivity_.settle(section_.assembly, engine_, section_.now, still_applied);
 }
 
 void Sensitivities::displacements_start()
 {
-    sensitivity_.start_from_here(section_.rock);
+    sensitivity_.start_from_here(section_.assembly);
 }
 
 void Sensitivities::creep_begins(const creep::Creep& creep)
@@ -29,15 +29,15 @@ void Sensitivities::creep_begins(const creep::Creep& creep)
 void Sensitivities::step_begins()
 {
     at_start_ = sensitivity_;
-    sensitivity_.start_step(section_.rock);
+    sensitivity_.start_step(section_.assembly);
 }
 
 void Sensitivities::step_settles(const Step& step)
 {
     if (step.creep != nullptr)
-        sensitivity_.creep_step(*step.creep, step.duration, section_.rock, engine_, step.end);
+        sensitivity_.creep_step(*step.creep, step.duration, section_.assembly, engine_, step.end);
     else
-        sensitivity_.settle(section_.rock, engine_, step.end);
+        sensitivity_.settle(section_.assembly, engine_, step.end);
 }
 
 void Sensitivities::step_is_rejected()
@@ -48,7 +48,7 @@ void Sensitivities::step_is_rejected()
 void Sensitivities::step_ends(const Step& step)
 {
     if (step.closing != nullptr)
-        sensitivity_.finish_step(*step.closing, step.duration, step.is_whole, section_.rock);
+        sensitivity_.finish_step(*step.closing, step.duration, step.is_whole, section_.assembly);
 }
 
 void Sensitivities::step_is_halved()
@@ -58,17 +58,18 @@ void Sensitivities::step_is_halved()
 
 void Sensitivities::step_is_cut(const Step& step)
 {
-    sensitivity_.cut(step.closing->last_cut(), *step.creep, step.duration, section_.rock, engine_, step.end);
+    sensitivity_.cut(step.closing->last_cut(), *step.creep, step.duration, section_.assembly, engine_,
+                     step.end);
 }
 
 void Sensitivities::stage_begins()
 {
-    sensitivity_.before_excavation(section_.rock);
+    sensitivity_.before_excavation(section_.assembly);
 }
 
 void Sensitivities::rock_is_removed()
 {
-    sensitivity_.after_excavation(section_.rock);
+    sensitivity_.after_excavation(section_.assembly);
 }
 
 void Sensitivities::loads_change()
@@ -80,7 +81,7 @@ void Sensitivities::row_is_due(const std::string& /*event*/)
 {
     for (std::size_t p = 0; p < sensitivity_.size(); ++p)
         section_.recorder.append_at_points(section_.sensitivities[p], sensitivity_.displacement(p),
-                                           section_.rock);
+                                           section_.assembly);
 }
 
 } // namespace jointcreep::analysis

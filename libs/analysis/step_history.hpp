@@ -26,7 +26,8 @@ public:
     {
         since_begin_ = since_begin;
         if (++steps_ % every_ == 0)
-            section_.recorder.record_step(section_.result, time_, solver_time_ + since_begin, section_.rock);
+            section_.recorder.record_step(section_.result, time_, solver_time_ + since_begin,
+                                          section_.assembly);
     }
     void end() { solver_time_ += since_begin_; }
     void pass(Tape& tape) { tape(steps_); } // in the middle of it

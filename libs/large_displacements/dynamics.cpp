@@ -74,9 +74,9 @@ struct Dynamics::Balance {
     double change = 0;   // of the contacts' force on a gridpoint since the last check, the largest [N/m]
 };
 
-Dynamics::Dynamics(mechanics::Assembly& rock, const Mesh& mesh, const std::vector<Index>& material,
+Dynamics::Dynamics(mechanics::Assembly& assembly, const Mesh& mesh, const std::vector<Index>& material,
                    std::vector<char> is_rigid, const joint::Law& found, const Settings& settings)
-    : rock_(rock), mesh_(mesh), settings_(settings), contacts_({}), is_rigid_(std::move(is_rigid))
+    : assembly_(assembly), mesh_(mesh), settings_(settings), contacts_({}), is_rigid_(std::move(is_rigid))
 {
     low_ = high_ = mesh.gridpoint[0];
     for (const Vector2d& p : mesh.gridpoint) {
@@ -86,14 +86,14 @@ Dynamics::Dynamics(mechanics::Assembly& rock, const Mesh& mesh, const std::vecto
     middle_ = (low_ + high_) / 2;
     make_contacts(material, found);
 
-    origin_ = rock.position;
+    origin_ = assembly.position;
     for (Vector2d& p : origin_)
         p -= middle_;
-    place_ = origin_;
-    for (std::size_t g = 0; g < place_.size(); ++g)
-        place_[g] += rock.displacement[g];
-    velocity_.assign(place_.size(), Vector2d::Zero());
-    zones_ = moving_zones_of(rock.zones, place_);
+    now_.place = origin_;
+    for (std::size_t g = 0; g < now_.place.size(); ++g)
+        now_.place[g] += assembly.displacement[g];
+    now_.velocity.assign(now_.place.size(), Vector2d::Zero());
+    zones_ = moving_zones_of(assembly.zones, now_.place);
     const Vector2d diagonal = Vector2d::Constant((high_ - low_).norm());
     low_ -= middle_ + diagonal;
     high_ += diagonal - middle_;
@@ -117,7 +117,7 @@ void Dynamics::make_contacts(const std::vector<Index>& material, const joint::La
         if (!has_law[e]) {
             has_law[e] = 1;
             law_of_edge_[e] = laws.size();
-            laws.push_back(rock_.contacts.law[c]);
+            laws.push_back(assembly_.contacts.law[c]);
             material_of_law.push_back(material[c]);
         }
     }
@@ -127,40 +127,40 @@ void Dynamics::make_contacts(const std::vector<Index>& material, const joint::La
 
 void Dynamics::start()
 {
-    released_.assign(place_.size(), Vector2d::Zero());
-    lost_.assign(place_.size(), Vector2d::Zero());
-    time_ = time_lost_ = 0;
-    energy_ = {};
-    starts_from_rest_ = true;
-    has_moved_ = false;
-    last_kinetic_ = 0;
-    checks_in_balance_ = 0;
-    last_contact_force_.clear();
+    released_.assign(now_.place.size(), Vector2d::Zero());
+    now_.lost.assign(now_.place.size(), Vector2d::Zero());
+    now_.time = now_.time_lost = 0;
+    now_.energy = {};
+    now_.starts_from_rest = true;
+    now_.has_moved = false;
+    now_.last_kinetic = 0;
+    now_.checks_in_balance = 0;
+    now_.last_contact_force.clear();
     in_zones_ = {};
     zones_.corner_force.assign(3 * zones_.zone.size(), Vector2d::Zero());
-    velocity_.assign(place_.size(), Vector2d::Zero());
+    now_.velocity.assign(now_.place.size(), Vector2d::Zero());
     any_deforms_ = false;
-    for (std::size_t z = 0; z < rock_.zones.size(); ++z)
+    for (std::size_t z = 0; z < assembly_.zones.size(); ++z)
         any_deforms_ = any_deforms_ || deforms(z);
     find_faces();
     find_bodies();
     find_time_step();
-    find_forces(velocity_);
-    if (contacts_.stiffest() > stiffest_allowed_)
+    find_forces(now_.velocity);
+    if (contacts_.stiffest() > now_.stiffest_allowed)
         find_time_step();
     if (settings_.release > 0) // the excavated rock carried the present unbalanced forces
-        for (std::size_t g = 0; g < place_.size(); ++g)
-            released_[g] = -force_[g];
-    find_forces(velocity_);
+        for (std::size_t g = 0; g < now_.place.size(); ++g)
+            released_[g] = -now_.force[g];
+    find_forces(now_.velocity);
     stored_at_start_ = stored();
 }
 
 // The leader of each gridpoint: the gridpoint itself, or the one it is tied to.
 std::vector<Index> Dynamics::leaders() const
 {
-    std::vector<Index> leader(place_.size());
+    std::vector<Index> leader(now_.place.size());
     std::iota(leader.begin(), leader.end(), 0);
-    for (const auto& [follower, first] : rock_.tied)
+    for (const auto& [follower, first] : assembly_.tied)
         leader[follower] = first;
     return leader;
 }
@@ -169,17 +169,17 @@ std::vector<Index> Dynamics::leaders() const
 // them.
 std::vector<double> Dynamics::stiffness_sums() const
 {
-    std::vector<double> sums(place_.size(), 0.0);
-    for (std::size_t z = 0; z < rock_.zones.size(); ++z)
+    std::vector<double> sums(now_.place.size(), 0.0);
+    for (std::size_t z = 0; z < assembly_.zones.size(); ++z)
         if (deforms(z))
             for (int i = 0; i < 3; ++i)
                 for (int j = 0; j < 3; ++j)
-                    sums[rock_.zones.gridpoints(z)[i]] +=
-                        rock_.zones.area[z] * stiffness_between(rock_.zones, z, i, j).norm();
+                    sums[assembly_.zones.gridpoints(z)[i]] +=
+                        assembly_.zones.area[z] * stiffness_between(assembly_.zones, z, i, j).norm();
     for (const auto& [from, to] : contacts_.faces().gridpoint)
         for (const Index g : {from, to})
-            sums[g] += stiffest_allowed_ * (place_[to] - place_[from]).norm();
-    for (const auto& [follower, leader] : rock_.tied)
+            sums[g] += now_.stiffest_allowed * (now_.place[to] - now_.place[from]).norm();
+    for (const auto& [follower, leader] : assembly_.tied)
         sums[leader] += sums[follower];
     return sums;
 }
@@ -187,67 +187,67 @@ std::vector<double> Dynamics::stiffness_sums() const
 void Dynamics::find_time_step()
 {
     // For joints that grow stiffer as they close, with a margin.
-    stiffest_allowed_ =
+    now_.stiffest_allowed =
         contacts_.stiffens() ? joint::room_to_stiffen * contacts_.stiffest() : contacts_.stiffest();
     const std::vector<double> sums = stiffness_sums();
     const auto stiffest = std::max_element(sums.begin(), sums.end());
-    stiffest_ = *stiffest;
-    stiffest_gridpoint_ = static_cast<Index>(stiffest - sums.begin());
+    now_.stiffest = *stiffest;
+    now_.stiffest_gridpoint = static_cast<Index>(stiffest - sums.begin());
 
-    inverse_mass_ = lumped_masses(rock_);
+    now_.inverse_mass = lumped_masses(assembly_);
     double highest = 0; // frequency squared
     for (const Body& body : bodies_) {
         double sum = 0;
         for (std::size_t k = 0; k < body.gridpoint.size(); ++k) {
             sum += sums[body.gridpoint[k]] * (1 / body.mass + body.arm[k].squaredNorm() / body.inertia);
-            inverse_mass_[body.gridpoint[k]] = 0; // moves with the body
+            now_.inverse_mass[body.gridpoint[k]] = 0; // moves with the body
         }
         if (!body.is_held())
             highest = std::max(highest, impacts * impacts * sum);
     }
     for (std::size_t g = 0; g < sums.size(); ++g)
-        if (double& mass = inverse_mass_[g]; mass > 0) {
+        if (double& mass = now_.inverse_mass[g]; mass > 0) {
             highest = std::max(highest, sums[g] / mass);
             mass = 1 / mass;
         }
     // Stiffness damping shortens the stable step: (2 / w) (sqrt(1 + xi^2) - xi), xi = beta w / 2.
     const double xi = settings_.stiffness_damping * std::sqrt(highest) / 2;
-    dt_ = highest == 0 ? 1e-3 // all rock is fixed
-                       : safety * 2 / std::sqrt(highest) * (std::sqrt(1 + xi * xi) - xi);
+    now_.dt = highest == 0 ? 1e-3 // all rock is fixed
+                           : safety * 2 / std::sqrt(highest) * (std::sqrt(1 + xi * xi) - xi);
 }
 
 // Share of a time step that the force at its beginning acts on the velocity before: half of this step and half of the
 // last one.
 double Dynamics::first_half() const
 {
-    return starts_from_rest_ ? 0.5 : (last_dt_ + dt_) / (2 * dt_);
+    return now_.starts_from_rest ? 0.5 : (now_.last_dt + now_.dt) / (2 * now_.dt);
 }
 
 double Dynamics::release_factor() const
 {
-    return settings_.release > 0 ? std::max(0.0, 1 - time_ / settings_.release) : 0.0;
+    return settings_.release > 0 ? std::max(0.0, 1 - now_.time / settings_.release) : 0.0;
 }
 
 void Dynamics::find_forces(const std::vector<Vector2d>& move)
 {
-    for (const auto& [follower, leader] : rock_.tied)
-        place_[follower] = place_[leader];
+    for (const auto& [follower, leader] : assembly_.tied)
+        now_.place[follower] = now_.place[leader];
     find_zone_forces();
-    contacts_.update(place_, move, dt_, settings_.stiffness_damping, rock_.threads);
+    contacts_.update(now_.place, move, now_.dt, settings_.stiffness_damping, assembly_.threads);
     const double held = release_factor();
-    force_.resize(place_.size());
-    const mechanics::Incidence& incidence = rock_.incidence;
-    for_each(static_cast<Index>(place_.size()), rock_.threads, [&](Index g) {
-        Vector2d force = rock_.load[g] + rock_.applied[g] + held * released_[g];
+    now_.force.resize(now_.place.size());
+    const mechanics::Incidence& incidence = assembly_.incidence;
+    for_each(static_cast<Index>(now_.place.size()), assembly_.threads, [&](Index g) {
+        Vector2d force = assembly_.load[g] + assembly_.applied[g] + held * released_[g];
         if (any_deforms_)
             for (Index k = incidence.zone_start[g]; k < incidence.zone_start[g + 1]; ++k)
                 force += zones_.corner_force[incidence.zone_corner[k]];
-        force_[g] = force;
+        now_.force[g] = force;
     });
-    contacts_.add_forces(force_, rock_.threads);
-    for (const auto& [follower, leader] : rock_.tied) {
-        force_[leader] += force_[follower];
-        force_[follower].setZero();
+    contacts_.add_forces(now_.force, assembly_.threads);
+    for (const auto& [follower, leader] : assembly_.tied) {
+        now_.force[leader] += now_.force[follower];
+        now_.force[follower].setZero();
     }
 }
 
@@ -261,38 +261,40 @@ double Dynamics::stored() const
 Dynamics::Leap Dynamics::leap(double first_half_of_step) const
 {
     const double alpha = settings_.mass_damping;
-    return {(1 - alpha * dt_ / 2) / (1 + alpha * dt_ / 2), first_half_of_step * dt_ / (1 + alpha * dt_ / 2)};
+    return {(1 - alpha * now_.dt / 2) / (1 + alpha * now_.dt / 2),
+            first_half_of_step * now_.dt / (1 + alpha * now_.dt / 2)};
 }
 
 // Newton's law: velocities, and positions at the end of the step.
 Dynamics::Moved Dynamics::move_rock()
 {
-    const auto n = static_cast<Index>(place_.size());
+    const auto n = static_cast<Index>(now_.place.size());
     const double alpha = settings_.mass_damping;
     const auto [keep, gain] = leap(first_half());
     move_.resize(n);
-    Moved moved = sum_in_chunks<Moved>(n, rock_.threads, [&, keep = keep, gain = gain](Index g, Moved& some) {
-        if (inverse_mass_[g] == 0) {
-            move_[g].setZero();
-            return;
-        }
-        Vector2d& v = velocity_[g];
-        const Vector2d last = v;
-        v = keep * v + gain * inverse_mass_[g] * force_[g].cwiseProduct(rock_.is_free[g]);
-        const Vector2d now = starts_from_rest_ ? last : Vector2d((last + v) / 2);
-        some.kinetic += last.dot(v) / (2 * inverse_mass_[g]);
-        some.damped += alpha * dt_ * now.squaredNorm() / inverse_mass_[g];
-        some.see(v, g);
-        move_[g] = dt_ * v;
-        add(move_[g], place_[g], lost_[g]);
-    });
-    moved += sum_in_chunks<Moved>(static_cast<Index>(bodies_.size()), rock_.threads,
+    Moved moved =
+        sum_in_chunks<Moved>(n, assembly_.threads, [&, keep = keep, gain = gain](Index g, Moved& some) {
+            if (now_.inverse_mass[g] == 0) {
+                move_[g].setZero();
+                return;
+            }
+            Vector2d& v = now_.velocity[g];
+            const Vector2d last = v;
+            v = keep * v + gain * now_.inverse_mass[g] * now_.force[g].cwiseProduct(assembly_.is_free[g]);
+            const Vector2d now = now_.starts_from_rest ? last : Vector2d((last + v) / 2);
+            some.kinetic += last.dot(v) / (2 * now_.inverse_mass[g]);
+            some.damped += alpha * now_.dt * now.squaredNorm() / now_.inverse_mass[g];
+            some.see(v, g);
+            move_[g] = now_.dt * v;
+            add(move_[g], now_.place[g], now_.lost[g]);
+        });
+    moved += sum_in_chunks<Moved>(static_cast<Index>(bodies_.size()), assembly_.threads,
                                   [&, keep = keep, gain = gain](Index b, Moved& some) {
                                       const double before = move(bodies_[b], keep, gain);
                                       some.kinetic += before;
-                                      some.damped += 2 * alpha * dt_ * before;
+                                      some.damped += 2 * alpha * now_.dt * before;
                                       for (const Index g : bodies_[b].gridpoint)
-                                          some.see(velocity_[g], g);
+                                          some.see(now_.velocity[g], g);
                                   });
     return moved;
 }
@@ -300,47 +302,49 @@ Dynamics::Moved Dynamics::move_rock()
 // Work in this step of loads and of the forces of excavated rock still applied; `held` is their share at its beginning.
 Dynamics::Work Dynamics::work_of_loads(double held) const
 {
-    return sum_in_chunks<Work>(static_cast<Index>(place_.size()), rock_.threads, [&](Index g, Work& some) {
-        some.work += (rock_.load[g] + rock_.applied[g] + held * released_[g]).dot(move_[g]);
-        if (!((place_[g].array() > low_.array()).all() && (place_[g].array() < high_.array()).all()))
-            some.is_gone = true;
-    });
+    return sum_in_chunks<Work>(
+        static_cast<Index>(now_.place.size()), assembly_.threads, [&](Index g, Work& some) {
+            some.work += (assembly_.load[g] + assembly_.applied[g] + held * released_[g]).dot(move_[g]);
+            if (!((now_.place[g].array() > low_.array()).all() &&
+                  (now_.place[g].array() < high_.array()).all()))
+                some.is_gone = true;
+        });
 }
 
 void Dynamics::step()
 {
     const double held = release_factor();
     const Moved moved = move_rock();
-    energy_.damped += moved.damped;
+    now_.energy.damped += moved.damped;
     if (moved.fastest_gridpoint >= 0)
-        fastest_gridpoint_ = moved.fastest_gridpoint;
+        now_.fastest_gridpoint = moved.fastest_gridpoint;
     // After a stop, the kinetic energy is the product of this velocity and its opposite (see energy()).
-    if (starts_from_rest_ && time_ > 0)
-        energy_.damped += half_step_energy();
-    starts_from_rest_ = false;
-    for (const auto& [follower, leader] : rock_.tied) {
+    if (now_.starts_from_rest && now_.time > 0)
+        now_.energy.damped += half_step_energy();
+    now_.starts_from_rest = false;
+    for (const auto& [follower, leader] : assembly_.tied) {
         move_[follower] = move_[leader];
-        velocity_[follower] = velocity_[leader];
+        now_.velocity[follower] = now_.velocity[leader];
     }
-    fastest_ = std::sqrt(moved.fastest);
-    has_moved_ = has_moved_ || fastest_ > slow;
+    now_.fastest = std::sqrt(moved.fastest);
+    now_.has_moved = now_.has_moved || now_.fastest > slow;
     const Work worked = work_of_loads(held);
-    energy_.work += worked.work;
-    if (!std::isfinite(fastest_) || !std::isfinite(moved.kinetic))
+    now_.energy.work += worked.work;
+    if (!std::isfinite(now_.fastest) || !std::isfinite(moved.kinetic))
         throw equilibrium_error("dynamic analysis: the velocity of rock is no number; it was at " +
-                                shown(rock_.position[fastest_gridpoint_]));
+                                shown(assembly_.position[now_.fastest_gridpoint]));
     if (worked.is_gone)
         throw moves_on("rock has left the section, and is as far from it as the section is large");
-    add(dt_, time_, time_lost_);
-    last_dt_ = dt_;
+    add(now_.dt, now_.time, now_.time_lost);
+    now_.last_dt = now_.dt;
     find_forces(move_);
     check_strain();
-    energy_.stored = stored() - stored_at_start_;
-    energy_.damped += in_zones_.damped + contacts_.energy().damped;
-    energy_.friction += in_zones_.friction + contacts_.energy().friction;
+    now_.energy.stored = stored() - stored_at_start_;
+    now_.energy.damped += in_zones_.damped + contacts_.energy().damped;
+    now_.energy.friction += in_zones_.friction + contacts_.energy().friction;
     in_zones_.friction = 0;
     stop_at_peak(moved.kinetic);
-    if (contacts_.stiffest() > stiffest_allowed_)
+    if (contacts_.stiffest() > now_.stiffest_allowed)
         find_time_step();
 }
 
@@ -348,27 +352,27 @@ void Dynamics::step()
 // that slides or falls has no such peak until it is slow.
 void Dynamics::stop_at_peak(double kinetic)
 {
-    if (fastest_ >= slow || kinetic >= last_kinetic_) {
-        last_kinetic_ = kinetic;
+    if (now_.fastest >= slow || kinetic >= now_.last_kinetic) {
+        now_.last_kinetic = kinetic;
         return;
     }
-    energy_.damped += energy().kinetic;
+    now_.energy.damped += energy().kinetic;
     for (Body& body : bodies_) {
         body.velocity.setZero();
         body.spin = 0;
     }
-    last_kinetic_ = 0;
-    velocity_.assign(place_.size(), Vector2d::Zero());
-    starts_from_rest_ = true;
+    now_.last_kinetic = 0;
+    now_.velocity.assign(now_.place.size(), Vector2d::Zero());
+    now_.starts_from_rest = true;
 }
 
 // Kinetic energy of the present velocities, half a step ago [J/m].
 double Dynamics::half_step_energy() const
 {
-    auto sum =
-        sum_in_chunks<double>(static_cast<Index>(place_.size()), rock_.threads, [&](Index g, double& some) {
-            if (inverse_mass_[g] > 0)
-                some += velocity_[g].squaredNorm() / (2 * inverse_mass_[g]);
+    auto sum = sum_in_chunks<double>(
+        static_cast<Index>(now_.place.size()), assembly_.threads, [&](Index g, double& some) {
+            if (now_.inverse_mass[g] > 0)
+                some += now_.velocity[g].squaredNorm() / (2 * now_.inverse_mass[g]);
         });
     for (const Body& body : bodies_)
         sum += (body.mass * body.velocity.squaredNorm() + body.inertia * body.spin * body.spin) / 2;
@@ -379,17 +383,18 @@ double Dynamics::half_step_energy() const
 // forces equals the kinetic energy within rounding.
 Energy Dynamics::energy() const
 {
-    Energy energy = energy_;
+    Energy energy = now_.energy;
     const auto [keep, gain] = leap(1);
-    energy.kinetic += sum_in_chunks<double>(
-        static_cast<Index>(place_.size()), rock_.threads,
-        [&, keep = keep, gain = gain](Index g, double& some) {
-            if (inverse_mass_[g] == 0)
-                return;
-            const Vector2d next =
-                keep * velocity_[g] + gain * inverse_mass_[g] * force_[g].cwiseProduct(rock_.is_free[g]);
-            some += velocity_[g].dot(next) / (2 * inverse_mass_[g]);
-        });
+    energy.kinetic +=
+        sum_in_chunks<double>(static_cast<Index>(now_.place.size()), assembly_.threads,
+                              [&, keep = keep, gain = gain](Index g, double& some) {
+                                  if (now_.inverse_mass[g] == 0)
+                                      return;
+                                  const Vector2d next = keep * now_.velocity[g] +
+                                                        gain * now_.inverse_mass[g] *
+                                                            now_.force[g].cwiseProduct(assembly_.is_free[g]);
+                                  some += now_.velocity[g].dot(next) / (2 * now_.inverse_mass[g]);
+                              });
     for (const Body& body : bodies_)
         if (!body.is_held()) {
             const auto [force, moment] = load_on(body);
@@ -410,8 +415,8 @@ mechanics::no_equilibrium Dynamics::moves_on(const std::string& why) const
     mechanics::no_equilibrium error(why);
     error.moves_on = true;
     error.steps = check_every;
-    error.seconds = check_every * dt_;
-    for (const Vector2d& velocity : velocity_)
+    error.seconds = check_every * now_.dt;
+    for (const Vector2d& velocity : now_.velocity)
         error.motion.emplace_back(error.seconds * velocity);
     return error;
 }
@@ -422,20 +427,20 @@ Dynamics::Balance Dynamics::balance(const std::vector<Vector2d>& contact_force) 
     Balance found;
     double sum = 0;
     Index n = 0;
-    const mechanics::Incidence& incidence = rock_.incidence;
-    for (std::size_t g = 0; g < place_.size(); ++g) {
+    const mechanics::Incidence& incidence = assembly_.incidence;
+    for (std::size_t g = 0; g < now_.place.size(); ++g) {
         if (body_of_[g] < 0)
-            found.largest = std::max(found.largest, force_[g].cwiseProduct(rock_.is_free[g]).norm());
-        found.farthest = std::max(found.farthest, place_[g].norm());
-        double all = rock_.load[g].norm() + rock_.applied[g].norm() + contact_force[g].norm();
+            found.largest = std::max(found.largest, now_.force[g].cwiseProduct(assembly_.is_free[g]).norm());
+        found.farthest = std::max(found.farthest, now_.place[g].norm());
+        double all = assembly_.load[g].norm() + assembly_.applied[g].norm() + contact_force[g].norm();
         for (Index k = incidence.zone_start[g]; k < incidence.zone_start[g + 1]; ++k)
             all += zones_.corner_force[incidence.zone_corner[k]].norm();
         if (all > 0) {
             sum += all;
             ++n;
         }
-        if (!last_contact_force_.empty())
-            found.change = std::max(found.change, (contact_force[g] - last_contact_force_[g]).norm());
+        if (!now_.last_contact_force.empty())
+            found.change = std::max(found.change, (contact_force[g] - now_.last_contact_force[g]).norm());
     }
     found.mean = n > 0 ? sum / n : 0.0;
     for (const Body& body : bodies_)
@@ -451,16 +456,16 @@ Dynamics::Balance Dynamics::balance(const std::vector<Vector2d>& contact_force) 
 // [N/m].
 void Dynamics::check_rounding(double of_springs, double rounding) const
 {
-    if (largest_mean_ <= of_springs || rounding <= most_rounding * largest_mean_)
+    if (now_.largest_mean <= of_springs || rounding <= most_rounding * now_.largest_mean)
         return;
     const std::string where =
-        "; what is stiffest is at " + shown(rock_.position[stiffest_gridpoint_]) + ": wanted ";
-    if (of_springs > most_rounding * largest_mean_)
+        "; what is stiffest is at " + shown(assembly_.position[now_.stiffest_gridpoint]) + ": wanted ";
+    if (of_springs > most_rounding * now_.largest_mean)
         throw equilibrium_error(
             "dynamic analysis: rounding errors of places, times stiffness, are not small beside the "
             "mean force on a gridpoint, " +
-            shown(largest_mean_) + " N/m" + where + "more load, softer joints, or no zones so small");
-    throw equilibrium_error("dynamic analysis: a step takes " + shown(dt_) + " s, and what " +
+            shown(now_.largest_mean) + " N/m" + where + "more load, softer joints, or no zones so small");
+    throw equilibrium_error("dynamic analysis: a step takes " + shown(now_.dt) + " s, and what " +
                             shown(settings_.stiffness_damping) +
                             " s of stiffness damping makes of rounding errors is no longer small beside the "
                             "forces" +
@@ -469,25 +474,25 @@ void Dynamics::check_rounding(double of_springs, double rounding) const
 
 bool Dynamics::is_at_rest()
 {
-    std::vector<Vector2d> contact_force(place_.size(), Vector2d::Zero());
-    contacts_.add_forces(contact_force, rock_.threads);
+    std::vector<Vector2d> contact_force(now_.place.size(), Vector2d::Zero());
+    contacts_.add_forces(contact_force, assembly_.threads);
     const Balance found = balance(contact_force);
     // Forces near 0 are rounding errors of stiffness times position. Forces no larger than these mean no load. Dashpots
     // multiply the errors by damping time over step time: too much for very small zones, whose forces are then not
     // usable.
-    const double of_springs = 1e-15 * stiffest_ * found.farthest;
-    const double rounding = of_springs * (1 + settings_.stiffness_damping / dt_);
-    largest_mean_ = std::max(largest_mean_, found.mean);
+    const double of_springs = 1e-15 * now_.stiffest * found.farthest;
+    const double rounding = of_springs * (1 + settings_.stiffness_damping / now_.dt);
+    now_.largest_mean = std::max(now_.largest_mean, found.mean);
     check_rounding(of_springs, rounding);
     const double mean = found.mean > 0 ? std::max(found.mean, rounding / settings_.tolerance) : 1.0;
-    ratio_ = found.largest / mean;
-    const bool has_last = !last_contact_force_.empty();
-    force_change_ = found.change / mean;
-    last_contact_force_ = std::move(contact_force);
-    const bool is_balanced = fastest_ <= at_rest && ratio_ <= settings_.tolerance && has_last &&
-                             force_change_ <= settings_.tolerance && release_factor() == 0;
-    checks_in_balance_ = is_balanced ? checks_in_balance_ + 1 : 0;
-    return checks_in_balance_ >= 2;
+    now_.ratio = found.largest / mean;
+    const bool has_last = !now_.last_contact_force.empty();
+    now_.force_change = found.change / mean;
+    now_.last_contact_force = std::move(contact_force);
+    const bool is_balanced = now_.fastest <= at_rest && now_.ratio <= settings_.tolerance && has_last &&
+                             now_.force_change <= settings_.tolerance && release_factor() == 0;
+    now_.checks_in_balance = is_balanced ? now_.checks_in_balance + 1 : 0;
+    return now_.checks_in_balance >= 2;
 }
 
 } // namespace jointcreep::large_displacements

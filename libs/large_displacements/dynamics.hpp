@@ -56,7 +56,7 @@ class Dynamics
 public:
     // `material`: the number of the joint material of each contact of the mesh. `found`: the law of contacts that form.
     // Zones of rigid rock form bodies that do not deform.
-    Dynamics(mechanics::Assembly& rock, const Mesh& mesh, const std::vector<Index>& material,
+    Dynamics(mechanics::Assembly& assembly, const Mesh& mesh, const std::vector<Index>& material,
              std::vector<char> is_rigid, const joint::Law& found, const Settings& settings);
 
     // Starts again after an excavation, or with new loads. The unbalanced forces then go to 0 within the time of
@@ -84,14 +84,14 @@ public:
     static constexpr Index check_every = 50;
     bool is_at_rest();
 
-    double time() const { return time_; } // since the start of this dynamic analysis [s]
-    double dt() const { return dt_; }     // [s]
+    double time() const { return now_.time; } // since the start of this dynamic analysis [s]
+    double dt() const { return now_.dt; }     // [s]
     Energy energy() const;
-    double unbalanced_force_ratio() const { return ratio_; }
-    double contact_force_change() const { return force_change_; }
-    double fastest() const { return fastest_; } // [m/s]
+    double unbalanced_force_ratio() const { return now_.ratio; }
+    double contact_force_change() const { return now_.force_change; }
+    double fastest() const { return now_.fastest; } // [m/s]
     // Whether it has been faster than the limit for stops at peaks, since the start of this dynamic analysis.
-    bool has_moved() const { return has_moved_; }
+    bool has_moved() const { return now_.has_moved; }
     std::vector<Touching> touching() const;
 
     // Returns displacements, stresses and contacts of the mesh to the assembly. A contact of the mesh is open if its
@@ -135,7 +135,7 @@ private:
     void check_rounding(double of_springs, double rounding) const;
 
     // Zones that deform: zone_forces.cpp.
-    bool deforms(std::size_t z) const { return rock_.zones.is_present[z] && !is_rigid_[z]; }
+    bool deforms(std::size_t z) const { return assembly_.zones.is_present[z] && !is_rigid_[z]; }
     void find_zone_forces();
     void check_strain() const;
 
@@ -163,7 +163,29 @@ private:
     std::map<std::array<Index, 2>, Carried> carried_by_pairs() const;
     void put_back_contacts();
 
-    mechanics::Assembly& rock_;
+    // What steps change, beside contacts, bodies and zones. Positions count from the section's middle: their rounding
+    // errors must not depend on where the section is.
+    struct Movement {
+        std::vector<Vector2d> place, velocity, force; // of gridpoints [m], [m/s], [N/m]
+        std::vector<Vector2d> lost;                   // rounding errors of positions, so far [m]
+        std::vector<double> inverse_mass;             // 0 if of excavated rock only, or of a body [m/kg]
+        double dt = 0, last_dt = 0, time = 0, time_lost = 0; // [s]
+        double stiffest_allowed = 0; // spring of a contact, by the present step [Pa/m]
+        bool starts_from_rest = true, has_moved = false;
+        double last_kinetic = 0; // energy [J/m]
+        double stiffest = 0;     // row sum [Pa]
+        double largest_mean = 0; // force on a gridpoint, so far [N/m]
+        double ratio = 0;        // unbalanced force over mean force [-]
+        double force_change = 0; // of contacts over the mean force, since the last check [-]
+        double fastest = 0;      // [m/s]
+        Index fastest_gridpoint = 0, stiffest_gridpoint = 0, checks_in_balance = 0;
+        std::vector<Vector2d> last_contact_force; // at the last check [N/m]; empty before
+        Energy energy;
+
+        void pass(Tape& tape);
+    };
+
+    mechanics::Assembly& assembly_;
     const Mesh& mesh_;
     Settings settings_;
     FaceContacts contacts_;
@@ -172,29 +194,19 @@ private:
     bool any_deforms_ = false;   // of the present zones
     std::vector<Index> body_of_; // of gridpoints; -1 none
     rock::MovingZones zones_;    // of the assembly
-    // Positions count from the section's middle: their rounding errors must not depend on where the section is.
-    std::vector<Vector2d> place_, velocity_, move_, force_, released_;
-    std::vector<Vector2d> lost_;       // rounding errors of positions, so far [m]
-    std::vector<Vector2d> origin_;     // reference of displacements
-    Vector2d middle_;                  // of the section, where it is [m]
-    Vector2d low_, high_;              // of the section and its diagonal all round
-    std::vector<double> inverse_mass_; // 0 if of excavated rock only, or of a body [m/kg]
+    rock::ZoneSums in_zones_;
+    Movement now_;
+    std::vector<Vector2d> move_;     // in this step [m]
+    std::vector<Vector2d> released_; // forces of excavated rock, which fade [N/m]
+    std::vector<Vector2d> origin_;   // reference of displacements [m]
+    double stored_at_start_ = 0;     // [J/m]
+    Vector2d middle_;                // of the section, where it is [m]
+    Vector2d low_, high_;            // of the section and its diagonal all round [m]
     std::vector<std::size_t> law_of_edge_;
     std::vector<std::array<Index, 2>> ground_;             // its faces, by gridpoints of the mesh
     std::map<std::array<Index, 2>, std::size_t> wall_law_; // of sides on a joint, by gridpoints of the mesh
     std::vector<std::array<Index, 2>> face_of_mesh_; // the contacts' faces, by gridpoints before leaders
     std::vector<Index> zone_of_face_;                // -1 of the ground
-
-    double dt_ = 0, last_dt_ = 0, time_ = 0, time_lost_ = 0;
-    double stiffest_allowed_ = 0; // spring of a contact, by the present step [Pa/m]
-    bool starts_from_rest_ = true, has_moved_ = false;
-    Energy energy_;
-    double stored_at_start_ = 0;
-    rock::ZoneSums in_zones_;
-    double last_kinetic_ = 0, stiffest_ = 0, largest_mean_ = 0;
-    double ratio_ = 0, force_change_ = 0, fastest_ = 0;
-    Index fastest_gridpoint_ = 0, stiffest_gridpoint_ = 0, checks_in_balance_ = 0;
-    std::vector<Vector2d> last_contact_force_;
 };
 
 } // namespace jointcreep::large_displacements

@@ -19,56 +19,47 @@ struct Dynamics::Carried {
 
 void Dynamics::transfer(const Transfer& to, DynamicsState& kept)
 {
-    // All members, so that no new one is forgotten.
-    auto& [rock, mesh, settings, contacts, bodies, is_rigid, any_deforms, body_of, zones, place, velocity,
-           move, force, released, lost, origin, middle, low, high, inverse_mass, law_of_edge, ground,
-           wall_law, face_of_mesh, zone_of_face, dt, last_dt, time, time_lost, stiffest_allowed,
-           starts_from_rest, has_moved, energy, stored_at_start, in_zones, last_kinetic, stiffest,
-           largest_mean, ratio, force_change, fastest, fastest_gridpoint, stiffest_gridpoint,
-           checks_in_balance, last_contact_force] = *this;
-    to.values(origin, kept.origin);
-    to.values(place, kept.place);
-    for (std::size_t g = 0; g < origin.size(); ++g)
-        rock.position[g] = middle + origin[g];
-    rock::transfer(to, zones, kept);
-    to.size(face_of_mesh, kept.face);
-    to.values(face_of_mesh, kept.face);
-    contacts.transfer(to, kept);
-    to.value(fastest, kept.fastest);
-    to.value(ratio, kept.unbalanced_force_ratio);
-    to.value(largest_mean, kept.largest_mean_force);
+    to.values(origin_, kept.origin);
+    to.values(now_.place, kept.place);
+    for (std::size_t g = 0; g < origin_.size(); ++g)
+        assembly_.position[g] = middle_ + origin_[g];
+    rock::transfer(to, zones_, kept);
+    to.size(face_of_mesh_, kept.face);
+    to.values(face_of_mesh_, kept.face);
+    contacts_.transfer(to, kept);
+    to.value(now_.fastest, kept.fastest);
+    to.value(now_.ratio, kept.unbalanced_force_ratio);
+    to.value(now_.largest_mean, kept.largest_mean_force);
 }
 
-void Dynamics::pass(Tape& tape)
+void Dynamics::Movement::pass(Tape& tape)
 {
-    // All members, so that no new one is forgotten. Those not passed on are as start() makes them, or of one step alone.
-    auto& [rock, mesh, settings, contacts, bodies, is_rigid, any_deforms, body_of, zones, place, velocity,
-           move, force, released, lost, origin, middle, low, high, inverse_mass, law_of_edge, ground,
-           wall_law, face_of_mesh, zone_of_face, dt, last_dt, time, time_lost, stiffest_allowed,
-           starts_from_rest, has_moved, energy, stored_at_start, in_zones, last_kinetic, stiffest,
-           largest_mean, ratio, force_change, fastest, fastest_gridpoint, stiffest_gridpoint,
-           checks_in_balance, last_contact_force] = *this;
     const std::size_t n = place.size();
-    tape(contacts);
-    for (auto& [gridpoint, arm, mass, inertia, centre, body_velocity, body_lost, angle, spin, is_free] :
-         bodies)
-        tape(centre, body_velocity, body_lost, angle, spin);
-    rock::transfer(tape, zones);
     tape(place, velocity, force, lost, inverse_mass, dt, last_dt, time, time_lost, stiffest_allowed,
          starts_from_rest, has_moved, last_kinetic, stiffest, largest_mean, ratio, force_change, fastest,
          checks_in_balance);
     tape(energy.work, energy.kinetic, energy.stored, energy.friction, energy.damped);
-    tape(in_zones.stored, in_zones.friction, in_zones.damped);
     tape.index(fastest_gridpoint, n);
     tape.index(stiffest_gridpoint, n);
     tape.list_of(n, last_contact_force);
 }
 
+// What is not passed on is as start() makes it, or of one step alone.
+void Dynamics::pass(Tape& tape)
+{
+    tape(contacts_);
+    for (Body& body : bodies_)
+        tape(body.centre, body.velocity, body.lost, body.angle, body.spin);
+    rock::transfer(tape, zones_);
+    now_.pass(tape);
+    tape(in_zones_.stored, in_zones_.friction, in_zones_.damped);
+}
+
 void Dynamics::count_from_here()
 {
-    origin_ = place_;
-    for (std::size_t g = 0; g < place_.size(); ++g)
-        rock_.position[g] = middle_ + place_[g];
+    origin_ = now_.place;
+    for (std::size_t g = 0; g < now_.place.size(); ++g)
+        assembly_.position[g] = middle_ + now_.place[g];
     put_back();
 }
 
@@ -81,8 +72,8 @@ std::vector<Touching> Dynamics::touching() const
         const auto &a = contacts_.faces().gridpoint[pair.a], &b = contacts_.faces().gridpoint[pair.b];
         std::array<Vector2d, 2> between;
         for (int i = 0; i < 2; ++i)
-            between[i] = middle_ + (place_[a[0]] + pair.on_a[i] * (place_[a[1]] - place_[a[0]]) +
-                                    place_[b[0]] + pair.on_b[i] * (place_[b[1]] - place_[b[0]])) /
+            between[i] = middle_ + (now_.place[a[0]] + pair.on_a[i] * (now_.place[a[1]] - now_.place[a[0]]) +
+                                    now_.place[b[0]] + pair.on_b[i] * (now_.place[b[1]] - now_.place[b[0]])) /
                                        2;
         found.push_back({{zone_of_face_[pair.a], zone_of_face_[pair.b]},
                          between,
@@ -96,15 +87,15 @@ std::vector<Touching> Dynamics::touching() const
 
 void Dynamics::put_back()
 {
-    for (std::size_t g = 0; g < place_.size(); ++g)
-        rock_.displacement[g] = place_[g] - origin_[g];
+    for (std::size_t g = 0; g < now_.place.size(); ++g)
+        assembly_.displacement[g] = now_.place[g] - origin_[g];
     put_back_forces();
-    for (std::size_t z = 0; z < rock_.zones.size(); ++z)
-        if (rock_.zones.is_present[z]) {
+    for (std::size_t z = 0; z < assembly_.zones.size(); ++z)
+        if (assembly_.zones.is_present[z]) {
             if (is_rigid_[z])
-                rock_.zones.stress[z].setZero(); // unknown
+                assembly_.zones.stress[z].setZero(); // unknown
             else
-                rock::put_back(zones_, static_cast<Index>(z), place_, rock_.zones);
+                rock::put_back(zones_, static_cast<Index>(z), now_.place, assembly_.zones);
         }
     put_back_contacts();
 }
@@ -131,7 +122,7 @@ std::map<std::array<Index, 2>, Dynamics::Carried> Dynamics::carried_by_pairs() c
 void Dynamics::put_back_contacts()
 {
     const std::vector<Index> leader = leaders();
-    joint::Contacts& contacts = rock_.contacts;
+    joint::Contacts& contacts = assembly_.contacts;
     const std::map<std::array<Index, 2>, Carried> carried = carried_by_pairs();
     contacts.state_by_faces = contacts.state;
     // Shear displacement that is not in the shear springs.
@@ -145,7 +136,7 @@ void Dynamics::put_back_contacts()
         if (contacts.status[c] == ContactStatus::removed)
             continue;
         const auto [a, b] = contacts.gridpoint[c];
-        const Vector2d relative = rock_.displacement[b] - rock_.displacement[a];
+        const Vector2d relative = assembly_.displacement[b] - assembly_.displacement[a];
         contacts.relative_displacement[c] = {relative.dot(contacts.normal[c]),
                                              relative.dot(along(contacts.normal[c]))};
         const auto found = carried.find({std::min(a, b), std::max(a, b)});

@@ -37,11 +37,11 @@ double fit(std::size_t c, const std::vector<std::size_t>& others, const Mesh& me
 // The fixed ground below boundaries with a joint, along all of them, whether rock is there or not.
 void Dynamics::find_ground()
 {
-    const joint::Contacts& contacts = rock_.contacts;
+    const joint::Contacts& contacts = assembly_.contacts;
     std::map<Index, std::vector<std::size_t>> on_ground; // contacts of a gridpoint
     for (std::size_t c = 0; c < contacts.gridpoint.size(); ++c) {
         const auto [a, b] = contacts.gridpoint[c];
-        if (rock_.incidence.zone_start[a] == rock_.incidence.zone_start[a + 1])
+        if (assembly_.incidence.zone_start[a] == assembly_.incidence.zone_start[a + 1])
             on_ground[b].push_back(c);
     }
     for (std::size_t s = 0; s < mesh_.side_gridpoint.size(); ++s) {
@@ -91,8 +91,8 @@ void Dynamics::find_walls()
         if (most > 0)
             wall_law_[{from, to}] = wall_law_[opposite->second] = law_of_edge_[mesh_.contact_edge[best]];
     };
-    for (std::size_t z = 0; z < rock_.zones.size(); ++z) {
-        const auto corners = rock_.zones.gridpoints(z);
+    for (std::size_t z = 0; z < assembly_.zones.size(); ++z) {
+        const auto corners = assembly_.zones.gridpoints(z);
         for (int i = 0; i < 3; ++i)
             take(corners[i], corners[(i + 1) % 3]);
     }
@@ -109,7 +109,7 @@ void Dynamics::find_faces()
     std::vector<FacePair> known = known_pairs(of_mesh);
     add_pairs_on_joints(of_mesh, known);
     face_of_mesh_ = std::move(of_mesh);
-    contacts_.set_faces(std::move(faces), std::move(known), place_);
+    contacts_.set_faces(std::move(faces), std::move(known), now_.place);
 }
 
 // `of_mesh`: receives their own gridpoints, not those of leaders().
@@ -124,10 +124,10 @@ Faces Dynamics::faces_now(std::vector<std::array<Index, 2>>& of_mesh)
 
     std::map<std::array<Index, 2>, int> sides; // by leaders
     const auto key = [&](Index from, Index to) { return std::array<Index, 2>{leader[from], leader[to]}; };
-    for (std::size_t z = 0; z < rock_.zones.size(); ++z)
-        if (rock_.zones.is_present[z])
+    for (std::size_t z = 0; z < assembly_.zones.size(); ++z)
+        if (assembly_.zones.is_present[z])
             for (int i = 0; i < 3; ++i)
-                ++sides[key(rock_.zones.gridpoints(z)[i], rock_.zones.gridpoints(z)[(i + 1) % 3])];
+                ++sides[key(assembly_.zones.gridpoints(z)[i], assembly_.zones.gridpoints(z)[(i + 1) % 3])];
     Faces faces;
     zone_of_face_.clear();
     const auto add = [&](Index from, Index to, Index zone, double depth) {
@@ -138,13 +138,14 @@ Faces Dynamics::faces_now(std::vector<std::array<Index, 2>>& of_mesh)
         const auto wall = wall_law_.find({from, to});
         faces.law.push_back(wall == wall_law_.end() ? contacts_.laws().size() - 1 : wall->second);
     };
-    for (std::size_t z = 0; z < rock_.zones.size(); ++z)
-        if (rock_.zones.is_present[z])
+    for (std::size_t z = 0; z < assembly_.zones.size(); ++z)
+        if (assembly_.zones.is_present[z])
             for (int i = 0; i < 3; ++i) {
-                const Index from = rock_.zones.gridpoints(z)[i], to = rock_.zones.gridpoints(z)[(i + 1) % 3];
+                const Index from = assembly_.zones.gridpoints(z)[i],
+                            to = assembly_.zones.gridpoints(z)[(i + 1) % 3];
                 if (!sides.contains(key(to, from)))
                     add(from, to, static_cast<Index>(z),
-                        2 * rock_.zones.area[z] / (origin_[to] - origin_[from]).norm());
+                        2 * assembly_.zones.area[z] / (origin_[to] - origin_[from]).norm());
             }
     for (const auto& [from, to] : ground_)
         add(from, to, -1, (mesh_.gridpoint[to] - mesh_.gridpoint[from]).norm());
@@ -179,7 +180,7 @@ void Dynamics::add_pairs_on_joints(const std::vector<std::array<Index, 2>>& of_m
                                    std::vector<FacePair>& known) const
 {
     const std::set<std::array<Index, 2>> before(face_of_mesh_.begin(), face_of_mesh_.end());
-    const joint::Contacts& contacts = rock_.contacts;
+    const joint::Contacts& contacts = assembly_.contacts;
     ContactsBetween between;
     for (std::size_t c = 0; c < contacts.gridpoint.size(); ++c)
         if (contacts.status[c] != ContactStatus::removed)
@@ -204,7 +205,7 @@ std::optional<FacePair> Dynamics::pair_on_joint(Index f, Index g,
                                                 const std::vector<std::array<Index, 2>>& of_mesh,
                                                 const ContactsBetween& between) const
 {
-    const joint::Contacts& contacts = rock_.contacts;
+    const joint::Contacts& contacts = assembly_.contacts;
     FacePair pair{.a = f, .b = g, .is_known = true};
     const auto [from, to] = of_mesh[g];
     const Vector2d normal = normal_of(tangent_of(mesh_.gridpoint[from], mesh_.gridpoint[to]));

@@ -15,16 +15,16 @@ namespace jointcreep::large_displacements
 // Bodies of rigid rock: gridpoints connected by its zones and by ties.
 void Dynamics::find_bodies()
 {
-    const std::vector<double> masses = lumped_masses(rock_);
-    DisjointSets sets(place_.size());
-    std::vector<char> is_of_body(place_.size(), 0);
-    for (std::size_t z = 0; z < rock_.zones.size(); ++z)
-        if (is_rigid_[z] && rock_.zones.is_present[z])
-            for (const Index g : rock_.zones.gridpoints(z)) {
+    const std::vector<double> masses = lumped_masses(assembly_);
+    DisjointSets sets(now_.place.size());
+    std::vector<char> is_of_body(now_.place.size(), 0);
+    for (std::size_t z = 0; z < assembly_.zones.size(); ++z)
+        if (is_rigid_[z] && assembly_.zones.is_present[z])
+            for (const Index g : assembly_.zones.gridpoints(z)) {
                 is_of_body[g] = 1;
-                sets.join(g, rock_.zones.gridpoints(z)[0]);
+                sets.join(g, assembly_.zones.gridpoints(z)[0]);
             }
-    for (const auto& [follower, first] : rock_.tied)
+    for (const auto& [follower, first] : assembly_.tied)
         if (is_of_body[follower] || is_of_body[first]) {
             sets.join(follower, first);
             is_of_body[follower] = 0; // moves with its leader
@@ -32,9 +32,9 @@ void Dynamics::find_bodies()
         }
 
     bodies_.clear();
-    body_of_.assign(place_.size(), -1);
+    body_of_.assign(now_.place.size(), -1);
     std::map<Index, Index> number; // by root
-    for (std::size_t g = 0; g < place_.size(); ++g) {
+    for (std::size_t g = 0; g < now_.place.size(); ++g) {
         if (!is_of_body[g])
             continue;
         const auto [found, is_new] =
@@ -45,13 +45,13 @@ void Dynamics::find_bodies()
         body_of_[g] = found->second;
         body.gridpoint.push_back(static_cast<Index>(g));
         body.mass += masses[g];
-        body.centre += masses[g] * place_[g];
-        body.is_free = body.is_free.cwiseMin(rock_.is_free[g]);
+        body.centre += masses[g] * now_.place[g];
+        body.is_free = body.is_free.cwiseMin(assembly_.is_free[g]);
     }
     for (Body& body : bodies_) {
         body.centre /= body.mass;
         for (const Index g : body.gridpoint)
-            body.arm.emplace_back(place_[g] - body.centre);
+            body.arm.emplace_back(now_.place[g] - body.centre);
     }
     find_inertia(masses);
 }
@@ -62,18 +62,18 @@ void Dynamics::find_inertia(const std::vector<double>& masses)
 {
     const std::vector<Index> leader = leaders();
     std::vector<double> lumped = masses;
-    for (std::size_t z = 0; z < rock_.zones.size(); ++z) {
-        if (!is_rigid_[z] || !rock_.zones.is_present[z])
+    for (std::size_t z = 0; z < assembly_.zones.size(); ++z) {
+        if (!is_rigid_[z] || !assembly_.zones.is_present[z])
             continue;
-        Body& body = bodies_[body_of_[leader[rock_.zones.gridpoints(z)[0]]]];
+        Body& body = bodies_[body_of_[leader[assembly_.zones.gridpoints(z)[0]]]];
         Vector2d sum(0, 0);
-        for (const Index g : rock_.zones.gridpoints(z)) {
-            const Vector2d arm = place_[g] - body.centre;
-            body.inertia += rock_.zones.mass[z] / 12 * arm.squaredNorm();
+        for (const Index g : assembly_.zones.gridpoints(z)) {
+            const Vector2d arm = now_.place[g] - body.centre;
+            body.inertia += assembly_.zones.mass[z] / 12 * arm.squaredNorm();
             sum += arm;
-            lumped[leader[g]] -= rock_.zones.mass[z] / 3;
+            lumped[leader[g]] -= assembly_.zones.mass[z] / 3;
         }
-        body.inertia += rock_.zones.mass[z] / 12 * sum.squaredNorm();
+        body.inertia += assembly_.zones.mass[z] / 12 * sum.squaredNorm();
     }
     for (Body& body : bodies_)
         for (std::size_t k = 0; k < body.gridpoint.size(); ++k)
@@ -86,9 +86,9 @@ std::pair<Vector2d, double> Dynamics::load_on(const Body& body) const
     Vector2d force(0, 0);
     double moment = 0;
     for (const Index g : body.gridpoint) {
-        const Vector2d arm = place_[g] - body.centre;
-        force += force_[g];
-        moment += arm.x() * force_[g].y() - arm.y() * force_[g].x();
+        const Vector2d arm = now_.place[g] - body.centre;
+        force += now_.force[g];
+        moment += arm.x() * now_.force[g].y() - arm.y() * now_.force[g].x();
     }
     if (!body.turns())
         moment = 0;
@@ -105,15 +105,15 @@ double Dynamics::move(Body& body, double keep, double gain)
     const double last_spin = body.spin;
     body.velocity = keep * body.velocity + gain / body.mass * force;
     body.spin = keep * body.spin + gain / body.inertia * moment;
-    add<Vector2d>(dt_ * body.velocity, body.centre, body.lost);
-    body.angle += dt_ * body.spin;
+    add<Vector2d>(now_.dt * body.velocity, body.centre, body.lost);
+    body.angle += now_.dt * body.spin;
     const Eigen::Rotation2Dd turn(body.angle);
     for (std::size_t k = 0; k < body.gridpoint.size(); ++k) {
         const Index g = body.gridpoint[k];
         const Vector2d to = body.centre + turn * body.arm[k];
-        move_[g] = to - place_[g];
-        velocity_[g] = move_[g] / dt_;
-        place_[g] = to;
+        move_[g] = to - now_.place[g];
+        now_.velocity[g] = move_[g] / now_.dt;
+        now_.place[g] = to;
     }
     return (body.mass * last.dot(body.velocity) + body.inertia * last_spin * body.spin) / 2;
 }
@@ -121,18 +121,18 @@ double Dynamics::move(Body& body, double keep, double gain)
 // In a direction in which a body is fixed, its load goes to its fixed gridpoints, in equal parts.
 void Dynamics::put_back_forces()
 {
-    rock_.force = force_;
+    assembly_.force = now_.force;
     for (const Body& body : bodies_)
         for (int i = 0; i < 2; ++i) {
             if (body.is_free[i] > 0)
                 continue;
             double force = 0, held = 0;
             for (const Index g : body.gridpoint) {
-                force += force_[g][i];
-                held += 1 - rock_.is_free[g][i];
+                force += now_.force[g][i];
+                held += 1 - assembly_.is_free[g][i];
             }
             for (const Index g : body.gridpoint)
-                rock_.force[g][i] = (1 - rock_.is_free[g][i]) * force / held;
+                assembly_.force[g][i] = (1 - assembly_.is_free[g][i]) * force / held;
         }
 }
 
