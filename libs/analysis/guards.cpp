@@ -125,8 +125,8 @@ void Guards::check_equilibrium()
 {
     const mechanics::Convergence& found = section_.settled.convergence;
     const bool is_relaxation = !found.is_implicit && section_.result.dynamics.time.empty();
-    energy_error_ = is_relaxation ? energy_error(found, stored_energy(section_.rock)) : 0.0;
-    end_if(broken_guard(found.unbalanced_force_ratio, energy_error_, section_.scene.equilibrium.tolerance));
+    const double error = is_relaxation ? energy_error(found, stored_energy(section_.rock)) : 0.0;
+    end_if(broken_guard(found.unbalanced_force_ratio, error, section_.scene.equilibrium.tolerance));
 }
 
 void Guards::state_is_due(const std::string& /*event*/)
@@ -137,7 +137,6 @@ void Guards::state_is_due(const std::string& /*event*/)
     history.area_error.push_back(state.area_error);
     history.weight_error.push_back(state.weight_error);
     history.penetration.push_back(state.penetration);
-    history.energy_error.push_back(energy_error_);
 }
 
 void Guards::end_if(const std::string& broken)

@@ -46,7 +46,6 @@ private:
     void end_if(const std::string& broken);
 
     Section& section_;
-    double energy_error_ = 0; // of the last equilibrium
 };
 
 } // namespace jointcreep::analysis

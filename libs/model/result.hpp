@@ -135,7 +135,6 @@ struct DynamicsHistory {
 struct GuardHistory {
     std::vector<double> area_error, weight_error; // [state] [-]
     std::vector<double> penetration;              // [state] [m]
-    std::vector<double> energy_error;             // [state] of the last equilibrium [-]
 };
 
 // The end of a run without equilibrium. Blocks are those that move, or those without support.

@@ -371,8 +371,6 @@ std::vector<Field> fields_of(GuardHistory& guards)
         {"/guards/penetration", &guards.penetration, {"state"}, "m", at_least(0),
          "Closing of a contact beyond its normal stress over its normal stiffness, or beyond its gap where it is open; the largest. "
          "0 at large displacements."},
-        {"/guards/energy_error", &guards.energy_error, {"state"}, "1", at_least(0),
-         "Energy missing in the balance of the last equilibrium before, over the sum of its terms; 0 but for dynamic relaxation."},
     };
     // clang-format on
 }
