@@ -3,20 +3,23 @@
 
 usage: jointverify RESULT.h5
 
+Description:
 Reads a result file of demsolve (format 2.3 or later) and computes with formulas of its own what the states must
 fulfil. It shares no code with the solver. It writes nothing but a table: a line for each check, with the largest
 deviation, what is allowed, and where it is.
 
-What is allowed follows from the run:
-  equilibrium    the run's tolerance of the unbalanced force ratio
-  energies       that tolerance times the sum of their magnitudes; 1 percent in a dynamic analysis
-  everything     rounding: 1e-12 of the terms that are added, some thousand times the rounding of one number
-
 At large displacements, stresses and joint laws are not verified, and equilibrium only of all rock together. Lines "not
 verified" say what else is not.
 
+What is allowed:
+  equilibrium    the run's tolerance of the unbalanced force ratio
+  energies       that tolerance times the sum of their magnitudes; 1 percent in a dynamic analysis
+  everything     rounding: 1e-12 of the terms that are added, some thousand times the rounding of one number
+What is allowed follows from the run.
+
 Options:
-  -h [ --help ]  this text
+  -h [ --help ]  show this text
+  --version      show the version
 
 Exit codes:
   0  verified: every check passed
@@ -37,6 +40,7 @@ import tomllib
 import h5py
 import numpy as np
 
+VERSION = "@PROJECT_VERSION@"  # CMake knows it
 MAJOR, MINOR = 2, 3  # of the format; older files lack what is checked
 ROUNDING = 1e-12
 ENERGY_OF_DYNAMICS = 0.01  # demsolve warns above this
@@ -1176,6 +1180,9 @@ def verify(path):
 def main(arguments):
     if arguments in (["-h"], ["--help"]):
         print(__doc__, end="")
+        return 0
+    if arguments == ["--version"]:
+        print("jointverify", VERSION)
         return 0
     if len(arguments) != 1 or arguments[0].startswith("-"):
         print("jointverify: expected one result file\nusage: jointverify RESULT.h5\nMore: jointverify --help", file=sys.stderr)

@@ -49,17 +49,18 @@ Analysis::Analysis(const Scene& scene, const Network& network, const EquivalentJ
                    const Recording& recording, const Observer& observe)
     : section_(scene, network, joints, threads, recording, observe),
       step_history_(section_, recording.step_history_every), engines_(section_, step_history_),
-      records_(section_), checkpoints_(section_, step_history_, recording,
-                                       [this] {
-                                           Checkpoint kept;
-                                           transfer(Transfer(Transfer::Way::keep), kept);
-                                           return kept;
-                                       }),
+      guards_(section_), records_(section_), checkpoints_(section_, step_history_, recording,
+                                                          [this] {
+                                                              Checkpoint kept;
+                                                              transfer(Transfer(Transfer::Way::keep), kept);
+                                                              return kept;
+                                                          }),
       creep_(section_, engines_, watchers_, recording.state_every)
 {
     watchers_.add(checkpoints_);
     if (!recording.parameters.empty())
         watchers_.add(sensitivities_.emplace(recording.parameters, section_, engines_.implicit_engine()));
+    watchers_.add(guards_);
     watchers_.add(records_);
 }
 

@@ -10,6 +10,7 @@
 #include "analysis/creep_steps.hpp"
 #include "analysis/dynamic_stage.hpp"
 #include "analysis/engines.hpp"
+#include "analysis/guards.hpp"
 #include "analysis/records.hpp"
 #include "analysis/section.hpp"
 #include "analysis/sensitivities.hpp"
@@ -67,6 +68,7 @@ private:
     Section section_;
     StepHistory step_history_;
     Engines engines_;
+    Guards guards_;
     Records records_;
     std::optional<Sensitivities> sensitivities_;
     Checkpoints checkpoints_;

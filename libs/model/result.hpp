@@ -130,6 +130,12 @@ struct DynamicsHistory {
     std::vector<Index> contact_slips;                      // 0 or 1
 };
 
+// How far each recorded state is off what must hold of it (analysis/guards.hpp).
+struct GuardHistory {
+    std::vector<double> area_error, weight_error; // [state] [-]
+    std::vector<double> penetration;              // [state] [m]
+};
+
 // The end of a run without equilibrium. Blocks are those that move, or those without support.
 struct Failure {
     std::string reason{};                  // the message; empty: the run was completed
@@ -158,6 +164,7 @@ struct Result {
     Equilibria equilibria;
     StepHistory step_history;
     DynamicsHistory dynamics;
+    GuardHistory guards{};
     Failure failure{};
 };
 

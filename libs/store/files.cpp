@@ -52,7 +52,8 @@ struct Contents {
         append(fields, fields_of(reading(equivalent)));
         append(invariants, invariants_of(equivalent));
     }
-    void add(const Result& result, bool with_step_history, bool with_dynamics, bool with_failure)
+    void add(const Result& result, bool with_step_history, bool with_dynamics, bool with_guards,
+             bool with_failure)
     {
         append(fields, fields_of(reading(result)));
         append(invariants, invariants_of(result.mesh));
@@ -60,6 +61,8 @@ struct Contents {
             append(fields, fields_of(reading(result.step_history)));
         if (with_dynamics)
             append(fields, fields_of(reading(result.dynamics)));
+        if (with_guards)
+            append(fields, fields_of(reading(result.guards)));
         if (with_failure)
             append(fields, fields_of(reading(result.failure)));
     }
@@ -131,7 +134,7 @@ Contents contents_of(const ResultFile& file, const hdf5::Source& source)
     Contents contents(file.provenance, file.network);
     contents.add(file.equivalent);
     contents.add(file.result, source.has_group("/step_history"), source.has_group("/dynamics"),
-                 source.has_group("/failure"));
+                 source.has_group("/guards"), source.has_group("/failure"));
     if (source.has_group("/safety"))
         contents.add(file.safety);
     return contents;
@@ -233,7 +236,7 @@ void write_result(const std::string& path, const Provenance& provenance, const N
     Contents contents(provenance, network);
     contents.add(equivalent);
     contents.add(result, !result.step_history.time.empty(), !result.dynamics.time.empty(),
-                 !result.failure.reason.empty());
+                 !result.guards.penetration.empty(), !result.failure.reason.empty());
     if (!safety.factor.empty())
         contents.add(safety);
     write(path, FileKind::result, provenance, contents);
@@ -245,7 +248,8 @@ void write_checkpoint(const std::string& path, const Provenance& provenance, con
 {
     Contents contents(provenance, network);
     contents.add(equivalent);
-    contents.add(so_far, !so_far.step_history.time.empty(), !so_far.dynamics.time.empty(), false);
+    contents.add(so_far, !so_far.step_history.time.empty(), !so_far.dynamics.time.empty(),
+                 !so_far.guards.penetration.empty(), false);
     contents.add(checkpoint, !checkpoint.dynamics.place.empty());
     if (!safety.factor.empty())
         contents.add(safety);

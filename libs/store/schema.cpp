@@ -360,6 +360,21 @@ std::vector<Field> fields_of(DynamicsHistory& dynamics)
     return all;
 }
 
+std::vector<Field> fields_of(GuardHistory& guards)
+{
+    // clang-format off
+    return {
+        {"/guards/area_error", &guards.area_error, {"state"}, "1", at_least(0),
+         "Area of the zones of a block less the block's, over that; the largest."},
+        {"/guards/weight_error", &guards.weight_error, {"state"}, "1", at_least(0),
+         "Loads less the weight of the rock that is there, over the weight of all rock."},
+        {"/guards/penetration", &guards.penetration, {"state"}, "m", at_least(0),
+         "Closing of a contact beyond its normal stress over its normal stiffness, or beyond its gap where it is open; the largest. "
+         "0 at large displacements."},
+    };
+    // clang-format on
+}
+
 std::vector<Field> fields_of(Failure& failure)
 {
     // clang-format off

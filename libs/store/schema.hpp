@@ -21,9 +21,10 @@ std::vector<fields::Field> fields_of(Provenance& provenance); // without its war
 std::vector<fields::Field> fields_of(Warnings& warnings);
 std::vector<fields::Field> fields_of(Network& network);
 std::vector<fields::Field> fields_of(EquivalentJoints& equivalent);
-std::vector<fields::Field> fields_of(Result& result); // without its step history, dynamics and failure
+std::vector<fields::Field> fields_of(Result& result); // without its step history, dynamics, guards and failure
 std::vector<fields::Field> fields_of(StepHistory& step_history);
 std::vector<fields::Field> fields_of(DynamicsHistory& dynamics);
+std::vector<fields::Field> fields_of(GuardHistory& guards);
 std::vector<fields::Field> fields_of(Failure& failure);
 std::vector<fields::Field> fields_of(Safety& safety);
 std::vector<fields::Field> fields_of(Checkpoint& checkpoint); // without the state of a dynamic analysis

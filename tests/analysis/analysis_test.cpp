@@ -335,6 +335,8 @@ void expect_same(const Result& a, const Result& b)
     EXPECT_EQ(a.equilibria.damped_energy, b.equilibria.damped_energy);
     EXPECT_EQ(a.equilibria.remaining_displacement, b.equilibria.remaining_displacement);
     EXPECT_EQ(a.step_history.solver_time, b.step_history.solver_time);
+    EXPECT_EQ(a.guards.weight_error, b.guards.weight_error);
+    EXPECT_EQ(a.guards.penetration, b.guards.penetration);
     EXPECT_EQ(a.step_history.displacement, b.step_history.displacement);
     EXPECT_EQ(a.dynamics.stored_energy, b.dynamics.stored_energy);
     EXPECT_EQ(a.dynamics.damped_energy, b.dynamics.damped_energy);

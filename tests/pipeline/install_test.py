@@ -7,7 +7,7 @@ import unittest
 
 from chain import ChainTest, main
 
-APPS = ["jointgen", "strength-averaging", "demsolve", "jointexport", "creepfit"]
+APPS = ["jointgen", "strength-averaging", "demsolve", "jointexport", "creepfit", "jointverify"]
 
 
 class Install(ChainTest):
@@ -24,7 +24,7 @@ class Install(ChainTest):
 
     def test_nothing_else_is_installed(self):
         files = sorted(str(path.relative_to(self.prefix)) for path in self.prefix.rglob("*") if path.is_file())
-        self.assertEqual(files, sorted(["bin/jointverify"] + [f"bin/{app}" for app in APPS] +
+        self.assertEqual(files, sorted([f"bin/{app}" for app in APPS] +
                                        [f"share/man/man1/{app}.1" for app in APPS] +
                                        [f"share/bash-completion/completions/{app}" for app in APPS]))
 
@@ -65,7 +65,16 @@ class Install(ChainTest):
         self.assertEqual(self.completed("jointgen", "--real"), ["--realization"])
         self.assertEqual(self.completed("jointexport", "scene"), [])  # a file: bash's own
         for app in APPS:
-            self.assertLessEqual({"--output", "--quiet", "--help", "--version"}, set(self.completed(app, "--")))
+            options = {"--help", "--version"} if app == "jointverify" else {"--output", "--quiet", "--help", "--version"}
+            self.assertLessEqual(options, set(self.completed(app, "--")))
+
+    def test_versions(self):
+        versions = {app: self.installed(app, "--version") for app in APPS}
+        for app, done in versions.items():
+            self.assertEqual((done.returncode, done.stderr), (0, ""))
+            self.assertRegex(done.stdout, rf"^{app} \d+\.\d+\.\d+")
+        of_all = {done.stdout.split()[1].split("+")[0] for done in versions.values()}
+        self.assertEqual(len(of_all), 1, of_all)
 
 
 if __name__ == "__main__":

@@ -71,6 +71,7 @@ public:
         fill(schema::fields_of(file.result));
         if (with_trace) {
             fill(schema::fields_of(file.result.step_history));
+            fill(schema::fields_of(file.result.guards));
             fill(schema::fields_of(file.result.failure));
             file.result.failure.reason += '!'; // without one it is none
             fill(schema::fields_of(file.safety));

@@ -1,0 +1,149 @@
+#include "analysis/guards.hpp"
+
+#include "model/error.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace jointcreep::analysis
+{
+
+namespace
+{
+
+constexpr double rounding = 1e-9; // over what it is of
+// Of the energy balance, or 100 times the tolerance of equilibria if that is more.
+constexpr double most_energy_error = 1e-3;
+
+template <class Vectors>
+double sum_of_squares(const Vectors& vectors)
+{
+    double sum = 0;
+    for (const auto& one : vectors)
+        sum += one.squaredNorm();
+    return sum;
+}
+
+// Of the blocks with present zones, the largest.
+double area_error(const Section& section)
+{
+    const std::vector<double>& area = section.network.blocks.block_area;
+    const rock::Zones& zones = section.rock.zones;
+    std::vector<double> sum(area.size(), 0.0);
+    for (std::size_t z = 0; z < zones.size(); ++z)
+        if (zones.is_present[z])
+            sum[section.mesh().zone_block[zones.zone_of(z)]] += zones.area[z];
+    double error = 0;
+    for (std::size_t b = 0; b < area.size(); ++b)
+        if (sum[b] > 0)
+            error = std::max(error, std::abs(sum[b] - area[b]) / area[b]);
+    return error;
+}
+
+double weight_error(const Section& section)
+{
+    const rock::Zones& zones = section.rock.zones;
+    double present = 0, all = 0, loads = 0;
+    for (std::size_t z = 0; z < zones.size(); ++z) {
+        all += zones.weight[z];
+        present += zones.is_present[z] ? zones.weight[z] : 0.0;
+    }
+    for (const Vector2d& load : section.rock.load)
+        loads += load.y();
+    return all == 0 ? std::abs(loads) : std::abs(loads + present) / std::abs(all);
+}
+
+} // namespace
+
+double penetration(const joint::Contacts& contacts)
+{
+    double deepest = 0;
+    for (std::size_t c = 0; c < contacts.status.size(); ++c) {
+        if (contacts.status[c] == ContactStatus::removed)
+            continue;
+        const double of_springs = contacts.status[c] == ContactStatus::open
+                                      ? 0.0
+                                      : joint::opening(contacts.law[c], contacts.traction[c].x());
+        deepest = std::max(deepest, of_springs - opening_of(contacts, c));
+    }
+    return deepest;
+}
+
+GuardedState guarded_state(const Section& section)
+{
+    const mechanics::Assembly& rock = section.rock;
+    GuardedState state;
+    state.is_finite = std::isfinite(sum_of_squares(rock.displacement) + sum_of_squares(rock.zones.stress) +
+                                    sum_of_squares(rock.contacts.traction));
+    state.area_error = area_error(section);
+    state.weight_error = weight_error(section);
+    // At large displacements contacts are between faces, which check their depth at every step.
+    state.penetration = rock.contacts.state_by_faces.empty() ? penetration(rock.contacts) : 0.0;
+    return state;
+}
+
+double energy_error(const mechanics::Convergence& convergence, double stored)
+{
+    const double parts[]{convergence.work_of_loads, -convergence.stored, -convergence.dissipated,
+                         -convergence.damped};
+    double sum = 0, size = 0;
+    for (const double part : parts) {
+        sum += part;
+        size += std::abs(part);
+    }
+    const double error = std::abs(sum) - 1e-12 * (std::abs(stored) + std::abs(convergence.stored));
+    return error > 0 ? error / size : std::isnan(error) ? 1.0 : 0.0;
+}
+
+std::string broken_guard(const GuardedState& state, double size_of_section)
+{
+    if (!state.is_finite)
+        return "displacements, stresses or tractions are not finite numbers";
+    if (!(state.area_error <= rounding))
+        return "areas of zones are off by " + shown(state.area_error) + " of their block's";
+    if (!(state.weight_error <= rounding))
+        return "loads are off by " + shown(state.weight_error) + " of the weight";
+    if (!(state.penetration <= rounding * size_of_section))
+        return "a contact is closed by " + shown(state.penetration) +
+               " m more than its normal stress over its stiffness";
+    return "";
+}
+
+std::string broken_guard(double unbalanced_force_ratio, double energy_error, double tolerance)
+{
+    if (!(unbalanced_force_ratio <= tolerance))
+        return "the unbalanced force ratio of an equilibrium is " + shown(unbalanced_force_ratio) +
+               ", wanted " + shown(tolerance);
+    if (!(energy_error <= std::max(most_energy_error, 100 * tolerance)))
+        return "the energy balance of an equilibrium is off by " + shown(energy_error) + " of its terms";
+    return "";
+}
+
+// That of the implicit engine holds by definition; that of a dynamic analysis is checked over its whole length
+// (analysis/dynamic_stage.hpp).
+void Guards::check_equilibrium()
+{
+    const mechanics::Convergence& found = section_.settled.convergence;
+    const bool is_relaxation = !found.is_implicit && section_.result.dynamics.time.empty();
+    const double error = is_relaxation ? energy_error(found, stored_energy(section_.rock)) : 0.0;
+    end_if(broken_guard(found.unbalanced_force_ratio, error, section_.scene.equilibrium.tolerance));
+}
+
+void Guards::state_is_due(const std::string& /*event*/)
+{
+    const GuardedState state = guarded_state(section_);
+    end_if(broken_guard(state, mechanics::size_of(section_.rock)));
+    GuardHistory& history = section_.result.guards;
+    history.area_error.push_back(state.area_error);
+    history.weight_error.push_back(state.weight_error);
+    history.penetration.push_back(state.penetration);
+}
+
+void Guards::end_if(const std::string& broken)
+{
+    if (!broken.empty())
+        fail(section_, {.reason = "the result is wrong: " + broken + ". Please report this with the scene"},
+             section_.now);
+}
+
+} // namespace jointcreep::analysis
