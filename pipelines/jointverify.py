@@ -688,7 +688,7 @@ class Verification:
         off = np.abs(stress - st.stress[s]).max(axis=1)
         there = st.present[s]
         if m.is_quadratic:
-            self.check_points(s)
+            self.check_stress_points(s)
         yields = np.zeros(len(there), bool)
         yields[y] = True
         for chosen, name, beside in (
@@ -712,7 +712,7 @@ class Verification:
                 [st.crept_strain[0].ravel(), st.plastic[0].ravel()])), 0,
                 lambda i: "/states/crept_strain[0]" if i < st.crept_strain[0].size else "/states/plastic_strain[0]")
 
-    def check_points(self, s):
+    def check_stress_points(self, s):
         """The stress points of quadratic zones: their mean is the zone's stress, and elastic ones follow Hooke's law."""
         m, st, see = self.section, self.states, self.checks.see
         stress = st.stress_at_points(s)

@@ -85,6 +85,8 @@ class Verify(ChainTest):
             return run(with_stage(), "--states", 1)
         if name == "chain":
             return run(creep_test.SCENE.replace("# joint creep", creep_test.CHAIN), "--states", 1)
+        if name == "quadratic zones":  # that creep, and lose a stage
+            return run(changed(with_stage(), r"^\[zones\]$", '[zones]\nkind = "quadratic"'), "--states", 1)
         if name == "kinds":
             folder = self.chain.new_folder()
             for file in "scene.toml", "poles.csv", "traces.geojson":
@@ -117,7 +119,7 @@ class Verify(ChainTest):
                               ENGINE="auto", INCREMENTS="4"))
         raise KeyError(name)
 
-    RESULTS = ("slope", "weaker slope", "column", "creeping rock", "chain", "short step", "kinds", "collapse", "opening", "dilation",
+    RESULTS = ("slope", "weaker slope", "column", "creeping rock", "quadratic zones", "chain", "short step", "kinds", "collapse", "opening", "dilation",
                "dilation that ends", "wearing", "continuously yielding", "residual", "Barton-Bandis", "yield")
 
     def verified(self, path):
@@ -202,6 +204,7 @@ class Verify(ChainTest):
             ("stress of elastic zones is Hooke's", "slope", s + "stress", x(last(s, here)), times(1.0001)),
             ("stress of elastic zones is Hooke's", "slope", s + "displacement", at(-1, 40, 0), times(1.01)),
             ("stress of elastic zones is Hooke's", "creeping rock", s + "crept_strain", at(-1, 0, 0), times(1.01)),
+            ("stresses at points have the zone's mean", "quadratic zones", s + "point_stress", at(-1, 0, 0, 0), times(1.0001)),
             ("stress of yielding zones is Hooke's, less plastic strain", "yield", s + "plastic_strain", yields, times(1.01)),
             ("stress of yielding zones is Hooke's, less plastic strain", "yield", s + "stress_zz",
              lambda file: yields(file)[:2], times(1.01)),
