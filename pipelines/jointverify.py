@@ -781,7 +781,8 @@ class Verification:
             see("gaps in situ are of open contacts alone", "m", np.where(is_open, 0, np.abs(st.initial_gap)), 0,
                 lambda c: f"/states/initial_gap[{c}]")
             counted = np.abs(st.slip[0]) + np.abs(st.dilation[0]) + np.abs(st.crept[0]).sum(axis=1)
-            see("nothing has slipped, dilated or crept at the in-situ equilibrium", "m", counted, 0,
+            least = np.divide(ROUNDING * norm(traction), m.k_s, out=np.zeros_like(m.k_s), where=m.k_s > 0)  # by rounding
+            see("nothing has slipped, dilated or crept at the in-situ equilibrium", "m", counted, least,
                 lambda c: f"/states/slip, dilation or crept[0, {c}]")
 
         # Strength.
