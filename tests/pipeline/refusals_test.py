@@ -301,6 +301,32 @@ class Refusals(ChainTest):
                         opened["scene"][0] = text
                     self.assert_refuses(BAD_INPUT, program, copy, says=[f"{copy}: /scene, line {line}: ", says])
 
+    def test_values_in_another_file(self):
+        """Whatever HDF5 would read there, it is not what the file says."""
+        joints = self.chain.joints(self.chain.text(COLUMN))
+        name, values = "/vertices/position", datasets(joints)["/vertices/position"]
+
+        def elsewhere(file):
+            return file.create_dataset(name, values.shape, values.dtype, external=[("/dev/zero", 0, values.nbytes)])
+
+        def virtual(file):
+            layout = h5py.VirtualLayout(values.shape, values.dtype)
+            layout[...] = h5py.VirtualSource(str(joints), name, values.shape)
+            return file.create_virtual_dataset(name, layout)
+
+        def linked(file):
+            file[name] = h5py.ExternalLink(str(joints), name)
+        for make in elsewhere, virtual, linked:
+            with self.subTest(make.__name__):
+                copy = shutil.copy(joints, self.chain.new_folder() / "changed.h5")
+                with h5py.File(copy, "r+", libver=("v110", "v110")) as file:
+                    attributes = dict(file[name].attrs)
+                    del file[name]
+                    for key, value in attributes.items() if make(file) else ():
+                        file[name].attrs[key] = value
+                self.assert_refuses(BAD_INPUT, "demsolve", copy, says=f"{copy}: {name} ")
+                self.assert_refuses(BAD_INPUT, "demsolve", copy, says=" another file; wanted ")
+
     def test_what_shows_only_in_a_run_names_the_file(self):
         text = changed(self.chain.text(COLUMN), "^step_days = 1", "step_days = 1e-6")
         joints = self.chain.joints(text)
