@@ -327,6 +327,14 @@ class Refusals(ChainTest):
                 self.assert_refuses(BAD_INPUT, "demsolve", copy, says=f"{copy}: {name} ")
                 self.assert_refuses(BAD_INPUT, "demsolve", copy, says=" another file; wanted ")
 
+    def test_corners_that_do_not_enclose_a_blocks_area(self):
+        joints = self.chain.joints(self.chain.text(COLUMN))
+        for at, place in ((slice(None), 0), (2, [3, 7])):
+            copy = shutil.copy(joints, self.chain.new_folder() / "changed.h5")
+            with h5py.File(copy, "r+", libver=("v110", "v110")) as file:
+                file["/vertices/position"][at] = place
+            self.assert_refuses(BAD_INPUT, "demsolve", copy, says=[f"{copy}: /blocks/area[", " m2; wanted "])
+
     def test_what_shows_only_in_a_run_names_the_file(self):
         text = changed(self.chain.text(COLUMN), "^step_days = 1", "step_days = 1e-6")
         joints = self.chain.joints(text)
