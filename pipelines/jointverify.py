@@ -38,6 +38,7 @@ import h5py
 import numpy as np
 
 MAJOR, MINOR = 2, 3  # of the format; older files lack what is checked
+BEST_COMPRESSION = 1100  # deflating stores a byte for up to 1032
 ROUNDING = 1e-12
 ENERGY_OF_DYNAMICS = 0.01  # demsolve warns above this
 AT_STRENGTH = 1e-6  # a contact this near its strength counts as slipping
@@ -105,9 +106,13 @@ class File:
             raise NotWanted(f"{self.path}: {name}: is missing; expected a result file of format {MAJOR}.{MINOR}") from None
         if not isinstance(item, h5py.Dataset):
             raise NotWanted(f"{self.path}: {name}: is no dataset")
+        stored, size = item.id.get_storage_size(), item.size * item.dtype.itemsize
+        if size > BEST_COMPRESSION * stored:
+            raise NotReadable(f"{self.path}: {name}: cannot be read: {stored} bytes are stored for {size}; the file is damaged")
         try:
             if h5py.check_string_dtype(item.dtype) is not None:
-                return np.array([text.rstrip("\0") for text in np.atleast_1d(item.asstr()[...])], dtype=object)
+                texts = np.atleast_1d(item.asstr()[...])
+                return np.array([text.rstrip("\0") for text in texts.ravel()], dtype=object).reshape(texts.shape)
             return np.asarray(item[...])
         except UnicodeDecodeError:
             raise NotWanted(f"{self.path}: {name}: is not UTF-8") from None
