@@ -192,6 +192,12 @@ class Refusals(ChainTest):
                 self.assertEqual(done.returncode, BAD_INPUT, done.stderr)
                 self.assertNotEqual(done.stderr, "")
 
+    def test_threads_that_cannot_start(self):
+        def little_memory():
+            resource.setrlimit(resource.RLIMIT_AS, (500 * 2**20, 500 * 2**20))
+        says = ["--threads 1000: only ", " could be started here (", "); wanted fewer"]
+        self.assert_refuses(BAD_INPUT, "demsolve", self.files["demsolve"], "--threads", "1000", says=says, limit=little_memory)
+
     def test_zones_without_end(self):
         """Refused before they are made, with a size that would do; by jointgen when it is asked to check."""
         scene = self.chain.new_folder() / "scene.toml"
