@@ -64,6 +64,11 @@ def ended(command, longest, limit=lambda: None, **options):
     return Ended(done.returncode, done.stdout, done.stderr)
 
 
+def chance(*trial):
+    """Random numbers of a trial, the same whatever else is tried."""
+    return random.Random("/".join(map(str, trial)))
+
+
 def contents(folder):
     """Bytes of every file in a folder, by name."""
     return {path.name: path.read_bytes() for path in sorted(folder.iterdir()) if path.is_file()}
@@ -102,8 +107,7 @@ class Campaign:
         self.begin = time.monotonic()
 
     def random(self, *case):
-        """Chance of its own for a trial."""
-        return random.Random("/".join(map(str, (self.name, self.seed, *case))))
+        return chance(self.name, self.seed, *case)
 
     def count(self, subject, outcome, case="", what="", files=None, times=1):
         """Counts a trial. Of a fault says which and what; `files` is a folder to be kept."""

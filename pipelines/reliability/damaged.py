@@ -15,7 +15,7 @@ import tempfile
 
 import h5py
 import numpy
-from campaign import HANGS, MEMORY, ROOT, Campaign, contents, ended
+from campaign import HANGS, MEMORY, ROOT, Campaign, chance, contents, ended
 
 LONGEST = 20  # s; undamaged, each run takes less than half a second
 DIGEST = "provenance/input_sha256"  # the last row differs with any bit of the input
@@ -302,9 +302,9 @@ class Reader:
             damage(copy, random)
             out = folder / "out"
             out.mkdir()
-            return damage.__name__, *self.judged(damage, self.run(copy, out), out)
+            return damage.__name__, *self.answer(damage, self.run(copy, out), out)
 
-    def judged(self, damage, done, out):
+    def answer(self, damage, done, out):
         left = [*contents(out)]
         if done.code == HANGS:
             return "hang", str(done)
@@ -352,9 +352,9 @@ def readers(chain):
     yield Reader("jointexport, histories", [programs / "jointexport", "FILE", "-o", "out.csv"], result, "out.csv")
 
 
-def chosen(arguments):
-    reader, seeds = arguments
-    return [(number, reader.name, *reader.verdict(random)) for number, random in seeds]
+def judged(batch):
+    reader, campaign, numbers = batch
+    return [(number, reader.name, *reader.verdict(chance(*campaign, number))) for number in numbers]
 
 
 def body(campaign):
@@ -365,11 +365,11 @@ def body(campaign):
         if done.code:
             raise SystemExit(f"{reader.name}: the undamaged file is refused: {done}")
         reader.wanted = content(folder / reader.output)
-    cases = [(every[i % len(every)], i) for i in range(campaign.n)]
-    batches = [(reader, [(i, campaign.random(i)) for other, i in cases[first:first + 50 * len(every)] if other is reader])
-               for first in range(0, campaign.n, 50 * len(every)) for reader in every]
+    size = 50 * len(every)
+    batches = ((reader, (campaign.name, campaign.seed), range(first + i, min(first + size, campaign.n), len(every)))
+               for first in range(0, campaign.n, size) for i, reader in enumerate(every))
     with multiprocessing.Pool(2) as pool:
-        for answers in pool.imap(chosen, batches):
+        for answers in pool.imap(judged, batches):
             for number, name, damage, outcome, what in answers:
                 campaign.count(name, outcome, number, f"{damage}: {what}" if what else damage)
 

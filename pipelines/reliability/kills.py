@@ -53,7 +53,7 @@ class Job:
         it still ran."""
         running = subprocess.Popen(self.command, cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
                                    start_new_session=True)
-        while while_writing and running.poll() is None and not any(folder.rglob("*.partial-*")):
+        while while_writing and running.poll() is None and not writes(folder):
             pass
         try:
             running.wait(moment)
@@ -90,6 +90,14 @@ class Job:
         found = files(folder)
         names = [name for name in sorted(found.keys() | self.whole.keys()) if found.get(name) != self.whole.get(name)]
         return f"not as in a run undisturbed: {', '.join(names)}" if names else ""
+
+
+def writes(folder):
+    """Whether a program writes a file there."""
+    try:
+        return any(folder.rglob("*.partial-*"))
+    except FileNotFoundError:  # a folder below is gone already
+        return False
 
 
 def runs(group):
