@@ -49,7 +49,8 @@ at_m = [2, 5]
 first_reading = 2
 [zones]
 size_m = 2
-)", "scene");
+)",
+                                                                  "scene");
 
 } // namespace
 
