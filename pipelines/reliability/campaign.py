@@ -124,6 +124,7 @@ class Campaign:
         try:
             body(self)
         except KeyboardInterrupt:
+            self.n = f"{self.n}, interrupted"
             print(f"{self.name}: interrupted; what follows was counted until then")
         finally:
             shutil.rmtree(self.folder, ignore_errors=True)

@@ -20,6 +20,7 @@ from campaign import HANGS, MEMORY, ROOT, Campaign, chance, contents, ended
 LONGEST = 20  # s; undamaged, each run takes less than half a second
 DIGEST = "provenance/input_sha256"  # the last row differs with any bit of the input
 REFUSED = (2, 4)
+FAULTS = ["signal", "hang", "wrong", "files left", "not named", "other code"]
 
 
 def changed(path):
@@ -292,8 +293,8 @@ class Reader:
     def run(self, copy, folder):
         return ended([str(copy) if word == "FILE" else word for word in self.command], LONGEST, cwd=folder)
 
-    def verdict(self, random):
-        """The kind of damage, what came of it, and what was wrong with that."""
+    def verdict(self, random, keep):
+        """The kind of damage, what came of it, and what was wrong with that. A copy that led astray is kept under a name."""
         damage = random.choice(DAMAGE)
         with tempfile.TemporaryDirectory(prefix="damaged-", dir=MEMORY) as name:
             folder = pathlib.Path(name)
@@ -302,7 +303,11 @@ class Reader:
             damage(copy, random)
             out = folder / "out"
             out.mkdir()
-            return damage.__name__, *self.answer(damage, self.run(copy, out), out)
+            outcome, wrong = self.answer(damage, self.run(copy, out), out)
+            if outcome in FAULTS:
+                keep.parent.mkdir(parents=True, exist_ok=True)
+                shutil.copyfile(copy, keep)
+            return damage.__name__, outcome, wrong
 
     def answer(self, damage, done, out):
         left = [*contents(out)]
@@ -353,8 +358,8 @@ def readers(chain):
 
 
 def judged(batch):
-    reader, campaign, numbers = batch
-    return [(number, reader.name, *reader.verdict(chance(*campaign, number))) for number in numbers]
+    reader, campaign, out, numbers = batch
+    return [(number, reader.name, *reader.verdict(chance(*campaign, number), out / f"{number}.h5")) for number in numbers]
 
 
 def body(campaign):
@@ -366,7 +371,8 @@ def body(campaign):
             raise SystemExit(f"{reader.name}: the undamaged file is refused: {done}")
         reader.wanted = content(folder / reader.output)
     size = 50 * len(every)
-    batches = ((reader, (campaign.name, campaign.seed), range(first + i, min(first + size, campaign.n), len(every)))
+    faults = campaign.out / "faults" / "damaged"
+    batches = ((reader, (campaign.name, campaign.seed), faults, range(first + i, min(first + size, campaign.n), len(every)))
                for first in range(0, campaign.n, size) for i, reader in enumerate(every))
     with multiprocessing.Pool(2) as pool:
         for answers in pool.imap(judged, batches):
@@ -375,5 +381,4 @@ def body(campaign):
 
 
 if __name__ == "__main__":
-    OUTCOMES = ["refused", "same output", "other output", "signal", "hang", "wrong", "files left", "not named", "other code"]
-    Campaign("damaged files to", OUTCOMES, OUTCOMES[3:], 100000).run(body)
+    Campaign("damaged files to", ["refused", "same output", "other output", *FAULTS], FAULTS, 100000).run(body)
