@@ -4,7 +4,8 @@ Copies are truncated, have flipped bits or zeroed bytes, lack a dataset, or say 
 another size, type or rank, numbers that are not finite, indices out of range, other numbers, other units; or they have a structure
 made to do harm: links in circles, links to other files, groups in place of datasets, huge sizes, foreign filters. Each run has
 to answer as for the file undamaged, or refuse with code 2 or 4, a message that names the copy, and no output. A copy with other
-numbers is another file: what it gives may differ, and no equilibrium (code 3) is an answer.
+numbers is another file, which need not be that of any section: what it gives may differ, no equilibrium (code 3) is an answer,
+and so is an internal error (code 5), which is counted apart.
 """
 
 import multiprocessing
@@ -315,9 +316,11 @@ class Reader:
             return "hang", str(done)
         if done.code == 3 and damage is other_values:
             return "other output", ""
-        if done.code in REFUSED:
+        if done.code in REFUSED or done.code == 5 and damage is other_values:
             if left:
                 return "files left", ", ".join(left)
+            if damage is other_values:
+                return ("internal error" if done.code == 5 else "refused"), str(done)
             return ("refused", "") if "copy.h5" in done.err else ("not named", str(done))
         if done.code < 0:
             return "signal", str(done)
@@ -381,4 +384,4 @@ def body(campaign):
 
 
 if __name__ == "__main__":
-    Campaign("damaged files to", ["refused", "same output", "other output", *FAULTS], FAULTS, 100000).run(body)
+    Campaign("damaged files to", ["refused", "same output", "other output", "internal error", *FAULTS], FAULTS, 100000).run(body)
