@@ -42,6 +42,7 @@ import numpy as np
 
 VERSION = "@PROJECT_VERSION@"  # CMake knows it
 MAJOR, MINOR = 2, 3  # of the format; older files lack what is checked
+BEST_COMPRESSION = 1100  # deflating stores a byte for up to 1032
 ROUNDING = 1e-12
 ENERGY_OF_DYNAMICS = 0.01  # demsolve warns above this
 AT_STRENGTH = 1e-6  # a contact this near its strength counts as slipping
@@ -109,9 +110,13 @@ class File:
             raise NotWanted(f"{self.path}: {name}: is missing; expected a result file of format {MAJOR}.{MINOR}") from None
         if not isinstance(item, h5py.Dataset):
             raise NotWanted(f"{self.path}: {name}: is no dataset")
+        stored, size = item.id.get_storage_size(), item.size * item.dtype.itemsize
+        if size > BEST_COMPRESSION * stored:
+            raise NotReadable(f"{self.path}: {name}: cannot be read: {stored} bytes are stored for {size}; the file is damaged")
         try:
             if h5py.check_string_dtype(item.dtype) is not None:
-                return np.array([text.rstrip("\0") for text in np.atleast_1d(item.asstr()[...])], dtype=object)
+                texts = np.atleast_1d(item.asstr()[...])
+                return np.array([text.rstrip("\0") for text in texts.ravel()], dtype=object).reshape(texts.shape)
             return np.asarray(item[...])
         except UnicodeDecodeError:
             raise NotWanted(f"{self.path}: {name}: is not UTF-8") from None
@@ -692,7 +697,7 @@ class Verification:
         off = np.abs(stress - st.stress[s]).max(axis=1)
         there = st.present[s]
         if m.is_quadratic:
-            self.check_points(s)
+            self.check_stress_points(s)
         yields = np.zeros(len(there), bool)
         yields[y] = True
         for chosen, name, beside in (
@@ -716,7 +721,7 @@ class Verification:
                 [st.crept_strain[0].ravel(), st.plastic[0].ravel()])), 0,
                 lambda i: "/states/crept_strain[0]" if i < st.crept_strain[0].size else "/states/plastic_strain[0]")
 
-    def check_points(self, s):
+    def check_stress_points(self, s):
         """The stress points of quadratic zones: their mean is the zone's stress, and elastic ones follow Hooke's law."""
         m, st, see = self.section, self.states, self.checks.see
         stress = st.stress_at_points(s)
@@ -785,7 +790,8 @@ class Verification:
             see("gaps in situ are of open contacts alone", "m", np.where(is_open, 0, np.abs(st.initial_gap)), 0,
                 lambda c: f"/states/initial_gap[{c}]")
             counted = np.abs(st.slip[0]) + np.abs(st.dilation[0]) + np.abs(st.crept[0]).sum(axis=1)
-            see("nothing has slipped, dilated or crept at the in-situ equilibrium", "m", counted, 0,
+            least = np.divide(ROUNDING * norm(traction), m.k_s, out=np.zeros_like(m.k_s), where=m.k_s > 0)  # by rounding
+            see("nothing has slipped, dilated or crept at the in-situ equilibrium", "m", counted, least,
                 lambda c: f"/states/slip, dilation or crept[0, {c}]")
 
         # Strength.

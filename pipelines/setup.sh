@@ -3,13 +3,14 @@
 #
 #   sh pipelines/setup.sh          the programs, and what draws pictures of their results
 #   sh pipelines/setup.sh test     these and the tests
+#   sh pipelines/setup.sh fuzz     the fuzz targets, into build/fuzz
 #
 # A list of packages is a file of pipelines/packages, one name a line.
 set -eu
 cd "$(dirname "$0")/.."
 
 if [ $# -gt 1 ]; then
-  echo "setup.sh: unknown \"$2\"; expected nothing, or test" >&2
+  echo "setup.sh: unknown \"$2\"; expected nothing, test or fuzz" >&2
   exit 2
 fi
 case "$PWD" in
@@ -22,8 +23,9 @@ purpose="${1:-run}"
 case "$purpose" in
 run) lists="run" preset="release" ;;
 test) lists="run test" preset="test" ;;
+fuzz) lists="run test fuzz" preset="fuzz" ;;
 *)
-  echo "setup.sh: unknown purpose \"$purpose\"; expected nothing, or test" >&2
+  echo "setup.sh: unknown purpose \"$purpose\"; expected nothing, test or fuzz" >&2
   exit 2
   ;;
 esac

@@ -28,7 +28,7 @@ double sum_of_squares(const Vectors& vectors)
 double area_error(const Section& section)
 {
     const std::vector<double>& area = section.network.blocks.block_area;
-    const rock::Zones& zones = section.rock.zones;
+    const rock::Zones& zones = section.assembly.zones;
     std::vector<double> sum(area.size(), 0.0);
     for (std::size_t z = 0; z < zones.size(); ++z)
         if (zones.is_present[z])
@@ -42,13 +42,13 @@ double area_error(const Section& section)
 
 double weight_error(const Section& section)
 {
-    const rock::Zones& zones = section.rock.zones;
+    const rock::Zones& zones = section.assembly.zones;
     double present = 0, all = 0, loads = 0;
     for (std::size_t z = 0; z < zones.size(); ++z) {
         all += zones.weight[z];
         present += zones.is_present[z] ? zones.weight[z] : 0.0;
     }
-    for (const Vector2d& load : section.rock.load)
+    for (const Vector2d& load : section.assembly.load)
         loads += load.y();
     return all == 0 ? std::abs(loads) : std::abs(loads + present) / std::abs(all);
 }
@@ -71,14 +71,15 @@ double penetration(const joint::Contacts& contacts)
 
 GuardedState guarded_state(const Section& section)
 {
-    const mechanics::Assembly& rock = section.rock;
+    const mechanics::Assembly& assembly = section.assembly;
     GuardedState state;
-    state.is_finite = std::isfinite(sum_of_squares(rock.displacement) + sum_of_squares(rock.zones.stress) +
-                                    sum_of_squares(rock.contacts.traction));
+    state.is_finite =
+        std::isfinite(sum_of_squares(assembly.displacement) + sum_of_squares(assembly.zones.stress) +
+                      sum_of_squares(assembly.contacts.traction));
     state.area_error = area_error(section);
     state.weight_error = weight_error(section);
     // At large displacements contacts are between faces, which check their depth at every step.
-    state.penetration = rock.contacts.state_by_faces.empty() ? penetration(rock.contacts) : 0.0;
+    state.penetration = assembly.contacts.state_by_faces.empty() ? penetration(assembly.contacts) : 0.0;
     return state;
 }
 
@@ -125,14 +126,14 @@ void Guards::check_equilibrium()
 {
     const mechanics::Convergence& found = section_.settled.convergence;
     const bool is_relaxation = !found.is_implicit && section_.result.dynamics.time.empty();
-    const double error = is_relaxation ? energy_error(found, stored_energy(section_.rock)) : 0.0;
+    const double error = is_relaxation ? energy_error(found, stored_energy(section_.assembly)) : 0.0;
     end_if(broken_guard(found.unbalanced_force_ratio, error, section_.scene.equilibrium.tolerance));
 }
 
 void Guards::state_is_due(const std::string& /*event*/)
 {
     const GuardedState state = guarded_state(section_);
-    end_if(broken_guard(state, mechanics::size_of(section_.rock)));
+    end_if(broken_guard(state, mechanics::size_of(section_.assembly)));
     GuardHistory& history = section_.result.guards;
     history.area_error.push_back(state.area_error);
     history.weight_error.push_back(state.weight_error);

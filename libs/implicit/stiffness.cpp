@@ -314,7 +314,8 @@ bool Stiffness::factorise(const Assembly& assembly, const std::vector<Tangent>& 
     // Threads inside of the factorisation cost more than they gain at these sizes.
     const int levels = omp_get_max_active_levels();
     omp_set_max_active_levels(0);
-    factor_.factorize(factorised_);
+    if (factorised_.rows() > 0) // CHOLMOD does not survive rock of which nothing can move
+        factor_.factorize(factorised_);
     omp_set_max_active_levels(levels);
     check_memory(factor_);
     has_factor_ = factor_.info() == Eigen::Success;
@@ -324,6 +325,8 @@ bool Stiffness::factorise(const Assembly& assembly, const std::vector<Tangent>& 
 
 VectorXd Stiffness::solve(const VectorXd& right) const
 {
+    if (right.size() == 0)
+        return right;
     VectorXd x = factor_.solve(right);
     if (factor_.info() != Eigen::Success) // there is a factor: memory for the solution was short
         throw std::bad_alloc();

@@ -141,6 +141,26 @@ Scene parsed(std::string_view text, const std::string& name, const Network* netw
     return scene;
 }
 
+// Refuses blocks whose corners do not enclose their area: triangulation would not survive them.
+void check_areas(const std::string& path, const Blocks& blocks)
+{
+    for (std::size_t block = 0; block < blocks.block_area.size(); ++block) {
+        double area = 0, perimeter = 0; // of the outline less holes; of all rings
+        for (Index ring = blocks.block_ring[block]; ring < blocks.block_ring[block + 1]; ++ring) {
+            Polygon corners;
+            for (Index i = blocks.ring_start[ring]; i < blocks.ring_start[ring + 1]; ++i)
+                corners.push_back(blocks.vertex[blocks.ring_vertex[i]]);
+            area += (ring == blocks.block_ring[block] ? 1 : -1) * area_of(corners);
+            for (std::size_t i = 0; i < corners.size(); ++i)
+                perimeter += (corners[i] - corners[(i + 1) % corners.size()]).norm();
+        }
+        const double stored = blocks.block_area[block];
+        if (!(std::abs(area - stored) <= 1e-6 * stored + 1e-9 * perimeter))
+            throw input_error(path + ": /blocks/area[" + std::to_string(block) + "] is " + shown(stored) +
+                              " m2; wanted " + shown(area) + " m2, which its corners enclose");
+    }
+}
+
 } // namespace
 
 Scene parse_scene(std::string_view text, const std::string& name)
@@ -150,6 +170,7 @@ Scene parse_scene(std::string_view text, const std::string& name)
 
 Scene parse_scene_of_file(std::string_view text, const std::string& path, const Network& network)
 {
+    check_areas(path, network.blocks);
     return parsed(text, path + ": /scene", &network);
 }
 

@@ -294,15 +294,29 @@ Object open_for_reading(const std::string& path)
     return {H5Fopen(path.c_str(), H5F_ACC_RDONLY, access), H5Fclose, "read as HDF5"};
 }
 
-// A link for every part of the path; H5Lexists wants all but the last to be there.
+// A link for every part of the path; H5Lexists wants all but the last to be there. None may lead to another file.
 bool exists(hid_t file, const std::string& path)
 {
     for (std::size_t end = 0; end != std::string::npos;) {
         end = path.find('/', end + 1);
-        if (!ok(H5Lexists(file, path.substr(0, end).c_str(), H5P_DEFAULT), "look for " + path))
+        const std::string part = path.substr(0, end);
+        if (!ok(H5Lexists(file, part.c_str(), H5P_DEFAULT), "look for " + path))
             return false;
+        H5L_info_t link;
+        ok(H5Lget_info(file, part.c_str(), &link, H5P_DEFAULT), "look for " + path);
+        if (link.type == H5L_TYPE_EXTERNAL)
+            throw input_error(part + " is a link to another file; wanted it in this one");
     }
     return true;
+}
+
+// HDF5 can take values from any file that a dataset names.
+void require_own_values(hid_t dataset, const std::string& path)
+{
+    const Object creation(H5Dget_create_plist(dataset), H5Pclose, "read the layout of " + path);
+    if (H5Pget_layout(creation) == H5D_VIRTUAL ||
+        ok(H5Pget_external_count(creation), "read the layout of " + path) > 0)
+        throw input_error(path + " has its values in another file; wanted them in this one");
 }
 
 struct TypeCheck {
@@ -459,6 +473,7 @@ void Source::read(const Field& field, Dimensions& dimensions) const
     if (!exists(file_, path))
         throw input_error(path + " is missing");
     const Object dataset(H5Dopen2(file_, path.c_str(), H5P_DEFAULT), H5Dclose, "open " + path);
+    require_own_values(dataset, path);
     const Object type(H5Dget_type(dataset), H5Tclose, "read the type of " + path);
     const Object space(H5Dget_space(dataset), H5Sclose, "read the shape of " + path);
     std::visit(TypeCheck{path, type}, fields::flat(field.values));

@@ -19,7 +19,6 @@ ordered realizations. Everything is added up in the order of numbers, so the sam
 """
 
 import argparse
-import contextlib
 import csv
 import io
 import math
@@ -346,8 +345,10 @@ def replace_if_changed(path, write):
         if not (path.exists() and path.read_bytes() == partial.read_bytes()):
             os.replace(partial, path)
     finally:
-        with contextlib.suppress(FileNotFoundError):
-            partial.unlink()
+        for left in path.parent.glob(f"{path.name}.partial-*"):  # this one, and those of writers that were killed
+            writer = left.name.rpartition("-")[2]
+            if left == partial or not pathlib.Path("/proc", writer).exists():
+                left.unlink(missing_ok=True)
 
 
 def main():

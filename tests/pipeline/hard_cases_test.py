@@ -533,5 +533,18 @@ class ThickBlock(ChainTest):
                     self.assertEqual(np.flatnonzero(status == OPEN).tolist(), [upper] if share > 1 else [])
 
 
+class NothingMoves(ChainTest):
+    def test_rock_held_all_around(self):
+        """Zones as large as the section have no gridpoint inside."""
+        corners = [[0, 0], [6, 0], [6, 2], [0, 2]]
+        around = [held(start, end) for start, end in zip(corners, corners[1:] + corners[:1])]
+        for joints in [], [joint("across", [3, -1], [3, 3])]:
+            text = scene(corners, joints, around, [material("joint", 1000)], points=[[2, 1]], zone=10, end=3)
+            for engine in ENGINES:
+                with self.subTest(engine=engine, joints=len(joints)):
+                    data = solved(self.chain, text, "--engine", engine)
+                    self.assertEqual(abs(data["/history/displacement"]).max(), 0)
+
+
 if __name__ == "__main__":
     main()

@@ -343,6 +343,13 @@ class Small(Runs):
         self.assertEqual(self.number_of_calls(), 3 * N)
         self.assertEqual((out / "ensemble.h5").stat().st_mtime_ns, when)
 
+    def test_what_a_killed_writer_left_goes(self):
+        out = self.copy_of_whole()
+        left = out / "ensemble.csv.partial-4194305"  # more than a process's number can be
+        left.write_text("half")
+        self.made(out, self.programs(), "realizations")
+        self.assertFalse(left.exists())
+
     def test_interrupts(self):
         """At the beginning, in the middle and at the end of chains. What has ended is not made again."""
         whole = self.whole()

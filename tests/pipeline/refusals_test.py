@@ -193,6 +193,12 @@ class Refusals(ChainTest):
                 self.assertEqual(done.returncode, BAD_INPUT, done.stderr)
                 self.assertNotEqual(done.stderr, "")
 
+    def test_threads_that_cannot_start(self):
+        def little_memory():
+            resource.setrlimit(resource.RLIMIT_AS, (500 * 2**20, 500 * 2**20))
+        says = ["--threads 1000: only ", " could be started here (", "); wanted fewer"]
+        self.assert_refuses(BAD_INPUT, "demsolve", self.files["demsolve"], "--threads", "1000", says=says, limit=little_memory)
+
     def test_zones_without_end(self):
         """Refused before they are made, with a size that would do; by jointgen when it is asked to check."""
         scene = self.chain.new_folder() / "scene.toml"
@@ -301,6 +307,40 @@ class Refusals(ChainTest):
                     with h5py.File(copy, "r+", libver=("v110", "v110")) as opened:
                         opened["scene"][0] = text
                     self.assert_refuses(BAD_INPUT, program, copy, says=[f"{copy}: /scene, line {line}: ", says])
+
+    def test_values_in_another_file(self):
+        """Whatever HDF5 would read there, it is not what the file says."""
+        joints = self.chain.joints(self.chain.text(COLUMN))
+        name, values = "/vertices/position", datasets(joints)["/vertices/position"]
+
+        def elsewhere(file):
+            return file.create_dataset(name, values.shape, values.dtype, external=[("/dev/zero", 0, values.nbytes)])
+
+        def virtual(file):
+            layout = h5py.VirtualLayout(values.shape, values.dtype)
+            layout[...] = h5py.VirtualSource(str(joints), name, values.shape)
+            return file.create_virtual_dataset(name, layout)
+
+        def linked(file):
+            file[name] = h5py.ExternalLink(str(joints), name)
+        for make in elsewhere, virtual, linked:
+            with self.subTest(make.__name__):
+                copy = shutil.copy(joints, self.chain.new_folder() / "changed.h5")
+                with h5py.File(copy, "r+", libver=("v110", "v110")) as file:
+                    attributes = dict(file[name].attrs)
+                    del file[name]
+                    for key, value in attributes.items() if make(file) else ():
+                        file[name].attrs[key] = value
+                self.assert_refuses(BAD_INPUT, "demsolve", copy, says=f"{copy}: {name} ")
+                self.assert_refuses(BAD_INPUT, "demsolve", copy, says=" another file; wanted ")
+
+    def test_corners_that_do_not_enclose_a_blocks_area(self):
+        joints = self.chain.joints(self.chain.text(COLUMN))
+        for at, place in ((slice(None), 0), (2, [3, 7])):
+            copy = shutil.copy(joints, self.chain.new_folder() / "changed.h5")
+            with h5py.File(copy, "r+", libver=("v110", "v110")) as file:
+                file["/vertices/position"][at] = place
+            self.assert_refuses(BAD_INPUT, "demsolve", copy, says=[f"{copy}: /blocks/area[", " m2; wanted "])
 
     def test_what_shows_only_in_a_run_names_the_file(self):
         text = changed(self.chain.text(COLUMN), "^step_days = 1", "step_days = 1e-6")

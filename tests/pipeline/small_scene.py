@@ -1,5 +1,7 @@
 """Text of small scenes: one rock, a few joints and boundaries, no stress in situ unless given."""
 
+import json
+
 import numpy as np
 
 from chain import datasets
@@ -11,7 +13,9 @@ STUCK, SLIPPING, OPEN = 1, 2, 3  # status of a contact
 def value(of):
     """As TOML writes it; numbers with all their digits."""
     if isinstance(of, str):
-        return f'"{of}"'
+        return json.dumps(of)
+    if isinstance(of, dict):
+        return "{ " + ", ".join(f"{key} = {value(one)}" for key, one in of.items()) + " }"
     if isinstance(of, (list, tuple, np.ndarray)):
         return "[" + ", ".join(map(value, of)) + "]"
     return repr(float(of)) if isinstance(of, (float, np.floating)) else str(of)

@@ -4,8 +4,11 @@ import contextlib
 import importlib.machinery
 import importlib.util
 import io
+import pathlib
+import random
 import re
 import shutil
+import sys
 
 import h5py
 import numpy as np
@@ -17,8 +20,11 @@ import joint_laws_test
 import residual_test
 import yield_test
 from chain import ChainTest, changed, main
-from damaged_files import DAMAGE, MUST_BE_REFUSED
 from small_scene import held, joint, material, scene
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "pipelines" / "reliability"))
+
+from damaged import DAMAGE, MUST_BE_REFUSED  # noqa: E402
 
 REMOVED, STUCK, SLIPPING, OPEN = range(4)
 RAMP = ("^load_history = .*", "load_history = [[0, 0], [4, 0.4], [8, 0.8], [10, 1]]", 2)
@@ -85,6 +91,8 @@ class Verify(ChainTest):
             return run(with_stage(), "--states", 1)
         if name == "chain":
             return run(creep_test.SCENE.replace("# joint creep", creep_test.CHAIN), "--states", 1)
+        if name == "quadratic zones":
+            return run(changed(four_blocks(), r"^\[zones\]$", '[zones]\nkind = "quadratic"'))
         if name == "kinds":
             folder = self.chain.new_folder()
             for file in "scene.toml", "poles.csv", "traces.geojson":
@@ -117,7 +125,7 @@ class Verify(ChainTest):
                               ENGINE="auto", INCREMENTS="4"))
         raise KeyError(name)
 
-    RESULTS = ("slope", "weaker slope", "column", "creeping rock", "chain", "short step", "kinds", "collapse", "opening", "dilation",
+    RESULTS = ("slope", "weaker slope", "column", "creeping rock", "quadratic zones", "chain", "short step", "kinds", "collapse", "opening", "dilation",
                "dilation that ends", "wearing", "continuously yielding", "residual", "Barton-Bandis", "yield")
 
     def verified(self, path):
@@ -202,6 +210,8 @@ class Verify(ChainTest):
             ("stress of elastic zones is Hooke's", "slope", s + "stress", x(last(s, here)), times(1.0001)),
             ("stress of elastic zones is Hooke's", "slope", s + "displacement", at(-1, 40, 0), times(1.01)),
             ("stress of elastic zones is Hooke's", "creeping rock", s + "crept_strain", at(-1, 0, 0), times(1.01)),
+            ("stresses at points have the zone's mean", "quadratic zones", s + "point_stress", at(0, 0, 1), times(1.0001)),
+            ("stress at points of elastic zones is Hooke's", "quadratic zones", s + "point_stress", at(-1, 0, 1), times(1.0001)),
             ("stress of yielding zones is Hooke's, less plastic strain", "yield", s + "plastic_strain", yields, times(1.01)),
             ("stress of yielding zones is Hooke's, less plastic strain", "yield", s + "stress_zz",
              lambda file: yields(file)[:2], times(1.01)),
@@ -274,6 +284,18 @@ class Verify(ChainTest):
         for name in self.RESULTS:
             shown |= set(self.verified(self.result(name))[1])
         self.assertEqual(shown - found, set(), "checks that no wrong value is tried on")
+
+    def test_slip_by_rounding_in_situ(self):
+        """The solver may find a contact at its strength by a last digit beyond it."""
+        copy = self.chain.new_folder() / "copy.h5"
+        shutil.copyfile(self.result("slope"), copy)
+        with h5py.File(copy, "r+", libver=("v110", "v110")) as file:
+            traction, edge = file["/states/traction"][0, :, 1], file["/mesh/contact_edge"][:]
+            slip = np.spacing(np.abs(traction)) / file["/equivalent/shear_stiffness"][:][edge]
+            file["/states/slip"][0] = slip
+        self.assertGreater(slip.max(), 0)
+        code, _, said = self.verified(copy)
+        self.assertEqual(code, 0, said)
 
     def test_a_run_without_equilibrium(self):
         """What came before it verifies; without an equilibrium in situ there is little to verify."""
@@ -364,7 +386,7 @@ class Verify(ChainTest):
             with self.subTest(damage.__name__, case=case):
                 copy = self.chain.new_folder() / "copy.h5"
                 shutil.copyfile(good, copy)
-                damage(copy, np.random.default_rng([1, case]))
+                damage(copy, random.Random(case))
                 done = self.chain.answer("jointverify", copy)
                 self.assertIn(done.returncode, (2, 4) if damage in MUST_BE_REFUSED else (0, 2, 3, 4), done.stderr)
                 self.assertNotIn("Traceback", done.stderr)

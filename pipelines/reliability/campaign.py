@@ -1,0 +1,155 @@
+"""What the campaigns share: their command line, programs under limits, and tables of counts.
+
+    CAMPAIGN.py PROGRAMS OUT [--n N] [--seed S]
+
+A campaign makes N trials, chosen by the seed S; one that is interrupted counts those that it has made. It writes
+OUT/CAMPAIGN.csv: a row for each subject, a column for each outcome. A fault is printed with what it takes to see it again, and
+its files are kept in OUT/faults. The exit code is 1 if there was any fault.
+"""
+
+import argparse
+import collections
+import csv
+import datetime
+import os
+import pathlib
+import platform
+import random
+import re
+import resource
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "tests" / "pipeline"))
+
+from chain import Chain  # noqa: E402
+
+LONGEST = 120  # s of the processor; a run that takes longer hangs
+WAITING = 10  # times as long, for a program that waits
+MEMORY = pathlib.Path("/dev/shm")  # files there cost no disk
+HANGS = "hangs"  # in place of an exit code
+
+
+class Ended:
+    """How a program ended: exit code, or minus the signal, or HANGS; and what it said."""
+
+    def __init__(self, code, out="", err=""):
+        self.code, self.out, self.err = code, out, err
+
+    def is_refusal(self, program, codes):
+        """It refused by a message that begins with its name."""
+        return self.code in codes and f"{program}: " in self.err
+
+    def __str__(self):
+        return f"exit code {self.code}: {self.err.strip()[-300:] or 'nothing said'}"
+
+
+def ended(command, longest, limit=lambda: None, **options):
+    """Runs a command for at most this many seconds of the processor; `limit` is called in its process first."""
+    def limits():
+        resource.setrlimit(resource.RLIMIT_CPU, (longest, longest))
+        limit()
+    try:
+        done = subprocess.run([*map(str, command)], capture_output=True, text=True, errors="replace", timeout=WAITING * longest,
+                              preexec_fn=limits, stdin=subprocess.DEVNULL, **options)
+    except subprocess.TimeoutExpired:
+        return Ended(HANGS, err=f"no end within {WAITING * longest} s")
+    if done.returncode in (-signal.SIGXCPU, -signal.SIGKILL):
+        return Ended(HANGS, err=f"no end within {longest} s of the processor")
+    return Ended(done.returncode, done.stdout, done.stderr)
+
+
+def chance(*trial):
+    """Random numbers of a trial, the same whatever else is tried."""
+    return random.Random("/".join(map(str, trial)))
+
+
+def contents(folder):
+    """Bytes of every file in a folder, by name."""
+    return {path.name: path.read_bytes() for path in sorted(folder.iterdir()) if path.is_file()}
+
+
+def scenes(chain, *names):
+    """Joints files of scenes of the project, by the name of the scene's file or folder."""
+    for name in names:
+        path, folder = ROOT / name, chain.new_folder()
+        network = chain.run("jointgen", path, folder / "network.h5")
+        yield (path.parent.name if path.stem == "scene" else path.stem), path, \
+            chain.run("strength-averaging", network, folder / "joints.h5")
+
+
+class Campaign:
+    """A campaign's programs, folder, chance and counts. `outcomes` are the columns of its table, those in `faults` faults."""
+
+    def __init__(self, subject, outcomes, faults, n, options=lambda parser: None):
+        self.name = pathlib.Path(sys.argv[0]).stem
+        parser = argparse.ArgumentParser(prog=self.name, description=sys.modules["__main__"].__doc__,
+                                         formatter_class=argparse.RawDescriptionHelpFormatter)
+        parser.add_argument("programs", type=pathlib.Path, help="folder of the programs")
+        parser.add_argument("out", type=pathlib.Path, help="folder to write to")
+        parser.add_argument("--n", type=int, default=n, help=f"number of trials (default {n})")
+        parser.add_argument("--seed", type=int, default=1, help="of all chance (default 1)")
+        options(parser)
+        self.options = arguments = parser.parse_args()
+        self.n, self.seed, self.out = arguments.n, arguments.seed, arguments.out.resolve()
+        self.programs = arguments.programs.resolve()
+        self.subject, self.outcomes, self.faults = subject, outcomes, faults
+        self.counts = {}
+        self.folder = tempfile.mkdtemp(prefix="jointcreep-", dir=MEMORY if os.access(MEMORY, os.W_OK) else None)
+        self.chain = Chain(self.programs, ROOT, self.folder)
+        self.out.mkdir(parents=True, exist_ok=True)
+        self.log = (self.out / f"{self.name}.log").open("w")  # every trial
+        self.begin = time.monotonic()
+
+    def random(self, *case):
+        return chance(self.name, self.seed, *case)
+
+    def count(self, subject, outcome, case="", what="", files=None, times=1):
+        """Counts a trial. Of a fault says which and what; `files` is a folder to be kept."""
+        self.counts.setdefault(subject, collections.Counter())[outcome] += times
+        print(f"{subject}\t{case}\t{outcome}\t{what.strip()}", file=self.log, flush=True)
+        if outcome in self.faults:
+            print(f"{subject}, trial {case} of seed {self.seed}: {outcome}: {what}", flush=True)
+            if files:
+                shutil.copytree(files, self.out / "faults" / re.sub(r"\W+", "-", f"{self.name}-{subject}-{case}"),
+                                dirs_exist_ok=True, symlinks=True)
+
+    def run(self, body):
+        """Runs the campaign: calls body(self), writes the table, ends the program."""
+        try:
+            body(self)
+        except KeyboardInterrupt:
+            self.n = f"{self.n}, interrupted"
+            print(f"{self.name}: interrupted; what follows was counted until then")
+        finally:
+            shutil.rmtree(self.folder, ignore_errors=True)
+        self.write()
+        found = sum(count[outcome] for count in self.counts.values() for outcome in self.faults)
+        for subject, count in self.counts.items():
+            print(f"{subject}: " + ", ".join(f"{count[outcome]} {outcome}" for outcome in self.outcomes if count[outcome]))
+        print(f"{self.name}: {sum(map(sum, (count.values() for count in self.counts.values())))} counted, {found} faults")
+        sys.exit(1 if found or not self.counts else 0)
+
+    def write(self):
+        version = ended([self.programs / "jointgen", "--version"], 60).out.split()[-1]
+        about = {"n": self.n, "seed": self.seed, "seconds": round(time.monotonic() - self.begin), "version": version,
+                 "date": datetime.date.today().isoformat(), "machine": machine()}
+        partial = self.out / f"{self.name}.csv.partial"
+        with partial.open("w", newline="") as file:
+            rows = csv.writer(file, lineterminator="\n")
+            rows.writerow([self.subject, *self.outcomes, *about])
+            for subject, count in self.counts.items():
+                rows.writerow([subject, *(count[outcome] for outcome in self.outcomes), *about.values()])
+        partial.rename(self.out / f"{self.name}.csv")
+
+
+def machine():
+    """Processor, how many of them, memory."""
+    models = re.findall(r"^model name\s*: (.*)$", pathlib.Path("/proc/cpuinfo").read_text(), re.MULTILINE)
+    memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES") / 2**30
+    return f"{os.cpu_count()} x {models[0] if models else platform.machine()}, {memory:.0f} GB"

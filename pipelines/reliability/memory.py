@@ -1,0 +1,63 @@
+"""Sweeps the address space of each program (ulimit -v) in N steps, from the least with which --version runs to enough.
+
+A run gives the bytes of the run without a limit, or ends with code 5, `PROGRAM: out of memory`, and no file.
+"""
+
+import resource
+import shutil
+
+from campaign import LONGEST, Campaign, contents, ended, scenes
+
+MB = 2**20
+SCENES = ["tests/pipeline/kinds/scene.toml", "data/column/scene.toml", "data/verification/toppling-columns/scene.toml",
+          "data/verification/vertical-cut/scene.toml", "tests/pipeline/random_slope.toml"]
+
+
+def limited(command, size):
+    """Runs a command that has so much address space [bytes]."""
+    return ended(command, LONGEST, lambda: resource.setrlimit(resource.RLIMIT_AS, (size, size)))
+
+
+def least(command, low, high, step):
+    """The least size with which it succeeds, to `step`, if all larger ones do."""
+    while high - low > step:
+        middle = (low + high) // 2
+        low, high = (low, middle) if limited(command, middle).code == 0 else (middle, high)
+    return high
+
+
+def sweep(campaign, subject, program, source, name, *options):
+    folder = campaign.chain.new_folder()
+    wanted = campaign.chain.run(program, source, campaign.chain.new_folder() / name, *options).read_bytes()
+    command = [campaign.programs / program, source, "-o", folder / name, *options]
+    low = least([campaign.programs / program, "--version"], 0, 2000 * MB, MB // 8)
+    high = least(command, low, 4000 * MB, MB)
+    for path in folder.iterdir():
+        path.unlink()
+    for step in range(campaign.n):
+        size = low + (high + 2 * MB - low) * step // max(1, campaign.n - 1)
+        done, left = limited(command, size), contents(folder)
+        if done.code == 0 and left == {name: wanted}:
+            outcome = "same bytes"
+        elif done.code == 5 and not left and done.err.strip() == f"{program}: out of memory":
+            outcome = "code 5"
+        else:
+            outcome = "other"
+        campaign.count(subject, outcome, f"{program} {' '.join(map(str, options))} {size // 1024} kB", f"{done}; {[*left]}")
+        for path in folder.iterdir():
+            path.unlink()
+    shutil.rmtree(folder)
+
+
+def body(campaign):
+    for subject, path, joints in scenes(campaign.chain, *SCENES):
+        sweep(campaign, subject, "jointgen", path, "network.h5")
+        sweep(campaign, subject, "strength-averaging", joints.with_name("network.h5"), "joints.h5")
+        sweep(campaign, subject, "demsolve", joints, "result.h5", "--tolerance", 1e-4)
+        result = campaign.chain.run("demsolve", joints, joints.with_name("result.h5"), "--tolerance", 1e-4)
+        sweep(campaign, subject, "jointexport", result, "zones.vtu")
+
+
+if __name__ == "__main__":
+    OUTCOMES = ["same bytes", "code 5", "other"]
+    Campaign("memory of programs in", OUTCOMES, OUTCOMES[2:], 100).run(body)
