@@ -62,7 +62,7 @@ struct Study {
         Analysis* running = nullptr;
         Analysis analysed(scene, network, joints, 1, {}, [&](double, const std::string& what) {
             if (what == "right half" && fault)
-                fault(const_cast<mechanics::Assembly&>(running->rock()));
+                fault(const_cast<mechanics::Assembly&>(running->assembly()));
         });
         running = &analysed;
         std::string message;
@@ -124,7 +124,7 @@ TEST(guards, contacts_and_equilibria_are_guarded)
     Study study;
     Analysis analysed(study.scene, study.network, study.joints, 1, {}, [](double, const std::string&) {});
     analysed.run();
-    const double size = mechanics::size_of(analysed.rock());
+    const double size = mechanics::size_of(analysed.assembly());
     analysis::GuardedState state;
     EXPECT_EQ(broken_guard(state, size), "");
     state.penetration = 1e-6;
@@ -150,7 +150,7 @@ TEST(guards, a_contact_deeper_than_its_springs_is_found)
     Study study;
     Analysis analysed(study.scene, study.network, study.joints, 1, {}, [](double, const std::string&) {});
     analysed.run();
-    joint::Contacts contacts = analysed.rock().contacts;
+    joint::Contacts contacts = analysed.assembly().contacts;
     EXPECT_LT(analysis::penetration(contacts), 1e-15);
     for (std::size_t c = 0; c < contacts.status.size(); ++c)
         if (contacts.status[c] != ContactStatus::removed && contacts.traction[c].x() < 0) {
