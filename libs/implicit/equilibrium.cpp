@@ -308,8 +308,11 @@ std::optional<Convergence> Solver::equilibrate(Assembly& assembly, const Equilib
         }
     }
     if (!converge(assembly, start, settings, most_corrections, convergence) &&
-        !(yields(assembly.zones) && flow_to_rest(assembly, start, settings, convergence)))
+        !(yields(assembly.zones) && flow_to_rest(assembly, start, settings, convergence))) {
+        if (collapse_)
+            return std::nullopt;
         return give_up();
+    }
     if (is_balanced && corrections_ == 0)
         return convergence;
     for (;;) { // restores bonds that need not have broken, if there is equilibrium with them

@@ -39,7 +39,7 @@ public:
     std::optional<mechanics::Convergence> equilibrate(Assembly& assembly, const Equilibrium& settings,
                                                       const std::vector<Vector2d>& guess = {});
     const std::string& reason() const { return reason_; }
-    // Set if it has found none because rock that yields flows on without bound.
+    // Set if it has found none because rock that yields flows on without bound. The assembly is then as it flows.
     const std::optional<mechanics::no_equilibrium>& collapse() const { return collapse_; }
 
     // Forgets the factor and solutions: the next equilibrium is found as by a new solver.

@@ -54,9 +54,9 @@ bool Solver::flow_to_rest(Assembly& assembly, const State& start, const Equilibr
         merit = found;
         contacts_.take(assembly.contacts, start.contacts.state, false);
         if (largest_displacement(assembly).first > most) {
-            collapse_.emplace(
-                "the rock at " + shown(assembly.position[largest_displacement(assembly).second]) +
-                " moves on without bound: the strength of rock and joints does not balance the loads");
+            const std::size_t at = largest_displacement(assembly).second;
+            collapse_.emplace("the displacement of the rock at " + shown(assembly.position[at]) +
+                              " runs away: within " + shown(most) + " m forces do not come into balance");
             collapse_->moves_on = true;
             collapse_->steps = 1;
             for (std::size_t g = 0; g < from.size(); ++g)

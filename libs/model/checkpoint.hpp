@@ -50,16 +50,17 @@ struct DynamicsState {
 
 struct Checkpoint {
     Index is_in_situ = 0; // 1: before the in-situ equilibrium; then only `search` counts
-    Index stage = 0;      // to be excavated next
     double time = 0;      // since start [s]
+    Index stage = 0;      // to be excavated next
 
     // Gridpoints.
     std::vector<Eigen::Vector2d> displacement; // [m]
     std::vector<Eigen::Vector2d> is_free;      // 1 or 0 in {x, y}, but for ties [-]
     std::vector<Eigen::Vector2d> load;         // [N/m]
     std::vector<Eigen::Vector2d> force;        // unbalanced [N/m]
+    Index unloaded = 0;                        // of the next: how much is gone, in the finest increments
     std::vector<Eigen::Vector2d> released;     // force of rock excavated in this stage, within it [N/m]
-    Index unloaded = 0, increment = 0; // of that: how much is gone, and goes next, in the finest increments
+    Index increment = 0;                       // of that: how much goes next, in the finest increments
 
     // Zones.
     std::vector<Index> zone_present;

@@ -130,6 +130,10 @@ with h5py.File("result.h5") as file:
     page << "\nThe group `/step_history` is there only if a step history was asked for.\n";
     list(page, "Dynamics", schema::fields_of(result.dynamics));
     page << "\nThe group `/dynamics` is there only if the scene has [large_displacements] and a stage.\n";
+    list(page, "Guards", schema::fields_of(result.guards));
+    page
+        << "\nThe group `/guards` is there if a state was recorded and checked; what is allowed is on the page "
+           "[programs](programs.md).\n";
     list(page, "Failure", schema::fields_of(result.failure));
     page << "\nThe group `/failure` is there only in `NAME.failed.h5`, of a run that found no equilibrium. "
             "All other data of such a file end with the last equilibrium.\n";

@@ -62,13 +62,11 @@ TEST(flow, moves_on_under_a_load_that_clay_does_not_carry)
 {
     for (const double times : {5.7, 8.0, 30.0}) {
         Section s = pressed(times * cohesion);
-        const mechanics::Assembly before = s.assembly;
         implicit::Solver solver;
         EXPECT_FALSE(solver.equilibrate(s.assembly, settings));
         ASSERT_TRUE(solver.collapse()) << times << ": " << solver.reason();
         EXPECT_TRUE(solver.collapse()->moves_on);
-        EXPECT_EQ(s.assembly.displacement, before.displacement);
-        EXPECT_EQ(s.assembly.zones.stress, before.zones.stress);
+        EXPECT_GT(mechanics::largest_displacement(s.assembly).first, mechanics::size_of(s.assembly) / 10);
         // Under the load it sinks, and beside it rises.
         const auto& motion = solver.collapse()->motion;
         double sinks = 0, rises = 0;
@@ -91,6 +89,7 @@ TEST(flow, ends_at_the_largest_displacement)
     implicit::Solver solver;
     EXPECT_FALSE(solver.equilibrate(s.assembly, limited));
     ASSERT_TRUE(solver.collapse());
+    EXPECT_GT(mechanics::largest_displacement(s.assembly).first, limited.largest_displacement);
     // A load that is carried within it is not one that fails.
     s = pressed(2 * cohesion);
     EXPECT_TRUE(solver.equilibrate(s.assembly, limited)) << solver.reason();
