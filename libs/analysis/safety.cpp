@@ -2,6 +2,7 @@
 
 #include "joint/strength_factor.hpp"
 #include "model/error.hpp"
+#include "rock/strength_factor.hpp"
 
 #include <limits>
 
@@ -11,8 +12,13 @@ namespace jointcreep::analysis
 namespace
 {
 
-Scene limited(Scene scene, double most_displacement)
+// The scene with strengths divided by a factor, and a limit of displacement.
+Scene trial_of(Scene scene, double factor, double most_displacement)
 {
+    if (factor != 1) {
+        scene.rocks = rock::with_strength_divided(std::move(scene.rocks), factor);
+        scene.joint_materials = joint::with_strength_divided(std::move(scene.joint_materials), factor);
+    }
     scene.equilibrium.largest_displacement = most_displacement;
     return scene;
 }
@@ -21,8 +27,7 @@ Scene limited(Scene scene, double most_displacement)
 
 Trial::Trial(const Scene& scene, const Network& network, const EquivalentJoints& joints, double factor,
              double most_displacement, int threads, const Recording& recording, const Observer& observe)
-    : factor_(factor),
-      scene_(limited(factor == 1 ? scene : joint::with_strength_divided(scene, factor), most_displacement)),
+    : factor_(factor), scene_(trial_of(scene, factor, most_displacement)),
       joints_(factor == 1 ? joints : joint::with_strength_divided(joints, factor)),
       analysis_(scene_, network, joints_, threads, recording, observe)
 {

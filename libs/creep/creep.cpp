@@ -1,5 +1,7 @@
 #include "creep/creep.hpp"
 
+#include "rock/elasticity.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -31,7 +33,7 @@ Chain chain_of(const EquivalentJoints& joints, std::size_t edge, int direction)
 // Deviatoric stress is 2 G times the strain that has not crept.
 Chain chain_of(const Rock& rock)
 {
-    Chain chain{rock.youngs_modulus / (1 + rock.poissons_ratio), {}};
+    Chain chain{rock::twice_shear_modulus(rock), {}};
     if (rock.kelvin)
         chain.units.push_back({2 * rock.kelvin->modulus, 2 * rock.kelvin->viscosity});
     if (rock.maxwell_viscosity)
@@ -85,10 +87,9 @@ Creep::Creep(const Scene& scene, const Network& network, const EquivalentJoints&
         const Index chain = of_rock[network.blocks.block_rock[block]];
         if (chain < 0)
             continue;
-        const Vector3d& c = assembly.zones.stiffness[z];
-        const double bulk_modulus = (c[0] + 2 * c[1]) / 3;
-        shears_.push_back(
-            {static_cast<Index>(z), chain, units, bulk_modulus, assembly.zones.initial_stress[z]});
+        shears_.push_back({static_cast<Index>(z), chain, units,
+                           rock::bulk_modulus(assembly.zones.stiffness[z]),
+                           assembly.zones.initial_stress[z]});
         units += chains_[chain].units.size();
     }
     crept_strain_.assign(units, Vector3d::Zero());
@@ -113,17 +114,6 @@ double Creep::fastest_rate() const
     return fastest;
 }
 
-// Plane strain leaves the stress across the section to be found: with t the volume strain,
-// sxx + syy = 2 (B + G / 3) t - 2 G (offset_xx + offset_yy).
-Eigen::Vector3d Creep::deviatoric(double bulk_modulus, double shear_modulus, const Vector3d& offset,
-                                  const Vector3d& change)
-{
-    const double volume_strain = (change[0] + change[1] + 2 * shear_modulus * (offset[0] + offset[1])) /
-                                 (2 * (bulk_modulus + shear_modulus / 3));
-    const double mean = bulk_modulus * volume_strain;
-    return {change[0] - mean, change[1] - mean, change[2]};
-}
-
 void Creep::set(mechanics::Assembly& assembly, const Spring& spring, double stiffness, double offset)
 {
     joint::Law& law = assembly.contacts.law[spring.contact];
@@ -134,9 +124,7 @@ void Creep::set(mechanics::Assembly& assembly, const Spring& spring, double stif
 void Creep::set(mechanics::Assembly& assembly, const Shear& shear, double shear_modulus,
                 const Vector3d& offset)
 {
-    const double bulk = shear.bulk_modulus;
-    assembly.zones.stiffness[shear.zone] = {bulk + shear_modulus * 4 / 3, bulk - shear_modulus * 2 / 3,
-                                            shear_modulus};
+    assembly.zones.stiffness[shear.zone] = rock::elasticity_of(shear.bulk_modulus, shear_modulus);
     assembly.zones.initial_stress[shear.zone] = shear.reference - 2 * shear_modulus * offset;
 }
 
@@ -182,8 +170,8 @@ void Creep::begin(double duration, mechanics::Assembly& assembly)
         if (!assembly.zones.is_present[shear.zone])
             continue;
         if (!is_under_way_)
-            shear.before = deviatoric(shear.bulk_modulus, chains_[shear.chain].spring / 2, crept(shear),
-                                      assembly.zones.stress[shear.zone] - shear.reference);
+            shear.before = rock::deviatoric(shear.bulk_modulus, chains_[shear.chain].spring / 2, crept(shear),
+                                            assembly.zones.stress[shear.zone] - shear.reference);
         const Step& step = steps_[shear.chain];
         shear.offset.setZero();
         for (std::size_t u = 0; u < step.units.size(); ++u)
@@ -214,8 +202,8 @@ double Creep::end(mechanics::Assembly& assembly)
         if (!assembly.zones.is_present[shear.zone])
             continue;
         const Step& step = steps_[shear.chain];
-        const Vector3d after = deviatoric(shear.bulk_modulus, step.acting_stiffness / 2, shear.offset,
-                                          assembly.zones.stress[shear.zone] - shear.reference);
+        const Vector3d after = rock::deviatoric(shear.bulk_modulus, step.acting_stiffness / 2, shear.offset,
+                                                assembly.zones.stress[shear.zone] - shear.reference);
         for (std::size_t u = 0; u < step.units.size(); ++u) {
             Vector3d& strain = crept_strain_[shear.first_unit + u];
             strain = step.units[u].decay * strain + step.units[u].first * shear.before +

@@ -77,10 +77,6 @@ public:
     const std::vector<double>& crept_displacement() const { return crept_; }
     const std::vector<Vector3d>& crept_strain() const { return crept_strain_; }
 
-    // The deviatoric part of a change of stress, during which the strain `offset` has crept.
-    static Vector3d deviatoric(double bulk_modulus, double shear_modulus, const Vector3d& offset,
-                               const Vector3d& change);
-
 private:
     Index number_of(const Chain& chain); // among chains_
     static void set(mechanics::Assembly& assembly, const Spring& spring, double stiffness, double offset);

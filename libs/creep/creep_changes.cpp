@@ -1,5 +1,7 @@
 #include "creep/creep_changes.hpp"
 
+#include "rock/elasticity.hpp"
+
 #include <algorithm>
 
 namespace jointcreep::creep
@@ -27,19 +29,6 @@ Chain no_change(Chain chain)
 {
     std::fill(chain.units.begin(), chain.units.end(), KelvinUnit{0, 0});
     return {0, chain.units};
-}
-
-// Change of Creep::deviatoric(), with the shear modulus, the offset and the stress `now`.
-Eigen::Vector3d change_of_deviatoric(double bulk_modulus, double modulus, double modulus_change,
-                                     const Eigen::Vector3d& offset, const Eigen::Vector3d& offset_change,
-                                     const Eigen::Vector3d& now, const Eigen::Vector3d& now_change)
-{
-    // The derivative by the modulus is the mean stress, B t.
-    const double mean = now[0] - Creep::deviatoric(bulk_modulus, modulus, offset, now)[0];
-    const double mean_change =
-        (bulk_modulus * (offset[0] + offset[1]) - mean / 3) / (bulk_modulus + modulus / 3) * modulus_change;
-    return Creep::deviatoric(bulk_modulus, modulus, offset_change, now_change) -
-           Eigen::Vector3d(mean_change, mean_change, 0);
 }
 
 bool is_removed(const joint::Contacts& contacts, const Creep::Spring& spring)
@@ -129,8 +118,8 @@ void CreepChanges::begin_shears(const Creep& creep, const StepChanges& steps, co
         Vector3d crept(0, 0, 0), offset(0, 0, 0);
         for (std::size_t u = 0; u < step.units.size(); ++u)
             crept += crept_strain_[shear.first_unit + u];
-        before_stress_[s] = Creep::deviatoric(shear.bulk_modulus, creep.chains()[shear.chain].spring / 2,
-                                              crept, changes.stress[shear.zone] - reference_stress_[s]);
+        before_stress_[s] = rock::deviatoric(shear.bulk_modulus, creep.chains()[shear.chain].spring / 2,
+                                             crept, changes.stress[shear.zone] - reference_stress_[s]);
         for (std::size_t u = 0; u < step.units.size(); ++u) {
             const std::size_t unit = shear.first_unit + u;
             const AtStart<Vector3d> start{creep.crept_strain()[unit], shear.before},
@@ -186,9 +175,10 @@ void CreepChanges::end_shears(const Creep& creep, const StepChanges& steps, cons
         const Vector3d offset_change =
             (reference_stress_[s] - changes.initial_stress[z] - 2 * modulus_change * shear.offset) /
             (2 * modulus);
-        const Vector3d after = Creep::deviatoric(shear.bulk_modulus, modulus, shear.offset, now),
-                       after_change = change_of_deviatoric(shear.bulk_modulus, modulus, modulus_change,
-                                                           shear.offset, offset_change, now, now_change);
+        const Vector3d after = rock::deviatoric(shear.bulk_modulus, modulus, shear.offset, now),
+                       after_change =
+                           rock::change_of_deviatoric(shear.bulk_modulus, modulus, modulus_change,
+                                                      shear.offset, offset_change, now, now_change);
         Vector3d crept(0, 0, 0);
         for (std::size_t u = 0; u < step.units.size(); ++u) {
             const std::size_t unit = shear.first_unit + u;

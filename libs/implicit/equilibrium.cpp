@@ -1,7 +1,6 @@
 #include "implicit/equilibrium.hpp"
 
 #include "mechanics/rest.hpp"
-#include "model/signs.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -17,7 +16,6 @@ namespace
 {
 
 constexpr int most_corrections = 80, most_corrections_to_mend = 20;
-constexpr char mended = 100; // more openings than corrections can count
 constexpr int patience = 15; // iterations with an old factor: a new one costs 10 to 20 of them
 constexpr int most_leaps = 5;
 constexpr int most_trials = 50, most_halvings = 6; // along a correction
@@ -26,90 +24,16 @@ constexpr double soft = 1e-6; // share of their springs that open and slipping c
 
 } // namespace
 
-// Whether rock may yield, not only joints.
-bool Solver::yields(const Assembly& assembly)
-{
-    return !assembly.zones.holds_yield && !assembly.zones.yielding.empty();
-}
-
 // Finds forces at the present displacements, as reached straight from the start. Returns the merit: the
 // squared unbalanced forces, each over the stiffness against which it acts.
 double Solver::evaluate(Assembly& assembly, const State& start)
 {
-    assembly.contacts.state = start.joint;
-    if (yields(assembly)) {
-        assembly.zones.yielding = start.yielding;
-        assembly.zones.stress = start.stress;
-    }
-    for (std::size_t c = 0; c < breaks_.size(); ++c)
-        if (breaks_[c])
-            assembly.contacts.state[c].is_broken = true;
+    contacts_.restart(assembly.contacts, start.contacts.state);
+    if (yields(assembly.zones))
+        go_back(assembly.zones, start.zones);
     find_forces(assembly);
     force_ = stiffness_.gathered(assembly, assembly.force);
     return force_.cwiseQuotient(scale_).dot(force_);
-}
-
-// Takes over what contacts do now. A contact slides back only after it has stuck, unless this is the `first` time. A
-// bond that breaks for the second time stays broken: with cohesion back at every closing it could alternate for ever.
-void Solver::take_states(const Assembly& assembly, const State& start, bool first)
-{
-    const joint::Contacts& contacts = assembly.contacts;
-    for (std::size_t c = 0; c < active_.size(); ++c) {
-        Active now = Active::stuck;
-        if (contacts.status[c] == ContactStatus::open || contacts.status[c] == ContactStatus::removed)
-            now = Active::open;
-        else if (contacts.status[c] == ContactStatus::slipping)
-            now = contacts.traction[c].y() > 0 ? Active::slips_forward : Active::slips_backward;
-        const bool turns_round = (now == Active::slips_forward && active_[c] == Active::slips_backward) ||
-                                 (now == Active::slips_backward && active_[c] == Active::slips_forward);
-        const bool breaks = weakens_by_slip(contacts.law[c])
-                                ? contacts.state[c].is_broken && !broken_[c]
-                                : now == Active::open && active_[c] != Active::open;
-        if (!first && breaks && !start.joint[c].is_broken && !breaks_[c] && ++openings_[c] >= 2)
-            breaks_[c] = 1;
-        active_[c] = turns_round && !first ? Active::stuck : now;
-        broken_[c] = contacts.state[c].is_broken;
-    }
-}
-
-// Tangents of the contacts in their active states. Open and slipping contacts keep the share `softness` of their
-// springs.
-std::vector<Tangent> Solver::tangents(const Assembly& assembly, const State& start, double softness) const
-{
-    const joint::Contacts& contacts = assembly.contacts;
-    std::vector<Tangent> all(active_.size());
-    for (std::size_t c = 0; c < all.size(); ++c) {
-        const joint::Slopes law = slopes(contacts.law[c], contacts.state[c], contacts.traction[c].x());
-        const double soft_shear = softness * (law.k_s > 0 ? law.k_s : law.k_n);
-        const bool slips = contacts.status[c] == ContactStatus::slipping;
-        if (remembers(contacts.law[c]) && active_[c] != Active::open &&
-            slips == (active_[c] != Active::stuck)) {
-            const double kept = slips ? softness : 0;
-            const Tangent found = tangent_of_response(contacts, c, start.joint[c]);
-            all[c] = {found.normal + kept * (law.k_n - found.normal),
-                      found.shear + kept * (law.k_s - found.shear), (1 - kept) * found.friction,
-                      (1 - kept) * found.dilation};
-            continue;
-        }
-        switch (active_[c]) {
-        case Active::open:
-            all[c] = {softness * law.k_n, soft_shear, 0, 0};
-            break;
-        case Active::stuck:
-            all[c] = {law.k_n, law.k_s > 0 ? law.k_s : soft_shear, 0, 0};
-            break;
-        default: {
-            // The flow rule leaves k_n k_s / (k_s + k_n tan(phi) tan(psi)) of the normal stiffness.
-            const double dilatant = law.k_n * law.tan_phi * law.tan_psi;
-            const double k = law.k_s > 0 && dilatant > 0 ? law.k_n * law.k_s / (law.k_s + dilatant) : law.k_n;
-            const double sliding = (1 - softness) * (active_[c] == Active::slips_forward ? -k : k);
-            const double tan_psi = law.k_s > 0 ? law.tan_psi : 0;
-            all[c] = {k + softness * (law.k_n - k), soft_shear + (1 - softness) * k * law.tan_phi * tan_psi,
-                      sliding * law.tan_phi, sliding * tan_psi};
-        }
-        }
-    }
-    return all;
 }
 
 // The displacement that balances `force` to `enough` [N/m], if open and slipping contacts keep the share
@@ -117,11 +41,12 @@ std::vector<Tangent> Solver::tangents(const Assembly& assembly, const State& sta
 VectorXd Solver::correction(const Assembly& assembly, const State& start, const VectorXd& force,
                             double enough, double kept_share)
 {
-    const std::vector<Tangent> acting = tangents(assembly, start, std::max(soft, kept_share));
-    if (yields(assembly)) {
+    const std::vector<Tangent> acting =
+        contacts_.tangents(assembly.contacts, start.contacts.state, std::max(soft, kept_share));
+    if (yields(assembly.zones)) {
         ++factorisations_;
         ++solves_;
-        return stiffness_.solve_yielding(assembly, acting, start.yielding, force);
+        return stiffness_.solve_yielding(assembly, acting, start.zones.yielding, force);
     }
     const auto product = [&](const VectorXd& x) { return stiffness_.times(assembly, acting, x); };
     const auto precondition = [&](const VectorXd& x) {
@@ -200,53 +125,17 @@ Solver::Advance Solver::go_along(Assembly& assembly, const State& start, const V
     return at_best(share);
 }
 
-// Breaks the bonds of contacts that have opened, closed or weakened since states were taken: with cohesion that comes
-// and goes there may be no equilibrium. True if any bond breaks.
-bool Solver::break_bonds(const Assembly& assembly, const State& start)
-{
-    bool breaks = false;
-    for (std::size_t c = 0; c < breaks_.size(); ++c) {
-        const joint::Law& law = assembly.contacts.law[c];
-        const bool is_open = assembly.contacts.status[c] == ContactStatus::open;
-        const bool changes = weakens_by_slip(law)
-                                 ? assembly.contacts.state[c].is_broken != (broken_[c] != 0)
-                                 : is_open != (active_[c] == Active::open) && cohesion(law) > 0;
-        if (assembly.contacts.status[c] != ContactStatus::removed && changes && !breaks_[c] &&
-            !start.joint[c].is_broken) {
-            breaks_[c] = 1;
-            breaks = true;
-        }
-    }
-    return breaks;
-}
-
-// Restores the bonds of contacts that opened during the search and are closed now. Their next opening breaks them for
-// good. True if that changes forces.
-bool Solver::mend_bonds(const Assembly& assembly)
-{
-    bool changes = false;
-    for (std::size_t c = 0; c < breaks_.size(); ++c)
-        if (breaks_[c] && openings_[c] < mended && assembly.contacts.status[c] != ContactStatus::open) {
-            breaks_[c] = 0;
-            openings_[c] = mended; // the next opening is the last
-            changes = changes || assembly.contacts.status[c] == ContactStatus::slipping;
-        }
-    return changes;
-}
-
 // The largest change of a contact's force that a displacement would bring [N/m].
 double Solver::force_change(const Assembly& assembly, const State& start, const VectorXd& displacement) const
 {
     std::vector<Vector2d> u(assembly.position.size(), Vector2d::Zero());
     stiffness_.add_to(u, displacement, 1);
-    const std::vector<Tangent> acting = tangents(assembly, start, 0);
     const joint::Contacts& contacts = assembly.contacts;
+    const std::vector<Tangent> acting = contacts_.tangents(contacts, start.contacts.state, 0);
     double largest = 0;
     for (std::size_t c = 0; c < acting.size(); ++c) {
         const auto& [a, b] = contacts.gridpoint[c];
-        const Vector2d relative = u[b] - u[a], &normal = contacts.normal[c];
-        const Vector2d change = acting[c].times({normal.dot(relative), along(normal).dot(relative)});
-        largest = std::max(largest, contacts.length[c] * std::hypot(change.x(), change.y()));
+        largest = std::max(largest, joint::force_change(contacts, c, acting[c], u[b] - u[a]).norm());
     }
     return largest;
 }
@@ -292,7 +181,7 @@ bool Solver::converge(Assembly& assembly, const State& start, const Equilibrium&
             assembly.displacement = from;
             stiffness_.add_to(assembly.displacement, du, advance.failed_share);
             evaluate(assembly, start);
-            const bool breaks = break_bonds(assembly, start);
+            const bool breaks = contacts_.break_bonds(assembly.contacts, start.contacts.state);
             const bool leaps = !breaks && kept_share == 1;
             const bool goes_back = breaks || advance.merit >= merit || leaps;
             assembly.displacement = goes_back ? from : reached;
@@ -320,7 +209,7 @@ bool Solver::converge(Assembly& assembly, const State& start, const Equilibrium&
             merit = advance.merit;
             kept_share = kept_share <= least_kept_share ? 0 : kept_share / 3;
         }
-        take_states(assembly, start, false);
+        contacts_.take(assembly.contacts, start.contacts.state, false);
         if (largest_displacement(assembly).first > settings.largest_displacement) {
             reason_ = "displacement runs away";
             return false;
@@ -352,15 +241,15 @@ bool Solver::is_at_rest(const Assembly& assembly, const State& start, double mea
         for (const Vector2d& one : u)
             convergence.remaining_displacement = std::max(convergence.remaining_displacement, one.norm());
     };
-    if (!yields(assembly)) {
+    if (!yields(assembly.zones)) {
         ++solves_;
         take(stiffness_.solve(force_));
     }
-    if (yields(assembly) || convergence.contact_force_change > tolerance) {
+    if (yields(assembly.zones) || convergence.contact_force_change > tolerance) {
         const VectorXd du = correction(assembly, start, force_, 0.1 * force_.norm(), 0);
         if (du.size() > 0)
             take(du);
-        else if (yields(assembly))
+        else if (yields(assembly.zones))
             return false;
     }
     if (convergence.contact_force_change > tolerance)
@@ -379,7 +268,6 @@ bool Solver::is_at_rest(const Assembly& assembly, const State& start, double mea
 std::optional<Convergence> Solver::equilibrate(Assembly& assembly, const Equilibrium& settings,
                                                const std::vector<Vector2d>& guess)
 {
-    joint::Contacts& contacts = assembly.contacts;
     rock::forget_dissipated(assembly.zones);
     const State start = state_of(assembly);
     const auto give_up = [&] {
@@ -405,11 +293,11 @@ std::optional<Convergence> Solver::equilibrate(Assembly& assembly, const Equilib
             evaluate(assembly, start);
         }
     }
-    take_states(assembly, start, true);
+    contacts_.take(assembly.contacts, start.contacts.state, true);
     if (!stiffness_.has_factor()) {
         space_.forget();
         linear_space_.forget();
-        acting_ = tangents(assembly, start, soft);
+        acting_ = contacts_.tangents(assembly.contacts, start.contacts.state, soft);
         ++factorisations_;
         if (!stiffness_.factorise(assembly, acting_)) {
             reason_ = "some rock has no support";
@@ -422,13 +310,13 @@ std::optional<Convergence> Solver::equilibrate(Assembly& assembly, const Equilib
         return convergence;
     for (;;) { // restores bonds that need not have broken, if there is equilibrium with them
         const std::vector<Vector2d> displacement = assembly.displacement;
-        const std::vector<char> breaks = breaks_;
+        const std::vector<char> broken = contacts_.broken_bonds();
         const Convergence with_them = convergence;
-        if (!mend_bonds(assembly))
+        if (!contacts_.mend_bonds(assembly.contacts))
             break;
         if (!converge(assembly, start, settings, most_corrections_to_mend, convergence)) {
             assembly.displacement = displacement;
-            breaks_ = breaks;
+            contacts_.set_broken_bonds(broken);
             convergence = with_them;
             break;
         }
@@ -437,13 +325,8 @@ std::optional<Convergence> Solver::equilibrate(Assembly& assembly, const Equilib
     convergence.steps = corrections_;
     evaluate(assembly, start);
     convergence.stored = stored_energy(assembly) - stored_at_start;
-    for (std::size_t c = 0; c < contacts.status.size(); ++c)
-        if (contacts.status[c] != ContactStatus::removed)
-            convergence.dissipated +=
-                contacts.length[c] *
-                (contacts.traction[c].y() * (contacts.state[c].slip - start.joint[c].slip) +
-                 contacts.traction[c].x() * (contacts.state[c].dilation - start.joint[c].dilation));
-    convergence.dissipated += rock::dissipated(assembly.zones);
+    convergence.dissipated =
+        joint::dissipated(assembly.contacts, start.contacts.state) + rock::dissipated(assembly.zones);
     convergence.work_of_loads = work_of_loads(assembly, start.displacement);
     convergence.damped = convergence.work_of_loads - convergence.stored - convergence.dissipated;
     return convergence;
@@ -460,11 +343,7 @@ void Solver::prepare(const Assembly& assembly)
     for (const double sum : row_sums)
         scales.emplace_back(sum, sum);
     scale_ = stiffness_.gathered(assembly, scales);
-    const std::size_t n = assembly.contacts.state.size();
-    active_.resize(n, Active::stuck);
-    breaks_.assign(n, 0);
-    broken_.assign(n, 0);
-    openings_.assign(n, 0);
+    contacts_.begin(assembly.contacts);
     corrections_ = factorisations_ = solves_ = 0;
 }
 

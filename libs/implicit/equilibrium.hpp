@@ -4,21 +4,19 @@
 // after another. Each correction solves K du = unbalanced force by GCR, preconditioned with the last factor. The
 // factor is renewed when that costs less than going on with the old one. Contacts open, close, stick and slip by
 // the same law as in dynamic relaxation, each from its state at the start of the equilibrium straight to the one at
-// its end (backward Euler). A contact changes its direction of slip only through sticking.
+// its end (backward Euler; joint/active_contacts.hpp).
 //
 // Rock that yields goes straight from its state at the start to that at the end, too. Then K has the consistent tangents of
 // zones, is not symmetric where flow is not associated, and is factorised for each correction.
 //
 // The energy balance is that of backward Euler, too: a contact slips under the traction it ends with. What is
 // neither stored nor dissipated so counts as damped.
-//
-// Bonds break at once and for good. A contact that opened, or weakened, during the search without need gets its
-// bond back.
 
 #pragma once
 
 #include "implicit/krylov.hpp"
 #include "implicit/stiffness.hpp"
+#include "joint/active_contacts.hpp"
 
 #include <optional>
 #include <string>
@@ -55,13 +53,8 @@ public:
     Index solves() const { return solves_; } // back-substitutions
 
 private:
-    enum class Active : char { open, stuck, slips_forward, slips_backward };
-
     using State = mechanics::State; // where an equilibrium starts from
-    static bool yields(const Assembly& assembly);
     double evaluate(Assembly& assembly, const State& start);
-    void take_states(const Assembly& assembly, const State& start, bool first);
-    std::vector<Tangent> tangents(const Assembly& assembly, const State& start, double softness) const;
     VectorXd correction(const Assembly& assembly, const State& start, const VectorXd& force, double enough,
                         double kept_share);
     struct Advance {
@@ -75,8 +68,6 @@ private:
                   mechanics::Convergence& convergence);
     bool is_at_rest(const Assembly& assembly, const State& start, double mean_force, double tolerance,
                     mechanics::Convergence& convergence);
-    bool break_bonds(const Assembly& assembly, const State& start);
-    bool mend_bonds(const Assembly& assembly);
     double force_change(const Assembly& assembly, const State& start, const VectorXd& displacement) const;
 
     Stiffness stiffness_;
@@ -84,14 +75,12 @@ private:
     std::vector<Tangent> acting_;  // with these tangents
     KrylovSpace linear_space_{24}; // of solve_linear
     std::vector<Tangent> linear_;
-    std::vector<Active> active_;
-    std::vector<char> breaks_, openings_;
-    std::vector<char> broken_; // when states were taken
-    VectorXd scale_;           // of forces: the stiffness against which they act [Pa]
-    double stiffest_ = 0;      // row sum [Pa]
-    Index unsupported_ = -1;   // gridpoint of rock without support though forces balance; -1: none
-    double too_far_ = 0;       // largest displacement in a search for equilibrium [m]
-    VectorXd force_;           // unbalanced, at the last evaluation
+    joint::ActiveContacts contacts_;
+    VectorXd scale_;         // of forces: the stiffness against which they act [Pa]
+    double stiffest_ = 0;    // row sum [Pa]
+    Index unsupported_ = -1; // gridpoint of rock without support though forces balance; -1: none
+    double too_far_ = 0;     // largest displacement in a search for equilibrium [m]
+    VectorXd force_;         // unbalanced, at the last evaluation
     Index corrections_ = 0, factorisations_ = 0, solves_ = 0;
     std::string reason_;
 };

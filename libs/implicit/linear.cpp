@@ -35,13 +35,8 @@ VectorXd Solver::solve_linear(const Assembly& assembly, const std::vector<Tangen
         }
     };
     std::vector<Tangent> firm = tangents; // a Cholesky factor does not know slip
-    for (std::size_t c = 0; c < firm.size(); ++c) {
-        const joint::Law& law = assembly.contacts.law[c];
-        if (firm[c].normal == 0)
-            firm[c].normal = soft * joint::k_n(law);
-        if (firm[c].shear == 0)
-            firm[c].shear = soft * (joint::k_s(law) > 0 ? joint::k_s(law) : joint::k_n(law));
-    }
+    for (std::size_t c = 0; c < firm.size(); ++c)
+        firm[c] = without_zeros(assembly.contacts, c, firm[c], soft);
     const bool is_own = stiffness_.has_factor_of(firm);
     if (stiffness_.has_factor())
         refine(is_own ? patience_with_own : patience, is_own ? most_refinements : 1);

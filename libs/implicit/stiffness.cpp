@@ -1,7 +1,5 @@
 #include "implicit/stiffness.hpp"
 
-#include "model/signs.hpp"
-
 #include <omp.h>
 #include <sys/mman.h>
 
@@ -224,13 +222,7 @@ VectorXd Stiffness::solve_yielding(const Assembly& assembly, const std::vector<T
         const Eigen::Matrix3d tangent = tangent_at(zones, z, assembly.displacement, start);
         return [&zones, z, tangent](int i, int j) { return stiffness_between(zones, z, i, j, tangent); };
     });
-    add_contacts(matrix, [&](Index c) -> Eigen::Matrix2d {
-        const Vector2d &normal = contacts.normal[c], tangent = along(normal);
-        const Tangent& of = tangents[c];
-        return contacts.length[c] *
-               (of.normal * normal * normal.transpose() + of.shear * tangent * tangent.transpose() +
-                of.friction * tangent * normal.transpose() + of.dilation * normal * tangent.transpose());
-    });
+    add_contacts(matrix, [&](Index c) -> Eigen::Matrix2d { return stiffness_of(contacts, c, tangents[c]); });
     check_room_for_blas();
     if (!has_pattern_of_yielding_)
         yielding_factor_.analyzePattern(matrix);
@@ -300,9 +292,7 @@ void Stiffness::add_contact(const Assembly& assembly, Index contact, const Tange
     const auto& [a, b] = contacts.gridpoint[contact];
     const auto &from = unknown_[a], &to = unknown_[b];
     const Vector2d relative(value(to[0]) - value(from[0]), value(to[1]) - value(from[1]));
-    const Vector2d &normal = contacts.normal[contact], shear = along(normal);
-    const Vector2d change = tangent.times({normal.dot(relative), shear.dot(relative)});
-    const Vector2d force = contacts.length[contact] * (change.x() * normal + change.y() * shear);
+    const Vector2d force = joint::force_change(contacts, contact, tangent, relative);
     for (int i = 0; i < 2; ++i) {
         if (to[i] >= 0)
             y[to[i]] += force[i];
@@ -316,9 +306,7 @@ bool Stiffness::factorise(const Assembly& assembly, const std::vector<Tangent>& 
     const joint::Contacts& contacts = assembly.contacts;
     std::copy(zones_.valuePtr(), zones_.valuePtr() + zones_.nonZeros(), factorised_.valuePtr());
     add_contacts(factorised_, [&](Index c) -> Eigen::Matrix2d {
-        const Vector2d &normal = contacts.normal[c], tangent = along(normal);
-        return contacts.length[c] * (tangents[c].normal * normal * normal.transpose() +
-                                     tangents[c].shear * tangent * tangent.transpose());
+        return stiffness_of(contacts, c, {tangents[c].normal, tangents[c].shear, 0, 0});
     });
     // Threads inside of the factorisation cost more than they gain at these sizes.
     const int levels = omp_get_max_active_levels();

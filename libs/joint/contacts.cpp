@@ -8,6 +8,21 @@
 namespace jointcreep::joint
 {
 
+ContactsState state_of(const Contacts& contacts)
+{
+    return {contacts.offset, contacts.traction, contacts.relative_displacement, contacts.state,
+            contacts.status};
+}
+
+void go_back(Contacts& contacts, const ContactsState& state)
+{
+    contacts.offset = state.offset;
+    contacts.traction = state.traction;
+    contacts.relative_displacement = state.relative_displacement;
+    contacts.state = state.state;
+    contacts.status = state.status;
+}
+
 Contacts contacts_of(const Scene& scene, const EquivalentJoints& joints, const Mesh& mesh)
 {
     Contacts contacts;
@@ -99,6 +114,41 @@ Tangent tangent_of_response(const Contacts& contacts, std::size_t c, const State
     return {by_opening.x(), by_shear.y(), by_opening.y(), by_shear.x()};
 }
 
+Eigen::Matrix2d stiffness_of(const Contacts& contacts, std::size_t c, const Tangent& tangent)
+{
+    const Vector2d &normal = contacts.normal[c], shear = along(normal);
+    return contacts.length[c] *
+           (tangent.normal * normal * normal.transpose() + tangent.shear * shear * shear.transpose() +
+            tangent.friction * shear * normal.transpose() + tangent.dilation * normal * shear.transpose());
+}
+
+Vector2d force_change(const Contacts& contacts, std::size_t c, const Tangent& tangent,
+                      const Vector2d& relative_displacement)
+{
+    const Vector2d &normal = contacts.normal[c], shear = along(normal);
+    const Vector2d change =
+        tangent.times({normal.dot(relative_displacement), shear.dot(relative_displacement)});
+    return contacts.length[c] * (change.x() * normal + change.y() * shear);
+}
+
+Tangent tangent_of_springs(const Contacts& contacts, std::size_t c, double soft)
+{
+    const Slopes law = slopes(contacts.law[c], contacts.state[c], contacts.traction[c].x());
+    const bool sticks = contacts.status[c] == ContactStatus::stuck && law.k_s > 0;
+    return {law.k_n * (contacts.status[c] == ContactStatus::open ? soft : 1.0),
+            (law.k_s > 0 ? law.k_s : law.k_n) * (sticks ? 1.0 : soft), 0, 0};
+}
+
+Tangent without_zeros(const Contacts& contacts, std::size_t c, Tangent tangent, double soft)
+{
+    const double normal = k_n(contacts.law[c]), shear = k_s(contacts.law[c]);
+    if (tangent.normal == 0)
+        tangent.normal = soft * normal;
+    if (tangent.shear == 0)
+        tangent.shear = soft * (shear > 0 ? shear : normal);
+    return tangent;
+}
+
 void add_row_sums(const Contacts& contacts, std::vector<Vector2d>& sums)
 {
     for (std::size_t c = 0; c < contacts.gridpoint.size(); ++c) {
@@ -132,6 +182,17 @@ double work_on(const Contacts& contacts)
 void forget_work(Contacts& contacts)
 {
     std::fill(contacts.work.begin(), contacts.work.end(), 0.0);
+}
+
+double dissipated(const Contacts& contacts, const std::vector<State>& start)
+{
+    double energy = 0;
+    for (std::size_t c = 0; c < contacts.status.size(); ++c)
+        if (contacts.status[c] != ContactStatus::removed)
+            energy += contacts.length[c] *
+                      (contacts.traction[c].y() * (contacts.state[c].slip - start[c].slip) +
+                       contacts.traction[c].x() * (contacts.state[c].dilation - start[c].dilation));
+    return energy;
 }
 
 void start_from_here(Contacts& contacts)

@@ -39,6 +39,15 @@ struct Contacts {
     std::vector<State> state_by_faces;
 };
 
+// What equilibria and creep change in Contacts.
+struct ContactsState {
+    std::vector<Vector2d> offset, traction, relative_displacement;
+    std::vector<State> state;
+    std::vector<ContactStatus> status;
+};
+ContactsState state_of(const Contacts& contacts);
+void go_back(Contacts& contacts, const ContactsState& state);
+
 // All contacts of a mesh, with the scene's in-situ stress at their centres, at zero displacement.
 Contacts contacts_of(const Scene& scene, const EquivalentJoints& joints, const Mesh& mesh);
 
@@ -82,8 +91,20 @@ struct Tangent {
     }
 };
 
-// The tangent of the response: for laws whose traction depends on more than springs and a strength.
+// The tangent of the response to the present displacement from the state `start`.
 Tangent tangent_of_response(const Contacts& contacts, std::size_t c, const State& start);
+
+// Change of the force on side b by a change of the displacement of b minus that of a [Pa], and the change of that force
+// [N/m] by a given one [m].
+Eigen::Matrix2d stiffness_of(const Contacts& contacts, std::size_t c, const Tangent& tangent);
+Vector2d force_change(const Contacts& contacts, std::size_t c, const Tangent& tangent,
+                      const Vector2d& relative_displacement);
+
+// The tangent of the springs in its status: where it is open or slips, and a smooth joint in shear, they keep the share
+// `soft` only.
+Tangent tangent_of_springs(const Contacts& contacts, std::size_t c, double soft);
+// The tangent with the share `soft` of the springs wherever it has no stiffness.
+Tangent without_zeros(const Contacts& contacts, std::size_t c, Tangent tangent, double soft);
 
 // For joints that grow stiffer as they close, the normal stiffness is taken as this many times the present one.
 inline constexpr double room_to_stiffen = 2;
@@ -95,6 +116,8 @@ void add_row_sums(const Contacts& contacts, std::vector<Vector2d>& sums);
 double stored_energy(const Contacts& contacts);
 double work_on(const Contacts& contacts);
 void forget_work(Contacts& contacts);
+// Energy lost by slip and dilation since the states `start`, under the present tractions (backward Euler) [J/m].
+double dissipated(const Contacts& contacts, const std::vector<State>& start);
 
 // Makes the present tractions those at zero displacement.
 void start_from_here(Contacts& contacts);

@@ -142,6 +142,27 @@ void check_joint_materials(const Scene& scene, const Source& source)
     }
 }
 
+Table<Averaging> averaging()
+{
+    return {
+        {"averaging", Written::once, Need::optional,
+         "How joints and their rock bridges become equivalent joints."},
+        {choice("over", &Averaging::over,
+                {{"edge", AverageOver::edge}, {"line", AverageOver::line}, {"set", AverageOver::set}},
+                "Over what joint and bridges are averaged: each edge between two blocks, each joint's whole "
+                "line, or all lines of a set.")
+             .or_else(std::string("edge")),
+         choice("stiffness", &Averaging::stiffness,
+                {{"joint", StiffnessRule::joint},
+                 {"lower bound", StiffnessRule::lower_bound},
+                 {"upper bound", StiffnessRule::upper_bound},
+                 {"staggered", StiffnessRule::staggered}},
+                "Stiffnesses and Kelvin constants of a joint with rock bridges: the joint's own; bounds for "
+                "joint traces connected by rock bridges; or those of many such lines, with "
+                "staggered traces.")
+             .or_else(std::string("joint"))}};
+}
+
 } // namespace
 
 ForceKeys<Scene> scene_keys()
@@ -155,7 +176,9 @@ ForceKeys<Scene> scene_keys()
     auto materials = part_read_by<Scene>(material, read);
     materials.has_names = true;
     materials.values = check_joint_materials;
-    return {.materials = {materials, part_inside<Scene>(chain)}};
+    auto averages = part_once<Scene>(averaging(), &Scene::averaging);
+    averages.turn = keys::Turn::settings;
+    return {.materials = {materials, part_inside<Scene>(chain)}, .settings = {averages}};
 }
 
 } // namespace jointcreep::joint

@@ -1,19 +1,13 @@
 #include "joint/strength_factor.hpp"
 
 #include "joint/law.hpp"
-
-#include <cmath>
+#include "model/strength_factor.hpp"
 
 namespace jointcreep::joint
 {
 
 namespace
 {
-
-void divide_tangent(double& angle, double factor)
-{
-    angle = std::atan(std::tan(angle) / factor);
-}
 
 void divide(double& value, const Parameter& parameter, double factor)
 {
@@ -46,23 +40,15 @@ EquivalentJoints with_strength_divided(EquivalentJoints joints, double factor)
     return joints;
 }
 
-Scene with_strength_divided(Scene scene, double factor)
+std::vector<JointMaterial> with_strength_divided(std::vector<JointMaterial> materials, double factor)
 {
-    for (Rock& rock : scene.rocks) {
-        if (rock.strength) {
-            rock.strength->cohesion /= factor;
-            rock.strength->tensile_strength /= factor;
-            divide_tangent(rock.strength->friction_angle, factor);
-        }
-        divide_tangent(rock.dilation_angle, factor);
-    }
-    for (JointMaterial& material : scene.joint_materials) {
+    for (JointMaterial& material : materials) {
         for (const Parameter& parameter : laws()[static_cast<std::size_t>(material.law)].parameters)
             if (parameter.with_strength_divided != WithStrengthDivided::same)
                 divide(parameter.in(material), parameter, factor);
         material.strength_divisor *= factor;
     }
-    return scene;
+    return materials;
 }
 
 } // namespace jointcreep::joint

@@ -49,6 +49,7 @@ template <class Whole>
 struct ForceKeys {
     std::vector<Part<Whole>> materials{}; // what the ground and what is in it are made of
     std::vector<Part<Whole>> loads{};     // what acts on it
+    std::vector<Part<Whole>> settings{};  // how it is computed
 };
 
 // --- Making a part ----------------------------------------------------------------------------------------

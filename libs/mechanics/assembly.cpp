@@ -143,7 +143,9 @@ Index chunks_of(const Assembly& assembly)
 
 double stored_energy(const Assembly& assembly)
 {
-    return rock::stored_energy(assembly.zones) + joint::stored_energy(assembly.contacts);
+    double energy = 0;
+    for_each_force(assembly, [&](const auto& one) { energy += stored_energy(one); });
+    return energy;
 }
 
 Balance balance_of(const Assembly& assembly)
@@ -249,43 +251,22 @@ double work_of_loads(const Assembly& assembly, const std::vector<Vector2d>& star
 void start_from_here(Assembly& assembly)
 {
     find_forces(assembly);
-    joint::start_from_here(assembly.contacts);
-    rock::start_from_here(assembly.zones);
+    for_each_force(assembly, [](auto& one) { start_from_here(one); });
     assembly.displacement.assign(assembly.displacement.size(), Vector2d::Zero());
     find_forces(assembly);
 }
 
-namespace
-{
-
-// Each member of a State with its place in the assembly.
-template <class OfState, class OfAssembly, class Copy>
-void for_each_member(OfState& state, OfAssembly& assembly, const Copy& copy)
-{
-    copy(state.displacement, assembly.displacement);
-    copy(state.force, assembly.force);
-    copy(state.offset, assembly.contacts.offset);
-    copy(state.traction, assembly.contacts.traction);
-    copy(state.relative_displacement, assembly.contacts.relative_displacement);
-    copy(state.joint, assembly.contacts.state);
-    copy(state.status, assembly.contacts.status);
-    copy(state.stress, assembly.zones.stress);
-    copy(state.yielding, assembly.zones.yielding);
-}
-static_assert(sizeof(State) == 9 * sizeof(std::vector<double>), "for_each_member() has all of them");
-
-} // namespace
-
 State state_of(const Assembly& assembly)
 {
-    State state;
-    for_each_member(state, assembly, [](auto& kept, const auto& live) { kept = live; });
-    return state;
+    return {assembly.displacement, assembly.force, state_of(assembly.zones), state_of(assembly.contacts)};
 }
 
 void go_back(Assembly& assembly, const State& state)
 {
-    for_each_member(state, assembly, [](const auto& kept, auto& live) { live = kept; });
+    assembly.displacement = state.displacement;
+    assembly.force = state.force;
+    go_back(assembly.zones, state.zones);
+    go_back(assembly.contacts, state.contacts);
 }
 
 // What is not passed on is as in a new assembly, or found anew before it is used.
@@ -297,15 +278,18 @@ void transfer(const Transfer& to, Assembly& assembly, Checkpoint& kept)
     to.values(assembly.force, kept.force);
     if (to.restores())
         part_ties(assembly, kept.unloaded > 0 ? kept.stage : kept.stage - 1);
-    rock::transfer(to, assembly.zones, kept);
-    joint::transfer(to, assembly.contacts, kept);
+    for_each_force(assembly, [&](auto& one) { transfer(to, one, kept); });
+}
+
+void record_state(const Assembly& assembly, States& states)
+{
+    for_each_force(assembly, [&](const auto& one) { record_state(one, states); });
 }
 
 std::vector<double> stiffness_row_sums(const Assembly& assembly)
 {
     std::vector<Vector2d> sums(assembly.position.size(), Vector2d::Zero());
-    rock::add_row_sums(assembly.zones, sums);
-    joint::add_row_sums(assembly.contacts, sums);
+    for_each_force(assembly, [&](const auto& one) { add_row_sums(one, sums); });
     for (const auto& [follower, leader] : assembly.tied)
         sums[leader] += sums[follower];
     std::vector<double> larger;

@@ -62,6 +62,16 @@ struct Assembly {
     int threads = 1;
 };
 
+// What pulls at gridpoints beside loads, each kind of force in turn: this is the one list of them. Each has the
+// functions that are called with it: state_of, go_back, stored_energy, start_from_here, record_state,
+// transfer, add_row_sums.
+template <class OfAssembly, class Call>
+void for_each_force(OfAssembly& assembly, const Call& call)
+{
+    call(assembly.zones);
+    call(assembly.contacts);
+}
+
 // The assembly under the scene's in-situ stress, at zero displacement, all rock present. Contact tractions
 // are the in-situ ones at the contacts' centres.
 Assembly assemble(const Scene& scene, const Network& network, const EquivalentJoints& equivalent,
@@ -124,17 +134,18 @@ void start_from_here(Assembly& assembly);
 
 // What equilibria and creep change, for going back to it.
 struct State {
-    std::vector<Vector2d> displacement, force, offset, traction, relative_displacement;
-    std::vector<joint::State> joint;
-    std::vector<ContactStatus> status;
-    std::vector<Vector3d> stress;
-    std::vector<rock::YieldingZone> yielding;
+    std::vector<Vector2d> displacement, force;
+    rock::ZonesState zones;
+    joint::ContactsState contacts;
 };
 State state_of(const Assembly& assembly);
 void go_back(Assembly& assembly, const State& state);
 
 // What differs from a new assembly of the same section when a stage begins.
 void transfer(const Transfer& to, Assembly& assembly, Checkpoint& kept);
+
+// Appends the present state of the forces to the states of a result.
+void record_state(const Assembly& assembly, States& states);
 
 // Row sums of the stiffness matrix's magnitudes, the larger of x and y, of every gridpoint [Pa]: no
 // eigenvalue of stiffness over mass is above the largest row sum over its mass (Gershgorin). Joints that grow stiffer as

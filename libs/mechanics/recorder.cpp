@@ -170,8 +170,7 @@ void Recorder::record_state(Result& result, double time, const std::string& even
         // Also of rock that is gone, which nothing pulls.
         states.reaction.emplace_back((assembly.is_free[g].array() > 0).select(0, -assembly.force[g]));
     }
-    rock::record_state(assembly.zones, states);
-    joint::record_state(assembly.contacts, states);
+    mechanics::record_state(assembly, states);
     states.reset_state.push_back(states.reset_state.empty() ? 0 : states.reset_state.back());
 }
 

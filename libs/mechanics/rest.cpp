@@ -1,7 +1,6 @@
 #include "mechanics/rest.hpp"
 
 #include "model/disjoint_sets.hpp"
-#include "model/signs.hpp"
 
 #include <Eigen/Sparse>
 
@@ -107,14 +106,9 @@ Eigen::SparseMatrix<double> stiffness_of(const Assembly& assembly, const std::ve
     for (std::size_t c = 0; c < contacts.gridpoint.size(); ++c) {
         if (contacts.status[c] == ContactStatus::removed)
             continue;
-        const joint::Slopes law = slopes(contacts.law[c], contacts.state[c], contacts.traction[c].x());
-        const double k_n = law.k_n * (contacts.status[c] == ContactStatus::open ? soft : 1.0),
-                     k_s = (law.k_s > 0 ? law.k_s : law.k_n) *
-                           (contacts.status[c] == ContactStatus::stuck && law.k_s > 0 ? 1.0 : soft);
-        const Vector2d normal = contacts.normal[c], tangent = along(normal);
-        const Eigen::Matrix2d spring =
-            contacts.length[c] * (k_n * normal * normal.transpose() + k_s * tangent * tangent.transpose());
-        stiffest = std::max(stiffest, contacts.length[c] * std::max(k_n, k_s));
+        const joint::Tangent springs = tangent_of_springs(contacts, c, soft);
+        const Eigen::Matrix2d spring = stiffness_of(contacts, c, springs);
+        stiffest = std::max(stiffest, contacts.length[c] * std::max(springs.normal, springs.shear));
         for (int i = 0; i < 2; ++i)
             for (int j = 0; j < 2; ++j) {
                 const Index a = contacts.gridpoint[c][i], b = contacts.gridpoint[c][j];

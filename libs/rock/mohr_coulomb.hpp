@@ -13,6 +13,8 @@
 
 #pragma once
 
+#include "rock/elasticity.hpp"
+
 #include <Eigen/Core>
 
 #include <algorithm>
@@ -43,9 +45,6 @@ struct MohrCoulomb {
         return most > 1e-10 * (std::abs(s1) + std::abs(s3) + shear) ? most : 0.0;
     }
 };
-
-// Elastic stress over strain of a volume change and of shear, as in Zones::stiffness: {C11, C12, C33} [Pa].
-using Elasticity = Eigen::Vector3d;
 
 struct Returned {
     Eigen::Vector3d stress;  // principal [Pa]

@@ -133,12 +133,10 @@ void pull(Zones& zones, Slots& slots, std::span<const Vector2d> displacements, d
 void add_point(Zones& zones, const Scene& scene, const Rock& rock, double area, const Vector2d& place,
                bool any_yields)
 {
-    const double E = rock.youngs_modulus, nu = rock.poissons_ratio;
-    const double factor = E / ((1 + nu) * (1 - 2 * nu));
     zones.area.push_back(area);
     zones.mass.push_back(rock.density * area);
     zones.weight.push_back(rock.density * area * scene.gravity);
-    zones.stiffness.emplace_back(factor * (1 - nu), factor * nu, E / (2 * (1 + nu)));
+    zones.stiffness.push_back(elasticity_of(rock));
     zones.creeps.push_back(scene.creep && (rock.kelvin || rock.maxwell_viscosity) ? 1 : 0);
     const Vector3d initial = scene.in_situ_stress.at(place);
     zones.initial_stress.push_back(initial);
@@ -154,6 +152,22 @@ void add_point(Zones& zones, const Scene& scene, const Rock& rock, double area, 
 }
 
 } // namespace
+
+ZonesState state_of(const Zones& zones)
+{
+    return {zones.stress, zones.yielding};
+}
+
+void go_back(Zones& zones, const ZonesState& state)
+{
+    zones.stress = state.stress;
+    zones.yielding = state.yielding;
+}
+
+bool yields(const Zones& zones)
+{
+    return !zones.holds_yield && !zones.yielding.empty();
+}
 
 Zones zones_of(const Scene& scene, const Network& network, const Mesh& mesh)
 {

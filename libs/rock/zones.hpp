@@ -59,6 +59,17 @@ struct Zones {
     std::vector<char> creeps; // whether the rock of a stress point creeps
 };
 
+// What equilibria and creep change in Zones.
+struct ZonesState {
+    std::vector<Vector3d> stress;
+    std::vector<YieldingZone> yielding;
+};
+ZonesState state_of(const Zones& zones);
+void go_back(Zones& zones, const ZonesState& state);
+
+// Whether rock may yield now.
+bool yields(const Zones& zones);
+
 // All zones of a mesh under the scene's in-situ stress, at zero displacement.
 Zones zones_of(const Scene& scene, const Network& network, const Mesh& mesh);
 

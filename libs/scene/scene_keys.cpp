@@ -734,26 +734,6 @@ Table<Cutting> cutting()
              .or_else("prune")}};
 }
 
-Table<Averaging> averaging()
-{
-    return {
-        {"averaging", once, optional, "How joints and their rock bridges become equivalent joints."},
-        {choice("over", &Averaging::over,
-                {{"edge", AverageOver::edge}, {"line", AverageOver::line}, {"set", AverageOver::set}},
-                "Over what joint and bridges are averaged: each edge between two blocks, each joint's whole "
-                "line, or all lines of a set.")
-             .or_else(std::string("edge")),
-         choice("stiffness", &Averaging::stiffness,
-                {{"joint", StiffnessRule::joint},
-                 {"lower bound", StiffnessRule::lower_bound},
-                 {"upper bound", StiffnessRule::upper_bound},
-                 {"staggered", StiffnessRule::staggered}},
-                "Stiffnesses and Kelvin constants of a joint with rock bridges: the joint's own; bounds for "
-                "joint traces connected by rock bridges; or those of many such lines, with "
-                "staggered traces.")
-             .or_else(std::string("joint"))}};
-}
-
 Table<Equilibrium> equilibrium()
 {
     using E = Equilibrium;
@@ -959,7 +939,6 @@ Parts settings_parts()
     return {in_turn(Turn::settings, part_if_given(creep(), &Scene::creep)),
             in_turn(Turn::settings, of_scene(zones())),
             in_turn(Turn::settings, part_read_by<Scene>(cutting(), read_cutting)),
-            in_turn(Turn::settings, part_once<Scene>(averaging(), &Scene::averaging)),
             in_turn(Turn::settings, part_read_by<Scene>(equilibrium(), read_equilibrium)),
             in_turn(Turn::settings, part_if_given(large_displacements(), &Scene::large_displacements)),
             in_turn(Turn::settings, of_scene(random_numbers())),
@@ -976,6 +955,8 @@ Parts all_parts()
     for (const ForceKeys<Scene>& force : forces())
         add(force.loads);
     add(schedule_parts());
+    for (const ForceKeys<Scene>& force : forces())
+        add(force.settings);
     add(settings_parts());
     return all;
 }

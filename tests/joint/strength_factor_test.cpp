@@ -59,14 +59,13 @@ TEST(with_strength_divided, divides_the_strength_of_barton_and_bandis)
     EXPECT_DOUBLE_EQ(reduced.friction_angle[0], 30 * deg);
     EXPECT_DOUBLE_EQ(reduced.own["roughness"][0], 10);
     EXPECT_DOUBLE_EQ(reduced.strength_divisor, 1.37);
-    Scene scene;
-    scene.joint_materials.resize(1);
-    scene.joint_materials[0].friction_angle = 30 * deg;
-    scene.joint_materials[0].law = 2;
-    scene.joint_materials[0].own = {{"roughness", 10}, {"wall_strength", 1e8}, {"largest_closure", 2e-4}};
-    const Scene new_contacts = joint::with_strength_divided(scene, 1.37);
-    EXPECT_DOUBLE_EQ(new_contacts.joint_materials[0].friction_angle, 30 * deg);
-    EXPECT_DOUBLE_EQ(new_contacts.joint_materials[0].strength_divisor, 1.37);
+    JointMaterial material;
+    material.friction_angle = 30 * deg;
+    material.law = 2;
+    material.own = {{"roughness", 10}, {"wall_strength", 1e8}, {"largest_closure", 2e-4}};
+    const JointMaterial new_contacts = joint::with_strength_divided(std::vector{material}, 1.37)[0];
+    EXPECT_DOUBLE_EQ(new_contacts.friction_angle, 30 * deg);
+    EXPECT_DOUBLE_EQ(new_contacts.strength_divisor, 1.37);
 
     joint::BartonBandis law{1e10, 1e9, 2e-4, 30 * deg, 10, 1e8};
     const joint::BartonBandis whole = law;
@@ -78,27 +77,16 @@ TEST(with_strength_divided, divides_the_strength_of_barton_and_bandis)
     }
 }
 
-TEST(with_strength_divided, divides_the_strength_of_rock_and_the_friction_of_new_contacts)
+TEST(with_strength_divided, divides_the_friction_of_new_contacts)
 {
-    Scene scene;
-    scene.rocks.resize(2);
-    scene.rocks[0].strength = RockStrength{2e6, 40 * deg, 1e6};
-    scene.rocks[0].dilation_angle = 40 * deg;
-    scene.joint_materials.resize(1);
-    scene.joint_materials[0].friction_angle = 30 * deg;
-    scene.joint_materials[0].law = 1; // residual strength
-    scene.joint_materials[0].own = {{"residual_cohesion", 0}, {"residual_friction_angle", 20 * deg}};
+    JointMaterial material;
+    material.friction_angle = 30 * deg;
+    material.law = 1; // residual strength
+    material.own = {{"residual_cohesion", 0}, {"residual_friction_angle", 20 * deg}};
     const double F = 1.37;
-    const Scene reduced = joint::with_strength_divided(scene, F);
-    const RockStrength& rock = *reduced.rocks[0].strength;
-    EXPECT_DOUBLE_EQ(rock.cohesion, 2e6 / F);
-    EXPECT_DOUBLE_EQ(rock.tensile_strength, 1e6 / F);
-    EXPECT_DOUBLE_EQ(std::tan(rock.friction_angle), std::tan(40 * deg) / F);
-    EXPECT_DOUBLE_EQ(reduced.rocks[0].dilation_angle, rock.friction_angle);
-    EXPECT_FALSE(reduced.rocks[1].strength);
-    EXPECT_DOUBLE_EQ(std::tan(reduced.joint_materials[0].friction_angle), std::tan(30 * deg) / F);
-    EXPECT_DOUBLE_EQ(std::tan(reduced.joint_materials[0].own.at("residual_friction_angle")),
-                     std::tan(20 * deg) / F);
+    const JointMaterial reduced = joint::with_strength_divided(std::vector{material}, F)[0];
+    EXPECT_DOUBLE_EQ(std::tan(reduced.friction_angle), std::tan(30 * deg) / F);
+    EXPECT_DOUBLE_EQ(std::tan(reduced.own.at("residual_friction_angle")), std::tan(20 * deg) / F);
 }
 
 } // namespace strength_factor_test

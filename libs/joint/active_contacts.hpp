@@ -1,0 +1,56 @@
+// What contacts do in a search for equilibrium that goes by tangents: stick, slip forward or backward, or open.
+//
+// Contacts go straight from their states at the start of the search to those at its end. A contact changes its
+// direction of slip only through sticking. Bonds that break in the search stay broken during it, once they have broken
+// twice or hinder it: with cohesion that comes and goes there may be no equilibrium. A contact that opened, or
+// weakened, without need gets its bond back.
+
+#pragma once
+
+#include "joint/contacts.hpp"
+
+#include <vector>
+
+namespace jointcreep::joint
+{
+
+class ActiveContacts
+{
+public:
+    // Before a search: no bond has broken in it. What contacts did last is kept.
+    void begin(const Contacts& contacts);
+
+    // Sets the contacts to their states at the start, but for bonds that have broken in the search.
+    void restart(Contacts& contacts, const std::vector<State>& start) const;
+
+    // Takes over what contacts do now. A contact slides back only after it has stuck, unless this is the `first` time.
+    void take(const Contacts& contacts, const std::vector<State>& start, bool first);
+
+    // Tangents for what they do. Open and slipping contacts keep the share `soft` of their springs.
+    std::vector<Tangent> tangents(const Contacts& contacts, const std::vector<State>& start,
+                                  double soft) const;
+
+    // Breaks the bonds of contacts that have opened, closed or weakened since take(). True if any bond breaks.
+    bool break_bonds(const Contacts& contacts, const std::vector<State>& start);
+
+    // Restores the bonds of contacts that opened during the search and are closed now. Their next opening breaks them
+    // for good. True if that changes forces.
+    bool mend_bonds(const Contacts& contacts);
+
+    // For going back to broken bonds where mended ones find no equilibrium.
+    const std::vector<char>& broken_bonds() const { return breaks_; }
+    void set_broken_bonds(const std::vector<char>& breaks) { breaks_ = breaks; }
+
+private:
+    enum class Active : char { open, stuck, slips_forward, slips_backward };
+
+    static Active active(const Contacts& contacts, std::size_t c);
+    Tangent tangent(const Contacts& contacts, std::size_t c, const State& start, double soft) const;
+
+    std::vector<Active> active_;
+    std::vector<char> breaks_;    // bonds that have broken in the search
+    std::vector<char> openings_;  // how often in it
+    std::vector<char> is_broken_; // of the state, at the last take()
+};
+
+} // namespace jointcreep::joint
