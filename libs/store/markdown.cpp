@@ -82,7 +82,7 @@ The programs hand each other HDF5 files. A file holds all that later programs ne
 | `jointcreep network` | jointgen | provenance, network |
 | `jointcreep joints` | strength-averaging | the same, and equivalent joints |
 | `jointcreep result` | demsolve | the same, and mesh, history, states, equilibria; the step history if asked for; dynamics of scenes with [large_displacements] |
-| `jointcreep checkpoint` | demsolve | the same up to a stage, and what the stage begins with |
+| `jointcreep checkpoint` | demsolve | the same up to a moment, and the state then |
 
 This is format version )"
          << schema::major_version << "." << schema::minor_version << R"(.
@@ -130,6 +130,8 @@ with h5py.File("result.h5") as file:
     page << "\nThe group `/step_history` is there only if a step history was asked for.\n";
     list(page, "Dynamics", schema::fields_of(result.dynamics));
     page << "\nThe group `/dynamics` is there only if the scene has [large_displacements] and a stage.\n";
+    list(page, "Guards", schema::fields_of(result.guards));
+    page << "\nFiles of a format before 2.4 do not have the group `/guards`.\n";
     list(page, "Failure", schema::fields_of(result.failure));
     page << "\nThe group `/failure` is there only in `NAME.failed.h5`, of a run that found no equilibrium. "
             "All other data of such a file end with the last equilibrium.\n";

@@ -19,9 +19,10 @@ std::vector<fields::Field> all_fields(CheckpointFile& file)
     for (const auto& fields :
          {schema::fields_of(file.provenance), schema::fields_of(file.provenance.warnings),
           schema::fields_of(file.network), schema::fields_of(file.equivalent), schema::fields_of(file.result),
-          schema::fields_of(file.result.step_history), schema::fields_of(file.result.failure),
-          schema::fields_of(file.result.dynamics), schema::fields_of(file.safety),
-          schema::fields_of(file.checkpoint), schema::fields_of(file.checkpoint.dynamics)})
+          schema::fields_of(file.result.step_history), schema::fields_of(file.result.guards),
+          schema::fields_of(file.result.failure), schema::fields_of(file.result.dynamics),
+          schema::fields_of(file.safety), schema::fields_of(file.checkpoint),
+          schema::fields_of(file.checkpoint.dynamics)})
         all.insert(all.end(), fields.begin(), fields.end());
     return all;
 }
