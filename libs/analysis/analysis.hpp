@@ -1,8 +1,8 @@
 // Analysis of a section: in-situ equilibrium, excavation in stages, creep, to the scene's end.
 //
 // Here is the schedule of stages and steps. Equilibria are found by analysis/engines.hpp, creep steps made by
-// analysis/creep_steps.hpp, dynamic analyses by analysis/dynamic_stage.hpp. Recording, checkpoints and
-// sensitivities are watchers (analysis/watcher.hpp).
+// analysis/creep_steps.hpp, dynamic analyses by analysis/dynamic_stage.hpp. Recording, checkpoints, guards
+// and sensitivities are watchers (analysis/watcher.hpp).
 
 #pragma once
 

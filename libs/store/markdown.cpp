@@ -82,7 +82,7 @@ The programs hand each other HDF5 files. A file holds all that later programs ne
 | `jointcreep network` | jointgen | provenance, network |
 | `jointcreep joints` | strength-averaging | the same, and equivalent joints |
 | `jointcreep result` | demsolve | the same, and mesh, history, states, equilibria; the step history if asked for; dynamics of scenes with [large_displacements] |
-| `jointcreep checkpoint` | demsolve | the same up to a stage, and what the stage begins with |
+| `jointcreep checkpoint` | demsolve | the same up to a moment, and the state then |
 
 This is format version )"
          << schema::major_version << "." << schema::minor_version << R"(.

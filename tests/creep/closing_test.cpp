@@ -1,6 +1,7 @@
 // How long a step may last in which open contacts close, by what one contact does.
 
 #include "creep/closing.hpp"
+#include "model/error.hpp"
 
 #include <gtest/gtest.h>
 
@@ -150,6 +151,29 @@ TEST(closing, steps_become_shorter_at_every_cut)
             break;
     }
     EXPECT_LT(cuts, 400);
+}
+
+// Another run that continues between two steps foresees the same.
+TEST(closing, rates_are_in_checkpoints)
+{
+    Gaps gaps;
+    gaps.put(1.5e-3, 0);
+    Closing closing(tolerance), continued(tolerance);
+    closing.start(gaps.rock);
+    gaps.put(1e-3, 2.5e-4);
+    closing.finish(gaps.rock, 5);
+    Checkpoint kept;
+    kept.contact_status = {static_cast<Index>(ContactStatus::open)};
+    closing.transfer(Transfer(Transfer::Way::keep), kept);
+    continued.transfer(Transfer(Transfer::Way::restore), kept);
+    for (Closing* one : {&closing, &continued}) {
+        one->start(gaps.rock);
+        gaps.put(-1e-5, 2.5e-4);
+        EXPECT_NEAR(one->longest_step(gaps.rock, 20), 0.99 * 10, 1e-9);
+        gaps.put(1e-3, 2.5e-4);
+    }
+    kept.opening_rate.emplace_back(0, 0);
+    EXPECT_THROW(continued.transfer(Transfer(Transfer::Way::restore), kept), input_error);
 }
 
 } // namespace closing_test

@@ -238,7 +238,8 @@ inline bool same(const ResultFile& left, const ResultFile& right)
 {
     return same(static_cast<const JointsFile&>(left), static_cast<const JointsFile&>(right)) &&
            same(left.result, right.result) && same(left.result.step_history, right.result.step_history) &&
-           same(left.result.failure, right.result.failure) && same(left.safety, right.safety);
+           same(left.result.guards, right.result.guards) && same(left.result.failure, right.result.failure) &&
+           same(left.safety, right.safety);
 }
 
 inline bool same(const CheckpointFile& left, const CheckpointFile& right)
