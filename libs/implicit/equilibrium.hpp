@@ -8,7 +8,8 @@
 //
 // Rock that yields goes straight from its state at the start to that at the end, too. Then K has the consistent tangents of
 // zones, is not symmetric where flow is not associated, and is factorised for each correction. Where Newton's method
-// finds no equilibrium, rock flows against dashpots: to an equilibrium, or on without bound (implicit/flow.cpp).
+// finds no equilibrium, gridpoints move against dashpots: to an equilibrium, or until displacements are too large
+// (implicit/flow.cpp).
 //
 // The energy balance is that of backward Euler, too: a contact slips under the traction it ends with. What is
 // neither stored nor dissipated so counts as damped.
@@ -39,7 +40,8 @@ public:
     std::optional<mechanics::Convergence> equilibrate(Assembly& assembly, const Equilibrium& settings,
                                                       const std::vector<Vector2d>& guess = {});
     const std::string& reason() const { return reason_; }
-    // Set if it has found none because rock that yields flows on without bound. The assembly is then as it flows.
+    // Set if it has found none because displacements of rock that yields grow without bound. The assembly is then not as
+    // it was, but as it moves.
     const std::optional<mechanics::no_equilibrium>& collapse() const { return collapse_; }
 
     // Forgets the factor and solutions: the next equilibrium is found as by a new solver.

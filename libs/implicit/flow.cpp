@@ -1,4 +1,4 @@
-// Rock that yields and flows: the search for equilibrium where Newton's method finds none, and failure.
+// Rock that yields: the search for equilibrium where Newton's method finds none, and failure.
 
 #include "implicit/equilibrium.hpp"
 

@@ -173,7 +173,7 @@ struct CoulombOf {
         const double end = dilation_end();
         return {tan_psi, end, std::max<T>(0, end - state.dilation)};
     }
-    // Present tan(psi) [-], and the largest dilation still to come [m].
+    // Present tan(psi) [-].
     double tan_psi_at(const State& state) const { return state.dilation < dilation_end() ? tan_psi : 0.0; }
 
     static CoulombOf from(const ValueOf& value, double)

@@ -27,7 +27,7 @@ struct Energy {
     double kinetic = 0;
     double stored = 0;   // by zones and contacts, since the start
     double friction = 0; // lost to slip and yield
-    double damped = 0;   // by dashpots, and where motion is stopped (see `settle`)
+    double damped = 0;   // by dashpots, and by stops at peaks of kinetic energy
 
     double error() const { return work - kinetic - stored - friction - damped; }
 };

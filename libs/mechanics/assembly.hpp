@@ -62,9 +62,8 @@ struct Assembly {
     int threads = 1;
 };
 
-// What pulls at gridpoints beside loads, each kind of force in turn: this is the one list of them. Each has the
-// functions that are called with it: state_of, go_back, stored_energy, start_from_here, record_state,
-// transfer, add_row_sums.
+// The forces on gridpoints beside loads, each kind in turn. Each has the functions that are called with it:
+// stored_energy, start_from_here, record_state, transfer, add_row_sums.
 template <class OfAssembly, class Call>
 void for_each_force(OfAssembly& assembly, const Call& call)
 {

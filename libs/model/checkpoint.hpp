@@ -58,9 +58,9 @@ struct Checkpoint {
     std::vector<Eigen::Vector2d> is_free;      // 1 or 0 in {x, y}, but for ties [-]
     std::vector<Eigen::Vector2d> load;         // [N/m]
     std::vector<Eigen::Vector2d> force;        // unbalanced [N/m]
-    Index unloaded = 0;                        // of the next: how much is gone, in the finest increments
+    Index unloaded = 0;                        // of `released`: what acts no more, in finest increments
     std::vector<Eigen::Vector2d> released;     // force of rock excavated in this stage, within it [N/m]
-    Index increment = 0;                       // of that: how much goes next, in the finest increments
+    Index increment = 0;                       // the next one, in finest increments
 
     // Zones.
     std::vector<Index> zone_present;

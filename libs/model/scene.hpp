@@ -37,7 +37,7 @@ struct ShearKelvin {
 
 enum class RockLaw {
     elastic,
-    mohr_coulomb // elastic up to its strength, then perfectly plastic (libs/mechanics/mohr_coulomb.hpp)
+    mohr_coulomb // elastic up to its strength, then perfectly plastic (libs/rock/mohr_coulomb.hpp)
 };
 
 // Intact rock, in plane strain. Its strength is that of the rock bridges, and its own where it yields. It

@@ -1,5 +1,5 @@
-// Elastic rock in plane strain: its stiffness, and its stress parted into volume and shear. Stresses and strains as in
-// rock/zones.hpp: {xx, yy, xy}, of shear strain half of gamma_xy.
+// Elastic rock in plane strain: its stiffness, and the deviatoric part of its stress. Stresses are {xx, yy, xy}; the
+// deviatoric strains here are, too, with half of gamma_xy.
 
 #pragma once
 
