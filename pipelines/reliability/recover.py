@@ -28,7 +28,7 @@ def recovered(campaign, name, joints):
     job = Job(name, [*solve, "--checkpoint", CHECKPOINT], [joints], ["result.h5"], CHECKPOINT)
     folder = chain.new_folder()
     job.undisturbed(folder)
-    kept = job.whole.get(CHECKPOINT)
+    kept, half = job.whole.get(CHECKPOINT), job.seconds / 2
     if {**job.whole, CHECKPOINT: kept} != {**plain.whole, CHECKPOINT: kept}:
         campaign.count(group, "different", f"{name}, with checkpoints", "not as without", folder)
     restarted = job.different(folder)
@@ -38,7 +38,7 @@ def recovered(campaign, name, joints):
 
     folder = chain.new_folder()
     job.fill(folder)
-    if not job.killed(folder, job.seconds / 2):
+    if not job.killed(folder, half):
         campaign.count(group, "ended before", f"{name}, stop")
         return
     wrong = job.lost(folder, {}) or job.different(folder)

@@ -24,7 +24,7 @@ from small_scene import held, joint, material, scene
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "pipelines" / "reliability"))
 
-from damaged import DAMAGE, MUST_BE_REFUSED  # noqa: E402
+from damage import DAMAGE, MUST_BE_REFUSED  # noqa: E402
 
 REMOVED, STUCK, SLIPPING, OPEN = range(4)
 RAMP = ("^load_history = .*", "load_history = [[0, 0], [4, 0.4], [8, 0.8], [10, 1]]", 2)
