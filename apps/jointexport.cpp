@@ -170,12 +170,11 @@ void export_file(const Arguments& arguments)
         throw input_error("--state does not go with .xdmf, which has all states");
     if (arguments.has("state") && what != "zones" && what != "contacts")
         throw input_error("--state goes with --what zones or contacts, not with " + what);
-    write_text(output, text_of(arguments, kind, what, format));
-
     Summary summary;
     summary.add(what, output);
     if (const std::string reason = store::reason_of_failure(input); !reason.empty())
         summary.warn("the run of " + input + " ended early: " + reason);
+    write_text(output, text_of(arguments, kind, what, format)); // last: what fails before it leaves no file
     summary.print(arguments);
 }
 

@@ -96,6 +96,7 @@ class Campaign:
         parser.add_argument("--seed", type=int, default=1, help="of all chance (default 1)")
         options(parser)
         self.options = arguments = parser.parse_args()
+        self.about_n = arguments.n  # how many, or how long
         self.n, self.seed, self.out = arguments.n, arguments.seed, arguments.out.resolve()
         self.programs = arguments.programs.resolve()
         self.subject, self.outcomes, self.faults = subject, outcomes, faults
@@ -124,7 +125,7 @@ class Campaign:
         try:
             body(self)
         except KeyboardInterrupt:
-            self.n = f"{self.n}, interrupted"
+            self.about_n = f"{self.about_n}, interrupted"
             print(f"{self.name}: interrupted; what follows was counted until then")
         finally:
             shutil.rmtree(self.folder, ignore_errors=True)
@@ -137,7 +138,7 @@ class Campaign:
 
     def write(self):
         version = ended([self.programs / "jointgen", "--version"], 60).out.split()[-1]
-        about = {"n": self.n, "seed": self.seed, "seconds": round(time.monotonic() - self.begin), "version": version,
+        about = {"n": self.about_n, "seed": self.seed, "seconds": round(time.monotonic() - self.begin), "version": version,
                  "date": datetime.date.today().isoformat(), "machine": machine()}
         partial = self.out / f"{self.name}.csv.partial"
         with partial.open("w", newline="") as file:

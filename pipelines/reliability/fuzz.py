@@ -63,6 +63,8 @@ def fuzz(campaign, reader, fuzzers, seconds):
 
 
 def body(campaign):
+    if campaign.options.seconds:
+        campaign.about_n = f"{campaign.options.seconds} s each"
     for reader in READERS:
         fuzz(campaign, reader, campaign.options.fuzzers.resolve(), campaign.options.seconds)
 
