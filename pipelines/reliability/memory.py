@@ -1,6 +1,7 @@
 """Sweeps the address space of each program (ulimit -v) in N steps, from the least with which --version runs to enough.
 
-A run gives the bytes of the run without a limit, or ends with code 5, `PROGRAM: out of memory`, and no file.
+A run gives the bytes of the run without a limit, or ends with code 5, `PROGRAM: out of memory`, and no file. The last
+limit is enough, the first is too little.
 """
 
 import resource
@@ -42,6 +43,8 @@ def sweep(campaign, subject, program, source, name, *options):
         elif done.code == 5 and not left and done.err.strip() == f"{program}: out of memory":
             outcome = "code 5"
         else:
+            outcome = "other"
+        if campaign.n > 1 and outcome == {0: "same bytes", campaign.n - 1: "code 5"}.get(step):
             outcome = "other"
         campaign.count(subject, outcome, f"{program} {' '.join(map(str, options))} {size // 1024} kB", f"{done}; {[*left]}")
         for path in folder.iterdir():
