@@ -55,20 +55,6 @@ double weight_error(const Section& section)
 
 } // namespace
 
-double penetration(const joint::Contacts& contacts)
-{
-    double deepest = 0;
-    for (std::size_t c = 0; c < contacts.status.size(); ++c) {
-        if (contacts.status[c] == ContactStatus::removed)
-            continue;
-        const double of_springs = contacts.status[c] == ContactStatus::open
-                                      ? 0.0
-                                      : joint::opening(contacts.law[c], contacts.traction[c].x());
-        deepest = std::max(deepest, of_springs - opening_of(contacts, c));
-    }
-    return deepest;
-}
-
 GuardedState guarded_state(const Section& section)
 {
     const mechanics::Assembly& assembly = section.assembly;
@@ -79,7 +65,8 @@ GuardedState guarded_state(const Section& section)
     state.area_error = area_error(section);
     state.weight_error = weight_error(section);
     // At large displacements contacts are between faces, which check their depth at every step.
-    state.penetration = assembly.contacts.state_by_faces.empty() ? penetration(assembly.contacts) : 0.0;
+    state.penetration =
+        assembly.contacts.state_by_faces.empty() ? joint::penetration(assembly.contacts) : 0.0;
     return state;
 }
 

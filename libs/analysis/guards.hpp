@@ -20,10 +20,6 @@ struct GuardedState {
 };
 GuardedState guarded_state(const Section& section);
 
-// The deepest closing of a contact beyond its normal stress over its normal stiffness, or beyond its gap where it is open
-// [m].
-double penetration(const joint::Contacts& contacts);
-
 // Energy that is missing or too much in the balance of an equilibrium, over the sum of its terms [-]. What is stored is a
 // small difference of all that is `stored` [J/m]; its rounding does not count.
 double energy_error(const mechanics::Convergence& convergence, double stored);

@@ -393,8 +393,8 @@ public:
     {
         const Edge& edge = edges_[near.front().edge];
         std::vector<std::pair<double, Index>> through; // fractions of the edge, vertices
-        Index closed_from =
-            -1; // a tip: not both in one pass, or the diagonal of a narrow strip only turns over
+        // A tip: not both in one pass, or the diagonal of a narrow strip only turns over.
+        Index closed_from = -1;
         for (const NearEdge& one : near)
             if (const std::optional<Foot> foot = takes(edge, one.vertex, closed_from)) {
                 report.largest_move = std::max(report.largest_move, foot->distance);

@@ -1,5 +1,6 @@
 #include "creep/creep.hpp"
 
+#include "joint/chain.hpp"
 #include "rock/elasticity.hpp"
 
 #include <algorithm>
@@ -12,34 +13,6 @@ namespace jointcreep::creep
 
 namespace
 {
-
-Chain chain_of(const EquivalentJoints& joints, std::size_t edge, int direction)
-{
-    const bool normal = direction == 0;
-    const auto& stiffness = normal ? joints.normal_kelvin_stiffness : joints.shear_kelvin_stiffness;
-    const auto& viscosity = normal ? joints.normal_kelvin_viscosity : joints.shear_kelvin_viscosity;
-    Chain chain{normal ? joints.normal_stiffness[edge] : joints.shear_stiffness[edge], {}};
-    const std::size_t units = joints.kelvin_units();
-    for (std::size_t unit = edge * units; unit < (edge + 1) * units; ++unit)
-        if (stiffness[unit] > 0)
-            chain.units.push_back({stiffness[unit], viscosity[unit]});
-    const double maxwell =
-        normal ? joints.normal_maxwell_viscosity[edge] : joints.shear_maxwell_viscosity[edge];
-    if (maxwell > 0)
-        chain.units.push_back({0, maxwell});
-    return chain;
-}
-
-// Deviatoric stress is 2 G times the strain that has not crept.
-Chain chain_of(const Rock& rock)
-{
-    Chain chain{rock::twice_shear_modulus(rock), {}};
-    if (rock.kelvin)
-        chain.units.push_back({2 * rock.kelvin->modulus, 2 * rock.kelvin->viscosity});
-    if (rock.maxwell_viscosity)
-        chain.units.push_back({0, 2 * *rock.maxwell_viscosity});
-    return chain;
-}
 
 // A smooth joint has no shear traction that could creep.
 bool creeps(const Chain& chain)
@@ -68,7 +41,7 @@ Creep::Creep(const Scene& scene, const Network& network, const EquivalentJoints&
         const auto [found, is_new] = of_edge.try_emplace(mesh.contact_edge[c]);
         for (int i = 0; i < 2; ++i) {
             if (is_new)
-                found->second[i] = number_of(chain_of(joints, mesh.contact_edge[c], i));
+                found->second[i] = number_of(joint::chain_of(joints, mesh.contact_edge[c], i));
             const Index chain = found->second[i];
             if (chain < 0)
                 continue;
@@ -80,7 +53,7 @@ Creep::Creep(const Scene& scene, const Network& network, const EquivalentJoints&
 
     std::vector<Index> of_rock;
     for (const Rock& rock : scene.rocks)
-        of_rock.push_back(number_of(chain_of(rock)));
+        of_rock.push_back(number_of(rock::chain_of(rock)));
     units = 0;
     for (std::size_t z = 0; z < assembly.zones.size(); ++z) {
         const Index block = mesh.zone_block[assembly.zones.zone_of(z)];
@@ -156,7 +129,7 @@ void Creep::begin(double duration, mechanics::Assembly& assembly)
             continue;
         if (!is_under_way_)
             spring.before = contacts.traction[spring.contact][spring.direction] - spring.reference;
-        const Step& step = steps_[spring.chain];
+        const StepWeights& step = steps_[spring.chain];
         // Where a contact is open in situ its spring would carry `initial`, not the reference, 0.
         const double initial = contacts.initial_traction[spring.contact][spring.direction];
         spring.offset = step.compliance * (initial - spring.reference);
@@ -172,7 +145,7 @@ void Creep::begin(double duration, mechanics::Assembly& assembly)
         if (!is_under_way_)
             shear.before = rock::deviatoric(shear.bulk_modulus, chains_[shear.chain].spring / 2, crept(shear),
                                             assembly.zones.stress[shear.zone] - shear.reference);
-        const Step& step = steps_[shear.chain];
+        const StepWeights& step = steps_[shear.chain];
         shear.offset.setZero();
         for (std::size_t u = 0; u < step.units.size(); ++u)
             shear.offset += step.units[u].decay * crept_strain_[shear.first_unit + u] +
@@ -189,7 +162,7 @@ double Creep::end(mechanics::Assembly& assembly)
     for (const Spring& spring : springs_) {
         if (contacts.status[spring.contact] == ContactStatus::removed)
             continue;
-        const Step& step = steps_[spring.chain];
+        const StepWeights& step = steps_[spring.chain];
         const double after = contacts.traction[spring.contact][spring.direction] - spring.reference;
         for (std::size_t u = 0; u < step.units.size(); ++u) {
             double& displacement = crept_[spring.first_unit + u];
@@ -201,7 +174,7 @@ double Creep::end(mechanics::Assembly& assembly)
     for (const Shear& shear : shears_) {
         if (!assembly.zones.is_present[shear.zone])
             continue;
-        const Step& step = steps_[shear.chain];
+        const StepWeights& step = steps_[shear.chain];
         const Vector3d after = rock::deviatoric(shear.bulk_modulus, step.acting_stiffness / 2, shear.offset,
                                                 assembly.zones.stress[shear.zone] - shear.reference);
         for (std::size_t u = 0; u < step.units.size(); ++u) {
@@ -245,9 +218,9 @@ StepLimit longest_step(const EquivalentJoints& joints, const std::vector<Rock>& 
     };
     for (std::size_t e = 0; e < joints.normal_stiffness.size(); ++e)
         for (const int direction : {0, 1})
-            consider(chain_of(joints, e, direction), static_cast<Index>(e), -1);
+            consider(joint::chain_of(joints, e, direction), static_cast<Index>(e), -1);
     for (std::size_t r = 0; r < rocks.size(); ++r)
-        consider(chain_of(rocks[r]), -1, static_cast<Index>(r));
+        consider(rock::chain_of(rocks[r]), -1, static_cast<Index>(r));
     return limit;
 }
 

@@ -86,8 +86,8 @@ private:
     Vector3d crept(const Shear& shear) const;
 
     CreepScheme scheme_ = CreepScheme::fitted;
-    std::vector<Chain> chains_; // each once
-    std::vector<Step> steps_;   // of the chains
+    std::vector<Chain> chains_;      // each once
+    std::vector<StepWeights> steps_; // of the chains
     std::vector<Spring> springs_;
     std::vector<Shear> shears_;
     std::vector<double> crept_;          // displacement of every unit of springs_ [m]

@@ -18,8 +18,8 @@ struct AtStart {
 
 // Change of a d_0 + c_0 F_0 by the product rule: weights times changed values, plus changed weights times values.
 template <class Value>
-Value change_by_start(const Step::Weights& one, const AtStart<Value>& of_one, const Step::Weights& other,
-                      const AtStart<Value>& of_other)
+Value change_by_start(const StepWeights::OfUnit& one, const AtStart<Value>& of_one,
+                      const StepWeights::OfUnit& other, const AtStart<Value>& of_other)
 {
     return one.decay * of_one.d + other.decay * of_other.d + one.first * of_one.F + other.first * of_other.F;
 }
@@ -89,7 +89,7 @@ void CreepChanges::begin_springs(const Creep& creep, const StepChanges& steps,
         const Creep::Spring& spring = creep.springs()[s];
         if (is_removed(contacts, spring))
             continue;
-        const Step &step = steps.step[spring.chain], &by = steps.joint_change[spring.chain];
+        const StepWeights &step = steps.step[spring.chain], &by = steps.joint_change[spring.chain];
         const Index c = spring.contact;
         const int i = spring.direction;
         before_[s] = changes.traction[c][i] - reference_[s];
@@ -114,7 +114,7 @@ void CreepChanges::begin_shears(const Creep& creep, const StepChanges& steps, co
         const Creep::Shear& shear = creep.shears()[s];
         if (!zones.is_present[shear.zone])
             continue;
-        const Step &step = steps.step[shear.chain], &by = steps.rock_change[shear.chain];
+        const StepWeights &step = steps.step[shear.chain], &by = steps.rock_change[shear.chain];
         Vector3d crept(0, 0, 0), offset(0, 0, 0);
         for (std::size_t u = 0; u < step.units.size(); ++u)
             crept += crept_strain_[shear.first_unit + u];
@@ -138,7 +138,7 @@ void CreepChanges::end_springs(const Creep& creep, const StepChanges& steps, con
 {
     for (std::size_t s = 0; s < creep.springs().size(); ++s) {
         const Creep::Spring& spring = creep.springs()[s];
-        const Step &step = steps.step[spring.chain], &by = steps.joint_change[spring.chain];
+        const StepWeights &step = steps.step[spring.chain], &by = steps.joint_change[spring.chain];
         const Index c = spring.contact;
         const int i = spring.direction;
         const double after = contacts.traction[c][i] - spring.reference,
@@ -167,7 +167,7 @@ void CreepChanges::end_shears(const Creep& creep, const StepChanges& steps, cons
         const Index z = shear.zone;
         if (!zones.is_present[z])
             continue;
-        const Step &step = steps.step[shear.chain], &by = steps.rock_change[shear.chain];
+        const StepWeights &step = steps.step[shear.chain], &by = steps.rock_change[shear.chain];
         const double modulus = step.acting_stiffness / 2, modulus_change = by.acting_stiffness / 2;
         const Vector3d now = zones.stress[z] - shear.reference,
                        now_change = changes.stress[z] - reference_stress_[s];

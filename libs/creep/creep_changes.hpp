@@ -12,10 +12,10 @@ namespace jointcreep::creep
 
 // The weights of a step for each chain of a Creep, and their changes.
 struct StepChanges {
-    std::vector<Step> step;
+    std::vector<StepWeights> step;
     std::vector<Chain> chain_change; // for chains of joints; those of rock do not change
-    std::vector<Step> joint_change;
-    std::vector<Step> rock_change; // by the duration only
+    std::vector<StepWeights> joint_change;
+    std::vector<StepWeights> rock_change; // by the duration only
 };
 // For joints whose chains change by `chain_change`, and a duration [s] that changes by `duration_change` [s].
 StepChanges step_changes(const Creep& creep, std::vector<Chain> chain_change, double duration,

@@ -92,7 +92,7 @@ Number last_weight(CreepScheme scheme, Number x, Number r)
     return 0;
 }
 
-// Step::Weights, of numbers that may have a change.
+// StepWeights::OfUnit, of numbers that may have a change.
 template <class Number>
 struct WeightsOf {
     Number decay, first, last;
@@ -138,12 +138,12 @@ bool is_second_order(CreepScheme scheme)
     return scheme == CreepScheme::linear_force || scheme == CreepScheme::fitted;
 }
 
-Step step_of(const Chain& chain, CreepScheme scheme, double duration)
+StepWeights step_of(const Chain& chain, CreepScheme scheme, double duration)
 {
     const CreepScheme other =
         scheme == CreepScheme::linear_force ? CreepScheme::fitted : CreepScheme::linear_force;
     const double rate = relaxation_rate(chain);
-    Step step{{}, 0, 0, 0};
+    StepWeights step{{}, 0, 0, 0};
     double others = 0;
     for (const KelvinUnit& unit : chain.units) {
         const auto weights = weights_of(unit.stiffness, unit.viscosity, rate, scheme, duration);
@@ -156,8 +156,8 @@ Step step_of(const Chain& chain, CreepScheme scheme, double duration)
     return step;
 }
 
-Step change_of_step(const Chain& chain, const Chain& change, CreepScheme scheme, double duration,
-                    double duration_change)
+StepWeights change_of_step(const Chain& chain, const Chain& change, CreepScheme scheme, double duration,
+                           double duration_change)
 {
     const Changing spring(chain.spring, change.spring);
     std::vector<std::pair<Changing, Changing>> units;
@@ -165,7 +165,7 @@ Step change_of_step(const Chain& chain, const Chain& change, CreepScheme scheme,
         units.push_back({{chain.units[u].stiffness, change.units[u].stiffness},
                          {chain.units[u].viscosity, change.units[u].viscosity}});
     const Changing rate = relaxation_rate(spring, units);
-    Step step{{}, 0, 0, 0};
+    StepWeights step{{}, 0, 0, 0};
     Changing compliance = 0;
     for (const auto& [stiffness, viscosity] : units) {
         const auto weights =

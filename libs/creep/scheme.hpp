@@ -15,6 +15,7 @@
 
 #pragma once
 
+#include "model/chain.hpp"
 #include "model/scene.hpp"
 
 #include <vector>
@@ -22,44 +23,29 @@
 namespace jointcreep::creep
 {
 
-// In joints stiffnesses are in Pa/m and viscosities in Pa s/m; in rock Pa and Pa s.
-struct KelvinUnit {
-    double stiffness; // E; 0 for a Maxwell dashpot
-    double viscosity; // eta
-
-    bool operator==(const KelvinUnit&) const = default;
-};
-
-struct Chain {
-    double spring; // K, above 0
-    std::vector<KelvinUnit> units;
-
-    bool operator==(const Chain&) const = default;
-};
-
 // The weights of a step.
-struct Step {
-    struct Weights {
+struct StepWeights {
+    struct OfUnit {
         double decay;       // a [-]
         double first, last; // c_0, c_1 [m/Pa]
     };
-    std::vector<Weights> units;
+    std::vector<OfUnit> units;
     double compliance;       // sum of all c_1 [m/Pa]
     double acting_stiffness; // 1 / (1 / K + compliance): that of the chain during the step [Pa/m]
-    double
-        doubt; // what the compliance differs by from that of linear force, or with linear force from fitted
+    // What the compliance differs by from that of linear force, or with linear force from that of fitted [m/Pa].
+    double doubt;
 };
 
 // Whether a scheme is of second order in the step's length; the others are of first.
 bool is_second_order(CreepScheme scheme);
 
-Step step_of(const Chain& chain, CreepScheme scheme, double duration);
+StepWeights step_of(const Chain& chain, CreepScheme scheme, double duration);
 
 // What the weights of a step, its compliance and acting stiffness change by, to first order, where spring and
 // units change by `change`, which has the chain's units, and the duration by `duration_change` [s]; doubt is
 // 0.
-Step change_of_step(const Chain& chain, const Chain& change, CreepScheme scheme, double duration,
-                    double duration_change = 0);
+StepWeights change_of_step(const Chain& chain, const Chain& change, CreepScheme scheme, double duration,
+                           double duration_change = 0);
 
 // rho [1/s].
 double relaxation_rate(const Chain& chain);

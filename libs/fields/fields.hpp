@@ -55,8 +55,8 @@ using Values = std::variant<std::vector<double>*, std::vector<Index>*, std::vect
 struct Field {
     std::string path; // of the dataset
     Values values;
-    std::vector<std::string>
-        dimensions;    // names, also "name+1"; none for a single value, a dataset of one element
+    // Names, also "name+1"; none for a single value, a dataset of one element.
+    std::vector<std::string> dimensions;
     std::string units; // "1" for numbers without one, and for text
     Limits limits;
     std::string description;

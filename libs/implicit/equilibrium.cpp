@@ -271,7 +271,7 @@ bool Solver::is_at_rest(const Assembly& assembly, const State& start, double mea
 std::optional<Convergence> Solver::equilibrate(Assembly& assembly, const Equilibrium& settings,
                                                const std::vector<Vector2d>& guess)
 {
-    rock::forget_dissipated(assembly.zones);
+    begin_search(assembly);
     const State start = state_of(assembly);
     const auto give_up = [&] {
         go_back(assembly, start);
@@ -332,8 +332,7 @@ std::optional<Convergence> Solver::equilibrate(Assembly& assembly, const Equilib
     convergence.steps = corrections_;
     evaluate(assembly, start);
     convergence.stored = stored_energy(assembly) - stored_at_start;
-    convergence.dissipated =
-        joint::dissipated(assembly.contacts, start.contacts.state) + rock::dissipated(assembly.zones);
+    convergence.dissipated = dissipated(assembly, start);
     convergence.work_of_loads = work_of_loads(assembly, start.displacement);
     convergence.damped = convergence.work_of_loads - convergence.stored - convergence.dissipated;
     return convergence;

@@ -90,13 +90,11 @@ void Stiffness::number_unknowns(const Assembly& assembly)
 {
     // Gridpoints without rock stay where they are.
     std::vector<char> has_part(assembly.position.size(), 0);
-    for (std::size_t z = 0; z < assembly.zones.size(); ++z)
-        if (assembly.zones.is_present[z])
-            for (const Index g : assembly.zones.gridpoints(z))
-                has_part[g] = 1;
     std::vector<Index> leader(assembly.position.size());
-    for (std::size_t g = 0; g < leader.size(); ++g)
+    for (std::size_t g = 0; g < leader.size(); ++g) {
+        has_part[g] = has_rock(assembly.zones, static_cast<Index>(g)) ? 1 : 0;
         leader[g] = static_cast<Index>(g);
+    }
     for (const auto& [follower, first] : assembly.tied) {
         leader[follower] = first;
         has_part[first] = static_cast<char>(has_part[first] | has_part[follower]);
@@ -259,8 +257,8 @@ void Stiffness::add_to(std::vector<Vector2d>& over_gridpoints, const VectorXd& u
 VectorXd Stiffness::times(const Assembly& assembly, const std::vector<Tangent>& tangents,
                           const VectorXd& x) const
 {
-    VectorXd y =
-        zones_.transpose() * x; // it is symmetric, and rows are summed faster than columns are spread
+    // It is symmetric, and rows are summed faster than columns are spread.
+    VectorXd y = zones_.transpose() * x;
     for (const Index c : present_contact_)
         add_contact(assembly, c, tangents[c], x, y);
     return y;

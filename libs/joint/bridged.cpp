@@ -135,7 +135,7 @@ JointChain bridged(const JointChain& joint, const Bridging& bridging)
     if (!(joint.spring > 0))
         return chain; // a smooth joint has no shear traction that could creep
     if (bridges <= 0) {
-        for (const JointChain::KelvinUnit& unit : joint.units)
+        for (const KelvinUnit& unit : joint.units)
             chain.units.push_back({share * unit.stiffness, share * unit.viscosity});
         chain.maxwell_viscosity = share * joint.maxwell_viscosity;
         return chain;
@@ -149,7 +149,7 @@ JointChain bridged(const JointChain& joint, const Bridging& bridging)
     std::vector<Pole> poles;
     if (joint.maxwell_viscosity > 0)
         poles.push_back({0, 1 / joint.maxwell_viscosity});
-    for (const JointChain::KelvinUnit& unit : joint.units)
+    for (const KelvinUnit& unit : joint.units)
         poles.push_back({unit.stiffness / unit.viscosity, 1 / unit.viscosity});
     std::sort(poles.begin(), poles.end(), [](const Pole& a, const Pole& b) { return a.rate < b.rate; });
     std::vector<Pole> distinct;

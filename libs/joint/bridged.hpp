@@ -12,6 +12,7 @@
 
 #pragma once
 
+#include "model/chain.hpp"
 #include "model/scene.hpp"
 
 #include <vector>
@@ -51,10 +52,6 @@ double staggered_stiffness(double persistence, double spacing, double stiffness,
 // Elements along one direction of a joint: a spring, in series with Kelvin units and a Maxwell dashpot. All are those
 // of JointMaterial; a viscosity of 0 means no dashpot.
 struct JointChain {
-    struct KelvinUnit {
-        double stiffness; // [Pa/m]
-        double viscosity; // [Pa s/m]
-    };
     double spring; // [Pa/m]
     std::vector<KelvinUnit> units;
     double maxwell_viscosity; // [Pa s/m]

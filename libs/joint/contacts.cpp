@@ -8,6 +8,16 @@
 namespace jointcreep::joint
 {
 
+namespace
+{
+
+double normal_stiffness(const Contacts& contacts, std::size_t c)
+{
+    return slopes(contacts.law[c], contacts.state[c], contacts.traction[c].x()).k_n;
+}
+
+} // namespace
+
 ContactsState state_of(const Contacts& contacts)
 {
     return {contacts.offset, contacts.traction, contacts.relative_displacement, contacts.state,
@@ -48,7 +58,17 @@ Contacts contacts_of(const Scene& scene, const EquivalentJoints& joints, const M
     return contacts;
 }
 
-void find_forces_in_team(Contacts& contacts, std::span<const Vector2d> displacement, double damping)
+void find_incidence(Contacts& contacts, std::size_t n_gridpoints)
+{
+    std::vector<Index> gridpoint; // of each side
+    for (const auto& [a, b] : contacts.gridpoint)
+        gridpoint.insert(gridpoint.end(), {a, b});
+    contacts.sides = {gridpoint, n_gridpoints};
+    contacts.force.assign(contacts.gridpoint.size(), Vector2d::Zero());
+}
+
+void find_forces_in_team(Contacts& contacts, std::span<const Vector2d> displacement, double damping,
+                         bool /*forces_alone*/)
 {
     const auto n = static_cast<Index>(contacts.gridpoint.size());
     const Vector2d* u = displacement.data();
@@ -174,25 +194,84 @@ double stored_energy(const Contacts& contacts)
     return energy;
 }
 
-double work_on(const Contacts& contacts)
+std::vector<Stiffening> stiffening_of(const Contacts& contacts)
 {
-    return std::accumulate(contacts.work.begin(), contacts.work.end(), 0.0);
+    std::vector<Stiffening> found;
+    for (std::size_t c = 0; c < contacts.law.size(); ++c)
+        if (stiffens(contacts.law[c]) && contacts.status[c] != ContactStatus::removed)
+            found.push_back({c, room_to_stiffen * normal_stiffness(contacts, c)});
+    return found;
 }
 
-void forget_work(Contacts& contacts)
+bool are_beyond(const Contacts& contacts, const std::vector<Stiffening>& stiffening)
+{
+    return std::ranges::any_of(stiffening, [&](const Stiffening& one) {
+        return normal_stiffness(contacts, one.contact) > one.most;
+    });
+}
+
+void begin_search(Contacts& contacts, bool /*damps_stiffness*/)
 {
     std::fill(contacts.work.begin(), contacts.work.end(), 0.0);
+    contacts.stored_before = stored_energy(contacts);
 }
 
-double dissipated(const Contacts& contacts, const std::vector<State>& start)
+double dissipated(const Contacts& contacts)
+{
+    return contacts.stored_before + std::accumulate(contacts.work.begin(), contacts.work.end(), 0.0) -
+           stored_energy(contacts);
+}
+
+double dissipated(const Contacts& contacts, const ContactsState& start)
 {
     double energy = 0;
     for (std::size_t c = 0; c < contacts.status.size(); ++c)
         if (contacts.status[c] != ContactStatus::removed)
             energy += contacts.length[c] *
-                      (contacts.traction[c].y() * (contacts.state[c].slip - start[c].slip) +
-                       contacts.traction[c].x() * (contacts.state[c].dilation - start[c].dilation));
+                      (contacts.traction[c].y() * (contacts.state[c].slip - start.state[c].slip) +
+                       contacts.traction[c].x() * (contacts.state[c].dilation - start.state[c].dilation));
     return energy;
+}
+
+void join(const Contacts& contacts, DisjointSets& gridpoints)
+{
+    for (std::size_t c = 0; c < contacts.gridpoint.size(); ++c)
+        if (contacts.status[c] != ContactStatus::removed)
+            gridpoints.join(contacts.gridpoint[c][0], contacts.gridpoint[c][1]);
+}
+
+void excavate(Contacts& contacts, const std::vector<char>& is_gone)
+{
+    for (std::size_t c = 0; c < contacts.gridpoint.size(); ++c) {
+        const auto [a, b] = contacts.gridpoint[c];
+        if (contacts.status[c] == ContactStatus::removed || (!is_gone[a] && !is_gone[b]))
+            continue;
+        contacts.force[c].setZero();
+        contacts.traction[c].setZero();
+        contacts.status[c] = ContactStatus::removed;
+    }
+}
+
+double slip_beside_springs(const Contacts& contacts, std::size_t c)
+{
+    const double stiffness = k_s(contacts.law[c]);
+    return stiffness > 0 ? contacts.relative_displacement[c].y() -
+                               (contacts.traction[c].y() - contacts.initial_traction[c].y()) / stiffness
+                         : 0.0;
+}
+
+double penetration(const Contacts& contacts)
+{
+    double deepest = 0;
+    for (std::size_t c = 0; c < contacts.status.size(); ++c) {
+        if (contacts.status[c] == ContactStatus::removed)
+            continue;
+        const double of_springs = contacts.status[c] == ContactStatus::open
+                                      ? 0.0
+                                      : opening(contacts.law[c], contacts.traction[c].x());
+        deepest = std::max(deepest, of_springs - opening_of(contacts, c));
+    }
+    return deepest;
 }
 
 void start_from_here(Contacts& contacts)
@@ -252,18 +331,18 @@ void transfer(const Transfer& to, Contacts& contacts, Checkpoint& kept)
     to.values(contacts.state, kept.third_memory, memory(2));
 }
 
-void transfer(Tape& tape, Contacts& contacts)
+void pass(Tape& tape, Contacts& contacts)
 {
-    const auto pass = [&](std::vector<State>& states) {
+    const auto pass_states = [&](std::vector<State>& states) {
         for (auto& [slip, dilation, is_broken, memory] : states)
             tape(slip, dilation, is_broken, memory);
     };
-    pass(contacts.state);
+    pass_states(contacts.state);
     tape(contacts.traction, contacts.relative_displacement, contacts.status, contacts.work);
     const std::size_t by_faces = tape.size(contacts.state_by_faces.size());
     Tape::check(by_faces == 0 || by_faces == contacts.state.size());
     contacts.state_by_faces.resize(by_faces);
-    pass(contacts.state_by_faces);
+    pass_states(contacts.state_by_faces);
 }
 
 } // namespace jointcreep::joint

@@ -3,7 +3,9 @@
 #pragma once
 
 #include "joint/law.hpp"
+#include "model/by_gridpoint.hpp"
 #include "model/checkpoint.hpp"
+#include "model/disjoint_sets.hpp"
 #include "model/network.hpp"
 #include "model/result.hpp"
 #include "model/scene.hpp"
@@ -27,16 +29,22 @@ struct Contacts {
     std::vector<double> length;                  // [m]
     std::vector<Law> law;
     std::vector<State> state;
-    std::vector<Vector2d>
-        initial_traction;           // at zero displacement; where open, the normal part is k_n x gap [Pa]
-    std::vector<Vector2d> offset;   // displacement with the initial spring traction: creep [m]
-    std::vector<Vector2d> traction; // now [Pa]
+    // At zero displacement; where open, the normal part is k_n x gap [Pa].
+    std::vector<Vector2d> initial_traction;
+    std::vector<Vector2d> offset;                // displacement with the initial spring traction: creep [m]
+    std::vector<Vector2d> traction;              // now [Pa]
     std::vector<Vector2d> relative_displacement; // displacement of b minus that of a, now [m]
     std::vector<ContactStatus> status;           // now; removed once a side is excavated
-    std::vector<double> work;    // done on it since the last forget_work(), by the trapezoidal rule [J/m]
-    std::vector<Vector2d> force; // on side a; filled with the tractions [N/m]
+    std::vector<Vector2d> force;                 // on side a; filled with the tractions [N/m]
     // In place of `state` in records: states from a dynamic analysis with large displacements; else empty.
     std::vector<State> state_by_faces;
+
+    // Of the search for equilibrium, since begin_search: work on each contact by the trapezoidal rule, and what all
+    // of them had stored before [J/m].
+    std::vector<double> work;
+    double stored_before = 0;
+
+    ByGridpoint sides; // 2 contact + side (0 a, 1 b); filled by find_incidence
 };
 
 // What equilibria and creep change in Contacts.
@@ -51,10 +59,26 @@ void go_back(Contacts& contacts, const ContactsState& state);
 // All contacts of a mesh, with the scene's in-situ stress at their centres, at zero displacement.
 Contacts contacts_of(const Scene& scene, const EquivalentJoints& joints, const Mesh& mesh);
 
+// Finds which contacts are at each gridpoint.
+void find_incidence(Contacts& contacts, std::size_t n_gridpoints);
+
 // Tractions and forces at the displacements of all gridpoints [m]. Call it from every thread of an OpenMP parallel
 // region; the forces are complete after a barrier. Slip and breaking are updated in the states; a second call changes
-// nothing. `damping` is the rate of stiffness damping over the step [-].
-void find_forces_in_team(Contacts& contacts, std::span<const Vector2d> displacement, double damping);
+// nothing. `damping` is the rate of stiffness damping over the step [-]. Forces alone are found as all are.
+void find_forces_in_team(Contacts& contacts, std::span<const Vector2d> displacement, double damping,
+                         bool forces_alone);
+
+// Adds the forces of the contacts at a gridpoint [N/m], or their magnitudes.
+inline void add_force_on(const Contacts& contacts, Index gridpoint, Vector2d& force)
+{
+    for (const Index side : contacts.sides.at(gridpoint))
+        force += (1 - 2 * (side & 1)) * contacts.force[side >> 1]; // a product is quicker than a branch
+}
+inline void add_magnitudes_on(const Contacts& contacts, Index gridpoint, double& magnitudes)
+{
+    for (const Index side : contacts.sides.at(gridpoint))
+        magnitudes += contacts.force[side / 2].norm();
+}
 
 // Opening of a contact beyond the point where it touches; if negative, its closing, springs included [m].
 double opening_of(const Contacts& contacts, std::size_t c);
@@ -112,12 +136,36 @@ inline constexpr double room_to_stiffen = 2;
 // Adds the row sums of the magnitudes of the contacts' stiffness {x, y} to the sums of their gridpoints [Pa].
 void add_row_sums(const Contacts& contacts, std::vector<Vector2d>& sums);
 
-// Energy stored in contacts [J/m]; only differences have a meaning. Work on them since forget_work() [J/m].
+// Contacts that grow stiffer as they close, with the normal stiffness up to which row sums hold now [Pa/m].
+struct Stiffening {
+    std::size_t contact;
+    double most;
+};
+std::vector<Stiffening> stiffening_of(const Contacts& contacts);
+// Whether any of them is stiffer now.
+bool are_beyond(const Contacts& contacts, const std::vector<Stiffening>& stiffening);
+
+// Energy stored in contacts [J/m]; only differences have a meaning.
 double stored_energy(const Contacts& contacts);
-double work_on(const Contacts& contacts);
-void forget_work(Contacts& contacts);
-// Energy lost by slip and dilation since the states `start`, under the present tractions (backward Euler) [J/m].
-double dissipated(const Contacts& contacts, const std::vector<State>& start);
+
+// Before a search for equilibrium: counts dissipated energy from here. Contacts need not know of stiffness damping.
+void begin_search(Contacts& contacts, bool damps_stiffness);
+// Energy lost by slip and dilation since then [J/m]: along the path; or straight from the states at the start, under the
+// present tractions (backward Euler).
+double dissipated(const Contacts& contacts);
+double dissipated(const Contacts& contacts, const ContactsState& start);
+
+// Joins the gridpoints of each contact that is there.
+void join(const Contacts& contacts, DisjointSets& gridpoints);
+
+// Removes the contacts that have a gridpoint for which `is_gone` is set.
+void excavate(Contacts& contacts, const std::vector<char>& is_gone);
+
+// Shear displacement that is not in the shear springs [m]; 0 for a smooth joint.
+double slip_beside_springs(const Contacts& contacts, std::size_t c);
+
+// The deepest that a contact is closed beyond its normal traction over its stiffness [m].
+double penetration(const Contacts& contacts);
 
 // Makes the present tractions those at zero displacement.
 void start_from_here(Contacts& contacts);
@@ -131,6 +179,6 @@ void record_state(const Contacts& contacts, States& states);
 void transfer(const Transfer& to, Contacts& contacts, Checkpoint& kept);
 
 // What a search for equilibrium changes.
-void transfer(Tape& tape, Contacts& contacts);
+void pass(Tape& tape, Contacts& contacts);
 
 } // namespace jointcreep::joint

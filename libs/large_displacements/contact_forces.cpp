@@ -16,8 +16,8 @@ namespace
 {
 
 constexpr double deepest = 0.5; // overlap over the depth of the thinner zone, at most
-constexpr double deepest_new =
-    0.1; // the same where two faces come to touch; farther in, one lies behind the other, or has slid on
+// The same where two faces come to touch; farther in, one lies behind the other, or has slid on.
+constexpr double deepest_new = 0.1;
 
 double depth_of(const FacePair& pair, const Faces& faces)
 {
@@ -59,7 +59,7 @@ bool is_deep(const FacePair& pair, const Overlap& found, const Faces& faces,
 class ContactForce
 {
 public:
-    ContactForce(FacePair& pair, const joint::Law& law, const Faces& faces, const Step& step)
+    ContactForce(FacePair& pair, const joint::Law& law, const Faces& faces, const TimeStep& step)
         : pair_(pair), law_(law), move_a_(ends_of(faces.gridpoint[pair.a], step.move)),
           move_b_(ends_of(faces.gridpoint[pair.b], step.move)),
           dashpots_(step.viscosity / step.dt), last_{pair.normal,     pair.length,     pair.tau,
@@ -220,7 +220,7 @@ private:
 
 } // namespace
 
-FaceContacts::Touch FaceContacts::find_force(FacePair& pair, const Step& step, bool may_close) const
+FaceContacts::Touch FaceContacts::find_force(FacePair& pair, const TimeStep& step, bool may_close) const
 {
     ContactForce force(pair, laws_[pair.law], faces_, step);
     const auto found = overlap_of(pair, faces_, shapes_, step.place);
@@ -249,7 +249,7 @@ FaceContacts::Touch FaceContacts::find_force(FacePair& pair, const Step& step, b
 
 // Sets the inherited state of an open pair that comes to touch. Returns false if it stays open, because other faces
 // touch there.
-bool FaceContacts::comes_to_touch(FacePair& pair, const Overlap& found, const Step& step) const
+bool FaceContacts::comes_to_touch(FacePair& pair, const Overlap& found, const TimeStep& step) const
 {
     const auto sunk_of = [&](const FacePair& other) {
         const auto overlap = overlap_of(other, faces_, shapes_, step.place);

@@ -26,7 +26,7 @@ constexpr double slow = 0.01;          // below this speed everywhere, motion is
 } // namespace
 
 // Results of moving the rock by one step: energies [J/m] and the largest speed.
-struct Dynamics::Moved {
+struct Dynamics::MovedRock {
     double kinetic = 0, damped = 0;
     double fastest = 0; // [m2/s2]
     Index fastest_gridpoint = -1;
@@ -38,7 +38,7 @@ struct Dynamics::Moved {
             fastest_gridpoint = g;
         }
     }
-    void operator+=(const Moved& other)
+    void operator+=(const MovedRock& other)
     {
         kinetic += other.kinetic;
         damped += other.damped;
@@ -236,12 +236,11 @@ void Dynamics::find_forces(const std::vector<Vector2d>& move)
     contacts_.update(now_.place, move, now_.dt, settings_.stiffness_damping, assembly_.threads);
     const double held = release_factor();
     now_.force.resize(now_.place.size());
-    const mechanics::Incidence& incidence = assembly_.incidence;
     for_each(static_cast<Index>(now_.place.size()), assembly_.threads, [&](Index g) {
         Vector2d force = assembly_.load[g] + assembly_.applied[g] + held * released_[g];
         if (any_deforms_)
-            for (Index k = incidence.zone_start[g]; k < incidence.zone_start[g + 1]; ++k)
-                force += zones_.corner_force[incidence.zone_corner[k]];
+            for (const Index corner : assembly_.zones.corners.at(g))
+                force += zones_.corner_force[corner];
         now_.force[g] = force;
     });
     contacts_.add_forces(now_.force, assembly_.threads);
@@ -266,14 +265,14 @@ Dynamics::Leap Dynamics::leap(double first_half_of_step) const
 }
 
 // Newton's law: velocities, and positions at the end of the step.
-Dynamics::Moved Dynamics::move_rock()
+Dynamics::MovedRock Dynamics::move_rock()
 {
     const auto n = static_cast<Index>(now_.place.size());
     const double alpha = settings_.mass_damping;
     const auto [keep, gain] = leap(first_half());
     move_.resize(n);
-    Moved moved =
-        sum_in_chunks<Moved>(n, assembly_.threads, [&, keep = keep, gain = gain](Index g, Moved& some) {
+    MovedRock moved = sum_in_chunks<MovedRock>(
+        n, assembly_.threads, [&, keep = keep, gain = gain](Index g, MovedRock& some) {
             if (now_.inverse_mass[g] == 0) {
                 move_[g].setZero();
                 return;
@@ -288,14 +287,14 @@ Dynamics::Moved Dynamics::move_rock()
             move_[g] = now_.dt * v;
             add(move_[g], now_.place[g], now_.lost[g]);
         });
-    moved += sum_in_chunks<Moved>(static_cast<Index>(bodies_.size()), assembly_.threads,
-                                  [&, keep = keep, gain = gain](Index b, Moved& some) {
-                                      const double before = move(bodies_[b], keep, gain);
-                                      some.kinetic += before;
-                                      some.damped += 2 * alpha * now_.dt * before;
-                                      for (const Index g : bodies_[b].gridpoint)
-                                          some.see(now_.velocity[g], g);
-                                  });
+    moved += sum_in_chunks<MovedRock>(static_cast<Index>(bodies_.size()), assembly_.threads,
+                                      [&, keep = keep, gain = gain](Index b, MovedRock& some) {
+                                          const double before = move(bodies_[b], keep, gain);
+                                          some.kinetic += before;
+                                          some.damped += 2 * alpha * now_.dt * before;
+                                          for (const Index g : bodies_[b].gridpoint)
+                                              some.see(now_.velocity[g], g);
+                                      });
     return moved;
 }
 
@@ -314,7 +313,7 @@ Dynamics::Work Dynamics::work_of_loads(double held) const
 void Dynamics::step()
 {
     const double held = release_factor();
-    const Moved moved = move_rock();
+    const MovedRock moved = move_rock();
     now_.energy.damped += moved.damped;
     if (moved.fastest_gridpoint >= 0)
         now_.fastest_gridpoint = moved.fastest_gridpoint;
@@ -427,14 +426,13 @@ Dynamics::Balance Dynamics::balance(const std::vector<Vector2d>& contact_force) 
     Balance found;
     double sum = 0;
     Index n = 0;
-    const mechanics::Incidence& incidence = assembly_.incidence;
     for (std::size_t g = 0; g < now_.place.size(); ++g) {
         if (body_of_[g] < 0)
             found.largest = std::max(found.largest, now_.force[g].cwiseProduct(assembly_.is_free[g]).norm());
         found.farthest = std::max(found.farthest, now_.place[g].norm());
         double all = assembly_.load[g].norm() + assembly_.applied[g].norm() + contact_force[g].norm();
-        for (Index k = incidence.zone_start[g]; k < incidence.zone_start[g + 1]; ++k)
-            all += zones_.corner_force[incidence.zone_corner[k]].norm();
+        for (const Index corner : assembly_.zones.corners.at(g))
+            all += zones_.corner_force[corner].norm();
         if (all > 0) {
             sum += all;
             ++n;

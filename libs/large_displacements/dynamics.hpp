@@ -114,7 +114,7 @@ private:
     };
 
     // Steps and energy: dynamics.cpp.
-    struct Moved;
+    struct MovedRock;
     struct Work;
     struct Leap;
     struct Balance;
@@ -124,7 +124,7 @@ private:
     void find_time_step();
     double first_half() const;
     Leap leap(double first_half_of_step) const;
-    Moved move_rock();
+    MovedRock move_rock();
     Work work_of_loads(double held) const;
     void find_forces(const std::vector<Vector2d>& move);
     void stop_at_peak(double kinetic);

@@ -50,7 +50,7 @@ void Dynamics::pass(Tape& tape)
     tape(contacts_);
     for (Body& body : bodies_)
         tape(body.centre, body.velocity, body.lost, body.angle, body.spin);
-    rock::transfer(tape, zones_);
+    rock::pass(tape, zones_);
     now_.pass(tape);
     tape(in_zones_.stored, in_zones_.friction, in_zones_.damped);
 }
@@ -125,13 +125,6 @@ void Dynamics::put_back_contacts()
     joint::Contacts& contacts = assembly_.contacts;
     const std::map<std::array<Index, 2>, Carried> carried = carried_by_pairs();
     contacts.state_by_faces = contacts.state;
-    // Shear displacement that is not in the shear springs.
-    const auto slip_of = [&](std::size_t c) {
-        const double k_s = joint::k_s(contacts.law[c]);
-        return k_s > 0 ? contacts.relative_displacement[c].y() -
-                             (contacts.traction[c].y() - contacts.initial_traction[c].y()) / k_s
-                       : 0.0;
-    };
     for (std::size_t c = 0; c < contacts.gridpoint.size(); ++c) {
         if (contacts.status[c] == ContactStatus::removed)
             continue;
@@ -145,11 +138,11 @@ void Dynamics::put_back_contacts()
                 continue;
             contacts.traction[c].setZero();
             contacts.status[c] = ContactStatus::open;
-            contacts.state_by_faces[c] = {.slip = slip_of(c), .is_broken = true};
+            contacts.state_by_faces[c] = {.slip = slip_beside_springs(contacts, c), .is_broken = true};
             continue;
         }
         contacts.traction[c] = found->second.force / found->second.length;
-        contacts.state_by_faces[c] = {.slip = slip_of(c),
+        contacts.state_by_faces[c] = {.slip = slip_beside_springs(contacts, c),
                                       .dilation = found->second.dilation / found->second.length,
                                       .is_broken = 2 * found->second.broken > found->second.length};
         contacts.status[c] = 2 * found->second.slipping > found->second.length ? ContactStatus::slipping

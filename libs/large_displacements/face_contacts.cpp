@@ -112,7 +112,7 @@ void FaceContacts::update(const std::vector<Vector2d>& place, const std::vector<
     if (dilates_)
         dilate(place, move);
 
-    const Step step{place, move, dt, viscosity};
+    const TimeStep step{place, move, dt, viscosity};
     Sum sum = find_forces(step, threads);
     if (sum.too_deep < static_cast<Index>(pairs_.size()))
         throw equilibrium_error(
@@ -131,7 +131,7 @@ void FaceContacts::update(const std::vector<Vector2d>& place, const std::vector<
 }
 
 // Forces of active pairs; pairs that come to touch are marked only.
-FaceContacts::Sum FaceContacts::find_forces(const Step& step, int threads)
+FaceContacts::Sum FaceContacts::find_forces(const TimeStep& step, int threads)
 {
     return sum_in_chunks<Sum>(static_cast<Index>(active_.size()), threads, [&](Index i, Sum& some) {
         if (!is_sought_ && farthest_ + raised_ < way_to_[i])
@@ -159,7 +159,7 @@ FaceContacts::Sum FaceContacts::find_forces(const Step& step, int threads)
 
 // Forces of pairs that come to touch. Pairs that lie behind are last: the pairs they may have slid on from must be
 // closed first.
-void FaceContacts::find_forces_of_new(const Step& step, Sum& sum)
+void FaceContacts::find_forces_of_new(const TimeStep& step, Sum& sum)
 {
     for (const bool is_behind : {false, true})
         for (std::size_t i = 0; i < active_.size(); ++i) {

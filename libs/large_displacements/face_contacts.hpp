@@ -90,7 +90,7 @@ struct FaceShape {
 };
 
 // A time step; forces are computed at its end.
-struct Step {
+struct TimeStep {
     const std::vector<Vector2d>& place; // of gridpoints, at its end [m]
     const std::vector<Vector2d>& move;  // their displacements in it [m]
     double dt;                          // [s]
@@ -174,14 +174,14 @@ private:
     void dilate(const std::vector<Vector2d>& place, const std::vector<Vector2d>& move);
 
     // The force of a pair: contact_forces.cpp.
-    Touch find_force(FacePair& pair, const Step& step, bool may_close) const;
-    bool comes_to_touch(FacePair& pair, const Overlap& found, const Step& step) const;
+    Touch find_force(FacePair& pair, const TimeStep& step, bool may_close) const;
+    bool comes_to_touch(FacePair& pair, const Overlap& found, const TimeStep& step) const;
 
     // Of all pairs.
     void find_shapes(const std::vector<Vector2d>& place, int threads);
     double farthest_since_search(const std::vector<Vector2d>& place, int threads) const;
-    Sum find_forces(const Step& step, int threads);
-    void find_forces_of_new(const Step& step, Sum& sum);
+    Sum find_forces(const TimeStep& step, int threads);
+    void find_forces_of_new(const TimeStep& step, Sum& sum);
     void take_forces(Index active);
 
     std::vector<joint::Law> laws_;

@@ -11,37 +11,16 @@ namespace jointcreep::mechanics
 namespace
 {
 
-// The places of each gridpoint in a list, in its order.
-void list_by_gridpoint(std::span<const Index> gridpoints, std::size_t n_gridpoints, std::vector<Index>& start,
-                       std::vector<Index>& entry)
-{
-    start.assign(n_gridpoints + 1, 0);
-    for (const Index g : gridpoints)
-        ++start[g + 1];
-    for (std::size_t g = 0; g < n_gridpoints; ++g)
-        start[g + 1] += start[g];
-    entry.resize(gridpoints.size());
-    std::vector<Index> next(start.begin(), start.end() - 1);
-    for (std::size_t i = 0; i < gridpoints.size(); ++i)
-        entry[next[gridpoints[i]]++] = static_cast<Index>(i);
-}
-
+// The order is the same for any number of threads.
 void add_up_forces(Assembly& assembly)
 {
-    const Incidence& incidence = assembly.incidence;
     const auto n = static_cast<Index>(assembly.position.size());
     const Index n_chunks = chunks_of(assembly);
-    const Vector2d *in_slot = assembly.slots.force.data(), *of_contact = assembly.contacts.force.data();
 #pragma omp for schedule(static) nowait
     for (Index k = 0; k < n_chunks; ++k)
         for (Index g = k * chunk; g < std::min(n, (k + 1) * chunk); ++g) {
             Vector2d force = assembly.load[g] + assembly.applied[g];
-            for (Index i = incidence.slot_start[g]; i < incidence.slot_start[g + 1]; ++i)
-                force += in_slot[incidence.slot[i]];
-            for (Index i = incidence.contact_start[g]; i < incidence.contact_start[g + 1]; ++i) {
-                const Index side = incidence.contact_side[i];
-                force += (1 - 2 * (side & 1)) * of_contact[side >> 1]; // a product is quicker than a branch
-            }
+            for_each_force(assembly, [&](const auto& one) { add_force_on(one, g, force); });
             assembly.force[g] = force;
         }
 }
@@ -73,18 +52,7 @@ Assembly assemble(const Scene& scene, const Network& network, const EquivalentJo
 
 void find_incidence(Assembly& assembly)
 {
-    const std::size_t n = assembly.position.size();
-    Incidence& incidence = assembly.incidence;
-    list_by_gridpoint(assembly.zones.gridpoint, n, incidence.zone_start, incidence.zone_corner);
-    std::vector<Index> sides;
-    for (const auto& [a, b] : assembly.contacts.gridpoint)
-        sides.insert(sides.end(), {a, b});
-    list_by_gridpoint(sides, n, incidence.contact_start, incidence.contact_side);
-
-    std::vector<Index> gridpoint_of_slot;
-    assembly.slots = rock::slots_of(assembly.zones, n, gridpoint_of_slot);
-    list_by_gridpoint(gridpoint_of_slot, n, incidence.slot_start, incidence.slot);
-    assembly.contacts.force.assign(assembly.contacts.gridpoint.size(), Vector2d::Zero());
+    for_each_force(assembly, [&](auto& one) { find_incidence(one, assembly.position.size()); });
 }
 
 void part_ties(Assembly& assembly, Index stage)
@@ -122,8 +90,8 @@ void find_forces_in_team(Assembly& assembly, bool forces_alone)
             assembly.displacement[follower] = assembly.displacement[leader];
     }
     const double damping = assembly.stiffness_damping_rate;
-    rock::find_forces_in_team(assembly.zones, assembly.slots, assembly.displacement, damping, forces_alone);
-    joint::find_forces_in_team(assembly.contacts, assembly.displacement, damping);
+    for_each_force(
+        assembly, [&](auto& one) { find_forces_in_team(one, assembly.displacement, damping, forces_alone); });
 #pragma omp barrier
     add_up_forces(assembly);
     if (!assembly.tied.empty()) {
@@ -150,7 +118,6 @@ double stored_energy(const Assembly& assembly)
 
 Balance balance_of(const Assembly& assembly)
 {
-    const Incidence& incidence = assembly.incidence;
     struct OfChunk {
         double largest = 0, sum = 0;
         Index worst = 0, n = 0;
@@ -170,10 +137,7 @@ Balance balance_of(const Assembly& assembly)
                     break;
             }
             double magnitudes = assembly.load[g].norm() + assembly.applied[g].norm();
-            for (Index i = incidence.slot_start[g]; i < incidence.slot_start[g + 1]; ++i)
-                magnitudes += assembly.slots.magnitudes[incidence.slot[i]];
-            for (Index i = incidence.contact_start[g]; i < incidence.contact_start[g + 1]; ++i)
-                magnitudes += assembly.contacts.force[incidence.contact_side[i] / 2].norm();
+            for_each_force(assembly, [&](const auto& one) { add_magnitudes_on(one, g, magnitudes); });
             if (magnitudes > 0) {
                 here.sum += magnitudes;
                 ++here.n;
@@ -256,17 +220,38 @@ void start_from_here(Assembly& assembly)
     find_forces(assembly);
 }
 
+void begin_search(Assembly& assembly, bool damps_stiffness)
+{
+    for_each_force(assembly, [&](auto& one) { begin_search(one, damps_stiffness); });
+}
+
+double dissipated(const Assembly& assembly)
+{
+    double energy = 0;
+    for_each_force(assembly, [&](const auto& one) { energy += dissipated(one); });
+    return energy;
+}
+
+double dissipated(const Assembly& assembly, const State& start)
+{
+    double energy = 0;
+    for_each_force(assembly, start,
+                   [&](const auto& one, const auto& its_start) { energy += dissipated(one, its_start); });
+    return energy;
+}
+
 State state_of(const Assembly& assembly)
 {
-    return {assembly.displacement, assembly.force, state_of(assembly.zones), state_of(assembly.contacts)};
+    State state{assembly.displacement, assembly.force, {}, {}};
+    for_each_force(assembly, state, [](const auto& one, auto& its_state) { its_state = state_of(one); });
+    return state;
 }
 
 void go_back(Assembly& assembly, const State& state)
 {
     assembly.displacement = state.displacement;
     assembly.force = state.force;
-    go_back(assembly.zones, state.zones);
-    go_back(assembly.contacts, state.contacts);
+    for_each_force(assembly, state, [](auto& one, const auto& its_state) { go_back(one, its_state); });
 }
 
 // What is not passed on is as in a new assembly, or found anew before it is used.
@@ -279,6 +264,12 @@ void transfer(const Transfer& to, Assembly& assembly, Checkpoint& kept)
     if (to.restores())
         part_ties(assembly, kept.unloaded > 0 ? kept.stage : kept.stage - 1);
     for_each_force(assembly, [&](auto& one) { transfer(to, one, kept); });
+}
+
+void pass(Tape& tape, Assembly& assembly)
+{
+    tape(assembly.displacement, assembly.force);
+    for_each_force(assembly, [&](auto& one) { pass(tape, one); });
 }
 
 void record_state(const Assembly& assembly, States& states)

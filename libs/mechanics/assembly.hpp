@@ -22,22 +22,11 @@ namespace jointcreep::mechanics
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-// What a gridpoint is part of, and in which order forces are added up, whatever the number of threads: a
-// gridpoint adds up its slots (rock/zones.hpp), then its contacts.
-struct Incidence {
-    std::vector<Index> zone_start;    // [gridpoints + 1]
-    std::vector<Index> zone_corner;   // place in Zones::gridpoint
-    std::vector<Index> contact_start; // [gridpoints + 1]
-    std::vector<Index> contact_side;  // 2 contact + side (0 a, 1 b)
-    std::vector<Index> slot_start;    // [gridpoints + 1]
-    std::vector<Index> slot;          // those of each gridpoint
-};
-
 struct Assembly {
+    // What has forces on gridpoints, beside loads. A new kind of force is one more member here, in State and in both
+    // for_each_force.
     rock::Zones zones;
-    rock::Slots slots;
     joint::Contacts contacts;
-    Incidence incidence;
 
     // Gridpoints.
     std::vector<Vector2d> position;       // at the start [m]
@@ -57,18 +46,33 @@ struct Assembly {
     std::vector<Tie> ties;
     std::vector<std::array<Index, 2>> tied; // from the ties still there: {follower, leader}
 
-    double stiffness_damping_rate =
-        0; // beta / dt: forces grow by this times their change since the last step [-]
+    // beta / dt: forces grow by this times their change since the last step [-].
+    double stiffness_damping_rate = 0;
     int threads = 1;
 };
 
-// The forces on gridpoints beside loads, each kind in turn. Each has the functions that are called with it:
-// stored_energy, start_from_here, record_state, transfer, add_row_sums.
+// What equilibria and creep change, for going back to it.
+struct State {
+    std::vector<Vector2d> displacement, force;
+    rock::ZonesState zones;
+    joint::ContactsState contacts;
+};
+
+// Each kind of force in turn, always in this order; or each with its state. A kind has, in its own folder, the functions
+// that are called with it; rock/zones.hpp and joint/contacts.hpp say what they do:
+//   find_incidence, find_forces_in_team, add_force_on, add_magnitudes_on, add_row_sums, stored_energy,
+//   begin_search, dissipated, pass, state_of, go_back, start_from_here, transfer, record_state, join.
 template <class OfAssembly, class Call>
 void for_each_force(OfAssembly& assembly, const Call& call)
 {
     call(assembly.zones);
     call(assembly.contacts);
+}
+template <class OfAssembly, class OfState, class Call>
+void for_each_force(OfAssembly& assembly, OfState& state, const Call& call)
+{
+    call(assembly.zones, state.zones);
+    call(assembly.contacts, state.contacts);
 }
 
 // The assembly under the scene's in-situ stress, at zero displacement, all rock present. Contact tractions
@@ -76,7 +80,7 @@ void for_each_force(OfAssembly& assembly, const Call& call)
 Assembly assemble(const Scene& scene, const Network& network, const EquivalentJoints& equivalent,
                   const Mesh& mesh);
 
-// Finds which zones, contacts and gridpoints belong together; part of assemble.
+// Finds which zones and contacts are at each gridpoint; part of assemble.
 void find_incidence(Assembly& assembly);
 
 // Ends the ties that a stage separates.
@@ -96,8 +100,14 @@ void find_forces_in_team(Assembly& assembly, bool forces_alone);
 constexpr Index chunk = 512;
 Index chunks_of(const Assembly& assembly);
 
-// Energy that zones and contacts have stored [J/m]; only differences mean anything.
+// Energy that all kinds of force have stored [J/m]; only differences mean anything.
 double stored_energy(const Assembly& assembly);
+
+// Before a search for equilibrium: counts dissipated energy from here.
+void begin_search(Assembly& assembly, bool damps_stiffness = false);
+// Energy dissipated since then [J/m]: along the path; or straight from the state at the start.
+double dissipated(const Assembly& assembly);
+double dissipated(const Assembly& assembly, const State& start);
 
 struct Balance {
     double largest; // unbalanced force on a free gridpoint [N/m]
@@ -131,17 +141,15 @@ double size_of(const Assembly& assembly);
 // Makes the present state the one displacements count from.
 void start_from_here(Assembly& assembly);
 
-// What equilibria and creep change, for going back to it.
-struct State {
-    std::vector<Vector2d> displacement, force;
-    rock::ZonesState zones;
-    joint::ContactsState contacts;
-};
+// For going back to it.
 State state_of(const Assembly& assembly);
 void go_back(Assembly& assembly, const State& state);
 
 // What differs from a new assembly of the same section when a stage begins.
 void transfer(const Transfer& to, Assembly& assembly, Checkpoint& kept);
+
+// What a search for equilibrium changes.
+void pass(Tape& tape, Assembly& assembly);
 
 // Appends the present state of the forces to the states of a result.
 void record_state(const Assembly& assembly, States& states);

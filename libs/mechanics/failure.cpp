@@ -82,38 +82,31 @@ Failure failure_of(const no_equilibrium& error, const Mesh& mesh, const Assembly
 
 Failure failure_of_unsupported(const Mesh& mesh, const Assembly& assembly)
 {
-    // Pieces of rock: gridpoints joined by zones, ties and contacts that are not removed.
+    // Bodies of rock: gridpoints joined by zones, ties and contacts that are not removed.
     DisjointSets sets(assembly.position.size());
-    const rock::Zones& zones = assembly.zones;
-    for (std::size_t z = 0; z < zones.size(); ++z)
-        if (zones.is_present[z])
-            for (const Index g : zones.gridpoints(z))
-                sets.join(g, zones.gridpoints(z)[0]);
+    for_each_force(assembly, [&](const auto& one) { join(one, sets); });
     for (const auto& [a, b] : assembly.tied)
         sets.join(a, b);
-    for (std::size_t c = 0; c < assembly.contacts.gridpoint.size(); ++c)
-        if (assembly.contacts.status[c] != ContactStatus::removed)
-            sets.join(assembly.contacts.gridpoint[c][0], assembly.contacts.gridpoint[c][1]);
 
-    struct Piece {
+    struct Body {
         Vector2d resultant = Vector2d::Zero(), free = Vector2d::Ones(); // [N/m], 1 or 0
         double magnitudes = 0;                                          // [N/m]
     };
-    std::vector<Piece> pieces(assembly.position.size());
-    for (std::size_t g = 0; g < pieces.size(); ++g) {
-        Piece& piece = pieces[sets.root(static_cast<Index>(g))];
-        piece.resultant += assembly.load[g] + assembly.applied[g];
-        piece.magnitudes += assembly.load[g].norm() + assembly.applied[g].norm();
-        piece.free = piece.free.cwiseMin(assembly.is_free[g]);
+    std::vector<Body> bodies(assembly.position.size());
+    for (std::size_t g = 0; g < bodies.size(); ++g) {
+        Body& body = bodies[sets.root(static_cast<Index>(g))];
+        body.resultant += assembly.load[g] + assembly.applied[g];
+        body.magnitudes += assembly.load[g].norm() + assembly.applied[g].norm();
+        body.free = body.free.cwiseMin(assembly.is_free[g]);
     }
 
     const Rock rock = rock_of(mesh, assembly, {});
     std::vector<char> is_unsupported(rock.area.size(), 0);
     for (std::size_t z = 0; z < mesh.zone_gridpoint.size(); ++z) {
-        const Piece& piece = pieces[sets.root(mesh.zone_gridpoint[z][0])];
-        const Vector2d push = piece.resultant.cwiseProduct(piece.free);
-        if (zones.is_present[zones.first_point_of(z)] &&
-            push.lpNorm<Eigen::Infinity>() > 1e-9 * piece.magnitudes)
+        const Body& body = bodies[sets.root(mesh.zone_gridpoint[z][0])];
+        const Vector2d push = body.resultant.cwiseProduct(body.free);
+        if (assembly.zones.is_present[assembly.zones.first_point_of(z)] &&
+            push.lpNorm<Eigen::Infinity>() > 1e-9 * body.magnitudes)
             is_unsupported[mesh.zone_block[z]] = 1;
     }
     Failure failure;

@@ -18,14 +18,14 @@ using Eigen::Vector3d;
 constexpr double soft = 1e-9; // share of their springs that contacts without load keep
 
 // Connected rock as a rigid body: it moves by {x, y, rotation times radius}.
-struct Piece {
+struct Body {
     Index first = -1; // gridpoint
     Vector2d middle{0, 0};
     double radius = 0;                // farthest gridpoint from the middle [m]
     Vector3d unbalanced{0, 0, 0};     // force, moment over radius [N/m]
     double loads = 0, gridpoints = 0; // sum of magnitudes of weight and tractions [N/m]; count
 
-    // Displacements of a place by unit movements of the piece.
+    // Displacements of a place by unit movements of the body.
     Eigen::Matrix<double, 2, 3> moves(const Vector2d& place) const
     {
         const Vector2d arm = (place - middle) / radius;
@@ -33,7 +33,7 @@ struct Piece {
     }
 };
 
-// Whether no gridpoint is out of balance by more than a share of its own load: then no piece is either.
+// Whether no gridpoint is out of balance by more than a share of its own load: then no body is either.
 bool is_plain(const Assembly& assembly, double share, double rounding)
 {
     const double n = static_cast<double>(assembly.force.size());
@@ -44,56 +44,50 @@ bool is_plain(const Assembly& assembly, double share, double rounding)
     return true;
 }
 
-// The pieces, and for each gridpoint the number of its piece.
-std::vector<Piece> pieces_of(const Assembly& assembly, std::vector<Index>& piece_of)
+// The bodies, and for each gridpoint the number of its body.
+std::vector<Body> bodies_of(const Assembly& assembly, std::vector<Index>& body_of)
 {
     const std::size_t n = assembly.position.size();
     DisjointSets sets(n);
-    std::vector<char> is_rock(n, 0);
-    for (std::size_t z = 0; z < assembly.zones.size(); ++z)
-        if (assembly.zones.is_present[z])
-            for (const Index g : assembly.zones.gridpoints(z)) {
-                sets.join(g, assembly.zones.gridpoints(z)[0]);
-                is_rock[g] = 1;
-            }
+    join(assembly.zones, sets);
     for (const auto& [follower, leader] : assembly.tied)
         sets.join(follower, leader);
 
-    std::vector<Piece> pieces;
+    std::vector<Body> bodies;
     std::vector<Index> number(n, -1); // by root
-    piece_of.assign(n, -1);
+    body_of.assign(n, -1);
     for (std::size_t g = 0; g < n; ++g) {
-        if (!is_rock[g])
+        if (!has_rock(assembly.zones, static_cast<Index>(g)))
             continue;
         Index& of_root = number[sets.root(static_cast<Index>(g))];
         if (of_root < 0) {
-            of_root = static_cast<Index>(pieces.size());
-            pieces.push_back({.first = static_cast<Index>(g)});
+            of_root = static_cast<Index>(bodies.size());
+            bodies.push_back({.first = static_cast<Index>(g)});
         }
-        piece_of[g] = of_root;
-        pieces[of_root].middle += assembly.position[g];
-        ++pieces[of_root].gridpoints;
+        body_of[g] = of_root;
+        bodies[of_root].middle += assembly.position[g];
+        ++bodies[of_root].gridpoints;
     }
-    for (Piece& piece : pieces)
-        piece.middle /= piece.gridpoints;
+    for (Body& body : bodies)
+        body.middle /= body.gridpoints;
     for (std::size_t g = 0; g < n; ++g)
-        if (piece_of[g] >= 0) {
-            Piece& piece = pieces[piece_of[g]];
-            piece.radius = std::max(piece.radius, (assembly.position[g] - piece.middle).norm());
+        if (body_of[g] >= 0) {
+            Body& body = bodies[body_of[g]];
+            body.radius = std::max(body.radius, (assembly.position[g] - body.middle).norm());
         }
     for (std::size_t g = 0; g < n; ++g)
-        if (piece_of[g] >= 0) {
-            Piece& piece = pieces[piece_of[g]];
-            piece.unbalanced += piece.moves(assembly.position[g]).transpose() *
-                                assembly.force[g].cwiseProduct(assembly.is_free[g]);
-            piece.loads += (assembly.load[g] + assembly.applied[g]).norm();
+        if (body_of[g] >= 0) {
+            Body& body = bodies[body_of[g]];
+            body.unbalanced += body.moves(assembly.position[g]).transpose() *
+                               assembly.force[g].cwiseProduct(assembly.is_free[g]);
+            body.loads += (assembly.load[g] + assembly.applied[g]).norm();
         }
-    return pieces;
+    return bodies;
 }
 
-// Stiffness of rigid pieces, on the contacts and on fixed gridpoints.
-Eigen::SparseMatrix<double> stiffness_of(const Assembly& assembly, const std::vector<Piece>& pieces,
-                                         const std::vector<Index>& piece_of)
+// Stiffness of rigid bodies, on the contacts and on fixed gridpoints.
+Eigen::SparseMatrix<double> stiffness_of(const Assembly& assembly, const std::vector<Body>& bodies,
+                                         const std::vector<Index>& body_of)
 {
     std::vector<Eigen::Triplet<double>> entries;
     const auto add = [&](Index p, Index q, const Eigen::Matrix3d& block) {
@@ -112,24 +106,24 @@ Eigen::SparseMatrix<double> stiffness_of(const Assembly& assembly, const std::ve
         for (int i = 0; i < 2; ++i)
             for (int j = 0; j < 2; ++j) {
                 const Index a = contacts.gridpoint[c][i], b = contacts.gridpoint[c][j];
-                if (piece_of[a] >= 0 && piece_of[b] >= 0)
-                    add(piece_of[a], piece_of[b],
-                        (i == j ? 1 : -1) * pieces[piece_of[a]].moves(assembly.position[a]).transpose() *
-                            spring * pieces[piece_of[b]].moves(assembly.position[b]));
+                if (body_of[a] >= 0 && body_of[b] >= 0)
+                    add(body_of[a], body_of[b],
+                        (i == j ? 1 : -1) * bodies[body_of[a]].moves(assembly.position[a]).transpose() *
+                            spring * bodies[body_of[b]].moves(assembly.position[b]));
             }
     }
     const double firm = stiffest > 0 ? stiffest : 1.0;
-    for (std::size_t g = 0; g < piece_of.size(); ++g)
-        if (piece_of[g] >= 0 && assembly.is_free[g].minCoeff() == 0) {
-            const Eigen::Matrix<double, 2, 3> moves = pieces[piece_of[g]].moves(assembly.position[g]);
+    for (std::size_t g = 0; g < body_of.size(); ++g)
+        if (body_of[g] >= 0 && assembly.is_free[g].minCoeff() == 0) {
+            const Eigen::Matrix<double, 2, 3> moves = bodies[body_of[g]].moves(assembly.position[g]);
             const Vector2d fixed = Vector2d::Ones() - assembly.is_free[g];
-            add(piece_of[g], piece_of[g], firm * moves.transpose() * fixed.asDiagonal() * moves);
+            add(body_of[g], body_of[g], firm * moves.transpose() * fixed.asDiagonal() * moves);
         }
-    // A tiny stiffness for all: pieces without support move out of all bounds, and the others as before.
-    for (Eigen::Index i = 0; i < 3 * static_cast<Eigen::Index>(pieces.size()); ++i)
+    // A tiny stiffness for all: bodies without support move out of all bounds, and the others as before.
+    for (Eigen::Index i = 0; i < 3 * static_cast<Eigen::Index>(bodies.size()); ++i)
         entries.emplace_back(static_cast<int>(i), static_cast<int>(i), 1e-14 * firm);
-    Eigen::SparseMatrix<double> stiffness(3 * static_cast<Eigen::Index>(pieces.size()),
-                                          3 * static_cast<Eigen::Index>(pieces.size()));
+    Eigen::SparseMatrix<double> stiffness(3 * static_cast<Eigen::Index>(bodies.size()),
+                                          3 * static_cast<Eigen::Index>(bodies.size()));
     stiffness.setFromTriplets(entries.begin(), entries.end());
     return stiffness;
 }
@@ -146,21 +140,21 @@ RemainingDisplacement largest_remaining_displacement(const Assembly& assembly, d
     RemainingDisplacement largest;
     if (is_plain(assembly, share, rounding))
         return largest;
-    std::vector<Index> piece_of;
-    const std::vector<Piece> pieces = pieces_of(assembly, piece_of);
-    Eigen::VectorXd push = Eigen::VectorXd::Zero(3 * static_cast<Eigen::Index>(pieces.size()));
-    for (std::size_t p = 0; p < pieces.size(); ++p)
-        if (const double force = pieces[p].unbalanced.norm();
-            pieces[p].loads > 0 && force > share * pieces[p].loads && force > rounding)
-            push.segment<3>(3 * static_cast<Eigen::Index>(p)) = pieces[p].unbalanced;
+    std::vector<Index> body_of;
+    const std::vector<Body> bodies = bodies_of(assembly, body_of);
+    Eigen::VectorXd push = Eigen::VectorXd::Zero(3 * static_cast<Eigen::Index>(bodies.size()));
+    for (std::size_t p = 0; p < bodies.size(); ++p)
+        if (const double force = bodies[p].unbalanced.norm();
+            bodies[p].loads > 0 && force > share * bodies[p].loads && force > rounding)
+            push.segment<3>(3 * static_cast<Eigen::Index>(p)) = bodies[p].unbalanced;
     if (push.isZero(0))
         return largest;
-    const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(stiffness_of(assembly, pieces, piece_of));
+    const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(stiffness_of(assembly, bodies, body_of));
     const Eigen::VectorXd displacement = factor.solve(push);
-    for (std::size_t p = 0; p < pieces.size(); ++p)
+    for (std::size_t p = 0; p < bodies.size(); ++p)
         if (const double moved = displacement.segment<3>(3 * static_cast<Eigen::Index>(p)).norm();
             !(moved <= largest.displacement))
-            largest = {std::isfinite(moved) ? moved : size_of(assembly), pieces[p].first};
+            largest = {std::isfinite(moved) ? moved : size_of(assembly), bodies[p].first};
     return largest;
 }
 

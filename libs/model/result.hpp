@@ -79,8 +79,8 @@ struct States {
     std::vector<Eigen::Vector3d> point_stress; // [state, stress point of quadratic zones] {xx, yy, xy} [Pa]
     std::vector<double> stress_zz;             // [state, yielding zone] across the section [Pa]
     std::vector<Index> creeping_zone;          // zones of rock that creeps
-    std::vector<Eigen::Vector3d>
-        crept_strain;               // [state, creeping zone] deviatoric {xx, yy, xy} since then [-]
+    // [state, creeping zone] deviatoric {xx, yy, xy} since the in-situ equilibrium [-].
+    std::vector<Eigen::Vector3d> crept_strain;
     std::vector<Index> reset_state; // [state] the state displacements are to count from, as in History
 };
 

@@ -81,8 +81,8 @@ struct JointMaterial {
     double dilation_angle = 0;        // [rad]
     double dilation_until = 0;        // slip at which dilation ends; 0: it does not [m]
     Index law = 0;                    // into joint::laws() (libs/joint/law.hpp)
-    std::map<std::string, double, std::less<>>
-        own{};                   // parameters of that law alone, by their names, in SI units
+    // Parameters of that law alone, by their names, in SI units.
+    std::map<std::string, double, std::less<>> own{};
     double strength_divisor = 1; // of all strengths, for a run with strengths divided; no key [-]
 };
 
@@ -134,9 +134,9 @@ struct JointSet {
     std::vector<MaterialInRock> material_in{}; // these
     SetKind kind = SetKind::lines;
     // One of four:
-    std::optional<ProbabilityLaw>
-        trace_angle{};                   // of the trace in the section, counter-clockwise from +x [rad]
-    std::optional<ProbabilityLaw> dip{}; // below the horizontal [rad], with
+    // Of the trace in the section, counter-clockwise from +x [rad].
+    std::optional<ProbabilityLaw> trace_angle{};
+    std::optional<ProbabilityLaw> dip{};           // below the horizontal [rad], with
     std::optional<ProbabilityLaw> dip_direction{}; // clockwise from north [rad]
     std::optional<FisherLaw> orientation{};
     std::vector<MeasuredPole> poles{}; // drawn from by weight

@@ -104,12 +104,8 @@ public:
         take_stiffness(row_sums);
         too_far_ = size_of(assembly) / 10;
         sums_.resize(chunks_of(assembly));
-        if (settings.stiffness_damping > 0)
-            assembly.zones.last_stress = assembly.zones.stress;
-        joint::forget_work(assembly.contacts);
-        rock::forget_dissipated(assembly.zones);
+        begin_search(assembly, settings.stiffness_damping > 0);
         stored_at_start_ = stored_energy(assembly);
-        in_contacts_at_start_ = joint::stored_energy(assembly.contacts);
         if (settings.damping == Damping::adaptive || settings.damping == Damping::combined)
             last_force_ = assembly.force;
     }
@@ -253,13 +249,11 @@ public:
     // All that has changed since the start; the assembly's too.
     void pass(Tape& tape)
     {
-        tape(a_.displacement, a_.force);
-        rock::transfer(tape, a_.zones);
-        joint::transfer(tape, a_.contacts);
+        mechanics::pass(tape, a_);
         tape(velocity_, patience_ago_, last_force_, older_, newer_, mass_, work_of_changes_, work_,
              time_before_, steps_since_, dt_, alpha_, checks_in_movement_, last_energy_, starts_from_rest_);
-        for (auto& [contact, stiffest] : stiffening_)
-            tape(stiffest);
+        for (auto& [contact, most] : stiffening_)
+            tape(most);
         find_inverse_masses();
     }
 
@@ -269,8 +263,7 @@ public:
         a_.stiffness_damping_rate = 0;
         find_forces(a_);
         convergence.stored = stored_energy(a_) - stored_at_start_;
-        convergence.dissipated = in_contacts_at_start_ + joint::work_on(a_.contacts) -
-                                 joint::stored_energy(a_.contacts) + rock::dissipated(a_.zones);
+        convergence.dissipated = mechanics::dissipated(a_);
         convergence.work_of_loads = work_of_loads(a_, start_);
         // Stiffness damping works inside zones and contacts, unseen by the gridpoints: it takes what
         // is missing.
@@ -318,11 +311,7 @@ private:
                 mass_.push_back(sum * local / (4 * safety * safety));
         }
         find_inverse_masses();
-        const joint::Contacts& contacts = a_.contacts;
-        stiffening_.clear();
-        for (std::size_t c = 0; c < contacts.law.size(); ++c)
-            if (stiffens(contacts.law[c]) && contacts.status[c] != ContactStatus::removed)
-                stiffening_.emplace_back(c, joint::room_to_stiffen * normal_stiffness(c));
+        stiffening_ = stiffening_of(a_.contacts);
     }
 
     void find_inverse_masses()
@@ -333,19 +322,11 @@ private:
         a_.stiffness_damping_rate = settings_.stiffness_damping / dt_;
     }
 
-    double normal_stiffness(std::size_t contact) const
-    {
-        const joint::Contacts& contacts = a_.contacts;
-        return slopes(contacts.law[contact], contacts.state[contact], contacts.traction[contact].x()).k_n;
-    }
-
     // Masses or the step follow joints that have grown stiffer than these are stable for. Velocities keep the
     // kinetic energy, or energies would not balance.
     void follow_stiffness()
     {
-        if (std::none_of(stiffening_.begin(), stiffening_.end(), [&](const auto& contact) {
-                return normal_stiffness(contact.first) > contact.second;
-            }))
+        if (!are_beyond(a_.contacts, stiffening_))
             return;
         const std::vector<double> before = mass_;
         const double last_dt = dt_;
@@ -447,9 +428,9 @@ private:
     std::vector<double> mass_, inverse_mass_; // [kg/m], [m/kg]
     std::vector<Sums> sums_;                  // of each chunk
     double work_of_changes_ = 0;              // of the step, apart as every thread adds up work_ for itself
-    double work_ = 0, stored_at_start_ = 0, in_contacts_at_start_ = 0;
-    std::vector<std::pair<std::size_t, double>> stiffening_; // contacts, and how stiff they may be [Pa/m]
-    double time_before_ = 0;                                 // at the last change of the step [s]
+    double work_ = 0, stored_at_start_ = 0;
+    std::vector<joint::Stiffening> stiffening_; // for which mass_ and dt_ are stable
+    double time_before_ = 0;                    // at the last change of the step [s]
     Index steps_since_ = 0;
     double dt_ = 0, too_far_ = 0, alpha_ = 0;
     Index checks_in_movement_ = 0; // in a row, every `patience` steps

@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include "model/chain.hpp"
 #include "model/scene.hpp"
 
 #include <Eigen/Core>
@@ -35,6 +36,17 @@ inline double bulk_modulus(const Elasticity& c) // [Pa]
 inline double twice_shear_modulus(const Rock& rock)
 {
     return rock.youngs_modulus / (1 + rock.poissons_ratio);
+}
+
+// Deviatoric stress is 2 G times the strain that has not crept.
+inline Chain chain_of(const Rock& rock)
+{
+    Chain chain{twice_shear_modulus(rock), {}};
+    if (rock.kelvin)
+        chain.units.push_back({2 * rock.kelvin->modulus, 2 * rock.kelvin->viscosity});
+    if (rock.maxwell_viscosity)
+        chain.units.push_back({0, 2 * *rock.maxwell_viscosity});
+    return chain;
 }
 
 // The deviatoric part of a change of stress [Pa], during which the deviatoric strain `offset` has crept [-]. Plane

@@ -142,7 +142,7 @@ void transfer(const Transfer& to, MovingZones& moving, DynamicsState& kept)
     to.values(yielding, kept.stress, &MovingYieldingZone::stress);
 }
 
-void transfer(Tape& tape, MovingZones& moving)
+void pass(Tape& tape, MovingZones& moving)
 {
     for (auto& [gridpoint, inverse, area, stiffness, strain, held] : moving.zone)
         tape(strain, held);

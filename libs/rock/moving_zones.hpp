@@ -69,6 +69,6 @@ void put_back(const MovingZones& moving, Index z, const std::vector<Vector2d>& p
 void transfer(const Transfer& to, MovingZones& moving, DynamicsState& kept);
 
 // What steps change.
-void transfer(Tape& tape, MovingZones& moving);
+void pass(Tape& tape, MovingZones& moving);
 
 } // namespace jointcreep::rock

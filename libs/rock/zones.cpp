@@ -37,8 +37,9 @@ Two ys_of(const Vector2d& one, const Vector2d& next)
 }
 
 template <int n_gridpoints, bool any_yields, bool forces_alone> // branches less for each zone
-void pull(Zones& zones, Slots& slots, std::span<const Vector2d> displacements, double damping)
+void pull(Zones& zones, std::span<const Vector2d> displacements, double damping)
 {
+    Slots& slots = zones.slots;
     const auto n = static_cast<Index>(zones.size());
     const auto n_parts = static_cast<Index>(slots.part_start.size()) - 1;
     // Plain pointers, so that the compiler need not assume that a write changes the arrays read next.
@@ -219,9 +220,12 @@ Zones zones_of(const Scene& scene, const Network& network, const Mesh& mesh)
     return zones;
 }
 
-Slots slots_of(const Zones& zones, std::size_t n_gridpoints, std::vector<Index>& gridpoint)
+void find_incidence(Zones& zones, std::size_t n_gridpoints)
 {
-    Slots slots;
+    zones.corners = {zones.gridpoint, n_gridpoints};
+    zones.slots = {};
+    Slots& slots = zones.slots;
+    std::vector<Index> gridpoint; // of each slot
     std::vector<Index> slot_of(n_gridpoints,
                                -1); // in this part; less than its first one where it has none yet
     slots.part_start.assign(1, 0);
@@ -240,33 +244,44 @@ Slots slots_of(const Zones& zones, std::size_t n_gridpoints, std::vector<Index>&
     slots.part_start.push_back(static_cast<Index>(gridpoint.size()));
     slots.force.assign(gridpoint.size(), Vector2d::Zero());
     slots.magnitudes.assign(gridpoint.size(), 0.0);
-    return slots;
+    slots.by_gridpoint = {gridpoint, n_gridpoints};
+}
+
+bool has_rock(const Zones& zones, Index gridpoint)
+{
+    return std::ranges::any_of(zones.corners.at(gridpoint), [&](Index corner) {
+        return zones.is_present[corner / zones.gridpoints_of_zone] != 0;
+    });
+}
+
+bool has_lost_rock(const Zones& zones, Index gridpoint)
+{
+    return !zones.corners.at(gridpoint).empty() && !has_rock(zones, gridpoint);
 }
 
 namespace
 {
 
 template <int n_gridpoints>
-void find_forces_of(Zones& zones, Slots& slots, std::span<const Vector2d> displacement, double damping,
-                    bool forces_alone)
+void find_forces_of(Zones& zones, std::span<const Vector2d> displacement, double damping, bool forces_alone)
 {
     if (!zones.yielding.empty())
-        forces_alone ? pull<n_gridpoints, true, true>(zones, slots, displacement, damping)
-                     : pull<n_gridpoints, true, false>(zones, slots, displacement, damping);
+        forces_alone ? pull<n_gridpoints, true, true>(zones, displacement, damping)
+                     : pull<n_gridpoints, true, false>(zones, displacement, damping);
     else
-        forces_alone ? pull<n_gridpoints, false, true>(zones, slots, displacement, damping)
-                     : pull<n_gridpoints, false, false>(zones, slots, displacement, damping);
+        forces_alone ? pull<n_gridpoints, false, true>(zones, displacement, damping)
+                     : pull<n_gridpoints, false, false>(zones, displacement, damping);
 }
 
 } // namespace
 
-void find_forces_in_team(Zones& zones, Slots& slots, std::span<const Vector2d> displacement, double damping,
+void find_forces_in_team(Zones& zones, std::span<const Vector2d> displacement, double damping,
                          bool forces_alone)
 {
     if (zones.gridpoints_of_zone == 3)
-        find_forces_of<3>(zones, slots, displacement, damping, forces_alone);
+        find_forces_of<3>(zones, displacement, damping, forces_alone);
     else
-        find_forces_of<6>(zones, slots, displacement, damping, forces_alone);
+        find_forces_of<6>(zones, displacement, damping, forces_alone);
 }
 
 Eigen::Matrix2d stiffness_between(const Zones& zones, std::size_t z, int i, int j)
@@ -366,6 +381,19 @@ double stored_energy(const Zones& zones)
     return energy;
 }
 
+void begin_search(Zones& zones, bool damps_stiffness)
+{
+    for (YieldingZone& zone : zones.yielding)
+        zone.dissipated = 0;
+    if (damps_stiffness)
+        zones.last_stress = zones.stress;
+}
+
+double dissipated(const Zones& zones, const ZonesState& /*start*/)
+{
+    return dissipated(zones);
+}
+
 double dissipated(const Zones& zones)
 {
     double sum = 0;
@@ -373,12 +401,6 @@ double dissipated(const Zones& zones)
         if (const Index number = zones.yielding_number[z]; number >= 0)
             sum += zones.area[z] * zones.yielding[number].dissipated;
     return sum;
-}
-
-void forget_dissipated(Zones& zones)
-{
-    for (YieldingZone& zone : zones.yielding)
-        zone.dissipated = 0;
 }
 
 double largest_plastic_strain(const Zones& zones)
@@ -407,6 +429,24 @@ Index weakest(const Zones& zones)
         }
     }
     return weakest;
+}
+
+void excavate(Zones& zones, const std::vector<char>& is_removed, std::vector<Vector2d>& load)
+{
+    for (std::size_t z = 0; z < zones.size(); ++z)
+        if (is_removed[z]) {
+            add_weight(zones, z, -1, load);
+            zones.is_present[z] = 0;
+            zones.stress[z].setZero();
+        }
+}
+
+void join(const Zones& zones, DisjointSets& gridpoints)
+{
+    for (std::size_t z = 0; z < zones.size(); ++z)
+        if (zones.is_present[z])
+            for (const Index g : zones.gridpoints(z))
+                gridpoints.join(g, zones.gridpoints(z)[0]);
 }
 
 void start_from_here(Zones& zones)
@@ -467,7 +507,7 @@ void transfer(const Transfer& to, Zones& zones, Checkpoint& kept)
     to.values(zones.yielding, kept.initial_zz, &YieldingZone::initial_zz);
 }
 
-void transfer(Tape& tape, Zones& zones)
+void pass(Tape& tape, Zones& zones)
 {
     tape(zones.stress, zones.last_stress);
     for (auto& [law, initial_zz, plastic, stress_zz, dissipated] : zones.yielding)

@@ -2,7 +2,9 @@
 
 #pragma once
 
+#include "model/by_gridpoint.hpp"
 #include "model/checkpoint.hpp"
+#include "model/disjoint_sets.hpp"
 #include "model/network.hpp"
 #include "model/result.hpp"
 #include "model/scene.hpp"
@@ -20,6 +22,16 @@ namespace jointcreep::rock
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
+
+// Sums of the forces of zones in an order that does not depend on the number of threads. Consecutive zones make a part.
+// A part adds its forces into slots, one for each of its gridpoints.
+struct Slots {
+    std::vector<Index> part_start;  // [parts + 1] the slots of each part
+    std::vector<Index> of_zone;     // [stress point, gridpoint of its zone]
+    std::vector<Vector2d> force;    // [N/m]
+    std::vector<double> magnitudes; // sums of the magnitudes of the zones' forces [N/m]
+    ByGridpoint by_gridpoint;       // slots
+};
 
 // Zones: triangles in plane strain and small strain, elastic or yielding. A zone of constant strain has three
 // gridpoints and one stress. A quadratic zone has six gridpoints, its corners and then the middles of its sides, and
@@ -57,6 +69,10 @@ struct Zones {
     bool holds_yield = false; // no yielding for now: plastic strain stays as it is
 
     std::vector<char> creeps; // whether the rock of a stress point creeps
+
+    // Filled by find_incidence.
+    ByGridpoint corners; // places in `gridpoint`
+    Slots slots;         // their forces are filled by find_forces_in_team
 };
 
 // What equilibria and creep change in Zones.
@@ -73,23 +89,30 @@ bool yields(const Zones& zones);
 // All zones of a mesh under the scene's in-situ stress, at zero displacement.
 Zones zones_of(const Scene& scene, const Network& network, const Mesh& mesh);
 
-// Sums of the forces of zones in an order that does not depend on the number of threads. Consecutive zones make a part.
-// A part adds its forces into slots, one for each of its gridpoints.
-struct Slots {
-    std::vector<Index> part_start;  // [parts + 1] the slots of each part
-    std::vector<Index> of_zone;     // [stress point, gridpoint of its zone]
-    std::vector<Vector2d> force;    // [N/m]
-    std::vector<double> magnitudes; // sums of the magnitudes of the zones' forces [N/m]
-};
+// Finds which zones are at each gridpoint.
+void find_incidence(Zones& zones, std::size_t n_gridpoints);
 
-// The slots of some zones; writes the gridpoint of each slot to `gridpoint`.
-Slots slots_of(const Zones& zones, std::size_t n_gridpoints, std::vector<Index>& gridpoint);
+// Whether a gridpoint has present zones; whether it had zones, and all are excavated.
+bool has_rock(const Zones& zones, Index gridpoint);
+bool has_lost_rock(const Zones& zones, Index gridpoint);
 
 // Stresses and forces at the displacements of all gridpoints [m]. Call it from every thread of an OpenMP parallel
 // region; the forces are complete after a barrier. `damping` is the rate of stiffness damping over the step [-]. With
 // forces alone, stresses of elastic zones and magnitudes are left out.
-void find_forces_in_team(Zones& zones, Slots& slots, std::span<const Vector2d> displacement, double damping,
+void find_forces_in_team(Zones& zones, std::span<const Vector2d> displacement, double damping,
                          bool forces_alone);
+
+// Adds the forces of the zones at a gridpoint [N/m], or their magnitudes.
+inline void add_force_on(const Zones& zones, Index gridpoint, Vector2d& force)
+{
+    for (const Index slot : zones.slots.by_gridpoint.at(gridpoint))
+        force += zones.slots.force[slot];
+}
+inline void add_magnitudes_on(const Zones& zones, Index gridpoint, double& magnitudes)
+{
+    for (const Index slot : zones.slots.by_gridpoint.at(gridpoint))
+        magnitudes += zones.slots.magnitudes[slot];
+}
 
 // Stiffness of a zone between its gridpoints i and j, at a stress point, per area [Pa/m2].
 Eigen::Matrix2d stiffness_between(const Zones& zones, std::size_t z, int i, int j);
@@ -118,17 +141,27 @@ void add_masses(const Zones& zones, std::vector<double>& mass);
 // quadratic zone only to the middles of the sides, by its shape functions.
 void add_weight(const Zones& zones, std::size_t z, double share, std::vector<Vector2d>& load);
 
-// Energy stored in present zones [J/m]; only differences have a meaning. Energy lost by yielding since
-// forget_dissipated() [J/m].
+// Energy stored in present zones [J/m]; only differences have a meaning.
 double stored_energy(const Zones& zones);
+
+// Before a search for equilibrium: counts dissipated energy from here. `damps_stiffness`: the search has stiffness
+// damping.
+void begin_search(Zones& zones, bool damps_stiffness);
+// Energy lost by yielding since then [J/m]: along the path, or straight from the state at the start, which is the same.
 double dissipated(const Zones& zones);
-void forget_dissipated(Zones& zones);
+double dissipated(const Zones& zones, const ZonesState& start);
 
 // The largest plastic shear strain in the section at a present stress point [-].
 double largest_plastic_strain(const Zones& zones);
 
 // The stress point most beyond its strength; -1 if none is beyond.
 Index weakest(const Zones& zones);
+
+// Removes the rock of the stress points for which `is_removed` is set, and its weight from the loads [N/m].
+void excavate(Zones& zones, const std::vector<char>& is_removed, std::vector<Vector2d>& load);
+
+// Joins the gridpoints of each present zone.
+void join(const Zones& zones, DisjointSets& gridpoints);
 
 // Makes the present stresses those at zero displacement.
 void start_from_here(Zones& zones);
@@ -141,6 +174,6 @@ void record_state(const Zones& zones, States& states);
 void transfer(const Transfer& to, Zones& zones, Checkpoint& kept);
 
 // What a search for equilibrium changes.
-void transfer(Tape& tape, Zones& zones);
+void pass(Tape& tape, Zones& zones);
 
 } // namespace jointcreep::rock

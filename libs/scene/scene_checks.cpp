@@ -17,8 +17,8 @@ namespace
 
 using namespace keys;
 
-constexpr double least_trace =
-    0.05; // of a joint plane's unit normal in the section's plane: else nearly parallel
+// Of a joint plane's unit normal in the section's plane: below it the two are nearly parallel.
+constexpr double least_trace = 0.05;
 
 class Checker
 {

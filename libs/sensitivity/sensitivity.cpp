@@ -33,13 +33,13 @@ rock::ZoneChanges changes_of(const rock::Zones& zones, Parameter parameter)
 }
 
 // Of chains of joints.
-std::vector<creep::Chain> changes_of(const std::vector<creep::Chain>& chains, Parameter parameter)
+std::vector<Chain> changes_of(const std::vector<Chain>& chains, Parameter parameter)
 {
     const bool all = parameter == Parameter::joint_stiffness;
-    std::vector<creep::Chain> changes;
-    for (const creep::Chain& chain : chains) {
-        creep::Chain& change = changes.emplace_back(creep::Chain{all ? chain.spring : 0.0, {}});
-        for (const creep::KelvinUnit& unit : chain.units)
+    std::vector<Chain> changes;
+    for (const Chain& chain : chains) {
+        Chain& change = changes.emplace_back(Chain{all ? chain.spring : 0.0, {}});
+        for (const KelvinUnit& unit : chain.units)
             change.units.push_back({all || parameter == Parameter::kelvin_stiffness ? unit.stiffness : 0.0,
                                     all || parameter == Parameter::kelvin_viscosity ? unit.viscosity : 0.0});
     }

@@ -84,8 +84,8 @@ public:
 private:
     // Per unit of the logarithm.
     struct Change {
-        std::vector<Vector2d> displacement,
-            released; // of gridpoints: [m], forces that a stage releases [N/m]
+        std::vector<Vector2d> displacement; // of gridpoints [m]
+        std::vector<Vector2d> released;     // forces on them that a stage releases [N/m]
         joint::ContactChanges contacts;
         rock::ZoneChanges zones;
         creep::CreepChanges creep;

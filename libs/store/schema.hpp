@@ -21,8 +21,8 @@ std::vector<fields::Field> fields_of(Provenance& provenance); // without its war
 std::vector<fields::Field> fields_of(Warnings& warnings);
 std::vector<fields::Field> fields_of(Network& network);
 std::vector<fields::Field> fields_of(EquivalentJoints& equivalent);
-std::vector<fields::Field>
-fields_of(Result& result); // without its step history, dynamics, guards and failure
+// Without its step history, dynamics, guards and failure.
+std::vector<fields::Field> fields_of(Result& result);
 std::vector<fields::Field> fields_of(StepHistory& step_history);
 std::vector<fields::Field> fields_of(DynamicsHistory& dynamics);
 std::vector<fields::Field> fields_of(GuardHistory& guards);

@@ -83,12 +83,12 @@ private:
 };
 
 // The next vertex from `at` along the straight block edge to `target`, and the face on the left of it.
-// Refinement has split the edge into constrained pieces; of those at `at` the one that points best is it.
-Cdt::Edge next_piece(const Cdt& cdt, Cdt::Vertex_handle at, Cdt::Vertex_handle target)
+// Refinement has split the edge into constrained parts; of those at `at` the one that points best is it.
+Cdt::Edge next_part(const Cdt& cdt, Cdt::Vertex_handle at, Cdt::Vertex_handle target)
 {
     const Eigen::Vector2d ahead = (place(target) - place(at)).normalized();
     double best = -2;
-    Cdt::Edge piece;
+    Cdt::Edge part;
     auto edge = cdt.incident_edges(at);
     const auto first = edge;
     do {
@@ -100,15 +100,15 @@ Cdt::Edge next_piece(const Cdt& cdt, Cdt::Vertex_handle at, Cdt::Vertex_handle t
         const double along = (place(other) - place(at)).normalized().dot(ahead);
         if (along > best) {
             best = along;
-            piece = *edge;
+            part = *edge;
         }
     } while (++edge != first);
     if (best < 1 - 1e-9)
         throw std::logic_error("zoning lost a block edge near " + shown(place(at)));
-    // The face from which the piece runs from `at` onwards, counter-clockwise, is on its left.
-    if (piece.first->vertex(cdt.ccw(piece.second)) != at)
-        piece = cdt.mirror_edge(piece);
-    return piece;
+    // The face from which the part runs from `at` onwards, counter-clockwise, is on its left.
+    if (part.first->vertex(cdt.ccw(part.second)) != at)
+        part = cdt.mirror_edge(part);
+    return part;
 }
 
 // All block edges as constraints; `corner`: the vertices of the blocks.
@@ -121,41 +121,41 @@ void insert_edges(Cdt& cdt, std::vector<Cdt::Vertex_handle>& corner, const Block
         cdt.insert_constraint(corner[a], corner[b]);
 }
 
-// A piece of a block edge between two neighbouring vertices.
-struct Piece {
+// A part of a block edge between two neighbouring vertices.
+struct EdgePart {
     Index edge;
     Cdt::Vertex_handle from, to;
     Cdt::Face_handle left, right;
 };
 
-// All pieces of all block edges, in order.
-std::vector<Piece> pieces_of(const Cdt& cdt, const std::vector<Cdt::Vertex_handle>& corner,
-                             const Blocks& blocks)
+// All parts of all block edges, in order.
+std::vector<EdgePart> edge_parts_of(const Cdt& cdt, const std::vector<Cdt::Vertex_handle>& corner,
+                                    const Blocks& blocks)
 {
-    std::vector<Piece> pieces;
+    std::vector<EdgePart> parts;
     for (std::size_t e = 0; e < blocks.edge_vertex.size(); ++e) {
         const auto [a, b] = blocks.edge_vertex[e];
         for (Cdt::Vertex_handle at = corner[a]; at != corner[b];) {
-            const Cdt::Edge left = next_piece(cdt, at, corner[b]);
+            const Cdt::Edge left = next_part(cdt, at, corner[b]);
             const auto to = left.first->vertex(cdt.cw(left.second));
-            pieces.push_back({static_cast<Index>(e), at, to, left.first, cdt.mirror_edge(left).first});
+            parts.push_back({static_cast<Index>(e), at, to, left.first, cdt.mirror_edge(left).first});
             at = to;
         }
     }
-    return pieces;
+    return parts;
 }
 
-// Gives each face the number of its block, -1 outside the section: from the pieces of the edges on, by flooding. (CGAL's
+// Gives each face the number of its block, -1 outside the section: from the parts of the edges on, by flooding. (CGAL's
 // seeds would need a place inside each hole of the outline.)
-void find_blocks(const Cdt& cdt, const std::vector<Piece>& pieces, const Blocks& blocks)
+void find_blocks(const Cdt& cdt, const std::vector<EdgePart>& parts, const Blocks& blocks)
 {
     constexpr Index unknown = -2;
     for (const auto f : cdt.all_face_handles())
         f->info() = unknown;
     std::vector<Cdt::Face_handle> front;
-    for (const Piece& piece : pieces)
-        for (const auto& [face, block] : {std::pair(piece.left, blocks.edge_block[piece.edge][0]),
-                                          std::pair(piece.right, blocks.edge_block[piece.edge][1])}) {
+    for (const EdgePart& part : parts)
+        for (const auto& [face, block] : {std::pair(part.left, blocks.edge_block[part.edge][0]),
+                                          std::pair(part.right, blocks.edge_block[part.edge][1])}) {
             face->info() = block;
             front.push_back(face);
         }
@@ -243,7 +243,7 @@ Triangulation triangulate(const Blocks& blocks, double least, const SizeAt& size
     Cdt cdt;
     std::vector<Cdt::Vertex_handle> corner;
     insert_edges(cdt, corner, blocks);
-    find_blocks(cdt, pieces_of(cdt, corner, blocks), blocks);
+    find_blocks(cdt, edge_parts_of(cdt, corner, blocks), blocks);
     for (const auto f : cdt.all_face_handles())
         f->set_in_domain(f->info() >= 0);
 
@@ -253,15 +253,15 @@ Triangulation triangulate(const Blocks& blocks, double least, const SizeAt& size
     mesher.refine_mesh();
 
     // Refinement makes new faces: the blocks are found again.
-    const std::vector<Piece> pieces = pieces_of(cdt, corner, blocks);
-    find_blocks(cdt, pieces, blocks);
+    const std::vector<EdgePart> parts = edge_parts_of(cdt, corner, blocks);
+    find_blocks(cdt, parts, blocks);
     Triangulation result;
     const std::vector<Cdt::Face_handle> faces = in_order(cdt);
     number_vertices(result, cdt, faces);
     number_faces(result, cdt, faces);
-    for (const Piece& piece : pieces)
+    for (const EdgePart& part : parts)
         result.side.push_back(
-            {piece.edge, {piece.from->info(), piece.to->info()}, {piece.left->info(), piece.right->info()}});
+            {part.edge, {part.from->info(), part.to->info()}, {part.left->info(), part.right->info()}});
     return result;
 }
 

@@ -144,21 +144,4 @@ TEST(guards, contacts_and_equilibria_are_guarded)
     EXPECT_NE(analysis::broken_guard(0, energy_error(balance, 100), 1e-6), "");
 }
 
-// A traction that is not that of the springs.
-TEST(guards, a_contact_deeper_than_its_springs_is_found)
-{
-    Study study;
-    Analysis analysed(study.scene, study.network, study.joints, 1, {}, [](double, const std::string&) {});
-    analysed.run();
-    joint::Contacts contacts = analysed.assembly().contacts;
-    EXPECT_LT(analysis::penetration(contacts), 1e-15);
-    for (std::size_t c = 0; c < contacts.status.size(); ++c)
-        if (contacts.status[c] != ContactStatus::removed && contacts.traction[c].x() < 0) {
-            contacts.traction[c].x() *= 0.9;
-            EXPECT_NEAR(analysis::penetration(contacts), -contacts.traction[c].x() / 9 / 1e9, 1e-15);
-            return;
-        }
-    FAIL() << "no contact is closed";
-}
-
 } // namespace guards_test

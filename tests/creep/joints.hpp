@@ -16,7 +16,6 @@
 namespace jointcreep::test
 {
 
-using creep::Chain;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
@@ -34,7 +33,7 @@ inline EquivalentJoints joints_of(const std::vector<Chain>& chains)
         joints.normal_stiffness.push_back(chain.spring);
         joints.normal_maxwell_viscosity.push_back(0);
         for (std::size_t u = 0; u < units; ++u) {
-            const creep::KelvinUnit unit = u < chain.units.size() ? chain.units[u] : creep::KelvinUnit{0, 0};
+            const KelvinUnit unit = u < chain.units.size() ? chain.units[u] : KelvinUnit{0, 0};
             joints.normal_kelvin_stiffness.push_back(unit.stiffness);
             joints.normal_kelvin_viscosity.push_back(unit.stiffness > 0 ? unit.viscosity : 0);
             if (unit.stiffness == 0 && unit.viscosity > 0)
@@ -66,7 +65,7 @@ public:
         given_ = VectorXd::Zero(n);
         load_ = VectorXd::Zero(B_.cols());
         for (Eigen::Index c = 0; c < n; ++c)
-            for (const creep::KelvinUnit& unit : chains_[c].units) {
+            for (const KelvinUnit& unit : chains_[c].units) {
                 joint_.push_back(c);
                 units_.push_back(unit);
             }
@@ -88,7 +87,7 @@ public:
     double rate() const
     {
         double most = 0;
-        for (const creep::KelvinUnit& unit : units_)
+        for (const KelvinUnit& unit : units_)
             most = std::max(most, unit.stiffness / unit.viscosity);
         return most;
     }
@@ -147,7 +146,7 @@ private:
     MatrixXd B_;
     VectorXd given_, load_;
     std::vector<Eigen::Index> joint_; // of every unit
-    std::vector<creep::KelvinUnit> units_;
+    std::vector<KelvinUnit> units_;
 };
 
 // Such joints in time steps.

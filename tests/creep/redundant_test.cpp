@@ -72,7 +72,7 @@ TEST(given_tractions, are_exact_by_every_scheme_whatever_the_steps)
                 for (int i = 0; i < n; ++i)
                     error = std::max(error, marching.step(T / n));
                 double wanted = 0;
-                for (const creep::KelvinUnit& unit : chain.units)
+                for (const KelvinUnit& unit : chain.units)
                     wanted += unit.stiffness > 0
                                   ? F / unit.stiffness * -std::expm1(-unit.stiffness / unit.viscosity * T)
                                   : F * T / unit.viscosity;

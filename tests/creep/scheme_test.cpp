@@ -39,7 +39,7 @@ RC_GTEST_PROP(scheme, fitted_weights_are_the_integrals_of_their_force, ())
     const double eta = chain.units[0].viscosity;
     const double r = creep::relaxation_rate(chain);
     RC_ASSERT(std::abs(r - lam * (1 + ratio)) < 1e-14 * r);
-    const creep::Step step = creep::step_of(chain, CreepScheme::fitted, 1);
+    const creep::StepWeights step = creep::step_of(chain, CreepScheme::fitted, 1);
     const double last = integral(lam, r) / eta;
     const double all = -std::expm1(-lam) / lam / eta;
     RC_ASSERT(std::abs(step.units[0].last - last) < 1e-10 * last);
@@ -51,7 +51,7 @@ RC_GTEST_PROP(scheme, fitted_weights_are_the_integrals_of_their_force, ())
 RC_GTEST_PROP(scheme, linear_weights_are_the_integrals_of_their_force, ())
 {
     const double lam = any_of_decades(1e-9, 300);
-    const creep::Step step = creep::step_of(kelvin(1, 1, lam), CreepScheme::linear_force, 1);
+    const creep::StepWeights step = creep::step_of(kelvin(1, 1, lam), CreepScheme::linear_force, 1);
     RC_ASSERT(std::abs(step.units[0].last - integral(lam, 0) * lam) < 1e-11 * lam);
 }
 
@@ -79,8 +79,8 @@ RC_GTEST_PROP(scheme, fitted_lies_between_linear_force_and_backward, ())
 TEST(scheme, a_maxwell_dashpot_is_a_kelvin_unit_without_spring)
 {
     for (const CreepScheme scheme : all_schemes) {
-        const creep::Step maxwell = creep::step_of({2, {{0, 5}}}, scheme, 3);
-        const creep::Step soft = creep::step_of({2, {{1e-9, 5}}}, scheme, 3);
+        const creep::StepWeights maxwell = creep::step_of({2, {{0, 5}}}, scheme, 3);
+        const creep::StepWeights soft = creep::step_of({2, {{1e-9, 5}}}, scheme, 3);
         EXPECT_EQ(maxwell.units[0].decay, 1);
         EXPECT_NEAR(maxwell.units[0].first + maxwell.units[0].last, 3. / 5, 1e-14);
         EXPECT_NEAR(maxwell.units[0].last, soft.units[0].last, 1e-9);
@@ -98,7 +98,7 @@ RC_GTEST_PROP(scheme, published_is_stable_up_to_its_limit_and_no_further, ())
             chain.units.back().stiffness = 0;
     }
     const auto radius = [&](double duration) {
-        const creep::Step step = creep::step_of(chain, CreepScheme::published, duration);
+        const creep::StepWeights step = creep::step_of(chain, CreepScheme::published, duration);
         MatrixXd M(units, units);
         for (int u = 0; u < units; ++u) {
             M.row(u).setConstant(-step.units[u].first);

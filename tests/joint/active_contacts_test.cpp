@@ -3,8 +3,7 @@
 #include "joint/active_contacts.hpp"
 
 #include "any_law.hpp"
-
-#include "model/signs.hpp"
+#include "one_contact.hpp"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -21,38 +20,23 @@ using namespace jointcreep::test;
 namespace
 {
 
-double any_number(double scale)
-{
-    return scale * any_in(-1000, 1001) / 1000.0;
-}
-
-Contacts contact(const Law& law, const Vector2d& initial)
-{
-    return {.gridpoint = {{0, 1}},
-            .normal = {Vector2d(0, 1)},
-            .length = {1},
-            .law = {law},
-            .state = {State{}},
-            .initial_traction = {initial},
-            .offset = {Vector2d(0, 0)},
-            .traction = {initial},
-            .relative_displacement = {Vector2d(0, 0)},
-            .status = {ContactStatus::stuck},
-            .work = {0},
-            .force = {Vector2d(0, 0)},
-            .state_by_faces = {}};
-}
-
-void move(Contacts& contacts, const Vector2d& by)
-{
-    const std::vector<Vector2d> displacement{Vector2d(0, 0), by.x() * contacts.normal[0] +
-                                                                 by.y() * along(contacts.normal[0])};
-    find_forces_in_team(contacts, displacement, 0);
-}
-
 Law bonded()
 {
     return Coulomb{.k_n = 1e9, .k_s = 1e9, .cohesion = 1e6, .tan_phi = 0.5, .tensile_strength = 1e5};
+}
+
+// A search that begins with a contact, and its state then.
+struct Search {
+    Contacts contacts;
+    std::vector<State> start;
+    ActiveContacts active;
+};
+Search begun(const Contacts& contacts)
+{
+    Search search{contacts, contacts.state, {}};
+    search.active.begin(contacts);
+    search.active.take(contacts, contacts.state, true);
+    return search;
 }
 
 } // namespace
@@ -61,11 +45,11 @@ Law bonded()
 RC_GTEST_PROP(active_contacts, have_the_tangent_of_the_response, ())
 {
     const Law law = some_law(any_in(0, places()));
-    Contacts contacts = contact(law, {-1e6 - 1e3 * any_in(0, 2000), any_number(2e5)});
+    Contacts contacts = contact(law, {0, 1}, {-1e6 - 1e3 * any_in(0, 2000), any_number(2e5)});
     const std::vector<State> start = contacts.state;
     ActiveContacts active;
     active.begin(contacts);
-    move(contacts, {any_number(1e-3), any_number(3e-3)});
+    part(contacts, {any_number(1e-3), any_number(3e-3)});
     RC_PRE(contacts.state[0].is_broken == start[0].is_broken);
     active.take(contacts, start, true);
     const Tangent of = active.tangents(contacts, start, 0)[0],
@@ -80,16 +64,16 @@ RC_GTEST_PROP(active_contacts, have_the_tangent_of_the_response, ())
 
 TEST(active_contacts, slide_back_only_after_they_have_stuck)
 {
-    Contacts contacts = contact(bonded(), {-1e6, 0});
+    Contacts contacts = contact(bonded(), {0, 1}, {-1e6, 0});
     const std::vector<State> start = contacts.state;
     ActiveContacts active;
     active.begin(contacts);
     const auto shear = [&] { return active.tangents(contacts, start, 0)[0].friction; };
-    move(contacts, {0, 5e-3});
+    part(contacts, {0, 5e-3});
     active.take(contacts, start, true);
     EXPECT_LT(shear(), 0); // more pressure, more shear
     active.restart(contacts, start);
-    move(contacts, {0, -5e-3});
+    part(contacts, {0, -5e-3});
     active.take(contacts, start, false);
     EXPECT_EQ(shear(), 0);
     active.take(contacts, start, false);
@@ -98,25 +82,21 @@ TEST(active_contacts, slide_back_only_after_they_have_stuck)
 
 TEST(active_contacts, break_bonds_that_open_twice)
 {
-    Contacts contacts = contact(bonded(), {-1e6, 0});
-    const std::vector<State> start = contacts.state;
-    ActiveContacts active;
-    active.begin(contacts);
-    active.take(contacts, start, true);
+    auto [contacts, start, active] = begun(contact(bonded(), {0, 1}, {-1e6, 0}));
     for (int opening = 0; opening < 2; ++opening) {
         active.restart(contacts, start);
         EXPECT_FALSE(contacts.state[0].is_broken);
-        move(contacts, {2e-3, 0});
+        part(contacts, {2e-3, 0});
         EXPECT_EQ(contacts.status[0], ContactStatus::open);
         active.take(contacts, start, false);
         active.restart(contacts, start);
         if (opening == 0) {
-            move(contacts, {0, 0});
+            part(contacts, {0, 0});
             active.take(contacts, start, false);
         }
     }
     EXPECT_TRUE(contacts.state[0].is_broken);
-    move(contacts, {0, 0});
+    part(contacts, {0, 0});
     EXPECT_FALSE(
         active.mend_bonds(contacts)); // closed again, and its bond mended; no force changes as it sticks
     active.restart(contacts, start);
@@ -125,17 +105,13 @@ TEST(active_contacts, break_bonds_that_open_twice)
 
 TEST(active_contacts, break_bonds_that_hinder)
 {
-    Contacts contacts = contact(bonded(), {-1e6, 0});
-    const std::vector<State> start = contacts.state;
-    ActiveContacts active;
-    active.begin(contacts);
-    active.take(contacts, start, true);
+    auto [contacts, start, active] = begun(contact(bonded(), {0, 1}, {-1e6, 0}));
     EXPECT_FALSE(active.break_bonds(contacts, start));
-    move(contacts, {2e-3, 0});
+    part(contacts, {2e-3, 0});
     EXPECT_TRUE(active.break_bonds(contacts, start));
     EXPECT_FALSE(active.break_bonds(contacts, start)); // once
     const std::vector<char> broken = active.broken_bonds();
-    move(contacts, {0, 9e-4});
+    part(contacts, {0, 9e-4});
     active.mend_bonds(contacts);
     EXPECT_NE(active.broken_bonds(), broken);
     active.set_broken_bonds(broken);

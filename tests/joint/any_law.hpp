@@ -40,4 +40,10 @@ inline Index any_in(Index from, Index to)
     return *rc::gen::resize(rc::kNominalSize, rc::gen::inRange(from, to));
 }
 
+// Between -scale and scale, of its unit.
+inline double any_number(double scale)
+{
+    return scale * any_in(-1000, 1001) / 1000.0;
+}
+
 } // namespace jointcreep::test

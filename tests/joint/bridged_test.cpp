@@ -47,7 +47,7 @@ rc::Gen<double> between(double least, double most)
 std::complex<double> compliance(const JointChain& chain, std::complex<double> s)
 {
     std::complex<double> sum = 1 / chain.spring;
-    for (const JointChain::KelvinUnit& unit : chain.units)
+    for (const KelvinUnit& unit : chain.units)
         sum += 1.0 / (unit.stiffness + s * unit.viscosity);
     if (chain.maxwell_viscosity > 0)
         sum += 1.0 / (s * chain.maxwell_viscosity);
@@ -211,7 +211,7 @@ RC_GTEST_PROP(Bridged, IsTheBridgesBesideTheJointAtEveryRate, ())
     const Bridging beside{decades(3), decades(1)};
     const JointChain chain = bridged(joint, beside);
     RC_ASSERT(chain.maxwell_viscosity == 0);
-    for (const JointChain::KelvinUnit& unit : chain.units)
+    for (const KelvinUnit& unit : chain.units)
         RC_ASSERT(unit.stiffness > 0 && unit.viscosity > 0 && std::isfinite(unit.viscosity));
     const std::complex<double> s = std::polar(decades(5), *between(0, pi / 2));
     const std::complex<double> found = compliance(chain, s),

@@ -19,11 +19,6 @@ using namespace jointcreep::test;
 namespace
 {
 
-double any_number(double scale)
-{
-    return scale * any_in(-1000, 1001) / 1000.0;
-}
-
 double rise_of(const std::vector<ClosedPartOfJoint>& parts, const std::vector<Moved>& moved)
 {
     RisingJoint joint;

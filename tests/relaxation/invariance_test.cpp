@@ -121,7 +121,7 @@ TEST(invariance, the_plate_slips_opens_and_has_several_parts)
 {
     const Assembly& rock = reference();
     EXPECT_GT(farthest(rock), 1e-5);
-    EXPECT_GT(rock.slots.part_start.size(), 3);
+    EXPECT_GT(rock.zones.slots.part_start.size(), 3);
     EXPECT_GT(mechanics::chunks_of(rock), 2);
     EXPECT_GT(std::ranges::count(rock.contacts.status, ContactStatus::slipping), 3);
     EXPECT_GT(std::ranges::count(rock.contacts.status, ContactStatus::open), 0);

@@ -54,8 +54,6 @@ Kind any_kind()
 struct Patch {
     Mesh mesh;
     Zones zones;
-    Slots slots;
-    std::vector<Index> of_slot;
     double area;
     Vector2d end; // the corner across from the origin
 
@@ -85,7 +83,7 @@ struct Patch {
         Network network;
         network.blocks.block_rock = {0};
         zones = zones_of(scene, network, mesh);
-        slots = slots_of(zones, mesh.gridpoint.size(), of_slot);
+        find_incidence(zones, mesh.gridpoint.size());
     }
 
     void add_middles()
@@ -118,10 +116,10 @@ struct Patch {
     // On gridpoints [N/m].
     Displacements forces(const Displacements& displacement, double damping = 0)
     {
-        find_forces_in_team(zones, slots, displacement, damping, false);
+        find_forces_in_team(zones, displacement, damping, false);
         Displacements force(mesh.gridpoint.size(), Vector2d::Zero());
-        for (std::size_t slot = 0; slot < of_slot.size(); ++slot)
-            force[of_slot[slot]] += slots.force[slot];
+        for (std::size_t g = 0; g < force.size(); ++g)
+            add_force_on(zones, static_cast<Index>(g), force[g]);
         return force;
     }
     Displacements any_displacements(double scale) const
@@ -315,10 +313,10 @@ TEST(zones, start_with_the_stress_in_situ)
 TEST(zones, slots_give_the_same_sums)
 {
     Patch patch(40, 30, 0, Kind::constant_strain, elastic, squeezed());
-    const std::vector<Index>& start = patch.slots.part_start;
+    const std::vector<Index>& start = patch.zones.slots.part_start;
     ASSERT_GT(start.size(), 3U);
     auto part = start.begin();
-    for (auto slot = patch.slots.of_zone.begin(); slot != patch.slots.of_zone.end(); slot += 3) {
+    for (auto slot = patch.zones.slots.of_zone.begin(); slot != patch.zones.slots.of_zone.end(); slot += 3) {
         part = *slot < *std::next(part) ? part : std::next(part);
         for (int i = 0; i < 3; ++i)
             ASSERT_TRUE(*part <= slot[i] && slot[i] < *std::next(part));
@@ -331,10 +329,10 @@ TEST(zones, slots_give_the_same_sums)
     for (std::size_t g = 0; g < force.size(); ++g)
         EXPECT_LT((force[g] - plain[g]).norm(), 1e-2); // of 1e7
     std::vector<double> magnitudes(patch.mesh.gridpoint.size(), 0.0);
-    for (std::size_t slot = 0; slot < patch.of_slot.size(); ++slot)
-        magnitudes[patch.of_slot[slot]] += patch.slots.magnitudes[slot];
-    for (std::size_t g = 0; g < force.size(); ++g)
+    for (std::size_t g = 0; g < force.size(); ++g) {
+        add_magnitudes_on(patch.zones, static_cast<Index>(g), magnitudes[g]);
         EXPECT_GE(magnitudes[g], force[g].norm() * (1 - 1e-9));
+    }
 }
 
 // Dashpots: as much of the stress's change again.
@@ -436,7 +434,7 @@ TEST(zones, that_yield_account_for_their_work)
     }
     EXPECT_GT(lost, 1e3);
     EXPECT_NEAR(done, stored_energy(patch.zones) - at_start + lost, 1e-6 * lost);
-    forget_dissipated(patch.zones);
+    begin_search(patch.zones, false);
     EXPECT_EQ(dissipated(patch.zones), 0);
 }
 

@@ -1,0 +1,23 @@
+#include "joint/chain.hpp"
+
+namespace jointcreep::joint
+{
+
+Chain chain_of(const EquivalentJoints& joints, std::size_t edge, int direction)
+{
+    const bool normal = direction == 0;
+    const auto& stiffness = normal ? joints.normal_kelvin_stiffness : joints.shear_kelvin_stiffness;
+    const auto& viscosity = normal ? joints.normal_kelvin_viscosity : joints.shear_kelvin_viscosity;
+    Chain chain{normal ? joints.normal_stiffness[edge] : joints.shear_stiffness[edge], {}};
+    const std::size_t units = joints.kelvin_units();
+    for (std::size_t unit = edge * units; unit < (edge + 1) * units; ++unit)
+        if (stiffness[unit] > 0)
+            chain.units.push_back({stiffness[unit], viscosity[unit]});
+    const double maxwell =
+        normal ? joints.normal_maxwell_viscosity[edge] : joints.shear_maxwell_viscosity[edge];
+    if (maxwell > 0)
+        chain.units.push_back({0, maxwell});
+    return chain;
+}
+
+} // namespace jointcreep::joint
