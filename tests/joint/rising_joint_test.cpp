@@ -59,6 +59,25 @@ RC_GTEST_PROP(rising_joint, of_one_part_dilates_as_the_response, ())
               1e-9 * std::abs(moved.slid) + (remembers(law) ? 0.02 * after.dilation : 0.0));
 }
 
+// By 0.1 for each metre of slip, until asperities are sheared off after 20 mm.
+TEST(rising_joint, rises_until_its_dilation_ends)
+{
+    const Law law = Coulomb{.k_n = 1e9,
+                            .k_s = 5e8,
+                            .cohesion = 0,
+                            .tan_phi = 0.6,
+                            .tensile_strength = 0,
+                            .tan_psi = 0.1,
+                            .dilation_until = 0.02};
+    for (const double before : {0.0, 5e-4, 1.5e-3, 2e-3}) {
+        State state;
+        state.dilation = before;
+        const double rise = rise_of({{&law, state, 2.5, -1e6, 6e5}}, {{0, 0.1}});
+        EXPECT_NEAR(rise, 2e-3 - before, 1e-15);
+    }
+    EXPECT_LT(rise_of({{&law, State{}, 2.5, -1e6, 6e5}}, {{0, 1e-3}}), 1e-4);
+}
+
 // The rise does the same work against the pressure as the dilation of each part by its own slip.
 TEST(rising_joint, does_the_work_of_its_parts)
 {
