@@ -134,6 +134,38 @@ RC_GTEST_PROP(moving_zones, turned_only_keep_their_stress, ())
     RC_ASSERT((tensor(one.stress()) - wanted).norm() < 1e-8 * 5e7);
 }
 
+// At the start its forces are those of the zone at small strain: -area times stress times the gradient.
+RC_GTEST_PROP(moving_zones, start_with_the_forces_at_small_strain, ())
+{
+    const Vector3d in_situ = any_stress(5e7);
+    One one(in_situ);
+    one.move_to(one.place);
+    for (int corner = 0; corner < 3; ++corner) {
+        const Vector2d wanted = -one.zones.area[0] * tensor(in_situ) * one.zones.gradients(0)[corner];
+        RC_ASSERT((one.moving.corner_force[corner] - wanted).norm() < 1e-8 * 5e7);
+    }
+}
+
+// A step of a strain e against dashpots: they begin with no stress and end with `viscosity` C e, and take the mean of it.
+// Another such step takes all of it.
+TEST(moving_zones, dashpots_take_the_mean_of_their_stress)
+{
+    One one({0, 0, 0});
+    one.move_to(one.place);
+    const std::vector<Vector2d> start = one.place;
+    constexpr double e = 1e-4, viscosity = 2;
+    const auto strained = [&](double strain) {
+        std::vector<Vector2d> all = start;
+        for (Vector2d& p : all)
+            p.x() *= 1 + strain;
+        return all;
+    };
+    const double all = one.zones.area[0] * viscosity * one.zones.stiffness[0][0] * e * e;
+    EXPECT_NEAR(one.move_to(strained(e), viscosity).damped, all / 2, 1e-9 * all);
+    EXPECT_NEAR(one.move_to(strained(2 * e), viscosity).damped, all, 1e-9 * all);
+    EXPECT_NEAR(one.move_to(strained(2 * e), viscosity).damped, 0, 1e-9 * all);
+}
+
 // Forces on the corners are the slope of the stored energy; they have no resultant and no moment.
 RC_GTEST_PROP(moving_zones, forces_are_the_slope_of_stored_energy, ())
 {
