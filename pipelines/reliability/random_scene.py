@@ -127,8 +127,8 @@ def joint_material(random, name, stress, size, creeps):
     return keys
 
 
-def rock(random, name, creeps):
-    keys = {"name": name, "density_kg_per_m3": uniform(random, 1900, 2900), "youngs_modulus_GPa": log_uniform(random, 0.5, 60),
+def rock(random, name, creeps, stiffest):
+    keys = {"name": name, "density_kg_per_m3": uniform(random, 1900, 2900), "youngs_modulus_GPa": log_uniform(random, 0.5, stiffest),
             "poissons_ratio": uniform(random, 0, 0.45), "cohesion_MPa": log_uniform(random, 0.1, 5),
             "friction_angle_deg": uniform(random, 20, 55), "tensile_strength_MPa": log_uniform(random, 0.05, 1)}
     if chance(random, 0.3):
@@ -190,7 +190,8 @@ def equilibrium(random, large):
 
 def random_scene(random):
     """The text of a scene."""
-    height, large, quick = log_uniform(random, 3, 80), chance(random, 0.12), chance(random, 0.5)
+    large, quick = chance(random, 0.12), chance(random, 0.5)
+    height = log_uniform(random, 20 if large else 3, 80)  # time steps of small or stiff zones are short
     width, days = float(f"{height * random.uniform(1, 2.5):.4g}"), random.choice([10, 60, 400])
     creeps = not large and chance(random, 0.5)
     right = height if chance(random, 0.5) else float(f"{height * random.uniform(0.3, 0.8):.4g}")
@@ -200,7 +201,7 @@ def random_scene(random):
     if chance(random, 0.15):
         x, y, r = width * 0.2, height * 0.4, height * 0.1
         section["holes_m"] = [[[x - r, y - r], [x + r, y - r], [x + r, y + r], [x, y + 1.5 * r], [x - r, y + r]]]
-    rocks = [rock(random, f"rock {i}", creeps) for i in range(random.randint(1, 3))]
+    rocks = [rock(random, f"rock {i}", creeps, 5 if large else 60) for i in range(random.randint(1, 3))]
     names = [one["name"] for one in rocks]
     stress = rocks[0]["density_kg_per_m3"] * 9.81e-6 * height
     materials = [joint_material(random, f"material {i}", stress, height, creeps) for i in range(random.randint(1, 3))]
@@ -256,7 +257,7 @@ def random_scene(random):
             ["joint", "lower bound", "upper bound", "staggered"])}))
     parts.append(table("[equilibrium]", equilibrium(random, large)))
     if large:
-        parts.append(table("[large_displacements]", {"new_contacts": kinds[0], "longest_s": 1, **(
+        parts.append(table("[large_displacements]", {"new_contacts": kinds[0], "longest_s": 0.5, **(
             {"rigid_rocks": [names[0]]} if quick else {"mass_damping_per_s": 1})}))
     parts.append(table("[random]", {"seed": random.randrange(2**31)}))
     return "\n".join(parts)

@@ -3,6 +3,7 @@ engines, and by a dynamic analysis where it means something, against a closed fo
 
 import math
 
+import h5py
 import numpy as np
 
 from chain import ChainTest, changed, datasets, main
@@ -295,6 +296,21 @@ seed = 1
                         np.testing.assert_array_equal(one[name], other[name], name)
                 self.assertAlmostEqual(other["/fates/outline_length"].sum() / sum(
                     math.dist(a, b) for a, b in zip(outline, outline[1:] + outline[:1])), 1, delta=1e-9)
+
+
+class Guards(ChainTest):
+    def test_a_result_that_is_wrong_gets_no_name_of_a_result(self):
+        """The area of a block is changed by 1e-6 in the file: zones do not fill the block."""
+        joints = self.chain.joints(self.chain.text("data/column/scene.toml"))
+        output = self.chain.run("demsolve", joints, joints.with_name("result.h5"))
+        before = output.read_bytes()
+        with h5py.File(joints, "r+") as file:
+            file["blocks/area"][1] *= 1 + 1e-6
+        done = self.chain.answer("demsolve", joints, "-o", output, "-q")
+        self.assertEqual(done.returncode, 3, done.stderr)
+        self.assertRegex(done.stderr, r"^demsolve: the result is wrong: areas of zones are off by (1|9\.99\d*)e-0?[67] of their block's")
+        self.assertEqual(output.read_bytes(), before)  # that of the earlier run
+        self.assertIn("areas of zones", datasets(output.with_name("result.failed.h5"))["/failure/reason"][0])
 
 
 class BarelyHeld(ChainTest):
