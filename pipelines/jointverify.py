@@ -11,11 +11,13 @@ deviation, what is allowed, and where it is.
 At large displacements, stresses and joint laws are not verified, and equilibrium only of all rock together. Lines "not
 verified" say what else is not.
 
+Creep of joints is verified where each creep step has a state: demsolve --states 1.
+
 What is allowed:
   equilibrium    the run's tolerance of the unbalanced force ratio
   energies       that tolerance times the sum of their magnitudes; 1 percent in a dynamic analysis
-  everything     rounding: 1e-12 of the terms that are added, some thousand times the rounding of one number
-What is allowed follows from the run.
+  creep          1e-9 of the terms that are added
+  all others     rounding: 1e-12 of the terms that are added, some thousand times the rounding of one number
 
 Options:
   -h [ --help ]  show this text
@@ -198,7 +200,7 @@ class Scene:
         self.large_displacements = "large_displacements" in self.tables
         creep = self.table("creep", {})
         self.creeps = "creep" in self.tables and "--no-creep" not in self.options
-        self.scheme = self.options.get("--creep-scheme", str(creep.get("scheme", "fitted"))).replace("-", " ")
+        self.scheme = self.options.get("--creep-scheme", str(creep.get("scheme", "auto"))).replace("-", " ")
         if not self.tolerance > 0 or not self.divisor > 0:
             raise NotWanted(f"{self.place}: tolerance {self.tolerance}, strength factor {self.divisor}; expected more than 0")
         self.rocks = {rock.get("name"): rock for rock in self.list("rock")}
@@ -257,6 +259,13 @@ class Scene:
                 "displacement": 1e-3 * self.pair(table["displacement_mm"], "displacement_mm")
                 if "displacement_mm" in table else None,
                 "factor": lambda day: 1.0 if points is None else float(np.interp(day, points[:, 0], points[:, 1]))}
+
+    def scheme_between(self, day, other):
+        """The creep scheme of a step between two days: "auto" is linear force where loads change."""
+        if self.scheme != "auto":
+            return self.scheme
+        loads = [one["factor"] for one in self.boundaries if one["traction"] is not None or one["displacement"] is not None]
+        return "linear force" if any(factor(day) != factor(other) for factor in loads) else "fitted"
 
     def of_rock(self, name, key, default=None):
         if name not in self.rocks:
@@ -846,7 +855,7 @@ class Verification:
 
     # Creep of joints: d' = (F - E d) / eta of each unit, during a step F = F_0 + (F_1 - F_0) phi.
 
-    def weights(self, stiffness, viscosity, spring, days):
+    def weights(self, stiffness, viscosity, spring, days, scheme):
         """decay, first and last of d_1 = decay d_0 + first F_0 + last F_1 of each unit in a step."""
         time = 86400 * days
         is_unit = viscosity > 0
@@ -863,23 +872,23 @@ class Verification:
             points, weight = np.polynomial.legendre.leggauss(48)
             return sum(w / 2 * np.exp(-x * (1 - s)) * phi(s) for s, w in zip((points + 1) / 2, weight))
         whole = mean_decay(x)
-        if self.scene.scheme == "published":
+        if scheme == "published":
             last = 0 * x
-        elif self.scene.scheme == "backward":
+        elif scheme == "backward":
             last = whole
         else:
             large = np.maximum(x, 20)
             straight_of_large = (1 - mean_decay(large)) / large
             straight = np.where(x < 20, exactly(lambda s: s), straight_of_large)
-            if self.scene.scheme == "linear force":
+            if scheme == "linear force":
                 last = straight
-            elif self.scene.scheme == "fitted":
+            elif scheme == "fitted":
                 closed = (whole - np.exp(-np.minimum(x, r)) * mean_decay(np.abs(x - r))) / -np.expm1(-r)
                 near = exactly(lambda s: np.where(r == 0, s, np.expm1(-r * s) / np.expm1(-np.where(r == 0, 1, r))))
                 nearly_straight = straight_of_large + r / 2 * (straight_of_large - (1 - 2 * straight_of_large) / large)
                 last = np.where((x < 20) & (r < 20), near, np.where(r < 1e-5, nearly_straight, closed))
             else:
-                raise NotWanted(f'{self.scene.place}: creep scheme "{self.scene.scheme}" is not known')
+                raise NotWanted(f'{self.scene.place}: creep scheme "{scheme}" is not known')
         return np.exp(-x), flow * (whole - last), flow * last
 
     def check_creep(self, s):
@@ -914,7 +923,8 @@ class Verification:
                 continue
             if not self.all_steps_known:
                 moving = moving[single[moving]]
-            decay, first, last = self.weights(stiffness[moving], viscosity[moving], spring[moving], days)
+            scheme = self.scene.scheme_between(st.time[s - 1], st.time[s])
+            decay, first, last = self.weights(stiffness[moving], viscosity[moving], spring[moving], days, scheme)
             since = st.traction[:, moving, axis, None] - st.traction[0, moving, axis, None]
             parts = [decay * units[moving], first * since[s - 1], last * since[s]]
             units[moving] = sum(parts)

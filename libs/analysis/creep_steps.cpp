@@ -205,7 +205,7 @@ bool CreepSteps::settles_at(double end, bool by_relaxation, const mechanics::Sta
 {
     const double duration = end - section_.now;
     if (creeps())
-        creep_->begin(duration, section_.assembly);
+        creep_->begin(duration, section_.assembly, section_.loading.changes(section_.now, end));
     section_.loading.apply(section_.assembly, end);
     try {
         if (!by_relaxation)

@@ -117,11 +117,12 @@ Eigen::Vector3d Creep::crept(const Shear& shear) const
     return sum;
 }
 
-void Creep::begin(double duration, mechanics::Assembly& assembly)
+void Creep::begin(double duration, mechanics::Assembly& assembly, bool loads_change)
 {
+    scheme_of_step_ = creep::scheme_of_step(scheme_, loads_change);
     steps_.clear();
     for (const Chain& chain : chains_)
-        steps_.push_back(step_of(chain, scheme_, duration));
+        steps_.push_back(step_of(chain, scheme_of_step_, duration));
 
     const joint::Contacts& contacts = assembly.contacts;
     for (Spring& spring : springs_) {

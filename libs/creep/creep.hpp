@@ -30,9 +30,9 @@ public:
     double fastest_rate() const;
 
     // Gives contacts and zones the stiffness and offset they act with during a step of `duration` [s] from
-    // the present state; the caller then finds the equilibrium at its end. May be called again instead of
-    // end(), with another duration: nothing has changed that is not the assembly's.
-    void begin(double duration, mechanics::Assembly& assembly);
+    // the present state, in which loads change or not; the caller then finds the equilibrium at its end. May be called
+    // again instead of end(), with another duration: nothing has changed that is not the assembly's.
+    void begin(double duration, mechanics::Assembly& assembly, bool loads_change = false);
 
     // Lets creep follow the tractions and stresses of that equilibrium, and gives contacts and zones their
     // own stiffnesses back, with the offset crept so far: tractions and stresses stay what they are. Returns
@@ -70,7 +70,7 @@ public:
     };
 
     // For sensitivities.
-    CreepScheme scheme() const { return scheme_; }
+    CreepScheme scheme() const { return scheme_of_step_; } // of the present step; not automatic
     const std::vector<Chain>& chains() const { return chains_; }
     const std::vector<Spring>& springs() const { return springs_; }
     const std::vector<Shear>& shears() const { return shears_; }
@@ -85,7 +85,8 @@ private:
     double crept(const Spring& spring) const;
     Vector3d crept(const Shear& shear) const;
 
-    CreepScheme scheme_ = CreepScheme::fitted;
+    CreepScheme scheme_ = CreepScheme::automatic; // of the scene
+    CreepScheme scheme_of_step_ = CreepScheme::fitted;
     std::vector<Chain> chains_;      // each once
     std::vector<StepWeights> steps_; // of the chains
     std::vector<Spring> springs_;

@@ -88,6 +88,8 @@ Number last_weight(CreepScheme scheme, Number x, Number r)
         return fitted_weight(x, Number(0));
     case CreepScheme::fitted:
         return fitted_weight(x, r);
+    case CreepScheme::automatic:
+        break;
     }
     return 0;
 }
@@ -135,7 +137,14 @@ double relaxation_rate(const Chain& chain)
 
 bool is_second_order(CreepScheme scheme)
 {
-    return scheme == CreepScheme::linear_force || scheme == CreepScheme::fitted;
+    return scheme != CreepScheme::published && scheme != CreepScheme::backward;
+}
+
+CreepScheme scheme_of_step(CreepScheme scheme, bool loads_change)
+{
+    if (scheme != CreepScheme::automatic)
+        return scheme;
+    return loads_change ? CreepScheme::linear_force : CreepScheme::fitted;
 }
 
 StepWeights step_of(const Chain& chain, CreepScheme scheme, double duration)

@@ -8,6 +8,7 @@
 //     backward       phi = 1                      first order
 //     linear force   phi = s                      second order; rings where creep is soft beside the spring
 //     fitted         phi = (1 - exp(-rho dT s)) / (1 - exp(-rho dT))      second order, does not ring
+//     automatic      fitted, or linear force where loads change during the step
 // so that
 //     d_1 = a d_0 + c_0 F_0 + c_1 F_1 .
 // rho is the rate at which the force on the spring between fixed walls falls at first. With one unit it
@@ -38,6 +39,9 @@ struct StepWeights {
 
 // Whether a scheme is of second order in the step's length; the others are of first.
 bool is_second_order(CreepScheme scheme);
+
+// What the scene's scheme is in a step; not automatic, as the functions below want it.
+CreepScheme scheme_of_step(CreepScheme scheme, bool loads_change);
 
 StepWeights step_of(const Chain& chain, CreepScheme scheme, double duration);
 

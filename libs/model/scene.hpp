@@ -261,7 +261,7 @@ struct Gauge {
 };
 
 // What a creep step takes the force to be during the step (libs/creep/scheme.hpp).
-enum class CreepScheme { published, backward, linear_force, fitted };
+enum class CreepScheme { automatic, published, backward, linear_force, fitted };
 
 struct CreepSettings {
     std::optional<double> step;      // fixed, between dates [s]; or else
@@ -270,7 +270,7 @@ struct CreepSettings {
     std::optional<double> first_step;    // the first one tried after every event [s]
     std::optional<double> shortest_step; // [s]
     std::optional<double> longest_step;  // [s]
-    CreepScheme scheme = CreepScheme::fitted;
+    CreepScheme scheme = CreepScheme::automatic;
     std::optional<double> stop_rate; // ends creep after the last stage once no point moves faster [m/s]
 };
 

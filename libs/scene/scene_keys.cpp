@@ -667,9 +667,9 @@ Table<CreepSettings> creep()
          "Creep of joints and rock. Without this table nothing creeps. Either step_days or tolerance_m is "
          "given."},
         {choice("scheme", &CreepSettings::scheme, creep_scheme_words(),
-                "Time scheme: what the force on a joint is taken to be during a step. Fitted is the most "
-                "accurate; the published one is stable only below a limit.")
-             .or_else(std::string("fitted")),
+                "Time scheme: what the force on a joint is taken to be during a step. \"auto\" is fitted, and "
+                "linear force in steps during which loads change; the published one is stable only below a limit.")
+             .or_else(std::string("auto")),
          number("step_days", &CreepSettings::step, days, step, "Time step.").optional(),
          number("tolerance_m", &CreepSettings::tolerance, metres, creep_tolerances,
                 "Error that a step may make, by estimate; the time steps are chosen by it.")

@@ -25,7 +25,8 @@ inline keys::Words<EngineChoice> engine_words()
 // The command line has "-" in place of " ".
 inline keys::Words<CreepScheme> creep_scheme_words()
 {
-    return {{"published", CreepScheme::published},
+    return {{"auto", CreepScheme::automatic},
+            {"published", CreepScheme::published},
             {"backward", CreepScheme::backward},
             {"linear force", CreepScheme::linear_force},
             {"fitted", CreepScheme::fitted}};

@@ -168,7 +168,7 @@ def boundaries(random, width, right, height, material, days, large):
 
 
 def creep(random, days):
-    scheme = random.choice(["fitted", "backward", "linear force", "published"])
+    scheme = random.choice(["auto", "fitted", "backward", "linear force", "published"])
     if chance(random, 0.5):
         return {"scheme": scheme, "step_days": days / random.choice([4, 10, 20])}
     return {"scheme": scheme, "tolerance_m": log_uniform(random, 1e-5, 1e-3)}

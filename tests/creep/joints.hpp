@@ -63,7 +63,7 @@ public:
     {
         const auto n = static_cast<Eigen::Index>(chains_.size());
         given_ = VectorXd::Zero(n);
-        load_ = VectorXd::Zero(B_.cols());
+        load_ = growth_ = VectorXd::Zero(B_.cols());
         for (Eigen::Index c = 0; c < n; ++c)
             for (const KelvinUnit& unit : chains_[c].units) {
                 joint_.push_back(c);
@@ -75,6 +75,18 @@ public:
     CreepingJoints& put_on(VectorXd load)
     {
         load_ = std::move(load);
+        return *this;
+    }
+    // And so much more in each second.
+    CreepingJoints& load_by(VectorXd growth)
+    {
+        growth_ = std::move(growth);
+        return *this;
+    }
+    // Takes a joint away: it carries nothing.
+    CreepingJoints& take_away(Eigen::Index joint)
+    {
+        chains_[joint].spring = 0;
         return *this;
     }
     CreepingJoints& give(VectorXd displacements)
@@ -92,20 +104,21 @@ public:
         return most;
     }
 
-    // Tractions with springs of stiffness k that are at rest at the displacements `offset`.
-    VectorXd tractions(const VectorXd& k, const VectorXd& offset) const
+    // Tractions at `time` with springs of stiffness k that are at rest at the displacements `offset`.
+    VectorXd tractions(const VectorXd& k, const VectorXd& offset, double time = 0) const
     {
         VectorXd displacement = given_;
         if (B_.cols() > 0)
-            displacement += B_ * (B_.transpose() * k.asDiagonal() * B_)
-                                     .ldlt()
-                                     .solve(load_ - B_.transpose() * k.cwiseProduct(given_ - offset));
+            displacement +=
+                B_ * (B_.transpose() * k.asDiagonal() * B_)
+                         .ldlt()
+                         .solve(load_ + time * growth_ - B_.transpose() * k.cwiseProduct(given_ - offset));
         return k.cwiseProduct(displacement - offset);
     }
 
-    // F = first - S sum(d).
+    // F = first + growth t - S sum(d).
     struct System {
-        VectorXd first;
+        VectorXd first, growth;
         MatrixXd S;
     };
     System system() const
@@ -114,14 +127,20 @@ public:
         VectorXd k(n);
         for (Eigen::Index c = 0; c < n; ++c)
             k[c] = chains_[c].spring;
-        System all{tractions(k, VectorXd::Zero(n)), MatrixXd(n, n)};
+        System all{tractions(k, VectorXd::Zero(n)), VectorXd(n), MatrixXd(n, n)};
+        all.growth = tractions(k, VectorXd::Zero(n), 1) - all.first;
         for (Eigen::Index c = 0; c < n; ++c)
             all.S.col(c) = all.first - tractions(k, VectorXd::Unit(n, c));
         return all;
     }
 
-    // Tractions at `time`.
+    // Tractions at `time`; with what units have crept since time 0 in `crept`, which has it at time 0, or is empty.
     VectorXd exact(double time) const
+    {
+        VectorXd crept;
+        return exact(time, crept);
+    }
+    VectorXd exact(double time, VectorXd& crept) const
     {
         const auto n = static_cast<Eigen::Index>(chains_.size());
         const auto m = static_cast<Eigen::Index>(units_.size());
@@ -129,22 +148,28 @@ public:
         MatrixXd sum = MatrixXd::Zero(n, m); // of the units of every joint
         for (Eigen::Index u = 0; u < m; ++u)
             sum(joint_[u], u) = 1;
-        MatrixXd M = MatrixXd::Zero(m + 1, m + 1);
+        MatrixXd M = MatrixXd::Zero(m + 2, m + 2); // of the units, of time and of 1
         for (Eigen::Index u = 0; u < m; ++u) {
             M.block(u, 0, 1, m) = -(all.S * sum).row(joint_[u]) / units_[u].viscosity;
             M(u, u) -= units_[u].stiffness / units_[u].viscosity;
-            M(u, m) = all.first[joint_[u]] / units_[u].viscosity;
+            M(u, m) = all.growth[joint_[u]] / units_[u].viscosity;
+            M(u, m + 1) = all.first[joint_[u]] / units_[u].viscosity;
         }
-        const MatrixXd flow = (M * time).exp();
-        return all.first - all.S * sum * flow.block(0, m, m, 1);
+        M(m, m + 1) = 1;
+        VectorXd start = VectorXd::Unit(m + 2, m + 1);
+        if (crept.size() > 0)
+            start.head(m) = crept;
+        crept = ((M * time).exp() * start).head(m);
+        return all.first + time * all.growth - all.S * sum * crept;
     }
 
     const std::vector<Chain>& chains() const { return chains_; }
+    bool grows() const { return !growth_.isZero(0); }
 
 private:
     std::vector<Chain> chains_;
     MatrixXd B_;
-    VectorXd given_, load_;
+    VectorXd given_, load_, growth_;  // growth: in a second
     std::vector<Eigen::Index> joint_; // of every unit
     std::vector<KelvinUnit> units_;
 };
@@ -162,10 +187,22 @@ public:
 
     double step(double duration)
     {
-        creep_.begin(duration, rock_);
+        creep_.begin(duration, rock_, joints_.grows());
+        time_ += duration;
         equilibrate();
         return creep_.end(rock_);
     }
+    // Other loads from now on, which is time 0 for them, on the same joints; some may be taken away.
+    void go_on_with(const CreepingJoints& joints)
+    {
+        joints_ = joints;
+        time_ = 0;
+        for (std::size_t c = 0; c < joints.chains().size(); ++c)
+            if (joints.chains()[c].spring == 0)
+                rock_.contacts.status[c] = ContactStatus::removed;
+        equilibrate();
+    }
+    double fastest_rate() const { return creep_.fastest_rate(); }
     VectorXd tractions() const
     {
         VectorXd all(static_cast<Eigen::Index>(mesh_.contact_edge.size()));
@@ -206,15 +243,16 @@ private:
         const auto n = static_cast<Eigen::Index>(mesh_.contact_edge.size());
         VectorXd k(n), offset(n);
         for (Eigen::Index c = 0; c < n; ++c) {
-            k[c] = joint::k_n(rock_.contacts.law[c]);
+            k[c] = rock_.contacts.status[c] == ContactStatus::removed ? 0 : joint::k_n(rock_.contacts.law[c]);
             offset[c] = rock_.contacts.offset[c].x();
         }
-        const VectorXd tractions = joints_.tractions(k, offset);
+        const VectorXd tractions = joints_.tractions(k, offset, time_);
         for (Eigen::Index c = 0; c < n; ++c)
             rock_.contacts.traction[c].x() = tractions[c];
     }
 
     CreepingJoints joints_;
+    double time_ = 0; // [s]
     Mesh mesh_;
     mechanics::Assembly rock_;
     creep::Creep creep_;

@@ -1,6 +1,8 @@
 // Creep steps over joints whose equilibrium is in closed form: given tractions, given displacements
 // (platens), two pillars under a rigid cap, and random redundant systems. Reference: the matrix exponential.
 
+#include "creep/step_length.hpp"
+
 #include "joints.hpp"
 
 #include <gtest/gtest.h>
@@ -234,6 +236,111 @@ TEST(platens, linear_force_rings_and_the_others_do_not)
             EXPECT_EQ(rings, scheme == CreepScheme::linear_force || scheme == CreepScheme::published);
         }
     }
+}
+
+// Tractions that grow in proportion to time: by the automatic scheme exact, whatever the steps.
+TEST(given_tractions, that_grow_are_exact_by_linear_force)
+{
+    for (const Chain& chain : {kelvin(6.9e8, 1.44, .1), three_units, burgers}) {
+        const auto joints = CreepingJoints({chain}, MatrixXd::Ones(1, 1))
+                                .put_on(VectorXd::Constant(1, 1e6))
+                                .load_by(VectorXd::Constant(1, 2e5));
+        Marching marching(joints, CreepScheme::automatic), fitted(joints, CreepScheme::fitted);
+        double time = 0;
+        VectorXd crept;
+        for (const double step : {1.0, 7.0, 0.1, 30.0}) {
+            marching.step(step);
+            fitted.step(step);
+            time += step;
+            crept.resize(0);
+            joints.exact(time, crept);
+            EXPECT_NEAR(marching.crept()[0], crept.sum(), 1e-12 * crept.sum());
+        }
+        EXPECT_GT(std::abs(fitted.crept()[0] / crept.sum() - 1), 1e-4);
+    }
+}
+
+// Three pillars under a rigid level cap, on which load grows and then stays; then one of them is taken away. Steps may be
+// chosen by a tolerance of 1 in 2500 of what they creep.
+class ThreePillars
+{
+public:
+    explicit ThreePillars(CreepScheme scheme) : scheme_(scheme) {}
+
+    // The largest error of a force over the load, in each of three parts: load grows, stays, and stays on two pillars.
+    // `steps` of equal length in each, or chosen by the tolerance if 0.
+    std::array<double, 3> errors(int steps)
+    {
+        const CreepingJoints held =
+            CreepingJoints(pillars_, MatrixXd::Ones(3, 1)).put_on(VectorXd::Constant(1, load_));
+        CreepingJoints part = CreepingJoints(pillars_, MatrixXd::Ones(3, 1))
+                                  .put_on(VectorXd::Constant(1, 0))
+                                  .load_by(VectorXd::Constant(1, load_ / ramp_));
+        Marching marching(part, scheme_);
+        CreepSettings settings;
+        settings.tolerance = tolerance_;
+        settings.scheme = scheme_;
+        creep::StepLength length(settings, marching.fastest_rate(), std::numeric_limits<double>::infinity());
+        VectorXd crept = VectorXd::Zero(3);
+        std::array<double, 3> largest{};
+        for (int i = 0; i < 3; ++i) {
+            const double duration = i == 0 ? ramp_ : 2 * ramp_;
+            double time = 0;
+            length.start_afresh();
+            while (time < duration * (1 - 1e-12)) {
+                const double step =
+                    steps > 0 ? duration / steps : length.next(duration - time, duration - time);
+                const Marching before = marching;
+                if (const double estimate = marching.step(step);
+                    steps == 0 && !length.stands(step, estimate)) {
+                    marching = before;
+                    continue;
+                }
+                ++taken_;
+                time += step;
+                VectorXd now = crept;
+                const VectorXd exact = part.exact(time, now);
+                largest[i] =
+                    std::max(largest[i], (marching.tractions() - exact).cwiseAbs().maxCoeff() / load_);
+            }
+            part.exact(duration, crept);
+            part = held;
+            if (i == 1)
+                part.take_away(1);
+            if (i < 2)
+                marching.go_on_with(part);
+        }
+        return largest;
+    }
+    int taken() const { return taken_; }
+
+private:
+    static constexpr double load_ = 1e6, ramp_ = 3, tolerance_ = 1e-7;
+    const std::vector<Chain> pillars_{kelvin(1e9, 5, 1), kelvin(2e9, 2, .3), kelvin(1.5e9, 3, .1)};
+    CreepScheme scheme_;
+    int taken_ = 0; // steps
+};
+
+TEST(three_pillars, the_automatic_scheme_is_of_second_order)
+{
+    const auto coarse = ThreePillars(CreepScheme::automatic).errors(32),
+               fine = ThreePillars(CreepScheme::automatic).errors(64),
+               fitted = ThreePillars(CreepScheme::fitted).errors(64),
+               linear = ThreePillars(CreepScheme::linear_force).errors(64);
+    for (int i = 0; i < 3; ++i) {
+        EXPECT_GT(coarse[i] / fine[i], 3.5) << i;
+        EXPECT_LT(fine[i], 1.7e-4) << i;
+    }
+    EXPECT_LT(fine[0], 0.6 * fitted[0]); // while load grows
+    EXPECT_LT(fine[2], 0.4 * linear[2]); // and after it has jumped
+}
+
+TEST(three_pillars, are_within_1e_4_where_the_tolerance_chooses_steps)
+{
+    ThreePillars chosen(CreepScheme::automatic);
+    for (const double error : chosen.errors(0))
+        EXPECT_LT(error, 1e-4);
+    EXPECT_LT(chosen.taken(), 150);
 }
 
 // The second pillar is twice as stiff and creeps as far as the first one: K, K / E and 2 K, K / 2 E, lam = 1.

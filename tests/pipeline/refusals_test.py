@@ -176,7 +176,7 @@ class Refusals(ChainTest):
             ("demsolve", ["--engine", "explicit"], "--engine explicit is now called --engine relaxation"),
             ("demsolve", ["--engine=explicit"], "--engine explicit is now called --engine relaxation"),
             ("demsolve", ["--engine", "newton"], '"newton" is none of auto, relaxation, implicit'),
-            ("demsolve", ["--creep-scheme", "linear force"], "is none of published, backward, linear-force, fitted"),
+            ("demsolve", ["--creep-scheme", "linear force"], "is none of auto, published, backward, linear-force, fitted"),
             ("jointexport", ["--what", "nothing"], "nothing"),
             ("jointexport", ["--state", "99"], "99"),
             ("jointexport", ["--what", "blocks", "--state", "0"], "--state"),

@@ -187,7 +187,7 @@ TEST(every_key, creep_by_tolerance)
                                "longest_step_days = 10");
     const Scene scene = parse_scene(text, "scene.toml");
     EXPECT_FALSE(scene.creep->step);
-    EXPECT_EQ(scene.creep->scheme, CreepScheme::fitted);
+    EXPECT_EQ(scene.creep->scheme, CreepScheme::automatic);
     EXPECT_EQ(scene.creep->tolerance, 1e-5);
     EXPECT_EQ(scene.creep->first_step, 0.5 * day);
     EXPECT_EQ(scene.creep->shortest_step, 0.1 * day);
