@@ -152,18 +152,20 @@ void solve(const Arguments& arguments)
                 files.write_checkpoint(reduction, so_far, checkpoint, *runs_before);
             };
         }
-        return of_file(input, [&] {
-            auto run = std::make_unique<Trial>(scene, file.network, file.equivalent, divisor,
-                                               most_displacement, threads, with_checkpoints,
-                                               [&progress, which](double fraction, const std::string& what) {
-                                                   progress.show(fraction, which + what);
-                                               });
-            if (from)
-                run->go_on(std::move(from->result), std::move(from->checkpoint));
-            else
-                run->run();
-            return run;
+        auto trial = of_file(input, [&] {
+            return std::make_unique<Trial>(scene, file.network, file.equivalent, divisor, most_displacement,
+                                           threads, with_checkpoints,
+                                           [&progress, which](double fraction, const std::string& what) {
+                                               progress.show(fraction, which + what);
+                                           });
         });
+        of_file(from ? files.checkpoint() : input, [&] {
+            if (from)
+                trial->go_on(std::move(from->result), std::move(from->checkpoint));
+            else
+                trial->run();
+        });
+        return trial;
     };
 
     // 4. Once, or with strengths divided by factors until rock moves.

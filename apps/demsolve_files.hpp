@@ -32,6 +32,7 @@ public:
     std::string write_failed(const analysis::Trial& run, const Safety& safety = {}) const;
 
     bool has_checkpoint() const { return !checkpoint_.empty(); }
+    const std::string& checkpoint() const { return checkpoint_; } // its file, or ""
     // Of a search for a factor of safety, with the runs before.
     void write_checkpoint(const StrengthReduction& reduction, const Result& so_far,
                           const Checkpoint& checkpoint, const Safety& runs_before = {}) const;

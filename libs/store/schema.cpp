@@ -489,7 +489,18 @@ std::vector<Invariant> invariants_of(const Network& network)
     const auto is = [&blocks](std::size_t edge, EdgeKind kind) {
         return blocks.edge_kind[edge] == static_cast<Index>(kind);
     };
+    const auto differ = [](const std::string& dimension, const std::vector<std::string>& names) {
+        return Invariant{"/names/" + dimension, "no name is there twice", dimension,
+                         [&names](std::size_t row) {
+                             const auto here = names.begin() + static_cast<std::ptrdiff_t>(row);
+                             return std::find(names.begin(), here, *here) == here;
+                         }};
+    };
     return {
+        differ("rock", network.names.rock),
+        differ("joint_material", network.names.joint_material),
+        differ("joint_set", network.names.joint_set),
+        differ("stage", network.names.stage),
         {"/edges/vertex", "the two vertices of an edge differ", "edge",
          [&blocks](std::size_t edge) { return blocks.edge_vertex[edge][0] != blocks.edge_vertex[edge][1]; }},
         {"/edges/block", "a boundary edge has a block on one side, any other edge on both", "edge",

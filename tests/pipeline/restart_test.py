@@ -279,6 +279,15 @@ class Restart(ChainTest):
         with h5py.File(copy, "r+", libver=("v110", "v110")) as file:
             file["checkpoint/slip"][3] = np.nan
         self.assertRegex(self.refusal(joints, copy, "--no-creep"), r"copy.h5: /checkpoint/slip\[3\] is nan; wanted finite")
+        self.chain.run("demsolve", joints, joints.with_name("with-creep.h5"), "--checkpoint", creeping := kept.with_name("creeping.h5"))
+        shutil.copyfile(creeping, copy)
+        with h5py.File(copy, "r+", libver=("v110", "v110")) as file:
+            reference = file["checkpoint/reference"][()]
+            attributes = dict(file["checkpoint/reference"].attrs)
+            del file["checkpoint/reference"]
+            file["checkpoint/reference"] = reference[:1]
+            file["checkpoint/reference"].attrs.update(attributes)
+        self.assertIn("copy.h5: the state kept is that of another section", self.refusal(joints, copy))
 
 
 if __name__ == "__main__":

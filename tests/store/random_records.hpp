@@ -162,6 +162,10 @@ private:
 
     void keep_invariants(ResultFile& file)
     {
+        Names& all = file.network.names;
+        for (std::vector<std::string>* names : {&all.rock, &all.joint_material, &all.joint_set, &all.stage})
+            for (std::size_t i = 0; i < names->size(); ++i)
+                (*names)[i] += '#' + std::to_string(i);
         Blocks& blocks = file.network.blocks;
         for (std::size_t edge = 0; edge < blocks.edge_vertex.size(); ++edge) {
             blocks.edge_vertex[edge] = two_of(blocks.vertex.size());

@@ -221,6 +221,16 @@ TEST_F(Refusal, OfValuesThatContradictEachOther)
     EXPECT_SAYS(with_first<Index>("/edges/vertex", H5T_NATIVE_INT32, blocks.edge_vertex[0][1]),
                 "/edges/vertex, row 0: it must hold that the two vertices of an edge differ");
     write(path, file);
+    ResultFile twice = file;
+    ASSERT_GT(twice.network.names.rock.size(), 1U);
+    twice.network.names.rock.back() = twice.network.names.rock.front();
+    try {
+        write(path, twice); // by the rules of reading
+        FAIL() << "it is written";
+    } catch (const file_error& error) {
+        EXPECT_SAYS(error.what(), "/names/rock, row " + std::to_string(twice.network.names.rock.size() - 1) +
+                                      ": it must hold that no name is there twice");
+    }
     EXPECT_SAYS(with_first<Index>("/mesh/contact_gridpoint", H5T_NATIVE_INT32, mesh.contact_gridpoint[0][1]),
                 "/mesh/contact_gridpoint, row 0");
     write(path, file);
