@@ -148,7 +148,7 @@ struct BartonBandisOf {
             .creeps = false,
             .no_sensitivities = "their normal stiffness depends on the pressure",
             .check = [](const ValueOf& value) -> std::optional<Complaint> {
-                if (const auto complaint = complaint_of_more_than_friction("Barton-Bandis", value))
+                if (auto complaint = complaint_of_more_than_friction("Barton-Bandis", value))
                     return complaint;
                 if (value(parameters::friction_angle) >= steepest)
                     return Complaint{parameters::friction_angle,

@@ -163,7 +163,7 @@ struct ContinuouslyYieldingOf {
             .own = {"initial_friction_angle", "roughness_length"},
             .no_sensitivities = "their plastic displacement has a shear stiffness that is not differentiated",
             .check = [](const ValueOf& value) -> std::optional<Complaint> {
-                if (const auto complaint = complaint_of_more_than_friction("continuously yielding", value))
+                if (auto complaint = complaint_of_more_than_friction("continuously yielding", value))
                     return complaint;
                 for (const Parameter& some : {shear_stiffness, parameters::friction_angle})
                     if (value(some) == 0)

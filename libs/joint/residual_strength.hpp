@@ -54,7 +54,7 @@ struct ResidualStrength : Coulomb {
             .parameters = of_all_joints_and({parameters::residual_cohesion, residual_friction_angle}),
             .own = {"residual_cohesion", "residual_friction_angle"},
             .check = [](const ValueOf& value) -> std::optional<Complaint> {
-                if (const auto complaint = Coulomb::check(value))
+                if (auto complaint = Coulomb::check(value))
                     return complaint;
                 if (value(parameters::residual_cohesion) > value(parameters::cohesion))
                     return Complaint{parameters::residual_cohesion, "wanted at most cohesion_MPa"};

@@ -242,7 +242,9 @@ double dissipated(const Assembly& assembly, const State& start)
 
 State state_of(const Assembly& assembly)
 {
-    State state{assembly.displacement, assembly.force, {}, {}};
+    State state;
+    state.displacement = assembly.displacement;
+    state.force = assembly.force;
     for_each_force(assembly, state, [](const auto& one, auto& its_state) { its_state = state_of(one); });
     return state;
 }

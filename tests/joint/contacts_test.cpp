@@ -244,7 +244,6 @@ RC_GTEST_PROP(contacts, store_the_work_done_on_them, ())
         }
         RC_ASSERT(std::abs(dissipated(contacts)) < 1e-5 * 2.5 * 1e6 * 4e-4);
     }
-    RC_ASSERT(stored_energy(contacts) != contacts.stored_before);
     begin_search(contacts, false);
     RC_ASSERT(dissipated(contacts) == 0);
 }
