@@ -32,7 +32,8 @@ class Documentation(ChainTest):
         commands = [block.strip() for block in code_blocks(self.chain.text("README.md"), "sh")]
         self.assertEqual(commands[:2], [BUILD_AND_RUN, BUILD_AND_TEST])
         run = self.chain.text(".ci/run").splitlines()
-        self.assertEqual([line for line in run if "pipelines" in line], [BUILD_AND_TEST])
+        self.assertEqual([line for line in run if "pipelines" in line],
+                         [BUILD_AND_TEST, "sh pipelines/setup.sh develop", "sh pipelines/tidy.sh"])
         for path in "pipelines/setup.sh", "pipelines/slope/Makefile", ".ci/run":
             self.assertTrue((self.chain.source / path).is_file(), path)
 
