@@ -1,0 +1,81 @@
+"""The same scenes by programs that other compilers and options made: g++ -O2 against g++ -O3, and clang++ 16 against g++.
+
+Scenes are all those of data and of tests/pipeline; N is how many of them, at most. -O2 and -O3 of g++ have to give the same
+bytes. clang++ may round otherwise: every dataset has to agree to CLOSE of its largest number.
+"""
+
+import shutil
+import subprocess
+
+import h5py
+import numpy as np
+from campaign import HANGS, LONGEST, ROOT, Campaign, ended
+from recover import scenes
+
+BUILDS = {"g++ -O2": ("g++", "-O2"), "g++ -O3": ("g++", "-O3"), "clang++ -O3": ("clang++-16", "-O3")}
+CLOSE = 1e-6
+
+
+def build(campaign, compiler, optimisation):
+    """Folder of the programs that this compiler made."""
+    folder = ROOT / "build" / f"{compiler}{optimisation}"
+    configure = ["cmake", "-S", ROOT, "-B", folder, "-G", "Ninja", "-D", f"CMAKE_CXX_COMPILER={compiler}",
+                 "-D", "CMAKE_BUILD_TYPE=Release", "-D", f"CMAKE_CXX_FLAGS_RELEASE={optimisation} -DNDEBUG",
+                 "-D", "BUILD_TESTING=OFF", "-D", "JOINTCREEP_WERROR=OFF"]
+    for command in configure, ["cmake", "--build", folder]:
+        if subprocess.run([*map(str, command)], stdout=subprocess.DEVNULL, check=False).returncode:
+            raise SystemExit(f"compilers: {compiler} {optimisation} does not build it; first: sh pipelines/setup.sh fuzz")
+    return folder / "apps"
+
+
+def results(campaign, programs, scene, joints):
+    """The files of a scene's chain; joints of another compiler's averaging if given, so that programs are compared one by one."""
+    folder = campaign.chain.new_folder()
+    codes = [ended([programs / program, source, "-q", "-o", folder / name], 10 * LONGEST).code for program, source, name in (
+        ("jointgen", scene, "network.h5"), ("strength-averaging", folder / "network.h5", "joints.h5"),
+        ("demsolve", joints or folder / "joints.h5", "result.h5"))]
+    return folder, codes
+
+
+def farthest(one, other):
+    """Largest difference over the largest value, of any dataset of numbers; infinite if one lacks or has another shape. How an
+    equilibrium was found, and how near to balance it is, is not looked at: it may take other steps."""
+    far = [0.0]
+
+    def compare(name, item):
+        if not isinstance(item, h5py.Dataset) or item.dtype.kind not in "fiu" or name.startswith(("equilibria/", "guards/")):
+            return
+        if name not in b or b[name].shape != item.shape:
+            far.append(np.inf)
+        elif item.size:
+            x, y = np.asarray(item, float), np.asarray(b[name], float)
+            far.append(np.abs(x - y).max() / max(np.abs(x).max(), 1e-300))
+
+    with h5py.File(one) as a, h5py.File(other) as b:
+        a.visititems(compare)
+    return max(far)
+
+
+def body(campaign):
+    programs = {name: build(campaign, *of) for name, of in BUILDS.items()}
+    for scene in scenes()[:campaign.n]:
+        case = str(scene.relative_to(ROOT))
+        first, codes = results(campaign, programs["g++ -O3"], scene, None)
+        for name in "g++ -O2", "clang++ -O3":
+            folder, its_codes = results(campaign, programs[name], scene, first / "joints.h5")
+            outcome, what = "same bytes", ""
+            for path in sorted(first.glob("*.h5")):
+                if its_codes != codes or HANGS in codes or not (folder / path.name).exists():
+                    outcome, what = "different", f"exit codes {its_codes}, not {codes}"
+                elif path.read_bytes() != (folder / path.name).read_bytes() and outcome != "different":
+                    far = farthest(path, folder / path.name)
+                    what = f"{path.name}: {far:.1e}"
+                    outcome = "close" if name.startswith("clang") and far <= CLOSE else "different"
+            campaign.count(f"{name} beside g++ -O3", outcome, case, what)
+            shutil.rmtree(folder)
+        shutil.rmtree(first)
+
+
+if __name__ == "__main__":
+    OUTCOMES = ["same bytes", "close", "different"]
+    Campaign("results by", OUTCOMES, OUTCOMES[2:], 1000).run(body)
