@@ -47,7 +47,7 @@ void add_mesh(Summary& summary, const Network& network, const Mesh& mesh)
     summary.add("blocks", network.blocks.block_area.size());
     summary.add("zones", mesh.zone_gridpoint.size());
     summary.add("gridpoints", mesh.gridpoint.size());
-    summary.add("contacts", mesh.contact_edge.size());
+    summary.add("contacts at the start", mesh.contact_edge.size());
     summary.add("shortest block edge", network.blocks.report.shortest_edge, "m");
     summary.add("shortest zone side", quality.shortest_side, "m");
     summary.add("smallest zone altitude", quality.smallest_altitude, "m");

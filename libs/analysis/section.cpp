@@ -116,13 +116,10 @@ Findings::Counts contacts_at_yield(const Section& section)
 Findings::Counts yielded_zones(const Section& section)
 {
     Findings::Counts zones;
-    const rock::Zones& of = section.assembly.zones;
-    for (std::size_t z = 0; z < of.yielding_number.size(); ++z)
-        if (const Index number = of.yielding_number[z];
-            number >= 0 && of.is_present[z] && !of.yielding[number].plastic.isZero(0)) {
-            const Index block = section.mesh().zone_block[of.zone_of(z)];
-            ++zones[section.scene.rocks[section.network.blocks.block_rock[block]].name];
-        }
+    const std::vector<Index>& block = section.mesh().zone_block;
+    for (std::size_t zone = 0; zone < block.size(); ++zone)
+        if (has_yielded(section.assembly.zones, zone))
+            ++zones[section.scene.rocks[section.network.blocks.block_rock[block[zone]]].name];
     return zones;
 }
 

@@ -403,6 +403,19 @@ double dissipated(const Zones& zones)
     return sum;
 }
 
+bool has_yielded(const Zones& zones, std::size_t zone)
+{
+    if (zones.yielding.empty())
+        return false;
+    for (int i = 0; i < zones.points_of_zone; ++i) {
+        const std::size_t z = zones.first_point_of(zone) + i;
+        const Index number = zones.yielding_number[z];
+        if (number >= 0 && zones.is_present[z] && !zones.yielding[number].plastic.isZero(0))
+            return true;
+    }
+    return false;
+}
+
 double largest_plastic_strain(const Zones& zones)
 {
     double largest = 0;

@@ -151,6 +151,9 @@ void begin_search(Zones& zones, bool damps_stiffness);
 double dissipated(const Zones& zones);
 double dissipated(const Zones& zones, const ZonesState& start);
 
+// Whether a present zone of the mesh has yielded, at any of its stress points.
+bool has_yielded(const Zones& zones, std::size_t zone);
+
 // The largest plastic shear strain in the section at a present stress point [-].
 double largest_plastic_strain(const Zones& zones);
 
