@@ -1,0 +1,165 @@
+"""Makes the runs of one group, one after another:  python3 -m jointcreep.group NUMBER  in the folder of a study.
+
+A run is the chain of programs with one network and one set of parameters. Its line of results is appended to
+groups/NUMBER.rows.part as soon as it has ended, and the file is called groups/NUMBER.rows once the group is complete. So a
+group that was killed goes on after its last whole line. Files of a run are in a folder of the group, which goes with it.
+
+A run that fails is made once more. If it fails again, that is its result: exit code, program and message. If a program was
+stopped from outside (by a signal of those that users and systems send), or could not read or write (exit code 4), that is no
+result: the run is made when the study goes on, and the exit code of the group is 4.
+"""
+
+import ctypes
+import fcntl
+import json
+import os
+import pathlib
+import shutil
+import signal
+import subprocess
+import sys
+import time
+
+from . import plan, quantities, scene_keys
+
+STOPPED = {-signal.SIGHUP, -signal.SIGINT, -signal.SIGKILL, -signal.SIGTERM}
+CANNOT_WRITE = 4
+LONGEST_REASON = 500  # characters
+PR_SET_PDEATHSIG = 1  # linux/prctl.h
+LIBC = ctypes.CDLL(None)
+
+
+def die_with(parent):
+    """Called in a new process: asks the kernel to kill it when its parent dies."""
+    LIBC.prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
+    if os.getppid() != parent:
+        os._exit(143)
+
+
+class Interrupted(Exception):
+    """A program was stopped from outside, or could not read or write."""
+
+
+def programs_of(study):
+    """The programs of a run in their order: name, arguments, and whether the next ones need its file."""
+    needs = quantities.needed(study)
+    chain = [("jointgen", ["scene.toml", "-o", "network.h5"])]
+    if any(needs.values()):
+        chain.append(("strength-averaging", ["network.h5", "-o", "joints.h5"]))
+    if needs["result.h5"]:
+        chain.append(("demsolve", ["joints.h5", *study.demsolve_options, "-o", "result.h5"]))
+    if needs["safety.h5"]:
+        chain.append(("demsolve", ["joints.h5", *study.demsolve_options, "--factor-of-safety", "-o", "safety.h5"]))
+    return chain
+
+
+def called(program, arguments, folder):
+    """Exit code, message and wall time [s] of a program."""
+    begin, parent = time.monotonic(), os.getpid()
+    try:
+        done = subprocess.run([program, *arguments], cwd=folder, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
+                              stderr=subprocess.PIPE, preexec_fn=lambda: die_with(parent))
+    except OSError as error:
+        raise Interrupted(f"{program} cannot be started: {error.strerror}") from None
+    message = " ".join(done.stderr.decode("utf-8", "replace").split())
+    return done.returncode, message[-LONGEST_REASON:], time.monotonic() - begin
+
+
+def made(study, scene, text, run, programs, folder):
+    """One try of a run: its line of results. Raises Interrupted if there is none."""
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir()
+    values = {}
+    for parameter, value in zip(study.parameters, run["values"]):
+        for key in parameter.keys:
+            values[key] = scene_keys.value_at(scene, key) * value if parameter.multiplies else value
+    (folder / "scene.toml").write_text(scene_keys.toml_text(scene_keys.changed(scene, values)) if values else text, "utf-8")
+    row = {"run": run["run"], "exit_code": 0, "program": "", "reason": ""}
+    seconds, solve_code = 0.0, None
+    for name, arguments in programs_of(study):
+        if name == "jointgen":
+            arguments = [*arguments, "--realization", str(run["network"])]
+        code, message, took = called(programs / name, ["--quiet", *arguments] if name == "demsolve" else arguments, folder)
+        seconds += took
+        if code in STOPPED or code == CANNOT_WRITE:
+            why = f"exit code {code}" if code > 0 else f"signal {-code}"
+            raise Interrupted(f"run {run['run']}: {name} was stopped ({why}){': ' if message else ''}{message}")
+        if "result.h5" in arguments:
+            solve_code = code
+        if code != 0 and row["exit_code"] == 0:
+            row.update(exit_code=code, program=name, reason=message)
+        if code != 0 and name != "demsolve":
+            break
+    row["values"] = quantities.of_run(study, scene, folder, solve_code)
+    row["program_seconds"] = seconds
+    return row
+
+
+def result_of(study, scene, text, run, programs, folder):
+    """The line of results of a run, made once more if it fails."""
+    begin = time.monotonic()
+    for attempt in (1, 2):
+        try:
+            row = made(study, scene, text, run, programs, folder)
+        except Interrupted:
+            if attempt == 2:
+                raise
+            continue
+        if row["exit_code"] == 0:
+            break
+    return {**row, "attempts": attempt, "seconds": time.monotonic() - begin}
+
+
+def whole_lines(file):
+    """Lines of results that a group has; a last line that was cut off is removed from the file."""
+    file.seek(0)
+    content = file.read()
+    end = content.rfind(b"\n") + 1
+    file.truncate(end)
+    return [json.loads(line) for line in content[:end].splitlines()]
+
+
+def make_group(number, out, programs):
+    """Makes the runs that a group lacks. Returns the exit code."""
+    rows = out / "groups" / f"{number}.rows"
+    part = rows.with_name(rows.name + ".part")
+    study, scene, text, runs = plan.of_group(out, int(number))
+    with open(part, "a+b") as file:
+        fcntl.flock(file, fcntl.LOCK_EX)  # whoever else works at this group has to end first
+        if rows.exists():
+            part.unlink(missing_ok=True)
+            return 0
+        if not part.exists():  # whoever worked at it has removed or renamed it
+            return make_group(number, out, programs)
+        done = {row["run"] for row in whole_lines(file)}
+        folder = out / "work" / number
+        folder.parent.mkdir(exist_ok=True)
+        code = 0
+        for run in runs:
+            if run["run"] in done:
+                continue
+            try:
+                row = result_of(study, scene, text, run, programs, folder)
+            except Interrupted as error:
+                print(f"jointcreep: {error}; it is made when the study goes on", file=sys.stderr, flush=True)
+                code = CANNOT_WRITE
+                continue
+            file.write(json.dumps(row).encode() + b"\n")
+            file.flush()
+        shutil.rmtree(folder, ignore_errors=True)
+        if code == 0:
+            os.replace(part, rows)
+        return code
+
+
+def main():
+    out, programs = pathlib.Path.cwd(), pathlib.Path(os.environ["JOINTCREEP_PROGRAMS"])
+    try:
+        return make_group(sys.argv[1], out, programs)
+    except OSError as error:
+        print(f"jointcreep: {out}: {error}", file=sys.stderr)
+        return CANNOT_WRITE
+
+
+if __name__ == "__main__":
+    sys.exit(main())
