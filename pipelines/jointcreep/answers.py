@@ -64,7 +64,7 @@ def share_with_interval(study, hits, run):
     """Share of runs that hit, with the ends of its interval: of independent runs that of Clopper and Pearson, which is too wide
     for a Latin hypercube or a Sobol sequence; of a crossed design that of the mean, within 0 and 1."""
     if study.design.kind != "networks x parameters":
-        return intervals.probability(hits.sum(), len(hits))
+        return intervals.probability(int(hits.sum()), len(hits))
     value, low, high = mean_with_interval(study, hits.astype(float), run)
     return value, None if low is None else max(0.0, low), None if high is None else min(1.0, high)
 

@@ -74,21 +74,27 @@ def mean_of_crossed(table):
     return student(float(table.mean()), total / table.size, freedom) if total > 0 else (float(table.mean()),) * 3
 
 
+@functools.cache
+def ranks(n, probability):
+    """Ranks of the ordered values, counted from 1, between which the quantile of n values is with the confidence at least, by the
+    binomial distribution of how many are below it; 0 and n + 1 are no values."""
+    below, tail = laws().binom(n, probability), (1 - CONFIDENCE) / 2
+    return int(below.ppf(tail)), int(below.ppf(1 - tail)) + 1
+
+
 def quantile(values, probability):
-    """Of independent values: quantile, and the ordered values between which it is with the confidence at least, by the binomial
-    distribution of how many values are below it."""
+    """Of independent values: quantile, and the ends of its interval by order statistics."""
     ordered = np.sort(values)
     n = len(ordered)
-    below = laws().binom(n, probability)
-    tail = (1 - CONFIDENCE) / 2
-    low, high = int(below.ppf(tail)), int(below.ppf(1 - tail)) + 1  # ranks, counted from 1
+    low, high = ranks(n, probability)
     return (float(np.quantile(ordered, probability)), float(ordered[low - 1]) if low >= 1 else None,
             float(ordered[high - 1]) if high <= n else None)
 
 
+@functools.lru_cache(maxsize=100000)
 def probability(count, n):
     """Of `count` in `n` independent trials: share, and ends of the interval of Clopper and Pearson."""
     if n == 0:
         return None, None, None
-    ends = laws().binomtest(int(count), int(n)).proportion_ci(CONFIDENCE, method="exact")
+    ends = laws().binomtest(count, n).proportion_ci(CONFIDENCE, method="exact")
     return count / n, float(ends.low), float(ends.high)

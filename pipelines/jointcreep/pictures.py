@@ -1,15 +1,17 @@
 """Pictures of a study: of each quantity its distribution, how its statistics converge, and what it depends on.
 
 Names of files are those of the quantities in plain words: NAME-distribution.png, NAME-convergence.png, NAME-parameters.png.
+pictures.json lists them by quantity.
 """
 
+import json
 import pathlib
 import sys
 
 import matplotlib.ticker
 import numpy as np
 
-from . import answers, intervals
+from . import answers, intervals, plan
 
 PLOTS = pathlib.Path(__file__).resolve().parent.parent / "plots"
 sys.path.insert(0, str(PLOTS))
@@ -29,16 +31,16 @@ def distribution(quantity, study, values):
     ordered, n = np.sort(values), len(values)
     if study.design.kind != "networks x parameters":
         counts = np.unique(np.linspace(1, n, min(n, BAND_POINTS)).astype(int))
-        ends = np.array([intervals.probability(count, n)[1:] for count in counts])
+        ends = np.array([intervals.probability(int(count), n)[1:] for count in counts])
         axes.fill_between(ordered[counts - 1], 100 * ends[:, 0], 100 * ends[:, 1], step="post", facecolor=BAND, linewidth=0,
-                          label="95 percent confidence interval")
+                          label="95 % confidence")
     axes.step(ordered, 100 * np.arange(1, n + 1) / n, where="post", color=figure.COLORS[0], label=f"{n} runs")
     for place, limit in enumerate([*quantity.above, *quantity.below]):
         axes.axvline(limit, color=figure.COLORS[1], linewidth=0.8, linestyle="--", label="limit" if place == 0 else None)
     axes.set_xlabel(quantity.title())
-    axes.set_ylabel("share of runs up to this value (percent)")
+    axes.set_ylabel("runs up to this value (percent)")
     axes.set_ylim(0, 100)
-    axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncol=3)
+    axes.legend(loc="lower center", bbox_to_anchor=(0.45, 1.0), ncol=3, columnspacing=1, handlelength=1.5)
     return plot
 
 
@@ -52,7 +54,7 @@ def convergence(quantity, rows, stop):
             continue
         runs, value, low, high = map(np.array, zip(*of))
         scale = 1 if name == "mean" else 100
-        axes.fill_between(runs, scale * low, scale * high, facecolor=BAND, linewidth=0, label="95 percent confidence interval")
+        axes.fill_between(runs, scale * low, scale * high, facecolor=BAND, linewidth=0, label="95 % confidence")
         axes.plot(runs, scale * value, color=figure.COLORS[0], marker="o", markersize=2.2, label="value")
         if name == "mean" and quantity.name == stop.of and (stop.half_width or stop.relative_half_width):
             wanted = stop.half_width or stop.relative_half_width * abs(value[-1])
@@ -100,7 +102,7 @@ def parameters(quantity, study, values, run, given, of_shares):
 
 def write(study, rows, given, found, out):
     """Draws all pictures into the folder."""
-    words = plain([quantity.name for quantity, _, _ in found])
+    words, written = plain([quantity.name for quantity, _, _ in found]), {}
     for word, (quantity, of, of_shares) in zip(words, found):
         values, run = answers.values_of(study, rows, of["at"])
         drawn = {}
@@ -115,3 +117,5 @@ def write(study, rows, given, found, out):
             figure.draw_names_as_they_are(picture)
             figure.save(picture, out / f"{word}-{name}.png")
             figure.plt.close(picture)
+            written.setdefault(quantity.name, []).append(f"{word}-{name}.png")
+    plan.written(out / "pictures.json", json.dumps(written, indent=1) + "\n")
