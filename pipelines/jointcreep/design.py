@@ -63,8 +63,12 @@ def law_of(parameter):
         share = law.computeCDF(parameter.highest) if high else 1.0
         if share - (law.computeCDF(parameter.lowest) if low else 0.0) < 1e-6:
             raise NotWanted(f"{parameter.place}lowest and highest leave less than 1e-6 of the law; expected a wider range")
-        law = ot.TruncatedDistribution(law, ot.Interval([parameter.lowest if low else 0.0],
-                                                        [parameter.highest if high else 0.0], [low], [high]))
+        if low and high:
+            law = ot.TruncatedDistribution(law, parameter.lowest, parameter.highest)
+        elif low:
+            law = ot.TruncatedDistribution(law, parameter.lowest, ot.TruncatedDistribution.LOWER)
+        else:
+            law = ot.TruncatedDistribution(law, parameter.highest, ot.TruncatedDistribution.UPPER)
     return law
 
 

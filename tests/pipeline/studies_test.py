@@ -24,7 +24,8 @@ from chain import LONGEST_RUN, ChainTest, datasets, main
 from realizations_test import SCENE, alive
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "pipelines"))
-from jointcreep import intervals, scene_keys  # noqa: E402
+from jointcreep import answers, intervals, scene_keys, study_file
+from jointcreep import design as draw_design  # noqa: E402
 from jointcreep.errors import NotWanted  # noqa: E402
 
 HAS_OPENTURNS = importlib.util.find_spec("openturns") is not None
@@ -308,6 +309,182 @@ class Failures(Studies):
         self.assertEqual(done.returncode, 3, done.stderr)
         self.assertIn("run 0 failed: demsolve, exit code 5", done.stdout)
         self.assertNotIn("Traceback", done.stderr)
+
+
+class Designs(Studies):
+    """What OpenTURNS draws."""
+
+    def drawn(self, design, more=FRICTION):
+        text = re.sub(r"\[design\]\nruns = .*\n", f"[design]\n{design}\n", NETWORKS) + more
+        study = study_file.read(self.written(text))
+        return study, *draw_design.draw(study)
+
+    @needs_openturns
+    def test_laws(self):
+        """Mean, deviation and ends of each law, in each design; means of Latin hypercubes are nearer than chance."""
+        more = """
+[[vary]]
+key = "b"
+law = "lognormal"
+mean = 5
+deviation = 2
+[[vary]]
+key = "c"
+law = "triangular"
+lowest = 0
+most_likely = 1
+highest = 5
+[[vary]]
+key = "d"
+law = "uniform"
+lowest = -1
+highest = 1
+[[vary]]
+key = "e"
+law = "normal"
+mean = 0
+deviation = 1
+lowest = 0
+[[vary]]
+key = "f"
+values = [1, 2, 6]
+"""
+        mean = np.array([35, 5, 2, 0, np.sqrt(2 / np.pi), 3])
+        deviation = np.array([3, 2, np.sqrt((25 + 1 - 5) / 18), np.sqrt(1 / 3), np.sqrt(1 - 2 / np.pi), np.sqrt(14 / 3)])
+        for design, runs, within in [("runs = 4000", 4000, 4), ('kind = "latin hypercube"\nruns = 4000', 4000, 1),
+                                     ('kind = "sobol sequence"\nruns = 5120', 5120, 1),
+                                     ('kind = "networks x parameters"\nnetworks = 3\nparameters = 4000', 12000, 4),
+                                     ('kind = "sobol indices"\npoints = 512', 512 * 9, 10)]:
+            with self.subTest(design):
+                _, networks, values = self.drawn(design, FRICTION + more)
+                values = np.array(values)
+                self.assertEqual(values.shape, (runs, 6))
+                error = deviation / np.sqrt(4000)
+                self.assertTrue((np.abs(values.mean(axis=0) - mean) < within * error).all())
+                self.assertTrue((np.abs(values.std(axis=0) / deviation - 1) < 0.1).all())
+                self.assertGreaterEqual(values[:, 4].min(), 0)
+
+    @needs_openturns
+    def test_a_longer_design_begins_with_the_shorter_one(self):
+        more = '\n[[vary]]\nkey = "b"\nlaw = "uniform"\nlowest = 0\nhighest = 1\n[[correlation]]\nbetween = ["b", "friction"]\n' \
+               "coefficient = -0.5\n"
+        _, _, long = self.drawn("runs = 2000", FRICTION + more)
+        _, _, short = self.drawn("runs = 500", FRICTION + more)
+        self.assertEqual(long[:500], short)
+        ranks = np.argsort(np.argsort(np.array(long), axis=0), axis=0)
+        self.assertAlmostEqual(np.corrcoef(ranks.T)[0, 1], -0.5, delta=4 * 0.75 / np.sqrt(2000))
+
+    @needs_openturns
+    def test_networks(self):
+        _, networks, values = self.drawn('kind = "networks x parameters"\nnetworks = 3\nparameters = 4')
+        self.assertEqual(list(networks), [0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2])
+        self.assertEqual(values[:4], values[8:])
+        _, networks, values = self.drawn('kind = "sobol indices"\npoints = 8')  # A, B, A with friction of B, A with networks of B
+        networks, friction = np.array(networks).reshape(4, 8), np.array(values).reshape(4, 8)
+        self.assertEqual(len(set(networks[:2].ravel())), 16)
+        self.assertTrue((networks[2] == networks[0]).all() and (friction[2] == friction[1]).all())
+        self.assertTrue((networks[3] == networks[1]).all() and (friction[3] == friction[0]).all())
+
+    @needs_openturns
+    def test_sobol_indices_of_ishigami(self):
+        """Of sin(a) + 7 sin^2(b) + 0.1 c^4 sin(a) with a, b, c between -pi and pi (Ishigami and Homma 1990)."""
+        uniform = '\n[[vary]]\nkey = "{}"\nlaw = "uniform"\nlowest = -3.141592653589793\nhighest = 3.141592653589793\n'
+        text = re.sub(r"\[design\]\nruns = .*\n", '[design]\nkind = "sobol indices"\npoints = 2000\n', NETWORKS)
+        text = text.replace("network = true", "network = false", 1).replace('[[vary]]\nnetwork = false\n', "")
+        study = study_file.read(self.written(text + "".join(map(uniform.format, "abc"))))
+        networks, values = draw_design.draw(study)
+        rows = [{"run": run, "values": [np.sin(a) + 7 * np.sin(b) ** 2 + 0.1 * c**4 * np.sin(a)]}
+                for run, (a, b, c) in enumerate(values)]
+        given = [{"run": run, "network": 0, "values": of_run} for run, of_run in enumerate(values)]
+        rows[17]["values"] = [None]  # a run that failed takes its point with it
+        found = answers.shares(study, rows, given, 0)
+        variance = 0.1 * np.pi**4 / 5 + 0.01 * np.pi**8 / 18 + 0.5 + 49 / 8
+        first_a, b = 0.5 * (1 + 0.1 * np.pi**4 / 5) ** 2 / variance, 49 / 8 / variance
+        with_c = 0.01 * np.pi**8 * (1 / 18 - 1 / 50) / variance
+        wanted = [first_a, b, 0, first_a + with_c, b, with_c]
+        self.assertEqual([row[:2] for row in found], [(name, measure) for measure in ("first order index", "total index") for name in "abc"])
+        for (name, measure, value, low, high), true in zip(found, wanted):
+            with self.subTest(f"{measure} of {name}"):
+                self.assertAlmostEqual(value, true, delta=0.06)
+                self.assertTrue(low - 0.02 <= true <= high + 0.02, (low, true, high))
+
+    def test_shares_of_a_crossed_design(self):
+        """Of a sum whose parts have known variances."""
+        networks, parameters = 60, 50
+        chance = np.random.default_rng(3)
+        parts = [np.sqrt(share) * chance.normal(size=size) for share, size in
+                 zip((0.6, 0.3, 0.1), ((networks, 1), (1, parameters), (networks, parameters)))]
+        true = [part.var() for part in parts]
+        text = re.sub(r"\[design\]\nruns = .*\n", f'[design]\nkind = "networks x parameters"\nnetworks = {networks}\n'
+                      f"parameters = {parameters}\n", NETWORKS) + FRICTION
+        study = study_file.read(self.written(text))
+        rows = [{"run": run, "values": [value]} for run, value in enumerate(sum(parts).ravel())]
+        rows[7]["values"] = [None]  # its network is left out
+        found = answers.crossed_shares(study, rows, 0)
+        for (name, _, value, low, high), share in zip(found, np.array(true) / sum(true)):
+            with self.subTest(name):
+                self.assertAlmostEqual(value, share, delta=0.03)
+                self.assertTrue(low <= share <= high)
+
+    @needs_openturns
+    def test_a_study_with_parameters(self):
+        """A key of the scene is changed in each run, as by hand; the scene with dates and laws is kept otherwise."""
+        text = NETWORKS.format(runs=2) + FRICTION + '\n[[vary]]\nname = "K"\nlaw = "uniform"\nlowest = 0.5\nhighest = 2\n' \
+            'multiplies = true\nkey = ["joint_material.joint.normal_stiffness_MPa_per_m", "joint_material.joint.shear_stiffness_MPa_per_m"]\n'
+        out = self.made(self.written(text), self.folder / "out")
+        for row in rows_of(out):
+            factor = float(row["K"])
+            scene = SCENE.replace("friction_angle_deg = 35", f"friction_angle_deg = {row['friction']}")
+            scene = scene.replace("\nnormal_stiffness_MPa_per_m = 5000", f"\nnormal_stiffness_MPa_per_m = {5000 * factor!r}")
+            scene = scene.replace("\nshear_stiffness_MPa_per_m = 2000", f"\nshear_stiffness_MPa_per_m = {2000 * factor!r}")
+            joints = self.chain.joints(scene, "--realization", row["network"])
+            result = datasets(self.chain.run("demsolve", joints, joints.with_name("r.h5")))
+            self.assertEqual(float(row["floor y (mm)"]), 1e3 * result["/history/displacement"][-1, 2, 1])
+
+    def test_stop_rule(self):
+        """A study ends by its stop rule after the same runs, whether made at once or not."""
+        text = NETWORKS.format(runs=200)
+        text = text[: text.index("[[collect]]")] + '[[collect]]\nname = "blocks"\nwhat = "blocks"\nstatistic = "number"\n'
+        stop = '[stop]\nof = "blocks"\nhalf_width = {}\n'
+        out = self.made(self.written(text + stop.format(1.0)), self.folder / "out", "-j2")
+        self.assertEqual(len(rows_of(out)), 100)
+        values = np.array([float(row["blocks, number" if "blocks, number" in row else "blocks"]) for row in rows_of(out)])
+        halves = [np.diff(intervals.mean(values[:end])[1:])[0] / 2 for end in (50, 100)]
+        self.assertGreater(halves[0], 1.0)
+        self.assertLess(halves[1], 1.0)
+        self.made(self.written(text), out)
+        self.assertEqual(len(rows_of(out)), 200)
+        self.made(self.written(text + stop.format(1.0)), out)
+        self.assertEqual(len(rows_of(out)), 100)
+
+
+@unittest.skipUnless(shutil.which("snakemake"), "snakemake is not installed: sh pipelines/setup.sh studies")
+class BySnakemake(Studies):
+    def profile(self, name):
+        return self.chain.source / "pipelines" / "studies" / "profiles" / name
+
+    def test_on_this_machine(self):
+        study = self.written(NETWORKS.format(runs=6))
+        self.assert_same(self.made(study, self.folder / "whole"),
+                         self.made(study, self.folder / "out", "-j2", "--snakemake", self.profile("local")))
+
+    @unittest.skipUnless(all(map(shutil.which, ("slurmctld", "slurmd", "munged", "sbatch"))) and os.getuid() == 0 and
+                         os.path.ismount("/sys/fs/cgroup"),
+                         "no Slurm here (apt-get install slurm-wlm munge), not root, or /sys/fs/cgroup is not mounted")
+    def test_on_slurm(self):
+        """On one node, by a Slurm of this test."""
+        script, folder = self.chain.source / "pipelines" / "studies" / "one_node_slurm.sh", self.folder / "slurm"
+        study = self.written(NETWORKS.format(runs=6))
+        whole = self.made(study, self.folder / "whole")
+        started = subprocess.run(["sh", script, "start", folder], capture_output=True, text=True, timeout=60)
+        try:
+            self.assertEqual(started.returncode, 0, started.stderr)
+            os.environ["SLURM_CONF"] = str(folder / "slurm.conf")
+            out = self.made(study, self.folder / "out", "-j4", "--snakemake", self.profile("slurm"))
+            self.assert_same(whole, out)
+        finally:
+            os.environ.pop("SLURM_CONF", None)
+            subprocess.run(["sh", script, "stop", folder], timeout=60)
 
 
 class StudyFile(Studies):
