@@ -9,7 +9,7 @@ import io
 
 import numpy as np
 
-from . import intervals, plan
+from . import failure, intervals, plan
 from .design import openturns
 from .intervals import CONFIDENCE
 from .study_file import NETWORK
@@ -139,7 +139,7 @@ def rank_correlations(study, rows, given, at):
     numeric = [column for column, one in enumerate(study.parameters) if not any(isinstance(value, str) for value in one.values)]
     if len(values) < FEWEST or not numeric or np.ptp(values) == 0:
         return []
-    inputs = np.array([[given[number]["values"][column] for column in numeric] for number in run], float)
+    inputs = np.array([[given[number]["given"][column] for column in numeric] for number in run], float)
     found = ot.CorrelationAnalysis(inputs.tolist(), values[:, None].tolist()).computeSpearmanCorrelation()
     rows = []
     for column, r in zip(numeric, found):
@@ -184,7 +184,7 @@ def sobol_indices(study, rows, given, at):
     if len(kept) < FEWEST or np.ptp(outputs) == 0:
         return []
     places = [point + part * points for part in range(parts) for point in kept]
-    inputs = [[*(number_of(one, study.parameters[column]) for column, one in enumerate(given[run]["values"])),
+    inputs = [[*(number_of(one, study.parameters[column]) for column, one in enumerate(given[run]["given"])),
                *([float(given[run]["network"])] if study.varies_network else [])] for run in places]
     found = ot.MartinezSensitivityAlgorithm(ot.Sample(inputs), ot.Sample(outputs[:, None].tolist()), len(kept))
     found.setUseAsymptoticDistribution(True)
@@ -263,8 +263,9 @@ def summary(study, rows, why, of_each):
     without = sum(row["exit_code"] == NO_EQUILIBRIUM for row in rows)
     other = sum(row["exit_code"] not in (0, NO_EQUILIBRIUM) for row in rows)
     lines = [study.title] * bool(study.title)
+    of_all = "" if study.design.directions else f" of {study.design.runs}"
     lines += [f"design               {study.design.kind}",
-              f"runs                 {len(rows)}" + (f" of {study.design.runs}, ended {why}" if why else ""),
+              f"runs                 {len(rows)}" + (f"{of_all}, ended {why}" if why else ""),
               f"without equilibrium  {without}", f"failed otherwise     {other}"]
     for quantity, found, of_shares in of_each:
         lines += ["", quantity.title() + f", {found['runs']} runs"]
@@ -274,15 +275,25 @@ def summary(study, rows, why, of_each):
             lines += in_columns([["", "value", "from", "to"],
                                  *([f"{measure}, {name}", *map(number_text, numbers)] for name, measure, *numbers in of_shares)])
     lines += ["", f"from, to: {CONFIDENCE:.0%} confidence interval; empty where the runs are too few or the design has none"]
-    missing = missing_words(study, rows)
+    missing = [] if study.design.directions else missing_words(study, rows)
     return "\n".join(lines + ([""] + missing if missing else [])) + "\n"
 
 
-def write(study, rows, given, why, out):
+def of_failure(study, rows, estimates):
+    """Quantity, statistics and no shares of a directional sampling: runs are along directions, so nothing else is known of them."""
+    (quantity,) = (one for one in study.quantities if one.name == study.design.failure)
+    statistics = [("probability of failure", *failure.probability(np.array(estimates)))]
+    return quantity, {"at": study.quantities.index(quantity), "runs": len(rows), "statistics": statistics}, []
+
+
+def write(study, rows, given, why, estimates, out):
     """Writes answers.csv, convergence.csv, shares.csv and summary.txt. Returns of each quantity with values: quantity, its place,
-    statistics, shares."""
+    statistics, shares. `estimates` are those of the replicates of a directional sampling."""
     found = []
-    for at, quantity in enumerate(study.quantities):
+    by_direction = study.design.directions > 0
+    if by_direction and len(estimates) > 1:
+        found.append(of_failure(study, rows, estimates))
+    for at, quantity in enumerate([] if by_direction else study.quantities):
         values, run = values_of(study, rows, at)
         if len(values):
             found.append((quantity, {"at": at, "runs": len(values), "statistics": statistics(study, quantity, values, run)},
@@ -292,7 +303,7 @@ def write(study, rows, given, why, out):
         [(one.name, one.unit, name, of["runs"], *numbers) for one, of, _ in found for name, *numbers in of["statistics"]]))
     plan.written(out / "convergence.csv", csv_text(
         ["quantity", "unit", "statistic", "runs", "value", "low", "high"],
-        [(one.name, one.unit, *row) for one, of, _ in found for row in convergence(study, rows, of["at"])]))
+        [(one.name, one.unit, *row) for one, of, _ in found if not by_direction for row in convergence(study, rows, of["at"])]))
     plan.written(out / "shares.csv", csv_text(
         ["quantity", "input", "measure", "value", "low", "high"],
         [(one.name, *row) for one, _, of_shares in found for row in of_shares]))

@@ -116,9 +116,11 @@ def study(source, options, beside):
 def finish(of_study, out, rows, why, scene, quiet):
     """Tables, answers and pictures of the runs."""
     from . import answers, pictures
-    given = plan.given(out, of_study)
+    estimates = [row["probability"] for row in rows if row["run"] < 0]
+    rows = [row for row in rows if row["run"] >= 0]
+    given = plan.given(out, of_study, rows)
     table.write(of_study, rows, given, (out / "scene.toml").read_text("utf-8"), out)
-    found = answers.write(of_study, rows, given, why, out)
+    found = answers.write(of_study, rows, given, why, estimates, out)
     pictures.write(of_study, rows, given, found, out)
     if not quiet:
         print((out / "summary.txt").read_text("utf-8"), end="")

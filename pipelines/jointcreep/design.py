@@ -72,9 +72,8 @@ def law_of(parameter):
     return law
 
 
-def mapped(study, points):
-    """Values of the parameters with a law [run, law], from points in the unit cube; correlations are of ranks (Spearman), by a
-    normal copula."""
+def joint_law(study):
+    """The law of all parameters that have one; correlations are of ranks (Spearman), by a normal copula."""
     ot = openturns()
     varying = [one for one in study.parameters if one.law]
     laws = [law_of(one) for one in varying]
@@ -86,10 +85,14 @@ def mapped(study, points):
         copula = ot.NormalCopula(ot.NormalCopula.GetCorrelationFromSpearmanCorrelation(ranks))
     except (TypeError, RuntimeError):
         raise NotWanted(f"{study.path}: the correlations contradict each other: their matrix is not positive definite") from None
-    normal = ot.Normal()
+    return ot.ComposedDistribution(laws, copula if study.correlations else ot.IndependentCopula(len(laws)))
+
+
+def mapped(study, points):
+    """Values of the parameters with a law [run, law], from points in the unit cube."""
+    normal = openturns().Normal()
     standard = [[normal.computeQuantile(float(part))[0] for part in point] for point in points]
-    joint = ot.ComposedDistribution(laws, copula if study.correlations else ot.IndependentCopula(len(laws)))
-    return np.array(joint.getInverseIsoProbabilisticTransformation()(standard))
+    return np.array(joint_law(study).getInverseIsoProbabilisticTransformation()(standard))
 
 
 def draw(study):

@@ -4,13 +4,15 @@ A run is the chain of programs with one network and one set of parameters. Its l
 groups/NUMBER.rows.part as soon as it has ended, and the file is called groups/NUMBER.rows once the group is complete. So a
 group that was killed goes on after its last whole line. Files of a run are in a folder of the group, which goes with it.
 
-A run that fails is made once more. If it fails again, that is its result: exit code, program and message. If a program was
+A run that fails is made once more, unless it is asked for whether it finds an equilibrium, and it does not. If it fails again, that is
+its result: exit code, program and message. If a program was
 stopped from outside (by a signal of those that users and systems send), or could not read or write (exit code 4), that is no
 result: the run is made when the study goes on, and the exit code of the group is 4.
 """
 
 import ctypes
 import fcntl
+import itertools
 import json
 import os
 import pathlib
@@ -20,7 +22,8 @@ import subprocess
 import sys
 import time
 
-from . import plan, quantities, scene_keys
+from . import plan, quantities, scene_keys, study_file
+from .errors import NotDone, NotWanted
 
 STOPPED = {-signal.SIGHUP, -signal.SIGINT, -signal.SIGKILL, -signal.SIGTERM}
 CANNOT_WRITE = 4
@@ -70,7 +73,7 @@ def made(study, scene, text, run, programs, folder):
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir()
     values = {}
-    for parameter, value in zip(study.parameters, run["values"]):
+    for parameter, value in zip(study.parameters, run["given"]):
         for key in parameter.keys:
             values[key] = scene_keys.value_at(scene, key) * value if parameter.multiplies else value
     (folder / "scene.toml").write_text(scene_keys.toml_text(scene_keys.changed(scene, values)) if values else text, "utf-8")
@@ -90,14 +93,16 @@ def made(study, scene, text, run, programs, folder):
             row.update(exit_code=code, program=name, reason=message)
         if code != 0 and name != "demsolve":
             break
+    row.update(network=run["network"], given=run["given"])
     row["values"] = quantities.of_run(study, scene, folder, solve_code)
     row["program_seconds"] = seconds
     return row
 
 
 def result_of(study, scene, text, run, programs, folder):
-    """The line of results of a run, made once more if it fails."""
+    """The line of results of a run, made once more if it fails; but not if it finds no equilibrium and that is asked for."""
     begin = time.monotonic()
+    answer = 3 if any(one.what == "failed" for one in study.quantities) else 0
     for attempt in (1, 2):
         try:
             row = made(study, scene, text, run, programs, folder)
@@ -105,7 +110,7 @@ def result_of(study, scene, text, run, programs, folder):
             if attempt == 2:
                 raise
             continue
-        if row["exit_code"] == 0:
+        if row["exit_code"] in (0, answer):
             break
     return {**row, "attempts": attempt, "seconds": time.monotonic() - begin}
 
@@ -117,6 +122,35 @@ def whole_lines(file):
     end = content.rfind(b"\n") + 1
     file.truncate(end)
     return [json.loads(line) for line in content[:end].splitlines()]
+
+
+def guarded(make):
+    """Calls make(); the exit code for the group."""
+    try:
+        make()
+    except Interrupted as error:
+        print(f"jointcreep: {error}; it is made when the study goes on", file=sys.stderr, flush=True)
+        return CANNOT_WRITE
+    return 0
+
+
+def follow_directions(study, replicate, done, make, keep):
+    """Makes the runs that directional sampling asks for in a replicate; those that are done are asked for again in the same order.
+    Keeps the estimate as a line of its own, run -1 - replicate. Returns the exit code."""
+    from . import failure
+    asked = itertools.count(replicate * study_file.MOST_RUNS)
+
+    def run(values):
+        number = next(asked)
+        if number in done:
+            if done[number]["given"] != values:
+                raise NotDone(f"run {number} was made with {done[number]['given']}, not with {values}: another version of OpenTURNS?")
+            return done[number]
+        return make({"run": number, "network": replicate if study.varies_network else 0, "given": values})
+
+    if -1 - replicate in done:
+        return 0
+    return guarded(lambda: keep({"run": -1 - replicate, "probability": failure.estimate(study, replicate, run)}))
 
 
 def make_group(number, out, programs):
@@ -131,21 +165,25 @@ def make_group(number, out, programs):
             return 0
         if not part.exists():  # whoever worked at it has removed or renamed it
             return make_group(number, out, programs)
-        done = {row["run"] for row in whole_lines(file)}
+        done = {row["run"]: row for row in whole_lines(file)}
         folder = out / "work" / number
         folder.parent.mkdir(exist_ok=True)
-        code = 0
-        for run in runs:
-            if run["run"] in done:
-                continue
-            try:
-                row = result_of(study, scene, text, run, programs, folder)
-            except Interrupted as error:
-                print(f"jointcreep: {error}; it is made when the study goes on", file=sys.stderr, flush=True)
-                code = CANNOT_WRITE
-                continue
+
+        def keep(row):
             file.write(json.dumps(row).encode() + b"\n")
             file.flush()
+
+        def make(run):
+            row = result_of(study, scene, text, run, programs, folder)
+            keep(row)
+            return row
+
+        code = 0
+        if study.design.directions:
+            code = follow_directions(study, int(number), done, make, keep)
+        for run in runs:
+            if run["run"] not in done:
+                code = max(code, guarded(lambda run=run: make(run)))
         shutil.rmtree(folder, ignore_errors=True)
         if code == 0:
             os.replace(part, rows)
@@ -156,6 +194,9 @@ def main():
     out, programs = pathlib.Path.cwd(), pathlib.Path(os.environ["JOINTCREEP_PROGRAMS"])
     try:
         return make_group(sys.argv[1], out, programs)
+    except (NotDone, NotWanted) as error:
+        print(f"jointcreep: {error}", file=sys.stderr)
+        return CANNOT_WRITE
     except OSError as error:
         print(f"jointcreep: {out}: {error}", file=sys.stderr)
         return CANNOT_WRITE

@@ -83,7 +83,7 @@ def parameters(quantity, study, values, run, given, of_shares):
     plot, panels = figure.plt.subplots(lines, columns, figsize=(figure.TWO_COLUMNS, 0.4 + 2.1 * lines), squeeze=False)
     panels = panels.ravel()
     for axes, column in zip(panels, numeric):
-        axes.plot([given[one]["values"][column] for one in run], values, linestyle="none", marker="o", markersize=1.8,
+        axes.plot([given[one]["given"][column] for one in run], values, linestyle="none", marker="o", markersize=1.8,
                   color=figure.COLORS[0], alpha=0.6, markeredgewidth=0)
         axes.set_xlabel(study.parameters[column].name)
         axes.set_ylabel(quantity.title())
@@ -103,7 +103,7 @@ def parameters(quantity, study, values, run, given, of_shares):
 def write(study, rows, given, found, out):
     """Draws all pictures into the folder."""
     words, written = plain([quantity.name for quantity, _, _ in found]), {}
-    for word, (quantity, of, of_shares) in zip(words, found):
+    for word, (quantity, of, of_shares) in zip(words, found if not study.design.directions else []):
         values, run = answers.values_of(study, rows, of["at"])
         drawn = {}
         if quantity.what != "failed":

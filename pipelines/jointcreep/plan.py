@@ -96,7 +96,8 @@ def identity(study, scene, programs):
                                              str(one.highest), one.values] for one in study.parameters]],
         "[[correlation]]": study.correlations,
         "[design]": [study.design.kind, study.design.seed, *([] if kept else [
-            study.design.runs, study.design.networks, study.design.parameters, study.design.points, study.design.replicates])],
+            study.design.runs, study.design.networks, study.design.parameters, study.design.points, study.design.replicates,
+            study.design.directions, study.design.failure])],
         "[[collect]]": [[one.name, one.what, one.point, one.component, one.since, one.stage, str(one.date), one.statistic]
                         for one in study.quantities],
         "demsolve_options": study.demsolve_options,
@@ -120,7 +121,7 @@ def make(study, out, programs):
     scene = tomllib.loads(text)
     check_keys(study, scene)
     quantities.check(study, scene)
-    networks, values = design.draw(study)
+    networks, values = ([], []) if study.design.directions else design.draw(study)  # directions are drawn as runs are made
     what = json.loads(json.dumps(identity(study, text, programs)))
     path = out / "plan.json"
     if path.exists():
@@ -162,14 +163,17 @@ def planned(out):
     return study, tomllib.loads(text), text, json.loads((out / "plan.json").read_text("utf-8"))
 
 
-def given(out, study):
-    """What each run is given: run, network and values of parameters, as design.csv has them."""
+def given(out, study, rows=()):
+    """What each run is given, by its number: run, network and values of parameters, as design.csv has them; of directional sampling as
+    the lines of results have them."""
+    if study.design.directions:
+        return {row["run"]: row for row in rows}
     kinds = [str if one.values and isinstance(one.values[0], str) else one_number for one in study.parameters]
     with open(out / "design.csv", encoding="utf-8", newline="") as file:
         rows = csv.reader(file)
         next(rows)
-        return [{"run": int(run), "network": int(network), "values": [kind(one) for kind, one in zip(kinds, of_run)]}
-                for run, network, *of_run in rows]
+        return {int(run): {"run": int(run), "network": int(network), "given": [kind(one) for kind, one in zip(kinds, of_run)]}
+                for run, network, *of_run in rows}
 
 
 def one_number(text):
@@ -181,4 +185,5 @@ def of_group(out, number):
     """The study, the scene, its text and the runs of a group."""
     study, scene, text, found = planned(out)
     runs = given(out, study)
-    return study, scene, text, runs[number * found["group"] : (number + 1) * found["group"]]
+    first = number * found["group"]
+    return study, scene, text, [runs[run] for run in range(first, first + found["group"]) if run in runs]

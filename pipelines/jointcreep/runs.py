@@ -76,8 +76,10 @@ def read_rows(out):
     return rows
 
 
-def count_rows(out, names):
-    """How many runs of these groups have ended."""
+def count_rows(out, names, in_groups):
+    """How many runs of these groups have ended, or how many groups."""
+    if in_groups:
+        return sum((out / "groups" / f"{name}.rows").exists() for name in names)
     count = 0
     for name in names:
         for path in (out / "groups" / f"{name}.rows", out / "groups" / f"{name}.rows.part"):
@@ -90,8 +92,9 @@ def count_rows(out, names):
 class Progress:
     """Tells how many runs have ended and how long the rest takes; on a terminal in one line that changes."""
 
-    def __init__(self, total, quiet):
-        self.total, self.quiet, self.begin, self.first, self.told = total, quiet, time.monotonic(), None, 0
+    def __init__(self, total, what, quiet):
+        self.total, self.what, self.quiet = total, what, quiet
+        self.begin, self.first, self.told = time.monotonic(), None, 0
 
     def tell(self, done):
         if self.first is None:
@@ -101,7 +104,7 @@ class Progress:
         left = ""
         if done > self.first:
             left = f", {duration((time.monotonic() - self.begin) / (done - self.first) * (self.total - done))} left"
-        line = f"{done} of {self.total} runs{left if done < self.total else ''}"
+        line = f"{done} of {self.total} {self.what}{left if done < self.total else ''}"
         if sys.stderr.isatty():
             print(f"\r{line:60}", end="" if done < self.total else "\n", file=sys.stderr, flush=True)
         elif (done - self.told) * SPOKEN >= self.total or done == self.total > self.told:
@@ -135,7 +138,7 @@ def command_for(out, names, jobs, profile):
     return ["make", "--silent", "--keep-going", f"-j{jobs or 1}", "-f", "Makefile", "all"]
 
 
-def make_groups(out, programs, names, jobs, profile, lock, deadline, progress):
+def make_groups(out, programs, names, jobs, profile, lock, deadline, tell):
     """Makes what is missing of these groups. Returns TIMED_OUT if the deadline came first."""
     missing = [name for name in names if not (out / "groups" / f"{name}.rows").exists()]
     if not missing:
@@ -151,7 +154,7 @@ def make_groups(out, programs, names, jobs, profile, lock, deadline, progress):
             from None
     try:
         while running.poll() is None:
-            progress(count_rows(out, names))
+            tell()
             if time.monotonic() > deadline:
                 running.send_signal(signal.SIGTERM)  # make ends its recipes
                 running.wait()
@@ -162,7 +165,7 @@ def make_groups(out, programs, names, jobs, profile, lock, deadline, progress):
         running.send_signal(signal.SIGTERM)
         running.wait()
         raise
-    progress(count_rows(out, names))
+    tell()
     missing = [name for name in names if not (out / "groups" / f"{name}.rows").exists()]
     if missing:
         raise NotDone(f"{len(missing)} of {len(names)} groups of runs in {out / 'groups'} could not be made; messages above say "
@@ -178,14 +181,19 @@ def make(study, out, programs, jobs, profile, quiet, enough, lock):
     size = plan.planned(out)[3]["group"]
     total = study.design.runs
     deadline = time.monotonic() + 3600 * study.stop.hours
-    progress = Progress(total, quiet)
+    in_groups = study.design.directions > 0
+    progress = Progress(total, "replicates" if in_groups else "runs", quiet)
     batch = plan.BATCH if study.stop.of else total
     for end in [*range(batch, total, batch), total]:
         before = end - batch if end < total else 0
-        ended = make_groups(out, programs, plan.groups_of(before, end, size), jobs, profile, lock, deadline,
-                            lambda count, before=before: progress.tell(before + count))
+        names = plan.groups_of(before, end, size)
+        ended = make_groups(out, programs, names, jobs, profile, lock, deadline,
+                            lambda before=before, names=names: progress.tell(before + count_rows(out, names, in_groups)))
         rows = read_rows(out)
-        prefix = list(itertools.takewhile(lambda row: row is not None, (rows.get(run) for run in range(end))))
+        if in_groups:
+            prefix = [rows[run] for run in sorted(rows)]
+        else:
+            prefix = list(itertools.takewhile(lambda row: row is not None, (rows.get(run) for run in range(end))))
         if ended:
             return prefix, f"after the {study.stop.hours:g} hours of the budget"
         if study.stop.of and enough(prefix):

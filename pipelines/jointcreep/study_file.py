@@ -18,7 +18,9 @@ DESIGNS = {  # what each needs
     "sobol sequence": ["runs"],
     "networks x parameters": ["networks", "parameters"],
     "sobol indices": ["points"],
+    "directional sampling": ["directions"],
 }
+REPLICATED = ["latin hypercube", "sobol sequence", "directional sampling"]
 LAWS = {  # parameters of each, in the unit of the key that varies
     "normal": ["mean", "deviation"],
     "lognormal": ["mean", "deviation"],
@@ -72,11 +74,13 @@ class Quantity:
 class Design:
     kind: str
     seed: int
-    runs: int  # all of them
+    runs: int  # all of them; of directional sampling the number of replicates, whose runs are not known before
     networks: int  # of "networks x parameters"
     parameters: int
     points: int  # of "sobol indices"
-    replicates: int  # independent parts of "latin hypercube" and "sobol sequence"
+    replicates: int  # independent parts of a design of REPLICATED
+    directions: int  # of "directional sampling", in each replicate
+    failure: str  # the quantity that says whether a run fails
 
 
 @dataclasses.dataclass
@@ -220,11 +224,11 @@ def read(path):
         raise NotWanted(f"{path}: nothing varies; expected a [[vary]], for example with network = true")
     unique(parameters, path)
     correlations = [correlation_of(table, parameters) for table in each("correlation")]
-    design = design_of(Table(path, text, "[design]", tables.get("design", {})), varies_network, parameters, correlations)
     quantities = [quantity_of(table) for table in each("collect")]
     if not quantities:
         raise NotWanted(f'{path}: nothing is collected; expected a [[collect]], for example with what = "failed"')
     unique([*parameters, *quantities], path)
+    design = design_of(Table(path, text, "[design]", tables.get("design", {})), varies_network, parameters, correlations, quantities)
     stop = stop_of(Table(path, text, "[stop]", tables.get("stop", {})), quantities, design)
     return Study(path, title, scene, varies_network, parameters, correlations, design, quantities, stop, options)
 
@@ -271,11 +275,17 @@ def correlation_of(table, parameters):
     return (*between, coefficient)
 
 
-def design_of(table, varies_network, parameters, correlations):
+def design_of(table, varies_network, parameters, correlations, quantities):
     kind = table.text("kind", "plain", list(DESIGNS))
     counts = {name: table.whole(name, least=2) if name in DESIGNS[kind] else 0
-              for name in ("runs", "networks", "parameters", "points")}
-    replicates = table.whole("replicates", 10, least=2) if kind in ("latin hypercube", "sobol sequence") else 1
+              for name in ("runs", "networks", "parameters", "points", "directions")}
+    replicates = table.whole("replicates", 10, least=2) if kind in REPLICATED else 1
+    failure = ""
+    if kind == "directional sampling":
+        counts["runs"] = replicates
+        failure = table.text("failure", None, [one.name for one in quantities if one.what == "failed" or one.above or one.below])
+        if any(not one.law for one in parameters):
+            table.wrong("kind", "another one, because a [[vary]] has a list of values")
     seed = table.whole("seed", 1, least=0, most=2**32 - 1)
     if kind == "networks x parameters":
         counts["runs"] = counts["networks"] * counts["parameters"]
@@ -289,12 +299,12 @@ def design_of(table, varies_network, parameters, correlations):
         table.wrong("kind", "another one, because Sobol indices are of parameters without correlation")
     if kind == "sobol indices" and len(parameters) + varies_network < 2:
         table.wrong("kind", "another one, or two that vary")
-    if counts["runs"] % replicates:
+    if kind != "directional sampling" and counts["runs"] % replicates:
         table.wrong("runs", f"a multiple of the {replicates} replicates")
     if counts["runs"] > MOST_RUNS:
         raise NotWanted(f"{table.place()}these are {counts['runs']} runs; expected at most {MOST_RUNS}")
     table.end()
-    return Design(kind, seed, **counts, replicates=replicates)
+    return Design(kind, seed, **counts, replicates=replicates, failure=failure)
 
 
 def is_day(value):

@@ -20,7 +20,7 @@ def columns_of(study, rows, given):
     """Columns of the table: name, unit, values; None where there is none."""
     numbers = [row["run"] for row in rows]
     columns = [("run", "1", numbers), (NETWORK, "1", [given[run]["network"] for run in numbers])]
-    columns += [(one.name, "unit of the key", [given[run]["values"][at] for run in numbers])
+    columns += [(one.name, "unit of the key", [given[run]["given"][at] for run in numbers])
                 for at, one in enumerate(study.parameters)]
     columns += [("exit code", "1", [row["exit_code"] for row in rows]), ("program", "1", [row["program"] for row in rows]),
                 ("reason", "1", [row["reason"] for row in rows])]

@@ -40,7 +40,7 @@ def study_of(design, limit=None, stop=""):
 
 
 def plain(runs):
-    return study_file.Design("plain", 1, runs, 0, 0, 0, 1)
+    return study_file.Design("plain", 1, runs, 0, 0, 0, 1, 0, "")
 
 
 def covers(low, high, true):
@@ -66,7 +66,7 @@ def plain_studies(law, name, n_studies, runs, random):
 
 def crossed_studies(n_studies, random):
     """Coverage of the mean of networks x parameters, whose values are not independent."""
-    design = study_file.Design("networks x parameters", 1, NETWORKS * PARAMETERS, NETWORKS, PARAMETERS, 0, 1)
+    design = study_file.Design("networks x parameters", 1, NETWORKS * PARAMETERS, NETWORKS, PARAMETERS, 0, 1, 0, "")
     study = study_of(design)
     run, hits = np.arange(design.runs), 0
     for _ in range(n_studies):
@@ -79,7 +79,7 @@ def crossed_studies(n_studies, random):
 
 def latin_studies(n_studies, random):
     """Coverage of the mean of Latin hypercubes of ten replicates: of a curved function of two parameters with noise."""
-    design = study_file.Design("latin hypercube", 1, 100, 0, 0, 0, 10)
+    design = study_file.Design("latin hypercube", 1, 100, 0, 0, 0, 10, 0, "")
     study = study_of(design)
     size, run, hits = 10, np.arange(100), 0
     for _ in range(n_studies):

@@ -24,7 +24,7 @@ from chain import LONGEST_RUN, ChainTest, datasets, main
 from realizations_test import SCENE, alive
 
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "pipelines"))
-from jointcreep import answers, intervals, scene_keys, study_file
+from jointcreep import answers, failure, intervals, scene_keys, study_file
 from jointcreep import design as draw_design  # noqa: E402
 from jointcreep.errors import NotWanted  # noqa: E402
 
@@ -264,7 +264,8 @@ class Runs(Studies):
 
 class Failures(Studies):
     def test_a_failed_run(self):
-        """It is made twice, kept with code and reason, does not stop the others, and counts where failure is the answer."""
+        """It is kept with code and reason, does not stop the others, and counts where failure is the answer; where it is not, it is
+        made twice."""
         case = 'case "$PWD" in *work/000001*) echo "demsolve: no equilibrium: on purpose" >&2; exit 3 ;; esac'
         programs = self.programs(case)
         out = self.made(self.written(NETWORKS.format(runs=4)), self.folder / "out", programs=programs)
@@ -273,8 +274,11 @@ class Failures(Studies):
         self.assertEqual((rows[1]["program"], rows[1]["reason"]), ("demsolve", "demsolve: no equilibrium: on purpose"))
         self.assertEqual((rows[1]["floor y (mm)"], rows[1]["failed"]), ("", "1.0"))
         self.assertGreater(float(rows[1]["blocks, number"]), 1)  # which the network has all the same
-        with open(out / "times.csv", encoding="utf-8") as file:
-            self.assertEqual([row["attempts"] for row in csv.DictReader(file)], ["1", "2", "1", "1"])
+        other = self.made(self.written(NETWORKS.format(runs=4).replace('[[collect]]\nwhat = "failed"\n', "")), self.folder / "other",
+                          programs=programs)
+        for folder, attempts in ((out, "1"), (other, "2")):
+            with open(folder / "times.csv", encoding="utf-8") as file:
+                self.assertEqual([row["attempts"] for row in csv.DictReader(file)], ["1", attempts, "1", "1"])
         text = (out / "summary.txt").read_text()
         self.assertIn("without equilibrium  1\n", text)
         self.assertIn("run 1 failed: demsolve, exit code 3: demsolve: no equilibrium: on purpose\n", text)
@@ -395,7 +399,7 @@ values = [1, 2, 6]
         networks, values = draw_design.draw(study)
         rows = [{"run": run, "values": [np.sin(a) + 7 * np.sin(b) ** 2 + 0.1 * c**4 * np.sin(a)]}
                 for run, (a, b, c) in enumerate(values)]
-        given = [{"run": run, "network": 0, "values": of_run} for run, of_run in enumerate(values)]
+        given = [{"run": run, "network": 0, "given": of_run} for run, of_run in enumerate(values)]
         rows[17]["values"] = [None]  # a run that failed takes its point with it
         found = answers.shares(study, rows, given, 0)
         variance = 0.1 * np.pi**4 / 5 + 0.01 * np.pi**8 / 18 + 0.5 + 49 / 8
@@ -440,6 +444,45 @@ values = [1, 2, 6]
             joints = self.chain.joints(scene, "--realization", row["network"])
             result = datasets(self.chain.run("demsolve", joints, joints.with_name("r.h5")))
             self.assertEqual(float(row["floor y (mm)"]), 1e3 * result["/history/displacement"][-1, 2, 1])
+
+    @needs_openturns
+    def test_directional_sampling(self):
+        """Of a plane in the space of two laws, whose probability is known; the estimate has no bias."""
+        text = re.sub(r"\[design\]\nruns = .*\n", '[design]\nkind = "directional sampling"\ndirections = 40\nfailure = "failed"\n', NETWORKS)
+        study = study_file.read(self.written(text + FRICTION + '\n[[vary]]\nkey = "b"\nlaw = "normal"\nmean = 0\ndeviation = 1\n'))
+        at = [one.name for one in study.quantities].index("failed")
+        for distance, probability in ((3.0902323, 1e-3), (3.7190165, 1e-4)):
+            runs = []
+
+            def run(values, distance=distance, runs=runs):
+                runs.append(values)
+                fails = (values[0] - 35) / 3 * 0.6 - values[1] * 0.8 > distance
+                return {"run": 0, "exit_code": 3 if fails else 0, "values": [1.0 if place == at else None for place in range(at + 1)]
+                        if fails else [0.0] * (at + 1), "reason": ""}
+
+            estimates = np.array([failure.estimate(study, replicate, run) for replicate in range(60)])
+            value, low, high = failure.probability(estimates)
+            with self.subTest(probability):
+                self.assertTrue(low <= probability <= high, (low, high))
+                self.assertAlmostEqual(value, probability, delta=0.25 * probability)
+                plain = probability / (np.std(estimates, ddof=1) ** 2 / len(estimates))
+                self.assertGreater(plain, 20 * len(runs))
+
+    @needs_openturns
+    def test_directional_sampling_of_runs(self):
+        """Of a study, also one that was stopped and goes on."""
+        design = '[design]\nkind = "directional sampling"\ndirections = 4\nreplicates = 2\nfailure = "floor y"\n'
+        text = re.sub(r"\[design\]\nruns = .*\n", design, NETWORKS) + FRICTION
+        study = self.written(text)
+        whole = self.made(study, self.folder / "whole")
+        self.assertIn("probability of failure", (whole / "answers.csv").read_text())
+        self.assertEqual({row["network"] for row in rows_of(whole)}, {"0", "1"})
+        out = shutil.copytree(whole, self.folder / "out")
+        rows = out / "groups" / "000001.rows"
+        lines = rows.read_bytes().splitlines(keepends=True)
+        rows.with_name("000001.rows.part").write_bytes(b"".join(lines[:2]))
+        rows.unlink()
+        self.assert_same(whole, self.made(study, out))
 
     def test_stop_rule(self):
         """A study ends by its stop rule after the same runs, whether made at once or not."""
