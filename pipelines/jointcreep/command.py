@@ -34,6 +34,7 @@ import pathlib
 import shutil
 import signal
 import sys
+import traceback
 
 from . import plan, runs, study_file, table
 from .errors import NotDone, NotWanted
@@ -156,6 +157,10 @@ def main(arguments, version, beside):
         return 4
     except MemoryError:
         print("jointcreep: out of memory", file=sys.stderr)
+        return 5
+    except Exception:  # what nobody thought of
+        traceback.print_exc()
+        print("jointcreep: internal error", file=sys.stderr)
         return 5
     except KeyboardInterrupt:
         print("jointcreep: interrupted; the same command goes on", file=sys.stderr)

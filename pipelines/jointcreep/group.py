@@ -115,13 +115,13 @@ def result_of(study, scene, text, run, programs, folder):
     return {**row, "attempts": attempt, "seconds": time.monotonic() - begin}
 
 
-def whole_lines(file):
+def whole_lines(file, path):
     """Lines of results that a group has; a last line that was cut off is removed from the file."""
     file.seek(0)
     content = file.read()
     end = content.rfind(b"\n") + 1
     file.truncate(end)
-    return [json.loads(line) for line in content[:end].splitlines()]
+    return [plan.parsed(line, path) for line in content[:end].splitlines()]
 
 
 def guarded(make):
@@ -165,7 +165,7 @@ def make_group(number, out, programs):
             return 0
         if not part.exists():  # whoever worked at it has removed or renamed it
             return make_group(number, out, programs)
-        done = {row["run"]: row for row in whole_lines(file)}
+        done = {row["run"]: row for row in whole_lines(file, part)}
         folder = out / "work" / number
         folder.parent.mkdir(exist_ok=True)
 

@@ -37,6 +37,14 @@ def written(path, text):
         partial.unlink(missing_ok=True)
 
 
+def parsed(text, path):
+    """JSON of a file of the folder."""
+    try:
+        return json.loads(text)
+    except ValueError:
+        raise NotWanted(f"{path}: is damaged; remove the folder, or choose another one") from None
+
+
 def answer_of(program, *arguments):
     """What a program writes to stdout; it must succeed."""
     try:
@@ -125,7 +133,7 @@ def make(study, out, programs):
     what = json.loads(json.dumps(identity(study, text, programs)))
     path = out / "plan.json"
     if path.exists():
-        old = json.loads(path.read_text("utf-8"))
+        old = parsed(path.read_bytes(), path)
         changed = [name for name in what if old["identity"].get(name) != what[name]]
         if changed:
             raise NotWanted(f"{out} has runs of another study: {', '.join(changed)} changed. Choose another folder, or remove it")
@@ -160,7 +168,7 @@ def planned(out):
     """The study, the scene (as tomllib reads it, and its text) and the plan of a folder."""
     study = study_file.read(out / "study.toml")
     text = (out / "scene.toml").read_text("utf-8")
-    return study, tomllib.loads(text), text, json.loads((out / "plan.json").read_text("utf-8"))
+    return study, tomllib.loads(text), text, parsed((out / "plan.json").read_bytes(), out / "plan.json")
 
 
 def given(out, study, rows=()):

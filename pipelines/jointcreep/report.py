@@ -3,7 +3,6 @@
 import base64
 import csv
 import html
-import json
 import os
 import pathlib
 import subprocess
@@ -146,7 +145,7 @@ def csv_rows(path):
 def of_study(out, programs, folder):
     """Title and parts of the page of a study's folder."""
     study = study_file.read(out / "study.toml")
-    found = json.loads((out / "plan.json").read_text("utf-8"))
+    found = plan.parsed((out / "plan.json").read_bytes(), out / "plan.json")
     rows, answers, shares, times = (csv_rows(out / f"{name}.csv") for name in ("runs", "answers", "shares", "times"))
     failed = [row for row in rows if row["exit code"] != "0"]
     scene = tomllib.loads((out / "scene.toml").read_text("utf-8"))
@@ -164,7 +163,7 @@ def of_study(out, programs, folder):
     parts.append("<h2>Answers</h2>")
     parts.append(f"<p>From, to: {100 * intervals.CONFIDENCE:.0f} percent confidence interval; empty where the runs are too few or the "
                  "design has none. Only runs that have the value count.</p>")
-    pictures = json.loads((out / "pictures.json").read_text("utf-8"))
+    pictures = plan.parsed((out / "pictures.json").read_bytes(), out / "pictures.json")
     for quantity in study.quantities:
         of = [row for row in answers if row["quantity"] == quantity.name]
         parts.append(f"<h3>{escaped(quantity.title())}</h3>")

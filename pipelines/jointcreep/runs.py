@@ -7,7 +7,6 @@ last of them. Whatever has ended stays, and the same command goes on from there.
 import contextlib
 import fcntl
 import itertools
-import json
 import os
 import pathlib
 import signal
@@ -18,6 +17,7 @@ import time
 from . import group, plan
 from .errors import NotDone, NotWanted
 
+LOCK = "study.lock"
 PATIENCE = 5  # s to wait for processes of a study that was killed
 LOOKS = 0.5  # s between two looks at how far the runs are
 SPOKEN = 10  # lines of progress where there is no terminal
@@ -49,8 +49,11 @@ rule group:
 
 @contextlib.contextmanager
 def locked(out):
-    """Holds the folder's lock; yields its file, which processes inherit."""
-    with open(out / "lock", "a") as file:
+    """Holds the folder's lock; yields its file, which processes inherit. A folder that has something and no such file is of someone
+    else."""
+    if any(out.iterdir()) and not (out / LOCK).exists():
+        raise NotWanted(f"{out}: has files, and is not the folder of a study; expected a new or empty folder")
+    with open(out / LOCK, "a") as file:
         end = time.monotonic() + PATIENCE
         while True:
             try:
@@ -71,7 +74,7 @@ def read_rows(out):
         with open(path, "rb") as file:
             for line in file:
                 if line.endswith(b"\n"):
-                    row = json.loads(line)
+                    row = plan.parsed(line, path)
                     rows[row["run"]] = row
     return rows
 

@@ -4,6 +4,7 @@ Runs are of the small scene of realizations_test.py, and take some hundredths of
 it is not installed.
 """
 
+import base64
 import csv
 import importlib.util
 import os
@@ -260,6 +261,22 @@ class Runs(Studies):
         done = self.study(study, self.folder / "file" / "out")
         self.assertEqual(done.returncode, 4, done.stderr)
         self.assertRegex(done.stderr, "^jointcreep: .*file")
+        before = (self.folder / "scene.toml").read_bytes()
+        done = self.study(study, self.folder)  # whose inputs have the names of outputs
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertIn("has files, and is not the folder of a study", done.stderr)
+        self.assertEqual((self.folder / "scene.toml").read_bytes(), before)
+
+    def test_a_damaged_folder(self):
+        study = self.written(NETWORKS.format(runs=2))
+        whole = self.made(study, self.folder / "whole")
+        for name in ("plan.json", "groups/000001.rows"):
+            with self.subTest(name):
+                out = shutil.copytree(whole, self.folder / name.replace("/", "-"))
+                (out / name).write_text("nothing of use\n")
+                done = self.study(study, out)
+                self.assertEqual(done.returncode, 2, done.stderr)
+                self.assertIn(f"{out / name}: is damaged", done.stderr)
 
 
 class Failures(Studies):
@@ -528,6 +545,46 @@ class BySnakemake(Studies):
         finally:
             os.environ.pop("SLURM_CONF", None)
             subprocess.run(["sh", script, "stop", folder], timeout=60)
+
+
+class Reports(Studies):
+    def report(self, source, name="report.html"):
+        done = subprocess.run([self.chain.programs / "jointcreep", "report", source, "-o", self.folder / name], capture_output=True,
+                              text=True, timeout=LONGEST_RUN)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        page = (self.folder / name).read_text()
+        self.assertNotRegex(page, r"(src|href)=.(?!data:)")  # it needs no other file
+        self.assertNotIn("Not drawn", page)
+        for picture in re.findall(r'src="data:image/png;base64,([^"]*)"', page):
+            self.assertEqual(base64.b64decode(picture)[:4], b"\x89PNG")
+        return page
+
+    def test_of_a_run(self):
+        joints = self.chain.joints(SCENE.replace("[section]", 'title = "A <b>ench & more"\n[section]', 1))
+        page = self.report(self.chain.run("demsolve", joints, joints.with_name("r.h5")))
+        self.assertIn("<h1>A &lt;b&gt;ench &amp; more</h1>", page)
+        self.assertRegex(page, r"jointverify: verified: (\d+) checks of \1<")
+        self.assertGreaterEqual(page.count("<img"), 7)
+        self.assertIn("excavated; its last displacement", page)
+
+    def test_of_a_study(self):
+        out = self.made(self.written(NETWORKS.format(runs=12)), self.folder / "out")
+        page = self.report(out)
+        with open(out / "answers.csv", encoding="utf-8") as file:
+            for row in csv.DictReader(file):
+                if row["statistic"] == "mean":
+                    self.assertIn(f">{float(row['value']):.4g}<", page)
+        self.assertGreaterEqual(page.count("<img"), 6)
+        self.assertIn("in 12 of 12 runs", page)
+
+    def test_refusals(self):
+        for source, code in ((self.folder / "scene.toml", 2), (self.folder, 2), (self.folder / "none.h5", 4),
+                             (self.chain.network(SCENE), 2)):
+            done = subprocess.run([self.chain.programs / "jointcreep", "report", source, "-o", self.folder / "r.html"],
+                                  capture_output=True, text=True)
+            self.assertEqual(done.returncode, code, done.stderr)
+            self.assertRegex(done.stderr, "^jointcreep: ")
+            self.assertFalse((self.folder / "r.html").exists())
 
 
 class StudyFile(Studies):
