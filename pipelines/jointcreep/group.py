@@ -16,6 +16,7 @@ import itertools
 import json
 import os
 import pathlib
+import resource
 import shutil
 import signal
 import subprocess
@@ -56,6 +57,12 @@ def programs_of(study):
     return chain
 
 
+def processor_seconds():
+    """Time of the processor that all programs took which this process has called."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
+
+
 def called(program, arguments, folder):
     """Exit code, message and wall time [s] of a program."""
     begin, parent = time.monotonic(), os.getpid()
@@ -78,7 +85,7 @@ def made(study, scene, text, run, programs, folder):
             values[key] = scene_keys.value_at(scene, key) * value if parameter.multiplies else value
     (folder / "scene.toml").write_text(scene_keys.toml_text(scene_keys.changed(scene, values)) if values else text, "utf-8")
     row = {"run": run["run"], "exit_code": 0, "program": "", "reason": ""}
-    seconds, solve_code = 0.0, None
+    seconds, processor_before, solve_code = 0.0, processor_seconds(), None
     for name, arguments in programs_of(study):
         if name == "jointgen":
             arguments = [*arguments, "--realization", str(run["network"])]
@@ -96,6 +103,7 @@ def made(study, scene, text, run, programs, folder):
     row.update(network=run["network"], given=run["given"])
     row["values"] = quantities.of_run(study, scene, folder, solve_code)
     row["program_seconds"] = seconds
+    row["processor_seconds"] = processor_seconds() - processor_before
     return row
 
 

@@ -149,12 +149,12 @@ def of_study(out, programs, folder):
     rows, answers, shares, times = (csv_rows(out / f"{name}.csv") for name in ("runs", "answers", "shares", "times"))
     failed = [row for row in rows if row["exit code"] != "0"]
     scene = tomllib.loads((out / "scene.toml").read_text("utf-8"))
-    hours = sum(float(row["program_seconds"]) for row in times) / 3600
+    hours = sum(float(row["processor_seconds"]) for row in times) / 3600
     parts = ["<h2>The study</h2>", table(["", ""], [
         ("scene", scene.get("title", "")), ("design", study.design.kind), ("runs", len(rows)),
         ("runs with a result", len(rows) - len(failed)), ("runs without equilibrium", sum(row["exit code"] == "3" for row in rows)),
         ("runs that failed otherwise", sum(row["exit code"] not in ("0", "3") for row in rows)),
-        ("runs made twice", sum(row["attempts"] != "1" for row in times)), ("hours of the programs", hours)])]
+        ("runs made twice", sum(row["attempts"] != "1" for row in times)), ("hours of the processor, of the programs", hours)])]
     with tempfile.TemporaryDirectory(dir=folder) as work:
         network = pathlib.Path(work) / "network.h5"
         done = subprocess.run([programs / "jointgen", out / "scene.toml", "-o", network], capture_output=True, text=True)

@@ -77,12 +77,12 @@ def write_hdf5(path, study, columns, scene):
 
 
 def times_text(rows):
-    """The text of times.csv: how often a run was made, its time and that of its programs."""
+    """The text of times.csv: how often a run was made, its wall time, and of the last time wall time and processor time of its programs."""
     text = io.StringIO()
     out = csv.writer(text, lineterminator="\n")
-    out.writerow(["run", "attempts", "seconds", "program_seconds"])
+    out.writerow(["run", "attempts", "seconds", "program_seconds", "processor_seconds"])
     for row in rows:
-        out.writerow([row["run"], row["attempts"], f"{row['seconds']:.3f}", f"{row['program_seconds']:.3f}"])
+        out.writerow([row["run"], row["attempts"], *(f"{row[name]:.3f}" for name in ("seconds", "program_seconds", "processor_seconds"))])
     return text.getvalue()
 
 
