@@ -12,10 +12,10 @@ report writes one page of HTML, with all pictures in it, for a study or for a re
 
 Options:
   -o [ --output ] OUT       the folder of a study, or the report to write
-  -j [ --jobs ] N           runs at a time (default 1)
-  --snakemake PROFILE       make runs by Snakemake with this profile, a folder with config.yaml, in place of Make
+  -j [ --jobs ] N           study: runs at a time (default 1)
+  --snakemake PROFILE       study: make runs by Snakemake with this profile, a folder with config.yaml, in place of Make
   --programs FOLDER         where jointgen, strength-averaging and demsolve are (default: beside jointcreep, then PATH)
-  -q [ --quiet ]            no progress and no summary
+  -q [ --quiet ]            study: no progress and no summary
   -h [ --help ]             show this text
   --version                 show the version
 
@@ -49,9 +49,9 @@ def options_of(arguments):
     subcommand, *rest = arguments
     if subcommand not in ("study", "report"):
         raise NotWanted(f'unknown subcommand "{subcommand}"; expected study or report\n{usage()}')
-    known = {"-o": "output", "--output": "output", "-q": "quiet", "--quiet": "quiet", "--programs": "programs"}
+    known = {"-o": "output", "--output": "output", "--programs": "programs"}
     if subcommand == "study":
-        known.update({"-j": "jobs", "--jobs": "jobs", "--snakemake": "snakemake"})
+        known.update({"-j": "jobs", "--jobs": "jobs", "--snakemake": "snakemake", "-q": "quiet", "--quiet": "quiet"})
     found, source = {}, None
     while rest:
         word = rest.pop(0)
@@ -62,7 +62,7 @@ def options_of(arguments):
             name = known[word]
             if name in found:
                 raise NotWanted(f"{word} is given twice")
-            if name == "quiet":
+            if name == "quiet" and not equals:
                 found[name] = True
             elif equals or rest:
                 found[name] = value if equals else rest.pop(0)

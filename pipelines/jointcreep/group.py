@@ -194,6 +194,7 @@ def make_group(number, out, programs):
                 code = max(code, guarded(lambda run=run: make(run)))
         shutil.rmtree(folder, ignore_errors=True)
         if code == 0:
+            os.fsync(file.fileno())
             os.replace(part, rows)
         return code
 

@@ -79,16 +79,17 @@ def read_rows(out):
     return rows
 
 
-def count_rows(out, names, in_groups):
-    """How many runs of these groups have ended, or how many groups."""
+def count_ended(out, names, size, in_groups):
+    """How many runs of these groups have ended, or how many groups. A group has `size` runs at most."""
+    files = {entry.name for entry in os.scandir(out / "groups")}
+    groups = sum(f"{name}.rows" in files for name in names)
     if in_groups:
-        return sum((out / "groups" / f"{name}.rows").exists() for name in names)
-    count = 0
+        return groups
+    count = groups * size
     for name in names:
-        for path in (out / "groups" / f"{name}.rows", out / "groups" / f"{name}.rows.part"):
+        if f"{name}.rows.part" in files:
             with contextlib.suppress(OSError):
-                count += path.read_bytes().count(b"\n")
-                break
+                count += (out / "groups" / f"{name}.rows.part").read_bytes().count(b"\n")
     return count
 
 
@@ -191,7 +192,8 @@ def make(study, out, programs, jobs, profile, quiet, enough, lock):
         before = end - batch if end < total else 0
         names = plan.groups_of(before, end, size)
         ended = make_groups(out, programs, names, jobs, profile, lock, deadline,
-                            lambda before=before, names=names: progress.tell(before + count_rows(out, names, in_groups)))
+                            lambda before=before, names=names, end=end: progress.tell(
+                                min(end, before + count_ended(out, names, size, in_groups))))
         rows = read_rows(out)
         if in_groups:
             prefix = [rows[run] for run in sorted(rows)]
@@ -199,6 +201,9 @@ def make(study, out, programs, jobs, profile, quiet, enough, lock):
             prefix = list(itertools.takewhile(lambda row: row is not None, (rows.get(run) for run in range(end))))
         if ended:
             return prefix, f"after the {study.stop.hours:g} hours of the budget"
+        if not in_groups and len(prefix) < end:
+            name = plan.group_name(len(prefix) // size)
+            raise NotDone(f"{out / 'groups' / name}.rows lacks run {len(prefix)}: remove this file; the same command makes it again")
         if study.stop.of and enough(prefix):
             return prefix, "by the stop rule"
     return prefix, ""

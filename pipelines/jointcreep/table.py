@@ -20,7 +20,7 @@ def columns_of(study, rows, given):
     """Columns of the table: name, unit, values; None where there is none."""
     numbers = [row["run"] for row in rows]
     columns = [("run", "1", numbers), (NETWORK, "1", [given[run]["network"] for run in numbers])]
-    columns += [(one.name, "unit of the key", [given[run]["given"][at] for run in numbers])
+    columns += [(one.name, "as the key", [given[run]["given"][at] for run in numbers])
                 for at, one in enumerate(study.parameters)]
     columns += [("exit code", "1", [row["exit_code"] for row in rows]), ("program", "1", [row["program"] for row in rows]),
                 ("reason", "1", [row["reason"] for row in rows])]
@@ -39,24 +39,24 @@ def csv_text(columns):
 
 
 def hdf5_columns(columns, n_values):
-    """The columns of the dataset /runs: name, type, values. The last `n_values` have one more each, which says whether there
+    """The columns of the dataset /runs: name, unit, type, values. The last `n_values` have one more each, which says whether there
     is a value; without one it is 0."""
-    for place, (name, _, values) in enumerate(columns):
+    for place, (name, unit, values) in enumerate(columns):
         if any(isinstance(value, str) for value in values) or name in ("program", "reason"):
             coded = [str(value).encode() for value in values]
-            yield name, h5py.string_dtype("utf-8", max([1, *map(len, coded)])), coded
+            yield name, unit, h5py.string_dtype("utf-8", max([1, *map(len, coded)])), coded
         elif place < len(columns) - n_values:
-            yield name, np.float64 if any(isinstance(value, float) for value in values) else np.int64, values
+            yield name, unit, np.float64 if any(isinstance(value, float) for value in values) else np.int64, values
         else:
-            yield name, np.float64, [0.0 if value is None else value for value in values]
-            yield f"{name}, is there", np.int8, [value is not None for value in values]
+            yield name, unit, np.float64, [0.0 if value is None else value for value in values]
+            yield f"{name}, is there", "1", np.int8, [value is not None for value in values]
 
 
 def write_hdf5(path, study, columns, scene):
     """The table as one dataset of records."""
     found = list(hdf5_columns(columns, len(study.quantities)))
-    records = np.zeros(len(columns[0][2]), np.dtype([(name, kind) for name, kind, _ in found]))
-    for name, _, values in found:
+    records = np.zeros(len(columns[0][2]), np.dtype([(name, kind) for name, _, kind, _ in found]))
+    for name, _, _, values in found:
         records[name] = values
     partial = path.with_name(f"{path.name}.partial-{os.getpid()}")
     try:
@@ -65,6 +65,7 @@ def write_hdf5(path, study, columns, scene):
             file.attrs["format_version"] = np.array(FORMAT_VERSION, np.int32)
             dataset = file.create_dataset("runs", data=records, track_times=False)
             dataset.attrs["description"] = np.bytes_("A row a run. A value that is not there is 0, and its column \", is there\" is 0.")
+            dataset.attrs["units"] = np.array([unit.encode() for _, unit, _, _ in found])
             for name, text in (("scene", scene), ("study", study.path.read_text(encoding="utf-8-sig"))):
                 file.create_dataset(name, data=np.array([text.encode()], h5py.string_dtype("utf-8", max(1, len(text.encode())))),
                                     track_times=False)

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Shares of the variance of a small slope in two ways that share no runs: Sobol indices, and all pairs of networks and parameters.
 
-    shares.py PROGRAMS OUT [--networks 60] [--parameters 60] [--points 400]
+    shares.py PROGRAMS OUT [--networks 40] [--parameters 30] [--points 300]
 
 Two inputs vary: the network, and the stiffness of the joints. The variance of the means over one input, found from all pairs, is
 that input's first-order index times the variance; this is brute force, and the reference. `jointcreep study` gives the same indices
@@ -62,9 +62,9 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("programs", type=pathlib.Path)
     parser.add_argument("out", type=pathlib.Path)
-    parser.add_argument("--networks", type=int, default=60)
-    parser.add_argument("--parameters", type=int, default=60)
-    parser.add_argument("--points", type=int, default=400)
+    parser.add_argument("--networks", type=int, default=40)
+    parser.add_argument("--parameters", type=int, default=30)
+    parser.add_argument("--points", type=int, default=300)
     parser.add_argument("--jobs", type=int, default=1)
     arguments = parser.parse_args()
     arguments.out.mkdir(parents=True, exist_ok=True)
