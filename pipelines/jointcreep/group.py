@@ -71,8 +71,8 @@ def called(program, arguments, folder):
                               stderr=subprocess.PIPE, preexec_fn=lambda: die_with(parent))
     except OSError as error:
         raise Interrupted(f"{program} cannot be started: {error.strerror}") from None
-    message = " ".join(done.stderr.decode("utf-8", "replace").split())
-    return done.returncode, message[-LONGEST_REASON:], time.monotonic() - begin
+    lines = [line for line in done.stderr.decode("utf-8", "replace").splitlines() if ": warning: " not in line]
+    return done.returncode, " ".join(" ".join(lines).split())[:LONGEST_REASON], time.monotonic() - begin
 
 
 def made(study, scene, text, run, programs, folder):

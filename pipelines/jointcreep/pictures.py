@@ -7,6 +7,7 @@ pictures.json lists them by quantity.
 import json
 import pathlib
 import sys
+import textwrap
 
 import matplotlib.ticker
 import numpy as np
@@ -32,8 +33,8 @@ def distribution(quantity, study, values):
     if study.design.kind != "networks x parameters":
         counts = np.unique(np.linspace(1, n, min(n, BAND_POINTS)).astype(int))
         ends = np.array([intervals.probability(int(count), n)[1:] for count in counts])
-        axes.fill_between(ordered[counts - 1], 100 * ends[:, 0], 100 * ends[:, 1], step="post", facecolor=BAND, linewidth=0,
-                          label="95 % confidence")
+        axes.fill_between(ordered[counts - 1], 100 * ends[:, 0], 100 * ends[:, 1], step="post" if n <= BAND_POINTS else None, facecolor=BAND,
+                          linewidth=0, label="95 % confidence")
     axes.step(ordered, 100 * np.arange(1, n + 1) / n, where="post", color=figure.COLORS[0], label=f"{n} runs")
     for place, limit in enumerate([*quantity.above, *quantity.below]):
         axes.axvline(limit, color=figure.COLORS[1], linewidth=0.8, linestyle="--", label="limit" if place == 0 else None)
@@ -91,10 +92,12 @@ def parameters(quantity, study, values, run, given, of_shares):
     for place, (name, measure, value, low, high) in enumerate(of_shares):
         bars.barh(place, value, color=figure.COLORS[0 if "total" not in measure else 4], height=0.6)
         bars.plot([low, high], [place, place], color=figure.COLORS[1], linewidth=1.0, marker="|", markersize=4)
-    bars.set_yticks(range(len(of_shares)), [f"{name}, {measure}" for name, measure, *_ in of_shares], fontsize=6)
+    measures = list(dict.fromkeys(measure for _, measure, *_ in of_shares))
+    labels = [name if len(measures) == 1 else f"{name},\n{measure}" for name, measure, *_ in of_shares]
+    bars.set_yticks(range(len(of_shares)), ["\n".join(textwrap.wrap(label, 20)) for label in labels], fontsize=6)
     bars.set_ylim(max(len(of_shares), FEWEST_BARS) - 0.5, -0.5)
     bars.axvline(0, color="0.6", linewidth=0.6)
-    bars.set_xlabel("value, with 95 percent confidence interval")
+    bars.set_xlabel(f"{measures[0] if len(measures) == 1 else 'value'}, 95 % confidence", fontsize=7)
     for axes in panels[count:]:
         axes.set_visible(False)
     return plot

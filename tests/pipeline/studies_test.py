@@ -283,7 +283,8 @@ class Failures(Studies):
     def test_a_failed_run(self):
         """It is kept with code and reason, does not stop the others, and counts where failure is the answer; where it is not, it is
         made twice."""
-        case = 'case "$PWD" in *work/000001*) echo "demsolve: no equilibrium: on purpose" >&2; exit 3 ;; esac'
+        case = 'case "$PWD" in *work/000001*) echo "demsolve: warning: soon" >&2; echo "demsolve: no equilibrium: on purpose" >&2; ' \
+               "exit 3 ;; esac"
         programs = self.programs(case)
         out = self.made(self.written(NETWORKS.format(runs=4)), self.folder / "out", programs=programs)
         rows = rows_of(out)
