@@ -171,7 +171,7 @@ def crossed_shares(study, rows, at):
             for name, share, of_low, of_high in zip(names, shares(table), low, high)]
 
 
-def sobol_indices(study, rows, given, at):
+def sobol_indices(study, rows, at):
     """First-order and total Sobol indices by Martinez's estimator, with its asymptotic intervals. Points of the design are left
     out where one of their runs has no value."""
     ot = openturns()
@@ -183,10 +183,8 @@ def sobol_indices(study, rows, given, at):
     outputs = np.array([value[point + part * points] for part in range(parts) for point in kept], float)
     if len(kept) < FEWEST or np.ptp(outputs) == 0:
         return []
-    places = [point + part * points for part in range(parts) for point in kept]
-    inputs = [[*(number_of(one, study.parameters[column]) for column, one in enumerate(given[run]["given"])),
-               *([float(given[run]["network"])] if study.varies_network else [])] for run in places]
-    found = ot.MartinezSensitivityAlgorithm(ot.Sample(inputs), ot.Sample(outputs[:, None].tolist()), len(kept))
+    inputs = ot.Sample(len(outputs), len(names))  # of the right size: the estimator needs no values of inputs
+    found = ot.MartinezSensitivityAlgorithm(inputs, ot.Sample(outputs[:, None].tolist()), len(kept))
     found.setUseAsymptoticDistribution(True)
     found.setConfidenceLevel(CONFIDENCE)
     rows = []
@@ -197,17 +195,12 @@ def sobol_indices(study, rows, given, at):
     return rows
 
 
-def number_of(value, parameter):
-    """A value as a number; of a list of texts its place."""
-    return float(parameter.values.index(value)) if isinstance(value, str) else float(value)
-
-
 def shares(study, rows, given, at):
     """Rows (input, measure, value, low, high) of a quantity."""
     if not study.parameters:
         return []
     if study.design.kind == "sobol indices":
-        return sobol_indices(study, rows, given, at)
+        return sobol_indices(study, rows, at)
     if study.design.kind == "networks x parameters":
         return crossed_shares(study, rows, at) + rank_correlations(study, rows, given, at)
     return rank_correlations(study, rows, given, at)

@@ -136,10 +136,10 @@ def command_for(out, names, jobs, profile):
     if profile:
         plan.written(out / "Snakefile", SNAKEFILE.format(groups=names))
         return ["snakemake", "--snakefile", "Snakefile", "--profile", profile, "--keep-going", "--nolock", "--rerun-incomplete",
-                "--rerun-triggers", "mtime", "--quiet", *(["--jobs", str(jobs)] if jobs else [])]
+                "--rerun-triggers", "mtime", "--quiet", "--jobs", str(jobs)]
     targets = " ".join(f"groups/{name}.rows" for name in names)
     plan.written(out / "Makefile", MAKEFILE.format(targets=targets))
-    return ["make", "--silent", "--keep-going", f"-j{jobs or 1}", "-f", "Makefile", "all"]
+    return ["make", "--silent", "--keep-going", f"-j{jobs}", "-f", "Makefile", "all"]
 
 
 def make_groups(out, programs, names, jobs, profile, lock, deadline, tell):

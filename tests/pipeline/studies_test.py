@@ -229,16 +229,31 @@ class Runs(Studies):
         rows.unlink()
         self.assert_same(whole, self.made(study, out))
 
-    def test_two_studies_in_one_folder(self):
-        programs = self.programs("sleep 20")
-        study, out = self.written(NETWORKS.format(runs=2)), self.folder / "out"
+    def hanging(self, study, out):
+        """A study whose first run hangs."""
+        programs = self.programs(f'[ "$1" = --version ] || exec sleep {LONGEST_RUN}')
         running = subprocess.Popen([*map(str, self.command(study, out, programs=programs))], start_new_session=True,
                                    stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        end = time.monotonic() + LONGEST_RUN
+        while not (out / "work" / "000000" / "joints.h5").exists():
+            self.assertLess(time.monotonic(), end)
+            time.sleep(0.01)
+        return running
+
+    def test_nothing_works_on_after_a_kill(self):
+        running = self.hanging(self.written(NETWORKS.format(runs=2)), self.folder / "out")
+        time.sleep(0.3)
+        os.kill(running.pid, signal.SIGKILL)
+        running.wait()
+        end = time.monotonic() + 30  # its run hangs longer
+        while alive(running.pid):
+            self.assertLess(time.monotonic(), end, "something works on after the study was killed")
+            time.sleep(0.01)
+
+    def test_two_studies_in_one_folder(self):
+        study, out = self.written(NETWORKS.format(runs=2)), self.folder / "out"
+        running = self.hanging(study, out)
         try:
-            end = time.monotonic() + LONGEST_RUN
-            while not (programs / "calls").exists():
-                self.assertLess(time.monotonic(), end)
-                time.sleep(0.01)
             done = self.study(study, out)
             self.assertEqual(done.returncode, 2)
             self.assertIn("another study works in", done.stderr)
