@@ -4,9 +4,6 @@ Only runs that have a value count: a run without an equilibrium, or whose point 
 The probability to fail counts all runs that either have an equilibrium or were found to have none.
 """
 
-import csv
-import io
-
 import numpy as np
 
 from . import failure, intervals, plan
@@ -133,9 +130,12 @@ def enough(study, rows):
 
 def rank_correlations(study, rows, given, at):
     """Spearman's correlation of each parameter with the quantity; the interval is of Fisher's transformation with the variance
-    of Bonett and Wright (2000)."""
+    of Bonett and Wright (2000). Of networks x parameters with the means over networks, because runs are not independent."""
     ot = openturns()
     values, run = values_of(study, rows, at)
+    table = crossed_table(study, values, run)
+    if study.design.kind == "networks x parameters":
+        values, run = (table.mean(axis=0), np.arange(study.design.parameters)) if table is not None else ([], [])
     numeric = [column for column, one in enumerate(study.parameters) if not any(isinstance(value, str) for value in one.values)]
     if len(values) < FEWEST or not numeric or np.ptp(values) == 0:
         return []
@@ -207,14 +207,6 @@ def shares(study, rows, given, at):
 
 
 # --- Files ----------------------------------------------------------------------------------------------------------
-
-
-def csv_text(heads, rows):
-    text = io.StringIO()
-    out = csv.writer(text, lineterminator="\n")
-    out.writerow(heads)
-    out.writerows([["" if value is None else value for value in row] for row in rows])
-    return text.getvalue()
 
 
 def listed(runs):
@@ -291,13 +283,13 @@ def write(study, rows, given, why, estimates, out):
         if len(values):
             found.append((quantity, {"at": at, "runs": len(values), "statistics": statistics(study, quantity, values, run)},
                           shares(study, rows, given, at)))
-    plan.written(out / "answers.csv", csv_text(
+    plan.written(out / "answers.csv", plan.csv_text(
         ["quantity", "unit", "statistic", "runs", "value", "low", "high"],
         [(one.name, one.unit, name, of["runs"], *numbers) for one, of, _ in found for name, *numbers in of["statistics"]]))
-    plan.written(out / "convergence.csv", csv_text(
+    plan.written(out / "convergence.csv", plan.csv_text(
         ["quantity", "unit", "statistic", "runs", "value", "low", "high"],
         [(one.name, one.unit, *row) for one, of, _ in found if not by_direction for row in convergence(study, rows, of["at"])]))
-    plan.written(out / "shares.csv", csv_text(
+    plan.written(out / "shares.csv", plan.csv_text(
         ["quantity", "input", "measure", "value", "low", "high"],
         [(one.name, *row) for one, _, of_shares in found for row in of_shares]))
     plan.written(out / "summary.txt", summary(study, rows, why, found))

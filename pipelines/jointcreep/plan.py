@@ -38,6 +38,15 @@ def written(path, text):
         partial.unlink(missing_ok=True)
 
 
+def csv_text(heads, rows):
+    """A table as CSV; an empty field where there is no value. Numbers read back exactly."""
+    text = io.StringIO()
+    out = csv.writer(text, lineterminator="\n")
+    out.writerow(heads)
+    out.writerows([["" if value is None else value for value in row] for row in rows])
+    return text.getvalue()
+
+
 def parsed(text, path):
     """JSON of a file of the folder."""
     try:
@@ -115,16 +124,6 @@ def identity(study, scene, programs):
     }
 
 
-def design_table(study, networks, values):
-    """The text of design.csv."""
-    text = io.StringIO()
-    out = csv.writer(text, lineterminator="\n")
-    out.writerow(["run", study_file.NETWORK, *(one.name for one in study.parameters)])
-    for run, (network, of_run) in enumerate(zip(networks, values)):
-        out.writerow([run, network, *of_run])
-    return text.getvalue()
-
-
 def make(study, out, programs):
     """Writes the plan into the folder, or checks that the one there is of the same study. Returns the scene as tomllib reads it."""
     text = scene_text(study, programs, out)
@@ -151,7 +150,8 @@ def make(study, out, programs):
         size = group_size(study.design.runs)
     written(out / "scene.toml", text)
     written(out / "study.toml", study.path.read_text(encoding="utf-8-sig"))
-    written(out / "design.csv", design_table(study, networks, values))
+    written(out / "design.csv", csv_text(["run", study_file.NETWORK, *(one.name for one in study.parameters)],
+                                         [[run, network, *of_run] for run, (network, of_run) in enumerate(zip(networks, values))]))
     written(path, json.dumps({"identity": what, "runs": study.design.runs, "group": size}, indent=1) + "\n")
     return scene
 

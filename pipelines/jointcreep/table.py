@@ -3,8 +3,6 @@
 The first two depend on nothing but the study, so they have the same bytes however the runs were made.
 """
 
-import csv
-import io
 import os
 
 import h5py
@@ -26,16 +24,6 @@ def columns_of(study, rows, given):
                 ("reason", "1", [row["reason"] for row in rows])]
     columns += [(one.title(), one.unit, [row["values"][at] for row in rows]) for at, one in enumerate(study.quantities)]
     return columns
-
-
-def csv_text(columns):
-    """The table as CSV; an empty field where there is no value. Numbers read back exactly."""
-    text = io.StringIO()
-    out = csv.writer(text, lineterminator="\n")
-    out.writerow([name for name, _, _ in columns])
-    for row in zip(*(values for _, _, values in columns)):
-        out.writerow(["" if value is None else value for value in row])
-    return text.getvalue()
 
 
 def hdf5_columns(columns, n_values):
@@ -77,19 +65,11 @@ def write_hdf5(path, study, columns, scene):
         partial.unlink(missing_ok=True)
 
 
-def times_text(rows):
-    """The text of times.csv: how often a run was made, its wall time, and of the last time wall time and processor time of its programs."""
-    text = io.StringIO()
-    out = csv.writer(text, lineterminator="\n")
-    out.writerow(["run", "attempts", "seconds", "program_seconds", "processor_seconds"])
-    for row in rows:
-        out.writerow([row["run"], row["attempts"], *(f"{row[name]:.3f}" for name in ("seconds", "program_seconds", "processor_seconds"))])
-    return text.getvalue()
-
-
 def write(study, rows, given, scene, out):
-    """Writes the three files."""
+    """Writes the three files. Times are wall times, and of the last try the processor time of its programs."""
     columns = columns_of(study, rows, given)
-    plan.written(out / "runs.csv", csv_text(columns))
-    plan.written(out / "times.csv", times_text(rows))
+    plan.written(out / "runs.csv", plan.csv_text([name for name, _, _ in columns], zip(*(values for _, _, values in columns))))
+    times = ["seconds", "program_seconds", "processor_seconds"]
+    plan.written(out / "times.csv", plan.csv_text(["run", "attempts", *times], [
+        [row["run"], row["attempts"], *(f"{row[name]:.3f}" for name in times)] for row in rows]))
     write_hdf5(out / "runs.h5", study, columns, scene)
