@@ -67,7 +67,7 @@ def picture(path, caption):
 def drawn(script, source, folder, caption, *options):
     """A picture by one of the plots, as HTML; in its place the plot's message where it has nothing to draw."""
     path = folder / f"{script}-{'-'.join(options).replace('/', '')}.png"
-    done = subprocess.run([sys.executable, PLOTS / f"{script}.py", source, *options, "-o", path], capture_output=True, text=True)
+    done = subprocess.run([sys.executable, "-B", PLOTS / f"{script}.py", source, *options, "-o", path], capture_output=True, text=True)
     if done.returncode != 0:
         return f"<p>{escaped(caption)} Not drawn: {escaped(done.stderr.strip())}</p>"
     return picture(path, caption)
