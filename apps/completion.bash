@@ -7,4 +7,4 @@ _jointcreep()
         mapfile -t COMPREPLY < <(compgen -W "$("$1" --help 2>/dev/null | grep -oE -- '--?[a-z][a-z-]*' | sort -u)" -- "$word")
     fi
 }
-complete -o default -F _jointcreep jointgen strength-averaging demsolve jointexport creepfit jointverify
+complete -o default -F _jointcreep jointgen strength-averaging demsolve jointexport creepfit jointverify jointcreep

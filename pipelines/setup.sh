@@ -4,7 +4,7 @@
 #   sh pipelines/setup.sh          the programs, and what draws pictures of their results
 #   sh pipelines/setup.sh test     these and the tests
 #   sh pipelines/setup.sh develop  programs and tests, and what formats and reads the sources
-#   sh pipelines/setup.sh studies  programs and tests, and what pipelines compare with
+#   sh pipelines/setup.sh studies  programs and tests, and what studies need and pipelines compare with
 #   sh pipelines/setup.sh fuzz     the fuzz targets, into build/fuzz
 #
 # A list of packages is a file of pipelines/packages, one name a line.

@@ -34,6 +34,9 @@ import tomllib
 import h5py
 import numpy as np
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent))
+from jointcreep import histories  # noqa: E402
+
 HALVED = [  # option of demsolve, table and key of the scene, what it is called, unit
     ("zone-size", "zones", "size_m", "zone size", "m"),
     ("creep-step", "creep", "step_days", "creep step", "day"),  # a scene has this one
@@ -124,35 +127,10 @@ def solved(programs, joints, label, options, component=None):
     return run
 
 
-def polynomial(time, values, wanted):
-    """At a wanted time, the polynomial through values [row, ...] at these times."""
-    weight = [np.prod([(wanted - other) / (one - other) for other in time if other != one]) for one in time]
-    return np.tensordot(weight, values, axes=1)
-
-
-def interpolated(time, values, wanted):
-    """Values [row, ...] at a wanted time between ascending times, by the four nearest rows; and by three of them."""
-    first = max(min(int(np.searchsorted(time, wanted)) - 2, len(time) - 4), 0)
-    near, of_near = time[first : first + 4], values[first : first + 4]
-    fewer = np.argsort(np.abs(near - wanted))[:3]
-    return polynomial(near, of_near, wanted), polynomial(near[fewer], of_near[fewer], wanted)
-
-
 def row_at(run, stages, day, dates):
     """Displacement [point, 2] of a run on a day, after so many stages, and which points are there; None if the run has
     ended before. Between dates it is interpolated; the last value is the uncertainty of that [m]."""
-    rows = np.flatnonzero(run.stages == stages)
-    exact = rows[np.abs(run.time[rows] - day) <= 1e-9 * max(1.0, day)]  # runs may differ in the last digit
-    if len(exact):
-        return run.displacement[exact[0]], run.present[exact[0]], 0.0
-    low, high = dates[dates < day].max(initial=0), dates[dates > day].min(initial=np.inf)
-    rows = rows[(run.time[rows] >= low) & (run.time[rows] <= high)]
-    time, first = np.unique(run.time[rows], return_index=True)
-    if len(time) == 0 or not time[0] < day < time[-1]:
-        return None
-    rows = rows[first]
-    cubic, parabola = interpolated(time, run.displacement[rows], day)
-    return cubic, run.present[rows[np.searchsorted(time, day)]], float(size(cubic - parabola).max(initial=0))
+    return histories.at(run.time, run.stages, dates, run.displacement, run.present, day, stages)
 
 
 def changes(own, other):

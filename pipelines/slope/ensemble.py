@@ -13,7 +13,8 @@ OUT it writes
 Files whose content has not changed stay as they are.
 
 Only realizations in equilibrium count: those that failed, some because they slide, are named and not averaged. A
-realization counts at a time if its point is there then. The confidence interval is Student's: it holds for means of
+realization counts at a time if its point is there then. Where creep steps are chosen (tolerance_m), rows are those of the first
+realization in equilibrium, and the others are interpolated on their days (jointcreep/histories.py). The confidence interval is Student's: it holds for means of
 many realizations, or if displacements are about normally distributed. Quantiles are interpolated linearly between the
 ordered realizations. Everything is added up in the order of numbers, so the same realizations give the same bytes.
 """
@@ -26,17 +27,21 @@ import os
 import pathlib
 import sys
 import tomllib
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import h5py
 import numpy as np
+from scipy import special
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent))
+from jointcreep import histories, intervals  # noqa: E402
 
 PROBABILITIES = [0.05, 0.25, 0.50, 0.75, 0.95]
-CONFIDENCE = 0.95
+CONFIDENCE = intervals.CONFIDENCE
 CUTTING = ["shortest_edge", "merged_vertices", "merged_edge_length", "merged_block_area", "largest_move",
            "pruned_length"]
-SAME = ["/scene", "/provenance/program", "/provenance/version", "/history/time", "/history/event", "/history/point",
-        "/history/point_position", "/history/first_reading_row"]
+SAME = ["/scene", "/provenance/program", "/provenance/version", "/history/point", "/history/point_position"]
+ROWS = ["/history/time", "/history/event", "/history/first_reading_row"]  # differ where creep steps are chosen (tolerance_m)
 KINDS = {
     "displacement": "since the in-situ equilibrium",
     "displacement_since_first_reading": "since the first reading of the point",
@@ -71,6 +76,8 @@ class NotWanted(Exception):
 class Realization:
     number: int
     common: dict  # what must be the same in all
+    rows: dict  # of its histories
+    dates: np.ndarray  # on which something happens [day]
     displacement: np.ndarray  # [time, point, 2] [m]
     present: np.ndarray  # [time, point]
     values: dict  # of OF_EACH, by name
@@ -125,6 +132,8 @@ def read(path, number):
                     "the options of demsolve": file["/provenance/options"][-1],
                     "the seed": file.attrs["seed"],
                 },
+                rows={name: file[name][()] for name in ROWS},
+                dates=np.unique(file["/states/time"][()]),
                 displacement=file["/history/displacement"][()],
                 present=file["/history/present"][()],
                 values={
@@ -145,6 +154,27 @@ def read(path, number):
             raise NotWanted(f"something is missing: {error}") from error
 
 
+def stages_of(one):
+    """How many stages there have been, by row of its histories."""
+    return np.cumsum([bool(text_of(name)) for name in one.rows["/history/event"]])
+
+
+def on_days_of(first, one):
+    """A realization with its histories on the days of another one's rows, where its own are on others."""
+    if all(np.array_equal(first.rows[name], one.rows[name]) for name in ROWS):
+        return one
+    displacement, present = np.zeros_like(first.displacement), np.zeros_like(first.present)
+    stages = stages_of(one)
+    if stages[-1] != stages_of(first)[-1]:
+        raise NotWanted(f"it has {stages[-1]} stages, and {first.number:04d}.h5 has {stages_of(first)[-1]}")
+    for row, (day, done) in enumerate(zip(first.rows["/history/time"], stages_of(first))):
+        found = histories.at(one.rows["/history/time"], stages, one.dates, one.displacement, one.present, day, done)
+        if found is None:
+            raise NotWanted(f"it has no displacement on day {day:g}")
+        displacement[row], present[row], _ = found
+    return replace(one, rows=first.rows, displacement=displacement, present=present)
+
+
 def read_all(folder, count):
     """The realizations in equilibrium, and the reasons of the others by their number."""
     found, failed = [], {}
@@ -156,34 +186,13 @@ def read_all(folder, count):
             continue
         try:
             found.append(read(path, number))
+            found[-1] = on_days_of(found[0], found[-1])
             for name, value in found[0].common.items():
                 if not np.array_equal(value, found[-1].common[name]):
                     raise NotWanted(f"{name} is not the same as in {found[0].number:04d}.h5")
         except (OSError, NotWanted) as error:
             raise NotWanted(f"{path}: {error}") from error
     return found, failed
-
-
-def student_probability(t, freedom):
-    """P(|T| < t) of Student's distribution; the finite series in the angle atan(t / sqrt(freedom)), Abramowitz and
-    Stegun 26.7.3 and 26.7.4."""
-    angle = math.atan2(t, math.sqrt(freedom))
-    cosine = math.cos(angle)
-    odd = freedom % 2
-    term = cosine if odd else 1.0
-    total = 0.0 if freedom == 1 else term
-    for k in range(2 + odd, freedom, 2):
-        term *= cosine * cosine * (k - 1) / k
-        total += term
-    return 2 / math.pi * (angle + math.sin(angle) * total) if odd else math.sin(angle) * total
-
-
-def student_quantile(freedom):
-    """t for which P(|T| < t) is CONFIDENCE, by bisection."""
-    low, high = 0.0, 1e3
-    while low < (middle := (low + high) / 2) < high:
-        low, high = (middle, high) if student_probability(middle, freedom) < CONFIDENCE else (low, middle)
-    return high
 
 
 def statistics_of(displacement, counts):
@@ -194,7 +203,7 @@ def statistics_of(displacement, counts):
     for name in ("mean", "standard_deviation", "mean_low", "mean_high"):
         found[name] = np.zeros((times, points, 2))
     found["quantile"] = np.zeros((len(PROBABILITIES), times, points, 2))
-    t_of = {count: student_quantile(count - 1) for count in np.unique(found["count"]) if count > 1}
+    t_of = {count: special.stdtrit(count - 1, (1 + CONFIDENCE) / 2) for count in np.unique(found["count"]) if count > 1}
     for row, point in np.argwhere(found["count"] > 1):
         sample = displacement[counts[:, row, point], row, point]
         at = row, point
@@ -210,7 +219,7 @@ def all_statistics(found):
     """The statistics of each kind."""
     displacement = np.stack([one.displacement for one in found])
     present = np.stack([one.present for one in found]) == 1
-    first_row = found[0].common["/history/first_reading_row"]
+    first_row = found[0].rows["/history/first_reading_row"]
     at_first = np.stack([displacement[:, row, point] for point, row in enumerate(first_row)], axis=1)
     has_begun = np.arange(displacement.shape[1])[:, None] >= first_row
     return {
@@ -228,7 +237,7 @@ def write_hdf5(path, found, failed, statistics):
             dataset = file.create_dataset(name, data=values, track_times=False)
             dataset.attrs["units"], dataset.attrs["description"] = np.bytes_(units), np.bytes_(description)
 
-        common = found[0].common
+        common, rows = found[0].common, found[0].rows
         file.attrs["filetype"] = np.bytes_("jointcreep ensemble")
         file.attrs["format_version"] = np.array([2, 0], np.int32)
         file.attrs["seed"] = common["the seed"]
@@ -239,11 +248,11 @@ def write_hdf5(path, found, failed, statistics):
             put(f"/realization/{name}", np.array([one.values[name] for one in found]), units, what)
         put("/failed/number", np.array(list(failed), np.int64), "1", "Number of a realization that failed.")
         put("/failed/reason", list(failed.values()), "1", "Why.")
-        put("/history/time", common["/history/time"], "day", "Time since the start.")
-        for name, what in (("event", "Stage that this row is the first after."), ("point", "Names of the points.")):
-            put(f"/history/{name}", [text_of(text) for text in common[f"/history/{name}"]], "1", what)
+        put("/history/time", rows["/history/time"], "day", "Time since the start.")
+        for of, name, what in ((rows, "event", "Stage that this row is the first after."), (common, "point", "Names of the points.")):
+            put(f"/history/{name}", [text_of(text) for text in of[f"/history/{name}"]], "1", what)
         put("/history/point_position", common["/history/point_position"], "m", "Position {x, y}.")
-        put("/history/first_reading_row", common["/history/first_reading_row"], "1", "Row from which readings count.")
+        put("/history/first_reading_row", rows["/history/first_reading_row"], "1", "Row from which readings count.")
         put("/probability", np.array(PROBABILITIES), "1", "Probabilities of the quantiles.")
         for kind, arrays in statistics.items():
             meaning = {
@@ -262,8 +271,8 @@ def write_hdf5(path, found, failed, statistics):
 
 def table(found, statistics):
     """The statistics as the text of a CSV file; Python writes numbers so that they read back exactly."""
-    common = found[0].common
-    points = [text_of(name) for name in common["/history/point"]]
+    points = [text_of(name) for name in found[0].common["/history/point"]]
+    time, event = (found[0].rows[f"/history/{name}"] for name in ("time", "event"))
     names = ["mean", "standard_deviation", "mean_low", "mean_high"]
     text = io.StringIO()
     out = csv.writer(text, lineterminator="\n")
@@ -275,8 +284,7 @@ def table(found, statistics):
             for component in (0, 1):
                 for row in np.flatnonzero(arrays["count"][:, point] > 1):
                     at = row, point, component
-                    out.writerow([since, name, "xy"[component], float(common["/history/time"][row]),
-                                  text_of(common["/history/event"][row]), arrays["count"][row, point],
+                    out.writerow([since, name, "xy"[component], float(time[row]), text_of(event[row]), arrays["count"][row, point],
                                   *(float(arrays[name][at]) for name in names),
                                   *(float(value) for value in arrays["quantile"][(slice(None), *at)])])
     return text.getvalue()
@@ -308,9 +316,21 @@ def moves_in_the_end(found, statistics):
                                           arrays["quantile"][(lower, *at)], arrays["quantile"][(upper, *at)]))
             rows.append([text_of(name), "xy"[component], str(count), f"{mean:.3f}", f"{high - mean:.3f}",
                          f"{deviation:.3f}", f"{low_quarter:.3f} to {high_quarter:.3f}"])
-    end = float(found[0].common["/history/time"][-1])
+    end = float(found[0].rows["/history/time"][-1])
     return [f"displacement on day {end:g} since the in-situ equilibrium; +-: {CONFIDENCE:.0%} confidence of the mean",
             *in_columns(headings, rows)]
+
+
+def taken_points(found):
+    """Lines of the points that an excavation takes in some realizations and not in others."""
+    there = np.stack([one.present[-1] for one in found]) == 1  # [realization, point]
+    lines = []
+    for point, name in enumerate(found[0].common["/history/point"]):
+        numbers = [f"{one.number:04d}" for one, is_there in zip(found, there[:, point]) if not is_there]
+        if 0 < len(numbers) < len(found):
+            lines.append(f'point "{text_of(name)}": an excavation takes it in {len(numbers)} of {len(found)} realizations: '
+                         f"{', '.join(numbers)}")
+    return lines
 
 
 def summary(found, failed, statistics=None):
@@ -331,7 +351,7 @@ def summary(found, failed, statistics=None):
                   "area balance: area of all blocks over that of the section, less 1",
                   "merged, moved, cut back: what cutting did to edges too short, angles too small and loose joint ends"]
     if statistics:
-        lines += ["", *moves_in_the_end(found, statistics)]
+        lines += ["", *moves_in_the_end(found, statistics), *taken_points(found)]
     if failed:
         lines += ["", *(f"failed {number:04d}: {reason}" for number, reason in failed.items())]
     return "\n".join(lines) + "\n"

@@ -88,6 +88,20 @@ class Documentation(ChainTest):
             self.assertAlmostEqual(rise[2] / at_once, 1, delta=1e-2)
             self.assertGreater(rise[-1], 1.8 * at_once)
 
+    def test_studies_example(self):
+        """The first study of docs/studies.md runs by its commands."""
+        page = self.chain.text("docs/studies.md")
+        study, path, commands = code_blocks(page, "toml")[0], *code_blocks(page, "sh")[0].split("\n", 1)
+        self.assertEqual(path, 'export PATH="$PWD/build/release/apps:$PATH"')
+        folder = self.chain.new_folder()
+        (folder / "data").symlink_to(self.chain.source / "data")
+        (folder / "first.toml").write_text(study)
+        script = f'set -eu\nPATH="{self.chain.programs}:$PATH"\n{commands}'
+        done = subprocess.run(["sh", "-c", script], cwd=folder, capture_output=True, text=True, timeout=300)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("crest (mm), 8 runs", done.stdout)
+        self.assertIn("crest (mm)", (folder / "first.html").read_text())
+
     def test_scene_page_example(self):
         for number, scene in enumerate(code_blocks(self.chain.text("docs/scene.md"), "toml")):
             path = self.chain.new_folder() / f"{number}.toml"

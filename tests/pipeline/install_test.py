@@ -7,7 +7,7 @@ import unittest
 
 from chain import ChainTest, main
 
-APPS = ["jointgen", "strength-averaging", "demsolve", "jointexport", "creepfit", "jointverify"]
+APPS = ["jointgen", "strength-averaging", "demsolve", "jointexport", "creepfit", "jointverify", "jointcreep"]
 
 
 class Install(ChainTest):
@@ -24,7 +24,10 @@ class Install(ChainTest):
 
     def test_nothing_else_is_installed(self):
         files = sorted(str(path.relative_to(self.prefix)) for path in self.prefix.rglob("*") if path.is_file())
+        pipelines = self.chain.source / "pipelines"
+        package = [path.relative_to(pipelines) for folder in ("jointcreep", "plots") for path in (pipelines / folder).glob("*.py")]
         self.assertEqual(files, sorted([f"bin/{app}" for app in APPS] +
+                                       [f"share/jointcreep/{path}" for path in package if path.name != "launcher.py"] +
                                        [f"share/man/man1/{app}.1" for app in APPS] +
                                        [f"share/bash-completion/completions/{app}" for app in APPS]))
 

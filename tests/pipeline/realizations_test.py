@@ -472,6 +472,37 @@ class Small(Runs):
         self.assertNotEqual(done.returncode, 0)
         self.assertIn("failed 0001: jointgen, exit code 139", done.stdout)
 
+    def test_chosen_creep_steps(self):
+        """Realizations with rows on other days are brought to common days: their statistics are those of short steps."""
+        chosen = 'tolerance_m = 1e-8'
+        text = SCENE.replace('step_days = 2\nscheme = "published"', chosen)
+        self.scene.write_text(text)
+        out = self.made(self.folder / "out", self.programs(), "realizations")
+        results = [datasets(out / "realizations" / f"{number:04d}.h5") for number in range(N)]
+        self.assertGreater(len({len(result["/history/time"]) for result in results} |
+                               {tuple(result["/history/time"]) for result in results}), 2)
+        self.scene.write_text(text.replace(chosen, 'step_days = 0.125\nscheme = "fitted"'))
+        fine = self.made(self.folder / "fine", self.programs(), "realizations")
+        ensemble, wanted = datasets(out / "ensemble.h5"), datasets(fine / "ensemble.h5")
+        crept = numpy.abs(wanted["/displacement/mean"][-1] - wanted["/displacement/mean"][2]).max()
+        last = wanted["/history/time"] > 4  # after the last date, with a row every eighth of a day
+        compared = 0
+        for row, day in enumerate(ensemble["/history/time"]):
+            if day > 4:
+                for point, component in ((0, 0), (0, 1), (2, 0), (2, 1)):
+                    near = numpy.interp(day, wanted["/history/time"][last], wanted["/displacement/mean"][last, point, component])
+                    self.assertLess(abs(ensemble["/displacement/mean"][row, point, component] - near), 0.002 * crept)
+                compared += 1
+        self.assertGreater(compared, 2)
+
+    def test_a_point_that_is_taken_in_some(self):
+        """It is named with its realizations, here after a result has been falsified."""
+        out = self.copy_of_whole()
+        with h5py.File(out / "realizations" / "0002.h5", "r+") as file:
+            file["/history/present"][-3:, 0] = 0
+        self.made(out, self.programs(), "realizations")
+        self.assertIn('point "crest": an excavation takes it in 1 of 4 realizations: 0002\n', (out / "summary.txt").read_text())
+
     def test_a_changed_scene(self):
         """Results of another scene are not mixed in, be they old or put there."""
         programs = self.programs()

@@ -1,0 +1,296 @@
+"""What a study answers: means, quantiles and probabilities with confidence, how they converge, and shares of the variance.
+
+Only runs that have a value count: a run without an equilibrium, or whose point an excavation has taken, is named in the summary.
+The probability to fail counts all runs that either have an equilibrium or were found to have none.
+"""
+
+import numpy as np
+
+from . import failure, intervals, plan
+from .design import openturns
+from .intervals import CONFIDENCE
+from .study_file import NETWORK
+
+QUANTILES = [0.05, 0.25, 0.50, 0.75, 0.95]
+FEWEST = 10  # runs from which convergence is shown
+STEPS = 30  # numbers of runs at which it is shown, at most
+NAMED = 20  # runs that a line of the summary lists
+NO_EQUILIBRIUM = 3
+
+
+def values_of(study, rows, at):
+    """Values of a quantity and the numbers of their runs, as arrays; of runs that are independent of each other, as far as the
+    design has such. Sobol indices: the first two of its matrices are."""
+    last = 2 * study.design.points if study.design.kind == "sobol indices" else study.design.runs
+    there = [(row["values"][at], row["run"]) for row in rows if row["values"][at] is not None and row["run"] < last]
+    return np.array([value for value, _ in there], float), np.array([run for _, run in there], int)
+
+
+def crossed_table(study, values, run):
+    """Values [network, parameters] of the networks that have all; None if they are fewer than two."""
+    if study.design.kind != "networks x parameters":
+        return None
+    full = np.full(study.design.runs, np.nan)
+    full[run] = values
+    table = full.reshape(study.design.networks, study.design.parameters)
+    table = table[np.isfinite(table).all(axis=1)]
+    return table if len(table) > 1 else None
+
+
+def mean_with_interval(study, values, run):
+    """Mean and ends of its interval, by what the design allows."""
+    design = study.design
+    if design.kind == "networks x parameters":
+        table = crossed_table(study, values, run)
+        return intervals.mean_of_crossed(table) if table is not None else (None, None, None)
+    if design.replicates > 1:
+        return intervals.mean_of_parts(values, run // (design.runs // design.replicates))
+    return intervals.mean(values)
+
+
+def limits_of(quantity):
+    """Its limits with their sides: name and test."""
+    if quantity.what == "failed":
+        return [("probability", lambda values: values > 0.5)]
+    return [(f"probability {side} {limit:g}", (lambda values, limit=limit: values > limit) if side == "above" else
+             (lambda values, limit=limit: values < limit))
+            for side, limits in (("above", quantity.above), ("below", quantity.below)) for limit in limits]
+
+
+def share_with_interval(study, hits, run):
+    """Share of runs that hit, with the ends of its interval: of independent runs that of Clopper and Pearson, which is too wide
+    for a Latin hypercube or a Sobol sequence; of a crossed design that of the mean, within 0 and 1."""
+    if study.design.kind != "networks x parameters":
+        return intervals.probability(int(hits.sum()), len(hits))
+    value, low, high = mean_with_interval(study, hits.astype(float), run)
+    return value, None if low is None else max(0.0, low), None if high is None else min(1.0, high)
+
+
+def statistics(study, quantity, values, run):
+    """Statistics of a quantity: name, value, low, high."""
+    found = []
+    if quantity.what != "failed":
+        found.append(("mean", *mean_with_interval(study, values, run)))
+        deviation = float(np.std(values, ddof=1)) if len(values) > 1 else None
+        found.append(("standard deviation", deviation, None, None))
+        for part in QUANTILES:
+            value, low, high = intervals.quantile(values, part)
+            dependent = study.design.kind == "networks x parameters"  # order statistics are of independent values
+            found.append((f"quantile {part:g}", value, *((None, None) if dependent else (low, high))))
+    for name, hit in limits_of(quantity):
+        found.append((name, *share_with_interval(study, hit(values), run)))
+    return found
+
+
+def first_of(quantity, study, values, run):
+    """The statistics whose convergence is shown: mean, or probability of failure; and the probabilities of limits."""
+    if quantity.what == "failed":
+        return statistics(study, quantity, values, run)
+    found = [("mean", *mean_with_interval(study, values, run))]
+    return found + [(name, *share_with_interval(study, hit(values), run)) for name, hit in limits_of(quantity)]
+
+
+def counts_shown(n):
+    """Numbers of runs at which convergence is shown, ending with all."""
+    if n < FEWEST:
+        return [n]
+    return sorted({int(round(count)) for count in np.geomspace(FEWEST, n, STEPS)})
+
+
+def convergence(study, rows, at):
+    """Rows (statistic, runs, value, low, high) over a growing number of runs; designs that are made as a whole have one."""
+    quantity = study.quantities[at]
+    values, run = values_of(study, rows, at)
+    counts = counts_shown(len(values)) if study.design.kind == "plain" else [len(values)]
+    return [(name, count, value, low, high) for count in counts if count > 0
+            for name, value, low, high in first_of(quantity, study, values[:count], run[:count])]
+
+
+def enough(study, rows):
+    """Whether what [stop] wants of its quantity is reached."""
+    at = [one.name for one in study.quantities].index(study.stop.of)
+    quantity, stop = study.quantities[at], study.stop
+    values, run = values_of(study, rows, at)
+    if len(values) < 2:
+        return False
+    for name, value, low, high in first_of(quantity, study, values, run):
+        half = (high - low) / 2
+        if name == "mean":
+            if stop.half_width and half > stop.half_width:
+                return False
+            if stop.relative_half_width and half > stop.relative_half_width * abs(value):
+                return False
+        elif stop.probability_half_width and half > stop.probability_half_width:
+            return False
+    return True
+
+
+# --- Shares of the variance -----------------------------------------------------------------------------------------
+
+
+def rank_correlations(study, rows, given, at):
+    """Spearman's correlation of each parameter with the quantity; the interval is of Fisher's transformation with the variance
+    of Bonett and Wright (2000). Of networks x parameters with the means over networks, because runs are not independent."""
+    ot = openturns()
+    values, run = values_of(study, rows, at)
+    table = crossed_table(study, values, run)
+    if study.design.kind == "networks x parameters":
+        values, run = (table.mean(axis=0), np.arange(study.design.parameters)) if table is not None else ([], [])
+    numeric = [column for column, one in enumerate(study.parameters) if not any(isinstance(value, str) for value in one.values)]
+    if len(values) < FEWEST or not numeric or np.ptp(values) == 0:
+        return []
+    inputs = np.array([[given[number]["given"][column] for column in numeric] for number in run], float)
+    found = ot.CorrelationAnalysis(inputs.tolist(), values[:, None].tolist()).computeSpearmanCorrelation()
+    rows = []
+    for column, r in zip(numeric, found):
+        half = 1.96 * np.sqrt((1 + r * r / 2) / (len(values) - 3))
+        low, high = np.tanh(np.arctanh(np.clip(r, -1 + 1e-12, 1 - 1e-12)) + np.array([-half, half]))
+        rows.append((study.parameters[column].name, "rank correlation", float(r), float(low), float(high)))
+    return rows
+
+
+def crossed_shares(study, rows, at):
+    """Shares of the networks, of the parameters, and of both together beside that, in the variance; intervals by 1000 tables drawn
+    from the networks and the sets of parameters (bootstrap of both)."""
+    values, run = values_of(study, rows, at)
+    table = crossed_table(study, values, run)
+    if table is None or np.ptp(table) == 0:
+        return []
+
+    def shares(of):
+        by_network, by_parameter, rest = intervals.crossed(of)
+        parts = np.array([max(0.0, by_network - rest) / of.shape[1], max(0.0, by_parameter - rest) / of.shape[0], rest])
+        return parts / parts.sum() if parts.sum() > 0 else parts
+
+    random = np.random.Generator(np.random.Philox(study.design.seed))
+    drawn = np.array([shares(table[random.integers(0, len(table), len(table))][:, random.integers(0, table.shape[1], table.shape[1])])
+                      for _ in range(1000)])
+    low, high = np.quantile(drawn, [(1 - CONFIDENCE) / 2, (1 + CONFIDENCE) / 2], axis=0)
+    names = [NETWORK, "all parameters", f"{NETWORK} with parameters"]
+    return [(name, "share of variance", float(share), float(of_low), float(of_high))
+            for name, share, of_low, of_high in zip(names, shares(table), low, high)]
+
+
+def sobol_indices(study, rows, at):
+    """First-order and total Sobol indices by Martinez's estimator, with its asymptotic intervals. Points of the design are left
+    out where one of their runs has no value."""
+    ot = openturns()
+    points = study.design.points
+    names = [one.name for one in study.parameters] + ([NETWORK] if study.varies_network else [])
+    value = {row["run"]: row["values"][at] for row in rows}
+    parts = len(names) + 2
+    kept = [point for point in range(points) if all(value.get(point + part * points) is not None for part in range(parts))]
+    outputs = np.array([value[point + part * points] for part in range(parts) for point in kept], float)
+    if len(kept) < FEWEST or np.ptp(outputs) == 0:
+        return []
+    inputs = ot.Sample(len(outputs), len(names))  # of the right size: the estimator needs no values of inputs
+    found = ot.MartinezSensitivityAlgorithm(inputs, ot.Sample(outputs[:, None].tolist()), len(kept))
+    found.setUseAsymptoticDistribution(True)
+    found.setConfidenceLevel(CONFIDENCE)
+    rows = []
+    for measure, indices, interval in (("first order index", found.getFirstOrderIndices(), found.getFirstOrderIndicesInterval()),
+                                       ("total index", found.getTotalOrderIndices(), found.getTotalOrderIndicesInterval())):
+        low, high = interval.getLowerBound(), interval.getUpperBound()
+        rows += [(name, measure, indices[row], low[row], high[row]) for row, name in enumerate(names)]
+    return rows
+
+
+def shares(study, rows, given, at):
+    """Rows (input, measure, value, low, high) of a quantity."""
+    if not study.parameters:
+        return []
+    if study.design.kind == "sobol indices":
+        return sobol_indices(study, rows, at)
+    if study.design.kind == "networks x parameters":
+        return crossed_shares(study, rows, at) + rank_correlations(study, rows, given, at)
+    return rank_correlations(study, rows, given, at)
+
+
+# --- Files ----------------------------------------------------------------------------------------------------------
+
+
+def listed(runs):
+    """Numbers of runs in words."""
+    return ", ".join(map(str, runs[:NAMED])) + (f" and {len(runs) - NAMED} more" if len(runs) > NAMED else "")
+
+
+def number_text(value):
+    return "" if value is None else f"{value:.4g}"
+
+
+def in_columns(rows):
+    """Lines of text with aligned columns."""
+    widths = [max(map(len, column)) for column in zip(*rows)]
+    return ["  ".join(cell.ljust(width) if place == 0 else cell.rjust(width)
+                      for place, (cell, width) in enumerate(zip(row, widths))).rstrip() for row in rows]
+
+
+def missing_words(study, rows):
+    """Which runs have no value, and why."""
+    lines = []
+    for row in rows:
+        if row["exit_code"] != 0:
+            lines.append(f"run {row['run']} failed: {row['program']}, exit code {row['exit_code']}: {row['reason']}")
+    if len(lines) > NAMED:
+        lines[NAMED:] = [f"... and {len(lines) - NAMED} more that failed, in runs.csv"]
+    for at, one in enumerate(study.quantities):
+        runs = [row["run"] for row in rows if row["values"][at] is None and row["exit_code"] == 0]
+        if runs and one.what == "displacement":
+            lines.append(f'{one.title()}: an excavation takes the point "{one.point}" before, or it is not read yet, in '
+                         f"{len(runs)} of {len(rows)} runs: {listed(runs)}")
+        elif runs:
+            lines.append(f"{one.title()}: no value in {len(runs)} of {len(rows)} runs: {listed(runs)}")
+    return lines
+
+
+def summary(study, rows, why, of_each):
+    """What a person reads first."""
+    without = sum(row["exit_code"] == NO_EQUILIBRIUM for row in rows)
+    other = sum(row["exit_code"] not in (0, NO_EQUILIBRIUM) for row in rows)
+    lines = [study.title] * bool(study.title)
+    of_all = "" if study.design.directions else f" of {study.design.runs}"
+    lines += [f"design               {study.design.kind}",
+              f"runs                 {len(rows)}" + (f"{of_all}, ended {why}" if why else ""),
+              f"without equilibrium  {without}", f"failed otherwise     {other}"]
+    for quantity, found, of_shares in of_each:
+        lines += ["", quantity.title() + f", {found['runs']} runs"]
+        lines += in_columns([["", "value", "from", "to"],
+                             *([name, *map(number_text, numbers)] for name, *numbers in found["statistics"])])
+        if of_shares:
+            lines += in_columns([["", "value", "from", "to"],
+                                 *([f"{measure}, {name}", *map(number_text, numbers)] for name, measure, *numbers in of_shares)])
+    lines += ["", f"from, to: {CONFIDENCE:.0%} confidence interval; empty where the runs are too few or the design has none"]
+    missing = [] if study.design.directions else missing_words(study, rows)
+    return "\n".join(lines + ([""] + missing if missing else [])) + "\n"
+
+
+def of_failure(study, rows, estimates):
+    """Quantity, statistics and no shares of a directional sampling: runs are along directions, so nothing else is known of them."""
+    (quantity,) = (one for one in study.quantities if one.name == study.design.failure)
+    statistics = [("probability of failure", *failure.probability(np.array(estimates)))]
+    return quantity, {"at": study.quantities.index(quantity), "runs": len(rows), "statistics": statistics}, []
+
+
+def write(study, rows, given, why, estimates, out):
+    """Writes answers.csv, convergence.csv, shares.csv and summary.txt. Returns of each quantity with values: quantity, its place,
+    statistics, shares. `estimates` are those of the replicates of a directional sampling."""
+    found = []
+    by_direction = study.design.directions > 0
+    if by_direction and len(estimates) > 1:
+        found.append(of_failure(study, rows, estimates))
+    for at, quantity in enumerate([] if by_direction else study.quantities):
+        values, run = values_of(study, rows, at)
+        if len(values):
+            found.append((quantity, {"at": at, "runs": len(values), "statistics": statistics(study, quantity, values, run)},
+                          shares(study, rows, given, at)))
+    plan.written(out / "answers.csv", plan.csv_text(
+        ["quantity", "unit", "statistic", "runs", "value", "low", "high"],
+        [(one.name, one.unit, name, of["runs"], *numbers) for one, of, _ in found for name, *numbers in of["statistics"]]))
+    plan.written(out / "convergence.csv", plan.csv_text(
+        ["quantity", "unit", "statistic", "runs", "value", "low", "high"],
+        [(one.name, one.unit, *row) for one, of, _ in found if not by_direction for row in convergence(study, rows, of["at"])]))
+    plan.written(out / "shares.csv", plan.csv_text(
+        ["quantity", "input", "measure", "value", "low", "high"],
+        [(one.name, *row) for one, _, of_shares in found for row in of_shares]))
+    plan.written(out / "summary.txt", summary(study, rows, why, found))
+    return found

@@ -1,0 +1,167 @@
+"""jointcreep: Runs a study of many networks and parameters, and writes reports.
+
+usage: jointcreep study STUDY.toml -o OUT/ [options]
+usage: jointcreep report OUT/ -o REPORT.html [options]
+usage: jointcreep report RESULT.h5 -o REPORT.html [options]
+
+Description:
+study makes the runs that a study file asks for, and writes what they have in common: runs.csv and runs.h5 (a row a run),
+answers.csv (means, quantiles and probabilities with confidence), convergence.csv, shares.csv, summary.txt and pictures. An
+interrupted study goes on by the same command. Two studies never work in one folder at once.
+report writes one page of HTML, with all pictures in it, for a study or for a result file of demsolve.
+
+Options:
+  -o [ --output ] OUT       the folder of a study, or the report to write
+  -j [ --jobs ] N           study: runs at a time (default 1)
+  --snakemake PROFILE       study: make runs by Snakemake with this profile, a folder with config.yaml, in place of Make
+  --programs FOLDER         where jointgen, strength-averaging and demsolve are (default: beside jointcreep, then PATH)
+  -q [ --quiet ]            study: no progress and no summary
+  -h [ --help ]             show this text
+  --version                 show the version
+
+Exit codes:
+  0  done
+  2  the command line, the study, the scene or a file is not what was wanted
+  3  no run ended with a value, so there are no answers
+  4  a file could not be read or written, or runs were stopped; the same command goes on
+  5  internal error, or out of memory
+
+Example:
+  jointcreep study slope.toml -o out/ -j 2
+"""
+
+import pathlib
+import shutil
+import signal
+import sys
+import traceback
+
+from . import plan, runs, study_file, table
+from .errors import NotDone, NotWanted
+
+INTERRUPTED = 128 + signal.SIGINT
+
+
+def options_of(arguments):
+    """The subcommand, its input and its options by name."""
+    if not arguments:
+        raise NotWanted(usage())
+    subcommand, *rest = arguments
+    if subcommand not in ("study", "report"):
+        raise NotWanted(f'unknown subcommand "{subcommand}"; expected study or report\n{usage()}')
+    known = {"-o": "output", "--output": "output", "--programs": "programs"}
+    if subcommand == "study":
+        known.update({"-j": "jobs", "--jobs": "jobs", "--snakemake": "snakemake", "-q": "quiet", "--quiet": "quiet"})
+    found, source = {}, None
+    while rest:
+        word = rest.pop(0)
+        word, equals, value = word.partition("=") if word.startswith("--") else (word, "", "")
+        if word.startswith("-j") and word[2:].isdecimal() and subcommand == "study":  # -j4, as Make has it
+            word, equals, value = "-j", "=", word[2:]
+        if word in known:
+            name = known[word]
+            if name in found:
+                raise NotWanted(f"{word} is given twice")
+            if name == "quiet" and not equals:
+                found[name] = True
+            elif equals or rest:
+                found[name] = value if equals else rest.pop(0)
+            else:
+                raise NotWanted(f"{word} has no value")
+        elif word.startswith("-") or source is not None:
+            raise NotWanted(f'unknown option or second input "{word}"\n{usage()}')
+        else:
+            source = word
+    if source is None or not found.get("output"):
+        raise NotWanted(f"{subcommand} needs an input, and an output with -o\n{usage()}")
+    jobs = found.get("jobs", "1")
+    if not jobs.isdecimal() or not 1 <= int(jobs) <= 10000:
+        raise NotWanted(f'--jobs is "{jobs}"; expected a whole number from 1 to 10000')
+    return subcommand, pathlib.Path(source), {**found, "jobs": int(jobs)}
+
+
+def usage():
+    return "\n".join(line for line in __doc__.splitlines() if line.startswith("usage: ")) + "\nMore: jointcreep --help"
+
+
+def programs_in(folder, beside):
+    """The folder of the programs."""
+    if folder:
+        return pathlib.Path(folder).resolve()
+    if (beside / "jointgen").exists():
+        return beside
+    found = shutil.which("jointgen")
+    if not found:
+        raise NotWanted("jointgen is neither beside jointcreep nor in the PATH; expected --programs FOLDER")
+    return pathlib.Path(found).resolve().parent
+
+
+def study(source, options, beside):
+    """Makes a study."""
+    programs = programs_in(options.get("programs"), beside)
+    of_study = study_file.read(source)
+    out = pathlib.Path(options["output"])
+    out.mkdir(parents=True, exist_ok=True)
+    out = out.resolve()
+    profile = options.get("snakemake")
+    if profile and not (pathlib.Path(profile) / "config.yaml").exists():
+        raise NotWanted(f"--snakemake: {profile} has no config.yaml; expected the folder of a profile")
+    with runs.locked(out) as lock:
+        scene = plan.make(of_study, out, programs)
+        from . import answers  # after the study is known to be right: it takes longer to load
+        rows, why = runs.make(of_study, out, programs, options["jobs"], profile and str(pathlib.Path(profile).resolve()),
+                              options.get("quiet", False), lambda rows: answers.enough(of_study, rows), lock)
+        return finish(of_study, out, rows, why, scene, options.get("quiet", False))
+
+
+def finish(of_study, out, rows, why, scene, quiet):
+    """Tables, answers and pictures of the runs."""
+    from . import answers, pictures
+    estimates = [row["probability"] for row in rows if row["run"] < 0]
+    rows = [row for row in rows if row["run"] >= 0]
+    given = plan.given(out, of_study, rows)
+    table.write(of_study, rows, given, (out / "scene.toml").read_text("utf-8"), out)
+    found = answers.write(of_study, rows, given, why, estimates, out)
+    pictures.write(of_study, rows, given, found, out)
+    if not quiet:
+        print((out / "summary.txt").read_text("utf-8"), end="")
+    return 0 if found else 3
+
+
+def report(source, options, beside):
+    """Writes a report."""
+    from . import report as page
+    page.write(source, pathlib.Path(options["output"]), programs_in(options.get("programs"), beside))
+    return 0
+
+
+def main(arguments, version, beside):
+    """The exit code of the command line."""
+    if arguments in (["-h"], ["--help"]):
+        print(__doc__, end="")
+        return 0
+    if arguments == ["--version"]:
+        print("jointcreep", version)
+        return 0
+    try:
+        subcommand, source, options = options_of(arguments)
+        return (study if subcommand == "study" else report)(source, options, beside)
+    except NotWanted as error:
+        print(f"jointcreep: {error}", file=sys.stderr)
+        return 2
+    except NotDone as error:
+        print(f"jointcreep: {error}", file=sys.stderr)
+        return 4
+    except OSError as error:
+        print(f"jointcreep: {error.filename or options['output']}: {error.strerror or error}", file=sys.stderr)
+        return 4
+    except MemoryError:
+        print("jointcreep: out of memory", file=sys.stderr)
+        return 5
+    except Exception:  # what nobody thought of
+        traceback.print_exc()
+        print("jointcreep: internal error", file=sys.stderr)
+        return 5
+    except KeyboardInterrupt:
+        print("jointcreep: interrupted; the same command goes on", file=sys.stderr)
+        return INTERRUPTED

@@ -1,0 +1,122 @@
+"""What each run is given: the number of its network, and a value for each parameter.
+
+Points are drawn in the unit cube and then mapped to the laws, so that all designs have the same laws. OpenTURNS draws and maps.
+A plain design of more runs begins with the runs of a smaller one.
+"""
+
+import functools
+import math
+
+import numpy as np
+
+from .errors import NotWanted
+
+FLAT = 1e-12  # how near to 0 and 1 a point of the unit cube may be
+
+
+@functools.cache
+def openturns():
+    """The library, which a study of networks alone does without."""
+    try:
+        import openturns
+    except ImportError:
+        raise NotWanted("Python's module openturns is not installed; first run: sh pipelines/setup.sh studies") from None
+    openturns.Log.Show(openturns.Log.NONE)
+    return openturns
+
+
+def cube_points(design, dimension):
+    """Points in the unit cube [run, dimension]."""
+    ot = openturns()
+    ot.RandomGenerator.SetSeed(design.seed)
+    if design.kind == "plain":
+        return np.array(ot.RandomGenerator.Generate(design.runs * dimension)).reshape(design.runs, dimension)
+    if design.kind == "networks x parameters":
+        return np.array(ot.RandomGenerator.Generate(design.parameters * dimension)).reshape(design.parameters, dimension)
+    cube = ot.ComposedDistribution([ot.Uniform(0, 1)] * dimension)
+    if design.kind == "sobol indices":
+        return np.array(ot.SobolIndicesExperiment(cube, design.points, False).generate())
+    size = design.runs // design.replicates
+    if design.kind == "latin hypercube":
+        parts = [ot.LHSExperiment(cube, size).generate() for _ in range(design.replicates)]
+    else:
+        experiment = ot.LowDiscrepancyExperiment(ot.SobolSequence(), cube, size, True)
+        experiment.setRandomize(True)  # a random shift for each replicate (Cranley and Patterson)
+        parts = [experiment.generate() for _ in range(design.replicates)]
+    return np.concatenate([np.array(part) for part in parts])
+
+
+def law_of(parameter):
+    """A parameter's law in OpenTURNS."""
+    ot = openturns()
+    values = parameter.constants
+    if parameter.law == "normal":
+        law = ot.Normal(values["mean"], values["deviation"])
+    elif parameter.law == "lognormal":
+        law = ot.ParametrizedDistribution(ot.LogNormalMuSigma(values["mean"], values["deviation"], 0.0))
+    elif parameter.law == "uniform":
+        law = ot.Uniform(values["lowest"], values["highest"])
+    else:
+        law = ot.Triangular(values["lowest"], values["most_likely"], values["highest"])
+    low, high = (math.isfinite(end) for end in (parameter.lowest, parameter.highest))
+    if low or high:
+        share = law.computeCDF(parameter.highest) if high else 1.0
+        if share - (law.computeCDF(parameter.lowest) if low else 0.0) < 1e-6:
+            raise NotWanted(f"{parameter.place}lowest and highest leave less than 1e-6 of the law; expected a wider range")
+        if low and high:
+            law = ot.TruncatedDistribution(law, parameter.lowest, parameter.highest)
+        elif low:
+            law = ot.TruncatedDistribution(law, parameter.lowest, ot.TruncatedDistribution.LOWER)
+        else:
+            law = ot.TruncatedDistribution(law, parameter.highest, ot.TruncatedDistribution.UPPER)
+    return law
+
+
+def joint_law(study):
+    """The law of all parameters that have one; correlations are of ranks (Spearman), by a normal copula."""
+    ot = openturns()
+    varying = [one for one in study.parameters if one.law]
+    laws = [law_of(one) for one in varying]
+    names = [one.name for one in varying]
+    ranks = ot.CorrelationMatrix(len(laws))
+    for one, other, coefficient in study.correlations:
+        ranks[names.index(one), names.index(other)] = coefficient
+    try:
+        copula = ot.NormalCopula(ot.NormalCopula.GetCorrelationFromSpearmanCorrelation(ranks))
+    except (TypeError, RuntimeError):
+        raise NotWanted(f"{study.path}: the correlations contradict each other: their matrix is not positive definite") from None
+    return ot.ComposedDistribution(laws, copula if study.correlations else ot.IndependentCopula(len(laws)))
+
+
+def mapped(study, points):
+    """Values of the parameters with a law [run, law], from points in the unit cube."""
+    normal = openturns().Normal()
+    standard = [[normal.computeQuantile(float(part))[0] for part in point] for point in points]
+    return np.array(joint_law(study).getInverseIsoProbabilisticTransformation()(standard))
+
+
+def draw(study):
+    """Networks [run] and values of the parameters, a list of lists [run][parameter]."""
+    design = study.design
+    pairs = design.kind == "networks x parameters"
+    in_cube = design.kind == "sobol indices" and study.varies_network  # the network is its last dimension
+    if not study.parameters:
+        return np.arange(design.runs), [[] for _ in range(design.runs)]
+    points = np.clip(cube_points(design, len(study.parameters) + in_cube), FLAT, 1 - FLAT)
+    with_law = [row for row, one in enumerate(study.parameters) if one.law]
+    columns = [None] * len(study.parameters)
+    if with_law:
+        values = mapped(study, points[:, with_law])
+        for column, row in enumerate(with_law):
+            columns[row] = values[:, column].tolist()
+    for row, one in enumerate(study.parameters):
+        if not one.law:
+            columns[row] = [one.values[int(part * len(one.values))] for part in points[:, row]]
+    rows = [list(row) for row in zip(*columns)]
+    if pairs:
+        return np.repeat(np.arange(design.networks), design.parameters), rows * design.networks
+    if not study.varies_network:
+        return np.zeros(design.runs, int), rows
+    if in_cube:  # each point of the cube has a network of its own; runs that share the point share the network
+        return np.unique(points[:, -1], return_inverse=True)[1], rows
+    return np.arange(design.runs), rows

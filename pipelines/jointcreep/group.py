@@ -1,0 +1,215 @@
+"""Makes the runs of one group, one after another:  python3 -m jointcreep.group NUMBER  in the folder of a study.
+
+A run is the chain of programs with one network and one set of parameters. Its line of results is appended to
+groups/NUMBER.rows.part as soon as it has ended, and the file is called groups/NUMBER.rows once the group is complete. So a
+group that was killed goes on after its last whole line. Files of a run are in a folder of the group, which goes with it.
+
+A run that fails is made once more, unless it is asked for whether it finds an equilibrium, and it does not. If it fails again, that is
+its result: exit code, program and message. If a program was
+stopped from outside (by a signal of those that users and systems send), or could not read or write (exit code 4), that is no
+result: the run is made when the study goes on, and the exit code of the group is 4.
+"""
+
+import ctypes
+import fcntl
+import itertools
+import json
+import os
+import pathlib
+import resource
+import shutil
+import signal
+import subprocess
+import sys
+import time
+
+from . import plan, quantities, scene_keys, study_file
+from .errors import NotDone, NotWanted
+
+STOPPED = {-signal.SIGHUP, -signal.SIGINT, -signal.SIGKILL, -signal.SIGTERM}
+CANNOT_WRITE = 4
+LONGEST_REASON = 500  # characters
+PR_SET_PDEATHSIG = 1  # linux/prctl.h
+LIBC = ctypes.CDLL(None)
+
+
+def die_with(parent):
+    """Called in a new process: asks the kernel to kill it when its parent dies."""
+    LIBC.prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
+    if os.getppid() != parent:
+        os._exit(143)
+
+
+class Interrupted(Exception):
+    """A program was stopped from outside, or could not read or write."""
+
+
+def programs_of(study):
+    """The programs of a run in their order: name, arguments, and whether the next ones need its file."""
+    needs = quantities.needed(study)
+    chain = [("jointgen", ["scene.toml", "-o", "network.h5"])]
+    if any(needs.values()):
+        chain.append(("strength-averaging", ["network.h5", "-o", "joints.h5"]))
+    if needs["result.h5"]:
+        chain.append(("demsolve", ["joints.h5", *study.demsolve_options, "-o", "result.h5"]))
+    if needs["safety.h5"]:
+        chain.append(("demsolve", ["joints.h5", *study.demsolve_options, "--factor-of-safety", "-o", "safety.h5"]))
+    return chain
+
+
+def processor_seconds():
+    """Time of the processor that all programs took which this process has called."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
+
+
+def called(program, arguments, folder):
+    """Exit code, message and wall time [s] of a program."""
+    begin, parent = time.monotonic(), os.getpid()
+    try:
+        done = subprocess.run([program, *arguments], cwd=folder, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
+                              stderr=subprocess.PIPE, preexec_fn=lambda: die_with(parent))
+    except OSError as error:
+        raise Interrupted(f"{program} cannot be started: {error.strerror}") from None
+    lines = [line for line in done.stderr.decode("utf-8", "replace").splitlines() if ": warning: " not in line]
+    return done.returncode, " ".join(" ".join(lines).split())[:LONGEST_REASON], time.monotonic() - begin
+
+
+def made(study, scene, text, run, programs, folder):
+    """One try of a run: its line of results. Raises Interrupted if there is none."""
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir()
+    values = {}
+    for parameter, value in zip(study.parameters, run["given"]):
+        for key in parameter.keys:
+            values[key] = scene_keys.value_at(scene, key) * value if parameter.multiplies else value
+    (folder / "scene.toml").write_text(scene_keys.toml_text(scene_keys.changed(scene, values)) if values else text, "utf-8")
+    row = {"run": run["run"], "exit_code": 0, "program": "", "reason": ""}
+    seconds, processor_before, solve_code = 0.0, processor_seconds(), None
+    for name, arguments in programs_of(study):
+        if name == "jointgen":
+            arguments = [*arguments, "--realization", str(run["network"])]
+        code, message, took = called(programs / name, ["--quiet", *arguments] if name == "demsolve" else arguments, folder)
+        seconds += took
+        if code in STOPPED or code == CANNOT_WRITE:
+            why = f"exit code {code}" if code > 0 else f"signal {-code}"
+            raise Interrupted(f"run {run['run']}: {name} was stopped ({why}){': ' if message else ''}{message}")
+        if "result.h5" in arguments:
+            solve_code = code
+        if code != 0 and row["exit_code"] == 0:
+            row.update(exit_code=code, program=name, reason=message)
+        if code != 0 and name != "demsolve":
+            break
+    row.update(network=run["network"], given=run["given"])
+    row["values"] = quantities.of_run(study, scene, folder, solve_code)
+    row["program_seconds"] = seconds
+    row["processor_seconds"] = processor_seconds() - processor_before
+    return row
+
+
+def result_of(study, scene, text, run, programs, folder):
+    """The line of results of a run, made once more if it fails; but not if it finds no equilibrium and that is asked for."""
+    begin = time.monotonic()
+    answer = 3 if any(one.what == "failed" for one in study.quantities) else 0
+    for attempt in (1, 2):
+        try:
+            row = made(study, scene, text, run, programs, folder)
+        except Interrupted:
+            if attempt == 2:
+                raise
+            continue
+        if row["exit_code"] in (0, answer):
+            break
+    return {**row, "attempts": attempt, "seconds": time.monotonic() - begin}
+
+
+def whole_lines(file, path):
+    """Lines of results that a group has; a last line that was cut off is removed from the file."""
+    file.seek(0)
+    content = file.read()
+    end = content.rfind(b"\n") + 1
+    file.truncate(end)
+    return [plan.parsed(line, path) for line in content[:end].splitlines()]
+
+
+def guarded(make):
+    """Calls make(); the exit code for the group."""
+    try:
+        make()
+    except Interrupted as error:
+        print(f"jointcreep: {error}; it is made when the study goes on", file=sys.stderr, flush=True)
+        return CANNOT_WRITE
+    return 0
+
+
+def follow_directions(study, replicate, done, make, keep):
+    """Makes the runs that directional sampling asks for in a replicate; those that are done are asked for again in the same order.
+    Keeps the estimate as a line of its own, run -1 - replicate. Returns the exit code."""
+    from . import failure
+    asked = itertools.count(replicate * study_file.MOST_RUNS)
+
+    def run(values):
+        number = next(asked)
+        if number in done:
+            if done[number]["given"] != values:
+                raise NotDone(f"run {number} was made with {done[number]['given']}, not with {values}: another version of OpenTURNS?")
+            return done[number]
+        return make({"run": number, "network": replicate if study.varies_network else 0, "given": values})
+
+    if -1 - replicate in done:
+        return 0
+    return guarded(lambda: keep({"run": -1 - replicate, "probability": failure.estimate(study, replicate, run)}))
+
+
+def make_group(number, out, programs):
+    """Makes the runs that a group lacks. Returns the exit code."""
+    rows = out / "groups" / f"{number}.rows"
+    part = rows.with_name(rows.name + ".part")
+    study, scene, text, runs = plan.of_group(out, int(number))
+    with open(part, "a+b") as file:
+        fcntl.flock(file, fcntl.LOCK_EX)  # whoever else works at this group has to end first
+        if rows.exists():
+            part.unlink(missing_ok=True)
+            return 0
+        if not part.exists():  # whoever worked at it has removed or renamed it
+            return make_group(number, out, programs)
+        done = {row["run"]: row for row in whole_lines(file, part)}
+        folder = out / "work" / number
+        folder.parent.mkdir(exist_ok=True)
+
+        def keep(row):
+            file.write(json.dumps(row).encode() + b"\n")
+            file.flush()
+
+        def make(run):
+            row = result_of(study, scene, text, run, programs, folder)
+            keep(row)
+            return row
+
+        code = 0
+        if study.design.directions:
+            code = follow_directions(study, int(number), done, make, keep)
+        for run in runs:
+            if run["run"] not in done:
+                code = max(code, guarded(lambda run=run: make(run)))
+        shutil.rmtree(folder, ignore_errors=True)
+        if code == 0:
+            os.fsync(file.fileno())
+            os.replace(part, rows)
+        return code
+
+
+def main():
+    out, programs = pathlib.Path.cwd(), pathlib.Path(os.environ["JOINTCREEP_PROGRAMS"])
+    try:
+        return make_group(sys.argv[1], out, programs)
+    except (NotDone, NotWanted) as error:
+        print(f"jointcreep: {error}", file=sys.stderr)
+        return CANNOT_WRITE
+    except OSError as error:
+        print(f"jointcreep: {out}: {error}", file=sys.stderr)
+        return CANNOT_WRITE
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,100 @@
+"""Means, quantiles and probabilities of a sample, each with the ends of its confidence interval.
+
+An interval end that the sample is too small for is None. Distributions are scipy's.
+"""
+
+import functools
+import math
+
+import numpy as np
+
+from .errors import NotWanted
+
+CONFIDENCE = 0.95
+
+
+@functools.cache
+def laws():
+    """Distributions of scipy."""
+    try:
+        from scipy import stats
+    except ImportError:
+        raise NotWanted("Python's module scipy is not installed; first run: sh pipelines/setup.sh studies") from None
+    return stats
+
+
+def student(mean, variance, freedom):
+    """Mean and ends of Student's interval, from the variance of the mean and its degrees of freedom."""
+    half = float(laws().t.ppf((1 + CONFIDENCE) / 2, freedom)) * math.sqrt(variance)
+    return mean, mean - half, mean + half
+
+
+def mean(values):
+    """Of independent values: mean and ends of Student's interval."""
+    if len(values) < 2:
+        return (float(values[0]) if len(values) else None), None, None
+    return student(float(np.mean(values)), float(np.var(values, ddof=1)) / len(values), len(values) - 1)
+
+
+def mean_of_parts(values, part):
+    """Of values in independent parts, such as replicates of a Latin hypercube: mean, and ends of Student's interval of the parts'
+    means. part [value]: its number."""
+    means = [float(np.mean(values[part == one])) for one in np.unique(part)]
+    if len(means) < 2:
+        return mean(values)
+    _, low, high = mean(means)
+    middle = float(np.mean(values))
+    half = (high - low) / 2
+    return middle, middle - half, middle + half
+
+
+def crossed(table):
+    """Of a table [network, parameters]: sums of squares over their degrees of freedom, of networks, of parameters, and of what
+    both together make beside that (two-way analysis of variance with random effects, one value a cell)."""
+    networks, parameters = table.shape
+    middle, of_networks, of_parameters = table.mean(), table.mean(axis=1), table.mean(axis=0)
+    rest = table - of_networks[:, None] - of_parameters[None, :] + middle
+    return (parameters * float(((of_networks - middle) ** 2).sum()) / (networks - 1),
+            networks * float(((of_parameters - middle) ** 2).sum()) / (parameters - 1),
+            float((rest**2).sum()) / ((networks - 1) * (parameters - 1)))
+
+
+def mean_of_crossed(table):
+    """Of a table [network, parameters]: mean, and ends of an interval with the degrees of freedom of Satterthwaite. Values that
+    share a network or a set of parameters are not independent."""
+    networks, parameters = table.shape
+    by_network, by_parameter, rest = crossed(table)
+    total = by_network + by_parameter - rest
+    if total <= max(by_network, by_parameter):  # the negative term is noise
+        total = max(by_network, by_parameter)
+        freedom = networks - 1 if by_network >= by_parameter else parameters - 1
+    else:
+        freedom = total**2 / (by_network**2 / (networks - 1) + by_parameter**2 / (parameters - 1) +
+                              rest**2 / ((networks - 1) * (parameters - 1)))
+    return student(float(table.mean()), total / table.size, freedom) if total > 0 else (float(table.mean()),) * 3
+
+
+@functools.cache
+def ranks(n, probability):
+    """Ranks of the ordered values, counted from 1, between which the quantile of n values is with the confidence at least, by the
+    binomial distribution of how many are below it; 0 and n + 1 are no values."""
+    below, tail = laws().binom(n, probability), (1 - CONFIDENCE) / 2
+    return int(below.ppf(tail)), int(below.ppf(1 - tail)) + 1
+
+
+def quantile(values, probability):
+    """Of independent values: quantile, and the ends of its interval by order statistics."""
+    ordered = np.sort(values)
+    n = len(ordered)
+    low, high = ranks(n, probability)
+    return (float(np.quantile(ordered, probability)), float(ordered[low - 1]) if low >= 1 else None,
+            float(ordered[high - 1]) if high <= n else None)
+
+
+@functools.lru_cache(maxsize=100000)
+def probability(count, n):
+    """Of `count` in `n` independent trials: share, and ends of the interval of Clopper and Pearson."""
+    if n == 0:
+        return None, None, None
+    ends = laws().binomtest(count, n).proportion_ci(CONFIDENCE, method="exact")
+    return count / n, float(ends.low), float(ends.high)

@@ -1,0 +1,124 @@
+"""Pictures of a study: of each quantity its distribution, how its statistics converge, and what it depends on.
+
+Names of files are those of the quantities in plain words: NAME-distribution.png, NAME-convergence.png, NAME-parameters.png.
+pictures.json lists them by quantity.
+"""
+
+import json
+import pathlib
+import sys
+import textwrap
+
+import matplotlib.ticker
+import numpy as np
+
+from . import answers, intervals, plan
+
+PLOTS = pathlib.Path(__file__).resolve().parent.parent / "plots"
+sys.path.insert(0, str(PLOTS))
+
+import figure  # noqa: E402
+from stage_names import plain  # noqa: E402
+
+BAND = "#c9d8ea"
+MOST_PANELS = 6
+BAND_POINTS = 60
+FEWEST_BARS = 4  # that a panel has room for, so that one is not broad
+
+
+def distribution(quantity, study, values):
+    """Share of runs up to a value, with the interval of each share."""
+    plot, axes = figure.plt.subplots(figsize=(figure.ONE_COLUMN, 2.6))
+    ordered, n = np.sort(values), len(values)
+    if study.design.kind != "networks x parameters":
+        counts = np.unique(np.linspace(1, n, min(n, BAND_POINTS)).astype(int))
+        ends = np.array([intervals.probability(int(count), n)[1:] for count in counts])
+        axes.fill_between(ordered[counts - 1], 100 * ends[:, 0], 100 * ends[:, 1], step="post" if n <= BAND_POINTS else None, facecolor=BAND,
+                          linewidth=0, label="95 % confidence")
+    axes.step(ordered, 100 * np.arange(1, n + 1) / n, where="post", color=figure.COLORS[0], label=f"{n} runs")
+    for place, limit in enumerate([*quantity.above, *quantity.below]):
+        axes.axvline(limit, color=figure.COLORS[1], linewidth=0.8, linestyle="--", label="limit" if place == 0 else None)
+    axes.set_xlabel(quantity.title())
+    axes.set_ylabel("runs up to this value (percent)")
+    axes.set_ylim(0, 100)
+    axes.legend(loc="lower center", bbox_to_anchor=(0.45, 1.0), ncol=3, columnspacing=1, handlelength=1.5)
+    return plot
+
+
+def convergence(quantity, rows, stop):
+    """Statistics over the number of runs, each with its interval."""
+    names = list(dict.fromkeys(name for name, *_ in rows))
+    plot, panels = figure.plt.subplots(len(names), 1, figsize=(figure.ONE_COLUMN, 0.6 + 1.7 * len(names)), squeeze=False, sharex=True)
+    for axes, name in zip(panels[:, 0], names):
+        of = [(runs, value, low, high) for statistic, runs, value, low, high in rows if statistic == name and low is not None]
+        if not of:
+            continue
+        runs, value, low, high = map(np.array, zip(*of))
+        scale = 1 if name == "mean" else 100
+        axes.fill_between(runs, scale * low, scale * high, facecolor=BAND, linewidth=0, label="95 % confidence")
+        axes.plot(runs, scale * value, color=figure.COLORS[0], marker="o", markersize=2.2, label="value")
+        if name == "mean" and quantity.name == stop.of and (stop.half_width or stop.relative_half_width):
+            wanted = stop.half_width or stop.relative_half_width * abs(value[-1])
+            for end in (value[-1] - wanted, value[-1] + wanted):
+                axes.axhline(end, color=figure.COLORS[1], linewidth=0.8, linestyle="--",
+                             label="wanted" if end < value[-1] else None)
+        if runs[-1] > 5 * runs[0]:
+            axes.set_xscale("log")
+            axes.xaxis.set_major_locator(matplotlib.ticker.LogLocator(subs=(1, 2, 5)))
+            axes.xaxis.set_major_formatter(matplotlib.ticker.StrMethodFormatter("{x:g}"))
+            axes.xaxis.set_minor_formatter(matplotlib.ticker.NullFormatter())
+        axes.set_ylabel(f"mean of {quantity.title()}" if name == "mean" else f"{name} (percent)")
+        if axes is panels[0, 0]:
+            axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncol=3)
+    panels[-1, 0].set_xlabel("number of runs")
+    return plot
+
+
+def parameters(quantity, study, values, run, given, of_shares):
+    """The quantity over each parameter, and the shares of the variance or the rank correlations as bars."""
+    numeric = [column for column, one in enumerate(study.parameters) if not any(isinstance(value, str) for value in one.values)]
+    numeric = numeric[:MOST_PANELS]
+    count = len(numeric) + 1
+    columns = min(3, count)
+    lines = -(-count // columns)
+    plot, panels = figure.plt.subplots(lines, columns, figsize=(figure.TWO_COLUMNS, 0.4 + 2.1 * lines), squeeze=False)
+    panels = panels.ravel()
+    for axes, column in zip(panels, numeric):
+        axes.plot([given[one]["given"][column] for one in run], values, linestyle="none", marker="o", markersize=1.8,
+                  color=figure.COLORS[0], alpha=0.6, markeredgewidth=0)
+        axes.set_xlabel(study.parameters[column].name)
+        axes.set_ylabel(quantity.title())
+    bars = panels[len(numeric)]
+    for place, (name, measure, value, low, high) in enumerate(of_shares):
+        bars.barh(place, value, color=figure.COLORS[0 if "total" not in measure else 4], height=0.6)
+        bars.plot([low, high], [place, place], color=figure.COLORS[1], linewidth=1.0, marker="|", markersize=4)
+    measures = list(dict.fromkeys(measure for _, measure, *_ in of_shares))
+    labels = [name if len(measures) == 1 else f"{name},\n{measure}" for name, measure, *_ in of_shares]
+    bars.set_yticks(range(len(of_shares)), ["\n".join(textwrap.wrap(label, 20)) for label in labels], fontsize=6)
+    bars.set_ylim(max(len(of_shares), FEWEST_BARS) - 0.5, -0.5)
+    bars.axvline(0, color="0.6", linewidth=0.6)
+    bars.set_xlabel(f"{measures[0] if len(measures) == 1 else 'value'}, 95 % confidence", fontsize=7)
+    for axes in panels[count:]:
+        axes.set_visible(False)
+    return plot
+
+
+def write(study, rows, given, found, out):
+    """Draws all pictures into the folder."""
+    words, written = plain([quantity.name for quantity, _, _ in found]), {}
+    for word, (quantity, of, of_shares) in zip(words, found if not study.design.directions else []):
+        values, run = answers.values_of(study, rows, of["at"])
+        drawn = {}
+        if quantity.what != "failed":
+            drawn["distribution"] = distribution(quantity, study, values)
+        over_runs = answers.convergence(study, rows, of["at"])
+        if len({runs for _, runs, *_ in over_runs}) > 1:
+            drawn["convergence"] = convergence(quantity, over_runs, study.stop)
+        if of_shares:
+            drawn["parameters"] = parameters(quantity, study, values, run, given, of_shares)
+        for name, picture in drawn.items():
+            figure.draw_names_as_they_are(picture)
+            figure.save(picture, out / f"{word}-{name}.png")
+            figure.plt.close(picture)
+            written.setdefault(quantity.name, []).append(f"{word}-{name}.png")
+    plan.written(out / "pictures.json", json.dumps(written, indent=1) + "\n")

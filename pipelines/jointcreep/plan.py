@@ -1,0 +1,199 @@
+"""The plan of a study in its folder: what every process that works at it reads.
+
+    study.toml    the study file, as it was first given      scene.toml    the scene, with the files that it names in it
+    plan.json     what makes the runs what they are, and which runs a group has
+    design.csv    what each run is given
+"""
+
+import csv
+import functools
+import io
+import json
+import os
+import subprocess
+import tomllib
+
+from . import design, quantities, scene_keys, study_file
+from .errors import NotDone, NotWanted
+
+BATCH = 50  # runs from one look at the stop rule to the next
+GROUP_SIZES = [25, 10, 5, 2, 1]  # they divide a batch
+GROUPS_WANTED = 100  # so that several processors end at about the same time
+LINES = 1  # raised when lines of results change
+PROGRAMS = ["jointgen", "strength-averaging", "demsolve"]
+
+
+def written(path, text):
+    """The text appears under its name only once it is whole; a file of the same content stays as it is."""
+    if path.exists() and path.read_bytes() == text.encode():
+        return
+    partial = path.with_name(f"{path.name}.partial-{os.getpid()}")
+    try:
+        with open(partial, "w", encoding="utf-8", newline="") as file:
+            file.write(text)
+            file.flush()
+            os.fsync(file.fileno())
+        os.replace(partial, path)
+    finally:
+        partial.unlink(missing_ok=True)
+
+
+def csv_text(heads, rows):
+    """A table as CSV; an empty field where there is no value. Numbers read back exactly."""
+    text = io.StringIO()
+    out = csv.writer(text, lineterminator="\n")
+    out.writerow(heads)
+    out.writerows([["" if value is None else value for value in row] for row in rows])
+    return text.getvalue()
+
+
+def parsed(text, path):
+    """JSON of a file of the folder."""
+    try:
+        return json.loads(text)
+    except ValueError:
+        raise NotWanted(f"{path}: is damaged; remove the folder, or choose another one") from None
+
+
+def answer_of(program, *arguments):
+    """What a program writes to stdout; it must succeed."""
+    try:
+        done = subprocess.run([program, *arguments], capture_output=True, text=True, errors="replace")
+    except OSError as error:
+        raise NotWanted(f"{program}: cannot be started: {error.strerror}; expected the programs of jointcreep there") from None
+    if done.returncode == 4:
+        raise NotDone(done.stderr.strip())
+    if done.returncode != 0:
+        raise NotWanted(done.stderr.strip() or f"{program}: exit code {done.returncode}")
+    return done.stdout.strip()
+
+
+def scene_text(study, programs, out):
+    """The text of the scene with the files that it names, as jointgen keeps it: so it is checked, too."""
+    import h5py
+    network = out / f"network.h5.partial-{os.getpid()}"
+    try:
+        answer_of(programs / "jointgen", study.scene, "-o", network)
+        with h5py.File(network) as file:
+            return file["/scene"][0].decode()
+    finally:
+        network.unlink(missing_ok=True)
+
+
+def check_keys(study, scene):
+    """Refuses keys that the scene does not have, or that are not numbers where a law wants one."""
+    taken = {}
+    for one in study.parameters:
+        for key in one.keys:
+            try:
+                value = scene_keys.value_at(scene, key)
+            except NotWanted as error:
+                raise NotWanted(f"{one.place}key {error}") from None
+            parts = tuple(scene_keys.parts_of(key))
+            if parts in taken:
+                raise NotWanted(f'{one.place}"{key}" varies in "{taken[parts]}", too; expected it once')
+            taken[parts] = one.name
+            if (one.law or one.multiplies) and not study_file.is_number(value):
+                raise NotWanted(f'{one.place}"{key}" is {study_file.shown(value)} in the scene; expected a number')
+            if one.values and not one.multiplies and any(isinstance(new, str) != isinstance(value, str) for new in one.values):
+                raise NotWanted(f'{one.place}"{key}" is {study_file.shown(value)} in the scene; expected values of the same kind')
+
+
+def group_size(runs):
+    """Runs in a group: few enough that processors end together, many enough that starting a group costs little."""
+    return next(size for size in GROUP_SIZES if size <= max(1, runs // GROUPS_WANTED))
+
+
+def identity(study, scene, programs):
+    """What makes runs what they are: runs of another study are not mixed in."""
+    kept = study.design.kind == "plain"
+    versions = {name: answer_of(programs / name, "--version") for name in PROGRAMS}
+    return {
+        "the scene": scene,
+        "[[vary]]": [study.varies_network, [[one.name, one.keys, one.multiplies, one.law, one.constants, str(one.lowest),
+                                             str(one.highest), one.values] for one in study.parameters]],
+        "[[correlation]]": study.correlations,
+        "[design]": [study.design.kind, study.design.seed, *([] if kept else [
+            study.design.runs, study.design.networks, study.design.parameters, study.design.points, study.design.replicates,
+            study.design.directions, study.design.failure])],
+        "[[collect]]": [[one.name, one.what, one.point, one.component, one.since, one.stage, str(one.date), one.statistic]
+                        for one in study.quantities],
+        "demsolve_options": study.demsolve_options,
+        "the programs' versions": versions,
+        "the lines of results": LINES,
+    }
+
+
+def make(study, out, programs):
+    """Writes the plan into the folder, or checks that the one there is of the same study. Returns the scene as tomllib reads it."""
+    text = scene_text(study, programs, out)
+    scene = tomllib.loads(text)
+    check_keys(study, scene)
+    quantities.check(study, scene)
+    networks, values = ([], []) if study.design.directions else design.draw(study)  # directions are drawn as runs are made
+    what = json.loads(json.dumps(identity(study, text, programs)))
+    path = out / "plan.json"
+    if path.exists():
+        old = parsed(path.read_bytes(), path)
+        changed = [name for name in what if old["identity"].get(name) != what[name]]
+        if changed:
+            raise NotWanted(f"{out} has runs of another study: {', '.join(changed)} changed. Choose another folder, or remove it")
+        if old["runs"] > study.design.runs:
+            raise NotWanted(f"{out} has {old['runs']} runs planned, more than the {study.design.runs} of the study now; expected "
+                            "as many or more. Choose another folder")
+        size = old["group"]
+        if old["runs"] < study.design.runs and old["runs"] % size:  # the last group gets more runs
+            last = out / "groups" / f"{group_name(old['runs'] // size)}.rows"
+            if last.exists():
+                os.replace(last, f"{last}.part")
+    else:
+        size = group_size(study.design.runs)
+    written(out / "scene.toml", text)
+    written(out / "study.toml", study.path.read_text(encoding="utf-8-sig"))
+    written(out / "design.csv", csv_text(["run", study_file.NETWORK, *(one.name for one in study.parameters)],
+                                         [[run, network, *of_run] for run, (network, of_run) in enumerate(zip(networks, values))]))
+    written(path, json.dumps({"identity": what, "runs": study.design.runs, "group": size}, indent=1) + "\n")
+    return scene
+
+
+def group_name(number):
+    return f"{number:06d}"
+
+
+def groups_of(first, end, size):
+    """Names of the groups that have the runs from `first` to before `end`."""
+    return [group_name(number) for number in range(first // size, -(-end // size))]
+
+
+@functools.cache
+def planned(out):
+    """The study, the scene (as tomllib reads it, and its text) and the plan of a folder."""
+    study = study_file.read(out / "study.toml")
+    text = (out / "scene.toml").read_text("utf-8")
+    return study, tomllib.loads(text), text, parsed((out / "plan.json").read_bytes(), out / "plan.json")
+
+
+def given(out, study, rows=()):
+    """What each run is given, by its number: run, network and values of parameters, as design.csv has them; of directional sampling as
+    the lines of results have them."""
+    if study.design.directions:
+        return {row["run"]: row for row in rows}
+    kinds = [str if one.values and isinstance(one.values[0], str) else one_number for one in study.parameters]
+    with open(out / "design.csv", encoding="utf-8", newline="") as file:
+        rows = csv.reader(file)
+        next(rows)
+        return {int(run): {"run": int(run), "network": int(network), "given": [kind(one) for kind, one in zip(kinds, of_run)]}
+                for run, network, *of_run in rows}
+
+
+def one_number(text):
+    """A number as it was written: a whole one stays whole."""
+    return int(text) if text.lstrip("+-").isdecimal() else float(text)
+
+
+def of_group(out, number):
+    """The study, the scene, its text and the runs of a group."""
+    study, scene, text, found = planned(out)
+    runs = given(out, study)
+    first = number * found["group"]
+    return study, scene, text, [runs[run] for run in range(first, first + found["group"]) if run in runs]

@@ -1,0 +1,113 @@
+"""Reads what a study collects from the files of one run."""
+
+import datetime
+
+import h5py
+import numpy as np
+
+from . import histories
+from .errors import NotWanted
+
+
+def check(study, scene):
+    """Refuses quantities that the scene cannot have. `scene` as tomllib reads it."""
+    points = [str(point.get("name", "")) for point in scene.get("point", [])]
+    stages = [str(stage.get("name", "")) for stage in scene.get("stage", [])]
+    for one in study.quantities:
+        for name, there, what in ((one.point, points, "point"), (one.stage, stages, "stage")):
+            if name and name not in there:
+                raise NotWanted(f'{one.place}{what} is "{name}"; expected one that the scene has: {", ".join(there) or "it has none"}')
+        if one.date is not None and not 0 <= day_of(one, scene) <= days_between(scene, scene["schedule"]["end"]):
+            raise NotWanted(f"{one.place}date is {one.date}; expected one within the scene's schedule")
+
+
+def days_between(scene, date):
+    """Days from the start of the schedule to a date, or to a number of days."""
+    start = scene["schedule"].get("start", 0)
+    if isinstance(date, datetime.date) != isinstance(start, datetime.date):
+        raise NotWanted(f"{date} is {'a date' if isinstance(date, datetime.date) else 'a number'}, and the scene's schedule has "
+                        f"{'dates' if isinstance(start, datetime.date) else 'numbers of days'}")
+    return (date - start).days if isinstance(date, datetime.date) else float(date - start)
+
+
+def day_of(quantity, scene):
+    """The day of a quantity with a date, since the scene's start."""
+    if not isinstance(quantity.date, datetime.date):
+        return float(quantity.date)
+    try:
+        return days_between(scene, quantity.date)
+    except NotWanted as error:
+        raise NotWanted(f"{quantity.place}{error}") from None
+
+
+def text_of(value):
+    return value.decode() if isinstance(value, bytes) else str(value)
+
+
+def displacement(file, quantity, scene):
+    """Displacement of a point at a time [mm], or None if an excavation has taken the point."""
+    time = file["/history/time"][()]
+    events = [text_of(name) for name in file["/history/event"][()]]
+    point = [text_of(name) for name in file["/history/point"][()]].index(quantity.point)
+    moves, there = file["/history/displacement"][()], file["/history/present"][()] == 1
+    first = int(file["/history/first_reading_row"][point])
+    if quantity.stage:
+        row = events.index(quantity.stage)
+        day, value, is_there = time[row], moves[row], there[row]
+    elif quantity.date is None:
+        day, value, is_there = time[-1], moves[-1], there[-1]
+    else:
+        day = day_of(quantity, scene)
+        stages = np.cumsum([bool(name) for name in events])
+        done = int(stages[time <= day * (1 + histories.SAME_DAY)].max(initial=0))  # after a stage of that day
+        found = histories.at(time, stages, np.unique(file["/states/time"][()]), moves, there, day, done)
+        if found is None:
+            return None
+        value, is_there, _ = found
+    if not is_there[point]:
+        return None
+    vector = value[point]
+    if quantity.since == "first reading":
+        if day < time[first]:
+            return None
+        vector = vector - moves[first, point]
+    return 1e3 * float({"x": vector[0], "y": vector[1], "length": np.hypot(*vector)}[quantity.component])
+
+
+def blocks(file, statistic):
+    """A statistic of the areas of all blocks [m2], or their number."""
+    area = file["/blocks/area"][()]
+    return float({"number": len, "mean area": np.mean, "median area": np.median, "largest area": np.max}[statistic](area))
+
+
+def factor_of_safety(file):
+    """The largest factor with which the run stands: lower end of the bracket."""
+    factor, stands = file["/safety/factor"][()], file["/safety/stands"][()]
+    return float(factor[stands == 1].max())
+
+
+def needed(study):
+    """Which files of a run the quantities are read from, beside network.h5."""
+    what = {one.what for one in study.quantities}
+    return {"result.h5": bool(what & {"displacement", "failed"}), "safety.h5": "factor of safety" in what}
+
+
+def of_run(study, scene, folder, solve_code):
+    """Values of all quantities, None where there is none. The files of the run are in `folder`, as far as its programs have made
+    them; `solve_code` is the exit code of demsolve, None if it was not called."""
+    values = []
+    for one in study.quantities:
+        name = {"blocks": "network.h5", "factor of safety": "safety.h5"}.get(one.what, "result.h5")
+        value = None
+        if one.what == "failed":
+            value = {0: 0.0, 3: 1.0}.get(solve_code)
+        elif (folder / name).exists():
+            with h5py.File(folder / name) as file:
+                if one.what == "displacement":
+                    value = displacement(file, one, scene)
+                elif one.what == "blocks":
+                    value = blocks(file, one.statistic)
+                else:
+                    value = factor_of_safety(file)
+        values.append(value)
+    return values

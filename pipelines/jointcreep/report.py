@@ -1,0 +1,214 @@
+"""One page of HTML for a run or for a study, with its pictures in it: no other file is needed to read it."""
+
+import base64
+import csv
+import html
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import tomllib
+
+import h5py
+
+from . import intervals, plan, study_file
+from .errors import NotWanted
+
+PLOTS = pathlib.Path(__file__).resolve().parent.parent / "plots"
+STYLE = """
+body { font: 15px/1.5 sans-serif; color: #222; max-width: 62em; margin: 2em auto; padding: 0 1em; }
+h1, h2, h3 { line-height: 1.2; color: #1b2a5c; } h2 { border-bottom: 1px solid #ccd; margin-top: 2em; }
+table { border-collapse: collapse; margin: 1em 0; } th, td { padding: .15em .8em; border-bottom: 1px solid #dde; text-align: left; }
+td.number { text-align: right; font-variant-numeric: tabular-nums; }
+figure { margin: 1.5em 0; } img { max-width: 100%; height: auto; } figcaption { color: #555; font-size: 90%; }
+pre { background: #f4f5f8; padding: .8em; overflow-x: auto; font-size: 85%; white-space: pre-wrap; overflow-wrap: anywhere; }
+.bad { color: #b5403a; font-weight: bold; }
+@media print { body { max-width: none; } figure, tr { break-inside: avoid; } }
+"""
+MOST_ROWS = 50  # of a table of runs that have no value
+CAPTIONS = {
+    "distribution": "Share of runs up to a value; dashed: limits that the study asks for.",
+    "convergence": "Statistics over the number of runs; dashed: the wanted half-width.",
+    "parameters": "The values of the runs over each parameter, and what the variance comes from.",
+}
+
+
+def escaped(text):
+    return html.escape(str(text))
+
+
+def cell(value):
+    """A cell of a table; numbers on the right, with four digits if they are not whole."""
+    if isinstance(value, int):
+        return f'<td class="number">{value}</td>'
+    try:
+        number = float(value)
+    except (TypeError, ValueError):
+        return f"<td>{escaped(value)}</td>"
+    return f'<td class="number">{number:.0f}</td>' if number == int(number) and abs(number) < 1e6 else \
+        f'<td class="number">{number:.4g}</td>'
+
+
+def table(heads, rows):
+    head = "".join(f"<th>{escaped(one)}</th>" for one in heads)
+    return f"<table><tr>{head}</tr>" + "".join(f"<tr>{''.join(map(cell, row))}</tr>" for row in rows) + "</table>"
+
+
+def picture(path, caption):
+    """A PNG file of the plots in the page, 1.5 times as wide as in print."""
+    content = path.read_bytes()
+    width = int.from_bytes(content[16:20], "big") * 96 * 1.5 / 300  # of a pixel of the page, which is 1/96 inch
+    coded = base64.b64encode(content).decode()
+    return (f'<figure><img alt="{escaped(caption)}" style="width: {width:.0f}px" src="data:image/png;base64,{coded}">'
+            f"<figcaption>{escaped(caption)}</figcaption></figure>")
+
+
+def drawn(script, source, folder, caption, *options):
+    """A picture by one of the plots, as HTML; in its place the plot's message where it has nothing to draw."""
+    path = folder / f"{script}-{'-'.join(options).replace('/', '')}.png"
+    done = subprocess.run([sys.executable, "-B", PLOTS / f"{script}.py", source, *options, "-o", path], capture_output=True, text=True)
+    if done.returncode != 0:
+        return f"<p>{escaped(caption)} Not drawn: {escaped(done.stderr.strip())}</p>"
+    return picture(path, caption)
+
+
+def page(title, parts):
+    return ("<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
+            "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">"
+            f"<title>{escaped(title)}</title><style>{STYLE}</style></head>\n<body>\n<h1>{escaped(title)}</h1>\n"
+            + "\n".join(parts) + "\n</body></html>\n")
+
+
+def texts(file, path):
+    return [value.decode() if isinstance(value, bytes) else str(value) for value in file[path][()]] if path in file else []
+
+
+def settings(scene):
+    """The tables of a scene that say how it is computed."""
+    rows = [(name, key, value) for name in ("zones", "equilibrium", "creep", "cutting", "averaging", "random", "large_displacements")
+            for key, value in scene.get(name, {}).items()]
+    return "<p>Keys of the scene; all others have their defaults.</p>" + table(["table", "key", "value"], rows)
+
+
+def of_run(source, programs, folder):
+    """Title and parts of the page of a result file."""
+    with h5py.File(source) as file:
+        scene_text = file["/scene"][0].decode()
+        scene = tomllib.loads(scene_text)
+        chain = list(zip(texts(file, "/provenance/program"), texts(file, "/provenance/version"), texts(file, "/provenance/options")))
+        warnings = list(zip(texts(file, "/warnings/program"), texts(file, "/warnings/text")))
+        failure = texts(file, "/failure/reason")
+        points, time = texts(file, "/history/point"), file["/history/time"][()]
+        last, present = file["/history/displacement"][-1], file["/history/present"][-1]
+        numbers = [("blocks", len(file["/blocks/area"])), ("zones", len(file["/mesh/zone_block"])),
+                   ("contacts", len(file["/mesh/contact_edge"])), ("equilibria", len(file["/equilibria/steps"])),
+                   ("largest unbalanced force ratio", file["/equilibria/unbalanced_force_ratio"][()].max(initial=0)),
+                   ("seed", int(file.attrs["seed"])), ("realization", int(file.attrs["realization"]))]
+    parts = [f'<p class="bad">The run ended early: {escaped(failure[0])}</p>'] if failure else []
+    parts += ["<h2>Section and network</h2>", drawn("plot_section", source, folder, "The section, its joints, stages and points."),
+              drawn("plot_blocks", source, folder, "Blocks by size."),
+              "<h2>Histories</h2>"]
+    if points:
+        for component, caption in (("x", "Horizontal displacement of the points, to the right."), ("y", "Vertical displacement, upward.")):
+            parts.append(drawn("plot_histories", source, folder, caption, "--component", component))
+        parts.append(table(["point", f"x on day {time[-1]:g} (mm)", "y (mm)", ""],
+                           [(name, 1e3 * x, 1e3 * y, "" if there else "excavated; its last displacement")
+                            for name, (x, y), there in zip(points, last, present)]))
+    parts.append("<h2>State in the end</h2>")
+    for field, caption in (("displacement", "Displacements."), ("stress", "Stresses."), ("contacts", "Contacts that slip or open.")):
+        parts.append(drawn("plot_state", source, folder, caption, "--field", field))
+    parts += ["<h2>Numbers</h2>", table(["", ""], numbers), "<h2>Settings</h2>", settings(scene), "<h2>Warnings</h2>",
+              table(["program", "warning"], warnings) if warnings else "<p>None.</p>",
+              "<h2>Checks</h2>", checks(source, programs),
+              "<h2>Versions</h2>", table(["program", "version", "options"], chain),
+              "<h2>Scene</h2>", f"<pre>{escaped(scene_text)}</pre>"]
+    return scene.get("title") or source.name, parts
+
+
+def checks(source, programs):
+    """What jointverify says of a result."""
+    try:
+        done = subprocess.run([programs / "jointverify", source], capture_output=True, text=True)
+    except OSError as error:
+        return f'<p class="bad">jointverify cannot be started: {escaped(error.strerror)}</p>'
+    lines = (done.stdout or done.stderr).strip().splitlines() or ["nothing said"]
+    good = ' class="bad"' if done.returncode != 0 else ""
+    return f"<p{good}>jointverify: {escaped(lines[-1])}</p><pre>{escaped(chr(10).join(line[:118] for line in lines))}</pre>"
+
+
+def csv_rows(path):
+    with open(path, encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def of_study(out, programs, folder):
+    """Title and parts of the page of a study's folder."""
+    study = study_file.read(out / "study.toml")
+    found = plan.parsed((out / "plan.json").read_bytes(), out / "plan.json")
+    rows, answers, shares, times = (csv_rows(out / f"{name}.csv") for name in ("runs", "answers", "shares", "times"))
+    failed = [row for row in rows if row["exit code"] != "0"]
+    scene = tomllib.loads((out / "scene.toml").read_text("utf-8"))
+    hours = sum(float(row["processor_seconds"]) for row in times) / 3600
+    parts = ["<h2>The study</h2>", table(["", ""], [
+        ("scene", scene.get("title", "")), ("design", study.design.kind), ("runs", len(rows)),
+        ("runs with a result", len(rows) - len(failed)), ("runs without equilibrium", sum(row["exit code"] == "3" for row in rows)),
+        ("runs that failed otherwise", sum(row["exit code"] not in ("0", "3") for row in rows)),
+        ("runs made twice", sum(row["attempts"] != "1" for row in times)), ("hours of the processor, of the programs", hours)])]
+    with tempfile.TemporaryDirectory(dir=folder) as work:
+        network = pathlib.Path(work) / "network.h5"
+        done = subprocess.run([programs / "jointgen", out / "scene.toml", "-o", network], capture_output=True, text=True)
+        parts.append(drawn("plot_section", network, folder, "The section with the first network, stages and points.")
+                     if done.returncode == 0 else f"<p>The section is not drawn: {escaped(done.stderr)}</p>")
+    parts.append("<h2>Answers</h2>")
+    parts.append(f"<p>From, to: {100 * intervals.CONFIDENCE:.0f} percent confidence interval; empty where the runs are too few or the "
+                 "design has none. Only runs that have the value count.</p>")
+    pictures = plan.parsed((out / "pictures.json").read_bytes(), out / "pictures.json")
+    for quantity in study.quantities:
+        of = [row for row in answers if row["quantity"] == quantity.name]
+        parts.append(f"<h3>{escaped(quantity.title())}</h3>")
+        if not of:
+            parts.append("<p>No run has this value.</p>")
+            continue
+        parts.append(table([f"{of[0]['runs']} runs", "value", "from", "to"],
+                           [(row["statistic"], row["value"], row["low"], row["high"]) for row in of]))
+        of_shares = [(row["input"], row["measure"], row["value"], row["low"], row["high"]) for row in shares
+                     if row["quantity"] == quantity.name]
+        if of_shares:
+            parts.append(table(["what it depends on", "", "value", "from", "to"], of_shares))
+        for name in pictures.get(quantity.name, []):
+            kind = name.removesuffix(".png").rpartition("-")[2]
+            parts.append(picture(out / name, CAPTIONS[kind]))
+    parts.append("<h2>Runs without a value</h2>")
+    missing = (out / "summary.txt").read_text("utf-8").partition("the design has none\n")[2].strip().splitlines()
+    parts.append("<ul>" + "".join(f"<li>{escaped(line)}</li>" for line in missing[:MOST_ROWS]) + "</ul>" if missing else "<p>None.</p>")
+    parts.append("<h2>Checks</h2><p>Each run that has an exit code of 0 kept to the guards of demsolve in every state that it recorded: "
+                 "finite values, areas, weight, penetration, energies, unbalanced forces.</p>")
+    parts += ["<h2>Settings</h2>", settings(scene), "<h2>Versions</h2>",
+              table(["program", "version"], found["identity"]["the programs' versions"].items()),
+              "<h2>Study file</h2>", f"<pre>{escaped((out / 'study.toml').read_text('utf-8'))}</pre>",
+              "<h2>Scene</h2>", f"<pre>{escaped((out / 'scene.toml').read_text('utf-8'))}</pre>"]
+    return study.title or f"Study of {scene.get('title', out.name)}", parts
+
+
+def write(source, output, programs):
+    """Writes the page of a result file or of a study's folder."""
+    is_study = source.is_dir()
+    if is_study and not all((source / name).exists() for name in ("plan.json", "runs.csv", "summary.txt", "pictures.json")):
+        raise NotWanted(f"{source}: is not the folder of a study that has ended; first run: jointcreep study STUDY.toml -o {source}")
+    if not is_study:
+        with open(source, "rb"):
+            pass
+        try:
+            with h5py.File(source) as file:
+                kind = file.attrs.get("filetype", b"")
+        except OSError:
+            raise NotWanted(f"{source}: is no HDF5 file, or a damaged one; expected a result file of demsolve, or a study's folder") \
+                from None
+        if kind not in (b"jointcreep result", "jointcreep result"):
+            raise NotWanted(f"{source}: is not a result file of demsolve; expected one, or a study's folder")
+    if output.exists() and (output.is_dir() or not is_study and os.path.samefile(output, source)):
+        raise NotWanted(f"{output}: is a folder, or the file that is read; expected the name of a report, such as report.html")
+    with tempfile.TemporaryDirectory(prefix="jointcreep-") as folder:
+        title, parts = (of_study if is_study else of_run)(source.resolve(), programs, pathlib.Path(folder))
+    plan.written(output, page(title, parts))

@@ -1,0 +1,209 @@
+"""Makes the runs of a study, group by group, by GNU Make on this machine or by Snakemake wherever its profile says.
+
+The folder is locked while a study works there; the lock is held by all processes that work for it, so that it ends with the
+last of them. Whatever has ended stays, and the same command goes on from there.
+"""
+
+import contextlib
+import fcntl
+import itertools
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+import time
+
+from . import group, plan
+from .errors import NotDone, NotWanted
+
+LOCK = "study.lock"
+PATIENCE = 5  # s to wait for processes of a study that was killed
+LOOKS = 0.5  # s between two looks at how far the runs are
+SPOKEN = 10  # lines of progress where there is no terminal
+TIMED_OUT = "timed out"
+
+MAKEFILE = """# The groups of runs of a study; jointcreep study calls it. Names nothing of the scene.
+.SUFFIXES:
+MAKEFLAGS += --no-builtin-rules
+.PHONY: all
+all: {targets}
+groups/%.rows:
+	@exec setpriv --pdeathsig KILL "$$JOINTCREEP_PYTHON" -m jointcreep.group $*
+"""
+
+SNAKEFILE = """# The groups of runs of a study; jointcreep study calls it. A job is a group.
+GROUPS = {groups}
+
+localrules: all
+
+rule all:
+    input: expand("groups/{{group}}.rows", group=GROUPS)
+
+rule group:
+    output: "groups/{{group}}.rows"
+    retries: 1
+    shell: 'exec "$JOINTCREEP_PYTHON" -m jointcreep.group {{wildcards.group}}'
+"""
+
+
+@contextlib.contextmanager
+def locked(out):
+    """Holds the folder's lock; yields its file, which processes inherit. A folder that has something and no such file is of someone
+    else."""
+    if any(out.iterdir()) and not (out / LOCK).exists():
+        raise NotWanted(f"{out}: has files, and is not the folder of a study; expected a new or empty folder")
+    with open(out / LOCK, "a") as file:
+        end = time.monotonic() + PATIENCE
+        while True:
+            try:
+                fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                break
+            except BlockingIOError:
+                if time.monotonic() > end:
+                    raise NotWanted(f"another study works in {out}; wait until it has ended, or choose another folder") from None
+                time.sleep(0.1)
+        os.set_inheritable(file.fileno(), True)
+        yield file
+
+
+def read_rows(out):
+    """Lines of results by the number of their run, without one that is cut off."""
+    rows = {}
+    for path in sorted((out / "groups").glob("*.rows*")):
+        with open(path, "rb") as file:
+            for line in file:
+                if line.endswith(b"\n"):
+                    row = plan.parsed(line, path)
+                    rows[row["run"]] = row
+    return rows
+
+
+def count_ended(out, names, size, in_groups):
+    """How many runs of these groups have ended, or how many groups. A group has `size` runs at most."""
+    files = {entry.name for entry in os.scandir(out / "groups")}
+    groups = sum(f"{name}.rows" in files for name in names)
+    if in_groups:
+        return groups
+    count = groups * size
+    for name in names:
+        if f"{name}.rows.part" in files:
+            with contextlib.suppress(OSError):
+                count += (out / "groups" / f"{name}.rows.part").read_bytes().count(b"\n")
+    return count
+
+
+class Progress:
+    """Tells how many runs have ended and how long the rest takes; on a terminal in one line that changes."""
+
+    def __init__(self, total, what, quiet):
+        self.total, self.what, self.quiet = total, what, quiet
+        self.begin, self.first, self.told = time.monotonic(), None, 0
+
+    def tell(self, done):
+        if self.first is None:
+            self.first = self.told = done
+        if self.quiet:
+            return
+        left = ""
+        if done > self.first:
+            left = f", {duration((time.monotonic() - self.begin) / (done - self.first) * (self.total - done))} left"
+        line = f"{done} of {self.total} {self.what}{left if done < self.total else ''}"
+        if sys.stderr.isatty():
+            print(f"\r{line:60}", end="" if done < self.total else "\n", file=sys.stderr, flush=True)
+        elif (done - self.told) * SPOKEN >= self.total or done == self.total > self.told:
+            self.told = done
+            print(line, file=sys.stderr, flush=True)
+
+
+def duration(seconds):
+    if seconds < 90:
+        return f"{seconds:.0f} s"
+    return f"{seconds / 60:.0f} min" if seconds < 90 * 60 else f"{seconds / 3600:.1f} h"
+
+
+def environment(programs):
+    """Of make and Snakemake: where the package and the programs are; one thread for each program."""
+    package = pathlib.Path(__file__).resolve().parent.parent
+    kept = {name: value for name, value in os.environ.items() if name not in ("MAKEFLAGS", "MFLAGS", "MAKELEVEL")}
+    paths = [str(package), *filter(None, [kept.get("PYTHONPATH")])]
+    return {**kept, "PYTHONPATH": os.pathsep.join(paths), "PYTHONDONTWRITEBYTECODE": "1", "JOINTCREEP_PYTHON": sys.executable,
+            "JOINTCREEP_PROGRAMS": str(programs), "OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
+
+
+def command_for(out, names, jobs, profile):
+    """Writes the Makefile or the Snakefile of these groups; returns the command that makes them."""
+    if profile:
+        plan.written(out / "Snakefile", SNAKEFILE.format(groups=names))
+        return ["snakemake", "--snakefile", "Snakefile", "--profile", profile, "--keep-going", "--nolock", "--rerun-incomplete",
+                "--rerun-triggers", "mtime", "--quiet", "--jobs", str(jobs)]
+    targets = " ".join(f"groups/{name}.rows" for name in names)
+    plan.written(out / "Makefile", MAKEFILE.format(targets=targets))
+    return ["make", "--silent", "--keep-going", f"-j{jobs}", "-f", "Makefile", "all"]
+
+
+def make_groups(out, programs, names, jobs, profile, lock, deadline, tell):
+    """Makes what is missing of these groups. Returns TIMED_OUT if the deadline came first."""
+    missing = [name for name in names if not (out / "groups" / f"{name}.rows").exists()]
+    if not missing:
+        return ""
+    command, parent = command_for(out, missing, jobs, profile), os.getpid()
+    try:
+        # In a process group of its own it could outlive Ctrl-C; so it is in this one, and dies with this process.
+        running = subprocess.Popen(command, cwd=out, env=environment(programs), stdin=subprocess.DEVNULL,
+                                   stdout=subprocess.DEVNULL, pass_fds=[lock.fileno()],
+                                   preexec_fn=lambda: group.die_with(parent))
+    except FileNotFoundError:
+        raise NotWanted(f"{command[0]} is not installed" + ("; first run: sh pipelines/setup.sh studies" if profile else "")) \
+            from None
+    try:
+        while running.poll() is None:
+            tell()
+            if time.monotonic() > deadline:
+                running.send_signal(signal.SIGTERM)  # make ends its recipes
+                running.wait()
+                return TIMED_OUT
+            with contextlib.suppress(subprocess.TimeoutExpired):
+                running.wait(LOOKS)
+    except KeyboardInterrupt:
+        running.send_signal(signal.SIGTERM)
+        running.wait()
+        raise
+    tell()
+    missing = [name for name in names if not (out / "groups" / f"{name}.rows").exists()]
+    if missing:
+        raise NotDone(f"{len(missing)} of {len(names)} groups of runs in {out / 'groups'} could not be made; messages above say "
+                      "why. The same command goes on")
+    return ""
+
+
+def make(study, out, programs, jobs, profile, quiet, enough, lock):
+    """Makes the runs of a study until `enough(rows)` says that they are, at the end of a batch. Returns the lines of results
+    in the order of runs, from the first on without a gap, and why it ended: "" with all runs, else a few words. The folder is locked
+    by `lock`, whose file all processes inherit."""
+    (out / "groups").mkdir(exist_ok=True)
+    size = plan.planned(out)[3]["group"]
+    total = study.design.runs
+    deadline = time.monotonic() + 3600 * study.stop.hours
+    in_groups = study.design.directions > 0
+    progress = Progress(total, "replicates" if in_groups else "runs", quiet)
+    batch = plan.BATCH if study.stop.of else total
+    for end in [*range(batch, total, batch), total]:
+        before = end - batch if end < total else 0
+        names = plan.groups_of(before, end, size)
+        ended = make_groups(out, programs, names, jobs, profile, lock, deadline,
+                            lambda before=before, names=names, end=end: progress.tell(
+                                min(end, before + count_ended(out, names, size, in_groups))))
+        rows = read_rows(out)
+        if in_groups:
+            prefix = [rows[run] for run in sorted(rows)]
+        else:
+            prefix = list(itertools.takewhile(lambda row: row is not None, (rows.get(run) for run in range(end))))
+        if ended:
+            return prefix, f"after the {study.stop.hours:g} hours of the budget"
+        if not in_groups and len(prefix) < end:
+            name = plan.group_name(len(prefix) // size)
+            raise NotDone(f"{out / 'groups' / name}.rows lacks run {len(prefix)}: remove this file; the same command makes it again")
+        if study.stop.of and enough(prefix):
+            return prefix, "by the stop rule"
+    return prefix, ""

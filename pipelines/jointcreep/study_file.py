@@ -1,0 +1,353 @@
+"""The study file: a scene, what varies in it, how runs are drawn, what is collected from each, and when to stop.
+
+Whatever is wrong is refused with a message that names file, line, key and value.
+"""
+
+import dataclasses
+import datetime
+import math
+import pathlib
+import re
+import tomllib
+
+from .errors import NotWanted
+
+DESIGNS = {  # what each needs
+    "plain": ["runs"],
+    "latin hypercube": ["runs"],
+    "sobol sequence": ["runs"],
+    "networks x parameters": ["networks", "parameters"],
+    "sobol indices": ["points"],
+    "directional sampling": ["directions"],
+}
+REPLICATED = ["latin hypercube", "sobol sequence", "directional sampling"]
+LAWS = {  # parameters of each, in the unit of the key that varies
+    "normal": ["mean", "deviation"],
+    "lognormal": ["mean", "deviation"],
+    "uniform": ["lowest", "highest"],
+    "triangular": ["lowest", "most_likely", "highest"],
+}
+BOUNDED = ["normal", "lognormal"]  # these may be cut off at lowest and highest
+BLOCKS = {"number": "1", "mean area": "m2", "median area": "m2", "largest area": "m2"}  # statistics and their units
+WHAT = ["displacement", "blocks", "factor of safety", "failed"]
+NETWORK = "network"  # name of the column of the network's number
+RESERVED = {"run", NETWORK, "exit code", "program", "reason"}
+MOST_RUNS = 1_000_000
+
+
+@dataclasses.dataclass
+class Parameter:
+    """A key of the scene, or several that share a value, and its law or its list."""
+    name: str
+    keys: list
+    multiplies: bool  # the drawn number multiplies the scene's values
+    law: str  # "" for a list
+    constants: dict  # of the law
+    lowest: float  # -inf, or where a law is cut off
+    highest: float
+    values: list  # of a list
+    place: str  # in the study file
+
+
+@dataclasses.dataclass
+class Quantity:
+    """What is collected of each run."""
+    name: str
+    what: str
+    unit: str
+    point: str
+    component: str
+    since: str
+    stage: str
+    date: object  # datetime.date, number of days, or None: the end
+    statistic: str
+    above: list  # limits of which the probabilities to be above are wanted
+    below: list
+    place: str
+
+    def title(self):
+        """Name and unit."""
+        return self.name if self.unit == "1" else f"{self.name} ({self.unit})"
+
+
+@dataclasses.dataclass
+class Design:
+    kind: str
+    seed: int
+    runs: int  # all of them; of directional sampling the number of replicates, whose runs are not known before
+    networks: int  # of "networks x parameters"
+    parameters: int
+    points: int  # of "sobol indices"
+    replicates: int  # independent parts of a design of REPLICATED
+    directions: int  # of "directional sampling", in each replicate
+    failure: str  # the quantity that says whether a run fails
+
+
+@dataclasses.dataclass
+class Stop:
+    """When runs are enough; the quantity's name is empty where nothing is wanted."""
+    of: str
+    half_width: float  # of the mean's interval, in the quantity's unit; 0: not wanted
+    relative_half_width: float  # over the mean
+    probability_half_width: float  # of each probability of the quantity
+    hours: float  # of wall time; inf: no limit
+
+
+@dataclasses.dataclass
+class Study:
+    path: pathlib.Path
+    title: str
+    scene: pathlib.Path
+    varies_network: bool
+    parameters: list
+    correlations: list  # of (name, name, coefficient)
+    design: Design
+    quantities: list
+    stop: Stop
+    demsolve_options: list
+
+
+def shown(value):
+    """A value in a message."""
+    text = f'"{value}"' if isinstance(value, str) else str(value)
+    return text if len(text) < 80 else text[:76] + " ..."
+
+
+def is_number(value):
+    return isinstance(value, (int, float)) and not isinstance(value, bool) and math.isfinite(value)
+
+
+class Table:
+    """A table of the study file. Its keys are taken one by one; what is left in the end is unknown."""
+
+    def __init__(self, path, text, heading, values, number=0):
+        self.path, self.heading, self.left, self.taken = path, heading, dict(values), set()
+        self.lines, self.first = text.splitlines(), 0
+        if heading:
+            rows = [row for row, line in enumerate(self.lines) if re.match(rf"\s*{re.escape(heading)}\s*(#|$)", line)]
+            self.first = rows[number] if number < len(rows) else -1
+
+    def place(self, key=""):
+        """Where it is, or one of its keys: file and line, as far as they are found."""
+        row = self.first if self.heading else -1
+        if key and self.first >= 0:
+            for at in range(self.first + bool(self.heading), len(self.lines)):
+                if re.match(rf"""\s*["']?{re.escape(key)}["']?\s*=""", self.lines[at]):
+                    row = at
+                    break
+                if re.match(r"\s*\[", self.lines[at]):
+                    break
+        line = f", line {row + 1}" if row >= 0 else ""
+        return f"{self.path}{line}: " + (f"{self.heading}: " if self.heading else "")
+
+    def wrong(self, key, expected):
+        found = f"{key} is {shown(self.left[key])}" if key in self.left else f"{key} is missing"
+        raise NotWanted(f"{self.place(key)}{found}; expected {expected}")
+
+    def get(self, key, default, fits, expected):
+        """The value of a key, or the default if it is not there; None as a default: it must be there."""
+        if key not in self.left and default is not None:
+            return default
+        if key not in self.left or not fits(self.left[key]):
+            self.wrong(key, expected)
+        self.taken.add(key)
+        return self.left[key]
+
+    def number(self, key, default=None, above=-math.inf, least=-math.inf, most=math.inf):
+        ends = [f"above {above:g}"] * (above > -math.inf) + [f"of at least {least:g}"] * (least > -math.inf) + \
+            [f"of at most {most:g}"] * (most < math.inf)
+        return float(self.get(key, default, lambda value: is_number(value) and above < value and least <= value <= most,
+                              " ".join(["a number", " and ".join(ends)]).strip()))
+
+    def whole(self, key, default=None, least=0, most=MOST_RUNS):
+        return self.get(key, default, lambda value: isinstance(value, int) and not isinstance(value, bool) and
+                        least <= value <= most, f"a whole number from {least} to {most}")
+
+    def text(self, key, default=None, choices=None):
+        expected = "one of " + ", ".join(f'"{one}"' for one in choices) if choices else "a text that is not empty, on one line"
+        return self.get(key, default, lambda value: isinstance(value, str) and (value in choices if choices else
+                        bool(value.strip()) and value.isprintable()), expected)
+
+    def flag(self, key, default=None):
+        return self.get(key, default, lambda value: isinstance(value, bool), "true or false")
+
+    def several(self, key, default, fits, expected):
+        """A list of at least one."""
+        return self.get(key, default, lambda value: isinstance(value, list) and bool(value) and all(map(fits, value)), expected)
+
+    def end(self):
+        for key in self.left:
+            if key not in self.taken:
+                raise NotWanted(f"{self.place(key)}{key} is unknown here, or does not go with the other keys")
+
+
+def read(path):
+    """The study of a file. Scene and its keys are not looked at."""
+    path = pathlib.Path(path)
+    try:
+        text = path.read_text(encoding="utf-8-sig")
+    except UnicodeDecodeError:
+        raise NotWanted(f"{path}: is not UTF-8 text; expected a study file") from None
+    try:
+        tables = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise NotWanted(f"{path}: {error}") from None
+    names = {"vary": list, "correlation": list, "design": dict, "collect": list, "stop": dict}
+    top = Table(path, text, "", {key: value for key, value in tables.items() if key not in names})
+    for key, kind in names.items():
+        if not isinstance(tables.get(key, kind()), kind) or kind is list and not \
+                all(isinstance(one, dict) for one in tables.get(key, [])):
+            raise NotWanted(f"{top.place(key)}{key} is not a table; expected {'[[' + key + ']]' if kind is list else '[' + key + ']'}")
+
+    def each(key):
+        return [Table(path, text, f"[[{key}]]", values, number) for number, values in enumerate(tables.get(key, []))]
+
+    title = top.text("title", "")
+    scene = path.parent / top.text("scene")
+    options = top.several("demsolve_options", [], lambda one: isinstance(one, str) and one.isprintable(),
+                          'a list of options, such as ["--no-creep"]')
+    for option in options:
+        if option.split("=")[0] in ("-o", "--output", "--checkpoint", "--factor-of-safety", "-h", "--help", "--version"):
+            top.wrong("demsolve_options", f"options without {option}")
+    top.end()
+
+    varies_network, parameters = False, []
+    for table in each("vary"):
+        if table.flag("network", False):
+            if varies_network:
+                table.wrong("network", "it in one [[vary]] only")
+            varies_network = True
+        else:
+            parameters.append(parameter_of(table))
+        table.end()
+    if not varies_network and not parameters:
+        raise NotWanted(f"{path}: nothing varies; expected a [[vary]], for example with network = true")
+    unique(parameters, path)
+    correlations = [correlation_of(table, parameters) for table in each("correlation")]
+    quantities = [quantity_of(table) for table in each("collect")]
+    if not quantities:
+        raise NotWanted(f'{path}: nothing is collected; expected a [[collect]], for example with what = "failed"')
+    unique([*parameters, *quantities], path)
+    design = design_of(Table(path, text, "[design]", tables.get("design", {})), varies_network, parameters, correlations, quantities)
+    stop = stop_of(Table(path, text, "[stop]", tables.get("stop", {})), quantities, design)
+    return Study(path, title, scene, varies_network, parameters, correlations, design, quantities, stop, options)
+
+
+def unique(named, path):
+    """Refuses two columns of one name."""
+    seen = set()
+    for one in named:
+        if one.name in seen or one.name in RESERVED:
+            why = "the name of a column that every study has" if one.name in RESERVED else "there twice"
+            raise NotWanted(f'{one.place}name "{one.name}" is {why}; expected another name')
+        seen.add(one.name)
+
+
+def parameter_of(table):
+    key = table.get("key", None, lambda value: isinstance(value, str) and value or isinstance(value, list) and value and
+                    all(isinstance(one, str) and one for one in value), "a key of the scene, or a list of keys, in quotes")
+    keys = [key] if isinstance(key, str) else key
+    values = table.several("values", [], lambda one: is_number(one) or isinstance(one, str), "a list of numbers or texts")
+    law = "" if values else table.text("law", None, list(LAWS))
+    constants = {name: table.number(name) for name in LAWS.get(law, [])}
+    low, high = (table.number(name, default) if law in BOUNDED else default
+                 for name, default in (("lowest", -math.inf), ("highest", math.inf)))
+    if "deviation" in constants and constants["deviation"] <= 0:
+        table.wrong("deviation", "more than 0")
+    if law == "lognormal" and constants["mean"] <= 0:
+        table.wrong("mean", "more than 0, because a lognormal law has no others")
+    ordered = [constants[name] for name in LAWS.get(law, []) if name not in ("mean", "deviation")]
+    if law in BOUNDED and low >= high or ordered != sorted(ordered) or ordered and ordered[0] == ordered[-1]:
+        table.wrong("highest", "more than lowest" + (", and most_likely between them" if law == "triangular" else ""))
+    multiplies = table.flag("multiplies", False)
+    if multiplies and not all(map(is_number, values)):
+        table.wrong("values", "numbers, because multiplies is true")
+    return Parameter(table.text("name", keys[0]), keys, multiplies, law, constants, low, high, values, table.place())
+
+
+def correlation_of(table, parameters):
+    names = [one.name for one in parameters if one.law]
+    between = table.get("between", None, lambda value: isinstance(value, list) and len(value) == 2 and
+                        value[0] != value[1] and all(one in names for one in value),
+                        "the names of two [[vary]] that have a law")
+    coefficient = table.number("coefficient", None, least=-0.99, most=0.99)
+    table.end()
+    return (*between, coefficient)
+
+
+def design_of(table, varies_network, parameters, correlations, quantities):
+    kind = table.text("kind", "plain", list(DESIGNS))
+    counts = {name: table.whole(name, least=2) if name in DESIGNS[kind] else 0
+              for name in ("runs", "networks", "parameters", "points", "directions")}
+    replicates = table.whole("replicates", 10, least=2) if kind in REPLICATED else 1
+    failure = ""
+    if kind == "directional sampling":
+        counts["runs"] = replicates
+        failure = table.text("failure", None, [one.name for one in quantities if one.what == "failed" or one.above or one.below])
+        if any(not one.law for one in parameters):
+            table.wrong("kind", "another one, because a [[vary]] has a list of values")
+    seed = table.whole("seed", 1, least=0, most=2**32 - 1)
+    if kind == "networks x parameters":
+        counts["runs"] = counts["networks"] * counts["parameters"]
+    if kind == "sobol indices":
+        counts["runs"] = counts["points"] * (2 + len(parameters) + varies_network)
+    if kind not in ("plain", "sobol indices") and not parameters:
+        table.wrong("kind", '"plain", because no [[vary]] has a key')
+    if kind == "networks x parameters" and not varies_network:
+        table.wrong("kind", "another one, or a [[vary]] with network = true")
+    if kind == "sobol indices" and correlations:
+        table.wrong("kind", "another one, because Sobol indices are of parameters without correlation")
+    if kind == "sobol indices" and len(parameters) + varies_network < 2:
+        table.wrong("kind", "another one, or two that vary")
+    if kind != "directional sampling" and counts["runs"] % replicates:
+        table.wrong("runs", f"a multiple of the {replicates} replicates")
+    if counts["runs"] > MOST_RUNS:
+        raise NotWanted(f"{table.place()}these are {counts['runs']} runs; expected at most {MOST_RUNS}")
+    table.end()
+    return Design(kind, seed, **counts, replicates=replicates, failure=failure)
+
+
+def is_day(value):
+    return is_number(value) or isinstance(value, datetime.date) and not isinstance(value, datetime.datetime)
+
+
+def quantity_of(table):
+    what = table.text("what", None, WHAT)
+    point = component = since = stage = statistic = ""
+    date = None
+    unit = "1"
+    if what == "displacement":
+        unit = "mm"
+        point = table.text("point")
+        component = table.text("component", None, ["x", "y", "length"])
+        since = table.text("since", "in situ", ["in situ", "first reading"])
+        if "stage" in table.left:
+            stage = table.text("stage")
+        elif "date" in table.left:
+            date = table.get("date", None, is_day, "a date, or a number of days since the start")
+    elif what == "blocks":
+        statistic = table.text("statistic", None, list(BLOCKS))
+        unit = BLOCKS[statistic]
+    limits = "a list of numbers, in the unit of the quantity"
+    above, below = ([] if what == "failed" else list(map(float, table.several(name, [], is_number, limits)))
+                    for name in ("above", "below"))
+    name = table.text("name", f"{point} {component}" if what == "displacement" else statistic and f"blocks, {statistic}" or what)
+    place = table.place()
+    table.end()
+    return Quantity(name, what, unit, point, component, since, stage, date, statistic, above, below, place)
+
+
+def stop_of(table, quantities, design):
+    hours = table.number("hours", math.inf, above=0)
+    wanted = {name: table.number(name, 0.0, above=0) for name in
+              ("half_width", "relative_half_width", "probability_half_width")}
+    of = ""
+    if any(wanted.values()):
+        of = table.text("of", None, [one.name for one in quantities])
+        if design.kind != "plain":
+            raise NotWanted(f'{table.place("of")}of goes with the plain design; a "{design.kind}" has all of its runs')
+        (quantity,) = (one for one in quantities if one.name == of)
+        if wanted["probability_half_width"] and quantity.what != "failed" and not quantity.above + quantity.below:
+            table.wrong("probability_half_width", f'above or below in the [[collect]] of "{of}"')
+    table.end()
+    return Stop(of, **wanted, hours=hours)

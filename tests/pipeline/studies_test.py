@@ -1,0 +1,720 @@
+"""jointcreep study: designs, runs that are interrupted or fail, tables and answers.
+
+Runs are of the small scene of realizations_test.py, and take some hundredths of a second. What needs OpenTURNS is skipped where
+it is not installed.
+"""
+
+import base64
+import csv
+import importlib.util
+import os
+import pathlib
+import random
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import time
+import unittest
+
+import h5py
+import numpy as np
+
+from chain import LONGEST_RUN, ChainTest, datasets, main
+from realizations_test import SCENE, alive
+
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "pipelines"))
+from jointcreep import answers, failure, intervals, scene_keys, study_file
+from jointcreep import design as draw_design  # noqa: E402
+from jointcreep.errors import NotWanted  # noqa: E402
+
+HAS_OPENTURNS = importlib.util.find_spec("openturns") is not None
+needs_openturns = unittest.skipUnless(HAS_OPENTURNS, "python3-openturns is not installed: sh pipelines/setup.sh studies")
+
+NETWORKS = """
+scene = "scene.toml"
+
+[[vary]]
+network = true
+
+[design]
+runs = {runs}
+
+[[collect]]
+what = "displacement"
+point = "floor"
+component = "y"
+above = [0.1]
+
+[[collect]]
+name = "of the point dug away"
+what = "displacement"
+point = "dug away"
+component = "x"
+
+[[collect]]
+name = "after the bench"
+what = "displacement"
+point = "floor"
+component = "y"
+stage = "bench"
+
+[[collect]]
+what = "blocks"
+statistic = "number"
+
+[[collect]]
+what = "failed"
+"""
+
+FRICTION = """
+[[vary]]
+name = "friction"
+key = "joint_material.joint.friction_angle_deg"
+law = "normal"
+mean = 35
+deviation = 3
+"""
+
+WRAPPER = """#!/bin/sh
+echo "$*" >>"{calls}"
+{case}
+exec "{program}" "$@"
+"""
+RESULTS = ["runs.csv", "runs.h5", "answers.csv", "convergence.csv", "shares.csv", "summary.txt"]
+
+
+class Studies(ChainTest):
+    """Tools to make studies of the small scene."""
+
+    def setUp(self):
+        self.folder = self.chain.new_folder()
+        (self.folder / "scene.toml").write_text(SCENE)
+
+    def written(self, text, name="study.toml"):
+        (self.folder / name).write_text(text)
+        return self.folder / name
+
+    def command(self, study, out, *more, programs=None):
+        return [self.chain.programs / "jointcreep", "study", study, "-o", out, "--programs", programs or self.chain.programs, *more]
+
+    def study(self, study, out, *more, programs=None):
+        return subprocess.run([*map(str, self.command(study, out, *more, programs=programs))], capture_output=True, text=True,
+                              timeout=LONGEST_RUN)
+
+    def made(self, study, out, *more, programs=None):
+        done = self.study(study, out, *more, programs=programs)
+        self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
+        return out
+
+    def refused(self, text, expected):
+        done = self.study(self.written(text), self.folder / "refused")
+        self.assertEqual(done.returncode, 2, done.stdout + done.stderr)
+        self.assertRegex(done.stderr, expected)
+        self.assertNotIn("Traceback", done.stderr)
+
+    def programs(self, case, program="demsolve"):
+        """A folder of programs of which one is a script that notes its call, does `case`, and then hands on."""
+        folder = self.chain.new_folder()
+        for name in ("jointgen", "strength-averaging", "demsolve"):
+            (folder / name).symlink_to(self.chain.programs / name)
+        (folder / program).unlink()
+        (folder / program).write_text(WRAPPER.format(calls=folder / "calls", case=case.format(folder=folder),
+                                                     program=self.chain.programs / program))
+        (folder / program).chmod(0o755)
+        return folder
+
+    def assert_same(self, one, other):
+        for name in RESULTS:
+            self.assertEqual((one / name).read_bytes(), (other / name).read_bytes(), name)
+
+
+def rows_of(out):
+    with open(out / "runs.csv", encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(file))
+
+
+class Runs(Studies):
+    def test_values_are_those_of_the_files(self):
+        out = self.made(self.written(NETWORKS.format(runs=3)), self.folder / "out")
+        rows = rows_of(out)
+        self.assertEqual([row["run"] for row in rows], ["0", "1", "2"])
+        for row in rows:
+            network = self.chain.network(SCENE, "--realization", row["network"])
+            joints = self.chain.run("strength-averaging", network, network.with_name("j.h5"))
+            result = datasets(self.chain.run("demsolve", joints, network.with_name("r.h5")))
+            floor = 1e3 * result["/history/displacement"][:, 2, 1]
+            self.assertEqual(float(row["floor y (mm)"]), floor[-1])
+            self.assertEqual(float(row["after the bench (mm)"]), floor[list(result["/history/event"]).index("bench")])
+            self.assertEqual(float(row["blocks, number"]), len(result["/blocks/area"]))
+            self.assertEqual(row["of the point dug away (mm)"], "")
+            self.assertEqual((row["exit code"], row["failed"]), ("0", "0.0"))
+        self.assertIn('an excavation takes the point "dug away" before, or it is not read yet, in 3 of 3 runs: 0, 1, 2',
+                      (out / "summary.txt").read_text())
+        with h5py.File(out / "runs.h5") as file:
+            table = file["runs"][()]
+            self.assertEqual(list(table["floor y (mm)"]), [float(row["floor y (mm)"]) for row in rows])
+            self.assertEqual(list(table["of the point dug away (mm), is there"]), [0, 0, 0])
+            self.assertEqual(file["scene"].asstr()[0], SCENE)
+        self.assertFalse(list((out / "work").iterdir()))
+
+    def test_on_a_day_between_steps(self):
+        """Runs whose creep steps are chosen have rows on other days; values are of the same day all the same."""
+        text = SCENE.replace('step_days = 2\nscheme = "published"', "tolerance_m = 1e-8")
+        (self.folder / "scene.toml").write_text(text)
+        day = NETWORKS.split("[[collect]]")[0].format(runs=3) + (
+            '[[collect]]\nname = "day 7"\nwhat = "displacement"\npoint = "floor"\ncomponent = "y"\ndate = 7.3\n')
+        rows = rows_of(self.made(self.written(day), self.folder / "out"))
+        days = set()
+        for row in rows:
+            joints = self.chain.joints(text, "--realization", row["network"])
+            one, fine = (datasets(self.chain.run("demsolve", joints, joints.with_name(f"{name}.h5"), *options))
+                         for name, options in (("one", []), ("fine", ["--creep-step", "0.1", "--creep-scheme", "fitted"])))
+            days.add(tuple(one["/history/time"]))
+            moves = fine["/history/displacement"][:, 2, 1]
+            wanted = 1e3 * moves[np.argmin(np.abs(fine["/history/time"] - 7.3))]
+            crept = 1e3 * abs(moves[-1] - moves[2])
+            self.assertLess(abs(float(row["day 7 (mm)"]) - wanted), 0.02 * crept + 1e-3)
+        self.assertGreater(len(days), 1)
+
+    def test_one_at_a_time_or_two(self):
+        study = self.written(NETWORKS.format(runs=8))
+        one = self.made(study, self.folder / "one out", "-j", "1")
+        two = self.made(study, self.folder / 'two "out"', "-j2")
+        self.assert_same(one, two)
+
+    def test_more_runs_keep_those_that_are_there(self):
+        programs = self.programs("")
+        out = self.made(self.written(NETWORKS.format(runs=3)), self.folder / "out", programs=programs)
+        self.made(self.written(NETWORKS.format(runs=6)), out, programs=programs)
+        self.assertEqual((programs / "calls").read_text().count("joints.h5"), 6)
+        self.assert_same(self.made(self.folder / "study.toml", self.folder / "at once", programs=programs), out)
+        done = self.study(self.written(NETWORKS.format(runs=5)), out, programs=programs)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("has 6 runs planned", done.stderr)
+
+    def test_killed_and_gone_on(self):
+        """By SIGKILL at random moments, of the command alone or of all its processes; and by Ctrl-C."""
+        study = self.written(NETWORKS.format(runs=12))
+        whole = self.made(study, self.folder / "whole")
+        out, chance = self.folder / "out", random.Random(1)
+        kills = 0
+        for stop in ("alone", "all", "alone", "interrupt", "all", "alone"):
+            running = subprocess.Popen([*map(str, self.command(study, out, "-j2"))], stdout=subprocess.DEVNULL,
+                                       stderr=subprocess.DEVNULL, start_new_session=True)
+            try:
+                running.wait(chance.uniform(0.2, 1.0))
+            except subprocess.TimeoutExpired:
+                kills += 1
+                if stop == "alone":
+                    os.kill(running.pid, signal.SIGKILL)
+                else:
+                    os.killpg(running.pid, signal.SIGKILL if stop == "all" else signal.SIGINT)
+            running.wait()
+            end = time.monotonic() + 10
+            while alive(running.pid):
+                self.assertLess(time.monotonic(), end, "something works on after the study was stopped")
+                time.sleep(0.01)
+        self.assertGreater(kills, 2)
+        self.assert_same(whole, self.made(study, out, "-j2"))
+
+    def test_a_cut_off_line(self):
+        """What a full disk leaves of a line of results is made again."""
+        study = self.written(NETWORKS.format(runs=2))
+        whole = self.made(study, self.folder / "whole")
+        out = shutil.copytree(whole, self.folder / "out")
+        rows = out / "groups" / "000001.rows"
+        rows.with_name("000001.rows.part").write_bytes(rows.read_bytes()[:-9])
+        rows.unlink()
+        self.assert_same(whole, self.made(study, out))
+
+    def hanging(self, study, out):
+        """A study whose first run hangs."""
+        programs = self.programs(f'[ "$1" = --version ] || exec sleep {LONGEST_RUN}')
+        running = subprocess.Popen([*map(str, self.command(study, out, programs=programs))], start_new_session=True,
+                                   stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        end = time.monotonic() + LONGEST_RUN
+        while not (out / "work" / "000000" / "joints.h5").exists():
+            self.assertLess(time.monotonic(), end)
+            time.sleep(0.01)
+        return running
+
+    def test_nothing_works_on_after_a_kill(self):
+        running = self.hanging(self.written(NETWORKS.format(runs=2)), self.folder / "out")
+        time.sleep(0.3)
+        os.kill(running.pid, signal.SIGKILL)
+        running.wait()
+        end = time.monotonic() + 30  # its run hangs longer
+        while alive(running.pid):
+            self.assertLess(time.monotonic(), end, "something works on after the study was killed")
+            time.sleep(0.01)
+
+    def test_two_studies_in_one_folder(self):
+        study, out = self.written(NETWORKS.format(runs=2)), self.folder / "out"
+        running = self.hanging(study, out)
+        try:
+            done = self.study(study, out)
+            self.assertEqual(done.returncode, 2)
+            self.assertIn("another study works in", done.stderr)
+        finally:
+            os.killpg(running.pid, signal.SIGKILL)
+            running.wait()
+
+    def test_other_studies_are_not_mixed_in(self):
+        out = self.made(self.written(NETWORKS.format(runs=2)), self.folder / "out")
+        before = {path.name: path.read_bytes() for path in out.iterdir() if path.is_file()}
+        (self.folder / "scene.toml").write_text(SCENE.replace("cohesion_MPa = 1", "cohesion_MPa = 2"))
+        done = self.study(self.folder / "study.toml", out)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("has runs of another study: the scene changed", done.stderr)
+        self.assertEqual(before, {path.name: path.read_bytes() for path in out.iterdir() if path.is_file()})
+
+    def test_read_only_and_impossible_folders(self):
+        study = self.written(NETWORKS.format(runs=2))
+        (self.folder / "file").write_text("")
+        done = self.study(study, self.folder / "file" / "out")
+        self.assertEqual(done.returncode, 4, done.stderr)
+        self.assertRegex(done.stderr, "^jointcreep: .*file")
+        before = (self.folder / "scene.toml").read_bytes()
+        done = self.study(study, self.folder)  # whose inputs have the names of outputs
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertIn("has files, and is not the folder of a study", done.stderr)
+        self.assertEqual((self.folder / "scene.toml").read_bytes(), before)
+
+    def test_a_damaged_folder(self):
+        study = self.written(NETWORKS.format(runs=2))
+        whole = self.made(study, self.folder / "whole")
+        for name in ("plan.json", "groups/000001.rows"):
+            with self.subTest(name):
+                out = shutil.copytree(whole, self.folder / name.replace("/", "-"))
+                (out / name).write_text("nothing of use\n")
+                done = self.study(study, out)
+                self.assertEqual(done.returncode, 2, done.stderr)
+                self.assertIn(f"{out / name}: is damaged", done.stderr)
+
+
+class Failures(Studies):
+    def test_a_failed_run(self):
+        """It is kept with code and reason, does not stop the others, and counts where failure is the answer; where it is not, it is
+        made twice."""
+        case = 'case "$PWD" in *work/000001*) echo "demsolve: warning: soon" >&2; echo "demsolve: no equilibrium: on purpose" >&2; ' \
+               "exit 3 ;; esac"
+        programs = self.programs(case)
+        out = self.made(self.written(NETWORKS.format(runs=4)), self.folder / "out", programs=programs)
+        rows = rows_of(out)
+        self.assertEqual([row["exit code"] for row in rows], ["0", "3", "0", "0"])
+        self.assertEqual((rows[1]["program"], rows[1]["reason"]), ("demsolve", "demsolve: no equilibrium: on purpose"))
+        self.assertEqual((rows[1]["floor y (mm)"], rows[1]["failed"]), ("", "1.0"))
+        self.assertGreater(float(rows[1]["blocks, number"]), 1)  # which the network has all the same
+        other = self.made(self.written(NETWORKS.format(runs=4).replace('[[collect]]\nwhat = "failed"\n', "")), self.folder / "other",
+                          programs=programs)
+        for folder, attempts in ((out, "1"), (other, "2")):
+            with open(folder / "times.csv", encoding="utf-8") as file:
+                self.assertEqual([row["attempts"] for row in csv.DictReader(file)], ["1", attempts, "1", "1"])
+        text = (out / "summary.txt").read_text()
+        self.assertIn("without equilibrium  1\n", text)
+        self.assertIn("run 1 failed: demsolve, exit code 3: demsolve: no equilibrium: on purpose\n", text)
+        with open(out / "answers.csv", encoding="utf-8") as file:
+            found = {(row["quantity"], row["statistic"]): row for row in csv.DictReader(file)}
+        self.assertEqual(found["floor y", "mean"]["runs"], "3")
+        self.assertEqual(float(found["failed", "probability"]["value"]), 0.25)
+
+    def test_a_run_that_fails_once(self):
+        """Its results are those of a run that never did."""
+        study = self.written(NETWORKS.format(runs=3))
+        case = 'case "$PWD" in *work/000001*) if [ ! -e "{folder}/once" ]; then touch "{folder}/once"; kill -SEGV $$; fi ;; esac'
+        self.assert_same(self.made(study, self.folder / "whole"),
+                         self.made(study, self.folder / "out", programs=self.programs(case)))
+
+    def test_what_is_no_result(self):
+        """A full disk, or a program that is killed: the run is made when the study goes on."""
+        study = self.written(NETWORKS.format(runs=3))
+        whole = self.made(study, self.folder / "whole")
+        for what in ("exit 4", "kill -9 $$"):
+            with self.subTest(what):
+                out = self.folder / what.replace(" ", "")
+                done = self.study(study, out, programs=self.programs(f'case "$PWD" in *work/000001*) {what} ;; esac'))
+                self.assertEqual(done.returncode, 4)
+                self.assertIn("run 1: demsolve was stopped", done.stderr)
+                self.assertFalse((out / "runs.csv").exists())
+                self.assert_same(whole, self.made(study, out))
+
+    def test_all_failed(self):
+        study = self.written(NETWORKS.format(runs=2).split("[[collect]]\nname")[0])
+        done = self.study(study, self.folder / "out", programs=self.programs('[ "$1" = --version ] || exit 5'))
+        self.assertEqual(done.returncode, 3, done.stderr)
+        self.assertIn("run 0 failed: demsolve, exit code 5", done.stdout)
+        self.assertNotIn("Traceback", done.stderr)
+
+
+class Designs(Studies):
+    """What OpenTURNS draws."""
+
+    def drawn(self, design, more=FRICTION):
+        text = re.sub(r"\[design\]\nruns = .*\n", f"[design]\n{design}\n", NETWORKS) + more
+        study = study_file.read(self.written(text))
+        return study, *draw_design.draw(study)
+
+    @needs_openturns
+    def test_laws(self):
+        """Mean, deviation and ends of each law, in each design; means of Latin hypercubes are nearer than chance."""
+        more = """
+[[vary]]
+key = "b"
+law = "lognormal"
+mean = 5
+deviation = 2
+[[vary]]
+key = "c"
+law = "triangular"
+lowest = 0
+most_likely = 1
+highest = 5
+[[vary]]
+key = "d"
+law = "uniform"
+lowest = -1
+highest = 1
+[[vary]]
+key = "e"
+law = "normal"
+mean = 0
+deviation = 1
+lowest = 0
+[[vary]]
+key = "f"
+values = [1, 2, 6]
+"""
+        mean = np.array([35, 5, 2, 0, np.sqrt(2 / np.pi), 3])
+        deviation = np.array([3, 2, np.sqrt((25 + 1 - 5) / 18), np.sqrt(1 / 3), np.sqrt(1 - 2 / np.pi), np.sqrt(14 / 3)])
+        for design, runs, within in [("runs = 4000", 4000, 4), ('kind = "latin hypercube"\nruns = 4000', 4000, 1),
+                                     ('kind = "sobol sequence"\nruns = 5120', 5120, 1),
+                                     ('kind = "networks x parameters"\nnetworks = 3\nparameters = 4000', 12000, 4),
+                                     ('kind = "sobol indices"\npoints = 512', 512 * 9, 10)]:
+            with self.subTest(design):
+                _, networks, values = self.drawn(design, FRICTION + more)
+                values = np.array(values)
+                self.assertEqual(values.shape, (runs, 6))
+                error = deviation / np.sqrt(4000)
+                self.assertTrue((np.abs(values.mean(axis=0) - mean) < within * error).all())
+                self.assertTrue((np.abs(values.std(axis=0) / deviation - 1) < 0.1).all())
+                self.assertGreaterEqual(values[:, 4].min(), 0)
+
+    @needs_openturns
+    def test_a_longer_design_begins_with_the_shorter_one(self):
+        more = '\n[[vary]]\nkey = "b"\nlaw = "uniform"\nlowest = 0\nhighest = 1\n[[correlation]]\nbetween = ["b", "friction"]\n' \
+               "coefficient = -0.5\n"
+        _, _, long = self.drawn("runs = 2000", FRICTION + more)
+        _, _, short = self.drawn("runs = 500", FRICTION + more)
+        self.assertEqual(long[:500], short)
+        ranks = np.argsort(np.argsort(np.array(long), axis=0), axis=0)
+        self.assertAlmostEqual(np.corrcoef(ranks.T)[0, 1], -0.5, delta=4 * 0.75 / np.sqrt(2000))
+
+    @needs_openturns
+    def test_networks(self):
+        _, networks, values = self.drawn('kind = "networks x parameters"\nnetworks = 3\nparameters = 4')
+        self.assertEqual(list(networks), [0, 0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2])
+        self.assertEqual(values[:4], values[8:])
+        _, networks, values = self.drawn('kind = "sobol indices"\npoints = 8')  # A, B, A with friction of B, A with networks of B
+        networks, friction = np.array(networks).reshape(4, 8), np.array(values).reshape(4, 8)
+        self.assertEqual(len(set(networks[:2].ravel())), 16)
+        self.assertTrue((networks[2] == networks[0]).all() and (friction[2] == friction[1]).all())
+        self.assertTrue((networks[3] == networks[1]).all() and (friction[3] == friction[0]).all())
+
+    @needs_openturns
+    def test_sobol_indices_of_ishigami(self):
+        """Of sin(a) + 7 sin^2(b) + 0.1 c^4 sin(a) with a, b, c between -pi and pi (Ishigami and Homma 1990)."""
+        uniform = '\n[[vary]]\nkey = "{}"\nlaw = "uniform"\nlowest = -3.141592653589793\nhighest = 3.141592653589793\n'
+        text = re.sub(r"\[design\]\nruns = .*\n", '[design]\nkind = "sobol indices"\npoints = 2000\n', NETWORKS)
+        text = text.replace("network = true", "network = false", 1).replace('[[vary]]\nnetwork = false\n', "")
+        study = study_file.read(self.written(text + "".join(map(uniform.format, "abc"))))
+        networks, values = draw_design.draw(study)
+        rows = [{"run": run, "values": [np.sin(a) + 7 * np.sin(b) ** 2 + 0.1 * c**4 * np.sin(a)]}
+                for run, (a, b, c) in enumerate(values)]
+        given = [{"run": run, "network": 0, "given": of_run} for run, of_run in enumerate(values)]
+        rows[17]["values"] = [None]  # a run that failed takes its point with it
+        found = answers.shares(study, rows, given, 0)
+        variance = 0.1 * np.pi**4 / 5 + 0.01 * np.pi**8 / 18 + 0.5 + 49 / 8
+        first_a, b = 0.5 * (1 + 0.1 * np.pi**4 / 5) ** 2 / variance, 49 / 8 / variance
+        with_c = 0.01 * np.pi**8 * (1 / 18 - 1 / 50) / variance
+        wanted = [first_a, b, 0, first_a + with_c, b, with_c]
+        self.assertEqual([row[:2] for row in found], [(name, measure) for measure in ("first order index", "total index") for name in "abc"])
+        for (name, measure, value, low, high), true in zip(found, wanted):
+            with self.subTest(f"{measure} of {name}"):
+                self.assertAlmostEqual(value, true, delta=0.06)
+                self.assertTrue(low - 0.02 <= true <= high + 0.02, (low, true, high))
+
+    def test_shares_of_a_crossed_design(self):
+        """Of a sum whose parts have known variances."""
+        networks, parameters = 60, 50
+        chance = np.random.default_rng(3)
+        parts = [np.sqrt(share) * chance.normal(size=size) for share, size in
+                 zip((0.6, 0.3, 0.1), ((networks, 1), (1, parameters), (networks, parameters)))]
+        true = [part.var() for part in parts]
+        text = re.sub(r"\[design\]\nruns = .*\n", f'[design]\nkind = "networks x parameters"\nnetworks = {networks}\n'
+                      f"parameters = {parameters}\n", NETWORKS) + FRICTION
+        study = study_file.read(self.written(text))
+        rows = [{"run": run, "values": [value]} for run, value in enumerate(sum(parts).ravel())]
+        rows[7]["values"] = [None]  # its network is left out
+        found = answers.crossed_shares(study, rows, 0)
+        for (name, _, value, low, high), share in zip(found, np.array(true) / sum(true)):
+            with self.subTest(name):
+                self.assertAlmostEqual(value, share, delta=0.03)
+                self.assertTrue(low <= share <= high)
+
+    @needs_openturns
+    def test_a_study_with_parameters(self):
+        """A key of the scene is changed in each run, as by hand; the scene with dates and laws is kept otherwise."""
+        text = NETWORKS.format(runs=2) + FRICTION + '\n[[vary]]\nname = "K"\nlaw = "uniform"\nlowest = 0.5\nhighest = 2\n' \
+            'multiplies = true\nkey = ["joint_material.joint.normal_stiffness_MPa_per_m", "joint_material.joint.shear_stiffness_MPa_per_m"]\n'
+        out = self.made(self.written(text), self.folder / "out")
+        for row in rows_of(out):
+            factor = float(row["K"])
+            scene = SCENE.replace("friction_angle_deg = 35", f"friction_angle_deg = {row['friction']}")
+            scene = scene.replace("\nnormal_stiffness_MPa_per_m = 5000", f"\nnormal_stiffness_MPa_per_m = {5000 * factor!r}")
+            scene = scene.replace("\nshear_stiffness_MPa_per_m = 2000", f"\nshear_stiffness_MPa_per_m = {2000 * factor!r}")
+            joints = self.chain.joints(scene, "--realization", row["network"])
+            result = datasets(self.chain.run("demsolve", joints, joints.with_name("r.h5")))
+            self.assertEqual(float(row["floor y (mm)"]), 1e3 * result["/history/displacement"][-1, 2, 1])
+
+    @needs_openturns
+    def test_directional_sampling(self):
+        """Of a plane in the space of two laws, whose probability is known; the estimate has no bias."""
+        text = re.sub(r"\[design\]\nruns = .*\n", '[design]\nkind = "directional sampling"\ndirections = 40\nfailure = "failed"\n', NETWORKS)
+        study = study_file.read(self.written(text + FRICTION + '\n[[vary]]\nkey = "b"\nlaw = "normal"\nmean = 0\ndeviation = 1\n'))
+        at = [one.name for one in study.quantities].index("failed")
+        for distance, probability in ((3.0902323, 1e-3), (3.7190165, 1e-4)):
+            runs = []
+
+            def run(values, distance=distance, runs=runs):
+                runs.append(values)
+                fails = (values[0] - 35) / 3 * 0.6 - values[1] * 0.8 > distance
+                return {"run": 0, "exit_code": 3 if fails else 0, "values": [1.0 if place == at else None for place in range(at + 1)]
+                        if fails else [0.0] * (at + 1), "reason": ""}
+
+            estimates = np.array([failure.estimate(study, replicate, run) for replicate in range(60)])
+            value, low, high = failure.probability(estimates)
+            with self.subTest(probability):
+                self.assertTrue(low <= probability <= high, (low, high))
+                self.assertAlmostEqual(value, probability, delta=0.25 * probability)
+                plain = probability / (np.std(estimates, ddof=1) ** 2 / len(estimates))
+                self.assertGreater(plain, 20 * len(runs))
+
+    @needs_openturns
+    def test_directional_sampling_of_runs(self):
+        """Of a study, also one that was stopped and goes on."""
+        design = '[design]\nkind = "directional sampling"\ndirections = 4\nreplicates = 2\nfailure = "floor y"\n'
+        text = re.sub(r"\[design\]\nruns = .*\n", design, NETWORKS) + FRICTION
+        study = self.written(text)
+        whole = self.made(study, self.folder / "whole")
+        self.assertIn("probability of failure", (whole / "answers.csv").read_text())
+        self.assertEqual({row["network"] for row in rows_of(whole)}, {"0", "1"})
+        out = shutil.copytree(whole, self.folder / "out")
+        rows = out / "groups" / "000001.rows"
+        lines = rows.read_bytes().splitlines(keepends=True)
+        rows.with_name("000001.rows.part").write_bytes(b"".join(lines[:2]))
+        rows.unlink()
+        self.assert_same(whole, self.made(study, out))
+
+    def test_stop_rule(self):
+        """A study ends by its stop rule after the same runs, whether made at once or not."""
+        text = NETWORKS.format(runs=200)
+        text = text[: text.index("[[collect]]")] + '[[collect]]\nname = "blocks"\nwhat = "blocks"\nstatistic = "number"\n'
+        stop = '[stop]\nof = "blocks"\nhalf_width = {}\n'
+        out = self.made(self.written(text + stop.format(1.0)), self.folder / "out", "-j2")
+        self.assertEqual(len(rows_of(out)), 100)
+        values = np.array([float(row["blocks, number" if "blocks, number" in row else "blocks"]) for row in rows_of(out)])
+        halves = [np.diff(intervals.mean(values[:end])[1:])[0] / 2 for end in (50, 100)]
+        self.assertGreater(halves[0], 1.0)
+        self.assertLess(halves[1], 1.0)
+        self.made(self.written(text), out)
+        self.assertEqual(len(rows_of(out)), 200)
+        self.made(self.written(text + stop.format(1.0)), out)
+        self.assertEqual(len(rows_of(out)), 100)
+
+
+@unittest.skipUnless(shutil.which("snakemake"), "snakemake is not installed: sh pipelines/setup.sh studies")
+class BySnakemake(Studies):
+    def profile(self, name):
+        return self.chain.source / "pipelines" / "studies" / "profiles" / name
+
+    def test_on_this_machine(self):
+        study = self.written(NETWORKS.format(runs=6))
+        self.assert_same(self.made(study, self.folder / "whole"),
+                         self.made(study, self.folder / "out", "-j2", "--snakemake", self.profile("local")))
+
+    @unittest.skipUnless(all(map(shutil.which, ("slurmctld", "slurmd", "munged", "sbatch"))) and os.getuid() == 0 and
+                         os.path.ismount("/sys/fs/cgroup"),
+                         "no Slurm here (apt-get install slurm-wlm munge), not root, or /sys/fs/cgroup is not mounted")
+    def test_on_slurm(self):
+        """On one node, by a Slurm of this test."""
+        script, folder = self.chain.source / "pipelines" / "studies" / "one_node_slurm.sh", self.folder / "slurm"
+        study = self.written(NETWORKS.format(runs=6))
+        whole = self.made(study, self.folder / "whole")
+        started = subprocess.run(["sh", script, "start", folder], capture_output=True, text=True, timeout=60)
+        try:
+            self.assertEqual(started.returncode, 0, started.stderr)
+            os.environ["SLURM_CONF"] = str(folder / "slurm.conf")
+            out = self.made(study, self.folder / "out", "-j4", "--snakemake", self.profile("slurm"))
+            self.assert_same(whole, out)
+        finally:
+            os.environ.pop("SLURM_CONF", None)
+            subprocess.run(["sh", script, "stop", folder], timeout=60)
+
+
+class Reports(Studies):
+    def report(self, source, name="report.html"):
+        done = subprocess.run([self.chain.programs / "jointcreep", "report", source, "-o", self.folder / name], capture_output=True,
+                              text=True, timeout=LONGEST_RUN)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        page = (self.folder / name).read_text()
+        self.assertNotRegex(page, r"(src|href)=.(?!data:)")  # it needs no other file
+        self.assertNotIn("Not drawn", page)
+        for picture in re.findall(r'src="data:image/png;base64,([^"]*)"', page):
+            self.assertEqual(base64.b64decode(picture)[:4], b"\x89PNG")
+        return page
+
+    def test_of_a_run(self):
+        joints = self.chain.joints(SCENE.replace("[section]", 'title = "A <b>ench & more"\n[section]', 1))
+        page = self.report(self.chain.run("demsolve", joints, joints.with_name("r.h5")))
+        self.assertIn("<h1>A &lt;b&gt;ench &amp; more</h1>", page)
+        self.assertRegex(page, r"jointverify: verified: (\d+) checks of \1<")
+        self.assertGreaterEqual(page.count("<img"), 7)
+        self.assertIn("excavated; its last displacement", page)
+
+    def test_of_a_study(self):
+        out = self.made(self.written(NETWORKS.format(runs=12)), self.folder / "out")
+        page = self.report(out)
+        with open(out / "answers.csv", encoding="utf-8") as file:
+            for row in csv.DictReader(file):
+                if row["statistic"] == "mean":
+                    self.assertIn(f">{float(row['value']):.4g}<", page)
+        self.assertGreaterEqual(page.count("<img"), 6)
+        self.assertIn("in 12 of 12 runs", page)
+
+    def test_refusals(self):
+        for source, code in ((self.folder / "scene.toml", 2), (self.folder, 2), (self.folder / "none.h5", 4),
+                             (self.chain.network(SCENE), 2)):
+            done = subprocess.run([self.chain.programs / "jointcreep", "report", source, "-o", self.folder / "r.html"],
+                                  capture_output=True, text=True)
+            self.assertEqual(done.returncode, code, done.stderr)
+            self.assertRegex(done.stderr, "^jointcreep: ")
+            self.assertFalse((self.folder / "r.html").exists())
+
+
+class StudyFile(Studies):
+    def test_messages(self):
+        """What is wrong is refused by file, line, key and value."""
+        good = NETWORKS.format(runs=3)
+        cases = [
+            (good.replace("runs = 3", "runs = 1"), r"study\.toml, line 8: \[design\]: runs is 1; expected a whole number from 2 to"),
+            (good.replace("runs = 3", 'runs = "many"'), r'runs is "many"; expected a whole number'),
+            (good.replace("runs = 3", ""), r"line 7: \[design\]: runs is missing; expected a whole number"),
+            (good.replace("runs = 3", "runs = 3\nseeds = 4"), r"line 9: \[design\]: seeds is unknown here"),
+            (good.replace("runs = 3", 'runs = 3\nkind = "poor"'), r'kind is "poor"; expected one of "plain", "latin hypercube"'),
+            (good.replace('point = "floor"', 'point = "flor"', 1), r'line 10: \[\[collect\]\]: point is "flor"; expected one that the '
+             "scene has: crest, dug away, floor"),
+            (good.replace('"bench"', '"banch"'), r'stage is "banch"; expected one that the scene has: bench'),
+            (good.replace('stage = "bench"', "date = 2000-01-01"), "2000-01-01 is a date, and the scene's schedule has numbers of days"),
+            (good.replace('stage = "bench"', "date = 11"), "date is 11; expected one within the scene's schedule"),
+            (good.replace("above = [0.1]", "above = 0.1"), r"line 14: .*above is 0\.1; expected a list of numbers"),
+            (good.replace("above = [0.1]", "above = [nan]"), r"above is \[nan\]; expected a list of numbers"),
+            (good.replace('"of the point dug away"', '"floor y"'), 'name "floor y" is there twice'),
+            (good.replace('"of the point dug away"', '"run"'), 'name "run" is the name of a column that every study has'),
+            (good.replace("network = true", "network = 1"), "line 5: .*network is 1; expected true or false"),
+            (good.replace("[[vary]]", "[vary]"), r"vary is not a table; expected \[\[vary\]\]"),
+            (good + "[stop]\nhalf_width = 0.1\n", r'of is missing; expected one of "floor y"'),
+            (good + '[stop]\nof = "floor y"\nhalf_width = -1\n', "half_width is -1; expected a number above 0"),
+            (good + '[stop]\nhours = 1\nminutes = 1\n', "minutes is unknown here"),
+            (good.split("[[collect]]")[0], "nothing is collected"),
+            (good.replace("network = true", ""), r"\[\[vary\]\]: key is missing; expected a key of the scene"),
+            (good.replace("network = true", "network = false\nkey = 'x.y'"), r"law is missing; expected one of .normal"),
+            (good + 'a = [', "study.toml: "),
+        ]
+        for text, expected in cases:
+            with self.subTest(expected):
+                self.refused(text, expected)
+
+    def test_keys_of_the_scene(self):
+        good = NETWORKS.format(runs=3)
+        for key, expected in [
+            ("joint_material.jont.friction_angle_deg", 'joint_material has no "jont"; it has: joint'),
+            ("joint_material.joint.friction", 'joint has no "friction"; it has: name, normal_stiffness'),
+            ("section.rock", r'"section.rock" is "rock" in the scene; expected a number'),
+            ("section.", "is not a path of keys"),
+            ("boundary.4.fix", 'boundary has no "4"; it has: 1, 2, 3'),
+        ]:
+            with self.subTest(key):
+                self.refused(good + FRICTION.replace("joint_material.joint.friction_angle_deg", key), expected)
+        for line, expected in [("deviation = 0", "deviation is 0; expected more than 0"), ("mean = inf", "mean is inf; expected a"),
+                               ("lowest = 40\nhighest = 30", "highest is 30; expected more than lowest")]:
+            with self.subTest(line):
+                key = line.split()[0]
+                self.refused(good + re.sub(rf"(?m)^{key} = .*\n", "", FRICTION) + line, expected)
+
+    def test_the_folder_stays_clean(self):
+        self.refused(NETWORKS.format(runs=1), "runs is 1")
+        self.assertFalse((self.folder / "refused").exists())
+
+    def test_command_line(self):
+        for arguments, expected in [([], "usage: "), (["studdy"], "unknown subcommand"), (["study"], "needs an input"),
+                                    (["study", "a.toml", "-o", "o", "-j", "0"], "--jobs is \"0\""),
+                                    (["study", "a.toml", "-o"], "has no value"), (["study", "a", "b", "-o", "o"], "second input"),
+                                    (["study", "none.toml", "-o", "o"], "none.toml")]:
+            done = subprocess.run([self.chain.programs / "jointcreep", *arguments], capture_output=True, text=True, cwd=self.folder)
+            self.assertIn(done.returncode, (2, 4), arguments)
+            self.assertIn(expected, done.stderr)
+
+
+class SceneKeys(unittest.TestCase):
+    def test_a_scene_comes_back(self):
+        import tomllib
+        for path in [*ChainTest.chain.source.glob("data/**/*.toml"), ChainTest.chain.source / "tests/pipeline/every_key.toml"]:
+            scene = tomllib.loads(path.read_text("utf-8-sig"))
+            self.assertEqual(tomllib.loads(scene_keys.toml_text(scene)), scene, path)
+        hard = {"a b": 'quote " back \\ tab \t end \x7f é', "table": {"x.y": [1, 2.5, True], "inner": {"k": "v"}},
+                "list": [{"name": 'a "b"'}, {"name": "c"}], "empty": [], "none": {}}
+        self.assertEqual(tomllib.loads(scene_keys.toml_text(hard)), hard)
+
+    def test_paths(self):
+        scene = {"material": [{"name": "a.b c", "k": 1}, {"k": 2}], "t": {"u": {"v": 3}}}
+        self.assertEqual(scene_keys.value_at(scene, 'material."a.b c".k'), 1)
+        self.assertEqual(scene_keys.value_at(scene, "material.2.k"), 2)
+        new = scene_keys.changed(scene, {'material."a.b c".k': 7, "t.u.v": 8})
+        self.assertEqual((new["material"][0]["k"], new["t"]["u"]["v"], scene["t"]["u"]["v"]), (7, 8, 3))
+        for path in ("material.k", "t", "t.u.w", "", "a b", "material.1.k"):
+            with self.subTest(path), self.assertRaises(NotWanted):
+                scene_keys.value_at(scene, path) if path != "t" else scene_keys.value_at(scene, "t.")
+
+
+class Intervals(unittest.TestCase):
+    def test_by_tables(self):
+        values = np.arange(1.0, 11.0)  # mean 5.5, deviation 3.02765
+        for found, wanted in zip(intervals.mean(values), (5.5, 5.5 - 2.262157 * 0.957427, 5.5 + 2.262157 * 0.957427)):
+            self.assertAlmostEqual(found, wanted, places=5)
+        # Median of 10: between the 2nd and the 9th value with 97.85 percent; 3rd and 8th have 89.06.
+        self.assertEqual(intervals.quantile(values, 0.5), (5.5, 2.0, 9.0))
+        self.assertEqual(intervals.quantile(values, 0.05)[1], None)
+        # Clopper and Pearson, 0 of 10: 1 - 0.025^(1/10)
+        self.assertAlmostEqual(intervals.probability(0, 10)[2], 1 - 0.025 ** 0.1, places=12)
+        self.assertAlmostEqual(intervals.probability(10, 10)[1], 0.025 ** 0.1, places=12)
+
+    def test_crossed(self):
+        """Of networks alone, the interval is Student's of the networks' means; of independent cells it is near that of all."""
+        random_numbers = np.random.default_rng(1)
+        of_network = random_numbers.normal(size=8)
+        table = np.repeat(of_network[:, None], 5, axis=1)
+        for found, wanted in zip(intervals.mean_of_crossed(table), intervals.mean(of_network)):
+            self.assertAlmostEqual(found, wanted, places=9)
+
+    def test_parts(self):
+        values = np.array([1.0, 2, 3, 4, 5, 9])
+        middle, low, high = intervals.mean_of_parts(values, np.array([0, 0, 1, 1, 2, 2]))
+        _, wanted_low, wanted_high = intervals.mean(np.array([1.5, 3.5, 7]))
+        for found, wanted in zip((middle, low, high), (4.0, wanted_low, wanted_high)):
+            self.assertAlmostEqual(found, wanted, places=12)
+
+
+if __name__ == "__main__":
+    main()
