@@ -1,15 +1,21 @@
 """Monte Carlo studies of jointcreep: one study file in, many runs of the programs, their statistics and a report out.
 
+In the order in which a study passes through them:
+
     command.py      the command line
     study_file.py   reads and checks the study file
     scene_keys.py   finds and changes the keys of a scene
+    plan.py         what a study's folder has before runs are made
     design.py       what each run is given: its network and its parameters
+    runs.py         makes all groups of runs, by GNU Make or Snakemake, and goes on where it was interrupted
     group.py        makes the runs of one group, one after another, and keeps a line of results for each
-    runs.py         makes all groups, by GNU Make or Snakemake, and goes on where it was interrupted
-    table.py        runs.csv, runs.h5 and times.csv: a row a run
     quantities.py   reads what is collected from the files of a run
     histories.py    displacements of points at any time
-    answers.py      means, quantiles and probabilities with confidence, shares of the variance
+    failure.py      the probability of a rare failure
+    table.py        runs.csv, runs.h5 and times.csv: a row a run
+    intervals.py    means, quantiles and probabilities with their confidence intervals
+    answers.py      these of a study, how they converge, and shares of the variance
     pictures.py     pictures of them
     report.py       one page of HTML
+    errors.py       what ends a command with a message
 """

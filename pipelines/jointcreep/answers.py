@@ -9,13 +9,13 @@ import numpy as np
 from . import failure, intervals, plan
 from .design import openturns
 from .intervals import CONFIDENCE
+from .quantities import NO_EQUILIBRIUM
 from .study_file import NETWORK
 
 QUANTILES = [0.05, 0.25, 0.50, 0.75, 0.95]
 FEWEST = 10  # runs from which convergence is shown
 STEPS = 30  # numbers of runs at which it is shown, at most
 NAMED = 20  # runs that a line of the summary lists
-NO_EQUILIBRIUM = 3
 
 
 def values_of(study, rows, at):

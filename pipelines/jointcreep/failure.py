@@ -8,6 +8,7 @@ varies: the probability is their mean.
 
 from . import design, intervals
 from .errors import NotWanted
+from .quantities import NO_EQUILIBRIUM
 
 FARTHEST = 8.0  # distance from the middle at which a direction ends; beyond are 1e-15 to 1e-11 of one to five laws
 PRECISION = 1e-4  # of the distance at which runs begin to fail
@@ -18,7 +19,7 @@ def fails(study, row):
     """Whether a run has failed: it has no equilibrium, or the quantity of [design] failure is beyond its limit."""
     at = [one.name for one in study.quantities].index(study.design.failure)
     quantity, value = study.quantities[at], row["values"][at]
-    if row["exit_code"] == 3:
+    if row["exit_code"] == NO_EQUILIBRIUM:
         return True
     if value is None:
         raise NotWanted(f"run {row['run']} has no value of \"{quantity.name}\": {row['reason'] or 'its point is gone'}")

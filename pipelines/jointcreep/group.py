@@ -110,7 +110,7 @@ def made(study, scene, text, run, programs, folder):
 def result_of(study, scene, text, run, programs, folder):
     """The line of results of a run, made once more if it fails; but not if it finds no equilibrium and that is asked for."""
     begin = time.monotonic()
-    answer = 3 if any(one.what == "failed" for one in study.quantities) else 0
+    answer = quantities.NO_EQUILIBRIUM if any(one.what == "failed" for one in study.quantities) else 0
     for attempt in (1, 2):
         try:
             row = made(study, scene, text, run, programs, folder)

@@ -8,6 +8,8 @@ import numpy as np
 from . import histories
 from .errors import NotWanted
 
+NO_EQUILIBRIUM = 3  # exit code of demsolve
+
 
 def check(study, scene):
     """Refuses quantities that the scene cannot have. `scene` as tomllib reads it."""
@@ -100,7 +102,7 @@ def of_run(study, scene, folder, solve_code):
         name = {"blocks": "network.h5", "factor of safety": "safety.h5"}.get(one.what, "result.h5")
         value = None
         if one.what == "failed":
-            value = {0: 0.0, 3: 1.0}.get(solve_code)
+            value = {0: 0.0, NO_EQUILIBRIUM: 1.0}.get(solve_code)
         elif (folder / name).exists():
             with h5py.File(folder / name) as file:
                 if one.what == "displacement":
