@@ -314,18 +314,6 @@ double Layer::area() const
     return sum;
 }
 
-const std::vector<LayerName>& layer_names()
-{
-    static const std::vector<LayerName> names{
-        {"joints", "joint traces inside the section"},
-        {"bridges", "rock bridges between them"},
-        {"edges", "edges of blocks, with equivalent joints after strength-averaging"},
-        {"blocks", "blocks with rock, stage and area"},
-        {"section", "the section's area"},
-        {"planes", "joints in space: discs as sampled; other traces as rectangles of --width"}};
-    return names;
-}
-
 Layer layer_of(const Section& section, std::string_view name, std::optional<double> width)
 {
     if (name == "joints" || name == "bridges")

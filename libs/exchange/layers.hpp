@@ -73,12 +73,6 @@ struct Layer {
     double area() const;   // of all polygons, holes taken out [m2]
 };
 
-// The names of all layers, and what is in them.
-struct LayerName {
-    std::string_view name, holds;
-};
-const std::vector<LayerName>& layer_names();
-
 // A layer by its name. `width` is how far the joints that are no discs reach across the section, for the layer
 // "planes" [m]; it throws input_error where there are such joints and no width.
 Layer layer_of(const Section& section, std::string_view name, std::optional<double> width = {});
