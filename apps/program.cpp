@@ -110,9 +110,9 @@ std::string help(const Program& program)
 po::variables_map parsed(const Program& program, int argc, char** argv)
 {
     po::options_description options = described(program);
-    options.add_options()("input", po::value<std::string>());
+    options.add_options()("input", po::value<std::vector<std::string>>());
     po::positional_options_description positional;
-    positional.add("input", 1);
+    positional.add("input", program.takes_several ? -1 : 1);
     po::variables_map given;
     try {
         using namespace po::command_line_style;
@@ -262,13 +262,16 @@ void write_text(const std::string& path, const std::string& text)
 std::vector<NamedFile> Arguments::files(const std::vector<std::string>& options) const
 {
     std::vector<NamedFile> files;
-    for (const std::string& option : options)
-        if (has(option)) {
-            const std::string name = option == "input"    ? "the input"
-                                     : option == "output" ? "-o"
-                                                          : "--" + option;
-            files.push_back({wanted(option), name + ' ' + wanted(option)});
-        }
+    for (const std::string& option : options) {
+        if (!has(option))
+            continue;
+        wanted(option);
+        if (option == "input")
+            for (const std::string& input : inputs_)
+                files.push_back({input, "the input " + input});
+        else
+            files.push_back({wanted(option), (option == "output" ? "-o" : "--" + option) + ' ' + wanted(option)});
+    }
     return files;
 }
 
@@ -356,6 +359,11 @@ int run(const Program& program, int argc, char** argv, const std::function<void(
         for (const Option& option : program.options)
             arguments.shown_[option.name] = "--" + option.name;
         for (const auto& [name, value] : parsed(program, argc, argv)) {
+            if (const auto* inputs = boost::any_cast<std::vector<std::string>>(&value.value())) {
+                arguments.inputs_ = *inputs;
+                arguments.given_[name] = inputs->front();
+                continue;
+            }
             const auto* text = boost::any_cast<std::string>(&value.value());
             arguments.given_[name] = text ? *text : "";
             if (text)

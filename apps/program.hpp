@@ -69,6 +69,7 @@ struct Program {
     std::string example;       // a whole command line
     std::string other_usage{}; // arguments without -o, if some go without it
     std::string columns{};     // of tables that it reads, if any; indented lines
+    bool takes_several = false; // inputs
 };
 
 // A file of a run, and what messages call it: "--readings fit.csv".
@@ -103,6 +104,8 @@ public:
     // The file to read, and the file to write; both refuse if not given.
     const std::string& input() const { return wanted("input"); }
     const std::string& output() const { return wanted("output"); }
+    // All files to read, of a program that takes several.
+    const std::vector<std::string>& inputs() const { return inputs_; }
 
     const std::string& program() const { return program_; } // its name
     bool has(const std::string& option) const { return given_.contains(option); }
@@ -125,6 +128,7 @@ private:
     const std::string& wanted(const std::string& name) const;
 
     std::string program_;
+    std::vector<std::string> inputs_;
     std::map<std::string, std::string> given_;
     std::map<std::string, std::string> shown_; // how messages name them: "--seed", "SCENE.toml"
 };

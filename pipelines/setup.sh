@@ -5,6 +5,7 @@
 #   sh pipelines/setup.sh test     these and the tests
 #   sh pipelines/setup.sh develop  programs and tests, and what formats and reads the sources
 #   sh pipelines/setup.sh studies  programs and tests, and what studies need and pipelines compare with
+#   sh pipelines/setup.sh exchange programs and tests, GDAL for jointexport, and readers of its files
 #   sh pipelines/setup.sh fuzz     the fuzz targets, into build/fuzz
 #
 # A list of packages is a file of pipelines/packages, one name a line.
@@ -12,7 +13,7 @@ set -eu
 cd "$(dirname "$0")/.."
 
 if [ $# -gt 1 ]; then
-  echo "setup.sh: unknown \"$2\"; expected nothing, test, develop, studies or fuzz" >&2
+  echo "setup.sh: unknown \"$2\"; expected nothing, test, develop, studies, exchange or fuzz" >&2
   exit 2
 fi
 case "$PWD" in
@@ -25,10 +26,10 @@ purpose="${1:-run}"
 case "$purpose" in
 run) lists="run" preset="release" ;;
 test) lists="run test" preset="test" ;;
-develop | studies) lists="run test $purpose" preset="test" ;;
+develop | studies | exchange) lists="run test $purpose" preset="test" ;;
 fuzz) lists="run test fuzz" preset="fuzz" ;;
 *)
-  echo "setup.sh: unknown purpose \"$purpose\"; expected nothing, test, develop, studies or fuzz" >&2
+  echo "setup.sh: unknown purpose \"$purpose\"; expected nothing, test, develop, studies, exchange or fuzz" >&2
   exit 2
   ;;
 esac

@@ -1,10 +1,9 @@
 #include "exchange/csv.hpp"
 
-#include "exchange/forces.hpp"
+#include "exchange/text.hpp"
+#include "exchange/writers.hpp"
 #include "model/error.hpp"
 
-#include <algorithm>
-#include <array>
 #include <string_view>
 
 namespace jointcreep::exchange
@@ -28,61 +27,49 @@ std::string field(const Eigen::Vector2d& vector)
     return shown(vector.x()) + ',' + shown(vector.y());
 }
 
-// The name that an index stands for; empty for none.
-std::string name_of(const std::vector<std::string>& names, Index index)
+// The corners of a polygon's ring, closed.
+template <class Visit>
+void for_sides(const Layer& layer, std::size_t row, Visit visit)
 {
-    return index < 0 ? "" : csv_field(names[index]);
-}
-
-template <class... Fields>
-void add_row(std::string& table, const Fields&... fields)
-{
-    std::string_view separator;
-    ((table.append(separator).append(fields), separator = ","), ...);
-    table += '\n';
-}
-
-// Summed over triangles between the first vertex and every edge: exact for any ring, holes counting negative,
-// and as accurate far from the origin as near it.
-Eigen::Vector2d centroid(const Blocks& blocks, std::size_t block)
-{
-    const Eigen::Vector2d origin =
-        blocks.vertex[blocks.ring_vertex[blocks.ring_start[blocks.block_ring[block]]]];
-    double twice_area = 0;
-    Eigen::Vector2d moment(0, 0);
-    for (Index ring = blocks.block_ring[block]; ring < blocks.block_ring[block + 1]; ++ring) {
-        const Index first = blocks.ring_start[ring], end = blocks.ring_start[ring + 1];
-        for (Index i = first; i < end; ++i) {
-            const Eigen::Vector2d p = blocks.vertex[blocks.ring_vertex[i]] - origin;
-            const Eigen::Vector2d q = blocks.vertex[blocks.ring_vertex[i + 1 < end ? i + 1 : first]] - origin;
-            const double cross = p.x() * q.y() - p.y() * q.x();
-            twice_area += cross;
-            moment += cross * (p + q);
-        }
+    for (Index r = layer.first_ring[row]; r < layer.first_ring[row + 1]; ++r) {
+        const auto ring = layer.ring(r);
+        for (std::size_t i = 0; i < ring.size(); ++i)
+            visit(layer.point[ring[i]], layer.point[ring[(i + 1) % ring.size()]]);
     }
-    return origin + moment / (3 * twice_area);
 }
 
-Index vertices_of(const Blocks& blocks, std::size_t block)
+// Summed over triangles between the first corner and every side: exact for any ring, holes counting negative, and as
+// accurate far from the origin as near it.
+Eigen::Vector3d centroid(const Layer& layer, std::size_t row)
 {
-    return blocks.ring_start[blocks.block_ring[block + 1]] - blocks.ring_start[blocks.block_ring[block]];
+    const Eigen::Vector3d origin = layer.point[layer.ring(layer.first_ring[row])[0]];
+    Eigen::Vector3d normal(0, 0, 0), moment(0, 0, 0);
+    for_sides(layer, row, [&](const Eigen::Vector3d& p, const Eigen::Vector3d& q) {
+        normal += (p - origin).cross(q - origin);
+    });
+    for_sides(layer, row, [&](const Eigen::Vector3d& p, const Eigen::Vector3d& q) {
+        moment += (p - origin).cross(q - origin).dot(normal) * (p + q - 2 * origin);
+    });
+    return origin + moment / (3 * normal.squaredNorm());
 }
 
-std::string field(const fields::Column& column, std::size_t row)
+std::string coordinates_of(const Layer& layer, std::size_t row)
 {
-    const double value = column.value(row);
-    return column.is_integer ? field(static_cast<Index>(value)) : field(value);
+    if (layer.shape == Shape::lines)
+        return place_text(Eigen::Vector2d(layer.from(row).head<2>()), ",") + ',' +
+               place_text(Eigen::Vector2d(layer.to(row).head<2>()), ",");
+    const Eigen::Vector3d centre = centroid(layer, row);
+    return layer.is_in_space ? place_text(centre, ",") : place_text(Eigen::Vector2d(centre.head<2>()), ",");
 }
 
-// What a column's name says of its unit: "_Pa_s_per_m", or nothing of a plain number.
-std::string suffix(std::string unit)
+void append_row(std::string& table, const Layer& layer, const std::string& coordinates,
+                const std::function<std::string(const Attribute&)>& field_of)
 {
-    if (unit == "1")
-        return "";
-    if (const auto slash = unit.find('/'); slash != std::string::npos)
-        unit.replace(slash, 1, "_per_");
-    std::ranges::replace(unit, ' ', '_');
-    return "_" + unit;
+    for (std::size_t i = 0; i < layer.attributes.size(); ++i) {
+        if (i == layer.leading)
+            table.append(coordinates).append(",");
+        table.append(field_of(layer.attributes[i])).append(i + 1 < layer.attributes.size() ? "," : "\n");
+    }
 }
 
 } // namespace
@@ -99,56 +86,37 @@ std::string csv_field(const std::string& text)
     return quoted + '"';
 }
 
-std::string joints_csv(const Network& network)
+std::string layers_csv(std::span<const Layer> layers)
 {
-    const Joints& joints = network.joints;
-    std::string table = "set,number,x1_m,y1_m,x2_m,y2_m\n";
-    for (std::size_t trace = 0; trace < joints.trace_joint.size(); ++trace) {
-        const Index joint = joints.trace_joint[trace];
-        add_row(table, name_of(network.names.joint_set, joints.set[joint]), field(joints.number[joint]),
-                field(joints.trace_from[trace]), field(joints.trace_to[trace]));
-    }
+    std::string table;
+    const std::string coordinates = layers[0].shape == Shape::lines ? "x1_m,y1_m,x2_m,y2_m"
+                                    : layers[0].is_in_space         ? "east_m,north_m,up_m"
+                                                                    : "x_m,y_m";
+    append_row(table, layers[0], coordinates, [](const Attribute& attribute) { return attribute.heading(); });
+    for (const Layer& layer : layers)
+        for (std::size_t row = 0; row < layer.rows(); ++row)
+            append_row(table, layer, coordinates_of(layer, row), [&](const Attribute& attribute) {
+                const std::string text = text_of(attribute, row);
+                return attribute.names ? csv_field(text) : text;
+            });
     return table;
 }
 
-std::string blocks_csv(const Network& network)
+std::vector<File> write_csv(const Job& job)
 {
-    const Blocks& blocks = network.blocks;
-    std::string table = "block,rock,stage,area_m2,x_m,y_m,vertices,holes\n";
-    for (std::size_t block = 0; block < blocks.block_area.size(); ++block)
-        add_row(table, std::to_string(block), name_of(network.names.rock, blocks.block_rock[block]),
-                name_of(network.names.stage, blocks.block_stage[block]), field(blocks.block_area[block]),
-                field(centroid(blocks, block)), field(vertices_of(blocks, block)),
-                field(blocks.block_ring[block + 1] - blocks.block_ring[block] - 1));
-    return table;
+    return {{"", "", layers_csv(job.all(job.layers[0]))}};
 }
 
-std::string edges_csv(const Network& network, const EquivalentJoints* equivalent)
+// Of joint traces in two dimensions: a line of headings and five columns. PorePy takes every further column for a
+// coordinate, so what the lines are is in a table of ids beside it.
+std::vector<File> write_porepy(const Job& job)
 {
-    constexpr std::array kinds = {"boundary", "joint", "bonded"}; // by EdgeKind
-    const Blocks& blocks = network.blocks;
-    const Joints& joints = network.joints;
-    std::string table = "edge,x1_m,y1_m,x2_m,y2_m,left_block,right_block,kind,set,number,joint_fraction";
-    const std::vector<fields::Column> columns =
-        equivalent ? columns_of(&fields::ForceColumns::of_edges, *equivalent) : std::vector<fields::Column>();
-    for (const fields::Column& column : columns)
-        table.append(",").append(column.name).append(suffix(column.units));
-    table += '\n';
-    for (std::size_t edge = 0; edge < blocks.edge_vertex.size(); ++edge) {
-        const auto [first, second] = blocks.edge_vertex[edge];
-        const auto [left, right] = blocks.edge_block[edge];
-        const Index joint = blocks.edge_joint[edge];
-        add_row(table, std::to_string(edge), field(blocks.vertex[first]), field(blocks.vertex[second]),
-                left < 0 ? "" : field(left), right < 0 ? "" : field(right), kinds.at(blocks.edge_kind[edge]),
-                joint < 0 ? "" : name_of(network.names.joint_set, joints.set[joint]),
-                joint < 0 ? "" : field(joints.number[joint]),
-                joint < 0 ? "" : field(blocks.edge_joint_fraction[edge]));
-        table.pop_back(); // the end of the line
-        for (const fields::Column& column : columns)
-            table.append(",").append(field(column, edge));
-        table += '\n';
-    }
-    return table;
+    const std::vector<Layer> layers = job.all("joints");
+    const Layer& layer = layers[0];
+    std::string table = "FID,START_X,START_Y,END_X,END_Y\n";
+    for (std::size_t row = 0; row < layer.rows(); ++row)
+        table.append(std::to_string(row)).append(",").append(coordinates_of(layer, row)).append("\n");
+    return {{"ids", ".csv", ids_csv(layers, counted_from(0))}, {"", "", table}};
 }
 
 std::string histories_csv(const History& history)

@@ -1,11 +1,11 @@
-// Joints, blocks, edges and histories as tables for spreadsheets and scripts: comma-separated, one line of
+// Layers and histories as tables for spreadsheets and scripts: comma-separated, one line of
 // headings with units, names in quotes where they need it (RFC 4180) or begin as a formula does, every number
 // so that it reads back as the same double. Indices are those of the records; a field without a value (an edge
 // without a joint) is empty.
 
 #pragma once
 
-#include "model/network.hpp"
+#include "exchange/layers.hpp"
 #include "model/result.hpp"
 
 #include <string>
@@ -17,15 +17,9 @@ namespace jointcreep::exchange
 // as text; without quotes, one that begins with = + - @ or a tab may be taken for a formula.
 std::string csv_field(const std::string& text);
 
-// One row a joint trace: set, number (of its joint within the set), x1_m, y1_m, x2_m, y2_m.
-std::string joints_csv(const Network& network);
-
-// One row a block: block, rock, stage (that removes it), area_m2, x_m, y_m (its centroid), vertices, holes.
-std::string blocks_csv(const Network& network);
-
-// One row an edge: edge, x1_m, y1_m, x2_m, y2_m, left_block, right_block, kind, set, number, joint_fraction,
-// and with `equivalent` (null where strength-averaging has not yet been) its joint properties.
-std::string edges_csv(const Network& network, const EquivalentJoints* equivalent);
+// One row a row of the layers, which have the same attributes: attributes, and coordinates after the leading ones.
+// Lines have x1_m, y1_m, x2_m, y2_m, polygons their centroid x_m, y_m, in space east_m, north_m, up_m.
+std::string layers_csv(std::span<const Layer> layers);
 
 // One row a recorded time: time_day, event, and for each point A: A_x_m, A_y_m (displacement since the
 // in-situ equilibrium), A_present (0 once removed).

@@ -1,13 +1,16 @@
 #include "exchange/vtu.hpp"
 
+#include "exchange/convex.hpp"
 #include "exchange/forces.hpp"
+#include "exchange/writers.hpp"
 #include "model/error.hpp"
 
 #include <algorithm>
-#include <concepts>
+#include <bit>
 #include <cstdint>
-#include <limits>
+#include <cstring>
 #include <numeric>
+#include <span>
 #include <string_view>
 
 namespace jointcreep::exchange
@@ -21,7 +24,26 @@ using fields::ForceColumns;
 
 enum CellType { vertex = 1, line = 3, triangle = 5, polygon = 7, quadratic_triangle = 22 }; // VTK's numbers
 
-// The text of a grid, in the order in which VTK wants its parts.
+// Bytes in base64 (RFC 4648).
+std::string base64(std::span<const unsigned char> bytes)
+{
+    constexpr std::string_view letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::string text;
+    text.reserve((bytes.size() + 2) / 3 * 4);
+    for (std::size_t i = 0; i < bytes.size(); i += 3) {
+        const auto byte = [&](std::size_t at) { return at < bytes.size() ? unsigned{bytes[at]} : 0U; };
+        const unsigned three = byte(i) << 16 | byte(i + 1) << 8 | byte(i + 2);
+        text += letters[three >> 18];
+        text += letters[three >> 12 & 63];
+        text += i + 1 < bytes.size() ? letters[three >> 6 & 63] : '=';
+        text += i + 2 < bytes.size() ? letters[three & 63] : '=';
+    }
+    return text;
+}
+
+// The text of a grid, in the order in which VTK wants its parts. Numbers are binary, all in base64 behind the grid,
+// each array with its size in bytes before it. Readers of raw bytes are fewer, and meshio's can take one array for
+// another.
 class GridText
 {
 public:
@@ -60,6 +82,14 @@ public:
             flat.insert(flat.end(), {vector.x(), vector.y(), 0.0});
         array("Float64", name, 3, flat);
     }
+    void add(std::string_view name, const std::vector<Eigen::Vector3d>& vectors)
+    {
+        std::vector<double> flat;
+        flat.reserve(3 * vectors.size());
+        for (const Eigen::Vector3d& vector : vectors)
+            flat.insert(flat.end(), {vector.x(), vector.y(), vector.z()});
+        array("Float64", name, 3, flat);
+    }
 
     void add(const Column& column, const std::vector<Index>& rows)
     {
@@ -69,16 +99,16 @@ public:
             add(column.name, values_of<double>(column, rows));
     }
 
-    // Field data: the names behind a code, as bytes, each ended by a 0; and the time of a state.
+    // Field data: the names behind a code, as bytes of UTF-8, each name ended by a 0; and the time of a state. (meshio ends at
+    // VTK's arrays of the type String.)
     void add_names(const std::string& name, const std::vector<std::string>& names)
     {
-        std::vector<Index> bytes;
+        std::vector<unsigned char> bytes;
         for (const std::string& text : names) {
-            for (const char c : text)
-                bytes.push_back(static_cast<unsigned char>(c));
+            bytes.insert(bytes.end(), text.begin(), text.end());
             bytes.push_back(0);
         }
-        array("String", name, names.size(), bytes);
+        array("UInt8", name, 1, bytes);
     }
     void add_time(double time) { array("Float64", "TimeValue", 1, std::vector<double>{time}); }
 
@@ -88,13 +118,15 @@ public:
         open("Cells");
         add("connectivity", connectivity);
         add("offsets", offsets);
-        array("UInt8", "types", 1, std::vector<Index>(offsets.size(), type));
+        array("UInt8", "types", 1,
+              std::vector<unsigned char>(offsets.size(), static_cast<unsigned char>(type)));
     }
 
     std::string finish()
     {
         close();
-        return text_ + "</Piece>\n</UnstructuredGrid>\n</VTKFile>\n";
+        return text_ + "</Piece>\n</UnstructuredGrid>\n<AppendedData encoding=\"base64\">\n_" + appended_ +
+               "\n</AppendedData>\n</VTKFile>\n";
     }
 
 private:
@@ -108,24 +140,23 @@ private:
         return values;
     }
 
-    static std::string text_of(double value) { return shown(value); }
-    template <std::integral Value>
-    static std::string text_of(Value value)
-    {
-        return std::to_string(value);
-    }
-
     template <class Value>
-    void array(std::string_view type, std::string_view name, std::size_t number,
+    void array(std::string_view type, std::string_view name, std::size_t components,
                const std::vector<Value>& values)
     {
-        // In field data the number counts tuples, elsewhere the components of each.
         text_.append("<DataArray type=\"").append(type).append("\" Name=\"").append(name);
+        // In field data the number of tuples is to be said.
         text_.append(section_ == "FieldData" ? "\" NumberOfTuples=\"" : "\" NumberOfComponents=\"");
-        text_.append(std::to_string(number)).append("\" format=\"ascii\">\n");
-        for (std::size_t i = 0; i < values.size(); ++i)
-            text_.append(text_of(values[i])).append(i % 12 == 11 || i + 1 == values.size() ? "\n" : " ");
-        text_ += "</DataArray>\n";
+        text_.append(std::to_string(section_ == "FieldData" ? values.size() : components));
+        text_.append("\" format=\"appended\" offset=\"").append(std::to_string(appended_.size()));
+        text_ += "\"/>\n";
+        static_assert(std::endian::native == std::endian::little);
+        const std::uint64_t size = values.size() * sizeof(Value);
+        std::vector<unsigned char> bytes(sizeof size + size);
+        std::memcpy(bytes.data(), &size, sizeof size);
+        if (size > 0)
+            std::memcpy(bytes.data() + sizeof size, values.data(), size);
+        appended_ += base64(bytes);
     }
 
     void close()
@@ -135,7 +166,7 @@ private:
         section_ = "";
     }
 
-    std::string text_, piece_;
+    std::string text_, piece_, appended_;
     std::string_view section_;
 };
 
@@ -178,98 +209,49 @@ std::vector<Index> looked_up(const std::vector<Index>& target, const std::vector
     return result;
 }
 
-// The vertices around a block, its holes joined in by bridges between nearest vertices.
-std::vector<Index> outline(const Blocks& blocks, std::size_t block)
+// The values of an attribute: codes of names and whole numbers with -1 for none, other numbers with 0.
+void add(GridText& grid, const Attribute& attribute, std::size_t rows)
 {
-    const auto ring = [&](Index r) {
-        return std::vector<Index>(blocks.ring_vertex.begin() + blocks.ring_start[r],
-                                  blocks.ring_vertex.begin() + blocks.ring_start[r + 1]);
-    };
-    std::vector<Index> around = ring(blocks.block_ring[block]);
-    for (Index r = blocks.block_ring[block] + 1; r < blocks.block_ring[block + 1]; ++r) {
-        std::vector<Index> hole = ring(r);
-        std::size_t from = 0, to = 0;
-        double nearest = std::numeric_limits<double>::infinity();
-        for (std::size_t i = 0; i < around.size(); ++i)
-            for (std::size_t j = 0; j < hole.size(); ++j) {
-                const double distance = (blocks.vertex[around[i]] - blocks.vertex[hole[j]]).squaredNorm();
-                if (distance < nearest) {
-                    nearest = distance;
-                    from = i;
-                    to = j;
-                }
-            }
-        // ... from, then the hole from `to` round to `to`, then from again ...
-        std::rotate(hole.begin(), hole.begin() + static_cast<std::ptrdiff_t>(to), hole.end());
-        hole.push_back(hole.front());
-        hole.push_back(around[from]);
-        around.insert(around.begin() + static_cast<std::ptrdiff_t>(from) + 1, hole.begin(), hole.end());
-    }
-    return around;
+    std::vector<Index> codes;
+    std::vector<double> numbers;
+    for (std::size_t row = 0; row < rows; ++row)
+        if (attribute.is_integer)
+            codes.push_back(static_cast<Index>(attribute.value(row).value_or(-1)));
+        else
+            numbers.push_back(attribute.value(row).value_or(0));
+    if (attribute.is_integer)
+        grid.add(attribute.name, codes);
+    else
+        grid.add(attribute.name, numbers);
 }
 
 } // namespace
 
-std::string blocks_vtu(const Network& network)
+std::string layer_vtu(const Layer& layer)
 {
-    const Blocks& blocks = network.blocks;
-    const std::size_t count = blocks.block_area.size();
-
     std::vector<std::int64_t> connectivity, offsets;
-    std::vector<Index> ids;
-    for (std::size_t block = 0; block < count; ++block) {
-        const std::vector<Index> around = outline(blocks, block);
+    for (std::size_t row = 0; row < layer.rows(); ++row) {
+        const std::vector<Index> around = with_bridges(layer, row);
         connectivity.insert(connectivity.end(), around.begin(), around.end());
         offsets.push_back(static_cast<std::int64_t>(connectivity.size()));
-        ids.push_back(static_cast<Index>(block));
     }
-
-    GridText grid(blocks.vertex.size(), count);
+    GridText grid(layer.point.size(), layer.rows());
     grid.open("FieldData");
-    grid.add_names("rock_names", network.names.rock);
-    grid.add_names("stage_names", network.names.stage);
+    for (const Attribute& attribute : layer.attributes)
+        if (attribute.names)
+            grid.add_names(attribute.name + "_names", *attribute.names);
     grid.open("CellData");
-    grid.add("block", ids);
-    grid.add("rock", blocks.block_rock);
-    grid.add("stage", blocks.block_stage);
-    grid.add("area", blocks.block_area);
+    for (const Attribute& attribute : layer.attributes)
+        add(grid, attribute, layer.rows());
     grid.open("Points");
-    grid.add("position", blocks.vertex);
-    grid.cells(connectivity, offsets, polygon);
+    grid.add("position", layer.point);
+    grid.cells(connectivity, offsets, layer.shape == Shape::lines ? line : polygon);
     return grid.finish();
 }
 
-std::string joints_vtu(const Network& network, const EquivalentJoints* equivalent)
+std::vector<File> write_vtu(const Job& job)
 {
-    const Blocks& blocks = network.blocks;
-    std::vector<Index> edges;
-    std::vector<std::int64_t> connectivity;
-    for (std::size_t edge = 0; edge < blocks.edge_vertex.size(); ++edge) {
-        const bool rests_on_joint = equivalent && equivalent->normal_stiffness[edge] > 0;
-        if (blocks.edge_kind[edge] != static_cast<Index>(EdgeKind::joint) && !rests_on_joint)
-            continue;
-        edges.push_back(static_cast<Index>(edge));
-        connectivity.insert(connectivity.end(), blocks.edge_vertex[edge].begin(),
-                            blocks.edge_vertex[edge].end());
-    }
-    const std::vector<Index> joint = picked(blocks.edge_joint, edges);
-
-    GridText grid(blocks.vertex.size(), edges.size());
-    grid.open("FieldData");
-    grid.add_names("joint_set_names", network.names.joint_set);
-    grid.open("CellData");
-    grid.add("edge", edges);
-    grid.add("kind", picked(blocks.edge_kind, edges));
-    grid.add("joint", joint);
-    grid.add("set", looked_up(network.joints.set, joint));
-    grid.add("joint_fraction", picked(blocks.edge_joint_fraction, edges));
-    if (equivalent)
-        for (const Column& column : columns_of(&ForceColumns::of_edges, *equivalent))
-            grid.add(column, edges);
-    grid.open("Points");
-    grid.add("position", blocks.vertex);
-    grid.cells(connectivity, offsets_of(edges.size(), 2), line);
-    return grid.finish();
+    return {{"", "", layer_vtu(job.all(job.layers[0])[0])}};
 }
 
 std::string zones_vtu(const Network& network, const Result& result, std::size_t state)

@@ -8,6 +8,7 @@
 
 #pragma once
 
+#include "exchange/layers.hpp"
 #include "model/network.hpp"
 #include "model/result.hpp"
 
@@ -17,16 +18,11 @@
 namespace jointcreep::exchange
 {
 
-// One polygon a block; cell i is block i. A hole is joined to the outer ring by a bridge without width, there
-// and back between their nearest vertices. VTK draws a concave polygon as if it were convex: for a true
-// picture apply ParaView's filter Tetrahedralize first, which however leaves out blocks with a hole.
-// Cells: block, rock, stage (that removes it), area [m2].
-std::string blocks_vtu(const Network& network);
-
-// One line an edge that has joint properties: the joint edges, and boundary edges that rest on a joint (these
-// only with `equivalent`, which is null where strength-averaging has not yet been). Cells: edge, kind
-// (EdgeKind), joint, set, joint_fraction [-], then the columns of forces.
-std::string joints_vtu(const Network& network, const EquivalentJoints* equivalent);
+// One cell a row of a layer, in its order. Of a polygon holes are joined to the outer ring by a bridge without width, there
+// and back between their nearest corners. VTK draws a concave polygon as if it were convex: for a true
+// picture apply ParaView's filter Tetrahedralize first, which however leaves out polygons with a hole.
+// Cells: the layer's attributes by their names without units; a name is a code, and NAME_names has what it stands for.
+std::string layer_vtu(const Layer& layer);
 
 // The zones present in a state, one triangle each, at their positions at the start. `state` is a row of
 // result.states; one that does not exist throws input_error. Its time [day] is the field data array

@@ -50,6 +50,11 @@ struct Joints {
     // degrees. Zero where only the trace angle was drawn [-].
     std::vector<Eigen::Vector3d> pole{};
     std::vector<Eigen::Vector2d> point{}; // where the joint was placed, about which it turns [m]
+
+    // Of the disc that a trace is a chord of: its diameter, 0 of joints that are no discs [m]; its centre, z being
+    // across the section; of others the point above [m].
+    std::vector<double> diameter{};
+    std::vector<Eigen::Vector3d> centre{};
 };
 
 // What cutting had to change to keep edges and angles above the scene's limits.

@@ -8,6 +8,8 @@
 #include "sampling/stretches.hpp"
 #include "sampling/terminations.hpp"
 
+#include <Eigen/Geometry>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -27,6 +29,11 @@ constexpr std::int64_t most_skipped_lines = 10'000'000;
 constexpr std::int64_t most_intervals = 10'000'000; // traces and bridges drawn for one scene
 constexpr Index most_pieces = std::numeric_limits<Index>::max() / piece_step; // of a line
 constexpr Index most_mapped_ids = std::numeric_limits<Index>::max() / mapped_step;
+
+Eigen::Vector3d in_space(const Vector2d& in_section)
+{
+    return {in_section.x(), in_section.y(), 0};
+}
 
 Interval widened(Interval interval, double margin)
 {
@@ -84,8 +91,10 @@ public:
     double expected(double p20) const { return p20 * all() / moment(order_); } // number of traces [-]
 
     struct Drawn {
-        Vector2d middle; // [m]
-        double half;     // of the length of the trace [m]
+        Vector2d middle;    // [m]
+        double half;        // of the length of the trace [m]
+        double size;        // of a disc its diameter, of a segment its length [m]
+        double from_centre; // from a disc's centre to the trace, to either side [m]
     };
     Drawn draw(Stream& sizes, Stream& position) const
     {
@@ -94,8 +103,9 @@ public:
         const double size = draw_biased(law_, order_ + more, sizes);
         const double off = 2 * uniform(sizes) - 1; // of the section from a disc's centre, over its radius
         const double half = size / 2 * (order_ == 1 ? std::sqrt(1 - off * off) : 1);
+        const double from_centre = off * size / 2;
         const double across = x_.low - size / 2 + uniform(position) * (w_ + size);
-        return {{across, y_.low - size / 2 + uniform(position) * (h_ + size)}, half};
+        return {{across, y_.low - size / 2 + uniform(position) * (h_ + size)}, half, size, from_centre};
     }
 
 private:
@@ -154,6 +164,7 @@ private:
                  const Vector2d& from, const Vector2d& to, const Eigen::Vector3d& pole,
                  const Vector2d& point);
     void add_trace(const Vector2d& from, const Vector2d& to);
+    void make_disc(double diameter, const Eigen::Vector3d& centre); // of the last row
     void check_pieces(const JointSet& set, std::size_t pieces) const;
     void count_skipped(const JointSet& set);
     double draw_length(const JointSet& set, Stream& stream);
@@ -240,7 +251,7 @@ void Sampler::add_traces(const JointSet& set, Index index, const TraceIndex& sto
     for (Index number = 0; number < joints_drawn; ++number) {
         Stream sizes(streams, number, Purpose::size), position(streams, number, Purpose::position),
             orientation(streams, number, Purpose::orientation);
-        const auto [middle, half] = box.draw(sizes, position);
+        const auto [middle, half, size, from_centre] = box.draw(sizes, position);
         const Orientations::Drawn drawn = orientations.draw_joint(orientation);
         const Line line{middle, drawn.trace};
         const std::vector<Interval> kept = kept_of_trace(set, stops, streams, number, line, half);
@@ -249,6 +260,8 @@ void Sampler::add_traces(const JointSet& set, Index index, const TraceIndex& sto
             const Vector2d from = line.at(kept[p].low), to = line.at(kept[p].high);
             add_row(quoted(set), set.material, index, number + static_cast<Index>(p) * piece_step, from, to,
                     drawn.pole, middle);
+            if (discs)
+                make_disc(size, in_space(middle) - from_centre * drawn.pole.cross(in_space(drawn.trace)));
             add_trace(from, to);
         }
     }
@@ -405,6 +418,14 @@ void Sampler::add_row(const std::string& name, const std::string& material, Inde
     joints.to.push_back(to);
     joints.pole.push_back(pole);
     joints.point.push_back(point);
+    joints.diameter.push_back(0);
+    joints.centre.push_back(in_space(point));
+}
+
+void Sampler::make_disc(double diameter, const Eigen::Vector3d& centre)
+{
+    joints.diameter.back() = diameter;
+    joints.centre.back() = centre;
 }
 
 void Sampler::add_trace(const Vector2d& from, const Vector2d& to)
@@ -458,6 +479,8 @@ void append(Joints& joints, const Joints& more)
     put(joints.to, more.to);
     put(joints.pole, more.pole);
     put(joints.point, more.point);
+    put(joints.diameter, more.diameter);
+    put(joints.centre, more.centre);
     put(joints.trace_from, more.trace_from);
     put(joints.trace_to, more.trace_to);
     if (static_cast<std::int64_t>(joints.set.size()) > most_joints)

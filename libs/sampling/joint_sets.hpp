@@ -17,7 +17,8 @@
 //
 // Sets of segments and of discs are traces about Poisson points of the section, their midpoints. A segment
 // takes its length from the law. The trace of a disc is the chord at a uniform distance from the centre of a
-// disc of size-biased diameter, as a section meets it (Warburton 1980). Midpoints outside the section are
+// disc of size-biased diameter, as a section meets it (Warburton 1980). Diameter and centre are kept: the disc's plane
+// and the chord fix where the centre is, on one side of the section or the other. Midpoints outside the section are
 // drawn as far away as traces come in from, so densities are the same up to the section's edge (density.hpp).
 // A trace is one joint with one joint trace covering it whole, also where it reaches out of the section; a
 // region or rock cuts it off, with an overshoot.

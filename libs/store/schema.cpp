@@ -50,6 +50,10 @@ std::vector<Field> fields_of(Joints& joints)
          "degrees; 0 where only a trace angle was drawn."},
         {"/joints/point", &joints.point, {"joint"}, "m", any(),
          "Where the joint was placed, about which it turns {x, y}; need not be inside the section."},
+        {"/joints/diameter", &joints.diameter, {"joint"}, "m", at_least(0),
+         "Diameter of the disc in space that the section meets in this joint; 0 where it is none."},
+        {"/joints/centre", &joints.centre, {"joint"}, "m", any(),
+         "Centre of that disc {x, y, z}, z being across the section; elsewhere {x, y} of /joints/point, and 0."},
 
         {"/traces/joint", &joints.trace_joint, {"trace"}, "1", index_of("joint"), "Joint the trace lies on."},
         {"/traces/from", &joints.trace_from, {"trace"}, "m", any(), "One end of the joint trace {x, y}."},

@@ -50,13 +50,38 @@ double number(const std::string& text)
     return std::strtod(text.c_str(), nullptr);
 }
 
-TEST(joints_csv, has_a_row_a_trace)
+std::string csv_of(const Section& section, std::string_view name)
 {
-    const auto rows = rows_of(joints_csv(small_network()));
+    const std::vector<Layer> layers{layer_of(section, name)};
+    return layers_csv(layers);
+}
+
+TEST(joints_csv, has_a_row_a_trace_inside_the_section)
+{
+    Section section = small_section();
+    const auto rows = rows_of(csv_of(section, "joints"));
     ASSERT_EQ(rows.size(), 3u);
-    EXPECT_EQ(rows[0], (Row{"set", "number", "x1_m", "y1_m", "x2_m", "y2_m"}));
-    EXPECT_EQ(rows[1], (Row{"the \"other\" set", "7", "0", "5", "4", "5"}));
-    EXPECT_EQ(number(rows[2][4]), 1.0 / 3.0 + 9);
+    EXPECT_EQ(rows[0], (Row{"set", "number", "x1_m", "y1_m", "x2_m", "y2_m", "length_m", "cut_ends", "joint",
+                            "fate", "realization"}));
+    EXPECT_EQ(rows[1], (Row{"the \"other\" set", "7", "0", "5", "4", "5", "4", "0", "0", "kept", "4"}));
+    EXPECT_NEAR(number(rows[2][4]), 1.0 / 3.0 + 9, 1e-14);
+
+    section.outline = {
+        {1, 0}, {9, 0}, {9, 10}, {1, 10}}; // cuts off 1 m of the first trace, a third of the second
+    const auto cut = rows_of(csv_of(section, "joints"));
+    EXPECT_EQ(cut[1][2], "1");
+    EXPECT_EQ(cut[1][6], "3");
+    EXPECT_EQ(cut[1][7], "1");
+    EXPECT_EQ(cut[2][4], "9");
+    EXPECT_EQ(cut[2][7], "1");
+    section.outline = {{1, 0}, {3, 0}, {3, 10}, {1, 10}};
+    EXPECT_EQ(rows_of(csv_of(section, "joints"))[1][7], "2");
+    EXPECT_EQ(rows_of(csv_of(section, "joints")).size(), 2u);
+
+    const auto bridges = rows_of(csv_of(small_section(), "bridges"));
+    ASSERT_EQ(bridges.size(), 3u);
+    EXPECT_EQ(bridges[1][2], "4");
+    EXPECT_EQ(bridges[1][4], "6");
 }
 
 TEST(csv_field, is_in_quotes_where_it_begins_as_a_formula_does)
@@ -69,13 +94,13 @@ TEST(csv_field, is_in_quotes_where_it_begins_as_a_formula_does)
 
 TEST(blocks_csv, has_area_and_centroid_with_holes_taken_out)
 {
-    Network network = small_network();
+    Section section = small_section();
     for (const double offset : {0.0, 1e7}) { // as accurate in a national grid
-        for (Eigen::Vector2d& vertex : network.blocks.vertex)
+        for (Eigen::Vector2d& vertex : section.network.blocks.vertex)
             vertex.x() += offset;
-        const auto rows = rows_of(blocks_csv(network));
+        const auto rows = rows_of(csv_of(section, "blocks"));
         ASSERT_EQ(rows.size(), 4u);
-        EXPECT_EQ(rows[1], (Row{"0", "upper", "dig", "50", shown(5 + offset), "7.5", "4", "0"}));
+        EXPECT_EQ(rows[1], (Row{"0", "upper", "dig", "50", shown(5 + offset), "7.5", "4", "0", "4"}));
         EXPECT_EQ(rows[2][1], "lower");
         EXPECT_EQ(rows[2][2], "");
         EXPECT_NEAR(number(rows[2][4]), 5 + offset, 1e-8);
@@ -88,17 +113,17 @@ TEST(blocks_csv, has_area_and_centroid_with_holes_taken_out)
 
 TEST(edges_csv, names_sides_joint_and_kind)
 {
-    const auto rows = rows_of(edges_csv(small_network(), nullptr));
+    const auto rows = rows_of(csv_of(small_section(), "edges"));
     ASSERT_EQ(rows.size(), 12u);
-    EXPECT_EQ(rows[1], (Row{"0", "0", "0", "10", "0", "1", "", "boundary", "", "", ""}));
-    EXPECT_EQ(rows[3], (Row{"2", "0", "5", "10", "5", "0", "1", "joint", "the \"other\" set", "7", "0.7"}));
+    EXPECT_EQ(rows[1], (Row{"0", "0", "0", "10", "0", "1", "", "boundary", "", "", "", "", "", "4"}));
+    EXPECT_EQ(rows[3], (Row{"2", "0", "5", "10", "5", "0", "1", "joint", "the \"other\" set", "7", "0.7", "0",
+                            "kept", "4"}));
     EXPECT_EQ(rows[8][7], "bonded");
 }
 
 TEST(edges_csv, adds_the_equivalent_joints)
 {
-    const EquivalentJoints equivalent = small_equivalent();
-    const auto rows = rows_of(edges_csv(small_network(), &equivalent));
+    const auto rows = rows_of(csv_of(small_section(true), "edges"));
     const auto column = [&](const std::string& name) {
         const auto found = std::ranges::find(rows[0], name);
         EXPECT_NE(found, rows[0].end()) << name;
@@ -136,26 +161,27 @@ TEST(edges_csv, adds_the_equivalent_joints)
                                              "initial_friction_angle_rad",
                                              "roughness_length_m"};
     const std::vector<joint::Parameter>& all = joint::all_parameters();
-    ASSERT_EQ(rows[0].size(), 11 + all.size() + 4 + 2 + 1);
+    ASSERT_EQ(rows[0].size(), 14 + all.size() + 4 + 2 + 1);
     ASSERT_GE(all.size(), of_joints.size());
     for (std::size_t i = 0; i < all.size(); ++i)
-        EXPECT_TRUE(rows[0][11 + i].starts_with(all[i].name)) << rows[0][11 + i];
+        EXPECT_TRUE(rows[0][14 + i].starts_with(all[i].name)) << rows[0][14 + i];
     for (std::size_t i = 0; i < of_joints.size(); ++i)
-        EXPECT_EQ(rows[0][11 + i], of_joints[i]);
-    EXPECT_EQ(number(rows[2][11]), 0);
+        EXPECT_EQ(rows[0][14 + i], of_joints[i]);
+    EXPECT_EQ(number(rows[2][14]), 0);
 }
 
 TEST(edges_csv, numbers_kelvin_units_where_there_are_several)
 {
-    EquivalentJoints equivalent = small_equivalent();
+    Section section = small_section(true);
+    EquivalentJoints& equivalent = *section.equivalent;
     const std::size_t edges = equivalent.normal_stiffness.size();
     equivalent.normal_kelvin_stiffness.assign(2 * edges, 0);
     equivalent.normal_kelvin_stiffness[2 * 2 + 1] = 5e8; // of edge 2 the second unit
     equivalent.shear_kelvin_stiffness.assign(2 * edges, 0);
     equivalent.normal_kelvin_viscosity.assign(2 * edges, 0);
     equivalent.shear_kelvin_viscosity.assign(2 * edges, 0);
-    const auto rows = rows_of(edges_csv(small_network(), &equivalent));
-    const std::size_t first = 11 + joint::all_parameters().size();
+    const auto rows = rows_of(csv_of(section, "edges"));
+    const std::size_t first = 14 + joint::all_parameters().size();
     EXPECT_EQ(rows[0][first + 0], "normal_kelvin_stiffness_1_Pa_per_m");
     EXPECT_EQ(rows[0][first + 4], "normal_kelvin_stiffness_2_Pa_per_m");
     EXPECT_EQ(number(rows[3][first]), 0);

@@ -12,6 +12,7 @@
 
 #pragma once
 
+#include "exchange/layers.hpp"
 #include "model/network.hpp"
 #include "model/result.hpp"
 
@@ -28,6 +29,9 @@ inline Network small_network()
     network.joints.material = {0};
     network.joints.from = {{0, 5}};
     network.joints.to = {{10, 5}};
+    network.joints.pole = {{0, 1, 0}};
+    network.joints.diameter = {0};
+    network.joints.centre = {{5, 5, 0}};
     network.joints.trace_joint = {0, 0};
     network.joints.trace_from = {{0, 5}, {6, 5}};
     network.joints.trace_to = {{4, 5}, {1.0 / 3.0 + 9, 5}};
@@ -77,6 +81,17 @@ inline EquivalentJoints small_equivalent()
     joints.own["wall_strength"] = on_joints(0, 5e7);
     joints.own["largest_closure"] = on_joints(0, 2e-4);
     return joints;
+}
+
+inline Section small_section(bool with_properties = false)
+{
+    Section section{.file = "small.h5",
+                    .realization = 4,
+                    .outline = {{0, 0}, {10, 0}, {10, 10}, {0, 10}},
+                    .network = small_network()};
+    if (with_properties)
+        section.equivalent = small_equivalent();
+    return section;
 }
 
 // Zones 0, 1 in block 0 (dug in state 1) and 2, 3 in block 1; contact 0 between the blocks, contact 1 under

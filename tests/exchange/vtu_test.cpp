@@ -9,26 +9,61 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
-#include <cstdlib>
-#include <sstream>
+#include <cstdint>
+#include <cstring>
 
 namespace jointcreep::exchange::vtu_test
 {
 namespace
 {
 
-// The numbers of a data array, as any reader of text would take them.
+std::string attribute(const std::string& grid, const std::string& name, std::size_t from = 0)
+{
+    const std::size_t start = grid.find(name + "=\"", from) + name.size() + 2;
+    return grid.substr(start, grid.find('"', start) - start);
+}
+
+std::string bytes_of(const std::string& base64)
+{
+    const std::string letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::string bytes;
+    unsigned bits = 0;
+    int held = 0;
+    for (const char c : base64) {
+        const std::size_t value = letters.find(c);
+        if (value == std::string::npos)
+            break; // padding: the array's end
+        bits = bits << 6 | static_cast<unsigned>(value);
+        held += 6;
+        if (held >= 8)
+            bytes += static_cast<char>(bits >> (held -= 8) & 255);
+    }
+    return bytes;
+}
+
+template <class Value>
+std::vector<double> numbers_of(const std::string& bytes)
+{
+    std::vector<Value> values(bytes.size() / sizeof(Value));
+    std::memcpy(values.data(), bytes.data(), values.size() * sizeof(Value));
+    return {values.begin(), values.end()};
+}
+
+// The numbers of a data array, as any reader of base64 would take them.
 std::vector<double> array_of(const std::string& grid, const std::string& name)
 {
     const std::size_t found = grid.find(" Name=\"" + name + "\"");
     if (found == std::string::npos)
         throw std::runtime_error("there is no array " + name);
-    const std::size_t start = grid.find('>', found) + 1;
-    std::istringstream words(grid.substr(start, grid.find('<', start) - start));
-    std::vector<double> values;
-    for (std::string word; words >> word;)
-        values.push_back(std::strtod(word.c_str(), nullptr));
-    return values;
+    const std::size_t begin = grid.find("encoding=\"base64\">\n_") + 20;
+    const std::string bytes = bytes_of(grid.substr(begin + std::stoul(attribute(grid, "offset", found))));
+    std::uint64_t size = 0;
+    std::memcpy(&size, bytes.data(), sizeof size);
+    const std::string type = attribute(grid, "type", grid.rfind('<', found)), own = bytes.substr(8, size);
+    return type == "Float64" ? numbers_of<double>(own)
+           : type == "Int32" ? numbers_of<std::int32_t>(own)
+           : type == "Int64" ? numbers_of<std::int64_t>(own)
+                             : numbers_of<unsigned char>(own);
 }
 
 std::vector<std::string> names_of(const std::string& grid, const std::string& name)
@@ -44,18 +79,23 @@ std::vector<std::string> names_of(const std::string& grid, const std::string& na
     return names;
 }
 
-std::string attribute(const std::string& grid, const std::string& name)
+using Numbers = std::vector<double>;
+
+std::string blocks_vtu(const Section& section)
 {
-    const std::size_t start = grid.find(name + "=\"") + name.size() + 2;
-    return grid.substr(start, grid.find('"', start) - start);
+    return layer_vtu(layer_of(section, "blocks"));
 }
 
-using Numbers = std::vector<double>;
+std::string edges_vtu(const Section& section)
+{
+    return layer_vtu(layer_of(section, "edges"));
+}
 
 TEST(blocks_vtu, has_one_polygon_a_block_with_its_area)
 {
-    const Network network = small_network();
-    const std::string grid = blocks_vtu(network);
+    const Section section = small_section();
+    const Network& network = section.network;
+    const std::string grid = blocks_vtu(section);
     EXPECT_EQ(attribute(grid, "NumberOfPoints"), "10");
     EXPECT_EQ(attribute(grid, "NumberOfCells"), "3");
     EXPECT_EQ(array_of(grid, "types"), Numbers(3, 7));
@@ -81,7 +121,7 @@ TEST(blocks_vtu, has_one_polygon_a_block_with_its_area)
 
 TEST(blocks_vtu, joins_a_hole_by_a_bridge_between_nearest_vertices)
 {
-    const Numbers connectivity = array_of(blocks_vtu(small_network()), "connectivity");
+    const Numbers connectivity = array_of(blocks_vtu(small_section()), "connectivity");
     // Block 1: from corner 0 over the bridge to 6, round the hole, and back.
     EXPECT_EQ(Numbers(connectivity.begin() + 4, connectivity.begin() + 14),
               (Numbers{0, 6, 9, 8, 7, 6, 0, 1, 2, 3}));
@@ -89,34 +129,40 @@ TEST(blocks_vtu, joins_a_hole_by_a_bridge_between_nearest_vertices)
 
 TEST(blocks_vtu, says_rock_and_stage_by_codes_with_names)
 {
-    Network network = small_network();
+    Section section = small_section();
+    Network& network = section.network;
     network.names.stage = {"Fu\u00dfstrecke <1> & \"2\""}; // must neither break the XML nor change
-    const std::string grid = blocks_vtu(network);
+    const std::string grid = blocks_vtu(section);
     EXPECT_EQ(array_of(grid, "rock"), (Numbers{0, 1, 0}));
     EXPECT_EQ(array_of(grid, "stage"), (Numbers{0, -1, -1}));
     EXPECT_EQ(names_of(grid, "rock_names"), network.names.rock);
     EXPECT_EQ(names_of(grid, "stage_names"), network.names.stage);
 }
 
-TEST(joints_vtu, has_the_joint_edges_and_without_equivalent_joints_no_others)
+TEST(edges_vtu, has_all_edges_and_without_equivalent_joints_no_strengths)
 {
-    const std::string grid = joints_vtu(small_network(), nullptr);
-    EXPECT_EQ(array_of(grid, "edge"), Numbers{2});
-    EXPECT_EQ(array_of(grid, "connectivity"), (Numbers{3, 2}));
-    EXPECT_EQ(array_of(grid, "types"), Numbers{3});
-    EXPECT_EQ(array_of(grid, "set"), Numbers{1});
-    EXPECT_EQ(array_of(grid, "joint_fraction"), Numbers{0.7});
+    const std::string grid = edges_vtu(small_section());
+    EXPECT_EQ(array_of(grid, "edge"), (Numbers{0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10}));
+    EXPECT_EQ(array_of(grid, "types"), Numbers(11, 3));
+    EXPECT_EQ(array_of(grid, "kind"), (Numbers{0, 0, 1, 0, 0, 0, 0, 2, 2, 2, 2}));
+    EXPECT_EQ(array_of(grid, "set"), (Numbers{-1, -1, 1, -1, -1, -1, -1, -1, -1, -1, -1}));
+    EXPECT_EQ(names_of(grid, "set_names"), small_network().names.joint_set);
+    EXPECT_EQ(names_of(grid, "fate_names").size(), 5u);
+    EXPECT_EQ(array_of(grid, "joint_fraction")[2], 0.7);
+    EXPECT_EQ(array_of(grid, "realization"), Numbers(11, 4));
+    const Numbers connectivity = array_of(grid, "connectivity");
+    EXPECT_EQ(Numbers(connectivity.begin() + 4, connectivity.begin() + 6), (Numbers{3, 2}));
     EXPECT_THROW(array_of(grid, "cohesion"), std::runtime_error);
+    EXPECT_EQ(grid.find("String"), std::string::npos) << "meshio ends at arrays of this type";
 }
 
-TEST(joints_vtu, has_the_strengths_and_the_boundary_on_a_joint_once_they_are_known)
+TEST(edges_vtu, has_the_strengths_once_they_are_known)
 {
-    const EquivalentJoints equivalent = small_equivalent();
-    const std::string grid = joints_vtu(small_network(), &equivalent);
-    EXPECT_EQ(array_of(grid, "edge"), (Numbers{0, 2}));
-    EXPECT_EQ(array_of(grid, "kind"), (Numbers{0, 1}));
-    EXPECT_EQ(array_of(grid, "joint"), (Numbers{-1, 0}));
-    EXPECT_EQ(array_of(grid, "set"), (Numbers{-1, 1}));
+    const std::string grid = edges_vtu(small_section(true));
+    const auto array_of = [](const std::string& of, const std::string& name) { // of the base and the joint
+        const Numbers all = vtu_test::array_of(of, name);
+        return Numbers{all.at(0), all.at(2)};
+    };
     EXPECT_EQ(array_of(grid, "normal_stiffness"), (Numbers{6.9e8, 1e9 / 3}));
     EXPECT_EQ(array_of(grid, "shear_stiffness"), (Numbers{0, 2.8e8}));
     EXPECT_EQ(array_of(grid, "cohesion"), (Numbers{0, 1e5}));
@@ -209,16 +255,16 @@ TEST(contacts_vtu, leaves_out_removed_contacts)
 
 TEST(vtu, of_nothing_is_still_a_grid)
 {
-    EXPECT_EQ(attribute(blocks_vtu(Network{}), "NumberOfCells"), "0");
-    EXPECT_EQ(attribute(joints_vtu(Network{}, nullptr), "NumberOfCells"), "0");
+    EXPECT_EQ(attribute(blocks_vtu(Section{}), "NumberOfCells"), "0");
+    EXPECT_EQ(attribute(edges_vtu(Section{}), "NumberOfCells"), "0");
 }
 
 RC_GTEST_PROP(vtu, every_double_reads_back_as_itself, (const std::vector<double>& values))
 {
-    Network network;
+    Section section;
     for (const double value : values)
-        network.blocks.vertex.emplace_back(value, -value / 3);
-    const Numbers position = array_of(blocks_vtu(network), "position");
+        section.network.blocks.vertex.emplace_back(value, -value / 3);
+    const Numbers position = array_of(blocks_vtu(section), "position");
     RC_ASSERT(position.size() == 3 * values.size());
     for (std::size_t i = 0; i < values.size(); ++i) {
         RC_ASSERT(position[3 * i] == values[i]);

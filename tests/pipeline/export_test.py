@@ -1,14 +1,23 @@
 """Everything jointexport writes, read back: the same numbers as in the HDF5 file, bit by bit."""
 
+import base64
 import csv
 import functools
+import pathlib
+import sys
+import tomllib
 import xml.etree.ElementTree
 
 import numpy
 
 from chain import ChainTest, changed, datasets, main
 
+sys.path.insert(0, str(pathlib.Path(__file__).parents[2] / "pipelines" / "plots"))
+import joint_sets  # noqa: E402
+
 KINDS = ["boundary", "joint", "bonded"]
+FATES = ["kept", "clipped", "trimmed", "merged", "dropped"]
+TYPES = {"Float64": "<f8", "Int32": "<i4", "Int64": "<i8", "UInt8": "u1"}
 LINE, POLYGON, TRIANGLE, VERTEX = 3, 7, 5, 1  # cell types of VTK
 EQUIVALENT = {"normal_stiffness": "Pa_per_m", "shear_stiffness": "Pa_per_m", "cohesion": "Pa", "friction_angle": "rad",
               "tensile_strength": "Pa", "dilation_angle": "rad", "law": "", "residual_cohesion": "Pa",
@@ -41,7 +50,9 @@ class Grid:
 
     def __init__(self, path):
         root = xml.etree.ElementTree.parse(path).getroot()
-        (self.grid,) = root
+        self.grid, appended = root
+        assert appended.get("encoding") == "base64"
+        self.appended = appended.text.strip().removeprefix("_")
         assert (root.tag, root.get("type"), self.grid.tag) == ("VTKFile", "UnstructuredGrid", "UnstructuredGrid")
         piece = self.grid.find("Piece")
         n_points, n_cells = int(piece.get("NumberOfPoints")), int(piece.get("NumberOfCells"))
@@ -56,15 +67,16 @@ class Grid:
         assert len(self.types) == len(self.connectivity) == n_cells
         self.field = self.arrays(self.grid.find("FieldData"))
 
-    @staticmethod
-    def arrays(element):
+    def arrays(self, element):
         found = {}
         for array in element if element is not None else []:
-            words, kind = (array.text or "").split(), array.get("type")
-            if kind == "String":
-                found[array.get("Name")] = bytes(map(int, words)).decode().split("\0")[:-1]
+            kind, code = array.get("type"), self.appended[int(array.get("offset")):]
+            size = int.from_bytes(base64.b64decode(code[:12])[:8], "little")
+            data = base64.b64decode(code[:-(-(8 + size) // 3) * 4])[8:8 + size]
+            if array.get("Name").endswith("_names"):
+                found[array.get("Name")] = data.decode().split("\0")[:-1]
                 continue
-            values = numpy.array([float(word) if kind == "Float64" else int(word) for word in words])
+            values = numpy.frombuffer(data, TYPES[kind])
             components = int(array.get("NumberOfComponents", 1))
             found[array.get("Name")] = values.reshape(-1, components) if components > 1 else values
         return found
@@ -106,13 +118,32 @@ class Export(ChainTest):
             self.assertEqual([row["stage"] for row in table], [stages[s] for s in data["/blocks/stage"]])
 
     def test_joints_csv(self):
+        """Every trace, clipped to the section by another method, with its joint, fate and how many ends were cut."""
+        cut = 0
         for path, data in self.results():
             table, joint = self.table(path, "joints"), data["/traces/joint"]
-            self.assertEqual([row["set"] for row in table], list(data["/names/joint_set"][data["/joints/set"][joint]]))
-            self.assert_same(self.column(table, "number"), data["/joints/number"][joint])
-            for end, n in ("from", 1), ("to", 2):
-                for axis, letter in enumerate("xy"):
-                    self.assert_same(self.column(table, f"{letter}{n}_m"), data["/traces/" + end][:, axis])
+            outline = numpy.array(tomllib.loads(data["/scene"][0])["section"]["outline_m"], float)
+            rows = []
+            for j, begin, end in zip(joint, data["/traces/from"], data["/traces/to"]):
+                length, along = numpy.linalg.norm(end - begin), data["/joints/to"][j] - data["/joints/from"][j]
+                for low, high in joint_sets.inside([outline], begin, end):
+                    if high - low > 1e-9 * numpy.linalg.norm(along):
+                        ends = [begin + at / length * (end - begin) for at in (low, high)]
+                        rows.append((j, begin @ along + low, *ends[0], *ends[1], int(low > 0) + int(high < length)))
+            rows = numpy.array(sorted(rows))
+            self.assertEqual(len(rows), len(table))
+            cut += rows[:, 6].sum()
+            self.assert_same(self.column(table, "joint"), rows[:, 0])
+            self.assert_same(self.column(table, "cut_ends"), rows[:, 6])
+            for i, name in enumerate(["x1_m", "y1_m", "x2_m", "y2_m"]):
+                numpy.testing.assert_allclose(self.column(table, name), rows[:, 2 + i], atol=1e-9)
+            lengths = numpy.hypot(rows[:, 4] - rows[:, 2], rows[:, 5] - rows[:, 3])
+            numpy.testing.assert_allclose(self.column(table, "length_m"), lengths, atol=1e-9)
+            j = rows[:, 0].astype(int)
+            self.assertEqual([row["set"] for row in table], list(data["/names/joint_set"][data["/joints/set"][j]]))
+            self.assert_same(self.column(table, "number"), data["/joints/number"][j])
+            self.assertEqual([row["fate"] for row in table], [FATES[fate] for fate in data["/fates/fate"][j]])
+        self.assertGreater(cut, 0, "some traces leave these sections")
 
     def test_edges_csv(self):
         for path, data in self.results():
@@ -146,22 +177,21 @@ class Export(ChainTest):
             for corners, ring in zip(grid.connectivity, rings):
                 self.assert_same(grid.points[corners, :2], data["/vertices/position"][ring])
 
-    def test_joints_vtu(self):
+    def test_edges_vtu(self):
         for path, data in self.results():
-            grid = Grid(self.export(path, "x.vtu", "--what", "joints"))
+            grid = Grid(self.export(path, "x.vtu", "--what", "edges"))
             self.assertTrue((grid.types == LINE).all())
-            edge, joint = grid.cell["edge"], data["/edges/joint"]
-            self.assertTrue(set(numpy.flatnonzero(data["/edges/kind"] == 1)) <= set(edge))
-            self.assertTrue((data["/equivalent/normal_stiffness"][edge] > 0).all())
-            self.assertEqual(len(edge), (data["/equivalent/normal_stiffness"] > 0).sum())
+            joint = data["/edges/joint"]
+            self.assert_same(grid.cell["edge"], range(len(joint)))
             ends = data["/vertices/position"][data["/edges/vertex"]]
-            for cell, e in zip(grid.connectivity, edge):
-                self.assert_same(grid.points[cell, :2], ends[e])
+            for cell, e in zip(grid.connectivity, ends):
+                self.assert_same(grid.points[cell, :2], e)
             for name in "kind", "joint", "joint_fraction":
-                self.assert_same(grid.cell[name], data["/edges/" + name][edge])
-            self.assert_same(grid.cell["set"], numpy.where(joint >= 0, data["/joints/set"][joint], -1)[edge])
+                self.assert_same(grid.cell[name], data["/edges/" + name])
+            self.assert_same(grid.cell["set"], numpy.where(joint >= 0, data["/joints/set"][joint], -1))
+            self.assertEqual(grid.field["set_names"], list(data["/names/joint_set"]))
             for name, _, values in equivalent(data):
-                self.assert_same(grid.cell[name], values[edge])
+                self.assert_same(grid.cell[name], values)
 
     def test_zones_vtu(self):
         for path, data in self.results():

@@ -181,12 +181,17 @@ class Refusals(ChainTest):
             ("jointexport", ["--state", "99"], "99"),
             ("jointexport", ["--what", "blocks", "--state", "0"], "--state"),
             *((program, ["--no-such-option"], "no-such-option") for program in PROGRAMS),
-            *((program, ["another file"], "more than one") for program in PROGRAMS),
+            *((program, ["another file"], "more than one") for program in PROGRAMS if program != "jointexport"),
+            ("jointexport", ["another file"], "several are given"),
+            ("jointexport", ["--format", "nothing"], ["nothing", "dfnworks"]),
+            ("jointexport", ["--format", "dxf"], [".dxf", "out.vtu"]),
+            ("jointexport", ["--what", "blocks,edges"], "holds one of them"),
         ]
         for program, arguments, says in cases:
             with self.subTest(program=program, arguments=arguments):
                 self.assert_refuses(BAD_INPUT, program, self.files[program], *arguments, says=says)
         self.assert_refuses(BAD_INPUT, "jointexport", self.files["result"], output="out.png", says=["out.png", ".vtu"])
+        self.assert_refuses(BAD_INPUT, "jointexport", self.files["result"], output="out.dat", says=["--format", "udec"])
         for program in PROGRAMS:
             for arguments in [], [self.files[program]], ["-o", "out.h5"], [self.files[program], "-o", ""]:
                 done = self.chain.answer(program, *arguments)
