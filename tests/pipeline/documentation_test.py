@@ -1,5 +1,6 @@
 """What README and docs say of the programs is so."""
 
+import json
 import re
 import subprocess
 import sys
@@ -101,6 +102,26 @@ class Documentation(ChainTest):
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("crest (mm), 8 runs", done.stdout)
         self.assertIn("crest (mm)", (folder / "first.html").read_text())
+
+    def test_path_to_other_programs(self):
+        """The commands of docs/exchange.md make the files that it says, and its table has the formats that there are."""
+        page = self.chain.text("docs/exchange.md")
+        (commands,) = (block for block in code_blocks(page, "sh") if "jointgen" in block)
+        folder = self.chain.new_folder()
+        (folder / "data").symlink_to(self.chain.source / "data")
+        script = f'set -eu\nPATH="{self.chain.programs}:$PATH"\n{commands}'
+        done = subprocess.run(["sh", "-c", script], cwd=folder, capture_output=True, text=True, timeout=300)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        with h5py.File(folder / "network.h5") as file:
+            blocks = len(file["blocks/area"])
+            sets = set(file["names/joint_set"].asstr()[:])
+        self.assertEqual((folder / "blocks.geo").read_text().count("Plane Surface("), blocks)
+        self.assertIn(f'NumberOfCells="{blocks}"'.encode(), (folder / "blocks.vtu").read_bytes())
+        traces = json.loads((folder / "joints.geojson").read_text())["features"]
+        self.assertEqual({trace["properties"]["set"] for trace in traces}, sets)
+        rows = re.findall(r"^\| `(\w+)` \| (\.[^|]*) \|", page, flags=re.MULTILINE)
+        listed = [line.split("\t")[:2] for line in self.output_of("jointexport", "--formats").splitlines()[1:]]
+        self.assertEqual([list(row) for row in rows], listed)
 
     def test_scene_page_example(self):
         for number, scene in enumerate(code_blocks(self.chain.text("docs/scene.md"), "toml")):
