@@ -261,9 +261,11 @@ void fit_curve(const Arguments& arguments)
 
     // 3. What was found.
     const std::vector<Row> rows = rows_of(fit, curve.readings.elastic_part.has_value(), stiffness);
+    std::vector<TextFile> files;
     if (readings_path)
-        write_text(*readings_path, readings_table(curve, fit.by_curve.computed));
-    write_text(arguments.output(), table_of(rows));
+        files.push_back({*readings_path, readings_table(curve, fit.by_curve.computed)});
+    files.push_back({arguments.output(), table_of(rows)});
+    write_texts(files);
     report(arguments, curve, fit, rows);
 }
 

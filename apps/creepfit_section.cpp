@@ -102,10 +102,12 @@ void fit_section(const Arguments& arguments)
     const auto name = [&](const std::string& path) {
         return found.minimum.is_converged ? path : failed_name(path);
     };
+    std::vector<TextFile> files;
     if (readings_path)
-        write_text(name(*readings_path), readings_table(found, measurements, scene));
-    write_text(name(output),
-               found_table(found, settings.factors, measurements.front().deviation.has_value()));
+        files.push_back({name(*readings_path), readings_table(found, measurements, scene)});
+    files.push_back(
+        {name(output), found_table(found, settings.factors, measurements.front().deviation.has_value())});
+    write_texts(files);
     if (!found.minimum.is_converged)
         throw fit_error(why_not_converged(found, settings.factors) + "\nthe best factors are in " +
                         name(output));

@@ -288,7 +288,7 @@ void export_layers(const Arguments& arguments, const Format& format, std::vector
                                                           std::to_string(sections[i].realization)));
         }
     }
-    std::vector<std::pair<std::string, exchange::File>> files;
+    std::vector<TextFile> files; // an output after those beside it
     for (std::size_t i = 0; i < jobs.size(); ++i) {
         summary.add("file", outputs[i]);
         account(summary, jobs[i]);
@@ -297,17 +297,14 @@ void export_layers(const Arguments& arguments, const Format& format, std::vector
             const std::string name = name_of(file, outputs[i]);
             if (name != outputs[i])
                 summary.add("  beside it", name);
-            files.emplace_back(name, std::move(file));
+            files.push_back({name, std::move(file.bytes)});
         }
     }
     std::vector<NamedFile> written;
-    for (const auto& [name, file] : files)
-        written.push_back({name, "the output " + name});
+    for (const TextFile& file : files)
+        written.push_back({file.path, "the output " + file.path});
     refuse_overwriting(arguments.files({"input"}), written);
-    for (const auto& [name, file] : files)
-        store::check_writable(name);
-    for (const auto& [name, file] : files)
-        write_text(name, file.bytes); // an output after those beside it
+    write_texts(files);
 }
 
 void export_file(const Arguments& arguments)
@@ -339,8 +336,7 @@ void export_file(const Arguments& arguments)
             summary.warn("the run of " + one + " ended early: " + reason);
     if (of_result) {
         summary.add(what[0], output);
-        write_text(output,
-                   text_of_result(arguments, format, what[0])); // last: what fails before it leaves no file
+        write_texts({{output, text_of_result(arguments, format, what[0])}});
     } else {
         export_layers(arguments, format, what, summary);
     }

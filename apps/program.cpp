@@ -7,6 +7,7 @@
 #include <boost/program_options.hpp>
 
 #include <malloc.h>
+#include <sys/mman.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -172,13 +173,16 @@ std::string_view shortened(std::string_view text, std::size_t most)
 }
 
 // Uses the stack that the work may need now. Where memory is limited, a stack that cannot grow later ends in a crash. A
-// small stack is left as it is.
+// small stack is left as it is. Throws std::bad_alloc where there is no room for it.
 [[gnu::noinline]] void reserve_stack()
 {
     constexpr std::size_t enough = std::size_t{1} << 20, page = 4096; // [bytes]
     rlimit limit{};
     if (getrlimit(RLIMIT_STACK, &limit) != 0 || limit.rlim_cur < 2 * enough)
         return;
+    void* const as_much = mmap(nullptr, enough + 64 * page, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    if (as_much == MAP_FAILED || munmap(as_much, enough + 64 * page) != 0)
+        throw std::bad_alloc();
     [[maybe_unused]] volatile char room[enough];
     for (std::size_t i = 0; i < enough; i += page)
         room[i] = 0;
@@ -250,13 +254,12 @@ void refuse_overwriting(const std::vector<NamedFile>& read, const std::vector<Na
     }
 }
 
-void write_text(const std::string& path, const std::string& text)
+void write_texts(const std::vector<TextFile>& files)
 {
-    try {
-        store::save(path, std::as_bytes(std::span(text)));
-    } catch (const file_error& error) {
-        throw file_error(path + ": " + error.what());
-    }
+    std::vector<store::NamedBytes> all;
+    for (const auto& [path, text] : files)
+        all.push_back({path, std::as_bytes(std::span(text))});
+    store::save_together(all);
 }
 
 std::vector<NamedFile> Arguments::files(const std::vector<std::string>& options) const
@@ -270,7 +273,8 @@ std::vector<NamedFile> Arguments::files(const std::vector<std::string>& options)
             for (const std::string& input : inputs_)
                 files.push_back({input, "the input " + input});
         else
-            files.push_back({wanted(option), (option == "output" ? "-o" : "--" + option) + ' ' + wanted(option)});
+            files.push_back(
+                {wanted(option), (option == "output" ? "-o" : "--" + option) + ' ' + wanted(option)});
     }
     return files;
 }
@@ -342,12 +346,12 @@ int Arguments::threads() const
 
 int run(const Program& program, int argc, char** argv, const std::function<void(const Arguments&)>& body)
 {
-    reserve_stack();
     std::signal(SIGXFSZ, SIG_IGN); // a file that grows past the limit is then a write error with a message
     // Large arrays are allocated and freed often. Returning them to the system costs up to a tenth of the run.
     mallopt(M_MMAP_THRESHOLD, 1 << 30);
     mallopt(M_TRIM_THRESHOLD, 1 << 30);
     try {
+        reserve_stack();
         if (argc < 2) {
             std::cerr << program.name << ": " << program.summary << '\n'
                       << usage(program) << program.name << " --help says more\n";

@@ -66,9 +66,9 @@ struct Program {
     std::string input;   // the one argument: "SCENE.toml"
     std::string output;  // the value of -o: "network.h5"
     std::vector<Option> options;
-    std::string example;       // a whole command line
-    std::string other_usage{}; // arguments without -o, if some go without it
-    std::string columns{};     // of tables that it reads, if any; indented lines
+    std::string example;        // a whole command line
+    std::string other_usage{};  // arguments without -o, if some go without it
+    std::string columns{};      // of tables that it reads, if any; indented lines
     bool takes_several = false; // inputs
 };
 
@@ -81,8 +81,11 @@ struct NamedFile {
 // whatever links and folders they go through, also where there is no file yet.
 void refuse_overwriting(const std::vector<NamedFile>& read, const std::vector<NamedFile>& written);
 
-// Writes a text as a file that appears when it is whole. Throws file_error.
-void write_text(const std::string& path, const std::string& text);
+// Writes texts as files, which appear once all of them are whole. Throws file_error.
+struct TextFile {
+    std::string path, text;
+};
+void write_texts(const std::vector<TextFile>& files);
 
 // Calls read(). Messages of input_error begin with the file's name.
 template <class Read>

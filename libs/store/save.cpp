@@ -7,6 +7,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <deque>
 #include <filesystem>
 #include <random>
 #include <utility>
@@ -182,6 +183,27 @@ void save(const std::string& path, std::span<const std::byte> bytes)
     partial.write(bytes);
     partial.rename_to(path);
     sync_folder(folder_of(path));
+}
+
+void save_together(const std::vector<NamedBytes>& files)
+{
+    std::deque<Partial> partials; // which do not move
+    std::string at;
+    try {
+        for (const auto& [path, bytes] : files) {
+            at = path;
+            require_place(path);
+            remove_leftovers(path);
+            partials.emplace_back(path).write(bytes);
+        }
+        for (std::size_t i = 0; i < files.size(); ++i) {
+            at = files[i].path;
+            partials[i].rename_to(at);
+            sync_folder(folder_of(at));
+        }
+    } catch (const file_error& error) {
+        throw file_error(at + ": " + error.what());
+    }
 }
 
 void check_writable(const std::string& path)

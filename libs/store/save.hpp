@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <span>
 #include <string>
+#include <vector>
 
 namespace jointcreep::store
 {
@@ -13,5 +14,13 @@ namespace jointcreep::store
 // throws file_error (its message without the path), removes the partial file, and leaves what was under
 // `path`. Only a killed program can leave a partial file behind; the next save to `path` removes it.
 void save(const std::string& path, std::span<const std::byte> bytes);
+
+// The same for files that belong together: all are written beside before the first gets its name. Messages begin with
+// the path.
+struct NamedBytes {
+    std::string path;
+    std::span<const std::byte> bytes;
+};
+void save_together(const std::vector<NamedBytes>& files);
 
 } // namespace jointcreep::store
