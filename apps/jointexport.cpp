@@ -79,7 +79,7 @@ std::vector<std::string> chosen(const Arguments& arguments, const Format& format
     std::string list;
     for (const std::string& one : offered)
         list.append(list.empty() ? "" : ", ").append(one);
-    const std::vector<std::string> wanted = parts_of(*given);
+    std::vector<std::string> wanted = parts_of(*given);
     for (auto one = wanted.begin(); one != wanted.end(); ++one) {
         if (std::ranges::find(offered, *one) == offered.end())
             throw input_error("--what is '" + *one + "'; from " + arguments.input() + " the format " +
