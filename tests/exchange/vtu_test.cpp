@@ -45,7 +45,8 @@ template <class Value>
 std::vector<double> numbers_of(const std::string& bytes)
 {
     std::vector<Value> values(bytes.size() / sizeof(Value));
-    std::memcpy(values.data(), bytes.data(), values.size() * sizeof(Value));
+    if (!values.empty())
+        std::memcpy(values.data(), bytes.data(), values.size() * sizeof(Value));
     return {values.begin(), values.end()};
 }
 
