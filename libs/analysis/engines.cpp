@@ -32,13 +32,19 @@ bool Engines::settles_nearby(const std::vector<Vector2d>& guess)
             convergence = *found;
         return found.has_value();
     };
-    if (assembly.zones.yielding.empty())
+    if (!yields(assembly))
         return find(guess);
     const mechanics::State start = state_of(assembly);
-    assembly.zones.holds_yield = true;
+    for_each_force([](auto& one) { hold_yield(one, true); }, assembly);
     const bool found = find(guess);
-    assembly.zones.holds_yield = false;
-    if (found && rock::weakest(assembly.zones) < 0)
+    bool is_within = true;
+    for_each_force(
+        [&](auto& one) {
+            hold_yield(one, false);
+            is_within = is_within && is_within_strength(one);
+        },
+        assembly);
+    if (found && is_within)
         return true;
     std::vector<Vector2d> elastic = assembly.displacement;
     for (std::size_t g = 0; g < elastic.size(); ++g)

@@ -15,15 +15,6 @@ constexpr double rounding = 1e-9; // over what it is of
 // Of the energy balance, or 100 times the tolerance of equilibria if that is more.
 constexpr double most_energy_error = 1e-3;
 
-template <class Vectors>
-double sum_of_squares(const Vectors& vectors)
-{
-    double sum = 0;
-    for (const auto& one : vectors)
-        sum += one.squaredNorm();
-    return sum;
-}
-
 // Of the blocks with present zones, the largest.
 double area_error(const Section& section)
 {
@@ -59,9 +50,9 @@ GuardedState guarded_state(const Section& section)
 {
     const mechanics::Assembly& assembly = section.assembly;
     GuardedState state;
-    state.is_finite =
-        std::isfinite(sum_of_squares(assembly.displacement) + sum_of_squares(assembly.zones.stress) +
-                      sum_of_squares(assembly.contacts.traction));
+    state.is_finite = std::ranges::all_of(
+        assembly.displacement, [](const Vector2d& displacement) { return displacement.allFinite(); });
+    for_each_force([&](const auto& one) { state.is_finite = state.is_finite && is_finite(one); }, assembly);
     state.area_error = area_error(section);
     state.weight_error = weight_error(section);
     // At large displacements contacts are between faces, which check their depth at every step.

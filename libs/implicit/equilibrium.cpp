@@ -29,12 +29,48 @@ constexpr double soft = 1e-6; // share of their springs that open and slipping c
 // squared unbalanced forces, each over the stiffness against which it acts.
 double Solver::evaluate(Assembly& assembly, const State& start)
 {
-    contacts_.restart(assembly.contacts, start.contacts.state);
-    if (yields(assembly.zones))
-        go_back(assembly.zones, start.zones);
+    for_each_force(
+        [](auto& force, const auto& its_start, const auto& active) { active.restart(force, its_start); },
+        assembly, start, active_);
     find_forces(assembly);
     force_ = stiffness_.gathered(assembly, assembly.force);
     return force_.cwiseQuotient(scale_).dot(force_);
+}
+
+// Tangents for what forces do. Contacts that are open or slip keep the share `soft` of their springs.
+Tangents Solver::tangents(const Assembly& assembly, const State& start, double soft) const
+{
+    Tangents found;
+    for_each_force(
+        [&](const auto& force, const auto& its_start, const auto& active, auto& of_force) {
+            of_force = active.tangents(force, assembly.displacement, its_start, soft);
+        },
+        assembly, start, active_, found);
+    return found;
+}
+
+void Solver::take(const Assembly& assembly, const State& start, bool first)
+{
+    for_each_force(
+        [&](const auto& force, const auto& its_start, auto& active) { active.take(force, its_start, first); },
+        assembly, start, active_);
+}
+
+bool Solver::break_bonds(const Assembly& assembly, const State& start)
+{
+    bool any = false;
+    for_each_force([&](const auto& force, const auto& its_start,
+                       auto& active) { any = active.break_bonds(force, its_start) || any; },
+                   assembly, start, active_);
+    return any;
+}
+
+bool Solver::mend_bonds(const Assembly& assembly)
+{
+    bool any = false;
+    for_each_force([&](const auto& force, auto& active) { any = active.mend_bonds(force) || any; }, assembly,
+                   active_);
+    return any;
 }
 
 // The displacement that balances `force` to `enough` [N/m], if open and slipping contacts keep the share
@@ -42,12 +78,11 @@ double Solver::evaluate(Assembly& assembly, const State& start)
 VectorXd Solver::correction(const Assembly& assembly, const State& start, const VectorXd& force,
                             double enough, double kept_share)
 {
-    const std::vector<Tangent> acting =
-        contacts_.tangents(assembly.contacts, start.contacts.state, std::max(soft, kept_share));
-    if (yields(assembly.zones)) {
+    const Tangents acting = tangents(assembly, start, std::max(soft, kept_share));
+    if (yields(assembly)) {
         ++factorisations_;
         ++solves_;
-        return stiffness_.solve_yielding(assembly, acting, start.zones.yielding, dashpots_, force);
+        return stiffness_.solve_yielding(assembly, acting, dashpots_, force);
     }
     const auto product = [&](const VectorXd& x) { return stiffness_.times(assembly, acting, x); };
     const auto precondition = [&](const VectorXd& x) {
@@ -57,8 +92,7 @@ VectorXd Solver::correction(const Assembly& assembly, const State& start, const 
     if (acting != acting_) {
         const Stiffness::Change change = stiffness_.change(assembly, acting_, acting);
         space_.follow(change.unknowns, [&](const auto& x, auto y) {
-            for (const auto& [contact, tangent] : change.contacts)
-                stiffness_.add_contact(assembly, contact, tangent, x, y);
+            stiffness_.add_change(assembly, change, acting_, acting, x, y);
         });
         acting_ = acting;
     }
@@ -105,7 +139,7 @@ Solver::Advance Solver::go_along(Assembly& assembly, const State& start, const V
     double low = 0, work_low = work, high = share, work_high = force_.dot(correction);
     if (good_at_once || (best_merit < 1.01 * merit && work_high > work / 2))
         return {best_merit, 0}; // also a block that touches nothing yet
-    const int trials = yields(assembly.zones) ? most_trials_with_flow : most_trials;
+    const int trials = yields(assembly) ? most_trials_with_flow : most_trials;
     for (int i = 0; i < trials && work_low > 0 && work_high < 0; ++i) {
         // Bisection for the kink where it touches, regula falsi for the balance there, in turn.
         share = i % 2 == 0 ? (low + high) / 2 : low + (high - low) * work_low / (work_low - work_high);
@@ -132,14 +166,68 @@ double Solver::force_change(const Assembly& assembly, const State& start, const 
 {
     std::vector<Vector2d> u(assembly.position.size(), Vector2d::Zero());
     stiffness_.add_to(u, displacement, 1);
-    const joint::Contacts& contacts = assembly.contacts;
-    const std::vector<Tangent> acting = contacts_.tangents(contacts, start.contacts.state, 0);
     double largest = 0;
-    for (std::size_t c = 0; c < acting.size(); ++c) {
-        const auto& [a, b] = contacts.gridpoint[c];
-        largest = std::max(largest, joint::force_change(contacts, c, acting[c], u[b] - u[a]).norm());
-    }
+    for_each_force(
+        [&](const auto& force, const auto& its_start, const auto& active) {
+            largest = std::max(largest, active.largest_force_change(force, its_start, u));
+        },
+        assembly, start, active_);
     return largest;
+}
+
+// Whether a correction is there to go along; else reason_.
+bool Solver::is_usable(const VectorXd& correction)
+{
+    if (correction.size() > 0 && correction.allFinite())
+        return true;
+    reason_ = "some rock has no support";
+    return false;
+}
+
+// Whether displacements are beyond their limits: reason_. Increments must not add up to more than one may be, either.
+bool Solver::is_too_far(const Assembly& assembly, const Equilibrium& settings)
+{
+    const double largest = largest_displacement(assembly).first;
+    if (largest > settings.largest_displacement)
+        reason_ = "displacement runs away";
+    else if (largest > too_far_)
+        reason_ = "rock would move by more than a tenth of the section";
+    return largest > std::min(settings.largest_displacement, too_far_);
+}
+
+// After a correction, from displacements `from`, that gained almost nothing. Bonds that hinder it break. If there are none,
+// contacts that slip or are open keep more of their springs; once they keep all, displacements leap on, even if forces grow.
+// False if that does not help: reason_.
+bool Solver::get_past(Assembly& assembly, const State& start, const std::vector<Vector2d>& from,
+                      const VectorXd& correction_made, const Advance& advance, double enough, Course& course)
+{
+    const std::vector<Vector2d> reached = assembly.displacement;
+    assembly.displacement = from;
+    stiffness_.add_to(assembly.displacement, correction_made, advance.failed_share);
+    evaluate(assembly, start);
+    const bool breaks = break_bonds(assembly, start);
+    const bool leaps = !breaks && course.kept_share == 1;
+    const bool goes_back = breaks || advance.merit >= course.merit || leaps;
+    assembly.displacement = goes_back ? from : reached;
+    course.merit = evaluate(assembly, start);
+    if (leaps) {
+        if (++course.leaps > most_leaps) {
+            reason_ = "forces do not come into balance";
+            return false;
+        }
+        const VectorXd leap = correction(assembly, start, force_, enough, 0);
+        if (!is_usable(leap))
+            return false;
+        const double largest = mechanics::largest_move(start.displacement, assembly.displacement).first;
+        stiffness_.add_to(assembly.displacement, leap,
+                          std::min(1.0, largest / leap.lpNorm<Eigen::Infinity>()));
+        course.merit = evaluate(assembly, start);
+    }
+    if (!breaks)
+        course.kept_share = leaps ? 0 : std::clamp(10 * course.kept_share, least_kept_share, 1.0);
+    if (breaks || leaps)
+        course.least_merit = course.merit;
+    return true;
 }
 
 // Looks for equilibrium from the present displacements in at most so many corrections. False if it finds
@@ -148,9 +236,8 @@ bool Solver::converge(Assembly& assembly, const State& start, const Equilibrium&
                       int most_corrections, Convergence& convergence)
 {
     const Index first = corrections_;
-    double merit = evaluate(assembly, start), least_merit = merit;
-    double kept_share = 0; // of their springs, by open and slipping contacts in a correction
-    int since_least = 0, leaps_done = 0;
+    Course course;
+    course.merit = course.least_merit = evaluate(assembly, start);
     for (;;) {
         const Balance balance = balance_of(assembly, stiffest_, 0, settings.tolerance);
         convergence.unbalanced_force_ratio = balance.ratio();
@@ -158,7 +245,7 @@ bool Solver::converge(Assembly& assembly, const State& start, const Equilibrium&
         if (is_balanced && is_at_rest(assembly, start, balance.mean, settings.tolerance, convergence))
             return true;
         if (corrections_ - first == most_corrections ||
-            since_least == (yields(assembly.zones) ? patience_with_flow : 15)) {
+            course.since_least == (yields(assembly) ? patience_with_flow : 15)) {
             reason_ = unsupported_ < 0
                           ? "forces do not come into balance"
                           : "contacts do not carry the weight of, and the loads on, the rock at " +
@@ -169,60 +256,24 @@ bool Solver::converge(Assembly& assembly, const State& start, const Equilibrium&
         const double enough = is_balanced
                                   ? 0.1 * force_.norm()
                                   : std::max(0.5 * settings.tolerance * balance.mean, 1e-2 * force_.norm());
-        const VectorXd du = correction(assembly, start, force_, enough, kept_share);
+        const VectorXd du = correction(assembly, start, force_, enough, course.kept_share);
         ++corrections_;
-        if (du.size() == 0 || !du.allFinite()) {
-            reason_ = "some rock has no support";
+        if (!is_usable(du))
             return false;
-        }
         const std::vector<Vector2d> from = assembly.displacement;
-        const Advance advance = go_along(assembly, start, du, merit);
-        if (advance.failed_share > 0 && advance.merit > 0.99 * merit) {
-            // The correction gains almost nothing. Bonds that hinder it break. If there are none, contacts that
-            // slip or are open keep more of their springs.
-            const std::vector<Vector2d> reached = assembly.displacement;
-            assembly.displacement = from;
-            stiffness_.add_to(assembly.displacement, du, advance.failed_share);
-            evaluate(assembly, start);
-            const bool breaks = contacts_.break_bonds(assembly.contacts, start.contacts.state);
-            const bool leaps = !breaks && kept_share == 1;
-            const bool goes_back = breaks || advance.merit >= merit || leaps;
-            assembly.displacement = goes_back ? from : reached;
-            merit = evaluate(assembly, start);
-            if (leaps) { // on from here, even if forces grow
-                if (++leaps_done > most_leaps) {
-                    reason_ = "forces do not come into balance";
-                    return false;
-                }
-                const VectorXd leap = correction(assembly, start, force_, enough, 0);
-                if (leap.size() == 0 || !leap.allFinite()) {
-                    reason_ = "some rock has no support";
-                    return false;
-                }
-                const double largest =
-                    mechanics::largest_move(start.displacement, assembly.displacement).first;
-                stiffness_.add_to(assembly.displacement, leap,
-                                  std::min(1.0, largest / leap.lpNorm<Eigen::Infinity>()));
-                merit = evaluate(assembly, start);
-            }
-            kept_share = breaks ? kept_share : leaps ? 0 : std::clamp(10 * kept_share, least_kept_share, 1.0);
-            if (breaks || leaps)
-                least_merit = merit;
+        const Advance advance = go_along(assembly, start, du, course.merit);
+        if (advance.failed_share > 0 && advance.merit > 0.99 * course.merit) {
+            if (!get_past(assembly, start, from, du, advance, enough, course))
+                return false;
         } else {
-            merit = advance.merit;
-            kept_share = kept_share <= least_kept_share ? 0 : kept_share / 3;
+            course.merit = advance.merit;
+            course.kept_share = course.kept_share <= least_kept_share ? 0 : course.kept_share / 3;
         }
-        contacts_.take(assembly.contacts, start.contacts.state, false);
-        if (largest_displacement(assembly).first > settings.largest_displacement) {
-            reason_ = "displacement runs away";
+        take(assembly, start, false);
+        if (is_too_far(assembly, settings))
             return false;
-        }
-        if (largest_displacement(assembly).first > too_far_) { // increments must not add up to more either
-            reason_ = "rock would move by more than a tenth of the section";
-            return false;
-        }
-        since_least = merit < least_merit ? 0 : since_least + 1;
-        least_merit = std::min(merit, least_merit);
+        course.since_least = course.merit < course.least_merit ? 0 : course.since_least + 1;
+        course.least_merit = std::min(course.merit, course.least_merit);
     }
 }
 
@@ -244,15 +295,15 @@ bool Solver::is_at_rest(const Assembly& assembly, const State& start, double mea
         for (const Vector2d& one : u)
             convergence.remaining_displacement = std::max(convergence.remaining_displacement, one.norm());
     };
-    if (!yields(assembly.zones)) {
+    if (!yields(assembly)) {
         ++solves_;
         take(stiffness_.solve(force_));
     }
-    if (yields(assembly.zones) || convergence.contact_force_change > tolerance) {
+    if (yields(assembly) || convergence.contact_force_change > tolerance) {
         const VectorXd du = correction(assembly, start, force_, 0.1 * force_.norm(), 0);
         if (du.size() > 0)
             take(du);
-        else if (yields(assembly.zones))
+        else if (yields(assembly))
             return false;
     }
     if (convergence.contact_force_change > tolerance)
@@ -296,11 +347,11 @@ std::optional<Convergence> Solver::equilibrate(Assembly& assembly, const Equilib
             evaluate(assembly, start);
         }
     }
-    contacts_.take(assembly.contacts, start.contacts.state, true);
+    take(assembly, start, true);
     if (!stiffness_.has_factor()) {
         space_.forget();
         linear_space_.forget();
-        acting_ = contacts_.tangents(assembly.contacts, start.contacts.state, soft);
+        acting_ = tangents(assembly, start, soft);
         ++factorisations_;
         if (!stiffness_.factorise(assembly, acting_)) {
             reason_ = "some rock has no support";
@@ -308,7 +359,7 @@ std::optional<Convergence> Solver::equilibrate(Assembly& assembly, const Equilib
         }
     }
     if (!converge(assembly, start, settings, most_corrections, convergence) &&
-        !(yields(assembly.zones) && flow_to_rest(assembly, start, settings, convergence))) {
+        !(yields(assembly) && flow_to_rest(assembly, start, settings, convergence))) {
         if (collapse_)
             return std::nullopt;
         return give_up();
@@ -317,13 +368,14 @@ std::optional<Convergence> Solver::equilibrate(Assembly& assembly, const Equilib
         return convergence;
     for (;;) { // restores bonds that need not have broken, if there is equilibrium with them
         const std::vector<Vector2d> displacement = assembly.displacement;
-        const std::vector<char> broken = contacts_.broken_bonds();
+        const mechanics::ActiveForces before = active_;
         const Convergence with_them = convergence;
-        if (!contacts_.mend_bonds(assembly.contacts))
+        if (!mend_bonds(assembly))
             break;
         if (!converge(assembly, start, settings, most_corrections_to_mend, convergence)) {
             assembly.displacement = displacement;
-            contacts_.set_broken_bonds(broken);
+            for_each_force([](auto& active, const auto& its_before) { active.break_again(its_before); },
+                           active_, before);
             convergence = with_them;
             break;
         }
@@ -349,7 +401,7 @@ void Solver::prepare(const Assembly& assembly)
     for (const double sum : row_sums)
         scales.emplace_back(sum, sum);
     scale_ = stiffness_.gathered(assembly, scales);
-    contacts_.begin(assembly.contacts);
+    for_each_force([](const auto& force, auto& active) { active.begin(force); }, assembly, active_);
     collapse_.reset();
     corrections_ = factorisations_ = solves_ = 0;
 }

@@ -18,7 +18,6 @@
 
 #include "implicit/krylov.hpp"
 #include "implicit/stiffness.hpp"
-#include "joint/active_contacts.hpp"
 #include "mechanics/failure.hpp"
 
 #include <optional>
@@ -47,10 +46,8 @@ public:
     // Forgets the factor and solutions: the next equilibrium is found as by a new solver.
     void forget() { stiffness_.forget_factor(); }
 
-    // After equilibrate(), at the same stiffnesses: the x with K x = right, with K from the given tangents
-    // of contacts. Uses the last factor, which is renewed where it is too far off. Empty if K has no inverse.
-    VectorXd solve_linear(const Assembly& assembly, const std::vector<Tangent>& tangents,
-                          const VectorXd& right);
+    // After equilibrate(), at the same stiffnesses: the x with K x = right, with K from the given tangents. Uses the last factor, which is renewed where it is too far off. Empty if K has no inverse.
+    VectorXd solve_linear(const Assembly& assembly, const Tangents& tangents, const VectorXd& right);
     const Stiffness& stiffness() const { return stiffness_; }
 
     // What the last equilibrium, or the search for it, has cost.
@@ -68,6 +65,16 @@ private:
         double failed_share; // the smallest share of the correction that brought forces no nearer to balance;
                              // 0 if none
     };
+    // How a search goes.
+    struct Course {
+        double merit = 0, least_merit = 0;
+        double kept_share = 0; // of their springs, by open and slipping contacts in a correction
+        int since_least = 0, leaps = 0;
+    };
+    bool get_past(Assembly& assembly, const State& start, const std::vector<Vector2d>& from,
+                  const VectorXd& correction_made, const Advance& advance, double enough, Course& course);
+    bool is_usable(const VectorXd& correction);
+    bool is_too_far(const Assembly& assembly, const Equilibrium& settings);
     Advance go_along(Assembly& assembly, const State& start, const VectorXd& correction, double merit);
     void prepare(const Assembly& assembly);
     bool converge(Assembly& assembly, const State& start, const Equilibrium& settings, int most_corrections,
@@ -77,13 +84,17 @@ private:
     bool flow_to_rest(Assembly& assembly, const State& start, const Equilibrium& settings,
                       mechanics::Convergence& convergence);
     double force_change(const Assembly& assembly, const State& start, const VectorXd& displacement) const;
+    Tangents tangents(const Assembly& assembly, const State& start, double soft) const;
+    void take(const Assembly& assembly, const State& start, bool first);
+    bool break_bonds(const Assembly& assembly, const State& start);
+    bool mend_bonds(const Assembly& assembly);
 
     Stiffness stiffness_;
     KrylovSpace space_{24};        // of the stiffness
-    std::vector<Tangent> acting_;  // with these tangents
+    Tangents acting_;              // with these tangents
     KrylovSpace linear_space_{24}; // of solve_linear
-    std::vector<Tangent> linear_;
-    joint::ActiveContacts contacts_;
+    std::optional<Tangents> linear_;
+    mechanics::ActiveForces active_;
     VectorXd scale_;         // of forces: the stiffness against which they act [Pa]
     double stiffest_ = 0;    // row sum [Pa]
     Index unsupported_ = -1; // gridpoint of rock without support though forces balance; -1: none

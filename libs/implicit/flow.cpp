@@ -26,7 +26,7 @@ bool Solver::flow_to_rest(Assembly& assembly, const State& start, const Equilibr
 {
     assembly.displacement = start.displacement;
     double merit = evaluate(assembly, start), time = first_step;
-    contacts_.take(assembly.contacts, start.contacts.state, true);
+    take(assembly, start, true);
     const double most = std::min(settings.largest_displacement, too_far_);
     for (int step = 0; step < most_steps; ++step) {
         const mechanics::Balance balance = balance_of(assembly, stiffest_, 0, settings.tolerance);
@@ -52,7 +52,7 @@ bool Solver::flow_to_rest(Assembly& assembly, const State& start, const Equilibr
         }
         time *= found < merit / 100 ? 16 : 2;
         merit = found;
-        contacts_.take(assembly.contacts, start.contacts.state, false);
+        take(assembly, start, false);
         if (largest_displacement(assembly).first > most) {
             const std::size_t at = largest_displacement(assembly).second;
             collapse_.emplace("the displacement of the rock at " + shown(assembly.position[at]) +

@@ -5,21 +5,19 @@
 namespace jointcreep::implicit
 {
 
-VectorXd Solver::solve_linear(const Assembly& assembly, const std::vector<Tangent>& tangents,
-                              const VectorXd& right)
+VectorXd Solver::solve_linear(const Assembly& assembly, const Tangents& tangents, const VectorXd& right)
 {
     constexpr double exact = 1e-10, hardly = 1e-6; // residuals over the right side
-    constexpr double soft = 1e-6;
+    const double soft = 1e-6;
     // Several right sides come with the same tangents: a factor of these very tangents is soon worth its
     // cost.
     constexpr int patience = 3, patience_with_own = 60, most_refinements = 3;
     const auto product = [&](const VectorXd& x) { return stiffness_.times(assembly, tangents, x); };
     const auto precondition = [&](const VectorXd& x) { return stiffness_.solve(x); };
-    if (tangents != linear_ && linear_.size() == tangents.size()) {
-        const Stiffness::Change change = stiffness_.change(assembly, linear_, tangents);
+    if (linear_ && tangents != *linear_) {
+        const Stiffness::Change change = stiffness_.change(assembly, *linear_, tangents);
         linear_space_.follow(change.unknowns, [&](const auto& x, auto y) {
-            for (const auto& [contact, tangent] : change.contacts)
-                stiffness_.add_contact(assembly, contact, tangent, x, y);
+            stiffness_.add_change(assembly, change, *linear_, tangents, x, y);
         });
     }
     linear_ = tangents;
@@ -34,9 +32,10 @@ VectorXd Solver::solve_linear(const Assembly& assembly, const std::vector<Tangen
             residual = right - product(x);
         }
     };
-    std::vector<Tangent> firm = tangents; // a Cholesky factor does not know slip
-    for (std::size_t c = 0; c < firm.size(); ++c)
-        firm[c] = without_zeros(assembly.contacts, c, firm[c], soft);
+    Tangents firm = tangents; // a Cholesky factor does not know slip
+    for_each_force(
+        [&](const auto& force, auto& of_force) { of_force = without_zeros(force, of_force, soft); }, assembly,
+        firm);
     const bool is_own = stiffness_.has_factor_of(firm);
     if (stiffness_.has_factor())
         refine(is_own ? patience_with_own : patience, is_own ? most_refinements : 1);

@@ -23,12 +23,12 @@ std::vector<int> unknowns_of(const std::vector<std::array<int, 2>>& unknown,
     return all;
 }
 
-// Entries of the stiffness of a zone.
-std::size_t square_of_zone(const rock::Zones& zones)
+// A kind of force with a constant stiffness, until it yields.
+template <class Force>
+concept HasConstants = requires(const Force& force)
 {
-    const auto unknowns = static_cast<std::size_t>(2 * zones.gridpoints_of_zone);
-    return unknowns * unknowns;
-}
+    constants(force);
+};
 
 #ifdef JOINTCREEP_CHOLMOD
 // OpenBLAS takes this much address space at its first use [bytes], and asks for it again and again where it does not
@@ -71,19 +71,26 @@ void check_memory(const Factor&)
 void Stiffness::follow(const Assembly& assembly)
 {
     Eigen::setNbThreads(assembly.threads); // of products; Eigen would take all there are
-    const bool is_known = is_present_ == assembly.zones.is_present && is_free_ == assembly.is_free &&
-                          tied_ == assembly.tied && n_ > 0;
+    bool is_known = is_free_ == assembly.is_free && tied_ == assembly.tied && n_ > 0, is_same = true;
+    for_each_force(
+        [&](const auto& force, Part& part) {
+            std::vector<Index> there = present(force);
+            is_known = is_known && there == part.there;
+            part.there = std::move(there);
+            if constexpr (HasConstants<decltype(force)>) {
+                is_same = is_same && constants(force) == part.of;
+                part.of = constants(force);
+            }
+        },
+        assembly, parts_);
     if (!is_known) {
-        is_present_ = assembly.zones.is_present;
         is_free_ = assembly.is_free;
         tied_ = assembly.tied;
         number_unknowns(assembly);
         find_pattern(assembly);
     }
-    if (!is_known || zone_stiffness_ != assembly.zones.stiffness) {
-        zone_stiffness_ = assembly.zones.stiffness;
-        fill_zones(assembly);
-    }
+    if (!is_known || !is_same)
+        fill_constant(assembly);
 }
 
 void Stiffness::number_unknowns(const Assembly& assembly)
@@ -112,50 +119,43 @@ void Stiffness::number_unknowns(const Assembly& assembly)
 
 void Stiffness::find_pattern(const Assembly& assembly)
 {
-    const rock::Zones& zones = assembly.zones;
-    const joint::Contacts& contacts = assembly.contacts;
     std::vector<Eigen::Triplet<double, int>> entries;
-    const auto couple = [&](const auto& unknowns) {
-        for (const int row : unknowns)
-            for (const int column : unknowns)
-                if (row >= 0 && column >= 0)
-                    entries.emplace_back(row, column, 0.0);
-    };
-    for (std::size_t zone = 0; zone < zones.zone_of(zones.size()); ++zone)
-        if (const std::size_t z = zones.first_point_of(zone); zones.is_present[z])
-            couple(unknowns_of(unknown_, zones.gridpoints(z)));
-    present_contact_.clear();
-    for (std::size_t c = 0; c < contacts.gridpoint.size(); ++c)
-        if (contacts.status[c] != ContactStatus::removed) {
-            present_contact_.push_back(static_cast<Index>(c));
-            couple(unknowns_of(unknown_, contacts.gridpoint[c]));
-        }
-    zones_.resize(n_, n_);
-    zones_.setFromTriplets(entries.begin(), entries.end());
+    for_each_force(
+        [&](const auto& force, const Part& part) {
+            for (const Index group : part.there) {
+                const std::vector<int> unknowns = unknowns_of(unknown_, coupled_by(force, group));
+                for (const int row : unknowns)
+                    for (const int column : unknowns)
+                        if (row >= 0 && column >= 0)
+                            entries.emplace_back(row, column, 0.0);
+            }
+        },
+        assembly, parts_);
+    constant_.resize(n_, n_);
+    constant_.setFromTriplets(entries.begin(), entries.end());
 
     const auto entry_of = [&](int row, int column) {
         if (row < 0 || column < 0)
             return -1;
-        const int* const begin = zones_.innerIndexPtr() + zones_.outerIndexPtr()[column];
-        const int* const end = zones_.innerIndexPtr() + zones_.outerIndexPtr()[column + 1];
-        return static_cast<int>(std::lower_bound(begin, end, row) - zones_.innerIndexPtr());
+        const int* const begin = constant_.innerIndexPtr() + constant_.outerIndexPtr()[column];
+        const int* const end = constant_.innerIndexPtr() + constant_.outerIndexPtr()[column + 1];
+        return static_cast<int>(std::lower_bound(begin, end, row) - constant_.innerIndexPtr());
     };
-    const auto list = [&](const std::vector<int>& unknowns, int* place) {
-        for (const int row : unknowns)
-            for (const int column : unknowns)
-                *place++ = entry_of(row, column);
-    };
-    const std::size_t square = square_of_zone(zones);
-    zone_entry_.assign(square * zones.zone_of(zones.size()), -1);
-    for (std::size_t zone = 0; zone < zones.zone_of(zones.size()); ++zone)
-        if (const std::size_t z = zones.first_point_of(zone); zones.is_present[z])
-            list(unknowns_of(unknown_, zones.gridpoints(z)), &zone_entry_[square * zone]);
-    contact_entry_.resize(contacts.gridpoint.size());
-    for (const Index c : present_contact_)
-        list(unknowns_of(unknown_, contacts.gridpoint[c]), contact_entry_[c].data());
+    for_each_force(
+        [&](const auto& force, Part& part) {
+            part.entry.clear();
+            for (const Index group : part.there) {
+                const std::vector<int> unknowns = unknowns_of(unknown_, coupled_by(force, group));
+                part.entry.resize(unknowns.size() * unknowns.size() * group, -1);
+                for (const int row : unknowns)
+                    for (const int column : unknowns)
+                        part.entry.push_back(entry_of(row, column));
+            }
+        },
+        assembly, parts_);
 
     has_factor_ = has_pattern_of_yielding_ = false;
-    factorised_ = zones_;
+    factorised_ = constant_;
     if (n_ == 0)
         return;
     check_room_for_blas();
@@ -163,65 +163,46 @@ void Stiffness::find_pattern(const Assembly& assembly)
     check_memory(factor_);
 }
 
-// Adds the zones' stiffness: block(stress point, i, j) per area between its gridpoints [Pa/m2].
-template <class Block>
-void Stiffness::add_zones(Matrix& matrix, const rock::Zones& zones, const Block& block) const
+template <class Force, class Call>
+void Stiffness::add(Matrix& matrix, const Force& force, const Part& part, const Call& call) const
 {
+    if (part.there.empty())
+        return;
     double* const values = matrix.valuePtr();
-    const int n = zones.gridpoints_of_zone;
-    for (std::size_t z = 0; z < zones.size(); ++z) {
-        if (!zones.is_present[z])
-            continue;
-        const int* const entries = &zone_entry_[square_of_zone(zones) * zones.zone_of(z)];
-        const auto of_point = block(z);
-        for (int i = 0; i < n; ++i)
-            for (int j = 0; j < n; ++j) {
-                const Eigen::Matrix2d between = zones.area[z] * of_point(i, j);
-                for (int row = 0; row < 2; ++row)
-                    for (int column = 0; column < 2; ++column)
-                        if (const int entry = entries[2 * n * (2 * i + row) + 2 * j + column]; entry >= 0)
-                            values[entry] += between(row, column);
-            }
-    }
-}
-
-// Adds the contacts' stiffness: block(contact) of the force on side b by its displacement [Pa].
-template <class Block>
-void Stiffness::add_contacts(Matrix& matrix, const Block& block) const
-{
-    double* const values = matrix.valuePtr();
-    for (const Index c : present_contact_) {
-        const Eigen::Matrix2d of_b = block(c);
-        for (int i = 0; i < 4; ++i)
-            for (int j = 0; j < 4; ++j)
-                if (const int entry = contact_entry_[c][4 * i + j]; entry >= 0)
-                    values[entry] += (i / 2 == j / 2 ? 1 : -1) * of_b(i % 2, j % 2);
-    }
-}
-
-void Stiffness::fill_zones(const Assembly& assembly)
-{
-    const rock::Zones& zones = assembly.zones;
-    std::fill(zones_.valuePtr(), zones_.valuePtr() + zones_.nonZeros(), 0.0);
-    add_zones(zones_, zones, [&zones](std::size_t z) {
-        return [&zones, z](int i, int j) { return stiffness_between(zones, z, i, j); };
+    const std::size_t n = coupled_by(force, part.there[0]).size();
+    call([&](Index group, int i, int j, const Eigen::Matrix2d& block) {
+        const int* const entries = part.square(group, n);
+        for (int row = 0; row < 2; ++row)
+            for (int column = 0; column < 2; ++column)
+                if (const int entry = entries[2 * n * (2 * i + row) + 2 * j + column]; entry >= 0)
+                    values[entry] += block(row, column);
     });
+}
+
+void Stiffness::fill_constant(const Assembly& assembly)
+{
+    std::fill(constant_.valuePtr(), constant_.valuePtr() + constant_.nonZeros(), 0.0);
+    for_each_force(
+        [&](const auto& force, const Part& part) {
+            if constexpr (HasConstants<decltype(force)>)
+                add(constant_, force, part,
+                    [&](const auto& add_block) { add_constant_stiffness(force, part.there, add_block); });
+        },
+        assembly, parts_);
     has_factor_ = false;
 }
 
-VectorXd Stiffness::solve_yielding(const Assembly& assembly, const std::vector<Tangent>& tangents,
-                                   const std::vector<rock::YieldingZone>& start, const VectorXd& dashpots,
-                                   const VectorXd& right)
+VectorXd Stiffness::solve_yielding(const Assembly& assembly, const Tangents& tangents,
+                                   const VectorXd& dashpots, const VectorXd& right)
 {
-    const rock::Zones& zones = assembly.zones;
-    const joint::Contacts& contacts = assembly.contacts;
-    Matrix matrix = zones_;
+    Matrix matrix = constant_;
     std::fill(matrix.valuePtr(), matrix.valuePtr() + matrix.nonZeros(), 0.0);
-    add_zones(matrix, zones, [&](std::size_t z) {
-        const Eigen::Matrix3d tangent = tangent_at(zones, z, assembly.displacement, start);
-        return [&zones, z, tangent](int i, int j) { return stiffness_between(zones, z, i, j, tangent); };
-    });
-    add_contacts(matrix, [&](Index c) -> Eigen::Matrix2d { return stiffness_of(contacts, c, tangents[c]); });
+    for_each_force(
+        [&](const auto& force, const auto& of_force, const Part& part) {
+            add(matrix, force, part,
+                [&](const auto& add_block) { add_stiffness(force, part.there, of_force, add_block); });
+        },
+        assembly, tangents, parts_);
     for (Eigen::Index i = 0; i < dashpots.size(); ++i)
         matrix.coeffRef(i, i) += dashpots[i];
     check_room_for_blas();
@@ -254,61 +235,88 @@ void Stiffness::add_to(std::vector<Vector2d>& over_gridpoints, const VectorXd& u
                 over_gridpoints[g][i] += factor * unknowns[unknown_[g][i]];
 }
 
-VectorXd Stiffness::times(const Assembly& assembly, const std::vector<Tangent>& tangents,
-                          const VectorXd& x) const
+template <class Force, class Tangent>
+void Stiffness::add_product(const Force& force, Index group, const Tangent& tangent,
+                            const Eigen::Ref<const VectorXd>& x, Eigen::Ref<VectorXd> y) const
+{
+    const auto value = [&](int unknown) { return unknown >= 0 ? x[unknown] : 0.0; };
+    const auto gridpoints = coupled_by(force, group);
+    add_force_change(
+        force, group, tangent,
+        [&](int i) {
+            const auto& [along_x, along_y] = unknown_[gridpoints[i]];
+            return Vector2d(value(along_x), value(along_y));
+        },
+        [&](int i, const Vector2d& change) {
+            for (int k = 0; k < 2; ++k)
+                if (const int unknown = unknown_[gridpoints[i]][k]; unknown >= 0)
+                    y[unknown] += change[k];
+        });
+}
+
+VectorXd Stiffness::times(const Assembly& assembly, const Tangents& tangents, const VectorXd& x) const
 {
     // It is symmetric, and rows are summed faster than columns are spread.
-    VectorXd y = zones_.transpose() * x;
-    for (const Index c : present_contact_)
-        add_contact(assembly, c, tangents[c], x, y);
+    VectorXd y = constant_.transpose() * x;
+    for_each_force(
+        [&](const auto& force, const auto& of_force, const Part& part) {
+            if constexpr (!HasConstants<decltype(force)>)
+                for (const Index group : part.there)
+                    add_product(force, group, of_force[group], x, y);
+        },
+        assembly, tangents, parts_);
     return y;
 }
 
-Stiffness::Change Stiffness::change(const Assembly& assembly, const std::vector<Tangent>& before,
-                                    const std::vector<Tangent>& after) const
+Stiffness::Change Stiffness::change(const Assembly& assembly, const Tangents& before,
+                                    const Tangents& after) const
 {
     Change change;
-    for (const Index c : present_contact_) {
-        const Tangent &from = before[c], &to = after[c];
-        if (from == to)
-            continue;
-        change.contacts.push_back({c,
-                                   {to.normal - from.normal, to.shear - from.shear,
-                                    to.friction - from.friction, to.dilation - from.dilation}});
-        for (const Index g : assembly.contacts.gridpoint[c])
-            for (const int unknown : unknown_[g])
-                if (unknown >= 0)
-                    change.unknowns.push_back(unknown);
-    }
+    for_each_force(
+        [&](const auto& force, const auto& from, const auto& to, const Part& part,
+            std::vector<Index>& groups) {
+            if constexpr (!HasConstants<decltype(force)>)
+                for (const Index group : part.there) {
+                    if (from[group] == to[group])
+                        continue;
+                    groups.push_back(group);
+                    for (const int unknown : unknowns_of(unknown_, coupled_by(force, group)))
+                        if (unknown >= 0)
+                            change.unknowns.push_back(unknown);
+                }
+        },
+        assembly, before, after, parts_, change.groups);
     std::sort(change.unknowns.begin(), change.unknowns.end());
     change.unknowns.erase(std::unique(change.unknowns.begin(), change.unknowns.end()), change.unknowns.end());
     return change;
 }
 
-void Stiffness::add_contact(const Assembly& assembly, Index contact, const Tangent& tangent,
-                            const Eigen::Ref<const VectorXd>& x, Eigen::Ref<VectorXd> y) const
+void Stiffness::add_change(const Assembly& assembly, const Change& change, const Tangents& before,
+                           const Tangents& after, const Eigen::Ref<const VectorXd>& x,
+                           Eigen::Ref<VectorXd> y) const
 {
-    const joint::Contacts& contacts = assembly.contacts;
-    const auto value = [&](int unknown) { return unknown >= 0 ? x[unknown] : 0.0; };
-    const auto& [a, b] = contacts.gridpoint[contact];
-    const auto &from = unknown_[a], &to = unknown_[b];
-    const Vector2d relative(value(to[0]) - value(from[0]), value(to[1]) - value(from[1]));
-    const Vector2d force = joint::force_change(contacts, contact, tangent, relative);
-    for (int i = 0; i < 2; ++i) {
-        if (to[i] >= 0)
-            y[to[i]] += force[i];
-        if (from[i] >= 0)
-            y[from[i]] -= force[i];
-    }
+    for_each_force(
+        [&](const auto& force, const auto& from, const auto& to, const std::vector<Index>& groups) {
+            if constexpr (!HasConstants<decltype(force)>)
+                for (const Index group : groups)
+                    add_product(force, group, to[group] - from[group], x, y);
+        },
+        assembly, before, after, change.groups);
 }
 
-bool Stiffness::factorise(const Assembly& assembly, const std::vector<Tangent>& tangents)
+bool Stiffness::factorise(const Assembly& assembly, const Tangents& tangents)
 {
-    const joint::Contacts& contacts = assembly.contacts;
-    std::copy(zones_.valuePtr(), zones_.valuePtr() + zones_.nonZeros(), factorised_.valuePtr());
-    add_contacts(factorised_, [&](Index c) -> Eigen::Matrix2d {
-        return stiffness_of(contacts, c, {tangents[c].normal, tangents[c].shear, 0, 0});
-    });
+    std::copy(constant_.valuePtr(), constant_.valuePtr() + constant_.nonZeros(), factorised_.valuePtr());
+    for_each_force(
+        [&](const auto& force, auto of_force, const Part& part) {
+            if constexpr (!HasConstants<decltype(force)>) {
+                for (auto& tangent : of_force)
+                    tangent = tangent.symmetric();
+                add(factorised_, force, part,
+                    [&](const auto& add_block) { add_stiffness(force, part.there, of_force, add_block); });
+            }
+        },
+        assembly, tangents, parts_);
     // Threads inside of the factorisation cost more than they gain at these sizes.
     const int levels = omp_get_max_active_levels();
     omp_set_max_active_levels(0);

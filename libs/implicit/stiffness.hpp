@@ -1,7 +1,9 @@
 // The tangent stiffness of an assembly, sparse, and a Cholesky factor of something close to it.
 //
 // Unknowns are the displacements of gridpoints that are free; gridpoints tied to another share its unknowns.
-// The tangent is K = sum over zones + sum over contacts, the latter by what each contact does now (Tangent).
+// The tangent K is the sum over all kinds of force, in one of two ways. A kind with constants(), as rock, has a constant
+// stiffness; only where it yields it has tangents in its place, and K is factorised for each correction. The others, as
+// contacts, have tangents all the time, by what each does now; products with them are added.
 // A contact that slips couples its shear traction to its normal displacement, and, if it dilates, its normal
 // traction to its shear displacement: then K is not symmetric. The factor is
 // one of the symmetric part in which open and slipping contacts keep a small part of their springs, so that
@@ -28,8 +30,8 @@ namespace jointcreep::implicit
 {
 
 using Eigen::VectorXd;
-using joint::Tangent;
 using mechanics::Assembly;
+using mechanics::Tangents;
 using mechanics::Vector2d;
 
 class Stiffness
@@ -46,38 +48,31 @@ public:
     VectorXd gathered(const Assembly& assembly, const std::vector<Vector2d>& over_gridpoints) const;
     void add_to(std::vector<Vector2d>& over_gridpoints, const VectorXd& unknowns, double factor) const;
 
-    // The solution of K x = right where rock yields: K with these tangents of contacts and, from `start`, of zones, not
-    // symmetric, and factorised for this one; with `dashpots` on its diagonal [Pa], or none if empty. Empty if K has no inverse.
-    VectorXd solve_yielding(const Assembly& assembly, const std::vector<Tangent>& tangents,
-                            const std::vector<rock::YieldingZone>& start, const VectorXd& dashpots,
+    // The solution of K x = right with all these tangents, not symmetric, and factorised for this one; with `dashpots` on
+    // the diagonal [Pa], or none if empty. Empty if K has no inverse.
+    VectorXd solve_yielding(const Assembly& assembly, const Tangents& tangents, const VectorXd& dashpots,
                             const VectorXd& right);
 
-    // K x with the tangents given, one for each contact.
-    VectorXd times(const Assembly& assembly, const std::vector<Tangent>& tangents, const VectorXd& x) const;
+    // K x with the tangents given; kinds with a constant stiffness do not yield.
+    VectorXd times(const Assembly& assembly, const Tangents& tangents, const VectorXd& x) const;
 
-    // What changes when the tangents go from `before` to `after`: the contacts, with the difference; and the
-    // unknowns that these contacts couple.
+    // Where the tangents `before` and `after` differ, and the unknowns that are coupled there.
     struct Change {
-        std::vector<std::pair<Index, Tangent>> contacts;
+        mechanics::OfEachForce<std::vector<Index>> groups;
         std::vector<int> unknowns;
     };
-    Change change(const Assembly& assembly, const std::vector<Tangent>& before,
-                  const std::vector<Tangent>& after) const;
-
-    // Adds the contact's part of K x to y.
-    void add_contact(const Assembly& assembly, Index contact, const Tangent& tangent,
-                     const Eigen::Ref<const VectorXd>& x, Eigen::Ref<VectorXd> y) const;
+    Change change(const Assembly& assembly, const Tangents& before, const Tangents& after) const;
+    // Adds to y what K x changes by.
+    void add_change(const Assembly& assembly, const Change& change, const Tangents& before,
+                    const Tangents& after, const Eigen::Ref<const VectorXd>& x, Eigen::Ref<VectorXd> y) const;
 
     // Factorises with these tangents; false if the matrix has no Cholesky factor. This, follow() and solve() throw
     // std::bad_alloc where memory is short: a matrix that does not fit is not one without a factor.
-    bool factorise(const Assembly& assembly, const std::vector<Tangent>& tangents);
+    bool factorise(const Assembly& assembly, const Tangents& tangents);
     VectorXd solve(const VectorXd& right) const;
     bool has_factor() const { return has_factor_; }
     void forget_factor() { has_factor_ = has_pattern_of_yielding_ = false; }
-    bool has_factor_of(const std::vector<Tangent>& tangents) const
-    {
-        return has_factor_ && tangents == factor_of_;
-    }
+    bool has_factor_of(const Tangents& tangents) const { return has_factor_ && tangents == factor_of_; }
 
 private:
     using Matrix = Eigen::SparseMatrix<double, Eigen::ColMajor, int>;
@@ -89,32 +84,43 @@ private:
     using UnsymmetricFactor = Eigen::SparseLU<Matrix>;
 #endif
 
+    // What the matrix has of a kind of force: groups of gridpoints that it couples.
+    struct Part {
+        std::vector<Index> there;            // groups
+        std::vector<int> entry;              // where the square of each group goes, row by row; -1 nowhere
+        std::vector<mechanics::Vector3d> of; // constants() that the matrix was made with
+
+        // The square of a group; unknowns are x and y of its gridpoints in turn.
+        const int* square(Index group, std::size_t gridpoints) const
+        {
+            return &entry[4 * gridpoints * gridpoints * group];
+        }
+    };
+
     void number_unknowns(const Assembly& assembly);
     void find_pattern(const Assembly& assembly);
-    void fill_zones(const Assembly& assembly);
-    template <class Block>
-    void add_zones(Matrix& matrix, const rock::Zones& zones, const Block& block) const;
-    template <class Block>
-    void add_contacts(Matrix& matrix, const Block& block) const;
+    void fill_constant(const Assembly& assembly);
+    // Calls a kind's add_stiffness or the like with what adds its blocks to the matrix.
+    template <class Force, class Call>
+    void add(Matrix& matrix, const Force& force, const Part& part, const Call& call) const;
+    template <class Force, class Tangent>
+    void add_product(const Force& force, Index group, const Tangent& tangent,
+                     const Eigen::Ref<const VectorXd>& x, Eigen::Ref<VectorXd> y) const;
 
     Eigen::Index n_ = 0;
     std::vector<std::array<int, 2>> unknown_; // of each gridpoint's {x, y}; -1 fixed
-    Matrix zones_;                            // of the zones alone, with all contacts' entries in the pattern
-    std::vector<int> zone_entry_; // where the square of each zone goes in zones_, row by row; -1 nowhere
-    std::vector<std::array<int, 16>> contact_entry_; // where a contact's 4 x 4 goes
-    std::vector<Index> present_contact_;
+    Matrix constant_; // of the kinds with a constant stiffness, with the entries of all in the pattern
+    mechanics::OfEachForce<Part> parts_;
     Matrix factorised_;
     Factor factor_;
     UnsymmetricFactor yielding_factor_;
     bool has_pattern_of_yielding_ = false;
-    std::vector<Tangent> factor_of_;
+    Tangents factor_of_;
     bool has_factor_ = false;
 
-    // What the numbering was made for.
-    std::vector<char> is_present_;
+    // What the numbering was made for, beside the groups that are there.
     std::vector<Vector2d> is_free_;
     std::vector<std::array<Index, 2>> tied_;
-    std::vector<mechanics::Vector3d> zone_stiffness_;
 };
 
 } // namespace jointcreep::implicit

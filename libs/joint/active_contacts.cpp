@@ -1,5 +1,7 @@
 #include "joint/active_contacts.hpp"
 
+#include <algorithm>
+
 namespace jointcreep::joint
 {
 
@@ -32,9 +34,9 @@ void ActiveContacts::begin(const Contacts& contacts)
     openings_.assign(n, 0);
 }
 
-void ActiveContacts::restart(Contacts& contacts, const std::vector<State>& start) const
+void ActiveContacts::restart(Contacts& contacts, const ContactsState& start) const
 {
-    contacts.state = start;
+    contacts.state = start.state;
     for (std::size_t c = 0; c < breaks_.size(); ++c)
         if (breaks_[c])
             contacts.state[c].is_broken = true;
@@ -54,7 +56,7 @@ ActiveContacts::Active ActiveContacts::active(const Contacts& contacts, std::siz
     return Active::stuck;
 }
 
-void ActiveContacts::take(const Contacts& contacts, const std::vector<State>& start, bool first)
+void ActiveContacts::take(const Contacts& contacts, const ContactsState& start, bool first)
 {
     for (std::size_t c = 0; c < active_.size(); ++c) {
         const Active now = active(contacts, c);
@@ -63,7 +65,7 @@ void ActiveContacts::take(const Contacts& contacts, const std::vector<State>& st
         const bool breaks = weakens_by_slip(contacts.law[c])
                                 ? contacts.state[c].is_broken && !is_broken_[c]
                                 : now == Active::open && active_[c] != Active::open;
-        if (!first && breaks && !start[c].is_broken && !breaks_[c] && ++openings_[c] >= 2)
+        if (!first && breaks && !start.state[c].is_broken && !breaks_[c] && ++openings_[c] >= 2)
             breaks_[c] = 1;
         active_[c] = turns_round && !first ? Active::stuck : now;
         is_broken_[c] = contacts.state[c].is_broken;
@@ -94,16 +96,30 @@ Tangent ActiveContacts::tangent(const Contacts& contacts, std::size_t c, const S
     return tangent_of_slip(law, active_[c] == Active::slips_forward, soft);
 }
 
-std::vector<Tangent> ActiveContacts::tangents(const Contacts& contacts, const std::vector<State>& start,
-                                              double soft) const
+std::vector<Tangent> ActiveContacts::tangents(const Contacts& contacts,
+                                              std::span<const Vector2d> /*displacement*/,
+                                              const ContactsState& start, double soft) const
 {
     std::vector<Tangent> all(active_.size());
     for (std::size_t c = 0; c < all.size(); ++c)
-        all[c] = tangent(contacts, c, start[c], soft);
+        all[c] = tangent(contacts, c, start.state[c], soft);
     return all;
 }
 
-bool ActiveContacts::break_bonds(const Contacts& contacts, const std::vector<State>& start)
+double ActiveContacts::largest_force_change(const Contacts& contacts, const ContactsState& start,
+                                            std::span<const Vector2d> displacement) const
+{
+    double largest = 0;
+    for (std::size_t c = 0; c < active_.size(); ++c) {
+        const auto& [a, b] = contacts.gridpoint[c];
+        const Tangent acting = tangent(contacts, c, start.state[c], 0);
+        largest =
+            std::max(largest, force_change(contacts, c, acting, displacement[b] - displacement[a]).norm());
+    }
+    return largest;
+}
+
+bool ActiveContacts::break_bonds(const Contacts& contacts, const ContactsState& start)
 {
     bool breaks = false;
     for (std::size_t c = 0; c < breaks_.size(); ++c) {
@@ -112,7 +128,8 @@ bool ActiveContacts::break_bonds(const Contacts& contacts, const std::vector<Sta
         const bool changes = weakens_by_slip(law)
                                  ? contacts.state[c].is_broken != (is_broken_[c] != 0)
                                  : is_open != (active_[c] == Active::open) && cohesion(law) > 0;
-        if (contacts.status[c] != ContactStatus::removed && changes && !breaks_[c] && !start[c].is_broken) {
+        if (contacts.status[c] != ContactStatus::removed && changes && !breaks_[c] &&
+            !start.state[c].is_broken) {
             breaks_[c] = 1;
             breaks = true;
         }

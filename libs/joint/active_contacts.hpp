@@ -1,4 +1,5 @@
 // What contacts do in a search for equilibrium that goes by tangents: stick, slip forward or backward, or open.
+// rock/active_zones.hpp has the same functions.
 //
 // Contacts go straight from their states at the start of the search to those at its end. A contact changes its
 // direction of slip only through sticking. Bonds that break in the search stay broken during it, once they have broken
@@ -7,7 +8,7 @@
 
 #pragma once
 
-#include "joint/contacts.hpp"
+#include "joint/contact_stiffness.hpp"
 
 #include <vector>
 
@@ -21,25 +22,29 @@ public:
     void begin(const Contacts& contacts);
 
     // Sets the contacts to their states at the start, but for bonds that have broken in the search.
-    void restart(Contacts& contacts, const std::vector<State>& start) const;
+    void restart(Contacts& contacts, const ContactsState& start) const;
 
     // Takes over what contacts do now. A contact slides back only after it has stuck, unless this is the `first` time.
-    void take(const Contacts& contacts, const std::vector<State>& start, bool first);
+    void take(const Contacts& contacts, const ContactsState& start, bool first);
 
-    // Tangents for what they do. Open and slipping contacts keep the share `soft` of their springs.
-    std::vector<Tangent> tangents(const Contacts& contacts, const std::vector<State>& start,
-                                  double soft) const;
+    // Tangents for what they do. Open and slipping contacts keep the share `soft` of their springs. Contacts know how far
+    // they are displaced.
+    std::vector<Tangent> tangents(const Contacts& contacts, std::span<const Vector2d> displacement,
+                                  const ContactsState& start, double soft) const;
+
+    // The largest change of a contact's force that these displacements of gridpoints [m] would bring [N/m].
+    double largest_force_change(const Contacts& contacts, const ContactsState& start,
+                                std::span<const Vector2d> displacement) const;
 
     // Breaks the bonds of contacts that have opened, closed or weakened since take(). True if any bond breaks.
-    bool break_bonds(const Contacts& contacts, const std::vector<State>& start);
+    bool break_bonds(const Contacts& contacts, const ContactsState& start);
 
     // Restores the bonds of contacts that opened during the search and are closed now. Their next opening breaks them
     // for good. True if that changes forces.
     bool mend_bonds(const Contacts& contacts);
 
-    // For going back to broken bonds where mended ones find no equilibrium.
-    const std::vector<char>& broken_bonds() const { return breaks_; }
-    void set_broken_bonds(const std::vector<char>& breaks) { breaks_ = breaks; }
+    // Goes back to the broken bonds of `before`, where mended ones find no equilibrium.
+    void break_again(const ActiveContacts& before) { breaks_ = before.breaks_; }
 
 private:
     enum class Active : char { open, stuck, slips_forward, slips_backward };

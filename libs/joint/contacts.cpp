@@ -127,48 +127,6 @@ ContactResponse respond(const Contacts& contacts, std::size_t c, const State& st
             {state.memory[0].slope, state.memory[1].slope, state.memory[2].slope}};
 }
 
-Tangent tangent_of_response(const Contacts& contacts, std::size_t c, const State& start)
-{
-    const Vector2d by_opening = respond(contacts, c, start, {.spring = {1, 0}}).traction,
-                   by_shear = respond(contacts, c, start, {.spring = {0, 1}}).traction;
-    return {by_opening.x(), by_shear.y(), by_opening.y(), by_shear.x()};
-}
-
-Eigen::Matrix2d stiffness_of(const Contacts& contacts, std::size_t c, const Tangent& tangent)
-{
-    const Vector2d &normal = contacts.normal[c], shear = along(normal);
-    return contacts.length[c] *
-           (tangent.normal * normal * normal.transpose() + tangent.shear * shear * shear.transpose() +
-            tangent.friction * shear * normal.transpose() + tangent.dilation * normal * shear.transpose());
-}
-
-Vector2d force_change(const Contacts& contacts, std::size_t c, const Tangent& tangent,
-                      const Vector2d& relative_displacement)
-{
-    const Vector2d &normal = contacts.normal[c], shear = along(normal);
-    const Vector2d change =
-        tangent.times({normal.dot(relative_displacement), shear.dot(relative_displacement)});
-    return contacts.length[c] * (change.x() * normal + change.y() * shear);
-}
-
-Tangent tangent_of_springs(const Contacts& contacts, std::size_t c, double soft)
-{
-    const Slopes law = slopes(contacts.law[c], contacts.state[c], contacts.traction[c].x());
-    const bool sticks = contacts.status[c] == ContactStatus::stuck && law.k_s > 0;
-    return {law.k_n * (contacts.status[c] == ContactStatus::open ? soft : 1.0),
-            (law.k_s > 0 ? law.k_s : law.k_n) * (sticks ? 1.0 : soft), 0, 0};
-}
-
-Tangent without_zeros(const Contacts& contacts, std::size_t c, Tangent tangent, double soft)
-{
-    const double normal = k_n(contacts.law[c]), shear = k_s(contacts.law[c]);
-    if (tangent.normal == 0)
-        tangent.normal = soft * normal;
-    if (tangent.shear == 0)
-        tangent.shear = soft * (shear > 0 ? shear : normal);
-    return tangent;
-}
-
 void add_row_sums(const Contacts& contacts, std::vector<Vector2d>& sums)
 {
     for (std::size_t c = 0; c < contacts.gridpoint.size(); ++c) {
@@ -240,7 +198,7 @@ void join(const Contacts& contacts, DisjointSets& gridpoints)
             gridpoints.join(contacts.gridpoint[c][0], contacts.gridpoint[c][1]);
 }
 
-void excavate(Contacts& contacts, const std::vector<char>& is_gone)
+void remove_at(Contacts& contacts, const std::vector<char>& is_gone)
 {
     for (std::size_t c = 0; c < contacts.gridpoint.size(); ++c) {
         const auto [a, b] = contacts.gridpoint[c];
@@ -258,6 +216,12 @@ double slip_beside_springs(const Contacts& contacts, std::size_t c)
     return stiffness > 0 ? contacts.relative_displacement[c].y() -
                                (contacts.traction[c].y() - contacts.initial_traction[c].y()) / stiffness
                          : 0.0;
+}
+
+bool is_finite(const Contacts& contacts)
+{
+    return std::ranges::all_of(contacts.traction,
+                               [](const Vector2d& traction) { return traction.allFinite(); });
 }
 
 double penetration(const Contacts& contacts)

@@ -68,6 +68,12 @@ void find_incidence(Contacts& contacts, std::size_t n_gridpoints);
 void find_forces_in_team(Contacts& contacts, std::span<const Vector2d> displacement, double damping,
                          bool forces_alone);
 
+// The forces whose change the convergence report has [N/m].
+inline std::span<const Vector2d> reported_forces(const Contacts& contacts)
+{
+    return contacts.force;
+}
+
 // Adds the forces of the contacts at a gridpoint [N/m], or their magnitudes.
 inline void add_force_on(const Contacts& contacts, Index gridpoint, Vector2d& force)
 {
@@ -100,36 +106,6 @@ struct ContactResponse {
 // derivatives. A bond broken during the search counts as broken from the start.
 ContactResponse respond(const Contacts& contacts, std::size_t c, const State& start, const ContactChange& by);
 
-// Change of a contact's traction over change of its relative displacement [Pa/m]: {normal over normal, shear
-// over shear, shear over normal, normal over shear}.
-struct Tangent {
-    double normal, shear, friction, dilation;
-
-    bool operator==(const Tangent&) const = default;
-
-    // Change of {normal, shear} traction [Pa] for one of the {normal, shear} relative displacement [m].
-    Vector2d times(const Vector2d& relative) const
-    {
-        return {normal * relative.x() + dilation * relative.y(),
-                shear * relative.y() + friction * relative.x()};
-    }
-};
-
-// The tangent of the response to the present displacement from the state `start`.
-Tangent tangent_of_response(const Contacts& contacts, std::size_t c, const State& start);
-
-// Change of the force on side b by a change of the displacement of b minus that of a [Pa], and the change of that force
-// [N/m] by a given one [m].
-Eigen::Matrix2d stiffness_of(const Contacts& contacts, std::size_t c, const Tangent& tangent);
-Vector2d force_change(const Contacts& contacts, std::size_t c, const Tangent& tangent,
-                      const Vector2d& relative_displacement);
-
-// The tangent of the springs in its status: where it is open or slips, and a smooth joint in shear, they keep the share
-// `soft` only.
-Tangent tangent_of_springs(const Contacts& contacts, std::size_t c, double soft);
-// The tangent with the share `soft` of the springs wherever it has no stiffness.
-Tangent without_zeros(const Contacts& contacts, std::size_t c, Tangent tangent, double soft);
-
 // For joints that grow stiffer as they close, the normal stiffness is taken as this many times the present one.
 inline constexpr double room_to_stiffen = 2;
 
@@ -159,13 +135,27 @@ double dissipated(const Contacts& contacts, const ContactsState& start);
 void join(const Contacts& contacts, DisjointSets& gridpoints);
 
 // Removes the contacts that have a gridpoint for which `is_gone` is set.
-void excavate(Contacts& contacts, const std::vector<char>& is_gone);
+void remove_at(Contacts& contacts, const std::vector<char>& is_gone);
 
 // Shear displacement that is not in the shear springs [m]; 0 for a smooth joint.
 double slip_beside_springs(const Contacts& contacts, std::size_t c);
 
 // The deepest that a contact is closed beyond its normal traction over its stiffness [m].
 double penetration(const Contacts& contacts);
+
+// Whether tractions are finite numbers.
+bool is_finite(const Contacts& contacts);
+
+// Of rock only (rock/zones.hpp): contacts slip in every search.
+inline bool yields(const Contacts&)
+{
+    return false;
+}
+inline void hold_yield(Contacts&, bool /*held*/) {}
+inline bool is_within_strength(const Contacts&)
+{
+    return true;
+}
 
 // Makes the present tractions those at zero displacement.
 void start_from_here(Contacts& contacts);

@@ -20,7 +20,7 @@ void add_up_forces(Assembly& assembly)
     for (Index k = 0; k < n_chunks; ++k)
         for (Index g = k * chunk; g < std::min(n, (k + 1) * chunk); ++g) {
             Vector2d force = assembly.load[g] + assembly.applied[g];
-            for_each_force(assembly, [&](const auto& one) { add_force_on(one, g, force); });
+            for_each_force([&](const auto& one) { add_force_on(one, g, force); }, assembly);
             assembly.force[g] = force;
         }
 }
@@ -52,7 +52,7 @@ Assembly assemble(const Scene& scene, const Network& network, const EquivalentJo
 
 void find_incidence(Assembly& assembly)
 {
-    for_each_force(assembly, [&](auto& one) { find_incidence(one, assembly.position.size()); });
+    for_each_force([&](auto& one) { find_incidence(one, assembly.position.size()); }, assembly);
 }
 
 void part_ties(Assembly& assembly, Index stage)
@@ -90,8 +90,8 @@ void find_forces_in_team(Assembly& assembly, bool forces_alone)
             assembly.displacement[follower] = assembly.displacement[leader];
     }
     const double damping = assembly.stiffness_damping_rate;
-    for_each_force(
-        assembly, [&](auto& one) { find_forces_in_team(one, assembly.displacement, damping, forces_alone); });
+    for_each_force([&](auto& one) { find_forces_in_team(one, assembly.displacement, damping, forces_alone); },
+                   assembly);
 #pragma omp barrier
     add_up_forces(assembly);
     if (!assembly.tied.empty()) {
@@ -112,7 +112,7 @@ Index chunks_of(const Assembly& assembly)
 double stored_energy(const Assembly& assembly)
 {
     double energy = 0;
-    for_each_force(assembly, [&](const auto& one) { energy += stored_energy(one); });
+    for_each_force([&](const auto& one) { energy += stored_energy(one); }, assembly);
     return energy;
 }
 
@@ -137,7 +137,7 @@ Balance balance_of(const Assembly& assembly)
                     break;
             }
             double magnitudes = assembly.load[g].norm() + assembly.applied[g].norm();
-            for_each_force(assembly, [&](const auto& one) { add_magnitudes_on(one, g, magnitudes); });
+            for_each_force([&](const auto& one) { add_magnitudes_on(one, g, magnitudes); }, assembly);
             if (magnitudes > 0) {
                 here.sum += magnitudes;
                 ++here.n;
@@ -215,28 +215,35 @@ double work_of_loads(const Assembly& assembly, const std::vector<Vector2d>& star
 void start_from_here(Assembly& assembly)
 {
     find_forces(assembly);
-    for_each_force(assembly, [](auto& one) { start_from_here(one); });
+    for_each_force([](auto& one) { start_from_here(one); }, assembly);
     assembly.displacement.assign(assembly.displacement.size(), Vector2d::Zero());
     find_forces(assembly);
 }
 
+bool yields(const Assembly& assembly)
+{
+    bool any = false;
+    for_each_force([&](const auto& one) { any = any || yields(one); }, assembly);
+    return any;
+}
+
 void begin_search(Assembly& assembly, bool damps_stiffness)
 {
-    for_each_force(assembly, [&](auto& one) { begin_search(one, damps_stiffness); });
+    for_each_force([&](auto& one) { begin_search(one, damps_stiffness); }, assembly);
 }
 
 double dissipated(const Assembly& assembly)
 {
     double energy = 0;
-    for_each_force(assembly, [&](const auto& one) { energy += dissipated(one); });
+    for_each_force([&](const auto& one) { energy += dissipated(one); }, assembly);
     return energy;
 }
 
 double dissipated(const Assembly& assembly, const State& start)
 {
     double energy = 0;
-    for_each_force(assembly, start,
-                   [&](const auto& one, const auto& its_start) { energy += dissipated(one, its_start); });
+    for_each_force([&](const auto& one, const auto& its_start) { energy += dissipated(one, its_start); },
+                   assembly, start);
     return energy;
 }
 
@@ -245,7 +252,7 @@ State state_of(const Assembly& assembly)
     State state;
     state.displacement = assembly.displacement;
     state.force = assembly.force;
-    for_each_force(assembly, state, [](const auto& one, auto& its_state) { its_state = state_of(one); });
+    for_each_force([](const auto& one, auto& its_state) { its_state = state_of(one); }, assembly, state);
     return state;
 }
 
@@ -253,7 +260,7 @@ void go_back(Assembly& assembly, const State& state)
 {
     assembly.displacement = state.displacement;
     assembly.force = state.force;
-    for_each_force(assembly, state, [](auto& one, const auto& its_state) { go_back(one, its_state); });
+    for_each_force([](auto& one, const auto& its_state) { go_back(one, its_state); }, assembly, state);
 }
 
 // What is not passed on is as in a new assembly, or found anew before it is used.
@@ -265,24 +272,24 @@ void transfer(const Transfer& to, Assembly& assembly, Checkpoint& kept)
     to.values(assembly.force, kept.force);
     if (to.restores())
         part_ties(assembly, kept.unloaded > 0 ? kept.stage : kept.stage - 1);
-    for_each_force(assembly, [&](auto& one) { transfer(to, one, kept); });
+    for_each_force([&](auto& one) { transfer(to, one, kept); }, assembly);
 }
 
 void pass(Tape& tape, Assembly& assembly)
 {
     tape(assembly.displacement, assembly.force);
-    for_each_force(assembly, [&](auto& one) { pass(tape, one); });
+    for_each_force([&](auto& one) { pass(tape, one); }, assembly);
 }
 
 void record_state(const Assembly& assembly, States& states)
 {
-    for_each_force(assembly, [&](const auto& one) { record_state(one, states); });
+    for_each_force([&](const auto& one) { record_state(one, states); }, assembly);
 }
 
 std::vector<double> stiffness_row_sums(const Assembly& assembly)
 {
     std::vector<Vector2d> sums(assembly.position.size(), Vector2d::Zero());
-    for_each_force(assembly, [&](const auto& one) { add_row_sums(one, sums); });
+    for_each_force([&](const auto& one) { add_row_sums(one, sums); }, assembly);
     for (const auto& [follower, leader] : assembly.tied)
         sums[leader] += sums[follower];
     std::vector<double> larger;

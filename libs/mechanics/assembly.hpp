@@ -3,12 +3,11 @@
 
 #pragma once
 
-#include "joint/contacts.hpp"
+#include "mechanics/forces.hpp"
 #include "model/checkpoint.hpp"
 #include "model/network.hpp"
 #include "model/result.hpp"
 #include "model/scene.hpp"
-#include "rock/zones.hpp"
 
 #include <Eigen/Core>
 
@@ -22,13 +21,8 @@ namespace jointcreep::mechanics
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-struct Assembly {
-    // What has forces on gridpoints, beside loads. A new kind of force is one more member here, in State and in both
-    // for_each_force.
-    rock::Zones zones;
-    joint::Contacts contacts;
-
-    // Gridpoints.
+// The forces on gridpoints, and the gridpoints.
+struct Assembly : Forces {
     std::vector<Vector2d> position;       // at the start [m]
     std::vector<Vector2d> displacement;   // [m]
     std::vector<Vector2d> is_free_untied; // 1 or 0 in {x, y}: not fixed by a boundary, not removed
@@ -52,28 +46,9 @@ struct Assembly {
 };
 
 // What equilibria and creep change, for going back to it.
-struct State {
+struct State : ForcesState {
     std::vector<Vector2d> displacement, force;
-    rock::ZonesState zones;
-    joint::ContactsState contacts;
 };
-
-// Each kind of force in turn, always in this order; or each with its state. A kind has, in its own folder, the functions
-// that are called with it; rock/zones.hpp and joint/contacts.hpp say what they do:
-//   find_incidence, find_forces_in_team, add_force_on, add_magnitudes_on, add_row_sums, stored_energy,
-//   begin_search, dissipated, pass, state_of, go_back, start_from_here, transfer, record_state, join.
-template <class OfAssembly, class Call>
-void for_each_force(OfAssembly& assembly, const Call& call)
-{
-    call(assembly.zones);
-    call(assembly.contacts);
-}
-template <class OfAssembly, class OfState, class Call>
-void for_each_force(OfAssembly& assembly, OfState& state, const Call& call)
-{
-    call(assembly.zones, state.zones);
-    call(assembly.contacts, state.contacts);
-}
 
 // The assembly under the scene's in-situ stress, at zero displacement, all rock present. Contact tractions
 // are the in-situ ones at the contacts' centres.
@@ -102,6 +77,9 @@ Index chunks_of(const Assembly& assembly);
 
 // Energy that all kinds of force have stored [J/m]; only differences mean anything.
 double stored_energy(const Assembly& assembly);
+
+// Whether anything may yield now, so that its tangents are found anew for each correction of the implicit engine.
+bool yields(const Assembly& assembly);
 
 // Before a search for equilibrium: counts dissipated energy from here.
 void begin_search(Assembly& assembly, bool damps_stiffness = false);

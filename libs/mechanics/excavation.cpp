@@ -22,7 +22,7 @@ std::vector<Vector2d> excavate(Assembly& assembly, const Blocks& blocks, const M
             assembly.load[g].setZero();
             assembly.is_free_untied[g].setZero();
         }
-    joint::excavate(assembly.contacts, is_gone);
+    for_each_force([&](auto& one) { remove_at(one, is_gone); }, assembly);
     const std::vector<Vector2d> was_free = assembly.is_free;
     part_ties(assembly, stage);
     loading.leave_removed(assembly);

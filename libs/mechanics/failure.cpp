@@ -84,7 +84,7 @@ Failure failure_of_unsupported(const Mesh& mesh, const Assembly& assembly)
 {
     // Bodies of rock: gridpoints joined by zones, ties and contacts that are not removed.
     DisjointSets sets(assembly.position.size());
-    for_each_force(assembly, [&](const auto& one) { join(one, sets); });
+    for_each_force([&](const auto& one) { join(one, sets); }, assembly);
     for (const auto& [a, b] : assembly.tied)
         sets.join(a, b);
 

@@ -85,7 +85,7 @@ std::vector<Body> bodies_of(const Assembly& assembly, std::vector<Index>& body_o
     return bodies;
 }
 
-// Stiffness of rigid bodies, on the contacts and on fixed gridpoints.
+// Stiffness of rigid bodies, on springs between them and on fixed gridpoints.
 Eigen::SparseMatrix<double> stiffness_of(const Assembly& assembly, const std::vector<Body>& bodies,
                                          const std::vector<Index>& body_of)
 {
@@ -95,23 +95,19 @@ Eigen::SparseMatrix<double> stiffness_of(const Assembly& assembly, const std::ve
             for (int j = 0; j < 3; ++j)
                 entries.emplace_back(3 * p + i, 3 * q + j, block(i, j));
     };
-    const joint::Contacts& contacts = assembly.contacts;
     double stiffest = 0; // [Pa]
-    for (std::size_t c = 0; c < contacts.gridpoint.size(); ++c) {
-        if (contacts.status[c] == ContactStatus::removed)
-            continue;
-        const joint::Tangent springs = tangent_of_springs(contacts, c, soft);
-        const Eigen::Matrix2d spring = stiffness_of(contacts, c, springs);
-        stiffest = std::max(stiffest, contacts.length[c] * std::max(springs.normal, springs.shear));
-        for (int i = 0; i < 2; ++i)
-            for (int j = 0; j < 2; ++j) {
-                const Index a = contacts.gridpoint[c][i], b = contacts.gridpoint[c][j];
+    for_each_force(
+        [&](const auto& one) {
+            const auto add_spring = [&](Index group, int i, int j, const Eigen::Matrix2d& spring) {
+                const Index a = coupled_by(one, group)[i], b = coupled_by(one, group)[j];
                 if (body_of[a] >= 0 && body_of[b] >= 0)
                     add(body_of[a], body_of[b],
-                        (i == j ? 1 : -1) * bodies[body_of[a]].moves(assembly.position[a]).transpose() *
-                            spring * bodies[body_of[b]].moves(assembly.position[b]));
-            }
-    }
+                        bodies[body_of[a]].moves(assembly.position[a]).transpose() * spring *
+                            bodies[body_of[b]].moves(assembly.position[b]));
+            };
+            stiffest = std::max(stiffest, add_springs(one, soft, add_spring));
+        },
+        assembly);
     const double firm = stiffest > 0 ? stiffest : 1.0;
     for (std::size_t g = 0; g < body_of.size(); ++g)
         if (body_of[g] >= 0 && assembly.is_free[g].minCoeff() == 0) {

@@ -58,7 +58,7 @@ private:
     double last_share_ = 0;
 };
 
-// Contact forces at the last few checks.
+// Reported forces, those of contacts, at the last few checks.
 class ForceMemory
 {
 public:
@@ -66,13 +66,20 @@ public:
     double change_since_window(const Assembly& assembly)
     {
         std::vector<Vector2d>& oldest = kept_[n_ % kept_.size()];
+        std::vector<Vector2d> now;
+        for_each_force(
+            [&](const auto& one) {
+                const auto forces = reported_forces(one);
+                now.insert(now.end(), forces.begin(), forces.end());
+            },
+            assembly);
         double change = std::numeric_limits<double>::infinity();
         if (n_ >= kept_.size()) {
             change = 0;
-            for (std::size_t c = 0; c < oldest.size(); ++c)
-                change = std::max(change, (assembly.contacts.force[c] - oldest[c]).norm());
+            for (std::size_t i = 0; i < now.size(); ++i)
+                change = std::max(change, (now[i] - oldest[i]).norm());
         }
-        oldest = assembly.contacts.force;
+        oldest.swap(now);
         ++n_;
         return change;
     }

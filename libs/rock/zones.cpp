@@ -284,26 +284,6 @@ void find_forces_in_team(Zones& zones, std::span<const Vector2d> displacement, d
         find_forces_of<6>(zones, displacement, damping, forces_alone);
 }
 
-Eigen::Matrix2d stiffness_between(const Zones& zones, std::size_t z, int i, int j)
-{
-    const Vector3d& c = zones.stiffness[z];
-    const Vector2d &p = zones.gradients(z)[i], &q = zones.gradients(z)[j];
-    Eigen::Matrix2d block;
-    block << c[0] * p.x() * q.x() + c[2] * p.y() * q.y(), c[1] * p.x() * q.y() + c[2] * p.y() * q.x(),
-        c[1] * p.y() * q.x() + c[2] * p.x() * q.y(), c[0] * p.y() * q.y() + c[2] * p.x() * q.x();
-    return block;
-}
-
-Eigen::Matrix2d stiffness_between(const Zones& zones, std::size_t z, int i, int j,
-                                  const Eigen::Matrix3d& tangent)
-{
-    const auto strain_of = [&](int corner) { // for a displacement of the gridpoint
-        const Vector2d& p = zones.gradients(z)[corner];
-        return (Eigen::Matrix<double, 3, 2>() << p.x(), 0, 0, p.y(), p.y(), p.x()).finished();
-    };
-    return strain_of(i).transpose() * tangent * strain_of(j);
-}
-
 Vector3d strain_at(const Zones& zones, std::size_t z, std::span<const Vector2d> displacement)
 {
     double exx = 0, eyy = 0, gxy = 0;
@@ -314,16 +294,6 @@ Vector3d strain_at(const Zones& zones, std::size_t z, std::span<const Vector2d> 
         gxy += gradient.y() * u.x() + gradient.x() * u.y();
     }
     return {exx, eyy, gxy};
-}
-
-Eigen::Matrix3d tangent_at(const Zones& zones, std::size_t z, std::span<const Vector2d> displacement,
-                           const std::vector<YieldingZone>& start)
-{
-    const Vector3d& c = zones.stiffness[z];
-    if (start.empty() || zones.yielding_number[z] < 0 || zones.holds_yield)
-        return (Eigen::Matrix3d() << c[0], c[1], 0, c[1], c[0], 0, 0, 0, c[2]).finished();
-    return tangent_of_yield(start[zones.yielding_number[z]], c, zones.initial_stress[z],
-                            strain_at(zones, z, displacement));
 }
 
 void add_row_sums(const Zones& zones, std::vector<Vector2d>& sums)
@@ -442,6 +412,16 @@ Index weakest(const Zones& zones)
         }
     }
     return weakest;
+}
+
+bool is_within_strength(const Zones& zones)
+{
+    return weakest(zones) < 0;
+}
+
+bool is_finite(const Zones& zones)
+{
+    return std::ranges::all_of(zones.stress, [](const Vector3d& stress) { return stress.allFinite(); });
 }
 
 void excavate(Zones& zones, const std::vector<char>& is_removed, std::vector<Vector2d>& load)

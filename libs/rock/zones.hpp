@@ -102,6 +102,12 @@ bool has_lost_rock(const Zones& zones, Index gridpoint);
 void find_forces_in_team(Zones& zones, std::span<const Vector2d> displacement, double damping,
                          bool forces_alone);
 
+// The forces whose change the convergence report has: those of contacts.
+inline std::span<const Vector2d> reported_forces(const Zones&)
+{
+    return {};
+}
+
 // Adds the forces of the zones at a gridpoint [N/m], or their magnitudes.
 inline void add_force_on(const Zones& zones, Index gridpoint, Vector2d& force)
 {
@@ -114,20 +120,8 @@ inline void add_magnitudes_on(const Zones& zones, Index gridpoint, double& magni
         magnitudes += zones.slots.magnitudes[slot];
 }
 
-// Stiffness of a zone between its gridpoints i and j, at a stress point, per area [Pa/m2].
-Eigen::Matrix2d stiffness_between(const Zones& zones, std::size_t z, int i, int j);
-
-// The same for any matrix of stress {xx, yy, xy} over strain {xx, yy, gamma_xy} [Pa].
-Eigen::Matrix2d stiffness_between(const Zones& zones, std::size_t z, int i, int j,
-                                  const Eigen::Matrix3d& tangent);
-
 // Strain {xx, yy, gamma_xy} at a stress point at the displacements of all gridpoints [-].
 Vector3d strain_at(const Zones& zones, std::size_t z, std::span<const Vector2d> displacement);
-
-// Change of the stress at a stress point over change of its strain, at the displacements of all gridpoints [Pa]. The
-// strain path is straight from `start`, the yielding zones at the start.
-Eigen::Matrix3d tangent_at(const Zones& zones, std::size_t z, std::span<const Vector2d> displacement,
-                           const std::vector<YieldingZone>& start);
 
 // Adds the row sums of the magnitudes of the zones' stiffness {x, y} to those of their gridpoints [Pa].
 void add_row_sums(const Zones& zones, std::vector<Vector2d>& sums);
@@ -160,8 +154,22 @@ double largest_plastic_strain(const Zones& zones);
 // The stress point most beyond its strength; -1 if none is beyond.
 Index weakest(const Zones& zones);
 
+// A search for equilibrium is quicker if rock may not yield in it. It has found what it should if no rock is beyond its
+// strength then.
+inline void hold_yield(Zones& zones, bool held)
+{
+    zones.holds_yield = held;
+}
+bool is_within_strength(const Zones& zones);
+
+// Whether stresses are finite numbers.
+bool is_finite(const Zones& zones);
+
 // Removes the rock of the stress points for which `is_removed` is set, and its weight from the loads [N/m].
 void excavate(Zones& zones, const std::vector<char>& is_removed, std::vector<Vector2d>& load);
+
+// Rock goes by blocks, see excavate().
+inline void remove_at(Zones&, const std::vector<char>& /*is_gone*/) {}
 
 // Joins the gridpoints of each present zone.
 void join(const Zones& zones, DisjointSets& gridpoints);

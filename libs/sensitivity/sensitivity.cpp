@@ -46,16 +46,6 @@ std::vector<Chain> changes_of(const std::vector<Chain>& chains, Parameter parame
     return changes;
 }
 
-std::vector<joint::Tangent> tangents_of(const joint::Contacts& contacts,
-                                        const std::vector<joint::State>& start)
-{
-    std::vector<joint::Tangent> tangents(contacts.law.size());
-    for (std::size_t c = 0; c < tangents.size(); ++c)
-        if (contacts.status[c] != ContactStatus::removed)
-            tangents[c] = joint::tangent_of_response(contacts, c, start[c]);
-    return tangents;
-}
-
 void take_ties(const Assembly& assembly, std::vector<Vector2d>& force)
 {
     for (const auto& [follower, leader] : assembly.tied) {
@@ -122,7 +112,7 @@ std::vector<Vector2d> Sensitivity::forces_at_fixed_gridpoints(const Assembly& as
 
 void Sensitivity::settle(const Assembly& assembly, implicit::Solver& engine, double time, double held)
 {
-    const std::vector<joint::Tangent> tangents = tangents_of(assembly.contacts, start_);
+    const mechanics::Tangents tangents{.contacts = tangents_of_responses(assembly.contacts, start_)};
     for (Change& change : changes_) {
         std::vector<Vector2d> force = forces_at_fixed_gridpoints(assembly, change);
         if (held > 0)

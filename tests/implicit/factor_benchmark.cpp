@@ -122,7 +122,7 @@ void measure(const std::string& path, double zone_size)
     stiffness.follow(assembly);
     Matrix matrix = matrix_of(assembly, stuck, rows_of(assembly, stiffness), stiffness.size());
     const Eigen::VectorXd probe = Eigen::VectorXd::Random(stiffness.size());
-    const Eigen::VectorXd product = stiffness.times(assembly, stuck, probe);
+    const Eigen::VectorXd product = stiffness.times(assembly, {.contacts = stuck}, probe);
     const double apart = (matrix.selfadjointView<Eigen::Lower>() * probe - product).norm() / product.norm();
     if (!(apart < 1e-12))
         throw std::runtime_error("the matrix is not the engine's: products differ by " +
@@ -147,7 +147,7 @@ void measure(const std::string& path, double zone_size)
     const Eigen::Map<const Eigen::VectorXd> found(static_cast<const double*>(solution->x), probe.size());
     if (!((matrix.selfadjointView<Eigen::Lower>() * found - product).norm() < 1e-10 * product.norm()))
         throw std::runtime_error("CHOLMOD's solution is wrong");
-    const double multiply = seconds_of([&] { stiffness.times(assembly, stuck, probe); });
+    const double multiply = seconds_of([&] { stiffness.times(assembly, {.contacts = stuck}, probe); });
 
     std::cout << "zones,unknowns,matrix_entries,factor_entries,cholmod_MB,analyse_s,factorise_s,solve_s,"
                  "product_s\n"

@@ -19,6 +19,7 @@ using Eigen::VectorXd;
 using implicit::Stiffness;
 using joint::Tangent;
 using mechanics::Assembly;
+using mechanics::Tangents;
 
 constexpr double friction = 0.5; // [rad]
 
@@ -104,14 +105,14 @@ TEST_P(stiffness, is_what_forces_change_by)
     const VectorXd x = random_vector(K.size());
     const double h = 1e-6; // moves of a micrometre change no contact's state, so forces are linear in them
     const VectorXd change = (force_at(K, s.assembly, x, -h) - force_at(K, s.assembly, x, h)) / (2 * h);
-    const VectorXd product = K.times(s.assembly, tangents, x);
+    const VectorXd product = K.times(s.assembly, {.contacts = tangents}, x);
     EXPECT_LT((product - change).norm(), 1e-7 * change.norm());
     // Without either coupling it would be something else.
     for (double Tangent::*const coupling : {&Tangent::friction, &Tangent::dilation}) {
         std::vector<Tangent> uncoupled = tangents;
         for (Tangent& t : uncoupled)
             t.*coupling = 0;
-        EXPECT_GT((K.times(s.assembly, uncoupled, x) - change).norm(), 1e-3 * change.norm());
+        EXPECT_GT((K.times(s.assembly, {.contacts = uncoupled}, x) - change).norm(), 1e-3 * change.norm());
     }
 }
 
@@ -144,7 +145,7 @@ TEST_P(stiffness, its_factor_solves_what_is_symmetric)
     Stiffness K;
     K.follow(s.assembly);
     EXPECT_FALSE(K.has_factor());
-    const std::vector<Tangent> stuck(s.assembly.contacts.law.size(), {5e9, 2e9, 0, 0});
+    const Tangents stuck{.contacts{s.assembly.contacts.law.size(), {5e9, 2e9, 0, 0}}};
     ASSERT_TRUE(K.factorise(s.assembly, stuck));
     const VectorXd x = random_vector(K.size());
     EXPECT_LT((K.solve(K.times(s.assembly, stuck, x)) - x).norm(), 1e-9 * x.norm());
@@ -157,7 +158,7 @@ INSTANTIATE_TEST_SUITE_P(before_and_after_excavation, stiffness, testing::Bool()
 TEST(stiffness, follows_what_changes_and_keeps_its_factor_otherwise)
 {
     Section s = plate(false);
-    const std::vector<Tangent> stuck(s.assembly.contacts.law.size(), {5e9, 2e9, 0, 0});
+    const Tangents stuck{.contacts{s.assembly.contacts.law.size(), {5e9, 2e9, 0, 0}}};
     Stiffness K;
     K.follow(s.assembly);
     K.factorise(s.assembly, stuck);
@@ -172,9 +173,7 @@ TEST(stiffness, follows_what_changes_and_keeps_its_factor_otherwise)
     K.follow(s.assembly);
     EXPECT_FALSE(K.has_factor());
     EXPECT_EQ(K.size(), size);
-    std::vector<Tangent> softer = stuck;
-    for (Tangent& t : softer)
-        t = {2.5e9, 1e9, 0, 0};
+    const Tangents softer{.contacts{s.assembly.contacts.law.size(), {2.5e9, 1e9, 0, 0}}};
     const VectorXd x = random_vector(size);
     const VectorXd half = K.times(s.assembly, softer, x);
     ASSERT_TRUE(K.factorise(s.assembly, softer));

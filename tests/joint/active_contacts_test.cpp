@@ -28,14 +28,14 @@ Law bonded()
 // A search that begins with a contact, and its state then.
 struct Search {
     Contacts contacts;
-    std::vector<State> start;
+    ContactsState start;
     ActiveContacts active;
 };
 Search begun(const Contacts& contacts)
 {
-    Search search{contacts, contacts.state, {}};
+    Search search{contacts, state_of(contacts), {}};
     search.active.begin(contacts);
-    search.active.take(contacts, contacts.state, true);
+    search.active.take(contacts, search.start, true);
     return search;
 }
 
@@ -46,14 +46,14 @@ RC_GTEST_PROP(active_contacts, have_the_tangent_of_the_response, ())
 {
     const Law law = some_law(any_in(0, places()));
     Contacts contacts = contact(law, {0, 1}, {-1e6 - 1e3 * any_in(0, 2000), any_number(2e5)});
-    const std::vector<State> start = contacts.state;
+    const ContactsState start = state_of(contacts);
     ActiveContacts active;
     active.begin(contacts);
     part(contacts, {any_number(1e-3), any_number(3e-3)});
-    RC_PRE(contacts.state[0].is_broken == start[0].is_broken);
+    RC_PRE(contacts.state[0].is_broken == start.state[0].is_broken);
     active.take(contacts, start, true);
-    const Tangent of = active.tangents(contacts, start, 0)[0],
-                  wanted = tangent_of_response(contacts, 0, start[0]);
+    const Tangent of = active.tangents(contacts, {}, start, 0)[0],
+                  wanted = tangent_of_response(contacts, 0, start.state[0]);
     const double size = 1e-6 * slopes(law, contacts.state[0], contacts.traction[0].x()).k_n;
     RC_CLASSIFY(contacts.status[0] == ContactStatus::slipping, "slips");
     RC_ASSERT(std::abs(of.normal - wanted.normal) <= size);
@@ -65,10 +65,10 @@ RC_GTEST_PROP(active_contacts, have_the_tangent_of_the_response, ())
 TEST(active_contacts, slide_back_only_after_they_have_stuck)
 {
     Contacts contacts = contact(bonded(), {0, 1}, {-1e6, 0});
-    const std::vector<State> start = contacts.state;
+    const ContactsState start = state_of(contacts);
     ActiveContacts active;
     active.begin(contacts);
-    const auto shear = [&] { return active.tangents(contacts, start, 0)[0].friction; };
+    const auto shear = [&] { return active.tangents(contacts, {}, start, 0)[0].friction; };
     part(contacts, {0, 5e-3});
     active.take(contacts, start, true);
     EXPECT_LT(shear(), 0); // more pressure, more shear
@@ -110,11 +110,12 @@ TEST(active_contacts, break_bonds_that_hinder)
     part(contacts, {2e-3, 0});
     EXPECT_TRUE(active.break_bonds(contacts, start));
     EXPECT_FALSE(active.break_bonds(contacts, start)); // once
-    const std::vector<char> broken = active.broken_bonds();
+    const ActiveContacts before = active;
     part(contacts, {0, 9e-4});
     active.mend_bonds(contacts);
-    EXPECT_NE(active.broken_bonds(), broken);
-    active.set_broken_bonds(broken);
+    active.restart(contacts, start);
+    EXPECT_FALSE(contacts.state[0].is_broken);
+    active.break_again(before);
     active.restart(contacts, start);
     EXPECT_TRUE(contacts.state[0].is_broken);
 }

@@ -1,6 +1,7 @@
 // Contacts: springs worked out by hand, forces in balance, tangents and energies of any law.
 
 #include "joint/contact_changes.hpp"
+#include "joint/contact_stiffness.hpp"
 
 #include "any_law.hpp"
 #include "one_contact.hpp"

@@ -1,7 +1,7 @@
 // Zones: exact for uniform strain, forces that are the slope of their energy, in balance, within their strength.
 
 #include "rock/zone_changes.hpp"
-#include "rock/zones.hpp"
+#include "rock/zone_stiffness.hpp"
 
 #include "model/signs.hpp"
 
@@ -375,10 +375,10 @@ RC_GTEST_PROP(zones, that_yield_stay_within_their_strength, ())
 RC_GTEST_PROP(zones, tangent_at_yield_is_what_forces_change_by, ())
 {
     Patch patch(2, 2, 0.4, any_kind(), yielding(), squeezed());
-    const std::vector<YieldingZone> start = patch.zones.yielding;
+    const ZonesState start = state_of(patch.zones);
     const Displacements at = patch.any_displacements(2e-3), by = patch.any_displacements(1);
     const auto forces_at = [&](double way) {
-        patch.zones.yielding = start;
+        patch.zones.yielding = start.yielding;
         Displacements there = at;
         for (std::size_t g = 0; g < there.size(); ++g)
             there[g] += way * by[g];
@@ -394,7 +394,7 @@ RC_GTEST_PROP(zones, tangent_at_yield_is_what_forces_change_by, ())
     const Displacements coarse = differences(2e-8), fine = differences(1e-8);
     Displacements change(at.size(), Vector2d::Zero());
     for (std::size_t z = 0; z < patch.zones.size(); ++z) {
-        const Eigen::Matrix3d tangent = tangent_at(patch.zones, z, at, start);
+        const Tangent tangent = tangent_at(patch.zones, z, at, start);
         const auto gridpoints = patch.zones.gridpoints(z);
         for (std::size_t i = 0; i < gridpoints.size(); ++i)
             for (std::size_t j = 0; j < gridpoints.size(); ++j)

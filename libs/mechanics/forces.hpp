@@ -1,0 +1,50 @@
+// The kinds of force on gridpoints, and the one list of them. A new kind is one more member of ByForce, one line in
+// for_each_force, and one word in each of the lists of types below.
+//
+// A kind has, in its own folder, the functions that are called with it; rock/zones.hpp and joint/contacts.hpp say what
+// they do:
+//   find_incidence, find_forces_in_team, add_force_on, add_magnitudes_on, reported_forces, add_row_sums, stored_energy,
+//   begin_search, dissipated, yields, hold_yield, is_within_strength, is_finite, pass, state_of, go_back,
+//   start_from_here, transfer, record_state, join, remove_at.
+// Its tangents are in rock/zone_stiffness.hpp and joint/contact_stiffness.hpp, and what it does in a search for
+// equilibrium by tangents in rock/active_zones.hpp and joint/active_contacts.hpp.
+
+#pragma once
+
+#include "joint/active_contacts.hpp"
+#include "joint/contact_stiffness.hpp"
+#include "joint/contacts.hpp"
+#include "rock/active_zones.hpp"
+#include "rock/zone_stiffness.hpp"
+#include "rock/zones.hpp"
+
+#include <vector>
+
+namespace jointcreep::mechanics
+{
+
+// Something of each kind of force.
+template <class OfZones, class OfContacts>
+struct ByForce {
+    OfZones zones{};
+    OfContacts contacts{};
+
+    bool operator==(const ByForce&) const = default;
+};
+
+// Each kind in turn, always in this order: call(forces.zones, other.zones, ...).
+template <class Call, class... Of>
+void for_each_force(const Call& call, Of&&... of)
+{
+    call(of.zones...);
+    call(of.contacts...);
+}
+
+using Forces = ByForce<rock::Zones, joint::Contacts>;
+using ForcesState = ByForce<rock::ZonesState, joint::ContactsState>;
+using Tangents = ByForce<std::vector<rock::Tangent>, std::vector<joint::Tangent>>;
+using ActiveForces = ByForce<rock::ActiveZones, joint::ActiveContacts>;
+template <class T>
+using OfEachForce = ByForce<T, T>;
+
+} // namespace jointcreep::mechanics
