@@ -7,13 +7,14 @@
 #   sh pipelines/setup.sh studies  programs and tests, and what studies need and pipelines compare with
 #   sh pipelines/setup.sh exchange programs and tests, GDAL for jointexport, and readers of its files
 #   sh pipelines/setup.sh fuzz     the fuzz targets, into build/fuzz
+#   sh pipelines/setup.sh docs     the site of the pages in docs, into out/docs; no program
 #
 # A list of packages is a file of pipelines/packages, one name a line.
 set -eu
 cd "$(dirname "$0")/.."
 
 if [ $# -gt 1 ]; then
-  echo "setup.sh: unknown \"$2\"; expected nothing, test, develop, studies, exchange or fuzz" >&2
+  echo "setup.sh: unknown \"$2\"; expected nothing, test, develop, studies, exchange, fuzz or docs" >&2
   exit 2
 fi
 case "$PWD" in
@@ -28,8 +29,9 @@ run) lists="run" preset="release" ;;
 test) lists="run test" preset="test" ;;
 develop | studies | exchange) lists="run test $purpose" preset="test" ;;
 fuzz) lists="run test fuzz" preset="fuzz" ;;
+docs) lists="docs" preset="" ;;
 *)
-  echo "setup.sh: unknown purpose \"$purpose\"; expected nothing, test, develop, studies, exchange or fuzz" >&2
+  echo "setup.sh: unknown purpose \"$purpose\"; expected nothing, test, develop, studies, exchange, fuzz or docs" >&2
   exit 2
   ;;
 esac
@@ -58,5 +60,8 @@ if [ -n "$missing" ]; then
   $as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends $missing
 fi
 
+if [ "$purpose" = docs ]; then
+  exec make -C docs
+fi
 cmake --preset "$preset"
 cmake --build --preset "$preset"

@@ -3,7 +3,7 @@
 
     literature.py PROGRAMS DATA OUT
 
-Writes the tables literature.md and cantilever.md into OUT/tables, for the page docs/accuracy.md. Each problem is a
+Writes the tables literature.md and cantilever.md into OUT/tables, for the page docs/verification.md. Each problem is a
 function that runs its scene of data/verification and gives Rows: a figure by closed form, the same computed, and the
 error that is to be expected, with its reason. Each is run by the implicit engine and by dynamic relaxation, where both mean something.
 tests/pipeline/literature_test.py holds each row to its error.

@@ -6,7 +6,7 @@
 runs the programs in BIN on scenes of the folder DATA and writes into OUT
     runs.csv                     one row a run: options, cost, errors
     cases.md                     the same as tables, one a case
-    tables/*.md                  what follows from them, for docs/accuracy.md
+    tables/*.md                  what follows from them, for docs/accuracy.md and docs/verification.md
     creep-steps.png              force error over equilibria, platens and two pillars, every K/E
     force-time.png, displacement-time.png, force-equilibria.png      every case, one panel each
 
@@ -349,7 +349,7 @@ def write_tables(rows, cases, offer, slip, of_pillars, column_seconds, version, 
               "cheapest": cheapest_table(rows, shown),
               "eight-steps": steps_table(rows, offer, [1 / of.RATE / 8], ""),
               "long-steps": steps_table(rows, offer, of.LONG_STEPS, ", long"),
-              "zones": zones_table(rows, shown),
+              "zone-sizes": zones_table(rows, shown),
               "slip": slip,
               "pillars": of_pillars,
               "steps-by-error": steps_by_error_table(rows, shown),

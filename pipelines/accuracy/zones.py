@@ -3,7 +3,7 @@
 
     zones.py PROGRAMS DATA OUT [--quick]
 
-Writes OUT/zones.csv and OUT/tables/zones.md, for the page docs/accuracy.md. Times are processor seconds of the chain on
+Writes OUT/zones.csv and OUT/tables/zones.md, for the page docs/verification.md. Times are processor seconds of the chain on
 one thread; a factor of safety is a dozen runs. --quick leaves out the smallest zones.
 """
 

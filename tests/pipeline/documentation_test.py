@@ -1,9 +1,12 @@
 """What README and docs say of the programs is so."""
 
+import importlib.util
 import json
 import re
+import shutil
 import subprocess
 import sys
+import unittest
 
 import h5py
 
@@ -12,6 +15,8 @@ from chain import ChainTest, main
 CHAIN = ["jointgen", "strength-averaging", "demsolve", "jointexport"]
 PROGRAMS = [*CHAIN, "creepfit"]
 BUILD_AND_RUN = "sh pipelines/setup.sh && make -j2 -C pipelines/slope"
+PATH = 'export PATH="$PWD/build/release/apps:$PATH"\n'
+HAS_SPHINX = all(importlib.util.find_spec(name) for name in ("sphinx", "myst_parser", "furo"))
 BUILD_AND_TEST = 'sh pipelines/setup.sh test && ctest --preset test -j "$(nproc)"'
 
 
@@ -34,7 +39,7 @@ class Documentation(ChainTest):
         self.assertEqual(commands[:2], [BUILD_AND_RUN, BUILD_AND_TEST])
         run = self.chain.text(".ci/run").splitlines()
         self.assertEqual([line for line in run if "pipelines" in line],
-                         [BUILD_AND_TEST, "sh pipelines/setup.sh develop", "sh pipelines/tidy.sh"])
+                         [BUILD_AND_TEST, "sh pipelines/setup.sh docs", "sh pipelines/setup.sh develop", "sh pipelines/tidy.sh"])
         for path in "pipelines/setup.sh", "pipelines/slope/Makefile", ".ci/run":
             self.assertTrue((self.chain.source / path).is_file(), path)
 
@@ -48,9 +53,11 @@ class Documentation(ChainTest):
         return done.stdout
 
     def test_make_commands(self):
-        """Those in README and docs/programs.md are possible, and the pictures that README speaks of are made."""
+        """Those in README and on the pages are possible, and the pictures that README speaks of are made."""
         readme = self.chain.text("README.md")
-        commands = re.findall(r"make (?:-j2 )?-C pipelines/[^\n`]*", readme + self.chain.text("docs/programs.md"))
+        pages = [self.chain.text(f"docs/{name}.md") for name in ("programs", "slope", "gallery", "verification")]
+        commands = re.findall(r"make (?:-j2 )?-C pipelines/[^\n`#]*", readme + "".join(pages))
+        commands = [command for command in commands if "/path/to/" not in command]
         plans = {command: self.planned(command) for command in sorted(set(commands))}
         self.assertGreaterEqual(len(plans), 7)
         made = set(re.findall(r" -o \S+/([\w-]+\.png)$", "\n".join(plans.values()), flags=re.MULTILINE))
@@ -59,28 +66,35 @@ class Documentation(ChainTest):
         self.assertLessEqual(named, made)
 
     def test_pictures(self):
-        """All of them are shown, in README or on a page of docs."""
+        """All of them are shown, in README or on a page of docs, and all that are shown exist."""
         picture = re.compile(r"^!\[.+\]\((.+)\)$", flags=re.MULTILINE)
         shown = picture.findall(self.chain.text("README.md"))
         for page in (self.chain.source / "docs").glob("*.md"):
             shown += [f"docs/{path}" for path in picture.findall(page.read_text())]
-        self.assertEqual(sorted(shown), sorted(f"docs/pictures/{path.name}" for path in
-                                               (self.chain.source / "docs" / "pictures").iterdir()))
+        self.assertEqual(set(shown), {f"docs/pictures/{path.name}" for path in
+                                      (self.chain.source / "docs" / "pictures").iterdir()})
 
-    def test_readmes_scene_and_chain(self):
-        """The scene in README runs through the commands in README, where they find this build's programs."""
-        readme = self.chain.text("README.md")
-        (scene,) = code_blocks(readme, "toml")
-        (chain,) = (block for block in code_blocks(readme, "sh") if "demsolve" in block)
-        path, *commands = chain.splitlines()
-        self.assertEqual(path, 'export PATH="$PWD/build/release/apps:$PATH"')
-        self.assertEqual([command.split()[0] for command in commands], [*CHAIN, "jointverify"])
-
-        folder = self.chain.new_folder()
-        (folder / "two.toml").write_text(scene)
-        script = f'set -eu\nPATH="{self.chain.programs}:$PATH"\n' + "\n".join(commands)
+    def run_commands(self, page, folder):
+        """Runs all commands of a page in a folder that has the scenes and the plots, and finds this build's programs."""
+        for name in "data", "pipelines":
+            (folder / name).symlink_to(self.chain.source / name)
+        commands = "".join(code_blocks(page, "sh"))
+        self.assertIn(PATH, commands)
+        script = f'set -eu\nPATH="{self.chain.programs}:$PATH"\n' + commands.replace(PATH, "")
         done = subprocess.run(["sh", "-c", script], cwd=folder, capture_output=True, text=True, timeout=300)
         self.assertEqual(done.returncode, 0, done.stderr)
+        return done
+
+    def test_first_scene(self):
+        """The scene of docs/first-scene.md runs through the commands of the page, and rises as the page says."""
+        page = self.chain.text("docs/first-scene.md")
+        (scene,) = code_blocks(page, "toml")
+        chain = code_blocks(page, "sh")[0].splitlines()
+        self.assertEqual([command.split()[0] for command in chain], ["export", *CHAIN, "jointverify"])
+        folder = self.chain.new_folder()
+        (folder / "two.toml").write_text(scene)
+        done = self.run_commands(page, folder)
+        self.assertIn("factor of safety, at least                   64\n", done.stdout)
         with h5py.File(folder / "result.h5") as file:
             # Below C are 5 m of rock and the base's joint: dF (z (1 - nu^2) / E_r + 1 / K) at once. Later 1 / E comes
             # on top. The base is rough, which the formula leaves out.
@@ -88,6 +102,56 @@ class Documentation(ChainTest):
             rise = file["/history/displacement"][:, 0, 1]
             self.assertAlmostEqual(rise[2] / at_once, 1, delta=1e-2)
             self.assertGreater(rise[-1], 1.8 * at_once)
+        self.assertIn(f"{at_once * 1e3:.2f}\\ \\mathrm{{mm}}", page)
+
+    def test_slope_and_cavern(self):
+        """The commands of both pages run, their figures are those of the runs, and the scenes are as quoted."""
+        for name, blocks, point in ("slope", 372, 3), ("cavern", 235, 1):
+            with self.subTest(name):
+                page, folder = self.chain.text(f"docs/{name}.md"), self.chain.new_folder()
+                done = self.run_commands(page, folder)
+                self.assertIn("verified: ", done.stdout)
+                with h5py.File(folder / "result.h5") as file:
+                    self.assertEqual(len(file["blocks/area"]), blocks)
+                    moved = file["/history/displacement"][-1, point, 0] * 1e3
+                self.assertRegex(page, rf"by {moved:.1f} mm|by {moved:.0f} mm")
+                quoted = re.findall(r"^    (\[.*|\w+ = .*)$", page, flags=re.MULTILINE)
+                self.assertGreaterEqual(len(quoted), 7)
+                scene = self.chain.text(f"data/{name}/scene.toml").splitlines()
+                self.assertEqual([line for line in quoted if line not in scene], [])
+                if name == "slope":
+                    self.assertIn("28 pass, 0 fail, 14 without verdict", done.stdout)
+                else:
+                    self.assertNotIn("warning", done.stderr)
+
+    @unittest.skipUnless(HAS_SPHINX, "needs Sphinx: sh pipelines/setup.sh docs")
+    def test_site(self):
+        """It has all pages, formulas and pictures, and needs nothing from the network; a link that leads nowhere is an error."""
+        source = self.chain.new_folder()
+        shutil.copytree(self.chain.source / "docs", source / "docs", ignore=shutil.ignore_patterns("__pycache__"))
+        shutil.copy(self.chain.source / "CMakeLists.txt", source)
+
+        def made():
+            return subprocess.run(["make", "-C", source / "docs", f"OUT={source}/site"], capture_output=True, text=True,
+                                  timeout=300)
+
+        done = made()
+        self.assertEqual(done.returncode, 0, done.stderr)
+        pages = {path.stem for path in (source / "docs").glob("*.md")}
+        self.assertEqual(pages - {path.stem for path in (source / "site").glob("*.html")}, set())
+        for page in (source / "site").glob("*.html"):
+            with self.subTest(page.name):
+                self.assertEqual(re.findall(r'<(?:script|link|img)[^>]*(?:src|href)="(?:https?:)?//', page.read_text()), [])
+        theory = (source / "site" / "method.html").read_text()
+        self.assertGreater(theory.count('class="math"'), 300)
+        for name in "katex.min.js", "katex.min.css", "fonts/KaTeX_Main-Regular.woff2":
+            self.assertTrue((source / "site" / "_static" / name).is_file(), name)
+
+        with (source / "docs" / "limits.md").open("a") as page:
+            page.write("\n[nowhere](method.md#nowhere)\n")
+        done = made()
+        self.assertNotEqual(done.returncode, 0)
+        self.assertIn("limits.md", done.stderr)
 
     def test_studies_example(self):
         """The first study of docs/studies.md runs by its commands."""
@@ -167,6 +231,7 @@ class Documentation(ChainTest):
 
     def test_version(self):
         version = re.search(r"VERSION (\S+)", self.chain.text("CMakeLists.txt").split("project(")[1]).group(1)
+        self.assertIn(f"\nversion: {version}\n", self.chain.text("CITATION.cff"))
         for program in PROGRAMS:
             self.assertRegex(self.output_of(program, "--version"), rf"^{program} {re.escape(version)}(\+[\w.]+)?\n$")
 
