@@ -6,7 +6,7 @@
 runs the programs in BIN on SCENE.toml and on variants of it, and writes into OUT
     column.csv      one row a run: what was changed, largest relative difference, zones, solver steps, cost
     readings.csv    one row a run and reading: computed and exact rise
-    tables/column.md, tables/readings.md      the same as tables, the readings of the scene's own choice only
+    tables/column.md, tables/readings.md      the same as tables, the readings of the scene's own settings only
     column.png      the difference over zone size, tolerance and creep step
 """
 
@@ -73,7 +73,7 @@ def runs_of(text):
     scene = tomllib.loads(text)
     own_size, own_step = scene["zones"]["size_m"], scene["creep"]["step_days"]
     own_tolerance = scene["equilibrium"].get("tolerance", 1e-6)
-    runs = [Run("the scene's own choice",
+    runs = [Run("the scene's own settings",
                 f"zones {own_size:g} m, tolerance {own_tolerance:g}, dT {own_step:g} day", text)]
     for study, option, unit, own, values in [("zone size", "--zone-size", "m", own_size, ZONE_SIZES),
                                              ("tolerance", "--tolerance", "", own_tolerance, TOLERANCES),
@@ -84,15 +84,15 @@ def runs_of(text):
 
     damping = scene["equilibrium"]["mass_damping_per_s"]
     for factor in (0.2, 0.5, 2):
-        runs.append(Run("way to equilibrium", f"real masses, mass damping {factor * damping:g} /s",
+        runs.append(Run("engine and damping", f"real masses, mass damping {factor * damping:g} /s",
                         edited(text, f"mass_damping_per_s = {damping:g}", f"mass_damping_per_s = {factor * damping:g}")))
     for kind in ("adaptive", "local"):
         settings = f'engine = "relaxation"\nmasses = "scaled"\ndamping = "{kind}"\nmost_steps = 20000000'
-        runs.append(Run("way to equilibrium", f"scaled masses, {kind} damping", with_equilibrium(text, settings)))
-    runs.append(Run("way to equilibrium", "implicit engine", with_equilibrium(text, 'engine = "implicit"')))
+        runs.append(Run("engine and damping", f"scaled masses, {kind} damping", with_equilibrium(text, settings)))
+    runs.append(Run("engine and damping", "implicit engine", with_equilibrium(text, 'engine = "implicit"')))
 
     runs.append(Run("variant", "nu = 0", edited(text, "poissons_ratio = 0.22", "poissons_ratio = 0")))
-    runs.append(Run("variant", 'base held in y (`fix = "y"`), no joint under it',
+    runs.append(Run("variant", 'base fixed in y (`fix = "y"`), no joint under it',
                     edited(text, 'joint = "base joint"', 'fix = "y"')))
     runs.append(Run("variant", "K_s doubled",
                     edited(text, "shear_stiffness_MPa_per_m = 280", "shear_stiffness_MPa_per_m = 560")))
@@ -177,7 +177,7 @@ def main():
     with tempfile.TemporaryDirectory() as scratch:
         for run in runs_of(Path(sys.argv[2]).read_text()):
             key = (run.scene, *run.options)
-            if key not in known:  # the scene's own choice is part of three studies
+            if key not in known:  # the scene's own settings are part of three studies
                 try:
                     known[key] = answer_of(run, programs, Path(scratch))
                 except subprocess.CalledProcessError as error:

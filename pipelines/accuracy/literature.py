@@ -205,12 +205,12 @@ def kirsch(programs):
 
     all_round, along_x = found[False], found[True]
     return [
-        Row(name, "wall moves inward, pressure from all sides, zones of 0.05 a", "mm", 1.25, all_round[-1].wall * 1e3,
+        Row(name, "inward displacement of the wall, pressure from all sides, zones of 0.05 a", "mm", 1.25, all_round[-1].wall * 1e3,
             0.0025, "second order in zones: (0.05 a)^2, and the plate's end"),
         Row(name, "compression in the roof over the pressure, pressure along x", "1", 3, along_x[-1].peak,
             0.05, "first order in zones: 0.05 a"),
         Row(name, "order of displacements, pressure from all sides", "1", 2, order(all_round, "displacement"), 0.15,
-            "corners on the circle: second"),
+            "second: corners on the circle"),
         Row(name, "order of displacements, pressure along x", "1", 2, order(along_x, "displacement"), 0.15, "second"),
         Row(name, "order of stresses, pressure along x", "1", 1, order(along_x, "stress"), 0.2,
             "constant-strain zones: first"),
@@ -323,8 +323,8 @@ def roof_wedge(programs):
     pressure = limit / (2 * 4 * math.tan(given[2]))
     ends = bracket(limit / 1e6, 1e-3, lambda force: stands(programs, wedge_loaded(
         programs.text("roof-wedge"), pressure * force * 1e6 / limit)))
-    rows.append(Row(name, f"the largest load, as at {reached * 1e3:.3f} mm: what stands, and what does not", "MN/m",
-                    limit / 1e6, ends, 1.001e-3, "looked at 0.1 percent to either side"))
+    rows.append(Row(name, f"the largest load, at {reached * 1e3:.3f} mm: stable, and not stable", "MN/m",
+                    limit / 1e6, ends, 1.001e-3, "checked 0.1 percent on both sides"))
     return rows
 
 
@@ -367,7 +367,7 @@ def toppling(programs):
         forces, toe, sliding = closed_forms.toppling_columns(*columns_given(tan_phi))
         along, most = np.array([math.cos(math.pi / 6), math.sin(math.pi / 6)]), max(forces)
         toes[tan_phi] = abs(result.force(result.contacts_of("toe")) @ along)
-        why = "equilibria within 1e-6, handed down 16 columns"
+        why = "equilibria within 1e-6, passed through 16 columns"
         rows.append(Row(name, f"force on the toe, tan(phi) = {tan_phi}", "MN/m", toe / 1e6, toes[tan_phi] / 1e6, 1e-4,
                         why, most / 1e6))
         computed = [abs(result.force(result.contacts_of(f"side {i + 1}")) @ along) for i in range(15)]
@@ -378,7 +378,7 @@ def toppling(programs):
     last = list(toes.items())[1:]
     parabola = np.polyfit([force for _, force in last], [tan_phi for tan_phi, _ in last], 2)
     rows.append(Row(name, "tan(phi) with which the toe needs no force (published: 0.7855)", "1", columns_limit(),
-                    parabola[-1], 1e-4, "the last three forces, carried on by 0.0055 as a parabola"))
+                    parabola[-1], 1e-4, "the last three forces, extrapolated by 0.0055 as a parabola"))
     return rows
 
 
@@ -445,9 +445,9 @@ def crack(programs):
     load_history = result.scene["boundary"][-1]["load_history"][1:]
     forces = closed_forms.cyclic_force([factor * 1e-3 for _, factor in load_history], compliances)
     rows = []
-    for (day, factor), force, part in zip(load_history, forces, ("load", "load", "let go", "let go", "let go, slips back",
-                                                           "let go, slips back", "load again", "load again, slips",
-                                                           "load again, slips")):
+    for (day, factor), force, part in zip(load_history, forces, ("load", "load", "unloading", "unloading", "unloading, slips back",
+                                                           "unloading, slips back", "reloading", "reloading, slips",
+                                                           "reloading, slips")):
         found = axial_force(result, result.state_at(day))
         rows.append(Row(name, f"force at {factor:g} mm ({part})", "kN/m", force / 1e3, found / 1e3, 1e-4,
                         "rock that is not rigid: H k / E = 5e-5", max(forces) / 1e3))
@@ -467,7 +467,7 @@ def crack_in_elastic_rock(programs):
              for first, last, millimetres in ((0, 2, 1), (2, 3, -0.1), (0, 6, 0.15))]
     return [Row("the same in elastic rock (Brady and others 1985)", f"slope, {part}", "GN/m/m", 1e-9 / compliance,
                 slope / 1e9, 0.01, "a model of springs, not an exact answer")
-            for part, compliance, slope in zip(("load", "let go", "slips back"), slopes, found)]
+            for part, compliance, slope in zip(("load", "unloading", "slips back"), slopes, found)]
 
 
 def axial_force(result, state):
@@ -525,7 +525,7 @@ def wave(programs):
     lines = [np.polyfit(time[time > 1.2 * x / speed], u[time > 1.2 * x / speed], 1)
              for x, u in zip((40, 60), without)]
     arrivals = [-b / a for a, b in lines]
-    zone = "zones of 0.25 m: some hundredths of one in 20 m"
+    zone = "zones of 0.25 m: a few hundredths of a zone over 20 m"
     behind = closed_forms.step_through_a_joint(time - 60 / speed, pressure, impedance, stiffness)
     rows = [
         Row("P-wave in a bar", "speed between 40 m and 60 m", "m/s", speed, 20 / (arrivals[1] - arrivals[0]), 1e-3,
@@ -542,7 +542,7 @@ def wave(programs):
         rows += [
             Row(name, f"transmitted share at w z / 2 K_n = {share:g}", "1", 1 / math.hypot(1, share), went / came, 2e-3,
                 "the same"),
-            Row(name, f"shares of energy that go on and come back, w z / 2 K_n = {share:g}", "1", 1,
+            Row(name, f"transmitted plus reflected share of energy, w z / 2 K_n = {share:g}", "1", 1,
                 (went**2 + back**2) / came**2, 4e-3, "twice that")]
     return rows
 
@@ -560,7 +560,7 @@ def free_fall(programs):
         rows.append(Row(f"free fall by [large_displacements] ({kind})", "acceleration", "m/s2", 9.81, acceleration, 1e-4,
                         "steps of central differences; in zones, vibration"))
         # Joint and rock give way by less under the block than they did under the prop.
-        rows.append(Row(f"free fall by [large_displacements] ({kind})", "where it comes to rest", "m", -5, result.point("block")[1], 1e-4,
+        rows.append(Row(f"free fall by [large_displacements] ({kind})", "final position", "m", -5, result.point("block")[1], 1e-4,
                         "joints and rock close by less than 0.1 mm"))
     return rows
 
@@ -573,8 +573,8 @@ def friction(programs):
         return not stands(programs, changed(text, "^friction_angle_deg = 35", f"friction_angle_deg = {angle:.12g}"),
                           "--no-creep")
 
-    return [Row("block on an incline", "friction angle that it needs: what is too little, and what is enough", "degrees",
-                25, bracket(25, 0.001 / 25, falls), 1.001 * 0.001 / 25, "looked at 0.001 degree to either side")]
+    return [Row("block on an incline", "required friction angle: too small, and sufficient", "degrees",
+                25, bracket(25, 0.001 / 25, falls), 1.001 * 0.001 / 25, "checked 0.001 degree on both sides")]
 
 
 # By which engines: the implicit one, with dynamic relaxation where it gives up (auto), and dynamic relaxation alone.
@@ -593,7 +593,7 @@ def shown(figure):
 
 
 def table(rows):
-    lines = ["| problem | engine | what is compared | unit | closed form | computed | error | held to | because |",
+    lines = ["| problem | engine | what is compared | unit | closed form | computed | error | allowed error | reason |",
              "|---|---|---|---|---|---|---|---|---|"]
     last = "", ""
     for row in rows:

@@ -273,7 +273,7 @@ def slip_table(programs, data, unit):
                 slip, slow_slip = errors.slip_of(result), errors.slip_of(slow)
                 apart.append(number(np.nanmax(np.abs(slip - slow_slip)) / np.nanmax(np.abs(slow_slip))))
             lines.append([title, engine, way, increments, result.steps if result else "", number(time, ".2g"), *apart])
-    return table(["case", "engine", "way", "increments", "steps", "time", "largest displacements",
+    return table(["case", "engine", "damping", "increments", "steps", "time", "largest displacements",
                   "displacements at the end", "spurious slip"], lines)
 
 

@@ -149,7 +149,7 @@ def yades(yade, blocks, turns, scratch):
         found.append(json.loads(out.read_text()))
     alone, both = found
     steps, seconds = alone["within"] or (None, None)
-    return {"blocks": blocks, "way": f"YADE, {'free in the plane' if turns else 'rotations held'}",
+    return {"blocks": blocks, "way": f"YADE, {'free in the plane' if turns else 'rotations fixed'}",
             "error": alone["error"], "unbalanced_force_ratio": alone["unbalanced_force_ratio"], "steps": steps, "seconds": seconds,
             "contact_steps_per_s": alone["steps_per_s"] * alone["contacts"],
             "on_two_threads": both["steps_per_s"] * both["contacts"]}
@@ -181,7 +181,7 @@ def write(rows, out):
               row["steps"] or f"not in {LIMIT} s",
               f"below {SHORTEST}" if row["seconds"] and row["seconds"] < SHORTEST else number(row["seconds"], ".2g"),
               number(row["contact_steps_per_s"]), number(row["on_two_threads"])] for row in rows]
-    head = ["blocks", "way", "error of the rise", "unbalanced force ratio", "steps", "seconds", "contact-steps per s",
+    head = ["blocks", "method", "error of the rise", "unbalanced force ratio", "steps", "seconds", "contact-steps per s",
             "on two threads"]
     (out / "tables/stack.md").write_text("\n".join(table(head, lines)).rstrip() + "\n")
 

@@ -92,7 +92,7 @@ def markdown(facts, targets):
     lines.append(f"- after 1999 no point's median moves by more than {np.median(values['after'], axis=0).max():.1f} mm (range: at "
                  f"most {targets['after_1999_mm']} mm);")
     before = np.median(values["before"], axis=0)
-    lines.append(f"- just before its bench is dug a point has moved by {before.min():.0f} to {before.max():.0f} mm (medians; at "
+    lines.append(f"- just before its bench is excavated a point has moved by {before.min():.0f} to {before.max():.0f} mm (medians; at "
                  f"most {values['before'].max():.0f} mm in any network);")
     others = ", ".join(f"{name} {median:.1f} mm from {date}"
                        for (name, date), median in zip(OTHER_READINGS.items(), np.median(values["other"], axis=0)))
