@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Draws the concept figures of the theory manual.
+"""Draws the concept figures of the theory manual, and the problems of the verification manual from their scenes.
 
     concept_figures.py [FOLDER]        default: the folder pictures beside this script
 
@@ -7,6 +7,7 @@ The same version of matplotlib gives the same bytes. Lines differ by style and l
 """
 
 import sys
+import tomllib
 from pathlib import Path
 
 import matplotlib
@@ -204,8 +205,59 @@ def zones_and_contacts():
     return figure
 
 
+def problem(axes, name, title, window=None):
+    """The scene of a problem: rock, joints, excavation, fixed borders, loads and monitoring points."""
+    scene = tomllib.loads((DATA / name / "scene.toml").read_text())
+    outline = np.array(scene["section"]["outline_m"], float)
+    axes.add_patch(plt.Polygon(outline, facecolor=ROCK, edgecolor="none"))
+    for hole in scene["section"].get("holes_m", []):
+        axes.add_patch(plt.Polygon(hole, facecolor="white", edgecolor=GREY, lw=0.6))
+    for stage in scene.get("stage", []):
+        for polygon in stage["remove_m"]:
+            axes.add_patch(plt.Polygon(polygon, facecolor="white", edgecolor=GREY, lw=0.6, ls="--", hatch="///", alpha=0.8))
+    axes.add_patch(plt.Polygon(outline, facecolor="none", edgecolor="black", lw=0.8))
+    for joint in scene.get("joint", []):
+        axes.plot(*zip(joint["from_m"], joint["to_m"]), "-", color=BLUE, lw=1)
+    size = np.ptp(outline, axis=0).max() if window is None else window[1] - window[0]
+    for border in scene["boundary"]:
+        ends = np.array([border["from_m"], border["to_m"]], float)
+        if "fix" in border:
+            axes.plot(*ends.T, "-", color="black", lw=2.5)
+        if "joint" in border:
+            axes.plot(*ends.T, "-", color=BLUE, lw=2.5)
+        load = np.array(border.get("traction_MPa", border.get("displacement_mm", [0, 0])), float)
+        if load.any():
+            step = 0.14 * size * load / np.hypot(*load)
+            axes.annotate("", ends.mean(axis=0), ends.mean(axis=0) - step, arrowprops={"arrowstyle": "->", "color": RED, "lw": 1.4})
+    for point in scene.get("point", []):
+        axes.plot(*point["at_m"], "o", color=GREEN, ms=2.5)
+    axes.set_aspect("equal")
+    axes.set_title(title, pad=14)
+    if window:
+        axes.set(xlim=window[:2], ylim=window[2:])
+    else:
+        axes.margins(0.12)
+    axes.axis("off")
+
+
+def problems():
+    """Scenes of data/verification, each to its own scale."""
+    figure, places = plt.subplots(3, 4, figsize=(9, 7))
+    for axes, arguments in zip(places.flat, PROBLEMS):
+        problem(axes, *arguments)
+    return figure
+
+
+PROBLEMS = [("column", "column"), ("verification/platens", "platens"), ("verification/two-pillars", "two pillars"),
+            ("verification/incline", "incline"), ("verification/layered-mass", "layered mass"),
+            ("verification/v-groove", "wedge in a groove"), ("verification/hole", "hole in a plate", (-0.2, 3, -0.2, 3)),
+            ("verification/plane-of-weakness", "plane of weakness"), ("verification/roof-wedge", "roof wedge"),
+            ("verification/toppling-columns", "toppling columns"), ("verification/slipping-crack", "slipping crack"),
+            ("verification/sheared-layers", "layered rock in shear")]
+DATA = Path(__file__).resolve().parents[1] / "data"
+
 FIGURES = {"joint-line": joint_line, "coulomb": coulomb, "kelvin": kelvin, "schemes": schemes,
-           "zones-contacts": zones_and_contacts}
+           "zones-contacts": zones_and_contacts, "problems": problems}
 
 
 def main():

@@ -124,6 +124,16 @@ class Documentation(ChainTest):
                 else:
                     self.assertNotIn("warning", done.stderr)
 
+    def test_concept_figures(self):
+        """They are those that the script draws."""
+        folder = self.chain.new_folder()
+        subprocess.run([sys.executable, self.chain.source / "docs" / "concept_figures.py", folder], check=True)
+        drawn = {path.name: path.read_bytes() for path in folder.iterdir()}
+        kept = {path.name: path.read_bytes() for path in (self.chain.source / "docs" / "pictures").glob("concept-*")}
+        self.assertEqual(sorted(drawn), sorted(kept))
+        for name in drawn:
+            self.assertTrue(drawn[name] == kept[name], f"{name} is not what make -C docs figures draws")
+
     @unittest.skipUnless(HAS_SPHINX, "needs Sphinx: sh pipelines/setup.sh docs")
     def test_site(self):
         """It has all pages, formulas and pictures, and needs nothing from the network; a link that leads nowhere is an error."""
