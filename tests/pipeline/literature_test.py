@@ -1,6 +1,6 @@
 """Problems of the literature through the whole chain, against closed forms: pipelines/accuracy/literature.py.
 
-Each figure is held to the error that is stated beside it, and the page docs/accuracy.md has the same table.
+Each figure is held to the error that is stated beside it, and the page docs/verification.md has the same table.
 """
 
 import re
@@ -15,7 +15,7 @@ import literature  # noqa: E402
 class Literature(ChainTest):
     def setUp(self):
         self.programs = literature.Programs(self.chain.programs, self.chain.source / "data", self.chain.new_folder())
-        self.page = self.chain.text("docs/accuracy.md")
+        self.page = self.chain.text("docs/verification.md")
 
     def hold(self, problem):
         for row in literature.rows_of(problem, self.programs):
@@ -63,7 +63,7 @@ class Literature(ChainTest):
         self.assertLess(high, 0.7704)
         self.assertLess(low, 0.6605)
         self.assertGreater(high, 0.6605)
-        self.assertIn("down to tan(phi) = 0.771 ", self.page)
+        self.assertIn(r"stand down to $\tan\varphi$ = 0.771 ", self.page)
         self.assertIn("down to 0.6605 ", self.page)
 
     def test_slipping_crack(self):
