@@ -124,6 +124,14 @@ class Documentation(ChainTest):
                 else:
                     self.assertNotIn("warning", done.stderr)
 
+    def test_links(self):
+        """Files that pages name in links exist. (Sphinx looks at headings, too, of pages in docs.)"""
+        source = self.chain.source
+        for page in [*source.glob("*.md"), *(source / "docs").glob("*.md")]:
+            text = re.sub(r"(?ms)^```.*?^```$", "", page.read_text())
+            for path in re.findall(r"\]\(([^):#\s]+)(?:#[^)]*)?\)", text):
+                self.assertTrue((page.parent / path).exists(), f"{page.name}: {path}")
+
     def test_concept_figures(self):
         """They are those that the script draws."""
         folder = self.chain.new_folder()
