@@ -6,7 +6,7 @@
 // Reads   joints.h5   blocks, equivalent joints, the scene             (from strength-averaging)
 // Writes  result.h5   the same, zones, histories, states of all stages (docs/file-format.md)
 //
-//         result.failed.h5   where there is no equilibrium: the run up to there, and what moves
+//         result.failed.h5   where there is no equilibrium: the run up to there, and the moving blocks
 //         checkpoint.h5      if asked for: the run up to a stage, to continue from
 //
 // The method is in libs/analysis. Options are in demsolve_settings, files in demsolve_files, and the summary
@@ -111,7 +111,7 @@ std::unique_ptr<Trial> bracket_safety(const demsolve::StrengthReduction& reducti
     demsolve::add_safety(summary, bracket, failed ? failed->message() : "");
     files.write_result(*run, bracket.trials);
     if (failed)
-        summary.add("  there", files.write_failed(*failed, bracket.trials));
+        summary.add("  at this factor", files.write_failed(*failed, bracket.trials));
     return run;
 }
 

@@ -155,7 +155,7 @@ void add_safety(Summary& summary, const analysis::Bracket& bracket, const std::s
         std::find(trials.factor.begin(), trials.factor.end(), *bracket.not_above) - trials.factor.begin();
     const bool fails = trials.stands[upper] == 0;
     summary.add(fails ? "factor of safety, below" : "undecided at", shown(*bracket.not_above));
-    add_lines(summary, "  there", what_moves);
+    add_lines(summary, "  at this factor", what_moves);
     if (!fails)
         summary.warn("undecided with strengths divided by " + shown(*bracket.not_above) +
                      ": the factor of safety may be above " + shown(*bracket.stands));

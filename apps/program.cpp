@@ -98,7 +98,7 @@ std::string help(const Program& program)
          << (program.columns.empty() ? "" : "Columns of tables read:\n" + program.columns + '\n')
          << "Exit codes:\n"
             "  0  done\n"
-            "  2  the command line or an input file is not what was wanted\n"
+            "  2  the command line or an input file is not as expected\n"
             "  3  no equilibrium, or no fit, was found\n"
             "  4  a file could not be read or written\n"
             "  5  internal error, or out of memory\n\n"

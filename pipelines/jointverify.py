@@ -25,7 +25,7 @@ Options:
 
 Exit codes:
   0  verified: every check passed
-  2  the command line or the file is not what was wanted
+  2  the command line or the file is not as expected
   3  a check failed
   4  the file cannot be read
   5  internal error, or out of memory
@@ -54,7 +54,7 @@ DEGREE = np.pi / 180
 
 
 class NotWanted(Exception):
-    """The file is not what was wanted: exit code 2."""
+    """The file is not as expected: exit code 2."""
 
 
 class NotReadable(Exception):

@@ -131,8 +131,8 @@ void fail(Section& section, Failure failure, double time)
     if (!failure.stage.empty())
         message += ", stage \"" + failure.stage + "\"";
     if (!failure.block.empty())
-        message +=
-            (failure.moves_on ? "; what moves: " : "; what moved most: ") + mechanics::shown_blocks(failure);
+        message += (failure.moves_on ? "; moving blocks: " : "; blocks that moved most: ") +
+                   mechanics::shown_blocks(failure);
     if (failure.steps > 0)
         message += ", in the last " + std::to_string(failure.steps) + " steps";
     if (failure.seconds > 0)

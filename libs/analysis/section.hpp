@@ -101,7 +101,7 @@ Findings::Counts contacts_at_yield(const Section& section);
 Findings::Counts yielded_zones(const Section& section);
 
 // Ends the analysis: there is no equilibrium at `time` since start [s]. The failure is in the result;
-// throws equilibrium_error with what moves, the day and the stage.
+// throws equilibrium_error with the moving blocks, the day and the stage.
 [[noreturn]] void fail(Section& section, Failure failure, double time);
 
 } // namespace jointcreep::analysis

@@ -21,7 +21,7 @@ Options:
 
 Exit codes:
   0  done
-  2  the command line, the study, the scene or a file is not what was wanted
+  2  the command line, the study, the scene or a file is not as expected
   3  no run ended with a value, so there are no answers
   4  a file could not be read or written, or runs were stopped; the same command goes on
   5  internal error, or out of memory

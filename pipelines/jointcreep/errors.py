@@ -2,7 +2,7 @@
 
 
 class NotWanted(Exception):
-    """A file or an option is not what was wanted: exit code 2."""
+    """A file or an option is not as expected: exit code 2."""
 
 
 class NotDone(Exception):

@@ -272,7 +272,7 @@ seed = 1
                 with self.subTest(persistence=persistence, engine=engine):
                     if persistence == 1:
                         self.assertEqual(done.returncode, 3, done.stderr)
-                        self.assertRegex(done.stderr, r"what moves: block \d+ at \[")
+                        self.assertRegex(done.stderr, r"moving blocks: block \d+ at \[")
                     else:
                         self.assertEqual(done.returncode, 0, done.stderr)
                         levels = len(set(np.round(data["/vertices/position"][data["/edges/vertex"][edges, 0], 1], 6)))

@@ -204,7 +204,7 @@ class Blocks(ChainTest):
         output = joints.with_name("result.h5")
         done = self.chain.answer("demsolve", joints, "-o", output)
         self.assertEqual(done.returncode, 3)
-        self.assertRegex(done.stderr, r'no rest within 1 s\n?.*stage "stop removed"; what moves: block \d+ at .* m by ')
+        self.assertRegex(done.stderr, r'no rest within 1 s\n?.*stage "stop removed"; moving blocks: block \d+ at .* m by ')
         self.assertFalse(output.exists())
         failed = datasets(output.with_name("result.failed.h5"))
         self.assertAlmostEqual(failed["/dynamics/dynamic_time"][-1], 1, delta=0.01)
@@ -721,7 +721,7 @@ class Stacks(ChainTest):
         left.write_text("of an earlier run")  # replaced, as the output itself would be
         done = self.chain.answer("demsolve", joints, "-o", output)
         self.assertEqual(done.returncode, 3)
-        self.assertRegex(done.stderr, r'rock has left the section(.|\n)*stage "0"; what moves: block \d+ at \[2\.5, 1\.5\] m')
+        self.assertRegex(done.stderr, r'rock has left the section(.|\n)*stage "0"; moving blocks: block \d+ at \[2\.5, 1\.5\] m')
         failed = datasets(left)
         self.assertLess(failed["/dynamics/dynamic_time"][-1], 2)  # it falls by 5 m
         self.assertEqual(len(failed["/failure/block"]), 1)

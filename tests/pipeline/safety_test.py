@@ -275,7 +275,7 @@ class NoEquilibrium(ChainTest):
             self.assertAlmostEqual(motion[1] / motion[0], -10 / 7, delta=0.05)
             self.assertEqual((left["/failure/stage"][0], left["/failure/time"][0], left["/failure/moves_on"][0]),
                              ("cut", 1, 1))
-            self.assertIn(f'stage "cut"; what moves: block {block} at [18.6', message)
+            self.assertIn(f'stage "cut"; moving blocks: block {block} at [18.6', message)
             self.assertIn(str(path), message)
             # Up to the last equilibrium: the state before the stage, at rest.
             self.assertEqual(left["/states/time"].tolist(), [0, 1])
