@@ -43,7 +43,7 @@ Table<Boundary> boundary()
     };
     return {
         {"boundary", in_list, required,
-         "What holds or loads a straight piece of the outline: fix or joint, traction, or fix and "
+         "Supports and loads of a straight piece of the outline: fix or joint, traction, or fix and "
          "displacement. Elsewhere the outline is free."},
         {point("from_m", &Boundary::from, "One end, on the outline."),
          point("to_m", &Boundary::to, "The other end, on the same straight piece of the outline."),
@@ -53,11 +53,13 @@ Table<Boundary> boundary()
              .optional(),
          text("joint", &Boundary::joint, "It rests on fixed ground through a joint of this joint material.")
              .optional(),
-         vector("traction_MPa", &Boundary::traction, MPa, stresses,
-                "Force on the rock per area {x, y}, on top of the in-situ stress.")
+         vector(
+             "traction_MPa", &Boundary::traction, MPa, stresses,
+             "Total force on the rock per area {x, y}. It includes the traction of the in-situ stress, which "
+             "nothing else balances in a direction that is not fixed.")
              .optional(),
          vector("displacement_mm", &Boundary::displacement, millimetres, within(1e6),
-                "Displacement {x, y} it is held at, 0 where it is not fixed; with fix and load_history.")
+                "Imposed displacement {x, y}, 0 in a direction that is not fixed; with fix and load_history.")
              .optional(),
          key_of<Boundary>(
              {"load_history",

@@ -45,7 +45,7 @@ inline const Parameter largest_closure{"largest_closure",
                                        above(0).to(1000),
                                        WithBridges::refused,
                                        WithStrengthDivided::same,
-                                       "V_m, which it never closes beyond."};
+                                       "V_m, the largest closure of the joint."};
 
 } // namespace parameters
 

@@ -43,7 +43,8 @@ inline const Parameter roughness_length{
     above(0).to(1e4),
     WithBridges::refused,
     WithStrengthDivided::same,
-    "Plastic shear displacement after which the friction angle exceeds that of the smooth joint by 1/e of what it did."};
+    "R. The friction angle less that of the smooth joint decreases as exp(-u_p / R), u_p the plastic "
+    "shear displacement."};
 
 } // namespace parameters
 

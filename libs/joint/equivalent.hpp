@@ -33,7 +33,6 @@ Strength average(const Strength& joint, const Strength& rock, double persistence
 // if that is less.
 //
 // Stiffnesses and creep constants are the joint's own, or by another rule those of libs/joint/bridged.hpp, for
-// constants of creep are the joint's own, or by another rule those of libs/joint/bridged.hpp, for
 //  - the trace length: sum of L^2 / sum of L over the traces of the line (with averages over lines), or of
 //    the set;
 //  - the spacing: the area of the blocks where the set may be / length of its lines inside the section.

@@ -138,7 +138,7 @@ std::vector<Field> fields_of(Mesh& mesh)
         {"/mesh/contact_normal", &mesh.contact_normal, {"contact"}, "1", any(),
          "Unit normal {x, y}, from side a to side b."},
         {"/mesh/contact_length", &mesh.contact_length, {"contact"}, "m", positive(),
-         "Length of edge that the contact stands for."},
+         "Length of edge that belongs to the contact."},
         {"/mesh/contact_centre", &mesh.contact_centre, {"contact"}, "m", any(),
          "Where a traction that is linear along the edge has its mean over the contact {x, y}."},
     };
@@ -165,7 +165,7 @@ std::vector<Field> fields_of(States& states)
          "1 once the bonds of the contact are broken: it has its strength without bonds. In a dynamic analysis on more than "
          "half of the faces that meet there."},
         {"/states/crept", &states.crept, {"state", "contact"}, "m", any(),
-         "What of the relative displacement has crept {normal, shear}."},
+         "Creep part of the relative displacement {normal, shear}."},
         {"/states/initial_gap", &states.initial_gap, {"contact"}, "m", at_least(0),
          "Gap at the in-situ equilibrium, 0 where the contact is closed. The gap of a contact that is open later is this, "
          "or minus the closure of its spring then, plus relative_displacement - crept - dilation."},
@@ -204,7 +204,7 @@ std::vector<Field> fields_of(DynamicsHistory& dynamics)
         {"/dynamics/contact_traction", &dynamics.contact_traction, {"moving_contact"}, "Pa", any(),
          "Mean traction {normal, shear} that side b exerts on side a by the joint's springs, tension positive."},
         {"/dynamics/contact_closing", &dynamics.contact_closing, {"moving_contact"}, "m", any(),
-         "Mean closing of its springs; below 0 where a bond is in tension."},
+         "Mean closure of its springs; below 0 where a bond is in tension."},
         {"/dynamics/contact_slips", &dynamics.contact_slips, {"moving_contact"}, "1", between(0, 1), "1 while it slips."},
     };
     // clang-format on
@@ -223,7 +223,7 @@ std::vector<Field> fields_of(Checkpoint& checkpoint)
          "The same at zero displacement; where open, what its springs would carry."},
         {"/checkpoint/relative_displacement", &checkpoint.relative_displacement, contact, "m", any(),
          "Displacement of side b minus that of side a {normal, shear}."},
-        {"/checkpoint/offset", &checkpoint.offset, contact, "m", any(), "What of it has crept {normal, shear}."},
+        {"/checkpoint/offset", &checkpoint.offset, contact, "m", any(), "Creep part of it {normal, shear}."},
         {"/checkpoint/slip", &checkpoint.slip, contact, "m", any(), "Slip since the in-situ equilibrium."},
         {"/checkpoint/dilation", &checkpoint.dilation, contact, "m", any(), "Opening by slip since then."},
         {"/checkpoint/opening_rate", &checkpoint.opening_rate, {"open_contact"}, "m/s", any(),
@@ -231,11 +231,13 @@ std::vector<Field> fields_of(Checkpoint& checkpoint)
         {"/checkpoint/is_broken", &checkpoint.is_broken, contact, "1", between(0, 1),
          "1 once the bonds of the contact are broken."},
         {"/checkpoint/first_memory", &checkpoint.first_memory, contact, "1", any(),
-         "What the contact's law remembers beside slip, dilation and broken bonds, in SI units; 0 if nothing."},
+         "State of the contact's law in addition to slip, dilation and broken bonds, in SI units; 0 if "
+         "there is none."},
         {"/checkpoint/second_memory", &checkpoint.second_memory, contact, "1", any(), "The same, a second number."},
         {"/checkpoint/third_memory", &checkpoint.third_memory, contact, "1", any(), "The same, a third number."},
         {"/checkpoint/reference", &checkpoint.reference, {"direction"}, "Pa", any(), "Traction from which creep counts."},
-        {"/checkpoint/crept", &checkpoint.crept, {"direction_unit"}, "m", any(), "Displacement that has crept."},
+        {"/checkpoint/crept", &checkpoint.crept, {"direction_unit"}, "m", any(),
+         "Creep displacement of the unit."},
     };
     // clang-format on
 }
@@ -250,16 +252,18 @@ std::vector<Field> fields_of(DynamicsState& state)
         {"/dynamics_state/pair", &state.pair, pair, "1", index_of("face"), "The two faces."},
         {"/dynamics_state/law", &state.law, pair, "1", at_least(0), "Number of the joint law between them."},
         {"/dynamics_state/first_lead", &state.first_lead, pair, "m", any(),
-         "Closing without a gap at the first end of the first face."},
+         "Closure of the springs at a gap of 0, at the first end of the first face."},
         {"/dynamics_state/second_lead", &state.second_lead, pair, "m", any(), "The same at its second end."},
-        {"/dynamics_state/dilation", &state.dilation, pair, "m", at_least(0), "What dilation has added to both."},
+        {"/dynamics_state/dilation", &state.dilation, pair, "m", at_least(0),
+         "Part of both that is due to dilation."},
         {"/dynamics_state/tau", &state.tau, pair, "Pa", any(), "Shear traction."},
         {"/dynamics_state/is_known", &state.is_known, pair, "1", between(0, 1), "1 if they have touched since they came near."},
         {"/dynamics_state/is_new", &state.is_new, pair, "1", between(0, 1), "1 if they have not carried a force yet."},
         {"/dynamics_state/is_closed", &state.is_closed, pair, "1", between(0, 1), "1 if they touch."},
         {"/dynamics_state/is_broken", &state.is_broken, pair, "1", between(0, 1), "1 if there are no bonds between them."},
         {"/dynamics_state/first_memory", &state.first_memory, pair, "1", any(),
-         "What the law of the pair remembers beside, in SI units; 0 if nothing."},
+         "State of the pair's law in addition to dilation and broken bonds, in SI units; 0 if there is "
+         "none."},
         {"/dynamics_state/second_memory", &state.second_memory, pair, "1", any(), "The same, a second number."},
         {"/dynamics_state/third_memory", &state.third_memory, pair, "1", any(), "The same, a third number."},
         {"/dynamics_state/normal", &state.normal, pair, "1", any(), "Unit normal {x, y} from the first to the second, or 0."},

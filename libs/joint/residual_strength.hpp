@@ -23,8 +23,8 @@ inline const Parameter residual_cohesion{
     strengths,
     WithBridges::share,
     WithStrengthDivided::value,
-    "Cohesion once the joint has slipped or opened, at most its cohesion. Without this and the next key opening "
-    "takes the cohesion, and slip alone nothing."};
+    "Cohesion once the joint has slipped or opened, at most its cohesion. Without this and the next key only "
+    "opening removes the cohesion."};
 inline const Parameter residual_friction_angle{
     "residual_friction_angle",
     "residual_friction_angle_deg",

@@ -95,10 +95,10 @@ Table<JointMaterial> joint_material(const Table<Kelvin>& chain)
     std::ranges::move(creep, std::back_inserter(keys));
     return {
         {"joint_material", Written::in_list, Need::optional,
-         "What joints are made of: springs of stress per displacement, Coulomb friction, and in series what "
-         "creeps: Kelvin units (spring beside dashpot) and a Maxwell dashpot. One Kelvin unit has keys of "
-         "its own; several are a kelvin_chain. A Kelvin unit and a Maxwell dashpot make a Burgers joint. "
-         "Without them the joint does not creep."},
+         "Properties of joints: springs of stress per displacement, Coulomb friction, and creep units in "
+         "series with the springs: Kelvin units (spring parallel to dashpot) and a Maxwell dashpot. One "
+         "Kelvin unit has keys of its own; several are a kelvin_chain. A Kelvin unit and a Maxwell dashpot "
+         "make a Burgers joint. Without them the joint does not creep."},
         keys};
 }
 

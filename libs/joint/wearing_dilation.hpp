@@ -23,8 +23,8 @@ inline const Parameter dilation_wear{
     above(0).to(1e6),
     WithBridges::own,
     WithStrengthDivided::same,
-    "With it dilation wears off with the work of slip: each time that slip has taken the inverse of this work per "
-    "area, the tangent of the dilation angle falls to 1/e of what it was."};
+    "w. With it dilation wears off: the tangent of the dilation angle is multiplied by exp(-w W), W the "
+    "work of slip per area."};
 
 } // namespace parameters
 

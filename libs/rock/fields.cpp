@@ -45,7 +45,7 @@ std::vector<Field> fields_of(States& states)
         {"/states/creeping_zone", &states.creeping_zone, {"creeping_zone"}, "1", index_of("zone"),
          "Zones of rock that creeps."},
         {"/states/crept_strain", &states.crept_strain, {"state", "creeping_zone"}, "1", any(),
-         "Deviatoric strain {xx, yy, xy} that has crept since the in-situ equilibrium; its zz is -(xx + yy)."},
+         "Deviatoric creep strain {xx, yy, xy} since the in-situ equilibrium; its zz is -(xx + yy)."},
     };
     // clang-format on
 }
@@ -60,7 +60,7 @@ std::vector<Field> fields_of(Checkpoint& checkpoint)
          "1 while the zone is there, 0 once it is removed."},
         {"/checkpoint/stress", &checkpoint.stress, zone, "Pa", any(), "Stress {xx, yy, xy}, tension positive."},
         {"/checkpoint/initial_stress", &checkpoint.initial_stress, zone, "Pa", any(),
-         "The same at zero displacement, less what has crept since."},
+         "The same at zero displacement; creep subtracts 2 G times the creep strain."},
         {"/checkpoint/stiffness", &checkpoint.stiffness, zone, "Pa", at_least(0),
          "C11, C12 and C33 of the rock, rounded as creep leaves them."},
         {"/checkpoint/plastic_strain", &checkpoint.plastic_strain, yields, "1", any(),
@@ -70,7 +70,7 @@ std::vector<Field> fields_of(Checkpoint& checkpoint)
         {"/checkpoint/rock_reference", &checkpoint.rock_reference, {"creeping_point"}, "Pa", any(),
          "Stress {xx, yy, xy} from which creep counts."},
         {"/checkpoint/rock_crept", &checkpoint.rock_crept, {"zone_unit"}, "1", any(),
-         "Deviatoric strain {xx, yy, xy} that has crept."},
+         "Deviatoric creep strain {xx, yy, xy} of the unit."},
     };
     // clang-format on
 }

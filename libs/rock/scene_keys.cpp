@@ -74,15 +74,14 @@ Table<Region> region()
 Table<InSituStress::Level> stress_profile()
 {
     using L = InSituStress::Level;
-    return {
-        {"in_situ_stress.profile", inside, optional,
-         "The stress at a depth. Levels stand in order of depth, two at least. Between them the stress is "
-         "straight; above the first one and below the last one it goes straight on.",
-         once},
-        {number("depth_m", &L::depth, metres, from(0).to(farthest_metre), "Depth."),
-         number("compression_xx_MPa", &L::compression_xx, MPa, stresses, "Horizontal compression there."),
-         number("compression_yy_MPa", &L::compression_yy, MPa, stresses, "Vertical compression there."),
-         number("shear_xy_MPa", &L::shear_xy, MPa, stresses, "Shear stress there.")}};
+    return {{"in_situ_stress.profile", inside, optional,
+             "The stress at a depth. Levels are in order of depth, two at least. Between them the stress is "
+             "linear; above the first one and below the last one it is extrapolated linearly.",
+             once},
+            {number("depth_m", &L::depth, metres, from(0).to(farthest_metre), "Depth."),
+             number("compression_xx_MPa", &L::compression_xx, MPa, stresses, "Horizontal compression there."),
+             number("compression_yy_MPa", &L::compression_yy, MPa, stresses, "Vertical compression there."),
+             number("shear_xy_MPa", &L::shear_xy, MPa, stresses, "Shear stress there.")}};
 }
 
 std::vector<InSituStress::Level> read_profile(const Table<InSituStress::Level>& table, const KeyInfo& key,

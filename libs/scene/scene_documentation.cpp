@@ -12,27 +12,29 @@ using namespace keys;
 
 constexpr const char* head = R"(# The scene
 
-A scene is one TOML file that says everything about a section of jointed rock: its outline, rocks, joints, stress,
-boundary conditions, stages of excavation, and monitoring points. The programs read nothing else,
-except files beside it that it names: measured poles, and mapped traces.
+A scene is one TOML file that describes a section of jointed rock: its outline, rocks, joints, stress,
+boundary conditions, stages of excavation, and monitoring points. A scene may name other files in its folder or in
+a folder there: measured poles, and mapped traces. The programs read nothing else.
 
 This page is made from the declarations in the files `scene_keys.cpp` of `libs`:
 `jointgen --scene-keys-markdown > docs/scene.md`. The same keys as a table for scripts: `jointgen --scene-keys`.
 
 ## Rules
 
-* Every key carries its unit in its name. A key that the programs do not know is an error, and so is a value of
-  another type, one that is not finite, or one outside the range given here. A round bracket leaves its bound out:
+* Every key has its unit in its name. A key that the programs do not know is an error, and so is a value of
+  another type, one that is not finite, or one outside the range given here. A round bracket excludes its limit:
   [0, 0.5) is from 0 to below 0.5.
-* What describes the ground has no default. Numerical settings have one.
+* Keys that describe the ground have no default. Numerical settings have one.
 * The section lies in the plane of x (to the right) and y (up). Angles in it run counter-clockwise from x. Bearings
   run clockwise from north.
-* **Signs.** Tension, extension and opening are positive in all programs and files. Keys that speak of compression
-  are positive in compression. Strengths are positive numbers.
+* **Signs.** Tension, extension and opening are positive in all programs and files. Keys with compression
+  in their name are positive in compression. Strengths are positive numbers.
 * A date is a TOML date such as `1994-06-15`, if `start` is one, or a number of days since the start. If `start` is
   a number, all dates are numbers on its axis: with `start = 100`, `date = 130` is 30 days after it.
-* A polygon lists its corners in order, either way round. It is not closed: the last corner differs from the first.
-* `[table]` stands once in a scene. `[[table]]` may stand any number of times, one thing each.
+* A polygon lists its corners in order, in either direction. It is not closed: the last corner differs from the
+  first.
+* `[table]` occurs once in a scene. `[[table]]` may occur many times: each one describes one joint, one stage, and
+  so on.
 * A law is written on one line: `spacing = { law = "lognormal", mean_m = 2.5, deviation_m = 1 }`.
 
 ## An example

@@ -74,7 +74,7 @@ Table<Scene> section()
 {
     return {
         {"section", once, required, "The section: a vertical plane through the rock, x to the right, y up."},
-        {polygon("outline_m", &Scene::outline, "Its outline, either way round."),
+        {polygon("outline_m", &Scene::outline, "Its outline, in either direction."),
          polygons(
              "holes_m", &Scene::holes,
              "Where there is no rock from the start, a tunnel for example: inside the outline, not touching "
@@ -89,13 +89,13 @@ Table<Scene> section()
 
 Table<SingleJoint> joint()
 {
-    return {{"joint", in_list, optional,
-             "One joint or fault given by its ends: all of it joint, no rock bridges. Where one lies on an "
-             "earlier one, the later one counts: that gives a part of a joint its own material."},
-            {text("name", &SingleJoint::name, "Name, once among the joints, joint sets and mapped sets."),
-             text("material", &SingleJoint::material, "Name of its joint material."),
-             point("from_m", &SingleJoint::from, "One end."),
-             point("to_m", &SingleJoint::to, "The other end.")}};
+    return {
+        {"joint", in_list, optional,
+         "One joint or fault given by its ends: all of it joint, no rock bridges. Where a joint lies "
+         "on an earlier one, the later joint replaces it. So a part of a joint can have its own material."},
+        {text("name", &SingleJoint::name, "Name, once among the joints, joint sets and mapped sets."),
+         text("material", &SingleJoint::material, "Name of its joint material."),
+         point("from_m", &SingleJoint::from, "One end."), point("to_m", &SingleJoint::to, "The other end.")}};
 }
 
 // --- Laws -------------------------------------------------------------------------------------------------
@@ -141,16 +141,17 @@ Key<WrittenLaw> law_choice(const std::vector<LawWords>& laws)
 
 Table<WrittenLaw> angle_law(const std::string& name, Range range, const std::string& doc)
 {
-    return {{"joint_set." + name, inside, optional, doc},
-            {law_choice(laws_of_angles()),
-             number("mean_deg", &WrittenLaw::mean, degrees, range, "Mean: needed by all laws."),
-             number("deviation_deg", &WrittenLaw::deviation, degrees, above(0).to(90),
-                    "Standard deviation: needed by the normal law, refused by the others.")
-                 .optional(),
-             number("half_width_deg", &WrittenLaw::half_width, degrees, above(0).to(90),
-                    "Every angle up to this far from the mean is as likely as another: needed by the uniform "
-                    "law, refused by the others.")
-                 .optional()}};
+    return {
+        {"joint_set." + name, inside, optional, doc},
+        {law_choice(laws_of_angles()),
+         number("mean_deg", &WrittenLaw::mean, degrees, range, "Mean: needed by all laws."),
+         number("deviation_deg", &WrittenLaw::deviation, degrees, above(0).to(90),
+                "Standard deviation: needed by the normal law, refused by the others.")
+             .optional(),
+         number("half_width_deg", &WrittenLaw::half_width, degrees, above(0).to(90),
+                "All angles up to this distance from the mean are equally likely: needed by the uniform law, "
+                "refused by the others.")
+             .optional()}};
 }
 
 Table<WrittenLaw> length_law(const std::string& name, Need need, const std::string& doc)
@@ -166,7 +167,7 @@ Table<WrittenLaw> length_law(const std::string& name, Need need, const std::stri
              "deviation_m", &WrittenLaw::deviation, metres, lengths,
              "Standard deviation of the quantity itself: needed by the normal and lognormal laws, refused by "
              "the others. With the normal law the mean must be at least 3 deviations: values of 0 or less "
-             "are drawn again, and that must hardly move the mean.")
+             "are drawn again, and then this changes the mean very little.")
              .optional(),
          number("shortest_m", &WrittenLaw::shortest, metres, from(0).to(farthest_metre),
                 "Least value, a cut-off: needed by the uniform and power laws, refused by the others. With "
@@ -176,9 +177,11 @@ Table<WrittenLaw> length_law(const std::string& name, Need need, const std::stri
                 "Largest value, a cut-off above shortest_m: needed by the uniform and power laws, refused "
                 "by the others.")
              .optional(),
-         number("exponent", &WrittenLaw::exponent, no_unit, from(0).to(20),
-                "Of the power law, whose density falls as the value to the minus this exponent (and the "
-                "number of longer ones with one less): needed by it, refused by the others.")
+         number(
+             "exponent", &WrittenLaw::exponent, no_unit, from(0).to(20),
+             "Exponent of the power law: the probability density is proportional to the value to the power "
+             "of minus this exponent. A fit of the number of larger values gives an exponent smaller by 1. "
+             "Needed by the power law, refused by the others.")
              .optional()}};
 }
 
@@ -217,10 +220,10 @@ Table<WrittenOrientation> orientation_law()
                       bootstrap_only = " With the law bootstrap only.";
     return {
         {"joint_set.orientation", inside, optional,
-         "Law of the poles (normals) of the joint planes in space, with section.azimuth_deg. Of lines, "
+         "Law of the poles (normals) of the joint planes in space, with section.azimuth_deg. For lines, "
          "Fisher's law is that of the planes that a scanline along the mean trace's normal meets in the "
-         "section, and the bootstrap that of all planes of the set; of segments and discs both are laws of "
-         "all joints in space, which the section meets the sooner the larger their angle to it."},
+         "section, and the bootstrap that of all planes of the set. For segments and discs both are laws of "
+         "all joints in space; the section meets joints at a larger angle to it more often."},
         {choice("law", &W::bootstrap, {{"Fisher", false}, {"bootstrap", true}},
                 "Probability law. Fisher's: symmetric about the mean pole. Bootstrap: measured poles, drawn "
                 "with replacement."),
@@ -232,8 +235,8 @@ Table<WrittenOrientation> orientation_law()
              .optional(),
          number<W>(
              "concentration", concentration, no_unit, from(5).to(1e6),
-             "Fisher's constant kappa: the larger, the nearer the poles to their mean. 63 percent of them "
-             "lie within 81 / sqrt(kappa) degrees. Needed by Fisher's law, refused by the other.")
+             "Fisher's constant kappa: a large value means little scatter. 63 percent of the poles lie "
+             "within 81 / sqrt(kappa) degrees of their mean. Needed by Fisher's law, refused by the other.")
              .optional(),
          key_of<W>({"poles_deg",
                     "poles",
@@ -259,10 +262,9 @@ Table<WrittenOrientation> orientation_law()
          number<W>("scanline_plunge_deg", plunge, degrees, from(-90).to(90),
                    "Its inclination below the horizontal." + bootstrap_only)
              .together("scanline"),
-         number(
-             "blind_zone_deg", &W::blind_zone, degrees, above(0).to(45),
-             "Planes at a smaller angle to the scanline weigh as if they were at this one. With a scanline "
-             "only.")
+         number("blind_zone_deg", &W::blind_zone, degrees, above(0).to(45),
+                "Planes at a smaller angle to the scanline have the weight of planes at this angle. With a "
+                "scanline only.")
              .optional("10")}};
 }
 
@@ -428,9 +430,8 @@ Table<WrittenDensity> density_table()
     const Range dense = from(1e-9).to(1e6);
     return {
         {"joint_set.density", inside, optional,
-         "How much of a set there is, measured otherwise than by the spacing: one of five densities of "
-         "joint traces, before they end at others. Of lines it sets the mean spacing. Scatter of the "
-         "orientation is taken into account."},
+         "Density of a set, as one of five measures, of joint traces before they end at others. For lines it "
+         "sets the mean spacing. Scatter of the orientation is taken into account."},
         {number("P10_per_m", &W::p10, per_m, dense,
                 "Joint traces that a scanline meets per metre, with its direction: scanline_angle_deg, or "
                 "scanline_trend_deg and scanline_plunge_deg. Corrected by Terzaghi.")
@@ -497,10 +498,10 @@ struct TablesInJointSet {
 
 Table<MaterialInRock> material_in()
 {
-    return {
-        {"joint_set.material_in", inside, optional, "What the set's joints are made of in one of the rocks."},
-        {text("rock", &MaterialInRock::rock, "Name of the rock."),
-         text("material", &MaterialInRock::material, "Name of the joint material.")}};
+    return {{"joint_set.material_in", inside, optional,
+             "Joint material of the set's joints in one of the rocks."},
+            {text("rock", &MaterialInRock::rock, "Name of the rock."),
+             text("material", &MaterialInRock::material, "Name of the joint material.")}};
 }
 
 Table<JointSet> joint_set(const TablesInJointSet& laws)
@@ -515,8 +516,8 @@ Table<JointSet> joint_set(const TablesInJointSet& laws)
     };
     return {
         {"joint_set", in_list, optional,
-         "Joints sharing their statistics. How they lie is given by one of trace_angle, orientation, or dip "
-         "and dip_direction."},
+         "Joints with the same statistics. Their orientation is given by one of trace_angle, orientation, or "
+         "dip and dip_direction."},
         {text("name", &JointSet::name, "Name, once among the joints, joint sets and mapped sets."),
          text("material", &JointSet::material, "Name of the joint material of its traces."),
          key_of<JointSet>(
@@ -525,7 +526,8 @@ Table<JointSet> joint_set(const TablesInJointSet& laws)
               {},
               {},
               "Joint materials in some of the rocks, in place of that one, so that joints may run from "
-              "one rock into another. Along a border the softer one in normal direction counts."},
+              "one rock into another. Along a border between two rocks the material with the smaller "
+              "normal stiffness is used."},
              &JointSet::material_in, read_materials)
              .optional(),
          choice(
@@ -548,8 +550,9 @@ Table<JointSet> joint_set(const TablesInJointSet& laws)
              "the density sets the mean, and all of the law is stretched to it; with a density alone the "
              "law is negative exponential.")
              .optional(),
-         key_of<JointSet>({"density", "density", {}, {}, "How much there is. Segments and discs need it."},
-                          &JointSet::density, read_amount)
+         key_of<JointSet>(
+             {"density", "density", {}, {}, "Density of the joints. Segments and discs need it."},
+             &JointSet::density, read_amount)
              .asks_for("a density such as { P21_per_m = 0.5 }")
              .optional(),
          law("length", &JointSet::length, laws.length, laws_of_lengths(),
@@ -607,10 +610,12 @@ Table<HeldFile> held_file()
 {
     return {
         {"file", in_list, optional,
-         "A file that the scene names, stored in the scene itself. The programs write it into the copy of the "
-         "scene that their own files carry, so that this copy says everything."},
-        {text("name", &HeldFile::name, "As the scene names it; it is then not looked for beside the scene."),
-         key_of<HeldFile>({"text", "file text", {}, {}, "What is in it."}, &HeldFile::text, read_file_text)
+         "A file that the scene names, stored in the scene itself. The programs write it into the copy of "
+         "the scene in their own files, so that this copy is complete."},
+        {text("name", &HeldFile::name,
+              "Name of the file in the other keys of the scene. A file of this name in the folder of the "
+              "scene is not read."),
+         key_of<HeldFile>({"text", "file text", {}, {}, "Text of the file."}, &HeldFile::text, read_file_text)
              .asks_for("the text of a file, 16 MiB at most")}};
 }
 
@@ -623,7 +628,7 @@ Table<Schedule> schedule()
         "Start of time. With a date here all others may be dates, or numbers of days since it; with "
         "a number all are numbers on its axis."};
     const auto calendar = [](Schedule& all) -> Calendar& { return all.calendar; };
-    return {{"schedule", once, required, "From when to when."},
+    return {{"schedule", once, required, "Start and end."},
             {key_of<Schedule>(start, calendar, read_start).or_else(std::int64_t{0}),
              date("end", &Schedule::end, "End of time, after the start.")}};
 }
@@ -666,25 +671,27 @@ Table<CreepSettings> creep()
         {"creep", once, optional,
          "Creep of joints and rock. Without this table nothing creeps. Either step_days or tolerance_m is "
          "given."},
-        {choice("scheme", &CreepSettings::scheme, creep_scheme_words(),
-                "Time scheme: what the force on a joint is taken to be during a step. \"auto\" is fitted, and "
-                "linear force in steps during which loads change; the published one is stable only below a limit.")
+        {choice(
+             "scheme", &CreepSettings::scheme, creep_scheme_words(),
+             "Time scheme: what the force on a joint is taken to be during a step. \"auto\" is fitted, and "
+             "linear force in steps during which loads change; the published one is stable only below a "
+             "limit.")
              .or_else(std::string("auto")),
          number("step_days", &CreepSettings::step, days, step, "Time step.").optional(),
          number("tolerance_m", &CreepSettings::tolerance, metres, creep_tolerances,
-                "Error that a step may make, by estimate; the time steps are chosen by it.")
+                "Allowed estimated error of a step; the time steps are chosen by it.")
              .optional(),
          number("first_step_days", &CreepSettings::first_step, days, step,
                 "First step tried after the start, stages and dates; with tolerance_m.")
              .optional("by the fastest joint"),
          number("shortest_step_days", &CreepSettings::shortest_step, days, step,
-                "Steps are not made shorter than this for the tolerance; with tolerance_m.")
+                "The tolerance makes no step shorter than this; with tolerance_m.")
              .optional(),
          number("longest_step_days", &CreepSettings::longest_step, days, step,
                 "Longest step; with tolerance_m.")
              .optional(),
          number("stop_rate_mm_per_day", &CreepSettings::stop_rate, mm_per_day, above(0).to(1e6),
-                "Ends creep after the last stage once no point moves faster.")
+                "Ends creep after the last stage once no point moves faster than this.")
              .optional()}};
 }
 
@@ -698,32 +705,34 @@ Table<Scene> zones()
              "quadratic, with three more gridpoints in the middles of its sides. Quadratic zones are for small "
              "displacements.")
              .optional("constant strain"),
-         number("size_m", &Scene::zone_size, metres, zone_sizes, "Longest zone side aimed at."),
+         number("size_m", &Scene::zone_size, metres, zone_sizes, "Longest zone side wanted."),
          polygon("fine_m", &Scene::fine_zones,
                  "Where zones are of that size; outside they are larger. Without it they are of that "
                  "size everywhere.")
              .together("coarsening"),
          number("coarsening_m", &Scene::zone_coarsening, metres, lengths,
-                "Distance from fine_m in which the size grows by size_m: at twice the distance zones are "
-                "three times as large.")
+                "Distance over which the zone size grows by size_m: at this distance from fine_m zones are "
+                "twice as large, and at two times this distance three times.")
              .together("coarsening"),
-         number("size_at_faces_m", &Scene::zone_size_at_faces, metres, lengths,
-                "Longest zone side aimed at on faces that stages dig, at points and at gauges; from there "
-                "it grows by 0.3 m a metre to what the other keys ask for. At most size_m.")
+         number(
+             "size_at_faces_m", &Scene::zone_size_at_faces, metres, lengths,
+             "Longest zone side wanted on faces that stages excavate, at points and at gauges. From there it "
+             "grows by 0.3 m per metre, up to the size that the other keys give. At most size_m.")
              .optional()}};
 }
 
 Table<Cutting> cutting()
 {
     return {
-        {"cutting", once, optional, "What is too small to keep when the section is cut into blocks."},
+        {"cutting", once, optional,
+         "Limits below which details are merged when the section is cut into blocks."},
         {number(
              "shortest_edge_m", &Cutting::shortest_edge, metres, above(0).to(farthest_metre),
              "Vertices closer than this, or than half of it to an edge, are merged. At most the zone size, "
              "and less than the extent of the section.")
              .optional("0.02 x zones.size_m"),
          number("smallest_angle_deg", &Cutting::smallest_angle, degrees, from(0).to(30),
-                "Narrower wedges between edges are closed where that moves little.")
+                "Narrower wedges between edges are closed where vertices move little.")
              .or_else(std::int64_t{1}),
          choice("dangling_ends", &Cutting::dangling_ends,
                 {{"prune", DanglingEnds::prune}, {"extend", DanglingEnds::extend}},
@@ -788,18 +797,19 @@ Table<LargeDisplacements> large_displacements()
          "until the rock is at rest. Without this table displacements are small. Not with [creep].",
          in_list, "motion"},
         {text("new_contacts", &LargeDisplacements::new_contacts,
-              "Joint material of contacts that form, and of what slides off its joint: its stiffnesses "
-              "and friction angle, the residual one if it has one, without cohesion, tensile strength and "
+              "Joint material of new contacts, and of rock that slides off its joint: its stiffnesses and "
+              "friction angle, the residual one if it has one, without cohesion, tensile strength and "
               "dilation."),
          names("rigid_rocks", &LargeDisplacements::rigid_rocks,
-               "Rocks whose blocks do not deform in the dynamic analysis; they do before it.")
+               "Rocks whose blocks do not deform in the dynamic analysis. Before it they deform.")
              .optional("none"),
-         number("stiffness_damping_s", &LargeDisplacements::stiffness_damping, seconds, from(0).to(10),
-                "Dashpots of zones and closed joints, over their springs. Takes the energy of impacts and of "
-                "vibration; shortens the time step.")
+         number(
+             "stiffness_damping_s", &LargeDisplacements::stiffness_damping, seconds, from(0).to(10),
+             "Dashpots of zones and closed joints, over their springs. Removes the energy of impacts and of "
+             "vibration; shortens the time step.")
              .or_else(1e-4),
          number("mass_damping_per_s", &LargeDisplacements::mass_damping, per_s, from(0).to(1e6),
-                "Force over mass and velocity. It also brakes rock that slides or falls.")
+                "Force over mass and velocity. It also slows down rock that slides or falls.")
              .or_else(0.0),
          number("release_s", &LargeDisplacements::release, seconds, from(0).to(1e6),
                 "Time in which the forces of a stage's rock go to 0.")

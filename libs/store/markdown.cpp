@@ -48,7 +48,7 @@ void list(std::ostream& page, const std::string& title, const std::vector<Field>
         page << "| `" << field.path << "` | " << shape_of(field) << " | " << type_of(field) << " | "
              << field.units << " | " << wanted_of(field) << " | " << field.description << " |\n";
     if (!invariants.empty())
-        page << "\nBesides, in every row:\n\n";
+        page << "\nIn addition, in every row:\n\n";
     for (const fields::Invariant& invariant : invariants)
         page << "- " << invariant.sentence << " (`" << invariant.path << "`).\n";
 }
@@ -75,7 +75,7 @@ std::string schema_markdown()
 
 <!-- Made from libs/store/schema.cpp and libs/*/fields.cpp by: jointexport --file-format > docs/file-format.md -->
 
-The programs hand each other HDF5 files. A file holds all that later programs need:
+The programs exchange HDF5 files. A file has all data that later programs need:
 
 | `filetype` | made by | holds |
 |---|---|---|
@@ -95,11 +95,11 @@ This is format version )"
 - Indices count from 0. An index of -1 means none. No number is ever NaN or infinite.
 - Text is UTF-8 of fixed length, padded with zero bytes.
 - Equal input gives equal bytes: a file holds no dates, paths or user names.
-- Datasets carry checksums, and are compressed, but for those that would hardly get smaller. A damaged file is refused; a file made to do harm may not be.
+- Datasets have checksums. They are compressed, except where that saves very little. A damaged file is refused; a file that was changed on purpose may not be.
 - An addition to the format raises the minor version. Any other change raises the major version: another name, meaning, unit or shape, or a removal.
 - A program reads files of its own major version. It ignores datasets that it does not know, for example those that a higher minor version adds. It refuses a file that lacks a dataset that it needs, and names the dataset.
 - A program refuses a file of another major version, and says which version it reads. It refuses a file that is not complete.
-- While a file is written it is called `NAME.partial-` and a number; it is renamed when it is whole.
+- While a file is written it is called `NAME.partial-` and a number; it is renamed when it is complete.
 
 ```python
 import h5py
@@ -142,7 +142,7 @@ with h5py.File("result.h5") as file:
     list(page, "Checkpoint", schema::fields_of(checkpoint));
     page << "\nOnly in files of `--checkpoint`, from which a run can continue.\n";
     list(page, "State of a dynamic analysis", schema::fields_of(checkpoint.dynamics));
-    page << "\nBeside it, in scenes with [large_displacements].\n";
+    page << "\nIn the same files, in scenes with [large_displacements].\n";
     return page.str();
 }
 

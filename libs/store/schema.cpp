@@ -49,7 +49,8 @@ std::vector<Field> fields_of(Joints& joints)
          "Upward unit normal of the joint's plane {x, y, z}, z being across the section, at its azimuth plus 90 "
          "degrees; 0 where only a trace angle was drawn."},
         {"/joints/point", &joints.point, {"joint"}, "m", any(),
-         "Where the joint was placed, about which it turns {x, y}; need not be inside the section."},
+         "Point {x, y} at which the joint was placed; its angle is applied about this point. It may be "
+         "outside the section."},
         {"/joints/diameter", &joints.diameter, {"joint"}, "m", at_least(0),
          "Diameter of the disc in space that the section meets in this joint; 0 where it is none."},
         {"/joints/centre", &joints.centre, {"joint"}, "m", any(),
@@ -75,7 +76,7 @@ std::vector<Field> fields_of(Blocks& blocks)
         {"/edges/block", &blocks.edge_block, {"edge"}, "1", index_or_none("block"),
          "Block on the left (side b) and on the right (side a); -1 is outside the section."},
         {"/edges/kind", &blocks.edge_kind, {"edge"}, "1", between(0, 2),
-         "0 boundary (outline of the section), 1 joint, 2 bonded (no joint: the blocks hold together)."},
+         "0 boundary (outline of the section), 1 joint, 2 bonded (no joint: the rock is continuous)."},
         {"/edges/joint", &blocks.edge_joint, {"edge"}, "1", index_or_none("joint"), "Joint of a joint edge."},
         {"/edges/joint_fraction", &blocks.edge_joint_fraction, {"edge"}, "1", between(0, 1),
          "Joint length over edge length, on joint edges; the rest is rock bridge."},
@@ -99,9 +100,10 @@ std::vector<Field> fields_of(Blocks& blocks)
         {"/rings/vertex", &blocks.ring_vertex, {"corner"}, "1", index_of("vertex"), "Vertex at the corner."},
 
         {"/fates/fate", &fates.fate, {"joint"}, "1", between(0, 4),
-         "What became of the joint, up to the shortest edge: 0 kept (all on block edges), 1 clipped (what lies in "
-         "the section is), 2 trimmed (some ended inside a block), 3 merged (some was on edges that vanished), 4 "
-         "dropped (none is on block edges). The lengths below, without the extension, sum to the joint's."},
+         "What became of the joint: 0 kept (all of it is on block edges), 1 clipped (the part inside the "
+         "section is on block edges), 2 trimmed (a part ended inside a block), 3 merged (a part was on "
+         "edges that vanished), 4 dropped (nothing is on block edges). For 1 to 3 parts up to the shortest "
+         "edge do not count. The lengths below, without the extension, add up to the joint's length."},
         {"/fates/kept_length", &fates.kept, {"joint"}, "m", at_least(0), "On block edges with its properties."},
         {"/fates/shared_length", &fates.shared, {"joint"}, "m", at_least(0),
          "On block edges with the properties of another joint on them."},
@@ -140,7 +142,7 @@ std::vector<Field> fields_of(Statistics& rows)
     return {
         {"/statistics/subject", &rows.subject, statistic, "1", any(),
          "What the row is about: a joint set, `blocks` or `nodes`. Rows are there only if a report was asked for."},
-        {"/statistics/quantity", &rows.quantity, statistic, "1", any(), "What is looked at."},
+        {"/statistics/quantity", &rows.quantity, statistic, "1", any(), "Quantity that is examined."},
         {"/statistics/unit", &rows.unit, statistic, "1", any(),
          "Unit of target, achieved value and interval: SI, angles in rad."},
         {"/statistics/has_target", &rows.has_target, statistic, "1", between(0, 1), "1 if there is a target."},
@@ -154,7 +156,7 @@ std::vector<Field> fields_of(Statistics& rows)
          "Lower end of the confidence interval; the achieved value where there is none."},
         {"/statistics/high", &rows.high, statistic, unit, any(), "Its upper end."},
         {"/statistics/sample_size", &rows.sample_size, statistic, "1", at_least(0),
-         "How many joints, traces, intervals, blocks or nodes were looked at."},
+         "Number of joints, traces, intervals, blocks or nodes examined."},
         {"/statistics/is_tested", &rows.is_tested, statistic, "1", between(0, 1),
          "1 if the verdict follows from the p-value."},
         {"/statistics/p_value", &rows.p_value, statistic, "1", between(0, 1),
@@ -217,9 +219,9 @@ std::vector<Field> fields_of(States& states)
         {"/states/displacement", &states.displacement, {"state", "gridpoint"}, "m", any(),
          "Displacement {x, y} since the in-situ equilibrium."},
         {"/states/reaction", &states.reaction, {"state", "gridpoint"}, "N/m", any(),
-         "Force {x, y} by which supports hold a fixed gridpoint, 0 elsewhere; of gridpoints that a tie holds together, at the "
-         "lowest one. In a dynamic analysis with large displacements a rigid block is held by equal parts of the reaction at "
-         "its fixed gridpoints."},
+         "Force {x, y} of supports on a fixed gridpoint, 0 elsewhere; of gridpoints that a tie connects, at "
+         "the one with the lowest number. In a dynamic analysis with large displacements the reaction of a "
+         "rigid block is divided equally among its fixed gridpoints."},
     };
     // clang-format on
     append(all, of_forces(&ForceFields::states, states));
@@ -265,7 +267,8 @@ std::vector<Field> fields_of(Equilibria& equilibria)
         {"/equilibria/dissipated_energy", &equilibria.dissipated_energy, {"equilibrium"}, "J/m", any(),
          "Energy lost in contacts by slip and opening."},
         {"/equilibria/damped_energy", &equilibria.damped_energy, {"equilibrium"}, "J/m", any(),
-         "Energy taken by damping; by the implicit engine, what a sudden change of loads would set free."},
+         "Energy taken by damping; by the implicit engine, the energy that a sudden change of loads would "
+         "release."},
     };
     // clang-format on
 }
@@ -278,7 +281,8 @@ std::vector<Field> fields_of(Provenance& provenance)
     return {
         {"/scene", &provenance.scene, {}, "1", any(), "The scene's text, as it was read."},
         {"/provenance/program", &provenance.program, {"program"}, "1", any(),
-         "Programs that led to this file, in the order they ran; the last one wrote it."},
+         "Programs that made this file and the files before it, in the order they ran; the last one wrote "
+         "this file."},
         {"/provenance/version", &provenance.version, {"program"}, "1", any(), "Version of the program."},
         {"/provenance/input_sha256", &provenance.input_sha256, {"program"}, "1", any(),
          "SHA-256 of the file that the program read."},
@@ -293,7 +297,7 @@ std::vector<Field> fields_of(Warnings& warnings)
     // clang-format off
     return {
         {"/warnings/program", &warnings.program, {"warning"}, "1", any(), "Program that warned."},
-        {"/warnings/text", &warnings.text, {"warning"}, "1", any(), "What it said on stderr."},
+        {"/warnings/text", &warnings.text, {"warning"}, "1", any(), "Text of the warning."},
     };
     // clang-format on
 }
@@ -373,8 +377,8 @@ std::vector<Field> fields_of(GuardHistory& guards)
         {"/guards/weight_error", &guards.weight_error, {"state"}, "1", at_least(0),
          "Loads less the weight of the rock that is there, over the weight of all rock."},
         {"/guards/penetration", &guards.penetration, {"state"}, "m", at_least(0),
-         "Closing of a contact beyond its normal stress over its normal stiffness, or beyond its gap where it is open; the largest. "
-         "0 at large displacements."},
+         "Closure of a contact beyond its normal stress over its normal stiffness, or beyond its gap where "
+         "it is open; the largest. 0 at large displacements."},
     };
     // clang-format on
 }
@@ -388,13 +392,13 @@ std::vector<Field> fields_of(Failure& failure)
          "Stage whose rock had just been excavated, or an empty text."},
         {"/failure/time", &failure.time, {}, "day", at_least(0), "Time since the start."},
         {"/failure/moves_on", &failure.moves_on, {}, "1", between(0, 1),
-         "1 blocks were seen to slide or fall, 0 undecided: the search for equilibrium ended without an answer."},
+         "1 blocks slide or fall, 0 undecided: the search for equilibrium ended without an answer."},
         {"/failure/steps", &failure.steps, {}, "1", at_least(0), "Steps of the engine, the last ones."},
         {"/failure/seconds", &failure.seconds, {}, "s", at_least(0),
-         "Time that these steps stand for with real masses; otherwise 0."},
+         "Duration of these steps with real masses; otherwise 0."},
         {"/failure/block", &failure.block, {"moving_block"}, "1", index_of("block"),
-         "Blocks that moved by more than a tenth of what the fastest one did, the fastest first; or blocks "
-         "without support."},
+         "Blocks that moved by more than a tenth of the displacement of the fastest block, the fastest "
+         "first; or blocks without support."},
         {"/failure/place", &failure.place, {"moving_block"}, "m", any(), "Centroid of the block {x, y}."},
         {"/failure/motion", &failure.motion, {"moving_block"}, "m", any(),
          "Displacement {x, y} of the block in these steps, a mean over its zones."},
@@ -409,7 +413,8 @@ std::vector<Field> fields_of(Safety& safety)
         {"/safety/factor", &safety.factor, {"trial"}, "1", positive(),
          "Factor that all strengths of joints were divided by."},
         {"/safety/stands", &safety.stands, {"trial"}, "1", between(-1, 1),
-         "1 every equilibrium was found, 0 rock was seen to slide or fall, or its displacement runs away, -1 undecided."},
+         "1 every equilibrium was found, 0 rock slides or falls, or its displacement runs away, -1 "
+         "undecided."},
         {"/safety/largest_displacement", &safety.largest_displacement, {"trial"}, "m", at_least(0),
          "Largest displacement since the in-situ equilibrium, at the end of the run."},
         {"/safety/largest_plastic_strain", &safety.largest_plastic_strain, {"trial"}, "1", at_least(0),
@@ -424,11 +429,13 @@ std::vector<Field> fields_of(Checkpoint& checkpoint)
     // clang-format off
     std::vector<Field> all = {
         {"/checkpoint/is_in_situ", &checkpoint.is_in_situ, {}, "1", between(0, 1),
-         "1 before the in-situ equilibrium, from where a run begins; then only the search below counts."},
+         "1 before the in-situ equilibrium; a run then starts from the scene, and only the search below is "
+         "used."},
         {"/checkpoint/stage", &checkpoint.stage, {}, "1", at_least(0),
          "Number of stages that are complete."},
         {"/checkpoint/time", &checkpoint.time, {}, "s", at_least(0),
-         "Time since the start. If the next stage has it, that is about to be excavated, or under way; otherwise a creep step is about to begin."},
+         "Time since the start. If it is the time of the next stage, this stage comes next or is being "
+         "excavated; otherwise a creep step comes next."},
         {"/checkpoint/displacement", &checkpoint.displacement, gridpoint, "m", any(),
          "Displacement {x, y} since the in-situ equilibrium."},
         {"/checkpoint/is_free", &checkpoint.is_free, gridpoint, "1", between(0, 1),
@@ -438,8 +445,10 @@ std::vector<Field> fields_of(Checkpoint& checkpoint)
         {"/checkpoint/released", &checkpoint.released, {"released_gridpoint"}, "N/m", any(),
          "Within a stage: force {x, y} that the rock it excavates had on the gridpoint."},
         {"/checkpoint/unloaded", &checkpoint.unloaded, {}, "1", at_least(0),
-         "Finest increments in which that has been unloaded so far, 1/32 of the scene's or with dynamic relaxation alone these; 0 outside of a stage."},
-        {"/checkpoint/increment", &checkpoint.increment, {}, "1", at_least(0), "How many of them are unloaded next."},
+         "Number of finest increments unloaded so far; 0 outside of a stage. A finest increment is 1/32 of "
+         "an increment of the scene, or with dynamic relaxation alone the whole."},
+        {"/checkpoint/increment", &checkpoint.increment, {}, "1", at_least(0),
+         "Number of finest increments to be unloaded next."},
     };
     // clang-format on
     append(all, of_forces(&ForceFields::checkpoint, checkpoint));
@@ -459,9 +468,11 @@ std::vector<Field> fields_of(Checkpoint& checkpoint)
          "energy balance is off."},
         {"/checkpoint/remark_count", &checkpoint.remark_count, remark, "1", at_least(0), "How often, or by how many percent."},
         {"/checkpoint/search_number", &checkpoint.search_number, {}, "1", at_least(0),
-         "Of the search for equilibrium that was under way: how many dynamic relaxations or dynamic analyses are before it from here."},
+         "Number of dynamic relaxations or dynamic analyses between this moment and the unfinished search "
+         "for equilibrium."},
         {"/checkpoint/search", &checkpoint.search, {"search_value"}, "1", any(),
-         "State of that search, in the order of the program of the same version; none where no search was under way."},
+         "State of the unfinished search, in the order of the program of the same version; empty if there "
+         "is none."},
     });
     // clang-format on
     return all;
@@ -472,8 +483,10 @@ std::vector<Field> fields_of(DynamicsState& state)
     const std::vector<std::string> gridpoint = {"gridpoint"};
     // clang-format off
     std::vector<Field> all = {
-        {"/dynamics_state/origin", &state.origin, gridpoint, "m", any(), "Place {x, y} that displacements count from, counted from the section's middle."},
-        {"/dynamics_state/place", &state.place, gridpoint, "m", any(), "Place {x, y} now, counted from there."},
+        {"/dynamics_state/origin", &state.origin, gridpoint, "m", any(),
+         "Position {x, y} at zero displacement, from the middle of the section."},
+        {"/dynamics_state/place", &state.place, gridpoint, "m", any(),
+         "Present position {x, y}, from the middle of the section."},
     };
     // clang-format on
     append(all, of_forces(&ForceFields::dynamics_state, state));
