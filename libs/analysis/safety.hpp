@@ -1,7 +1,7 @@
 // Factor of safety by strength reduction: the largest factor F that strengths can be divided by before the rock fails
 // (libs/joint/strength_factor.hpp). The result is a bracket of F, by whole runs.
 //
-// Rock fails where there is no equilibrium, or where its displacement runs away with F. Zones that lock in plastic flow
+// Rock fails where there is no equilibrium, or where its displacement grows without bound. Zones that lock in plastic flow
 // carry more than the rock does, and are in equilibrium long after it would have collapsed. The measure is the largest
 // displacement over that of the same run with strengths 64 times as large, in which hardly anything slips or yields.
 

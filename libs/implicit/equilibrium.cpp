@@ -189,7 +189,7 @@ bool Solver::is_too_far(const Assembly& assembly, const Equilibrium& settings)
 {
     const double largest = largest_displacement(assembly).first;
     if (largest > settings.largest_displacement)
-        reason_ = "displacement runs away";
+        reason_ = "displacement grows without bound";
     else if (largest > too_far_)
         reason_ = "rock would move by more than a tenth of the section";
     return largest > std::min(settings.largest_displacement, too_far_);
@@ -319,6 +319,26 @@ bool Solver::is_at_rest(const Assembly& assembly, const State& start, double mea
     return unsupported_ < 0;
 }
 
+// Restores bonds that need not have broken, if there is equilibrium with them.
+void Solver::restore_bonds(Assembly& assembly, const State& start, const Equilibrium& settings,
+                           Convergence& convergence)
+{
+    for (;;) {
+        const std::vector<Vector2d> displacement = assembly.displacement;
+        const mechanics::ActiveForces before = active_;
+        const Convergence with_them = convergence;
+        if (!mend_bonds(assembly))
+            return;
+        if (converge(assembly, start, settings, most_corrections_to_mend, convergence))
+            continue;
+        assembly.displacement = displacement;
+        for_each_force([](auto& active, const auto& its_before) { active.break_again(its_before); }, active_,
+                       before);
+        convergence = with_them;
+        return;
+    }
+}
+
 std::optional<Convergence> Solver::equilibrate(Assembly& assembly, const Equilibrium& settings,
                                                const std::vector<Vector2d>& guess)
 {
@@ -366,20 +386,7 @@ std::optional<Convergence> Solver::equilibrate(Assembly& assembly, const Equilib
     }
     if (is_balanced && corrections_ == 0)
         return convergence;
-    for (;;) { // restores bonds that need not have broken, if there is equilibrium with them
-        const std::vector<Vector2d> displacement = assembly.displacement;
-        const mechanics::ActiveForces before = active_;
-        const Convergence with_them = convergence;
-        if (!mend_bonds(assembly))
-            break;
-        if (!converge(assembly, start, settings, most_corrections_to_mend, convergence)) {
-            assembly.displacement = displacement;
-            for_each_force([](auto& active, const auto& its_before) { active.break_again(its_before); },
-                           active_, before);
-            convergence = with_them;
-            break;
-        }
-    }
+    restore_bonds(assembly, start, settings, convergence);
 
     convergence.steps = corrections_;
     evaluate(assembly, start);

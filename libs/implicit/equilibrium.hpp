@@ -79,6 +79,8 @@ private:
     void prepare(const Assembly& assembly);
     bool converge(Assembly& assembly, const State& start, const Equilibrium& settings, int most_corrections,
                   mechanics::Convergence& convergence);
+    void restore_bonds(Assembly& assembly, const State& start, const Equilibrium& settings,
+                       mechanics::Convergence& convergence);
     bool is_at_rest(const Assembly& assembly, const State& start, double mean_force, double tolerance,
                     mechanics::Convergence& convergence);
     bool flow_to_rest(Assembly& assembly, const State& start, const Equilibrium& settings,

@@ -56,12 +56,13 @@ bool Solver::flow_to_rest(Assembly& assembly, const State& start, const Equilibr
         if (largest_displacement(assembly).first > most) {
             const std::size_t at = largest_displacement(assembly).second;
             collapse_.emplace("the displacement of the rock at " + shown(assembly.position[at]) +
-                              " runs away: within " + shown(most) + " m forces do not come into balance");
+                              " grows without bound: no equilibrium with displacements up to " + shown(most) +
+                              " m");
             collapse_->moves_on = true;
             collapse_->steps = 1;
             for (std::size_t g = 0; g < from.size(); ++g)
                 collapse_->motion.emplace_back(assembly.displacement[g] - from[g]);
-            reason_ = "displacement runs away";
+            reason_ = "displacement grows without bound";
             return false;
         }
     }

@@ -233,8 +233,8 @@ struct Boundary {
     bool fix_x = false, fix_y = false;
     std::string joint{}; // or: rests on fixed ground through a joint of this material
 
-    // On top of the in-situ stress, both times the factor of the load history:
-    std::optional<Eigen::Vector2d> traction{};     // force on the rock per area, {x, y} [Pa]
+    // Both times the factor of the load history:
+    std::optional<Eigen::Vector2d> traction{};     // total force on the rock per area, {x, y} [Pa]
     std::optional<Eigen::Vector2d> displacement{}; // where fixed: prescribed displacement {x, y} [m]
     LoadHistory load_history{};
 };
@@ -354,7 +354,10 @@ struct Scene {
 
     std::uint64_t seed = 0; // needed by joint sets only
     std::optional<CreepSettings> creep;
-    bool zones_are_quadratic = false;    // six gridpoints a zone; else three, and constant strain
+    std::optional<bool> asks_for_quadratic_zones{};
+    // Six gridpoints a zone; else three, and constant strain. If the scene does not say: where rock yields, displacements
+    // are small, and equilibrium is not by dynamic relaxation alone, which overshoots more with them.
+    bool zones_are_quadratic() const;
     double zone_size = 0;                // longest zone side aimed at [m]
     std::optional<Polygon> fine_zones{}; // where zones have that size, or else everywhere
     double zone_coarsening = 0;          // distance from there in which the size grows by `zone_size` [m]

@@ -178,7 +178,7 @@ public:
                     true, steps);
         const auto [in_all, h] = largest_displacement(a_);
         if (in_all > settings_.largest_displacement)
-            give_up("the displacement of the rock at " + shown(a_.position[h]) + " runs away: more than " +
+            give_up("the displacement of the rock at " + shown(a_.position[h]) + " exceeds the limit of " +
                         shown_length(settings_.largest_displacement),
                     true, steps);
         if (in_all > too_far_)
@@ -445,102 +445,151 @@ private:
     bool starts_from_rest_ = true;
 };
 
+// Whether equilibrium is reached, and the convergence report.
+class ConvergenceCheck
+{
+public:
+    ConvergenceCheck(const Assembly& assembly, const Equilibrium& settings, double stiffest)
+        : assembly_(assembly), settings_(settings), stiffest_(stiffest)
+    {
+    }
+
+    Convergence report;
+
+    // Before the first step: whether forces are in balance but for rounding.
+    bool is_balanced_already()
+    {
+        report.unbalanced_force_ratio = balance_for(settings_.tolerance).ratio();
+        return is_rounding();
+    }
+
+    void begin() { memory_.change_since_window(assembly_); }
+
+    // Every `check_every` steps.
+    bool is_passed(Relaxation& relaxation)
+    {
+        const Balance balance = balance_for(settings_.tolerance);
+        report.unbalanced_force_ratio = balance.ratio();
+        report.contact_force_change = memory_.change_since_window(assembly_) / balance.mean;
+        if (!std::isfinite(report.unbalanced_force_ratio))
+            throw no_equilibrium("forces are no longer finite numbers after " + std::to_string(report.steps) +
+                                 " steps");
+        const bool is_balanced = report.unbalanced_force_ratio <= settings_.tolerance;
+        steps_in_balance_ = is_balanced ? steps_in_balance_ + check_every : 0;
+        if (is_balanced)
+            remaining_share_[report.steps / check_every % remaining_share_.size()] =
+                relaxation.remaining_share();
+        relaxation.remember(report.steps);
+        if (steps_in_balance_ < window || report.contact_force_change > settings_.tolerance)
+            return false;
+        return is_near(relaxation) && report.steps >= look_again_ && is_supported(relaxation);
+    }
+
+    // What is not as it should be, after all steps.
+    std::string reason(const Relaxation& relaxation) const
+    {
+        std::string text = "after " + std::to_string(report.steps) + " steps the unbalanced force ratio is " +
+                           shown(report.unbalanced_force_ratio) + ", wanted " + shown(settings_.tolerance);
+        if (report.remaining_displacement > 0)
+            text += ", and by estimate " + shown_length(report.remaining_displacement) +
+                    " of displacement remain, wanted " +
+                    shown_length(enough(settings_.tolerance) * relaxation.reference_displacement());
+        if (unsupported_.displacement > 0)
+            text += "; contacts do not carry the weight of, and the loads on, the rock at " +
+                    shown(assembly_.position[unsupported_.gridpoint]);
+        return text + "; the largest unbalanced force is at " +
+               shown(assembly_.position[balance_of(assembly_).worst]);
+    }
+
+    void pass(Tape& tape)
+    {
+        tape(memory_, steps_in_balance_, remaining_share_, with_remaining_, unsupported_.displacement,
+             look_again_, largest_);
+        tape.index(unsupported_.gridpoint, assembly_.position.size());
+        tape(report.steps, report.unbalanced_force_ratio, report.contact_force_change,
+             report.remaining_displacement);
+    }
+
+private:
+    Balance balance_for(double tolerance)
+    {
+        for (const Vector2d& u : assembly_.displacement)
+            largest_ = std::max(largest_, u.norm());
+        return balance_of(assembly_, stiffest_, largest_, tolerance);
+    }
+    bool is_rounding() { return balance_for(rounding).ratio() <= rounding; }
+
+    // Whether little displacement remains, by the last checks.
+    bool is_near(const Relaxation& relaxation)
+    {
+        const double share = *std::max_element(remaining_share_.begin(), remaining_share_.end());
+        report.remaining_displacement =
+            (std::isfinite(share) ? share : 1) * relaxation.reference_displacement();
+        return share <= enough(settings_.tolerance) || is_rounding() ||
+               with_remaining_.ends(share, report.steps);
+    }
+
+    // Whether contacts support all pieces of rock.
+    bool is_supported(const Relaxation& relaxation)
+    {
+        unsupported_ = largest_remaining_displacement(assembly_, enough(settings_.tolerance),
+                                                      1e-15 * stiffest_ * largest_);
+        if (unsupported_.displacement > enough(settings_.tolerance) * relaxation.reference_displacement()) {
+            look_again_ = report.steps + report.steps / 10;
+            return false;
+        }
+        report.remaining_displacement = std::max(report.remaining_displacement, unsupported_.displacement);
+        return true;
+    }
+
+    const Assembly& assembly_;
+    const Equilibrium& settings_;
+    double stiffest_;
+    double largest_ = 0; // displacement so far [m]
+    ForceMemory memory_;
+    Index steps_in_balance_ = 0;
+    std::array<double, window / check_every> remaining_share_{}; // at the last checks
+    Patience with_remaining_;
+    mechanics::RemainingDisplacement unsupported_; // at the last look at pieces
+    Index look_again_ = 0;                         // at them [steps]
+};
+
 } // namespace
 
 Convergence relax(Assembly& assembly, const Equilibrium& settings, const StepObserver& observe,
                   SearchKeeper* keeper)
 {
     find_forces(assembly);
-    Convergence convergence;
     const std::vector<double> row_sums = stiffness_row_sums(assembly);
-    const double stiffest = *std::max_element(row_sums.begin(), row_sums.end());
-    double largest = 0; // displacement so far [m]
-    const auto balance_for = [&](double tolerance) {
-        for (const Vector2d& u : assembly.displacement)
-            largest = std::max(largest, u.norm());
-        return balance_of(assembly, stiffest, largest, tolerance);
-    };
-    const auto is_rounding = [&] { return balance_for(rounding).ratio() <= rounding; };
-    convergence.unbalanced_force_ratio = balance_for(settings.tolerance).ratio();
-    if (is_rounding())
-        return convergence;
+    ConvergenceCheck check(assembly, settings, *std::max_element(row_sums.begin(), row_sums.end()));
+    Convergence& report = check.report;
+    if (check.is_balanced_already())
+        return report;
 
     Relaxation relaxation(assembly, settings, row_sums);
-    ForceMemory memory;
-    memory.change_since_window(assembly);
-    Index steps_in_balance = 0;
-    std::array<double, window / check_every> remaining_displacement{}; // at the last checks
-    Patience with_remaining;
-    mechanics::RemainingDisplacement unsupported; // at the last look at pieces
-    Index look_again = 0;                         // at them [steps]
-    const auto pass = [&](Tape& tape) {
-        tape(relaxation, memory, steps_in_balance, remaining_displacement, with_remaining,
-             unsupported.displacement, look_again, largest);
-        tape.index(unsupported.gridpoint, assembly.position.size());
-        tape(convergence.steps, convergence.unbalanced_force_ratio, convergence.contact_force_change,
-             convergence.remaining_displacement);
-    };
+    check.begin();
+    const auto pass = [&](Tape& tape) { tape(relaxation, check); };
     if (keeper != nullptr)
         keeper->search_begins(pass);
-    while (convergence.steps < settings.most_steps) {
-        if (keeper != nullptr && convergence.steps % window == 0)
+    while (report.steps < settings.most_steps) {
+        if (keeper != nullptr && report.steps % window == 0)
             keeper->search_goes_on(pass);
-        const Index steps = observe ? 1
-                                    : std::min(check_every - convergence.steps % check_every,
-                                               settings.most_steps - convergence.steps);
+        const Index steps =
+            observe ? 1
+                    : std::min(check_every - report.steps % check_every, settings.most_steps - report.steps);
         relaxation.move(steps);
-        convergence.steps += steps;
+        report.steps += steps;
         if (observe)
             observe(relaxation.time());
-        if (convergence.steps % check_every != 0)
+        if (report.steps % check_every != 0)
             continue;
-        relaxation.check_movement(convergence.steps);
-        const Balance balance = balance_for(settings.tolerance);
-        convergence.unbalanced_force_ratio = balance.ratio();
-        convergence.contact_force_change = memory.change_since_window(assembly) / balance.mean;
-        if (!std::isfinite(convergence.unbalanced_force_ratio))
-            throw no_equilibrium("forces are no longer finite numbers after " +
-                                 std::to_string(convergence.steps) + " steps");
-        const bool is_balanced = convergence.unbalanced_force_ratio <= settings.tolerance;
-        steps_in_balance = is_balanced ? steps_in_balance + check_every : 0;
-        if (is_balanced)
-            remaining_displacement[convergence.steps / check_every % remaining_displacement.size()] =
-                relaxation.remaining_share();
-        relaxation.remember(convergence.steps);
-        if (steps_in_balance < window || convergence.contact_force_change > settings.tolerance)
-            continue;
-        const double share = *std::max_element(remaining_displacement.begin(), remaining_displacement.end());
-        convergence.remaining_displacement =
-            (std::isfinite(share) ? share : 1) * relaxation.reference_displacement();
-        const bool is_near = share <= enough(settings.tolerance) || is_rounding() ||
-                             with_remaining.ends(share, convergence.steps);
-        if (!is_near || convergence.steps < look_again)
-            continue;
-        unsupported =
-            largest_remaining_displacement(assembly, enough(settings.tolerance), 1e-15 * stiffest * largest);
-        if (unsupported.displacement <= enough(settings.tolerance) * relaxation.reference_displacement()) {
-            convergence.remaining_displacement =
-                std::max(convergence.remaining_displacement, unsupported.displacement);
-            relaxation.finish(convergence);
-            return convergence;
+        relaxation.check_movement(report.steps);
+        if (check.is_passed(relaxation)) {
+            relaxation.finish(report);
+            return report;
         }
-        look_again = convergence.steps + convergence.steps / 10;
     }
-    const Balance balance = balance_of(assembly);
-    relaxation.give_up(
-        "after " + std::to_string(convergence.steps) + " steps the unbalanced force ratio is " +
-            shown(convergence.unbalanced_force_ratio) + ", wanted " + shown(settings.tolerance) +
-            (convergence.remaining_displacement > 0
-                 ? ", and by estimate " + shown_length(convergence.remaining_displacement) +
-                       " of displacement remain, wanted " +
-                       shown_length(enough(settings.tolerance) * relaxation.reference_displacement())
-                 : "") +
-            (unsupported.displacement > 0
-                 ? "; contacts do not carry the weight of, and the loads on, the rock at " +
-                       shown(assembly.position[unsupported.gridpoint])
-                 : "") +
-            "; the largest unbalanced force is at " + shown(assembly.position[balance.worst]),
-        false, convergence.steps);
+    relaxation.give_up(check.reason(relaxation), false, report.steps);
 }
 
 } // namespace jointcreep::relaxation

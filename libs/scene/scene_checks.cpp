@@ -387,7 +387,7 @@ private:
             cutting.refuse("shortest_edge_m",
                            "wanted at most [zones] size_m, " + shown(scene_.zone_size) + " m");
 
-        if (scene_.zones_are_quadratic && scene_.large_displacements)
+        if (scene_.zones_are_quadratic() && scene_.large_displacements)
             once("zones").refuse("kind", "wanted \"constant strain\" with [large_displacements]");
         if (scene_.zone_size_at_faces.value_or(0) > scene_.zone_size)
             once("zones").refuse("size_at_faces_m",

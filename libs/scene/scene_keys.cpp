@@ -700,11 +700,13 @@ Table<Scene> zones()
     return {
         {"zones", once, required, "Zones: the triangles inside the blocks."},
         {choice(
-             "kind", &Scene::zones_are_quadratic, {{"constant strain", false}, {"quadratic", true}},
+             "kind", &Scene::asks_for_quadratic_zones, {{"constant strain", false}, {"quadratic", true}},
              "Displacements in a zone: linear between its three corners, so that its strain is constant, or "
-             "quadratic, with three more gridpoints in the middles of its sides. Quadratic zones are for small "
-             "displacements.")
-             .optional("constant strain"),
+             "quadratic, with three more gridpoints in the middles of its sides. Zones of constant strain are too "
+             "stiff where rock bends, and too strong where it yields; quadratic ones cost about four times as "
+             "much at the same size. They are for small displacements.")
+             .optional("quadratic with a rock of law \"Mohr-Coulomb\", by the implicit engine, without "
+                       "[large_displacements]; else constant strain"),
          number("size_m", &Scene::zone_size, metres, zone_sizes, "Longest zone side wanted."),
          polygon("fine_m", &Scene::fine_zones,
                  "Where zones are of that size; outside they are larger. Without it they are of that "
@@ -785,7 +787,7 @@ Table<Equilibrium> equilibrium()
          integer(
              "most_steps", &E::most_steps, from(1).to(2147483647),
              "Largest number of steps of dynamic relaxation for an equilibrium; then the exit code is 3. With "
-             "[large_displacements] this holds in situ alone; longest_s limits the dynamic analysis.")
+             "[large_displacements] this is for the equilibrium in situ; longest_s limits what follows.")
              .or_else(std::int64_t{1000000})}};
 }
 
@@ -814,8 +816,10 @@ Table<LargeDisplacements> large_displacements()
          number("release_s", &LargeDisplacements::release, seconds, from(0).to(1e6),
                 "Time in which the forces of a stage's rock go to 0.")
              .or_else(0.0),
-         number("longest_s", &LargeDisplacements::longest, seconds, above(0).to(1e6),
-                "Longest time of a dynamic analysis. If rock still moves then, the exit code is 3.")
+         number(
+             "longest_s", &LargeDisplacements::longest, seconds, above(0).to(1e6),
+             "Longest time of a dynamic analysis, the first of which begins at the equilibrium in situ. If rock "
+             "still moves then, the exit code is 3.")
              .or_else(60.0),
          number("record_every_s", &LargeDisplacements::record_every, seconds, above(0).to(1e6),
                 "The section and the balance of energy are recorded that often.")

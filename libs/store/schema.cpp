@@ -413,7 +413,7 @@ std::vector<Field> fields_of(Safety& safety)
         {"/safety/factor", &safety.factor, {"trial"}, "1", positive(),
          "Factor that all strengths of joints were divided by."},
         {"/safety/stands", &safety.stands, {"trial"}, "1", between(-1, 1),
-         "1 every equilibrium was found, 0 rock slides or falls, or its displacement runs away, -1 "
+         "1 every equilibrium was found, 0 rock slides or falls, or its displacement grows without bound, -1 "
          "undecided."},
         {"/safety/largest_displacement", &safety.largest_displacement, {"trial"}, "m", at_least(0),
          "Largest displacement since the in-situ equilibrium, at the end of the run."},

@@ -147,7 +147,7 @@ public:
     Mesh mesh()
     {
         add_zones();
-        if (scene_.zones_are_quadratic)
+        if (scene_.zones_are_quadratic())
             add_middles(mesh_, t_, blocks_);
         mesh_.gridpoint_fixed.assign(mesh_.gridpoint.size(), 0);
         for (const auto& tie : corners_.ties()) {

@@ -27,7 +27,7 @@ Section pressed(double pressure)
 {
     Scene scene = section({{0, 0}, {8, 0}, {8, 4}, {2, 4}, {0, 4}}, 0.01);
     scene.zone_size = 0.5;
-    scene.zones_are_quadratic = true;
+    scene.asks_for_quadratic_zones = true;
     scene.gravity = 0;
     Rock& clay = scene.rocks[0];
     clay.youngs_modulus = 5e7;

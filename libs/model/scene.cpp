@@ -1,5 +1,7 @@
 #include "model/scene.hpp"
 
+#include <algorithm>
+
 namespace jointcreep
 {
 
@@ -36,6 +38,16 @@ void InSituStress::multiply_horizontal(double factor)
     gradient_xx *= factor;
     for (Level& level : profile)
         level.compression_xx *= factor;
+}
+
+bool Scene::zones_are_quadratic() const
+{
+    if (asks_for_quadratic_zones)
+        return *asks_for_quadratic_zones;
+    const bool is_implicit =
+        equilibrium.engine != EngineChoice::relaxation && equilibrium.masses != Masses::real;
+    return is_implicit && !large_displacements &&
+           std::ranges::any_of(rocks, [](const Rock& one) { return one.law == RockLaw::mohr_coulomb; });
 }
 
 } // namespace jointcreep
