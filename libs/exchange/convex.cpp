@@ -4,9 +4,9 @@
 #include "model/polygon.hpp"
 
 #include <algorithm>
-#include <array>
+#include <cmath>
 #include <limits>
-#include <map>
+#include <span>
 
 namespace jointcreep::exchange
 {
@@ -54,7 +54,7 @@ bool is_ear(const Layer& layer, const std::vector<Index>& ring, std::size_t i)
     });
 }
 
-std::vector<std::vector<Index>> triangles_of(const Layer& layer, std::vector<Index> ring)
+std::vector<std::vector<Index>> triangles_of(const Layer& layer, std::size_t row, std::vector<Index> ring)
 {
     std::vector<std::vector<Index>> triangles;
     while (ring.size() > 3 && !is_convex(layer, ring)) {
@@ -71,9 +71,9 @@ std::vector<std::vector<Index>> triangles_of(const Layer& layer, std::vector<Ind
             }
         }
         if (best == ring.size())
-            throw input_error(
-                "a block could not be divided into convex parts: its corners are too close to one "
-                "line. Set a larger shortest_edge_m in [cutting] of the scene");
+            throw input_error("block " + std::to_string(row) +
+                              " could not be divided into convex parts: its corners are too close to one "
+                              "line. Set a larger shortest_edge_m in [cutting] of the scene");
         const std::size_t n = ring.size();
         triangles.push_back({ring[(best + n - 1) % n], ring[best], ring[(best + 1) % n]});
         ring.erase(ring.begin() + static_cast<std::ptrdiff_t>(best));
@@ -101,6 +101,98 @@ std::vector<Index> joined(const Layer& layer, const std::vector<Index>& one, std
     return is_convex(layer, ring) ? ring : std::vector<Index>();
 }
 
+bool is_before(const Vector2d& a, const Vector2d& b)
+{
+    return a.x() != b.x() ? a.x() < b.x() : a.y() < b.y();
+}
+
+// The first side of a ring, counter-clockwise, that a ray from a place inside to the right meets: the farther right of its two
+// ends, and where it is met.
+struct SideInSight {
+    std::size_t end;
+    Vector2d met;
+};
+SideInSight side_in_sight(const Layer& layer, std::size_t row, const std::vector<Index>& ring,
+                          const Vector2d& place)
+{
+    const std::size_t n = ring.size();
+    SideInSight seen{n, {std::numeric_limits<double>::infinity(), place.y()}};
+    for (std::size_t i = 0; i < n; ++i) {
+        const Vector2d a = at(layer, ring[i]), b = at(layer, ring[(i + 1) % n]);
+        if (!(a.y() <= place.y() && place.y() < b.y())) // upward, as such a side has the inside on its left
+            continue;
+        const double x = a.x() + (place.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x());
+        if (x >= place.x() && x < seen.met.x()) {
+            seen.met.x() = x;
+            seen.end = a.x() > b.x() ? i : (i + 1) % n;
+        }
+    }
+    if (seen.end == n)
+        throw input_error("block " + std::to_string(row) + " has a hole that is not inside it");
+    return seen;
+}
+
+// Whether the way from corner i of a ring, counter-clockwise, to a place begins inside.
+bool looks_at(const Layer& layer, const std::vector<Index>& ring, std::size_t i, const Vector2d& place)
+{
+    const std::size_t n = ring.size();
+    const Vector2d a = at(layer, ring[(i + n - 1) % n]), b = at(layer, ring[i]),
+                   c = at(layer, ring[(i + 1) % n]);
+    const bool left_of_first = cross(b - a, place - b) > 0, left_of_second = cross(c - b, place - b) > 0;
+    return cross(b - a, c - b) > 0 ? left_of_first && left_of_second : left_of_first || left_of_second;
+}
+
+// A corner of a ring that a place inside sees, to the right of it (Eberly 2015, Triangulation by ear clipping, section 3): the end of
+// the side in sight, or, where corners are between, the one nearest to the ray. A corner at which bridges begin comes
+// more than once in a ring; the one that looks at the place is taken.
+std::size_t corner_in_sight(const Layer& layer, std::size_t row, const std::vector<Index>& ring,
+                            const Vector2d& place)
+{
+    const auto [best, met] = side_in_sight(layer, row, ring, place);
+    const Vector2d end = at(layer, ring[best]);
+    const double side = end.y() > place.y() ? 1 : -1;
+    std::size_t seen = best;
+    double least = std::numeric_limits<double>::infinity(), nearest = least;
+    for (std::size_t i = 0; i < ring.size(); ++i) {
+        const Vector2d p = at(layer, ring[i]);
+        const bool is_between = side * cross(met - place, p - place) >= 0 &&
+                                side * cross(end - met, p - met) >= 0 &&
+                                side * cross(place - end, p - end) >= 0;
+        if (!is_between || !looks_at(layer, ring, i, place))
+            continue;
+        const double distance = (p - place).norm(), slope = std::abs(p.y() - place.y()) / distance;
+        if (slope < least || (slope == least && distance < nearest)) {
+            least = slope;
+            nearest = distance;
+            seen = i;
+        }
+    }
+    return seen;
+}
+
+double twice_area(const Layer& layer, std::span<const Index> ring)
+{
+    double twice = 0;
+    for (std::size_t i = 1; i + 1 < ring.size(); ++i)
+        twice += cross(at(layer, ring[i]) - at(layer, ring[0]), at(layer, ring[i + 1]) - at(layer, ring[0]));
+    return twice;
+}
+
+// Refuses parts that do not add up to their polygon.
+void check_areas(const Layer& layer, std::size_t row, const std::vector<std::vector<Index>>& parts)
+{
+    double wanted = 0, found = 0;
+    for (Index r = layer.first_ring[row]; r < layer.first_ring[row + 1]; ++r)
+        wanted += twice_area(layer, layer.ring(r)) / 2; // holes run clockwise
+    for (const std::vector<Index>& part : parts)
+        found += std::abs(twice_area(layer, part)) / 2;
+    if (!(std::abs(found - wanted) <= 1e-9 * wanted))
+        throw input_error("block " + std::to_string(row) +
+                          " could not be divided into convex parts: they have " + shown(found) +
+                          " m2, and the block has " + shown(wanted) +
+                          " m2. Make the file again from its scene");
+}
+
 } // namespace
 
 std::vector<Index> with_bridges(const Layer& layer, std::size_t row)
@@ -110,21 +202,19 @@ std::vector<Index> with_bridges(const Layer& layer, std::size_t row)
         return std::vector<Index>(corners.begin(), corners.end());
     };
     std::vector<Index> around = ring(layer.first_ring[row]);
+    std::vector<std::vector<Index>> holes;
     for (Index r = layer.first_ring[row] + 1; r < layer.first_ring[row + 1]; ++r) {
-        std::vector<Index> hole = ring(r);
-        std::size_t from = 0, to = 0;
-        double nearest = std::numeric_limits<double>::infinity();
-        for (std::size_t i = 0; i < around.size(); ++i)
-            for (std::size_t j = 0; j < hole.size(); ++j) {
-                const double distance = (layer.point[around[i]] - layer.point[hole[j]]).squaredNorm();
-                if (distance < nearest) {
-                    nearest = distance;
-                    from = i;
-                    to = j;
-                }
-            }
-        // ... from, then the hole from `to` round to `to`, then from again ...
-        std::rotate(hole.begin(), hole.begin() + static_cast<std::ptrdiff_t>(to), hole.end());
+        std::vector<Index>& hole = holes.emplace_back(ring(r));
+        const auto rightmost = std::ranges::max_element(
+            hole, [&](Index a, Index b) { return is_before(at(layer, a), at(layer, b)); });
+        std::ranges::rotate(hole, rightmost);
+    }
+    // From the right: what is right of a hole's rightmost corner is joined in already.
+    std::ranges::sort(
+        holes, [&](const auto& a, const auto& b) { return is_before(at(layer, b[0]), at(layer, a[0])); });
+    for (std::vector<Index>& hole : holes) {
+        const std::size_t from = corner_in_sight(layer, row, around, at(layer, hole[0]));
+        // ... from, then the hole round to where it began, then from again ...
         hole.push_back(hole.front());
         hole.push_back(around[from]);
         around.insert(around.begin() + static_cast<std::ptrdiff_t>(from) + 1, hole.begin(), hole.end());
@@ -137,7 +227,8 @@ std::vector<std::vector<Index>> convex_parts(const Layer& layer, std::size_t row
     const std::vector<Index> around = with_bridges(layer, row);
     if (is_convex(layer, around))
         return {around};
-    std::vector<std::vector<Index>> parts = triangles_of(layer, around);
+    std::vector<std::vector<Index>> parts = triangles_of(layer, row, around);
+    check_areas(layer, row, parts);
     // Sides that two parts share, once each; a side is where it was after others are gone.
     for (std::size_t p = 0; p < parts.size(); ++p)
         for (bool any = true; any;) {

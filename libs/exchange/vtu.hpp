@@ -19,7 +19,7 @@ namespace jointcreep::exchange
 {
 
 // One cell a row of a layer, in its order. Of a polygon holes are joined to the outer ring by a bridge without width, there
-// and back between their nearest corners. VTK draws a concave polygon as if it were convex: for a true
+// and back between two corners. VTK draws a concave polygon as if it were convex: for a true
 // picture apply ParaView's filter Tetrahedralize first, which however leaves out polygons with a hole.
 // Cells: the layer's attributes by their names without units; a name is a code, and NAME_names has what it stands for.
 std::string layer_vtu(const Layer& layer);

@@ -38,6 +38,66 @@ TEST(convex_parts, of_a_block_with_an_island_are_convex_and_have_its_area)
     EXPECT_EQ(convex_parts(layer, 0).size(), 1u);
 }
 
+// A square with holes, each by its corners, clockwise.
+Layer block_with_holes(const std::vector<std::vector<Eigen::Vector3d>>& holes)
+{
+    Layer layer{.name = "blocks", .shape = Shape::polygons};
+    layer.add_ring({{0, 0, 0}, {20, 0, 0}, {20, 20, 0}, {0, 20, 0}});
+    for (const std::vector<Eigen::Vector3d>& hole : holes)
+        layer.add_ring(hole);
+    layer.end_row();
+    return layer;
+}
+
+double area_of_parts(const Layer& layer)
+{
+    double area = 0;
+    for (const std::vector<Index>& part : convex_parts(layer, 0))
+        for (std::size_t i = 1; i + 1 < part.size(); ++i) {
+            const Eigen::Vector3d &a = layer.point[part[0]], &b = layer.point[part[i]],
+                                  &c = layer.point[part[i + 1]];
+            const double twice = (b - a).cross(c - a).z();
+            EXPECT_GE(twice, 0);
+            area += twice / 2;
+        }
+    return area;
+}
+
+// The first hole is near the outline, but the long second one, whose corners are far, is between.
+TEST(convex_parts, of_a_block_whose_holes_hide_each_other)
+{
+    const std::vector<Eigen::Vector3d> small{{9, 17, 0}, {9, 18, 0}, {10, 18, 0}, {10, 17, 0}},
+        thin{{1, 18.5, 0}, {1, 19, 0}, {19, 19, 0}, {19, 18.5, 0}};
+    for (const auto& holes : {std::vector{small, thin}, std::vector{thin, small}})
+        EXPECT_NEAR(area_of_parts(block_with_holes(holes)), 400 - 1 - 9, 1e-9);
+}
+
+// Bridges from several holes begin at one corner.
+TEST(convex_parts, of_a_block_with_many_holes)
+{
+    std::vector<std::vector<Eigen::Vector3d>> holes;
+    double area = 400;
+    for (int i = 0; i < 6; ++i)
+        for (int j = 0; j < 6; ++j) {
+            const double x = 1 + 3 * i + 0.1 * j, y = 1 + 3 * j, size = 1 + 0.1 * ((i * 7 + j * 3) % 5);
+            holes.push_back({{x, y, 0}, {x, y + size, 0}, {x + size, y + size, 0}, {x + size, y, 0}});
+            area -= size * size;
+        }
+    EXPECT_NEAR(area_of_parts(block_with_holes(holes)), area, 1e-9);
+}
+
+TEST(convex_parts, that_do_not_add_up_are_refused_by_the_name_of_the_block)
+{
+    // A hole that reaches across the outline.
+    const Layer layer = block_with_holes({{{-1, 5, 0}, {-1, 6, 0}, {10, 6, 0}, {10, 5, 0}}});
+    try {
+        convex_parts(layer, 0);
+        FAIL() << "accepted";
+    } catch (const input_error& error) {
+        EXPECT_NE(std::string(error.what()).find("block 0"), std::string::npos) << error.what();
+    }
+}
+
 TEST(planes, of_traces_are_rectangles_of_a_width)
 {
     const Section section = small_section();

@@ -120,12 +120,12 @@ TEST(blocks_vtu, has_one_polygon_a_block_with_its_area)
     }
 }
 
-TEST(blocks_vtu, joins_a_hole_by_a_bridge_between_nearest_vertices)
+TEST(blocks_vtu, joins_a_hole_by_a_bridge_from_its_rightmost_corner)
 {
     const Numbers connectivity = array_of(blocks_vtu(small_section()), "connectivity");
-    // Block 1: from corner 0 over the bridge to 6, round the hole, and back.
+    // Block 1: from corner 2 over the bridge to 8, round the hole, and back.
     EXPECT_EQ(Numbers(connectivity.begin() + 4, connectivity.begin() + 14),
-              (Numbers{0, 6, 9, 8, 7, 6, 0, 1, 2, 3}));
+              (Numbers{0, 1, 2, 8, 7, 6, 9, 8, 2, 3}));
 }
 
 TEST(blocks_vtu, says_rock_and_stage_by_codes_with_names)
