@@ -33,13 +33,17 @@ const Program program{
     .summary = "Samples the joints of a section and cuts it into blocks.",
     .input = "SCENE.toml",
     .output = "network.h5",
-    .options = {{"seed", "N", "seed of the joint sets (default: the scene's)"},
-                {"realization", "R", "which of the seed's networks (default 0)"},
-                {"report", "",
-                 "test the network against the laws of the scene, print that, and keep it in the file"},
-                {"check", "", "read the scene, cut it, report, and write nothing"},
-                {"scene-keys", "", "print every scene key as a table, tab separated"},
-                {"scene-keys-markdown", "", "print docs/scene.md"}},
+    .options =
+        {{"seed", "N", "seed of the joint sets (default: the scene's)"},
+         {"realization", "R", "which of the seed's networks (default 0)"},
+         {"report", "",
+          "test the network against the laws of the scene, print that, and keep it in the file"},
+         {"check", "", "read the scene, cut it, report, and write nothing"},
+         {"cut-with", "NAME",
+          "what divides the lines where they cross: own (default), or cgal: CGAL's Arrangement_2, which takes longer and gives "
+          "the same blocks; built with the tests only"},
+         {"scene-keys", "", "print every scene key as a table, tab separated"},
+         {"scene-keys-markdown", "", "print docs/scene.md"}},
     .example = "jointgen data/column/scene.toml -o network.h5",
     .other_usage = "SCENE.toml --check",
 };
@@ -61,6 +65,23 @@ Warnings warnings_of(const Network& network)
             warnings.add(program.name,
                          "no block edge lies on joint set \"" + network.names.joint_set[set] + '"');
     return warnings;
+}
+
+// As the file keeps them.
+std::string options_of(const Arguments& arguments)
+{
+    std::string options = arguments.has("report") ? "--report" : "";
+    if (const auto name = arguments.text("cut-with"))
+        options += (options.empty() ? "--cut-with " : " --cut-with ") + *name;
+    return options;
+}
+
+blocks::Subdivision chosen_subdivision(const Arguments& arguments)
+{
+    const std::string name = arguments.text("cut-with").value_or("own");
+    if (name != "own" && name != "cgal")
+        throw input_error("--cut-with is '" + name + "'; it must be own or cgal");
+    return name == "cgal" ? blocks::Subdivision::cgal : blocks::Subdivision::own;
 }
 
 void report(const Arguments& arguments, const Network& network, const Warnings& warnings)
@@ -129,13 +150,15 @@ void generate(const Arguments& arguments)
     const auto realization = static_cast<std::int32_t>(
         arguments.whole_number("realization", 0, std::numeric_limits<std::int32_t>::max()).value_or(0));
 
+    const blocks::Subdivision subdivision = chosen_subdivision(arguments);
+
     // 2. Its joints.
     Network network;
     network.names = names_of(scene);
     network.joints = of_file(input, [&] { return sampling::sample_joints(scene, seed, realization); });
 
     // 3. Its blocks.
-    network.blocks = of_file(input, [&] { return blocks::cut(scene, network.joints); });
+    network.blocks = of_file(input, [&] { return blocks::cut(scene, network.joints, subdivision); });
 
     // 4. Statistics of the network, beside the scene's laws.
     if (arguments.has("report"))
@@ -159,7 +182,7 @@ void generate(const Arguments& arguments)
                               .program = {program.name},
                               .version = {std::string(version())},
                               .input_sha256 = {store::sha256_of(input)},
-                              .options = {arguments.has("report") ? "--report" : ""},
+                              .options = {options_of(arguments)},
                               .warnings = warnings},
                              network);
     report(arguments, network, warnings);

@@ -130,10 +130,10 @@ struct Incidence {
 class Cutter
 {
 public:
-    Cutter(const Scene& scene, const Joints& joints)
-        : scene_(scene), joints_(joints), outlines_(outlines_with_boundary_ends(scene)),
-          outline_(outlines_[0]), size_(size_of(outlines_[0])), reach_(scene.cutting.shortest_edge),
-          traces_(joints), fates_(joints)
+    Cutter(const Scene& scene, const Joints& joints, Subdivision subdivision)
+        : scene_(scene), joints_(joints), subdivision_(subdivision),
+          outlines_(outlines_with_boundary_ends(scene)), outline_(outlines_[0]), size_(size_of(outlines_[0])),
+          reach_(scene.cutting.shortest_edge), traces_(joints), fates_(joints)
     {
         // Later regions cover earlier ones, earlier stages dig before later ones.
         for (std::size_t r = scene.regions.size(); r-- > 0;)
@@ -155,7 +155,8 @@ public:
                 throw input_error("cutting: after " + std::to_string(most_passes) +
                                   " passes edges still come closer than " + shown(reach_) +
                                   " m; try a smaller shortest_edge_m");
-            graph_ = arrange(graph_, sources_, section_box());
+            graph_ = subdivision_ == Subdivision::cgal ? arrange_with_cgal(graph_, sources_)
+                                                       : arrange(graph_, sources_, section_box());
             drop_outside();
             prune_ends();
             if (!merge_pass(graph_, sources_, outlines_, {reach_, scene_.cutting.smallest_angle}, report_))
@@ -659,6 +660,7 @@ private:
 
     const Scene& scene_;
     const Joints& joints_;
+    const Subdivision subdivision_;
     std::vector<Polygon> outlines_; // of the section, then of its holes
     Inside outline_;                // of the section
     double size_, reach_;
@@ -683,7 +685,7 @@ bool is_merged_away(Scene scene, std::size_t stage)
     scene.boundaries.clear();
     scene.cutting = {.shortest_edge = 1e-6 * scene.cutting.shortest_edge, .smallest_angle = 0};
     try {
-        return has_rock(Cutter(scene, Joints()).blocks(), stage);
+        return has_rock(Cutter(scene, Joints(), Subdivision::own).blocks(), stage);
     } catch (const input_error&) { // of cutting
         return false;
     }
@@ -691,9 +693,9 @@ bool is_merged_away(Scene scene, std::size_t stage)
 
 } // namespace
 
-Blocks cut(const Scene& scene, const Joints& joints)
+Blocks cut(const Scene& scene, const Joints& joints, Subdivision subdivision)
 {
-    Blocks blocks = Cutter(scene, joints).blocks();
+    Blocks blocks = Cutter(scene, joints, subdivision).blocks();
     for (std::size_t s = 0; s < scene.stages.size(); ++s)
         if (!has_rock(blocks, s))
             throw input_error(

@@ -1,8 +1,8 @@
 // The planar subdivision against CGAL's exact arrangement, edge for edge and face for face, on networks of
 // all kinds.
 
+#include "blocks/cgal_arrangement.hpp"
 #include "blocks/predicates.hpp"
-#include "cgal_arrangement.hpp"
 
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
@@ -15,8 +15,11 @@ namespace arrangement_test
 {
 
 using namespace jointcreep;
-using namespace jointcreep::test;
+using blocks::CgalArrangement;
+using blocks::EdgeLines;
 using blocks::Graph;
+using blocks::insert_lines;
+using blocks::nearest;
 using Eigen::Vector2d;
 
 namespace
@@ -96,7 +99,7 @@ std::string difference(const Graph& lines)
     insert_lines(exact, lines);
     blocks::Sources sources = sources_for(lines);
     const Graph ours = blocks::arrange(lines, sources);
-    if (edges_of(ours, sources) != test::edges_of(exact, lines))
+    if (edges_of(ours, sources) != blocks::edges_of(exact, lines))
         return "other edges";
     for (std::size_t v = 1; v < ours.vertex.size(); ++v)
         if (!blocks::is_before(ours.vertex[v - 1], ours.vertex[v]))

@@ -11,8 +11,8 @@
 // Samples the scene's joints, clips them to the section's box, and prints one line of CSV: method, lines,
 // faces, processor time of cutting [s], most memory held less that before [bytes].
 
+#include "blocks/cgal_arrangement.hpp"
 #include "blocks/graph.hpp"
-#include "cgal_arrangement.hpp"
 #include "sampling/joint_sets.hpp"
 #include "scene/scene.hpp"
 
@@ -77,8 +77,8 @@ std::size_t by_subdivision(const blocks::Graph& lines)
 
 std::size_t by_cgal(const blocks::Graph& lines)
 {
-    static test::CgalArrangement arrangement; // not freed: that would take as long again
-    test::insert_lines(arrangement, lines);
+    static blocks::CgalArrangement arrangement; // not freed: that would take as long again
+    blocks::insert_lines(arrangement, lines);
     return arrangement.number_of_faces() - 1;
 }
 

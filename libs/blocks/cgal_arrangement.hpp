@@ -1,5 +1,5 @@
-// The second method of tests and benchmark: CGAL's exact arrangement (Arrangement_2 over exact
-// constructions).
+// CGAL's exact arrangement (Arrangement_2 over exact constructions), a second method beside blocks::arrange(). Compiling it takes
+// long: inside libs/blocks/arrange_with_cgal.cpp, tests and benchmark only.
 
 #pragma once
 
@@ -10,6 +10,7 @@
 #include <CGAL/Arrangement_2.h>
 #include <CGAL/Exact_predicates_exact_constructions_kernel.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -17,7 +18,7 @@
 #include <utility>
 #include <vector>
 
-namespace jointcreep::test
+namespace jointcreep::blocks
 {
 
 using Exact = CGAL::Exact_predicates_exact_constructions_kernel;
@@ -26,7 +27,7 @@ using CurveTraits =
     CGAL::Arr_consolidated_curve_data_traits_2<SegmentTraits, Index>; // data: an edge of the input
 using CgalArrangement = CGAL::Arrangement_2<CurveTraits>;
 
-inline void insert_lines(CgalArrangement& arrangement, const blocks::Graph& lines)
+inline void insert_lines(CgalArrangement& arrangement, const Graph& lines)
 {
     std::vector<CurveTraits::Curve_2> curves;
     curves.reserve(lines.edge.size());
@@ -65,7 +66,7 @@ inline double nearest(const Exact::FT& number)
 // they lie on; those without length left out, those with equal ends united.
 using EdgeLines = std::map<std::tuple<double, double, double, double>, std::vector<Index>>;
 
-inline EdgeLines edges_of(const CgalArrangement& arrangement, const blocks::Graph& lines)
+inline EdgeLines edges_of(const CgalArrangement& arrangement, const Graph& lines)
 {
     std::map<const void*, std::pair<double, double>> place;
     for (auto v = arrangement.vertices_begin(); v != arrangement.vertices_end(); ++v)
@@ -84,4 +85,4 @@ inline EdgeLines edges_of(const CgalArrangement& arrangement, const blocks::Grap
     return edges;
 }
 
-} // namespace jointcreep::test
+} // namespace jointcreep::blocks
