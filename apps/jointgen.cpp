@@ -2,6 +2,7 @@
 //
 //   jointgen data/column/scene.toml -o network.h5
 //   jointgen data/slope/scene.toml --realization 7 -o network-7.h5
+//   jointgen traces.gpkg --traces --layer joints                      what [[mapped]] takes from a file
 //
 // Reads   SCENE.toml   the scene                         (docs/scene.md)
 // Writes  network.h5   joints, traces, blocks and edges  (docs/file-format.md)
@@ -13,6 +14,7 @@
 #include "model/units.hpp"
 #include "model/version.hpp"
 #include "sampling/joint_sets.hpp"
+#include "scene/field_data.hpp"
 #include "scene/scene.hpp"
 #include "statistics/statistics.hpp"
 #include "store/files.hpp"
@@ -42,6 +44,11 @@ const Program program{
          {"cut-with", "NAME",
           "what divides the lines where they cross: own (default), or cgal: CGAL's Arrangement_2, which takes longer and gives "
           "the same blocks; built with the tests only"},
+         {"traces", "",
+          "print the traces of a file as a scene's [[mapped]] takes them, as CSV, and no more; the file is in place "
+          "of the scene"},
+         {"layer", "NAME", "with --traces: layer of the file"},
+         {"property", "NAME", "with --traces: property whose value is printed"},
          {"scene-keys", "", "print every scene key as a table, tab separated"},
          {"scene-keys-markdown", "", "print docs/scene.md"}},
     .example = "jointgen data/column/scene.toml -o network.h5",
@@ -126,8 +133,38 @@ void report(const Arguments& arguments, const Network& network, const Warnings& 
     summary.print(arguments);
 }
 
+// A text in double quotes, as CSV has it.
+std::string quoted(const std::string& text)
+{
+    std::string all = "\"";
+    for (const char c : text)
+        all.append(c == '"' ? 2 : 1, c);
+    return all + '"';
+}
+
+void print_traces(const Arguments& arguments)
+{
+    const std::string text = scene::read_field_data(arguments.input());
+    const scene::TraceFilter filter{.property = arguments.text("property").value_or(""),
+                                    .layer = arguments.text("layer").value_or("")};
+    const scene::TracesOfFile found =
+        of_file(arguments.input(), [&] { return scene::traces_of_file(text, filter); });
+    std::cout << "id,part,x_m,y_m,value\n";
+    for (std::size_t t = 0; t < found.trace.size(); ++t)
+        for (std::size_t part = 0; part < found.trace[t].polylines.size(); ++part)
+            for (const Eigen::Vector2d& place : found.trace[t].polylines[part])
+                std::cout << found.trace[t].id << ',' << part << ',' << shown(place.x()) << ','
+                          << shown(place.y()) << ',' << quoted(found.value[t]) << '\n';
+}
+
 void generate(const Arguments& arguments)
 {
+    if (arguments.has("traces"))
+        return print_traces(arguments);
+    for (const char* option : {"layer", "property"})
+        if (arguments.has(option))
+            throw input_error("--" + std::string(option) +
+                              " goes with --traces; in a scene it is a key of [[mapped]]");
     if (arguments.has("scene-keys") || arguments.has("scene-keys-markdown")) {
         std::cout << (arguments.has("scene-keys") ? scene::scene_keys_tsv() : scene::scene_keys_markdown());
         return;

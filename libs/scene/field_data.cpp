@@ -29,6 +29,7 @@ struct FoundTrace {
     std::int64_t place; // in the file
     std::vector<Polygon> polylines;
     std::string where; // for messages
+    std::string value; // of the filter's property
 };
 
 std::optional<std::int64_t> id_of(std::string_view text)
@@ -44,8 +45,13 @@ constexpr Range coordinate_range = keys::coordinates;
 
 std::vector<FoundTrace> traces_in_csv(const Csv& csv, const TraceFilter& filter)
 {
+    if (!filter.layer.empty())
+        throw input_error("is CSV, which has no layers; wanted no layer");
+    const auto value_of = [&](const Csv::Row& row) {
+        return filter.property.empty() ? std::string() : std::string(row.field[csv.column(filter.property)]);
+    };
     const auto taken = [&](const Csv::Row& row) {
-        return filter.property.empty() || row.field[csv.column(filter.property)] == filter.value;
+        return filter.property.empty() || !filter.value || value_of(row) == *filter.value;
     };
     std::vector<FoundTrace> found;
     if (csv.has("x1_m")) {
@@ -59,7 +65,8 @@ std::vector<FoundTrace> traces_in_csv(const Csv& csv, const TraceFilter& filter)
                 found.push_back({csv.has("id") ? id_of(row.field[csv.column("id")]) : std::nullopt,
                                  place,
                                  {{at("x1_m", "y1_m"), at("x2_m", "y2_m")}},
-                                 "line " + std::to_string(row.line)});
+                                 "line " + std::to_string(row.line),
+                                 value_of(row)});
             }
             ++place;
         }
@@ -79,9 +86,12 @@ std::vector<FoundTrace> traces_in_csv(const Csv& csv, const TraceFilter& filter)
         }
         if (taken(row)) {
             if (begins)
-                found.push_back(
-                    {id_of(row.field[id]), place, {Polygon{}}, "line " + std::to_string(row.line)});
-            else if (!taken(*before))
+                found.push_back({id_of(row.field[id]),
+                                 place,
+                                 {Polygon{}},
+                                 "line " + std::to_string(row.line),
+                                 value_of(row)});
+            else if (value_of(row) != value_of(*before))
                 refuse_line(row.line, "a trace has more than one " + filter.property);
             found.back().polylines[0].emplace_back(csv.number(row, "x_m", coordinate_range),
                                                    csv.number(row, "y_m", coordinate_range));
@@ -121,6 +131,26 @@ const json& member(const json& object, const char* name)
     return object.is_object() && found != object.end() ? *found : none;
 }
 
+// The layer to take, of a text of layers; empty of other texts.
+std::string chosen_layer(const json& layers, const TraceFilter& filter)
+{
+    if (!layers.is_object()) {
+        if (!filter.layer.empty())
+            throw input_error("is GeoJSON, which has no layers; wanted no layer");
+        return {};
+    }
+    std::string names;
+    for (const auto& [name, content] : layers.items())
+        names += (names.empty() ? "\"" : ", \"") + name + '"';
+    if (filter.layer.empty() && layers.size() == 1)
+        return layers.begin().key();
+    if (filter.layer.empty())
+        throw input_error("has lines in several layers; wanted layer = one of " + names);
+    if (!layers.contains(filter.layer))
+        throw input_error("has no lines in a layer \"" + filter.layer + "\"; it has some in " + names);
+    return filter.layer;
+}
+
 std::vector<FoundTrace> traces_in_geojson(std::string_view text, const TraceFilter& filter)
 {
     constexpr int deepest = 32; // a feature's coordinates are at 6
@@ -135,22 +165,28 @@ std::vector<FoundTrace> traces_in_geojson(std::string_view text, const TraceFilt
     } catch (const json::exception& error) {
         throw input_error(std::string("is not JSON: ") + error.what());
     }
-    const json& collection = member(all, "features");
-    const json one = collection.is_array() ? json() : json::array({all});
+    const json& layers = member(all, "layers");
+    const std::string layer = chosen_layer(layers, filter);
+    const json& content = layers.is_object() ? layers[layer] : all;
+    const json& collection = member(content, "features");
+    const json one = collection.is_array() ? json() : json::array({content});
     const json& features = collection.is_array() ? collection : one;
 
     std::vector<FoundTrace> found;
     for (std::size_t i = 0; i < features.size(); ++i) {
         const json& feature = features[i];
-        const std::string where = "feature " + std::to_string(i);
+        const std::string where = (layers.is_object() ? "layer \"" + layer + "\", " : std::string()) +
+                                  "feature " + std::to_string(i);
+        std::string of_property;
         if (!filter.property.empty()) {
             const json& value = member(member(feature, "properties"), filter.property.c_str());
-            if ((value.is_string() ? value.get<std::string>() : value.dump()) != filter.value)
+            of_property = value.is_string() ? value.get<std::string>() : value.dump();
+            if (filter.value && of_property != *filter.value)
                 continue;
         }
         const json& geometry = member(feature, "type") == "Feature" ? member(feature, "geometry") : feature;
         const json &kind = member(geometry, "type"), &coordinates = member(geometry, "coordinates");
-        FoundTrace trace{{}, static_cast<std::int64_t>(i), {}, where};
+        FoundTrace trace{{}, static_cast<std::int64_t>(i), {}, where, of_property};
         if (kind == "LineString") {
             trace.polylines.push_back(polyline_of(coordinates, where));
         } else if (kind == "MultiLineString") {
@@ -188,20 +224,25 @@ std::vector<MeasuredPole> poles_in_csv(std::string_view text)
 
 std::vector<MappedTrace> mapped_traces(std::string_view text, const TraceFilter& filter)
 {
+    return traces_of_file(text, filter).trace;
+}
+
+TracesOfFile traces_of_file(std::string_view text, const TraceFilter& filter)
+{
     text = without_byte_order_mark(text);
     const auto begin = text.find_first_not_of(" \t\r\n");
     const bool is_json = begin != std::string_view::npos && text[begin] == '{';
     const std::vector<FoundTrace> found =
         is_json ? traces_in_geojson(text, filter) : traces_in_csv(Csv(text), filter);
     if (found.empty())
-        throw input_error(filter.property.empty()
+        throw input_error(!filter.value
                               ? "has no traces"
-                              : "has no trace whose " + filter.property + " is \"" + filter.value + "\"");
+                              : "has no trace whose " + filter.property + " is \"" + *filter.value + "\"");
     const bool have_ids = std::all_of(found.begin(), found.end(), [](const FoundTrace& trace) {
         return trace.id && *trace.id >= 0 && *trace.id <= largest_id;
     });
     std::set<std::int64_t> ids;
-    std::vector<MappedTrace> traces;
+    TracesOfFile traces;
     for (const FoundTrace& trace : found) {
         const std::int64_t id = have_ids ? *trace.id : trace.place;
         if (id > largest_id)
@@ -214,7 +255,8 @@ std::vector<MappedTrace> mapped_traces(std::string_view text, const TraceFilter&
             if (std::all_of(polyline.begin(), polyline.end(),
                             [&](const Vector2d& place) { return place == polyline.front(); }))
                 throw input_error(trace.where + ": a trace needs two places at least");
-        traces.push_back({static_cast<std::int32_t>(id), trace.polylines});
+        traces.trace.push_back({static_cast<std::int32_t>(id), trace.polylines});
+        traces.value.push_back(trace.value);
     }
     return traces;
 }

@@ -4,6 +4,7 @@
 #include "model/utf8.hpp"
 #include "scene/scene_checks.hpp"
 #include "scene/scene_keys.hpp"
+#include "scene/trace_file.hpp"
 
 #include <algorithm>
 #include <array>
@@ -119,12 +120,10 @@ std::vector<FileBeside> files_beside(const std::string& path, const std::string&
 // A table [[file]].
 std::string table_of(const FileBeside& file)
 {
-    const std::string text = read_text_file(file.path, "poles or traces of a scene");
-    if (text.find_first_not_of(" \t\r\n") == std::string::npos)
-        throw input_error(file.path + ": is empty; wanted poles or traces of a scene");
+    const std::string text = read_field_data(file.path);
     parse_toml("text = " + as_toml(text, ""), file.path); // names the line of what is not UTF-8
-    return "\n[[file]] # as it was beside the scene\nname = " + as_toml(file.name) +
-           "text = " + as_toml(text);
+    return std::string("\n[[file]] # ") + (is_trace_file(file.path) ? "the lines of that" : "as it was") +
+           " beside the scene\nname = " + as_toml(file.name) + "text = " + as_toml(text);
 }
 
 // Checked against the network that was made from it, too, if there is one.
@@ -186,6 +185,20 @@ SceneText read_scene(const std::string& path)
     if (scene.text.size() > largest_text)
         throw input_error(path + ": is larger than 16 MiB with the files that it names; wanted a scene");
     return scene;
+}
+
+std::string read_field_data(const std::string& path)
+{
+    if (std::error_code ignored; is_trace_file(path) && std::filesystem::is_regular_file(path, ignored))
+        try {
+            return lines_of_trace_file(path);
+        } catch (const input_error& error) {
+            throw input_error(path + ": " + error.what());
+        }
+    std::string text = read_text_file(path, "poles or traces of a scene");
+    if (text.find_first_not_of(" \t\r\n") == std::string::npos)
+        throw input_error(path + ": is empty; wanted poles or traces of a scene");
+    return text;
 }
 
 std::string read_scene_text(const std::string& path)

@@ -34,6 +34,9 @@ struct SceneText {
 SceneText read_scene(const std::string& path);
 std::string read_scene_text(const std::string& path);
 
+// The text of a file of poles or traces as a scene holds it, whatever its format.
+std::string read_field_data(const std::string& path);
+
 // docs/scene.md, whole.
 std::string scene_keys_markdown();
 

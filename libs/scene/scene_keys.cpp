@@ -56,7 +56,7 @@ struct WrittenDensity {
 
 // A mapped set before its file is read.
 struct WrittenMapped {
-    std::string name, material, file, property, value;
+    std::string name, material, file, layer, property, value;
 };
 
 // A file that the scene holds.
@@ -590,8 +590,13 @@ Table<WrittenMapped> mapped()
              "File beside the scene, in its folder or a folder there, with coordinates in metres of the "
              "section. GeoJSON of LineString and MultiLineString; or CSV with the columns x1_m, y1_m, x2_m, "
              "y2_m and, if wanted, id; or CSV with the columns id, x_m, y_m, a row a place, those of a trace "
-             "together. Where every id is a whole number from 0 to 2097151 it becomes the joint's number; "
-             "elsewhere the place in the file does."),
+             "together; or a GeoPackage, a Shapefile or a DXF file, if the programs were built with GDAL. Where every "
+             "id is a whole number from 0 to 2097151 it becomes the joint's number; elsewhere the place in the file "
+             "does."),
+         text(
+             "layer", &W::layer,
+             "Layer of the file, of a DXF file that of its entities. Needed where lines are in several layers.")
+             .optional(),
          text("property", &W::property,
               "Takes only the traces whose property of this name, in CSV a column, has the value below.")
              .together("property"),
@@ -839,7 +844,10 @@ MappedSet mapped_set(const WrittenMapped& written, const TomlValue& table, const
     const TomlValue& file = *table.find("file");
     const std::string& text = text_of_file(written.file, file, "file", place);
     try {
-        return {written.name, written.material, mapped_traces(text, {written.property, written.value})};
+        return {written.name, written.material,
+                mapped_traces(text, {written.property,
+                                     written.property.empty() ? std::nullopt : std::optional(written.value),
+                                     written.layer})};
     } catch (const input_error& error) {
         place.refuse(file.line, place.table + " file = " + shown(file) + ": " + error.what());
     }

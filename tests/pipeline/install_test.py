@@ -26,7 +26,9 @@ class Install(ChainTest):
         files = sorted(str(path.relative_to(self.prefix)) for path in self.prefix.rglob("*") if path.is_file())
         pipelines = self.chain.source / "pipelines"
         package = [path.relative_to(pipelines) for folder in ("jointcreep", "plots") for path in (pipelines / folder).glob("*.py")]
-        self.assertEqual(files, sorted([f"bin/{app}" for app in APPS] +
+        module = "lib/jointcreep/jointcreep_gdal.so"  # where GDAL is
+        has_gdal = (self.chain.programs / "jointcreep_gdal.so").exists()
+        self.assertEqual(files, sorted([f"bin/{app}" for app in APPS] + [module] * has_gdal +
                                        [f"share/jointcreep/{path}" for path in package if path.name != "launcher.py"] +
                                        [f"share/man/man1/{app}.1" for app in APPS] +
                                        [f"share/bash-completion/completions/{app}" for app in APPS]))
@@ -40,6 +42,15 @@ class Install(ChainTest):
             done = self.installed(*command, cwd=scene.parent)
             self.assertEqual(done.returncode, 0, done.stderr)
         self.assertTrue((scene.parent / "r.csv").read_text().startswith("time_day"))
+
+    def test_traces_are_read_there(self):
+        """By the module that is installed, not by the one of the build."""
+        if not (self.prefix / "lib/jointcreep/jointcreep_gdal.so").exists():
+            self.skipTest("built without GDAL")
+        path = self.chain.new_folder() / "t.dxf"
+        path.write_text("0\nSECTION\n2\nENTITIES\n0\nLINE\n8\na\n10\n0\n20\n0\n11\n1\n21\n1\n0\nENDSEC\n0\nEOF\n")
+        done = self.installed("jointgen", path, "--traces")
+        self.assertEqual((done.returncode, done.stdout.count("\n")), (0, 3), done.stderr)
 
     def test_manual_pages(self):
         for app in APPS:

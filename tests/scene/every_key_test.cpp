@@ -114,10 +114,11 @@ TEST(every_key, kinds_densities_and_terminations)
     EXPECT_EQ(scene.joint_sets.at(9).density->measure, Measure::p21);
     EXPECT_EQ(scene.joint_sets.at(10).density->measure, Measure::p32);
 
-    ASSERT_EQ(scene.mapped.size(), 1u);
+    ASSERT_EQ(scene.mapped.size(), 2u);
     EXPECT_EQ(scene.mapped[0].name, "on the map");
     ASSERT_EQ(scene.mapped[0].traces.size(), 1u);
     EXPECT_EQ(scene.mapped[0].traces[0].polylines[0][1], Eigen::Vector2d(12, 0));
+    EXPECT_EQ(scene.mapped[1].traces.at(0).polylines.at(0).at(1), Eigen::Vector2d(36, 7)); // of its layer
 }
 
 TEST(every_key, all_else)

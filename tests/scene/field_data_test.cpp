@@ -159,6 +159,36 @@ TEST(MappedTraces, HaveTheirPlacesWhereIdsAreNoNumbersOfJoints)
     }
 }
 
+TEST(MappedTraces, AreThoseOfALayer)
+{
+    const std::string two =
+        R"({"layers": {"a": )" + line + R"(, "b": )" + collection({feature(line), feature(line)}) + "}}";
+    EXPECT_EQ(mapped_traces(two, {.layer = "a"}).size(), 1u);
+    EXPECT_EQ(mapped_traces(two, {.layer = "b"}).size(), 2u);
+    EXPECT_EQ(mapped_traces(R"({"layers": {"a": )" + line + "}}", {}).size(), 1u);
+    expect_refused(two, R"(several layers; wanted layer = one of "a", "b")");
+    expect_refused(two, R"(no lines in a layer "c"; it has some in "a", "b")", {.layer = "c"});
+    expect_refused(line, "is GeoJSON, which has no layers", {.layer = "a"});
+    expect_refused("x1_m,y1_m,x2_m,y2_m\n1,2,3,4\n", "is CSV, which has no layers", {.layer = "a"});
+    expect_refused(R"({"layers": {}})", "several layers");
+    expect_refused(R"({"layers": {"a": {"type": "Point"}}})",
+                   R"(layer "a", feature 0 is of the type "Point")");
+}
+
+TEST(MappedTraces, CarryTheValueOfTheirProperty)
+{
+    const TraceFilter filter{.property = "set"};
+    const auto json = traces_of_file(collection({feature(line, R"("properties": {"set": "A"})"),
+                                                 feature(line, R"("properties": {"set": 2})")}),
+                                     filter);
+    EXPECT_EQ(json.value, (std::vector<std::string>{"A", "2"}));
+    const auto csv = traces_of_file("id,x_m,y_m,set\n1,0,0,A\n1,1,1,A\n2,5,5,B\n2,6,6,B\n", filter);
+    EXPECT_EQ(csv.value, (std::vector<std::string>{"A", "B"}));
+    EXPECT_EQ(csv.trace.size(), 2u);
+    expect_refused("id,x_m,y_m,s\n1,0,0,A\n1,1,1,B\n", "more than one s", {.property = "s"});
+    expect_refused("x1_m,y1_m,x2_m,y2_m\n1,2,3,4\n", "wanted a column s", {.property = "s"});
+}
+
 TEST(MeasuredPoles, HaveNoColumnsBesideTheirOwn)
 {
     const std::string message = refusal([] { poles_in_csv("dip_deg,dip_direction_deg,wieght\n10,20,3\n"); });
