@@ -18,4 +18,11 @@ In the order in which a study passes through them:
     pictures.py     pictures of them
     report.py       one page of HTML
     errors.py       what ends a command with a message
+
+Joint sets from mapped traces:
+
+    fit.py               the command, and what it writes
+    traces.py            traces as a window shows them
+    length_laws.py       laws of their length, cut ones as censored
+    orientation_laws.py  laws of their angle, and of poles
 """

@@ -1,21 +1,37 @@
-"""jointcreep: Runs a study of many networks and parameters, and writes reports.
+"""jointcreep: Runs a study of many networks and parameters, writes reports, and fits joint sets to mapped traces.
 
 usage: jointcreep study STUDY.toml -o OUT/ [options]
 usage: jointcreep report OUT/ -o REPORT.html [options]
 usage: jointcreep report RESULT.h5 -o REPORT.html [options]
+usage: jointcreep fit TRACES -o SETS.toml --window WINDOW [options]
 
 Description:
 study makes the runs that a study file asks for, and writes what they have in common: runs.csv and runs.h5 (a row a run),
 answers.csv (means, quantiles and probabilities with confidence), convergence.csv, shares.csv, summary.txt and pictures. An
 interrupted study goes on by the same command. Two studies never work in one folder at once.
 report writes one page of HTML, with all pictures in it, for a study or for a result file of demsolve.
+fit finds the laws of joint sets from traces that a convex window shows (GeoJSON, CSV, GeoPackage, Shapefile, DXF), cut ones as
+censored, and writes them as [[joint_set]]. The laws are those of all joints, not of the traces in the window.
 
 Options:
-  -o [ --output ] OUT       the folder of a study, or the report to write
+  -o [ --output ] OUT       the folder of a study, or the report or sets to write
   -j [ --jobs ] N           study: runs at a time (default 1)
   --snakemake PROFILE       study: make runs by Snakemake with this profile, a folder with config.yaml, in place of Make
   --programs FOLDER         where jointgen, strength-averaging and demsolve are (default: beside jointcreep, then PATH)
-  -q [ --quiet ]            study: no progress and no summary
+  -q [ --quiet ]            study, fit: no progress and no summary
+  --window WINDOW           fit: x1,y1,x2,y2 of a rectangle in metres, or more corners, or a scene file whose outline it is
+  --layer NAME              fit: layer of the file
+  --property NAME           fit: a set for each value of this property, in CSV a column
+  --name NAME               fit: name of the set (default: the file's)
+  --material NAME           fit: joint material of the sets (default: joint)
+  --law NAME                fit: law of lengths (default: the one with the largest likelihood of traces held back)
+  --shortest M              fit: shortest length that was mapped; shorter ones are left out
+  --longest M               fit: longest trace, for a power law, which also needs --shortest
+  --edge M                  fit: ends so near to the window's edge count as cut (default: 1e-6 of its size)
+  --poles POLES.csv         fit: orientation from measured planes, by Fisher's law
+  --azimuth DEG             fit: they are those of the traces, in a section with this bearing: weighs them by Terzaghi
+  --scanline-trend DEG      fit: they were met by a scanline with this bearing: weighs them by Terzaghi
+  --scanline-plunge DEG     fit: its inclination below the horizontal
   -h [ --help ]             show this text
   --version                 show the version
 
@@ -40,6 +56,8 @@ from . import plan, runs, study_file, table
 from .errors import NotDone, NotWanted
 
 INTERRUPTED = 128 + signal.SIGINT
+FIT_OPTIONS = ("window", "layer", "property", "name", "material", "law", "shortest", "longest", "edge", "poles", "azimuth",
+               "scanline-trend", "scanline-plunge")
 
 
 def options_of(arguments):
@@ -47,11 +65,13 @@ def options_of(arguments):
     if not arguments:
         raise NotWanted(usage())
     subcommand, *rest = arguments
-    if subcommand not in ("study", "report"):
-        raise NotWanted(f'unknown subcommand "{subcommand}"; expected study or report\n{usage()}')
+    if subcommand not in ("study", "report", "fit"):
+        raise NotWanted(f'unknown subcommand "{subcommand}"; expected study, report or fit\n{usage()}')
     known = {"-o": "output", "--output": "output", "--programs": "programs"}
     if subcommand == "study":
         known.update({"-j": "jobs", "--jobs": "jobs", "--snakemake": "snakemake", "-q": "quiet", "--quiet": "quiet"})
+    if subcommand == "fit":
+        known.update({"-q": "quiet", "--quiet": "quiet", **{f"--{name}": name for name in FIT_OPTIONS}})
     found, source = {}, None
     while rest:
         word = rest.pop(0)
@@ -145,6 +165,9 @@ def main(arguments, version, beside):
         return 0
     try:
         subcommand, source, options = options_of(arguments)
+        if subcommand == "fit":
+            from . import fit  # scipy takes long to load
+            return fit.run(source, options, programs_in(options.get("programs"), beside), version)
         return (study if subcommand == "study" else report)(source, options, beside)
     except NotWanted as error:
         print(f"jointcreep: {error}", file=sys.stderr)
