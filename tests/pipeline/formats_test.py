@@ -44,9 +44,15 @@ dip = {{ law = "normal", mean_deg = 60, deviation_deg = 5 }}
 dip_direction = {{ law = "normal", mean_deg = 50, deviation_deg = 10 }}
 diameter = {{ law = "lognormal", mean_m = 12, deviation_m = 5 }}
 density = {{ P32_per_m = 0.3 }}
+region_m = [[2, 2], [78, 2], [78, 12], [50, 12], [50, 6], [25, 6], [25, 45], [2, 45]]
 """
         cls.discs = ChainTest.chain.network(discs)
         cls.disc_data = datasets(cls.discs)
+        head, one_set = discs.rsplit("[[joint_set]]", 1)
+        one_set = "[[joint_set]]" + one_set
+        second = one_set.replace(NAME, "second").replace("mean_deg = 50", "mean_deg = 230")
+        others = re.sub(r"(?ms)^\[\[joint(_set)?\]\].*?(?=^\[\[joint|^\[in_situ)", "", head)
+        cls.only_discs = ChainTest.chain.network(others + one_set + second)
 
     def export(self, name, *options, source=None):
         return self.chain.run("jointexport", source or self.network, self.chain.new_folder() / name, *options)
@@ -97,6 +103,9 @@ density = {{ P32_per_m = 0.3 }}
         path = self.export("x.geojson", "--format", "fractopo")
         traces = json.loads(path.read_text())["features"]
         self.assertEqual({feature["geometry"]["type"] for feature in traces}, {"LineString"})
+        self.assertEqual([feature["geometry"]["coordinates"] for feature in traces],
+                         [[[float(row["x1_m"]), float(row["y1_m"])], [float(row["x2_m"]), float(row["y2_m"])]]
+                          for row in self.joints()])
         (area,) = json.loads(path.with_name("x.area.geojson").read_text())["features"]
         self.assertEqual(area["geometry"]["type"], "Polygon")
         self.assertAlmostEqual(ring_area(area["geometry"]["coordinates"][0][:-1]), self.data["/blocks/area"].sum(), places=6)
@@ -167,7 +176,9 @@ density = {{ P32_per_m = 0.3 }}
         path = self.export("x.dat", "--format", "3dec", "--width", 4)
         rings = []
         commands = path.read_text().splitlines()[2:]
-        for line, row in zip(commands, self.ids(path), strict=True):
+        for number, (line, row) in enumerate(zip(commands, self.ids(path), strict=True), start=1):
+            self.assertEqual(int(row["prism"]), number)
+            self.assertTrue(line.endswith(f" group 'block {row['block']}'"), line)
             one, two = (numpy.array([[float(v) for v in place.split(",")] for place in re.findall(r"\((.*?)\)", face)])
                         for face in re.fullmatch(r"block create prism face-1(.*) face-2(.*) group 'block \d+'", line).groups())
             self.assertTrue((one[:, 1] == -2).all() and (two[:, 1] == 2).all())
@@ -175,17 +186,50 @@ density = {{ P32_per_m = 0.3 }}
             rings.append((int(row["block"]), one[:, [0, 2]]))
         self.parts(rings)
 
+    def test_3dec_fractures(self):
+        """Discs as they were sampled, inside the domain, each in the network of its set."""
+        path = self.export("x.dat", "--format", "3dec", "--what", "planes", source=self.only_discs)
+        (domain,) = [line for line in path.read_text().splitlines() if line.startswith("model domain extent ")]
+        low, high = numpy.array(domain.split()[3:], float).reshape(3, 2).T
+        commands = [line for line in path.read_text().splitlines() if line.startswith("fracture create ")]
+        data = datasets(self.only_discs)
+        discs = self.planes(data)
+        self.assertEqual(len(set(data["/joints/set"][discs[0]])), 2)
+        pattern = r"fracture create position \((.*)\) dip (\S+) dip-direction (\S+) size (\S+) dfn '(.*)'"
+        for line, row, j, d, c, n in zip(commands, self.ids(path), *discs, strict=True):
+            place, dip, direction, size, name = re.fullmatch(pattern, line).groups()
+            place, dip, direction = numpy.array(place.split(","), float), math.radians(float(dip)), math.radians(float(direction))
+            self.assertEqual(float(size), d)
+            numpy.testing.assert_allclose(place, c, atol=1e-9)
+            own = [math.sin(dip) * math.sin(direction), math.sin(dip) * math.cos(direction), math.cos(dip)]
+            numpy.testing.assert_allclose(own, n, atol=1e-9)
+            of_set = data["/names/joint_set"][data["/joints/set"][j]]
+            self.assertEqual((name, row["set"], int(row["joint"])), (of_set.replace("'", '"'), of_set, j))
+            reach = d / 2 * numpy.sqrt(1 - n**2)  # of a disc along each axis
+            self.assertTrue((place - reach > low).all() and (place + reach < high).all())
+
     def test_yade(self):
-        tree = ast.parse(self.export("x.py").read_text())
+        tree = ast.parse(self.export("x.py", "--width", 3).read_text())
+        (width,) = [ast.literal_eval(node.value) for node in tree.body
+                    if isinstance(node, ast.Assign) and node.targets[0].id == "width"]
+        self.assertEqual(width, 3)
         (parts,) = [ast.literal_eval(node.value) for node in tree.body
                     if isinstance(node, ast.Assign) and node.targets[0].id == "parts"]
         self.parts((block, ring) for block, *_, ring in parts)
-        self.assertTrue(all(rock == self.data["/names/rock"][self.data["/blocks/rock"][block]] for block, rock, *_ in parts))
+        for block, rock, stage, realization, _ in parts:
+            of = self.data["/blocks/stage"][block]
+            self.assertEqual((rock, stage, realization), (self.data["/names/rock"][self.data["/blocks/rock"][block]],
+                                                          self.data["/names/stage"][of] if of >= 0 else "", 0))
 
-    def planes(self):
-        """Of each disc: diameter, centre and unit normal in {east, north, up}, from the HDF5 file."""
-        data, azimuth = self.disc_data, math.radians(40)
+    def planes(self, data=None):
+        """Of each disc: its first joint, diameter, centre and unit normal in {east, north, up}, from the HDF5 file. The region
+        divides the chords of some into several joints."""
+        data, azimuth = data or self.disc_data, math.radians(40)
         is_disc = data["/joints/diameter"] > 0
+        _, first = numpy.unique(data["/joints/centre"], axis=0, return_index=True)
+        is_first = numpy.isin(numpy.arange(len(is_disc)), first)
+        self.assertTrue((is_disc & ~is_first).any(), "some discs are several joints")
+        is_disc &= is_first
         turn = numpy.array([[math.sin(azimuth), 0, math.cos(azimuth)], [math.cos(azimuth), 0, -math.sin(azimuth)], [0, 1, 0]])
         return (numpy.flatnonzero(is_disc), data["/joints/diameter"][is_disc], data["/joints/centre"][is_disc] @ turn.T,
                 data["/joints/pole"][is_disc] @ turn.T)
@@ -198,7 +242,14 @@ density = {{ P32_per_m = 0.3 }}
         for end in "from", "to":
             place = numpy.column_stack([data["/joints/" + end][joint], numpy.zeros(len(joint))])
             numpy.testing.assert_allclose(numpy.einsum("ij,ij->i", place - centre, pole), 0, atol=1e-9)
-            numpy.testing.assert_allclose(numpy.linalg.norm(place - centre, axis=1), diameter / 2, rtol=1e-9)
+            self.assertTrue((numpy.linalg.norm(place - centre, axis=1) < diameter / 2 * (1 + 1e-9)).all())
+        middle = (data["/joints/from"][joint] + data["/joints/to"][joint]) / 2
+        length = numpy.linalg.norm(data["/joints/to"][joint] - data["/joints/from"][joint], axis=1)
+        off = numpy.abs(centre[:, 2]) / numpy.sqrt(1 - pole[:, 2] ** 2)
+        chord = 2 * numpy.sqrt(numpy.maximum(0, diameter**2 / 4 - off**2))
+        whole = (abs(middle - [13.5, 25]) < [11, 18]).all(axis=1) & (chord < 0.9 * (11 - abs(middle[:, 0] - 13.5)))  # by the region
+        self.assertGreater(whole.sum(), 5)
+        numpy.testing.assert_allclose(length[whole], chord[whole], rtol=1e-6)
         across = numpy.abs(centre[:, 2])
         self.assertGreater(across.max(), 1, "centres are on both sides of the section")
         self.assertTrue((centre[:, 2] > 0).any() and (centre[:, 2] < 0).any())
