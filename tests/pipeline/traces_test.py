@@ -16,8 +16,8 @@ import numpy as np
 from chain import ChainTest, main
 
 SCENE = "tests/pipeline/kinds/scene.toml"
-PLAIN, DEGREES, FEET = -1, 4326, 2263  # reference systems: none, WGS 84, New York in US survey feet
-WKT = {PLAIN: "undefined", DEGREES: 'GEOGCS["WGS 84",DATUM["WGS_1984",SPHEROID["WGS 84",6378137,298.257223563]],PRIMEM["Greenwich",0],'
+PLAIN, NONE, DEGREES, FEET = -1, 0, 4326, 2263  # reference systems: of a plane, none at all, WGS 84, US survey feet
+WKT = {PLAIN: "undefined", NONE: "undefined", DEGREES: 'GEOGCS["WGS 84",DATUM["WGS_1984",SPHEROID["WGS 84",6378137,298.257223563]],PRIMEM["Greenwich",0],'
        'UNIT["degree",0.0174532925199433]]',
        FEET: 'PROJCS["in feet",GEOGCS["NAD83",DATUM["North_American_Datum_1983",SPHEROID["GRS 1980",6378137,298.257222101]],'
        'PRIMEM["Greenwich",0],UNIT["degree",0.0174532925199433]],PROJECTION["Transverse_Mercator"],'
@@ -117,6 +117,20 @@ class Files(TracesTest):
         self.assertEqual(places, {(7, 0): [(1, 2), (3, 4.5), (6, 5)], (9, 0): [(0, 0), (1, 1)], (9, 1): [(5, 5), (6, 7)],
                                   (12, 0): [(8, 8), (9, 9)]})
         self.assertEqual(values, {7: "F", 9: "G, \"1\"", 12: "F"})
+
+    def test_a_geopackage_without_a_reference_system_is_taken(self):
+        """GDAL calls it geographic."""
+        path = write_geopackage(self.new("t.gpkg"), {"l": (NONE, [(1, "", wkb(2, [(1, 2), (3, 4)]))])})
+        self.assertEqual(self.traces(path)[0], {(1, 0): [(1, 2), (3, 4)]})
+
+    def test_a_file_that_ends_early_is_refused(self):
+        """Not read as far as it goes."""
+        whole = self.chain.run("jointexport", self.chain.network(self.chain.text("tests/pipeline/random_slope.toml")), self.new("x.shp"))
+        whole.write_bytes(whole.read_bytes()[:whole.stat().st_size // 2])
+        self.assert_refused(whole)
+        path = write_dxf(self.new("t.dxf"), [("a", [(0, 0), (1, 1)])] * 20)
+        path.write_text(path.read_text()[:path.stat().st_size // 2 + 3])
+        self.assert_refused(path)
 
     def test_layers(self):
         more = {**self.GEOPACKAGE, "dykes": (PLAIN, [(1, "D", wkb(2, [(1, 1), (2, 2)]))])}
