@@ -21,7 +21,7 @@ WINDOW = [[0, 0], [30, 0], [30, 20], [0, 20]]  # m
 ANGLE = {"mean_deg": 50, "deviation_deg": 12}
 P20 = 0.12  # 1/m2
 # law, its constants in the scene, shortest length mapped [m]
-SETS = [(length_laws.exponential(), {"mean_m": 8}, 0), (length_laws.exponential(), {"mean_m": 8}, 2),
+SETS = [(length_laws.exponential(), {"mean_m": 8}, 0), (length_laws.exponential(), {"mean_m": 20}, 2),
         (length_laws.lognormal(), {"mean_m": 8, "deviation_m": 5}, 0), (length_laws.normal(), {"mean_m": 10, "deviation_m": 2}, 0),
         (length_laws.power(2, 40), {"exponent": 2.5, "shortest_m": 2, "longest_m": 40}, 2)]
 
