@@ -183,7 +183,7 @@ void check_areas(const Layer& layer, std::size_t row, const std::vector<std::vec
 {
     double wanted = 0, found = 0;
     for (Index r = layer.first_ring[row]; r < layer.first_ring[row + 1]; ++r)
-        wanted += twice_area(layer, layer.ring(r)) / 2; // holes run clockwise
+        wanted += (r == layer.first_ring[row] ? 0.5 : -0.5) * std::abs(twice_area(layer, layer.ring(r)));
     for (const std::vector<Index>& part : parts)
         found += std::abs(twice_area(layer, part)) / 2;
     if (!(std::abs(found - wanted) <= 1e-9 * wanted))
@@ -207,7 +207,7 @@ std::vector<Index> with_bridges(const Layer& layer, std::size_t row)
         std::vector<Index>& hole = holes.emplace_back(ring(r));
         const auto rightmost = std::ranges::max_element(
             hole, [&](Index a, Index b) { return is_before(at(layer, a), at(layer, b)); });
-        std::ranges::rotate(hole, rightmost);
+        std::rotate(hole.begin(), rightmost, hole.end());
     }
     // From the right: what is right of a hole's rightmost corner is joined in already.
     std::ranges::sort(
