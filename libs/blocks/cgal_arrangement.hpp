@@ -45,7 +45,7 @@ inline void insert_lines(CgalArrangement& arrangement, const Graph& lines)
 inline double nearest(const Exact::FT& number)
 {
     using Rational = Exact::Exact_kernel::FT;
-    const Rational exact = number.exact();
+    const Rational& exact = number.exact();
     constexpr double infinity = std::numeric_limits<double>::infinity();
     double low = CGAL::to_double(number);
     while (Rational(low) > exact)

@@ -60,9 +60,7 @@ std::string as_toml(const std::string& text, const std::string& begin = "\n")
         const auto code = static_cast<unsigned char>(c);
         if (c == '"' || c == '\\')
             out += std::string("\\") + c;
-        else if (c == '\n')
-            out += c;
-        else if (code < 0x20 || code == 0x7f)
+        else if (c != '\n' && (code < 0x20 || code == 0x7f))
             out += std::string("\\u00") + digits[code / 16] + digits[code % 16];
         else
             out += c;
