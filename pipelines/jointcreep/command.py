@@ -46,6 +46,7 @@ Example:
   jointcreep study slope.toml -o out/ -j 2
 """
 
+import dataclasses
 import pathlib
 import shutil
 import signal
@@ -58,34 +59,39 @@ from .errors import NotDone, NotWanted
 INTERRUPTED = 128 + signal.SIGINT
 FIT_OPTIONS = ("window", "layer", "property", "name", "material", "law", "shortest", "longest", "edge", "poles", "azimuth",
                "scanline-trend", "scanline-plunge")
+OF_ALL = {"-o": "output", "--output": "output", "--programs": "programs"}  # options of every subcommand
+FLAGS = {"quiet"}  # options without a value
+
+
+@dataclasses.dataclass
+class Subcommand:
+    """One of SUBCOMMANDS, below."""
+    run: object  # run(source, options, beside) makes it, and returns the exit code
+    words: dict  # its own options: word on the command line, name in `options`
 
 
 def options_of(arguments):
     """The subcommand, its input and its options by name."""
     if not arguments:
         raise NotWanted(usage())
-    subcommand, *rest = arguments
-    if subcommand not in ("study", "report", "fit"):
-        raise NotWanted(f'unknown subcommand "{subcommand}"; expected study, report or fit\n{usage()}')
-    known = {"-o": "output", "--output": "output", "--programs": "programs"}
-    if subcommand == "study":
-        known.update({"-j": "jobs", "--jobs": "jobs", "--snakemake": "snakemake", "-q": "quiet", "--quiet": "quiet"})
-    if subcommand == "fit":
-        known.update({"-q": "quiet", "--quiet": "quiet", **{f"--{name}": name for name in FIT_OPTIONS}})
+    name, *rest = arguments
+    if name not in SUBCOMMANDS:
+        raise NotWanted(f'unknown subcommand "{name}"; expected {" or ".join(SUBCOMMANDS)}\n{usage()}')
+    known = {**OF_ALL, **SUBCOMMANDS[name].words}
     found, source = {}, None
     while rest:
         word = rest.pop(0)
         word, equals, value = word.partition("=") if word.startswith("--") else (word, "", "")
-        if word.startswith("-j") and word[2:].isdecimal() and subcommand == "study":  # -j4, as Make has it
+        if word.startswith("-j") and word[2:].isdecimal() and "-j" in known:  # -j4, as Make has it
             word, equals, value = "-j", "=", word[2:]
         if word in known:
-            name = known[word]
-            if name in found:
+            option = known[word]
+            if option in found:
                 raise NotWanted(f"{word} is given twice")
-            if name == "quiet" and not equals:
-                found[name] = True
+            if option in FLAGS and not equals:
+                found[option] = True
             elif equals or rest:
-                found[name] = value if equals else rest.pop(0)
+                found[option] = value if equals else rest.pop(0)
             else:
                 raise NotWanted(f"{word} has no value")
         elif word.startswith("-") or source is not None:
@@ -93,11 +99,11 @@ def options_of(arguments):
         else:
             source = word
     if source is None or not found.get("output"):
-        raise NotWanted(f"{subcommand} needs an input, and an output with -o\n{usage()}")
+        raise NotWanted(f"{name} needs an input, and an output with -o\n{usage()}")
     jobs = found.get("jobs", "1")
     if not jobs.isdecimal() or not 1 <= int(jobs) <= 10000:
         raise NotWanted(f'--jobs is "{jobs}"; expected a whole number from 1 to 10000')
-    return subcommand, pathlib.Path(source), {**found, "jobs": int(jobs)}
+    return SUBCOMMANDS[name], pathlib.Path(source), {**found, "jobs": int(jobs)}
 
 
 def usage():
@@ -155,6 +161,19 @@ def report(source, options, beside):
     return 0
 
 
+def fit(source, options, beside):
+    """Fits joint sets to mapped traces."""
+    from . import fit as sets  # scipy takes long to load
+    return sets.run(source, options, programs_in(options.get("programs"), beside), options["version"])
+
+
+SUBCOMMANDS = {
+    "study": Subcommand(study, {"-j": "jobs", "--jobs": "jobs", "--snakemake": "snakemake", "-q": "quiet", "--quiet": "quiet"}),
+    "report": Subcommand(report, {}),
+    "fit": Subcommand(fit, {"-q": "quiet", "--quiet": "quiet", **{f"--{name}": name for name in FIT_OPTIONS}}),
+}
+
+
 def main(arguments, version, beside):
     """The exit code of the command line."""
     if arguments in (["-h"], ["--help"]):
@@ -165,10 +184,7 @@ def main(arguments, version, beside):
         return 0
     try:
         subcommand, source, options = options_of(arguments)
-        if subcommand == "fit":
-            from . import fit  # scipy takes long to load
-            return fit.run(source, options, programs_in(options.get("programs"), beside), version)
-        return (study if subcommand == "study" else report)(source, options, beside)
+        return subcommand.run(source, {**options, "version": version}, beside)
     except NotWanted as error:
         print(f"jointcreep: {error}", file=sys.stderr)
         return 2
