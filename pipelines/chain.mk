@@ -46,5 +46,5 @@ $(foreach state,$(STATES),$(foreach field,$(FIELDS),$(eval $(call state_picture,
 $(OUT):
 	mkdir -p $@
 
-$(CHAIN) $(BIN)/jointexport $(BIN)/creepfit:
+$(CHAIN) $(BIN)/jointexport $(BIN)/creepfit $(BIN)/jointcreep:
 	$(error $@ is not built; first run: sh pipelines/setup.sh)

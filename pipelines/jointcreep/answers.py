@@ -4,26 +4,45 @@ Only runs that have a value count: a run without an equilibrium, or whose point 
 The probability to fail counts all runs that either have an equilibrium or were found to have none.
 """
 
+import math
+
 import numpy as np
 
-from . import failure, intervals, plan
+from . import failure, files, intervals
 from .design import openturns
 from .intervals import CONFIDENCE
 from .quantities import NO_EQUILIBRIUM
-from .study_file import NETWORK
+from .study_file import EXTENSIBLE, NETWORK
 
 QUANTILES = [0.05, 0.25, 0.50, 0.75, 0.95]
-FEWEST = 10  # runs from which convergence is shown
+FEWEST = 10  # values from which convergence is shown
 STEPS = 30  # numbers of runs at which it is shown, at most
-NAMED = 20  # runs that a line of the summary lists
+NAMED = 20  # failed runs that the summary lists
 
 
 def values_of(study, rows, at):
     """Values of a quantity and the numbers of their runs, as arrays; of runs that are independent of each other, as far as the
-    design has such. Sobol indices: the first two of its matrices are."""
-    last = 2 * study.design.points if study.design.kind == "sobol indices" else study.design.runs
-    there = [(row["values"][at], row["run"]) for row in rows if row["values"][at] is not None and row["run"] < last]
-    return np.array([value for value, _ in there], float), np.array([run for _, run in there], int)
+    design has such. Sobol indices: the first two of its matrices are. Two levels: the fine runs of whole blocks whose coarse run on
+    the same network has a value too."""
+    value = {row["run"]: row["values"][at] for row in rows if row["values"][at] is not None}
+    there = sorted(value)
+    if study.design.fine_runs:
+        last = rows[-1]["run"] if rows else -1
+        there = [run for run in there if study.design.level(run) == "fine" and run + study.design.coarse_per_fine <= last and
+                 run + 1 in value]
+    elif study.design.kind == "sobol indices":
+        there = [run for run in there if run < 2 * study.design.points]
+    return np.array([value[run] for run in there], float), np.array(there, int)
+
+
+def coarse_of(study, rows, at, run):
+    """Of two levels: for each of these fine runs the value of the coarse run on its network, and the mean of all coarse runs of its
+    block, [run, 2]. None for other designs."""
+    if not study.design.fine_runs:
+        return None
+    value = {row["run"]: row["values"][at] for row in rows}
+    blocks = [[value[one + place] for place in range(1, study.design.block())] for one in run]
+    return np.array([[block[0], np.mean([one for one in block if one is not None])] for block in blocks]).reshape(-1, 2)
 
 
 def crossed_table(study, values, run):
@@ -37,12 +56,14 @@ def crossed_table(study, values, run):
     return table if len(table) > 1 else None
 
 
-def mean_with_interval(study, values, run):
-    """Mean and ends of its interval, by what the design allows."""
+def mean_with_interval(study, values, run, coarse=None):
+    """Mean and ends of its interval, by what the design allows. coarse [value, 2]: as coarse_of()."""
     design = study.design
     if design.kind == "networks x parameters":
         table = crossed_table(study, values, run)
         return intervals.mean_of_crossed(table) if table is not None else (None, None, None)
+    if coarse is not None:
+        return intervals.mean_by_control(values, coarse[:, 1] - coarse[:, 0])
     if design.replicates > 1:
         return intervals.mean_of_parts(values, run // (design.runs // design.replicates))
     return intervals.mean(values)
@@ -66,11 +87,20 @@ def share_with_interval(study, hits, run):
     return value, None if low is None else max(0.0, low), None if high is None else min(1.0, high)
 
 
-def statistics(study, quantity, values, run):
-    """Statistics of a quantity: name, value, low, high."""
+def correlation(values, others):
+    """Pearson's correlation; None where there is none."""
+    return float(np.corrcoef(values, others)[0, 1]) if len(values) > 2 and np.ptp(values) > 0 and np.ptp(others) > 0 else None
+
+
+def statistics(study, quantity, values, run, coarse=None):
+    """Statistics of a quantity: name, value, low, high. coarse [value, 2]: as coarse_of()."""
     found = []
     if quantity.what != "failed":
-        found.append(("mean", *mean_with_interval(study, values, run)))
+        found.append(("mean", *mean_with_interval(study, values, run, coarse)))
+        if coarse is not None:
+            found.append(("mean of fine runs alone", *intervals.mean(values)))
+            found.append(("fine less coarse", *intervals.mean(values - coarse[:, 0])))
+            found.append(("correlation of fine and coarse", correlation(values, coarse[:, 0]), None, None))
         deviation = float(np.std(values, ddof=1)) if len(values) > 1 else None
         found.append(("standard deviation", deviation, None, None))
         for part in QUANTILES:
@@ -82,11 +112,11 @@ def statistics(study, quantity, values, run):
     return found
 
 
-def first_of(quantity, study, values, run):
+def first_of(quantity, study, values, run, coarse=None):
     """The statistics whose convergence is shown: mean, or probability of failure; and the probabilities of limits."""
     if quantity.what == "failed":
         return statistics(study, quantity, values, run)
-    found = [("mean", *mean_with_interval(study, values, run))]
+    found = [("mean", *mean_with_interval(study, values, run, coarse))]
     return found + [(name, *share_with_interval(study, hit(values), run)) for name, hit in limits_of(quantity)]
 
 
@@ -101,9 +131,10 @@ def convergence(study, rows, at):
     """Rows (statistic, runs, value, low, high) over a growing number of runs; designs that are made as a whole have one."""
     quantity = study.quantities[at]
     values, run = values_of(study, rows, at)
-    counts = counts_shown(len(values)) if study.design.kind == "plain" else [len(values)]
+    coarse = coarse_of(study, rows, at, run)
+    counts = counts_shown(len(values)) if study.design.kind in EXTENSIBLE else [len(values)]
     return [(name, count, value, low, high) for count in counts if count > 0
-            for name, value, low, high in first_of(quantity, study, values[:count], run[:count])]
+            for name, value, low, high in first_of(quantity, study, values[:count], run[:count], None if coarse is None else coarse[:count])]
 
 
 def enough(study, rows):
@@ -111,9 +142,9 @@ def enough(study, rows):
     at = [one.name for one in study.quantities].index(study.stop.of)
     quantity, stop = study.quantities[at], study.stop
     values, run = values_of(study, rows, at)
-    if len(values) < 2:
+    if len(values) < (FEWEST if study.design.fine_runs else 2):
         return False
-    for name, value, low, high in first_of(quantity, study, values, run):
+    for name, value, low, high in first_of(quantity, study, values, run, coarse_of(study, rows, at, run)):
         half = (high - low) / 2
         if name == "mean":
             if stop.half_width and half > stop.half_width:
@@ -206,12 +237,29 @@ def shares(study, rows, given, at):
     return rank_correlations(study, rows, given, at)
 
 
+def level_costs(study, rows):
+    """What two levels cost, as rows: quantity, processor seconds of a fine and of a coarse run, their correlation, the number of coarse
+    runs for each fine one that is cheapest (Pasupathy and others 2012), and the time of this study over that of plain sampling by fine
+    runs for as narrow an interval."""
+    seconds = [float(np.mean([row["processor_seconds"] for row in rows if study.design.level(row["run"]) == level]))
+               for level in ("fine", "coarse")]
+    found = []
+    for at, quantity in enumerate(study.quantities):
+        values, run = values_of(study, rows, at)
+        coarse = coarse_of(study, rows, at, run)
+        r = correlation(values, coarse[:, 0])
+        _, low, high = mean_with_interval(study, values, run, coarse)
+        if quantity.what == "failed" or r is None or low is None or not low < high or r * r == 1:
+            continue
+        cheapest = max(2, round(math.sqrt(r * r / (1 - r * r) * seconds[0] / seconds[1])))
+        error = (high - low) / 2 / intervals.student_factor(len(values) - 2)
+        plain = float(np.var(values, ddof=1)) / error**2 * seconds[0]
+        mine = len(values) * (seconds[0] + study.design.coarse_per_fine * seconds[1])
+        found.append((quantity.name, *seconds, r, cheapest, mine / plain))
+    return found
+
+
 # --- Files ----------------------------------------------------------------------------------------------------------
-
-
-def listed(runs):
-    """Numbers of runs in words."""
-    return ", ".join(map(str, runs[:NAMED])) + (f" and {len(runs) - NAMED} more" if len(runs) > NAMED else "")
 
 
 def number_text(value):
@@ -237,13 +285,13 @@ def missing_words(study, rows):
         runs = [row["run"] for row in rows if row["values"][at] is None and row["exit_code"] == 0]
         if runs and one.what == "displacement":
             lines.append(f'{one.title()}: an excavation takes the point "{one.point}" before, or it is not read yet, in '
-                         f"{len(runs)} of {len(rows)} runs: {listed(runs)}")
+                         f"{len(runs)} of {len(rows)} runs: {files.listed(runs)}")
         elif runs:
-            lines.append(f"{one.title()}: no value in {len(runs)} of {len(rows)} runs: {listed(runs)}")
+            lines.append(f"{one.title()}: no value in {len(runs)} of {len(rows)} runs: {files.listed(runs)}")
     return lines
 
 
-def summary(study, rows, why, of_each):
+def summary(study, rows, why, of_each, of_histories):
     """What a person reads first."""
     without = sum(row["exit_code"] == NO_EQUILIBRIUM for row in rows)
     other = sum(row["exit_code"] not in (0, NO_EQUILIBRIUM) for row in rows)
@@ -260,6 +308,7 @@ def summary(study, rows, why, of_each):
             lines += in_columns([["", "value", "from", "to"],
                                  *([f"{measure}, {name}", *map(number_text, numbers)] for name, measure, *numbers in of_shares)])
     lines += ["", f"from, to: {CONFIDENCE:.0%} confidence interval; empty where the runs are too few or the design has none"]
+    lines += [""] * bool(of_histories) + of_histories
     missing = [] if study.design.directions else missing_words(study, rows)
     return "\n".join(lines + ([""] + missing if missing else [])) + "\n"
 
@@ -271,9 +320,10 @@ def of_failure(study, rows, estimates):
     return quantity, {"at": study.quantities.index(quantity), "runs": len(rows), "statistics": statistics}, []
 
 
-def write(study, rows, given, why, estimates, out):
+def write(study, rows, given, why, estimates, of_histories, out):
     """Writes answers.csv, convergence.csv, shares.csv and summary.txt. Returns of each quantity with values: quantity, its place,
-    statistics, shares. `estimates` are those of the replicates of a directional sampling."""
+    statistics, shares. `of_histories` are lines that the summary says of histories; `estimates` are those of the replicates of a
+    directional sampling."""
     found = []
     by_direction = study.design.directions > 0
     if by_direction and len(estimates) > 1:
@@ -281,16 +331,28 @@ def write(study, rows, given, why, estimates, out):
     for at, quantity in enumerate([] if by_direction else study.quantities):
         values, run = values_of(study, rows, at)
         if len(values):
-            found.append((quantity, {"at": at, "runs": len(values), "statistics": statistics(study, quantity, values, run)},
+            of = statistics(study, quantity, values, run, coarse_of(study, rows, at, run))
+            found.append((quantity, {"at": at, "runs": len(values), "statistics": of},
                           shares(study, rows, given, at)))
-    plan.written(out / "answers.csv", plan.csv_text(
+    files.write_text(out / "answers.csv", files.csv_text(
         ["quantity", "unit", "statistic", "runs", "value", "low", "high"],
         [(one.name, one.unit, name, of["runs"], *numbers) for one, of, _ in found for name, *numbers in of["statistics"]]))
-    plan.written(out / "convergence.csv", plan.csv_text(
+    files.write_text(out / "convergence.csv", files.csv_text(
         ["quantity", "unit", "statistic", "runs", "value", "low", "high"],
         [(one.name, one.unit, *row) for one, of, _ in found if not by_direction for row in convergence(study, rows, of["at"])]))
-    plan.written(out / "shares.csv", plan.csv_text(
+    files.write_text(out / "shares.csv", files.csv_text(
         ["quantity", "input", "measure", "value", "low", "high"],
         [(one.name, *row) for one, _, of_shares in found for row in of_shares]))
-    plan.written(out / "summary.txt", summary(study, rows, why, found))
+    files.write_text(out / "summary.txt", summary(study, rows, why, found, of_histories))
     return found
+
+
+def write_costs(study, rows, out):
+    """Writes costs.csv of two levels, which depends on the machine. Returns what it says, as lines."""
+    found = level_costs(study, rows)
+    heads = ["quantity", "fine_seconds", "coarse_seconds", "correlation", "cheapest_coarse_per_fine", "time_over_plain"]
+    files.write_text(out / "costs.csv", files.csv_text(heads, [
+        [name, *(f"{one:.3f}" for one in seconds), f"{r:.5f}", cheapest, f"{times:.3f}"] for name, *seconds, r, cheapest, times in found]))
+    return [f"\n{name}: a fine run takes {fine:.2f} s of the processor, a coarse one {coarse:.2f} s; the cheapest coarse_per_fine is "
+            f"{cheapest}.\nThis study took {times:.2f} of the time of plain sampling by fine runs for as narrow an interval.\n"
+            for name, fine, coarse, _, cheapest, times in found]

@@ -142,16 +142,18 @@ def study(source, options, beside):
 
 def finish(of_study, out, rows, why, scene, quiet):
     """Tables, answers and pictures of the runs."""
-    from . import answers, pictures
+    from . import answers, ensemble, pictures
     estimates = [row["probability"] for row in rows if row["run"] < 0]
     rows = [row for row in rows if row["run"] >= 0]
-    given = plan.given(out, of_study, rows)
-    table.write(of_study, rows, given, (out / "scene.toml").read_text("utf-8"), out)
-    found = answers.write(of_study, rows, given, why, estimates, out)
+    given, text = plan.given(out, of_study, rows), (out / "scene.toml").read_text("utf-8")
+    table.write(of_study, rows, given, text, out)
+    of_histories = ensemble.write(rows, text, out) if of_study.histories else []
+    found = answers.write(of_study, rows, given, why, estimates, of_histories, out)
+    costs = answers.write_costs(of_study, rows, out) if of_study.design.fine_runs else []
     pictures.write(of_study, rows, given, found, out)
     if not quiet:
-        print((out / "summary.txt").read_text("utf-8"), end="")
-    return 0 if found else 3
+        print((out / "summary.txt").read_text("utf-8"), *costs, sep="", end="")
+    return 0 if (of_histories if of_study.histories else found) else 3
 
 
 def report(source, options, beside):

@@ -29,8 +29,9 @@ def cube_points(design, dimension):
     """Points in the unit cube [run, dimension]."""
     ot = openturns()
     ot.RandomGenerator.SetSeed(design.seed)
-    if design.kind == "plain":
-        return np.array(ot.RandomGenerator.Generate(design.runs * dimension)).reshape(design.runs, dimension)
+    if design.fine_runs or design.kind == "plain":
+        size = design.networks_drawn()
+        return np.array(ot.RandomGenerator.Generate(size * dimension)).reshape(size, dimension)
     if design.kind == "networks x parameters":
         return np.array(ot.RandomGenerator.Generate(design.parameters * dimension)).reshape(design.parameters, dimension)
     cube = ot.ComposedDistribution([ot.Uniform(0, 1)] * dimension)
@@ -97,11 +98,11 @@ def mapped(study, points):
 
 def draw(study):
     """Networks [run] and values of the parameters, a list of lists [run][parameter]."""
-    design = study.design
+    design, size = study.design, study.design.networks_drawn()
     pairs = design.kind == "networks x parameters"
     in_cube = design.kind == "sobol indices" and study.varies_network  # the network is its last dimension
     if not study.parameters:
-        return np.arange(design.runs), [[] for _ in range(design.runs)]
+        return by_run(study, np.arange(size), [[] for _ in range(size)])
     points = np.clip(cube_points(design, len(study.parameters) + in_cube), FLAT, 1 - FLAT)
     with_law = [row for row, one in enumerate(study.parameters) if one.law]
     columns = [None] * len(study.parameters)
@@ -116,7 +117,15 @@ def draw(study):
     if pairs:
         return np.repeat(np.arange(design.networks), design.parameters), rows * design.networks
     if not study.varies_network:
-        return np.zeros(design.runs, int), rows
+        return by_run(study, np.zeros(size, int), rows)
     if in_cube:  # each point of the cube has a network of its own; runs that share the point share the network
         return np.unique(points[:, -1], return_inverse=True)[1], rows
-    return np.arange(design.runs), rows
+    return by_run(study, np.arange(size), rows)
+
+
+def by_run(study, networks, rows):
+    """Networks and parameters of each run, where those that are drawn are of several runs each."""
+    if not study.design.fine_runs:
+        return networks, rows
+    places = [study.design.network_place(run) for run in range(study.design.runs)]
+    return networks[places], [rows[place] for place in places]

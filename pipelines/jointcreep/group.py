@@ -23,7 +23,7 @@ import subprocess
 import sys
 import time
 
-from . import plan, quantities, scene_keys, study_file
+from . import ensemble, plan, quantities, scene_keys, study_file
 from .errors import NotDone, NotWanted
 
 STOPPED = {-signal.SIGHUP, -signal.SIGINT, -signal.SIGKILL, -signal.SIGTERM}
@@ -44,16 +44,16 @@ class Interrupted(Exception):
     """A program was stopped from outside, or could not read or write."""
 
 
-def programs_of(study):
-    """The programs of a run in their order: name, arguments, and whether the next ones need its file."""
-    needs = quantities.needed(study)
+def programs_of(study, run):
+    """The programs of a run in their order: name and arguments."""
+    needs, options = quantities.needed(study), study.options_of(run)
     chain = [("jointgen", ["scene.toml", "-o", "network.h5"])]
     if any(needs.values()):
         chain.append(("strength-averaging", ["network.h5", "-o", "joints.h5"]))
     if needs["result.h5"]:
-        chain.append(("demsolve", ["joints.h5", *study.demsolve_options, "-o", "result.h5"]))
+        chain.append(("demsolve", ["joints.h5", *options, "-o", "result.h5"]))
     if needs["safety.h5"]:
-        chain.append(("demsolve", ["joints.h5", *study.demsolve_options, "--factor-of-safety", "-o", "safety.h5"]))
+        chain.append(("demsolve", ["joints.h5", *options, "--factor-of-safety", "-o", "safety.h5"]))
     return chain
 
 
@@ -86,7 +86,7 @@ def made(study, scene, text, run, programs, folder):
     (folder / "scene.toml").write_text(scene_keys.toml_text(scene_keys.changed(scene, values)) if values else text, "utf-8")
     row = {"run": run["run"], "exit_code": 0, "program": "", "reason": ""}
     seconds, processor_before, solve_code = 0.0, processor_seconds(), None
-    for name, arguments in programs_of(study):
+    for name, arguments in programs_of(study, run["run"]):
         if name == "jointgen":
             arguments = [*arguments, "--realization", str(run["network"])]
         code, message, took = called(programs / name, ["--quiet", *arguments] if name == "demsolve" else arguments, folder)
@@ -102,9 +102,21 @@ def made(study, scene, text, run, programs, folder):
             break
     row.update(network=run["network"], given=run["given"])
     row["values"] = quantities.of_run(study, scene, folder, solve_code)
+    if study.histories and solve_code == 0:
+        row["history"] = ensemble.of_run(folder / "result.h5")
+    keep_files(study, row["run"], folder)
     row["program_seconds"] = seconds
     row["processor_seconds"] = processor_seconds() - processor_before
     return row
+
+
+def keep_files(study, run, folder):
+    """Moves what is to be kept of a run to kept/RUN-NAME in the study's folder."""
+    for name in study.keep:
+        if (folder / name).exists():
+            kept = folder.parent.parent / "kept"
+            kept.mkdir(exist_ok=True)
+            os.replace(folder / name, kept / f"{run:06d}-{name}")
 
 
 def result_of(study, scene, text, run, programs, folder):

@@ -23,9 +23,15 @@ def laws():
     return stats
 
 
+@functools.cache
+def student_factor(freedom):
+    """Half of Student's interval over the standard error."""
+    return float(laws().t.ppf((1 + CONFIDENCE) / 2, freedom))
+
+
 def student(mean, variance, freedom):
     """Mean and ends of Student's interval, from the variance of the mean and its degrees of freedom."""
-    half = float(laws().t.ppf((1 + CONFIDENCE) / 2, freedom)) * math.sqrt(variance)
+    half = student_factor(freedom) * math.sqrt(variance)
     return mean, mean - half, mean + half
 
 
@@ -46,6 +52,22 @@ def mean_of_parts(values, part):
     middle = float(np.mean(values))
     half = (high - low) / 2
     return middle, middle - half, middle + half
+
+
+def mean_by_control(values, control):
+    """Of independent pairs: mean of the values by a control variate whose own mean is known to be 0, and ends of its interval
+    (Lavenberg and Welch 1981). The factor on the control is that of least squares; the interval is exact for normal pairs."""
+    n = len(values)
+    if n < 4:
+        return (float(np.mean(values)) if n else None), None, None
+    spread = control - control.mean()
+    squares = float((spread**2).sum())
+    if squares == 0:
+        return mean(values)
+    factor = float((spread * values).sum()) / squares
+    middle = float(np.mean(values)) - factor * float(control.mean())
+    rest = float(((values - np.mean(values) - factor * spread) ** 2).sum()) / (n - 2)
+    return student(middle, rest * (1 / n + float(control.mean()) ** 2 / squares), n - 2)
 
 
 def crossed(table):

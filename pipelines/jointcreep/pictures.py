@@ -9,15 +9,17 @@ import pathlib
 import sys
 import textwrap
 
+import h5py
 import matplotlib.ticker
 import numpy as np
 
-from . import answers, intervals, plan
+from . import answers, files, intervals
 
 PLOTS = pathlib.Path(__file__).resolve().parent.parent / "plots"
 sys.path.insert(0, str(PLOTS))
 
 import figure  # noqa: E402
+import plot_ensemble  # noqa: E402
 from stage_names import plain  # noqa: E402
 
 BAND = "#c9d8ea"
@@ -103,9 +105,21 @@ def parameters(quantity, study, values, run, given, of_shares):
     return plot
 
 
+def of_histories(out):
+    """Draws ensemble.png and ensemble-y.png, the histories of all points over time."""
+    for component, name in (("x", "ensemble.png"), ("y", "ensemble-y.png")):
+        with h5py.File(out / "ensemble.h5") as file:
+            picture = plot_ensemble.draw(file, component)
+        figure.draw_names_as_they_are(picture)
+        figure.save(picture, out / name)
+        figure.plt.close(picture)
+
+
 def write(study, rows, given, found, out):
     """Draws all pictures into the folder."""
     words, written = plain([quantity.name for quantity, _, _ in found]), {}
+    if study.histories and (out / "ensemble.h5").exists():
+        of_histories(out)
     for word, (quantity, of, of_shares) in zip(words, found if not study.design.directions else []):
         values, run = answers.values_of(study, rows, of["at"])
         drawn = {}
@@ -121,4 +135,4 @@ def write(study, rows, given, found, out):
             figure.save(picture, out / f"{word}-{name}.png")
             figure.plt.close(picture)
             written.setdefault(quantity.name, []).append(f"{word}-{name}.png")
-    plan.written(out / "pictures.json", json.dumps(written, indent=1) + "\n")
+    files.write_text(out / "pictures.json", json.dumps(written, indent=1) + "\n")

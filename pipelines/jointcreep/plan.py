@@ -7,44 +7,19 @@
 
 import csv
 import functools
-import io
 import json
 import os
 import subprocess
 import tomllib
 
-from . import design, quantities, scene_keys, study_file
+from . import design, files, quantities, scene_keys, study_file
 from .errors import NotDone, NotWanted
 
 BATCH = 50  # runs from one look at the stop rule to the next
 GROUP_SIZES = [25, 10, 5, 2, 1]  # they divide a batch
 GROUPS_WANTED = 100  # so that several processors end at about the same time
-LINES = 1  # raised when lines of results change
+LINES = 2  # raised when lines of results change
 PROGRAMS = ["jointgen", "strength-averaging", "demsolve"]
-
-
-def written(path, text):
-    """The text appears under its name only once it is whole; a file of the same content stays as it is."""
-    if path.exists() and path.read_bytes() == text.encode():
-        return
-    partial = path.with_name(f"{path.name}.partial-{os.getpid()}")
-    try:
-        with open(partial, "w", encoding="utf-8", newline="") as file:
-            file.write(text)
-            file.flush()
-            os.fsync(file.fileno())
-        os.replace(partial, path)
-    finally:
-        partial.unlink(missing_ok=True)
-
-
-def csv_text(heads, rows):
-    """A table as CSV; an empty field where there is no value. Numbers read back exactly."""
-    text = io.StringIO()
-    out = csv.writer(text, lineterminator="\n")
-    out.writerow(heads)
-    out.writerows([["" if value is None else value for value in row] for row in rows])
-    return text.getvalue()
 
 
 def parsed(text, path):
@@ -71,7 +46,7 @@ def answer_of(program, *arguments):
 def scene_text(study, programs, out):
     """The text of the scene with the files that it names, as jointgen keeps it: so it is checked, too."""
     import h5py
-    network = out / f"network.h5.partial-{os.getpid()}"
+    network = out / "network.h5.partial-scene"  # always the same, so that what a killed study left goes
     try:
         answer_of(programs / "jointgen", study.scene, "-o", network)
         with h5py.File(network) as file:
@@ -99,6 +74,14 @@ def check_keys(study, scene):
                 raise NotWanted(f'{one.place}"{key}" is {study_file.shown(value)} in the scene; expected values of the same kind')
 
 
+def check_histories(study):
+    """Refuses statistics of histories where what happens, and when, differs between runs."""
+    for one in study.parameters if study.histories else []:
+        for key in one.keys:
+            if scene_keys.parts_of(key)[0] in ("schedule", "stage", "point"):
+                raise NotWanted(f'{one.place}"{key}" varies, so histories of runs cannot be put beside each other; expected histories = false')
+
+
 def group_size(runs):
     """Runs in a group: few enough that processors end together, many enough that starting a group costs little."""
     return next(size for size in GROUP_SIZES if size <= max(1, runs // GROUPS_WANTED))
@@ -106,19 +89,22 @@ def group_size(runs):
 
 def identity(study, scene, programs):
     """What makes runs what they are: runs of another study are not mixed in."""
-    kept = study.design.kind == "plain"
+    design = study.design
+    sizes = [] if design.kind in study_file.EXTENSIBLE else [design.runs, design.networks, design.parameters, design.points,
+                                                             design.replicates, design.directions, design.failure]
+    levels = [design.coarse_per_fine, design.fine_options, design.coarse_options] if design.fine_runs else []
     versions = {name: answer_of(programs / name, "--version") for name in PROGRAMS}
     return {
         "the scene": scene,
         "[[vary]]": [study.varies_network, [[one.name, one.keys, one.multiplies, one.law, one.constants, str(one.lowest),
                                              str(one.highest), one.values] for one in study.parameters]],
         "[[correlation]]": study.correlations,
-        "[design]": [study.design.kind, study.design.seed, *([] if kept else [
-            study.design.runs, study.design.networks, study.design.parameters, study.design.points, study.design.replicates,
-            study.design.directions, study.design.failure])],
+        "[design]": [design.kind, design.seed, *sizes, *levels],
         "[[collect]]": [[one.name, one.what, one.point, one.component, one.since, one.stage, str(one.date), one.statistic]
                         for one in study.quantities],
         "demsolve_options": study.demsolve_options,
+        "histories": study.histories,
+        "keep": study.keep,
         "the programs' versions": versions,
         "the lines of results": LINES,
     }
@@ -130,6 +116,7 @@ def make(study, out, programs):
     scene = tomllib.loads(text)
     check_keys(study, scene)
     quantities.check(study, scene)
+    check_histories(study)
     networks, values = ([], []) if study.design.directions else design.draw(study)  # directions are drawn as runs are made
     what = json.loads(json.dumps(identity(study, text, programs)))
     path = out / "plan.json"
@@ -148,11 +135,11 @@ def make(study, out, programs):
                 os.replace(last, f"{last}.part")
     else:
         size = group_size(study.design.runs)
-    written(out / "scene.toml", text)
-    written(out / "study.toml", study.path.read_text(encoding="utf-8-sig"))
-    written(out / "design.csv", csv_text(["run", study_file.NETWORK, *(one.name for one in study.parameters)],
+    files.write_text(out / "scene.toml", text)
+    files.write_text(out / "study.toml", study.path.read_text(encoding="utf-8-sig"))
+    files.write_text(out / "design.csv", files.csv_text(["run", study_file.NETWORK, *(one.name for one in study.parameters)],
                                          [[run, network, *of_run] for run, (network, of_run) in enumerate(zip(networks, values))]))
-    written(path, json.dumps({"identity": what, "runs": study.design.runs, "group": size}, indent=1) + "\n")
+    files.write_text(path, json.dumps({"identity": what, "runs": study.design.runs, "group": size}, indent=1) + "\n")
     return scene
 
 

@@ -5,7 +5,7 @@ import datetime
 import h5py
 import numpy as np
 
-from . import histories
+from . import files, histories
 from .errors import NotWanted
 
 NO_EQUILIBRIUM = 3  # exit code of demsolve
@@ -42,15 +42,11 @@ def day_of(quantity, scene):
         raise NotWanted(f"{quantity.place}{error}") from None
 
 
-def text_of(value):
-    return value.decode() if isinstance(value, bytes) else str(value)
-
-
 def displacement(file, quantity, scene):
     """Displacement of a point at a time [mm], or None if an excavation has taken the point."""
     time = file["/history/time"][()]
-    events = [text_of(name) for name in file["/history/event"][()]]
-    point = [text_of(name) for name in file["/history/point"][()]].index(quantity.point)
+    events = files.texts(file, "/history/event")
+    point = files.texts(file, "/history/point").index(quantity.point)
     moves, there = file["/history/displacement"][()], file["/history/present"][()] == 1
     first = int(file["/history/first_reading_row"][point])
     if quantity.stage:
@@ -89,9 +85,10 @@ def factor_of_safety(file):
 
 
 def needed(study):
-    """Which files of a run the quantities are read from, beside network.h5."""
+    """Which files of a run are wanted, beside network.h5."""
     what = {one.what for one in study.quantities}
-    return {"result.h5": bool(what & {"displacement", "failed"}), "safety.h5": "factor of safety" in what}
+    wanted = {"result.h5": bool(what & {"displacement", "failed"}) or study.histories, "safety.h5": "factor of safety" in what}
+    return {name: is_wanted or name in study.keep for name, is_wanted in {"joints.h5": any(wanted.values()), **wanted}.items()}
 
 
 def of_run(study, scene, folder, solve_code):

@@ -12,7 +12,7 @@ import tomllib
 
 import h5py
 
-from . import intervals, plan, study_file
+from . import files, intervals, plan, study_file
 from .errors import NotWanted
 
 PLOTS = pathlib.Path(__file__).resolve().parent.parent / "plots"
@@ -142,6 +142,14 @@ def csv_rows(path):
         return list(csv.DictReader(file))
 
 
+def histories_of(out):
+    """Parts of the page about statistics of histories, if the study has them."""
+    captions = {"ensemble.png": "Horizontal displacement of the points, to the right: quantiles, median and mean.",
+                "ensemble-y.png": "Vertical displacement, upward."}
+    drawn_ones = [picture(out / name, caption) for name, caption in captions.items() if (out / name).exists()]
+    return ["<h2>Histories</h2>", *drawn_ones] if drawn_ones else []
+
+
 def of_study(out, programs, folder):
     """Title and parts of the page of a study's folder."""
     study = study_file.read(out / "study.toml")
@@ -179,6 +187,7 @@ def of_study(out, programs, folder):
         for name in pictures.get(quantity.name, []):
             kind = name.removesuffix(".png").rpartition("-")[2]
             parts.append(picture(out / name, CAPTIONS[kind]))
+    parts += histories_of(out)
     parts.append("<h2>Runs without a value</h2>")
     missing = (out / "summary.txt").read_text("utf-8").partition("the design has none\n")[2].strip().splitlines()
     parts.append("<ul>" + "".join(f"<li>{escaped(line)}</li>" for line in missing[:MOST_ROWS]) + "</ul>" if missing else "<p>None.</p>")
@@ -211,4 +220,4 @@ def write(source, output, programs):
         raise NotWanted(f"{output}: is a folder, or the file that is read; expected the name of a report, such as report.html")
     with tempfile.TemporaryDirectory(prefix="jointcreep-") as folder:
         title, parts = (of_study if is_study else of_run)(source.resolve(), programs, pathlib.Path(folder))
-    plan.written(output, page(title, parts))
+    files.write_text(output, page(title, parts))

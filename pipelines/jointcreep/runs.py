@@ -14,7 +14,7 @@ import subprocess
 import sys
 import time
 
-from . import group, plan
+from . import files, group, plan
 from .errors import NotDone, NotWanted
 
 LOCK = "study.lock"
@@ -134,11 +134,11 @@ def environment(programs):
 def command_for(out, names, jobs, profile):
     """Writes the Makefile or the Snakefile of these groups; returns the command that makes them."""
     if profile:
-        plan.written(out / "Snakefile", SNAKEFILE.format(groups=names))
+        files.write_text(out / "Snakefile", SNAKEFILE.format(groups=names))
         return ["snakemake", "--snakefile", "Snakefile", "--profile", profile, "--keep-going", "--nolock", "--rerun-incomplete",
                 "--rerun-triggers", "mtime", "--quiet", "--jobs", str(jobs)]
     targets = " ".join(f"groups/{name}.rows" for name in names)
-    plan.written(out / "Makefile", MAKEFILE.format(targets=targets))
+    files.write_text(out / "Makefile", MAKEFILE.format(targets=targets))
     return ["make", "--silent", "--keep-going", f"-j{jobs}", "-f", "Makefile", "all"]
 
 

@@ -19,8 +19,10 @@ DESIGNS = {  # what each needs
     "networks x parameters": ["networks", "parameters"],
     "sobol indices": ["points"],
     "directional sampling": ["directions"],
+    "two levels": ["fine_runs", "coarse_per_fine"],
 }
 REPLICATED = ["latin hypercube", "sobol sequence", "directional sampling"]
+EXTENSIBLE = ["plain", "two levels"]  # more runs may be added, and the first of them are a design too
 LAWS = {  # parameters of each, in the unit of the key that varies
     "normal": ["mean", "deviation"],
     "lognormal": ["mean", "deviation"],
@@ -31,7 +33,9 @@ BOUNDED = ["normal", "lognormal"]  # these may be cut off at lowest and highest
 BLOCKS = {"number": "1", "mean area": "m2", "median area": "m2", "largest area": "m2"}  # statistics and their units
 WHAT = ["displacement", "blocks", "factor of safety", "failed"]
 NETWORK = "network"  # name of the column of the network's number
-RESERVED = {"run", NETWORK, "exit code", "program", "reason"}
+LEVEL = "level"  # name of the column that says whether a run of "two levels" is fine or coarse
+RESERVED = {"run", NETWORK, LEVEL, "exit code", "program", "reason"}
+KEPT = ["network.h5", "joints.h5", "result.h5", "safety.h5"]  # files of a run that may be kept
 MOST_RUNS = 1_000_000
 
 
@@ -81,6 +85,27 @@ class Design:
     replicates: int  # independent parts of a design of REPLICATED
     directions: int  # of "directional sampling", in each replicate
     failure: str  # the quantity that says whether a run fails
+    fine_runs: int = 0  # of "two levels"
+    coarse_per_fine: int = 0
+    fine_options: list = dataclasses.field(default_factory=list)  # of demsolve, for fine runs
+    coarse_options: list = dataclasses.field(default_factory=list)
+
+    def block(self):
+        """Runs of "two levels" that belong together: a fine one, and coarse ones of which the first has the same network."""
+        return 1 + self.coarse_per_fine
+
+    def networks_drawn(self):
+        """Networks of a design in which each run, or each coarse run, has its own."""
+        return self.fine_runs * self.coarse_per_fine if self.fine_runs else self.runs
+
+    def level(self, run):
+        """What a run is of "two levels"; else nothing."""
+        return "" if not self.fine_runs else "coarse" if run % self.block() else "fine"
+
+    def network_place(self, run):
+        """Which of the drawn networks and sets of parameters a run of "two levels" has."""
+        block, place = divmod(run, self.block())
+        return block * self.coarse_per_fine + max(0, place - 1)
 
 
 @dataclasses.dataclass
@@ -105,6 +130,14 @@ class Study:
     quantities: list
     stop: Stop
     demsolve_options: list
+    histories: bool = False  # whether statistics of the histories of all points are wanted
+    keep: list = dataclasses.field(default_factory=list)  # files of each run that stay, of KEPT
+
+    def options_of(self, run):
+        """Options of demsolve for a run."""
+        design = self.design
+        of_level = {"fine": design.fine_options, "coarse": design.coarse_options}.get(design.level(run), [])
+        return [*self.demsolve_options, *of_level]
 
 
 def shown(value):
@@ -204,11 +237,9 @@ def read(path):
 
     title = top.text("title", "")
     scene = path.parent / top.text("scene")
-    options = top.several("demsolve_options", [], lambda one: isinstance(one, str) and one.isprintable(),
-                          'a list of options, such as ["--no-creep"]')
-    for option in options:
-        if option.split("=")[0] in ("-o", "--output", "--checkpoint", "--factor-of-safety", "-h", "--help", "--version"):
-            top.wrong("demsolve_options", f"options without {option}")
+    options = demsolve_options_of(top, "demsolve_options")
+    with_histories = top.flag("histories", False)
+    kept = top.several("keep", [], lambda one: one in KEPT, "a list of " + ", ".join(f'"{one}"' for one in KEPT))
     top.end()
 
     varies_network, parameters = False, []
@@ -225,12 +256,23 @@ def read(path):
     unique(parameters, path)
     correlations = [correlation_of(table, parameters) for table in each("correlation")]
     quantities = [quantity_of(table) for table in each("collect")]
-    if not quantities:
+    if not quantities and not with_histories:
         raise NotWanted(f'{path}: nothing is collected; expected a [[collect]], for example with what = "failed"')
     unique([*parameters, *quantities], path)
     design = design_of(Table(path, text, "[design]", tables.get("design", {})), varies_network, parameters, correlations, quantities)
     stop = stop_of(Table(path, text, "[stop]", tables.get("stop", {})), quantities, design)
-    return Study(path, title, scene, varies_network, parameters, correlations, design, quantities, stop, options)
+    if with_histories and design.kind != "plain":
+        top.wrong("histories", f'false, because the design is "{design.kind}" and not plain')
+    return Study(path, title, scene, varies_network, parameters, correlations, design, quantities, stop, options, with_histories, kept)
+
+
+def demsolve_options_of(table, key):
+    """Options of demsolve that a table gives under a key."""
+    options = table.several(key, [], lambda one: isinstance(one, str) and one.isprintable(), 'a list of options, such as ["--no-creep"]')
+    for option in options:
+        if option.split("=")[0] in ("-o", "--output", "--checkpoint", "--factor-of-safety", "-h", "--help", "--version"):
+            table.wrong(key, f"options without {option}")
+    return options
 
 
 def unique(named, path):
@@ -278,7 +320,7 @@ def correlation_of(table, parameters):
 def design_of(table, varies_network, parameters, correlations, quantities):
     kind = table.text("kind", "plain", list(DESIGNS))
     counts = {name: table.whole(name, least=2) if name in DESIGNS[kind] else 0
-              for name in ("runs", "networks", "parameters", "points", "directions")}
+              for name in ("runs", "networks", "parameters", "points", "directions", "fine_runs", "coarse_per_fine")}
     replicates = table.whole("replicates", 10, least=2) if kind in REPLICATED else 1
     failure = ""
     if kind == "directional sampling":
@@ -286,12 +328,18 @@ def design_of(table, varies_network, parameters, correlations, quantities):
         failure = table.text("failure", None, [one.name for one in quantities if one.what == "failed" or one.above or one.below])
         if any(not one.law for one in parameters):
             table.wrong("kind", "another one, because a [[vary]] has a list of values")
+    if kind == "two levels":
+        counts["runs"] = counts["fine_runs"] * (1 + counts["coarse_per_fine"])
+        for level in ("fine_options", "coarse_options"):
+            counts[level] = demsolve_options_of(table, level)
+        if counts["fine_options"] == counts["coarse_options"]:
+            table.wrong("coarse_options", 'others than fine_options, such as ["--zone-size", "12"]')
     seed = table.whole("seed", 1, least=0, most=2**32 - 1)
     if kind == "networks x parameters":
         counts["runs"] = counts["networks"] * counts["parameters"]
     if kind == "sobol indices":
         counts["runs"] = counts["points"] * (2 + len(parameters) + varies_network)
-    if kind not in ("plain", "sobol indices") and not parameters:
+    if kind not in ("plain", "sobol indices", "two levels") and not parameters:
         table.wrong("kind", '"plain", because no [[vary]] has a key')
     if kind == "networks x parameters" and not varies_network:
         table.wrong("kind", "another one, or a [[vary]] with network = true")
@@ -344,8 +392,8 @@ def stop_of(table, quantities, design):
     of = ""
     if any(wanted.values()):
         of = table.text("of", None, [one.name for one in quantities])
-        if design.kind != "plain":
-            raise NotWanted(f'{table.place("of")}of goes with the plain design; a "{design.kind}" has all of its runs')
+        if design.kind not in EXTENSIBLE:
+            raise NotWanted(f'{table.place("of")}of goes with a design of {" or ".join(EXTENSIBLE)}; a "{design.kind}" has all of its runs')
         (quantity,) = (one for one in quantities if one.name == of)
         if wanted["probability_half_width"] and quantity.what != "failed" and not quantity.above + quantity.below:
             table.wrong("probability_half_width", f'above or below in the [[collect]] of "{of}"')

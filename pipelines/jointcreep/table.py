@@ -3,13 +3,11 @@
 The first two depend on nothing but the study, so they have the same bytes however the runs were made.
 """
 
-import os
-
 import h5py
 import numpy as np
 
-from . import plan
-from .study_file import NETWORK
+from . import files
+from .study_file import LEVEL, NETWORK
 
 FORMAT_VERSION = [1, 0]  # of runs.h5
 
@@ -18,6 +16,7 @@ def columns_of(study, rows, given):
     """Columns of the table: name, unit, values; None where there is none."""
     numbers = [row["run"] for row in rows]
     columns = [("run", "1", numbers), (NETWORK, "1", [given[run]["network"] for run in numbers])]
+    columns += [(LEVEL, "1", [study.design.level(run) for run in numbers])] if study.design.fine_runs else []
     columns += [(one.name, "as the key", [given[run]["given"][at] for run in numbers])
                 for at, one in enumerate(study.parameters)]
     columns += [("exit code", "1", [row["exit_code"] for row in rows]), ("program", "1", [row["program"] for row in rows]),
@@ -30,7 +29,7 @@ def hdf5_columns(columns, n_values):
     """The columns of the dataset /runs: name, unit, type, values. The last `n_values` have one more each, which says whether there
     is a value; without one it is 0."""
     for place, (name, unit, values) in enumerate(columns):
-        if any(isinstance(value, str) for value in values) or name in ("program", "reason"):
+        if any(isinstance(value, str) for value in values) or name in (LEVEL, "program", "reason"):
             coded = [str(value).encode() for value in values]
             yield name, unit, h5py.string_dtype("utf-8", max([1, *map(len, coded)])), coded
         elif place < len(columns) - n_values:
@@ -46,30 +45,25 @@ def write_hdf5(path, study, columns, scene):
     records = np.zeros(len(columns[0][2]), np.dtype([(name, kind) for name, _, kind, _ in found]))
     for name, _, _, values in found:
         records[name] = values
-    partial = path.with_name(f"{path.name}.partial-{os.getpid()}")
-    try:
-        with h5py.File(partial, "w") as file:
-            file.attrs["filetype"] = np.bytes_("jointcreep study")
-            file.attrs["format_version"] = np.array(FORMAT_VERSION, np.int32)
-            dataset = file.create_dataset("runs", data=records, track_times=False)
-            dataset.attrs["description"] = np.bytes_("A row a run. A value that is not there is 0, and its column \", is there\" is 0.")
-            dataset.attrs["units"] = np.array([unit.encode() for _, unit, _, _ in found])
-            for name, text in (("scene", scene), ("study", study.path.read_text(encoding="utf-8-sig"))):
-                file.create_dataset(name, data=np.array([text.encode()], h5py.string_dtype("utf-8", max(1, len(text.encode())))),
-                                    track_times=False)
-            file.attrs["complete"] = np.int32(1)
-        if path.exists() and path.read_bytes() == partial.read_bytes():
-            return
-        os.replace(partial, path)
-    finally:
-        partial.unlink(missing_ok=True)
+    texts = (("scene", scene), ("study", study.path.read_text(encoding="utf-8-sig")))
+
+    def fill(file):
+        file.attrs["filetype"] = np.bytes_("jointcreep study")
+        file.attrs["format_version"] = np.array(FORMAT_VERSION, np.int32)
+        dataset = files.put(file, "runs", records)
+        dataset.attrs["description"] = np.bytes_("A row a run. A value that is not there is 0, and its column \", is there\" is 0.")
+        dataset.attrs["units"] = np.array([unit.encode() for _, unit, _, _ in found])
+        for name, text in texts:
+            files.put(file, name, [text])
+
+    files.write_hdf5(path, fill)
 
 
 def write(study, rows, given, scene, out):
     """Writes the three files. Times are wall times, and of the last try the processor time of its programs."""
     columns = columns_of(study, rows, given)
-    plan.written(out / "runs.csv", plan.csv_text([name for name, _, _ in columns], zip(*(values for _, _, values in columns))))
+    files.write_text(out / "runs.csv", files.csv_text([name for name, _, _ in columns], zip(*(values for _, _, values in columns))))
     times = ["seconds", "program_seconds", "processor_seconds"]
-    plan.written(out / "times.csv", plan.csv_text(["run", "attempts", *times], [
+    files.write_text(out / "times.csv", files.csv_text(["run", "attempts", *times], [
         [row["run"], row["attempts"], *(f"{row[name]:.3f}" for name in times)] for row in rows]))
     write_hdf5(out / "runs.h5", study, columns, scene)

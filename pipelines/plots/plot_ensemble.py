@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Displacement histories of many realizations: bands of quantiles, the median, and the mean with its confidence.
 
-One panel a monitoring point. Needs ensemble.h5, which pipelines/slope/ensemble.py writes.
+One panel a monitoring point. Needs ensemble.h5, which jointcreep study writes.
 """
 
 import matplotlib.lines
@@ -30,18 +30,19 @@ def draw_point(axes, time, statistics, probabilities, there, every):
     axes.errorbar(time[shown], mean, yerr=[mean - low, high - mean], zorder=3, **MEAN)
 
 
-def draw(file, arguments):
-    kind = "/displacement_since_first_reading" if arguments.since_first_reading else "/displacement"
+def draw(file, component="x", point_names=(), since_first_reading=False):
+    """A figure of an open ensemble.h5: one component ("x", "y"), of all points or those that are named."""
+    kind = "/displacement_since_first_reading" if since_first_reading else "/displacement"
     time = figure.array(file, "/history/time")
     event = figure.texts(file, "/history/event")
     names = figure.texts(file, "/history/point")
-    chosen = [figure.name_index(names, name, "point") for name in arguments.point] or list(range(len(names)))
+    chosen = [figure.name_index(names, name, "point") for name in point_names] or list(range(len(names)))
     if not chosen:
         raise figure.NotWanted("there is no monitoring point in this file")
     probabilities = figure.array(file, "/probability")
     count = figure.array(file, kind + "/count")
-    component = "xy".index(arguments.component)
-    statistics = {name: 1e3 * figure.array(file, f"{kind}/{name}")[..., component]
+    of_component = "xy".index(component)
+    statistics = {name: 1e3 * figure.array(file, f"{kind}/{name}")[..., of_component]
                   for name in ("mean", "mean_low", "mean_high", "quantile")}
 
     columns = min(2, len(chosen))
@@ -63,16 +64,16 @@ def draw(file, arguments):
     for axes in panels[max(0, len(chosen) - columns):len(chosen)]:
         axes.set_xlabel(figure.time_label(file))
         axes.tick_params(labelbottom=True)
-    since = ", since the first reading" if arguments.since_first_reading else ""
-    plot.supylabel(LABELS[arguments.component].replace(" (mm)", since + " (mm)"), fontsize=8)
+    since = ", since the first reading" if since_first_reading else ""
+    plot.supylabel(LABELS[component].replace(" (mm)", since + " (mm)"), fontsize=8)
 
-    number = len(figure.array(file, "/realization/number"))
+    number = len(figure.array(file, "/run/number"))
     failed = len(figure.array(file, "/failed/number"))
     entries = [matplotlib.patches.Patch(facecolor=shade, label=f"{100 * low:.0f} to {100 * high:.0f} percent")
                for low, high, shade in BANDS]
     entries.append(matplotlib.lines.Line2D([], [], label="median", **MEDIAN))
     entries.append(panels[0].errorbar([], [], yerr=[], label="mean with its 95 percent confidence interval", **MEAN))
-    title = f"{number} realizations" + (f" ({failed} more failed)" if failed else "")
+    title = f"{number} runs" + (f" ({failed} more failed)" if failed else "")
     below = 0.42 / plot.get_figheight()  # for the legend
     plot.get_layout_engine().set(rect=(0, below, 1, 1 - below))
     plot.legend(handles=entries, title=title, title_fontsize=7, loc="lower center", ncol=4)
@@ -80,7 +81,7 @@ def draw(file, arguments):
 
 
 if __name__ == "__main__":
-    figure.run(draw, figure.arguments_of(
+    figure.run(lambda file, options: draw(file, options.component, options.point, options.since_first_reading), figure.arguments_of(
         __doc__,
         (["--component"], {"choices": list(LABELS), "default": "x", "help": "default: x"}),
         (["--point"], {"action": "append", "default": [], "help": "only this point; may be given several times"}),

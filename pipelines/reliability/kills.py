@@ -18,6 +18,19 @@ from campaign import LONGEST, ROOT, Campaign, contents, ended
 SMALL = "data/verification/two-pillars/scene.toml"  # for what runs many times: a factor of safety, a fit
 FIT = "kelvin-stiffness,joint-stiffness"
 OLD = b"a file from before"
+OF_A_STUDY = re.compile(r"/out/(groups/|work/|Makefile$|study\.lock$|times\.csv$)")  # differ between runs
+STUDY = """
+scene = "slope.toml"
+histories = true
+keep = ["result.h5"]
+demsolve_options = ["--no-creep", "--zone-size", "8"]
+[[vary]]
+network = true
+[design]
+runs = 3
+[[collect]]
+what = "failed"
+"""
 
 
 class Job:
@@ -110,13 +123,13 @@ def runs(group):
 
 
 def files(folder):
-    """Bytes of every file below, by name; not the logs of realizations, nor pictures, which come last."""
+    """Bytes of every file below, by name; not what a study goes on from, nor its times, nor pictures, which come last."""
     return {str(path.relative_to(folder)): path.read_bytes() for path in sorted(folder.rglob("*"))
-            if path.is_file() and path.suffix not in (".log", ".png")}
+            if path.is_file() and path.suffix != ".png" and not OF_A_STUDY.search(str(path))}
 
 
 def jobs(chain):
-    """Every program of the chain, and realizations by make, in scenes that take it some tenths of a second."""
+    """Every program of the chain, and a study, in scenes that take it some tenths of a second."""
     folder = chain.new_folder()
     network = chain.run("jointgen", ROOT / "tests/pipeline/benches.toml", folder / "network.h5")
     joints = chain.run("strength-averaging", network, folder / "joints.h5")
@@ -135,17 +148,13 @@ def jobs(chain):
     yield Job("creepfit", [programs / "creepfit", "joints.h5", "--measurements", "readings.csv", "--fit", FIT, "-o",
                            "factors.csv", "--readings", "fitted.csv"], [small, readings], ["factors.csv", "fitted.csv"])
     yield Job("jointexport", [programs / "jointexport", "result.h5", "-o", "zones.vtu"], [result], ["zones.vtu"])
-    make = ["make", "-s", "-C", ROOT / "pipelines/slope", "realizations", f"BIN={programs}", "N=3",
-            "SOLVE=--no-creep --zone-size 8"]
-    yield Job("make realizations", make, [slope], [])
+    (folder / "study.toml").write_text(STUDY)
+    yield Job("jointcreep study", [programs / "jointcreep", "study", "study.toml", "-o", "out", "--quiet"], [slope, folder / "study.toml"], [])
 
 
 def trial(campaign, job, case):
     """Kills once at least; counts each kill, and what came of it."""
     random, folder = campaign.random(job.name, case), campaign.chain.new_folder()
-    if job.name.startswith("make"):
-        job.command = [word for word in job.command if not word.startswith(("SCENE=", "OUT="))]
-        job.command += [f"SCENE={folder}/slope.toml", f"OUT={folder}/out"]
     job.fill(folder)
     old = {name: OLD for name in job.outputs} if random.random() < 0.5 else {}
     for name, content in old.items():
@@ -154,7 +163,7 @@ def trial(campaign, job, case):
     while not wrong and (hit == 0 or random.random() < 0.3):
         writing = random.random() < 0.5
         moment = random.uniform(0, 0.002) if writing else random.uniform(0, job.seconds)
-        if job.killed(folder, moment, writing, job.name.startswith("make") and random.random() < 0.5):
+        if job.killed(folder, moment, writing, "study" in job.name and random.random() < 0.5):
             hit += 1
             wrong = job.lost(folder, old)
             if wrong:
@@ -175,12 +184,7 @@ def trial(campaign, job, case):
 def body(campaign):
     every = list(jobs(campaign.chain))
     for job in every:
-        if not job.name.startswith("make"):
-            job.undisturbed(campaign.chain.new_folder())
-        else:
-            folder = campaign.chain.new_folder()
-            job.command += [f"SCENE={folder}/slope.toml", f"OUT={folder}/out"]
-            job.undisturbed(folder)
+        job.undisturbed(campaign.chain.new_folder())
         kills = case = 0
         while kills < campaign.n / len(every):
             kills += trial(campaign, job, case)

@@ -56,7 +56,7 @@ def trials(campaign, job):
 def body(campaign):
     alone = private_mounts()
     for job in jobs(campaign.chain):
-        if job.name.startswith("make"):
+        if "study" in job.name:
             continue
         folder = campaign.chain.new_folder()
         job.undisturbed(folder)

@@ -1,6 +1,6 @@
 """What the figures and tables of the shiplock share: curves of the points toward the lock, and the targets.
 
-Curves are those of one result file, or median and 5 to 95 percent of an ensemble.h5 (pipelines/slope/ensemble.py).
+Curves are those of one result file, or median and 5 to 95 percent of an ensemble.h5 (jointcreep study).
 """
 
 import datetime
@@ -56,7 +56,7 @@ def record_of(file):
             return np.stack([values.min(axis=0), values[1], values.max(axis=0)])
 
         total, recorded = curves("displacement"), curves("displacement_since_first_reading")
-        number = len(figure.array(file, "/realization/number"))
+        number = len(figure.array(file, "/run/number"))
     else:
         values = 1e3 * figure.array(file, "/history/displacement")[:, :, 0] * toward
         total = np.stack([values] * 3)

@@ -12,6 +12,7 @@ rows say how well intervals of other designs do. The exit code is 1 if a row is 
 
 import argparse
 import csv
+import dataclasses
 import math
 import pathlib
 import sys
@@ -103,6 +104,31 @@ def stopped_studies(n_studies, random):
     yield "plain, stop rule", "normal", "mean", hits, None
 
 
+def two_level_studies(name, n_studies, random):
+    """Coverage of the mean of two levels. Normal: both are, with a correlation of 0.965. Lognormal: coarse values x are, and fine ones
+    are x to the power 1.1 with 5 percent of noise."""
+    fine_runs, per_fine, shape = 25, 10, 0.3
+    design = dataclasses.replace(plain(fine_runs * (1 + per_fine)), kind="two levels", fine_runs=fine_runs, coarse_per_fine=per_fine)
+    study, hits, estimates = study_of(design), 0, []
+    fine_numbers = np.arange(fine_runs) * design.block()
+    true = 12.0 if name == "normal" else math.exp((1.1 * shape) ** 2 / 2)
+    for _ in range(n_studies):
+        normal = random.normal(size=(fine_runs, per_fine))
+        noise = 0.05 * random.normal(size=fine_runs)
+        coarse = 10 + 2 * normal if name == "normal" else np.exp(shape * normal)
+        fine = 12 + 2.2 * normal[:, 0] + 12 * noise if name == "normal" else coarse[:, 0] ** 1.1 * (1 + noise)
+        values = np.concatenate([fine[:, None], coarse], axis=1).ravel()
+        rows = [{"run": run, "values": [float(value)]} for run, value in enumerate(values)]
+        found, run = answers.values_of(study, rows, 0)
+        assert (run == fine_numbers).all()
+        value, low, high = answers.mean_with_interval(study, found, run, answers.coarse_of(study, rows, 0, run))
+        estimates.append(value)
+        hits += covers(low, high, true)
+    yield design.kind, name, "mean", hits, MEAN if name == "normal" else None
+    bias = (np.mean(estimates) - true) / (np.std(estimates, ddof=1) / math.sqrt(n_studies))
+    print(f"two levels, {name}: mean of the estimates less the true one, over its standard error: {bias:+.2f}")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--studies", type=int, default=4000)
@@ -114,7 +140,8 @@ def main():
     chance = 3 * math.sqrt(0.95 * 0.05 / n)
     wider = max(0.0, chance - OF_4000)
     rows = [row for name, law in LAWS.items() for row in plain_studies(law, name, n, arguments.runs, random)]
-    rows += [*crossed_studies(n, random), *latin_studies(n, random), *stopped_studies(n, random)]
+    rows += [*crossed_studies(n, random), *latin_studies(n, random), *stopped_studies(n, random),
+             *(row for name in ("normal", "lognormal") for row in two_level_studies(name, n, random))]
     table, bad = [["design", "law", "statistic", "studies", "covered", "allowed"]], 0
     for design, law, statistic, count, allowed in rows:
         share = count / n

@@ -16,12 +16,10 @@ import sys
 
 import numpy as np
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(ROOT / "tests" / "pipeline"))
-from realizations_test import SCENE  # noqa: E402
+HERE = pathlib.Path(__file__).resolve().parent
 
 STUDY = """
-scene = "small.toml"
+scene = "{scene}"
 
 [[vary]]
 network = true
@@ -47,7 +45,7 @@ component = "y"
 
 def made(arguments, name, design):
     """Makes a study; returns its folder."""
-    (arguments.out / f"{name}.toml").write_text(STUDY.format(design=design), "utf-8")
+    (arguments.out / f"{name}.toml").write_text(STUDY.format(scene=HERE / "small.toml", design=design), "utf-8")
     subprocess.run([arguments.programs / "jointcreep", "study", arguments.out / f"{name}.toml", "-o", arguments.out / name, "--quiet",
                     "-j", str(arguments.jobs)], check=True)
     return arguments.out / name
@@ -68,7 +66,6 @@ def main():
     parser.add_argument("--jobs", type=int, default=1)
     arguments = parser.parse_args()
     arguments.out.mkdir(parents=True, exist_ok=True)
-    (arguments.out / "small.toml").write_text(SCENE, "utf-8")
 
     pairs = rows_of(made(arguments, "pairs", f'kind = "networks x parameters"\nnetworks = {arguments.networks}\n'
                          f"parameters = {arguments.parameters}\nseed = 7") / "runs.csv")

@@ -28,6 +28,10 @@ class Chain:
         """The text of a file in the source folder."""
         return (self.source / path).read_text()
 
+    def small(self):
+        """The text of a scene of some 30 random blocks, which takes some hundredths of a second."""
+        return self.text("pipelines/studies/small.toml")
+
     def bridged(self, keys, cohesion=0.1, creeps=True):
         """The scene every_key.toml, whose joints with rock bridges have that cohesion [MPa], a Kelvin unit if they creep, and
         these keys in addition."""
@@ -86,6 +90,19 @@ def datasets(path):
     with h5py.File(path) as file:
         file.visititems(note)
     return values
+
+
+def alive(session):
+    """Processes of a session, without those that are dead and only not yet waited for."""
+    found = []
+    for path in pathlib.Path("/proc").glob("[0-9]*/stat"):
+        try:
+            state, _, _, its_session = path.read_text().rpartition(")")[2].split()[:4]
+        except (OSError, ValueError):  # it has ended meanwhile
+            continue
+        if int(its_session) == session and state not in "ZX":
+            found.append(int(path.parent.name))
+    return found
 
 
 class ChainTest(unittest.TestCase):
