@@ -55,19 +55,20 @@ def mean_of_parts(values, part):
 
 
 def mean_by_control(values, control):
-    """Of independent pairs: mean of the values by a control variate whose own mean is known to be 0, and ends of its interval
-    (Lavenberg and Welch 1981). The factor on the control is that of least squares; the interval is exact for normal pairs."""
+    """Of independent pairs: mean of the values by a control variate whose own mean is known to be 0, and ends of Student's interval.
+
+    A value less a factor times its control has the same mean, whatever the factor, and the least variance by the factor of least
+    squares. Here each pair has that of all other pairs, so that the mean is not biased (Avramidis and Wilson 1993, splitting).
+    """
     n = len(values)
     if n < 4:
         return (float(np.mean(values)) if n else None), None, None
-    spread = control - control.mean()
-    squares = float((spread**2).sum())
-    if squares == 0:
+    of_control, of_values, products, squares = (part.sum() - part for part in (control, values, values * control, control**2))
+    spread = squares - of_control**2 / (n - 1)
+    if not (spread > 0).all():
         return mean(values)
-    factor = float((spread * values).sum()) / squares
-    middle = float(np.mean(values)) - factor * float(control.mean())
-    rest = float(((values - np.mean(values) - factor * spread) ** 2).sum()) / (n - 2)
-    return student(middle, rest * (1 / n + float(control.mean()) ** 2 / squares), n - 2)
+    left = values - (products - of_values * of_control / (n - 1)) / spread * control
+    return student(float(left.mean()), float(left.var(ddof=1)) / n, n - 2)
 
 
 def crossed(table):
