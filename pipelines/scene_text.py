@@ -1,8 +1,9 @@
 """What scripts that write a variant of a scene share: it is read, its text changed, the new one written whole."""
 
-import os
 import sys
 import tomllib
+
+from jointcreep import files
 
 
 class NotWanted(Exception):
@@ -19,10 +20,7 @@ def write_variant(parser, change):
         with open(arguments.scene, encoding="utf-8-sig") as file:
             text = change(file.read(), arguments)
         tomllib.loads(text)
-        partial = f"{arguments.output}.partial-{os.getpid()}"
-        with open(partial, "w", encoding="utf-8") as file:
-            file.write(text)
-        os.replace(partial, arguments.output)
+        files.write_text(arguments.output, text)
     except (OSError, NotWanted, tomllib.TOMLDecodeError) as error:
         print(f"{parser.prog}: {arguments.scene}: {error}", file=sys.stderr)
         sys.exit(2)

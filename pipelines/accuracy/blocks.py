@@ -17,15 +17,14 @@ less what a run of one step costs.
 import csv
 import math
 import re
-import subprocess
 import sys
 import tempfile
 from pathlib import Path
 
 import numpy as np
 
-sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "plots"))
 import figure
+from jointcreep import chain
 from scaling import measured
 from speed_against_error import number, table
 
@@ -71,9 +70,7 @@ class Chain:
 
     def dynamics(self, growth, seconds):
         """Time and memory [s, MB] of so many seconds of dynamic analysis, which end before there is rest; and a step [s]."""
-        self.scene.write_text(scene_of(self.slope, growth, dynamics_for(seconds)))
-        subprocess.run([self.programs / "jointgen", self.scene, "-q", "-o", self.network], check=True)
-        subprocess.run([self.programs / "strength-averaging", self.network, "-q", "-o", self.joints], check=True)
+        chain.joints_of(self.programs, scene_of(self.slope, growth, dynamics_for(seconds)), self.scene.parent)
         taken = measured(["sh", "-c", '"$0" "$@"; [ $? = 3 ]', self.programs / "demsolve", self.joints, "-q", "-o",
                           self.result])
         with figure.opened(self.failed) as file:

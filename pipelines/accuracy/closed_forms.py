@@ -11,15 +11,12 @@ Creep Modeling in Excavation Analysis of a High Rock Slope, ASCE 2003, Eq. 11).
 """
 
 import math
-import sys
 from collections.abc import Callable
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 
-sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "plots"))
-import column_closed_form  # noqa: E402
+import column_closed_form
 
 
 @dataclass

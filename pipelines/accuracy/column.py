@@ -19,9 +19,9 @@ import tomllib
 from dataclasses import dataclass, field
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "plots"))
 import column_difference
 import figure
+from jointcreep import chain
 from speed_against_error import processor_seconds
 
 ZONE_SIZES = [5, 2.5, 1.25, 0.625]  # [m]
@@ -100,10 +100,7 @@ def runs_of(text):
 
 
 def answer_of(run, programs, folder):
-    scene, network, joints, result = (folder / name for name in ("scene.toml", "network.h5", "joints.h5", "result.h5"))
-    scene.write_text(run.scene)
-    subprocess.run([programs / "jointgen", scene, "-q", "-o", network], check=True)
-    subprocess.run([programs / "strength-averaging", network, "-q", "-o", joints], check=True)
+    joints, result = chain.joints_of(programs, run.scene, folder), folder / "result.h5"
     seconds, code, message = processor_seconds([programs / "demsolve", joints, "-q", "-o", result, *run.options])
     if code != 0:
         raise SystemExit(message)

@@ -14,7 +14,6 @@ Seconds are processor time of one thread, less that of a run that differs by the
 
 import csv
 import re
-import subprocess
 import sys
 import tempfile
 from dataclasses import dataclass
@@ -22,6 +21,7 @@ from pathlib import Path
 
 import cases
 import figure
+from jointcreep import chain
 from scaling import measured
 from speed_against_error import number, table
 
@@ -75,10 +75,7 @@ def loads_of(name, text):
 
 def solve(text, way, size, programs, scratch):
     """Seconds and the result's file; nothing where no equilibrium was found."""
-    scene, network, joints, result = (scratch / name for name in ("scene.toml", "network.h5", "joints.h5", "result.h5"))
-    scene.write_text(with_equilibrium(text, *way))
-    subprocess.run([programs / "jointgen", scene, "-q", "-o", network], check=True)
-    subprocess.run([programs / "strength-averaging", network, "-q", "-o", joints], check=True)
+    joints, result = chain.joints_of(programs, with_equilibrium(text, *way), scratch), scratch / "result.h5"
     try:
         return measured([programs / "demsolve", joints, "-q", "--zone-size", size, "-o", result])[0], result
     except SystemExit as given_up:

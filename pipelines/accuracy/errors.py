@@ -4,14 +4,11 @@ Errors are relative to the scale of the case: displacements to the largest exact
 to the largest exact traction at any time. Tractions are compared at every state that the file holds.
 """
 
-import sys
 import tomllib
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 
-sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "plots"))
 import closed_forms
 import figure
 

@@ -21,8 +21,8 @@ from pathlib import Path
 import closed_forms
 import numpy as np
 
-sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "plots"))
-import figure  # noqa: E402
+import figure
+from jointcreep import chain
 
 
 @dataclass
@@ -63,10 +63,7 @@ class Programs:
     def answer(self, text, *options):
         """Path of the result, and of what is left where there is none; exit code and message of demsolve."""
         folder = Path(tempfile.mkdtemp(dir=self.folder))
-        (folder / "scene.toml").write_text(text)
-        for program, source, output in (("jointgen", "scene.toml", "network.h5"),
-                                        ("strength-averaging", "network.h5", "joints.h5")):
-            subprocess.run([self.programs / program, source, "-q", "-o", output], cwd=folder, check=True)
+        chain.joints_of(self.programs, text, folder)
         done = subprocess.run([self.programs / "demsolve", "joints.h5", "-q", "-o", "result.h5", "--engine", self.engine,
                                *map(str, options)], cwd=folder, capture_output=True, text=True)
         return folder / ("result.h5" if done.returncode == 0 else "result.failed.h5"), done.returncode, done.stderr

@@ -14,6 +14,7 @@ import sys
 import tempfile
 from pathlib import Path
 
+from jointcreep import chain
 from speed_against_error import table
 
 SIZES = {1.6: (400, 9), 0.45: (60, 9)}  # of zones [m]: steps and rounds
@@ -25,9 +26,7 @@ def main():
     programs, benchmark, data, out = map(Path, sys.argv[1:])
     rows = []
     with tempfile.TemporaryDirectory() as folder:
-        network, joints = Path(folder) / "network.h5", Path(folder) / "joints.h5"
-        subprocess.run([programs / "jointgen", data / "slope/scene.toml", "-q", "-o", network], check=True)
-        subprocess.run([programs / "strength-averaging", network, "-q", "-o", joints], check=True)
+        joints = chain.joints_of(programs, data / "slope/scene.toml", folder)
         for size, (steps, rounds) in SIZES.items():
             # Threads wait for each other as those of demsolve do.
             done = subprocess.run([benchmark, joints, *map(str, (size, steps, rounds))], check=True, text=True,

@@ -31,6 +31,7 @@ import numpy as np
 import cases as of
 import errors
 import figure
+from jointcreep import chain
 from speed_against_error import number, table
 
 SIZES = {"slope": [6, 3, 1.6, 1, 0.7, 0.45], "column": [1.25, 0.6, 0.3, 0.17, 0.1]}  # of zones [m]
@@ -67,17 +68,14 @@ class Section:
     def __init__(self, name, text, programs, benchmark, scratch):
         self.name, self.demsolve, self.benchmark = name, programs / "demsolve", benchmark
         self.result = scratch / "result.h5"
-        self.joints = self.prepared(text, programs, scratch / f"{name}.h5")
+        self.joints = self.prepared(text, programs, scratch / name)
         nothing = re.sub(r"(?ms)^\[(\[stage\]|creep)\].*?(?=^\[|\Z)", "", text)
-        self.unchanged = self.prepared(nothing, programs, scratch / f"{name}-unchanged.h5")
+        self.unchanged = self.prepared(nothing, programs, scratch / f"{name}-unchanged")
 
     @staticmethod
-    def prepared(text, programs, joints):
-        scene, network = joints.with_suffix(".toml"), joints.with_suffix(".network.h5")
-        scene.write_text(text)
-        subprocess.run([programs / "jointgen", scene, "-q", "-o", network], check=True)
-        subprocess.run([programs / "strength-averaging", network, "-q", "-o", joints], check=True)
-        return joints
+    def prepared(text, programs, folder):
+        folder.mkdir()
+        return chain.joints_of(programs, text, folder)
 
     def solve(self, *options, joints=None):
         return measured([self.demsolve, joints or self.joints, "-q", "-o", self.result, *options])

@@ -31,6 +31,7 @@ import cases as of
 import errors
 import pillars
 import speed_plots
+from jointcreep import chain
 
 OUTCOMES = {2: "refused", 3: "no equilibrium"}  # exit codes of demsolve
 
@@ -71,11 +72,7 @@ class Programs:
 
     def prepare(self, scene):
         """The joints file of a scene's text."""
-        path, network, joints = (self.scratch / name for name in ("scene.toml", "network.h5", "joints.h5"))
-        path.write_text(scene)
-        subprocess.run([self.folder / "jointgen", path, "-q", "-o", network], check=True)
-        subprocess.run([self.folder / "strength-averaging", network, "-q", "-o", joints], check=True)
-        return joints
+        return chain.joints_of(self.folder, scene, self.scratch)
 
     def solve(self, joints, options, every_state=False):
         """Seconds, exit code, message and result of demsolve."""

@@ -16,7 +16,6 @@ convergence criteria, TOLERANCE.
 import csv
 import json
 import math
-import os
 import shutil
 import subprocess
 import sys
@@ -26,8 +25,8 @@ from pathlib import Path
 
 import numpy as np
 
-sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "plots"))
 import figure
+from jointcreep import chain
 from scaling import measured
 from speed_against_error import number, table
 
@@ -112,10 +111,7 @@ def ours(programs, blocks, way, scratch):
     result = scratch / "result.h5"
     seconds, wall = [], []
     for with_stage in False, True:
-        scene, network, joints = (scratch / name for name in ("scene.toml", "network.h5", "joints.h5"))
-        scene.write_text(scene_of(blocks, way, with_stage))
-        subprocess.run([programs / "jointgen", scene, "-q", "-o", network], check=True)
-        subprocess.run([programs / "strength-averaging", network, "-q", "-o", joints], check=True)
+        joints = chain.joints_of(programs, scene_of(blocks, way, with_stage), scratch)
         command = [programs / "demsolve", joints, "-q", "-o", result]
         seconds.append(measured(command)[0])
         wall.append(wall_time([*command, "--threads", "2"]))

@@ -9,12 +9,9 @@ read every other day from the first removal until it goes, upward displacements,
 
 import argparse
 import random
-import sys
 import tomllib
-from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "plots"))
-import column_closed_form  # noqa: E402
+import column_closed_form
 
 
 def readings(column, sigma, seed):

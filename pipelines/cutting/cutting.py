@@ -14,8 +14,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "plots"))
-from figure import COLORS, LINES, MARKERS, TWO_COLUMNS, plt  # noqa: E402
+from figure import COLORS, LINES, MARKERS, TWO_COLUMNS, plt
 
 ANGLES = 15, 75, 130  # [deg]
 METHODS = {"jointgen": "jointgen, all of it", "subdivision": "subdivision alone", "cgal": "CGAL insertion",

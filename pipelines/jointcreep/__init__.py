@@ -1,4 +1,4 @@
-"""Monte Carlo studies of jointcreep: one study file in, many runs of the programs, their statistics and a report out.
+"""Files of jointcreep as tables, and Monte Carlo studies: one study file in, many runs of the programs, statistics and a report out.
 
 In the order in which a study passes through them:
 
@@ -16,6 +16,10 @@ In the order in which a study passes through them:
     intervals.py    means, quantiles and probabilities with their confidence intervals
     answers.py      these of a study, how they converge, and shares of the variance
     pictures.py     pictures of them
+    reading.py      files and studies as tables with units: jointcreep.read(PATH)
+    chain.py        programs of the chain, for scripts
+    files.py        text in HDF5 files; files that are written whole or not at all
+    ensemble.py     statistics of the histories of all runs
     report.py       one page of HTML
     errors.py       what ends a command with a message
 
@@ -26,3 +30,8 @@ Joint sets from mapped traces:
     length_laws.py       laws of their length, cut ones as censored
     orientation_laws.py  laws of their angle, and of poles
 """
+
+from .errors import NotWanted
+from .reading import read
+
+__all__ = ["NotWanted", "read"]

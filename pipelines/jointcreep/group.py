@@ -24,10 +24,9 @@ import sys
 import time
 
 from . import ensemble, plan, quantities, scene_keys, study_file
+from .chain import CANNOT_WRITE, was_stopped
 from .errors import NotDone, NotWanted
 
-STOPPED = {-signal.SIGHUP, -signal.SIGINT, -signal.SIGKILL, -signal.SIGTERM}
-CANNOT_WRITE = 4
 LONGEST_REASON = 500  # characters
 PR_SET_PDEATHSIG = 1  # linux/prctl.h
 LIBC = ctypes.CDLL(None)
@@ -91,7 +90,7 @@ def made(study, scene, text, run, programs, folder):
             arguments = [*arguments, "--realization", str(run["network"])]
         code, message, took = called(programs / name, ["--quiet", *arguments] if name == "demsolve" else arguments, folder)
         seconds += took
-        if code in STOPPED or code == CANNOT_WRITE:
+        if was_stopped(code):
             why = f"exit code {code}" if code > 0 else f"signal {-code}"
             raise Interrupted(f"run {run['run']}: {name} was stopped ({why}){': ' if message else ''}{message}")
         if "result.h5" in arguments:

@@ -5,7 +5,8 @@ import pathlib
 import sys
 
 HERE = pathlib.Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE / "@PACKAGE_FOLDER@"))
+PACKAGE = HERE / "@PACKAGE_FOLDER@"
+sys.path[:0] = [str(PACKAGE), str(PACKAGE / "plots")]
 sys.dont_write_bytecode = True
 
 from jointcreep import command  # noqa: E402

@@ -5,8 +5,6 @@ pictures.json lists them by quantity.
 """
 
 import json
-import pathlib
-import sys
 import textwrap
 
 import h5py
@@ -15,12 +13,10 @@ import numpy as np
 
 from . import answers, files, intervals
 
-PLOTS = pathlib.Path(__file__).resolve().parent.parent / "plots"
-sys.path.insert(0, str(PLOTS))
 
-import figure  # noqa: E402
-import plot_ensemble  # noqa: E402
-from stage_names import plain  # noqa: E402
+import figure
+import plot_ensemble
+from stage_names import plain
 
 BAND = "#c9d8ea"
 MOST_PANELS = 6

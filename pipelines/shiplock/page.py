@@ -7,10 +7,11 @@ Between the lines `<!-- NAME.md -->` and `<!-- end of NAME.md -->` of the page g
 is not there yet leaves what the page has.
 """
 
-import os
 import pathlib
 import re
 import sys
+
+from jointcreep import files
 
 
 def with_tables(page, folder):
@@ -26,9 +27,7 @@ def main():
         sys.exit(__doc__)
     folder, path = map(pathlib.Path, sys.argv[1:])
     page = with_tables(path.read_text(encoding="utf-8"), folder)
-    partial = path.with_name(f"{path.name}.partial-{os.getpid()}")
-    partial.write_text(page, encoding="utf-8")
-    os.replace(partial, path)
+    files.write_text(path, page)
 
 
 if __name__ == "__main__":

@@ -4,16 +4,12 @@ Curves are those of one result file, or median and 5 to 95 percent of an ensembl
 """
 
 import datetime
-import pathlib
-import sys
 import tomllib
 from dataclasses import dataclass
 
 import numpy as np
 
-HERE = pathlib.Path(__file__).resolve().parent
-sys.path.insert(0, str(HERE.parent / "plots"))
-import figure  # noqa: E402
+import figure
 
 LOW, MEDIAN, HIGH = 0.05, 0.50, 0.95
 

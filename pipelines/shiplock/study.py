@@ -21,9 +21,7 @@ import csv
 import datetime
 import io
 import json
-import os
 import pathlib
-import subprocess
 import sys
 import tempfile
 import tomllib
@@ -33,6 +31,8 @@ import matplotlib.patches
 import numpy as np
 
 import records
+from jointcreep import chain, files
+from jointcreep.chain import Failed, run
 from records import figure
 
 HERE = pathlib.Path(__file__).resolve().parent
@@ -64,30 +64,10 @@ BAR, SPREAD = figure.COLORS[4], figure.COLORS[5]  # of the tornado plot
 SHIFTS = {"reading-earlier": -60, "reading-later": 60}  # of the first readings [days]
 
 
-STOPPED = (4, 129, 130, 137, 143)  # exit codes: could not read or write; hung up, interrupted, killed, terminated
-
-
-class Failed(Exception):
-    """A run gave no result."""
-
-
-def run(program, *arguments):
-    """Its output. Exits if it was stopped, which is no result and is to be run again."""
-    done = subprocess.run([program, *map(str, arguments)], capture_output=True, text=True)
-    words = f"{pathlib.Path(program).name}, exit code {done.returncode}: {done.stderr.strip()}"
-    if done.returncode < 0 or done.returncode in STOPPED:
-        raise SystemExit(f"{words}; it was stopped, and is run again the next time")
-    if done.returncode != 0:
-        raise Failed(words)
-    return done.stdout
-
-
 def joints_of(programs, scene, options, number, folder):
     """The joints file of one network of a variant, made in the folder."""
     run(sys.executable, HERE / "variant.py", scene, *options, "-o", folder / "scene.toml")
-    run(programs / "jointgen", folder / "scene.toml", "--realization", number, "--quiet", "-o", folder / "n.h5")
-    run(programs / "strength-averaging", folder / "n.h5", "--quiet", "-o", folder / "j.h5")
-    return folder / "j.h5"
+    return chain.joints_of(programs, folder / "scene.toml", folder, "--realization", number)
 
 
 def computed(programs, scene, options, number):
@@ -119,9 +99,7 @@ def result_of(programs, scene, out, name, options, number):
     except Failed as error:
         result = {"failed": str(error)}
     print(f"{name}, network {number}: {result.get('failed', 'equilibrium')}", flush=True)
-    partial = path.with_name(f"{path.name}.partial-{os.getpid()}")
-    partial.write_text(json.dumps(result))
-    os.replace(partial, path)
+    files.write_text(path, json.dumps(result))
     return result
 
 

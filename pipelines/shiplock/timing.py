@@ -7,13 +7,13 @@ writes OUT/timing.md. With creep dynamic relaxation takes some minutes.
 """
 
 import argparse
-import os
 import pathlib
 import resource
 import subprocess
 import sys
 import tempfile
 
+from jointcreep import chain, files
 from records import figure
 
 HERE = pathlib.Path(__file__).resolve().parent
@@ -47,18 +47,15 @@ def main():
     with tempfile.TemporaryDirectory(prefix="jointcreep-") as folder:
         folder = pathlib.Path(folder)
         for words, options in (("linear", ["--linear"]), ("slip and open", [])):
-            scene, network, joints, result = (folder / name for name in ("s.toml", "n.h5", "j.h5", "r.h5"))
+            scene, result = folder / "s.toml", folder / "r.h5"
             timed([sys.executable, HERE / "variant.py", arguments.scene, *options, "-o", scene])
-            timed([programs / "jointgen", scene, "--quiet", "-o", network])
-            timed([programs / "strength-averaging", network, "--quiet", "-o", joints])
+            joints = chain.joints_of(programs, scene, folder)
             for computed, what in (("excavation", ["--no-creep"]), ("excavation and creep", [])):
                 for engine in "implicit", "relaxation":
                     seconds, zones, equilibria = solved(programs, joints, result, *size, *what, "--engine", engine)
                     lines.append(f"| {words} | {computed} | {engine} | {zones} | {equilibria} | {seconds:.1f} |")
     path = arguments.output / "timing.md"
-    partial = path.with_name(f"{path.name}.partial-{os.getpid()}")
-    partial.write_text("\n".join(lines) + "\n")
-    os.replace(partial, path)
+    files.write_text(path, "\n".join(lines) + "\n")
     print(path.read_text(), end="")
 
 

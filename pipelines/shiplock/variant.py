@@ -10,13 +10,10 @@ import argparse
 import datetime
 import json
 import math
-import pathlib
 import re
-import sys
 import tomllib
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent))
-from scene_text import NotWanted, write_variant  # noqa: E402
+from scene_text import NotWanted, write_variant
 
 WIDTH = 118  # of a line of the scene, in characters
 DECAY = 20  # of the tectonic stress towards the surface [m]

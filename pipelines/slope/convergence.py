@@ -22,20 +22,17 @@ import argparse
 import csv
 import dataclasses
 import io
-import os
 import pathlib
 import resource
 import subprocess
 import sys
 import tempfile
 import time
-import tomllib
 
-import h5py
 import numpy as np
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent))
-from jointcreep import histories  # noqa: E402
+import jointcreep
+from jointcreep import NotWanted, files, histories
 
 HALVED = [  # option of demsolve, table and key of the scene, what it is called, unit
     ("zone-size", "zones", "size_m", "zone size", "m"),
@@ -43,10 +40,6 @@ HALVED = [  # option of demsolve, table and key of the scene, what it is called,
     ("creep-tolerance", "creep", "tolerance_m", "creep tolerance", "m"),  # or this one
     ("tolerance", "equilibrium", "tolerance", "tolerance", ""),
 ]
-
-
-class NotWanted(Exception):
-    """A run, or a file, is not what the comparison needs."""
 
 
 @dataclasses.dataclass
@@ -67,10 +60,6 @@ class Run:
     seconds: float = 0  # of processor time
 
 
-def text_of(value):
-    return value.decode() if isinstance(value, bytes) else str(value)
-
-
 def default_of(programs, table, key):
     """The default of a scene's key, as jointgen lists it; None if it has none."""
     listed = subprocess.run([programs / "jointgen", "--scene-keys"], check=True, capture_output=True, text=True).stdout
@@ -84,20 +73,14 @@ def default_of(programs, table, key):
 
 
 def read(path, run, component=None):
-    with h5py.File(path) as file:
-        run.time = file["/history/time"][()]
-        run.displacement = file["/history/displacement"][()]
-        if component:
-            run.displacement[:, :, "yx".index(component)] = 0
-        run.first = file["/history/first_reading_row"][()]
-        run.present = file["/history/present"][()] == 1
-        run.points = tuple(text_of(name) for name in file["/history/point"][()])
-        run.stages = np.cumsum([bool(text_of(name)) for name in file["/history/event"][()]])
-        run.dates = np.unique(file["/states/time"][()])
-        run.zones = len(file["/mesh/zone_block"])
-        run.contacts = len(file["/mesh/contact_edge"])
-        run.equilibria = len(file["/equilibria/steps"])
-        run.steps = int(file["/equilibria/steps"][()].sum())
+    file = jointcreep.read(path)
+    history, steps = file.history(), file["/equilibria/steps"]
+    run.time, run.stages, run.dates, run.points = history.time, history.stages(), history.dates, tuple(history.point)
+    run.displacement, run.present, run.first = history.displacement, history.present, history.first_reading_row
+    if component:
+        run.displacement[:, :, "yx".index(component)] = 0
+    run.zones, run.contacts = len(file["/mesh/zone_block"]), len(file["/mesh/contact_edge"])
+    run.equilibria, run.steps = len(steps), int(steps.sum())
 
 
 def since_first_reading(run):
@@ -218,12 +201,6 @@ def table(own, others):
     return text.getvalue()
 
 
-def written(path, text):
-    partial = path.with_name(f"{path.name}.partial-{os.getpid()}")
-    partial.write_text(text, encoding="utf-8")
-    os.replace(partial, path)
-
-
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("programs", metavar="PROGRAMS", type=pathlib.Path)
@@ -235,8 +212,7 @@ def main():
     arguments = parser.parse_args()
     engine = ["--engine", arguments.engine] if arguments.engine else []
     try:
-        with h5py.File(arguments.joints) as file:
-            scene = tomllib.loads(text_of(file["/scene"][0]))
+        scene = jointcreep.read(arguments.joints).scene
         runs = [("the scene's own", [])]
         for option, section, key, name, unit in HALVED:
             if section == "creep" and key not in scene.get("creep", {}):
@@ -255,8 +231,8 @@ def main():
         own, *others = found
         what = {None: "displacement", "x": "horizontal displacement", "y": "vertical displacement"}[arguments.component]
         words = markdown(own, others, what, arguments.readings)
-        written(arguments.output / "convergence.md", words)
-        written(arguments.output / "convergence.csv", table(own, others))
+        files.write_text(arguments.output / "convergence.md", words)
+        files.write_text(arguments.output / "convergence.csv", table(own, others))
     except (NotWanted, subprocess.CalledProcessError) as error:
         sys.exit(f"convergence.py: {error}")
     except (OSError, KeyError) as error:

@@ -9,13 +9,10 @@ Only numbers inside the laws change, so that comments, order and every other val
 
 import argparse
 import copy
-import pathlib
 import re
-import sys
 import tomllib
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent))
-from scene_text import NotWanted, write_variant  # noqa: E402
+from scene_text import NotWanted, write_variant
 
 LAW = r"^(?P<before>{law} = {{[^}}]*\b{key} = )(?P<number>[-+.\w]+)(?P<after>[^}}]*}}.*)$"
 

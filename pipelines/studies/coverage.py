@@ -20,8 +20,7 @@ import sys
 import numpy as np
 from scipy import stats
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent.parent))
-from jointcreep import answers, study_file  # noqa: E402
+from jointcreep import answers, study_file
 
 LAWS = {"normal": stats.norm(10, 2), "uniform": stats.uniform(0, 1), "lognormal": stats.lognorm(0.5), "exponential": stats.expon()}
 MEAN, AT_LEAST = (0.94, 0.96), (0.94, 1.0)

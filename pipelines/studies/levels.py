@@ -8,9 +8,9 @@ interval is the wanted part of the mean. Coarse runs have zones of `coarse` m, a
 processor, of all programs. The exit code is 1 if the two intervals do not meet.
 """
 
-import csv
 import sys
 
+import jointcreep
 import slope
 
 STUDY = """
@@ -33,11 +33,6 @@ of = "crest"
 relative_half_width = {error}
 """
 MOST = 20000  # runs
-
-
-def rows_of(path):
-    with open(path, encoding="utf-8", newline="") as file:
-        return list(csv.DictReader(file))
 
 
 def main():
@@ -65,12 +60,11 @@ def main():
         file.write_text(STUDY.format(scene=slope.ROOT / "data/slope/scene.toml", options=options, design=design,
                                      error=arguments.error), "utf-8")
         slope.made(arguments, file, folder, arguments.jobs)
-        times = rows_of(folder / "times.csv")
-        hours[name] = sum(float(row["processor_seconds"]) for row in times) / 3600
-        (mean,) = (row for row in rows_of(folder / "answers.csv") if row["statistic"] == "mean")
-        value, low, high = (float(mean[key]) for key in ("value", "low", "high"))
+        study = jointcreep.read(folder)
+        hours[name] = study.times["processor_seconds"].sum() / 3600
+        value, low, high = study.answer("mean")
         ends[name] = low, high
-        print(f"| {name.replace('-', ' ')} | {len(times)} | {value:.4f} | {low:.4f} to {high:.4f} | {hours[name]:.3f} |", flush=True)
+        print(f"| {name.replace('-', ' ')} | {study.runs.rows()} | {value:.4f} | {low:.4f} to {high:.4f} | {hours[name]:.3f} |", flush=True)
     print(f"two levels take {hours['two-levels'] / hours['plain']:.2f} of the time")
     (low, high), (other_low, other_high) = ends.values()
     sys.exit(0 if low <= other_high and other_low <= high else 1)

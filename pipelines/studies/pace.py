@@ -8,10 +8,10 @@ times.csv; and the same of processor time, which other work on the machine chang
 pictures, which take the same for any number of runs.
 """
 
-import csv
 import resource
 import time
 
+import jointcreep
 import slope
 
 
@@ -29,10 +29,9 @@ def main():
         slope.made(arguments, file, folders[jobs], jobs)
         seconds[jobs] = time.monotonic() - begin
         processor[jobs] = processor_seconds() - processor_before
-        with open(folders[jobs] / "times.csv", encoding="utf-8") as times:
-            rows = list(csv.DictReader(times))
-        programs[jobs] = sum(float(row["program_seconds"]) for row in rows)
-        processor[jobs] /= sum(float(row["processor_seconds"]) for row in rows)
+        times = jointcreep.read(folders[jobs]).times
+        programs[jobs] = times["program_seconds"].sum()
+        processor[jobs] /= times["processor_seconds"].sum()
         begin = time.monotonic()
         slope.made(arguments, file, folders[jobs], jobs)  # all runs are there
         answers = time.monotonic() - begin

@@ -10,12 +10,12 @@ error. The exit code is 1 if the closed form is not within the interval.
 """
 
 import argparse
-import csv
 import math
 import pathlib
 import subprocess
 import sys
 
+import jointcreep
 from scipy import integrate, stats
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -76,13 +76,12 @@ def main():
     file.write_text(STUDY.format(directions=arguments.directions, replicates=arguments.replicates), "utf-8")
     subprocess.run([arguments.programs / "jointcreep", "study", file, "-o", arguments.out / "plane", "--quiet", "-j",
                     str(arguments.jobs)], check=True)
-    with open(arguments.out / "plane" / "answers.csv", encoding="utf-8") as answers:
-        (row,) = csv.DictReader(answers)
-    true, value, low, high = closed_form(), *(float(row[name]) for name in ("value", "low", "high"))
+    study = jointcreep.read(arguments.out / "plane")
+    true, (value, low, high), runs = closed_form(), study.answer("probability of failure"), study.runs.rows()
     error = (high - value) / stats.t.ppf(0.975, arguments.replicates - 1)
     plain = value * (1 - value) / error**2
-    print(f"probability to slide: closed form {true:.3e}; found {value:.3e}, {low:.3e} to {high:.3e}, in {row['runs']} runs; "
-          f"plain sampling as good: {plain:.0f} runs, {plain / int(row['runs']):.0f} times as many")
+    print(f"probability to slide: closed form {true:.3e}; found {value:.3e}, {low:.3e} to {high:.3e}, in {runs} runs; "
+          f"plain sampling as good: {plain:.0f} runs, {plain / runs:.0f} times as many")
     sys.exit(0 if low <= true <= high else 1)
 
 

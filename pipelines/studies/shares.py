@@ -9,12 +9,11 @@ from its design "sobol indices". A line is an input: both values, the interval, 
 """
 
 import argparse
-import csv
 import pathlib
 import subprocess
 import sys
 
-import numpy as np
+import jointcreep
 
 HERE = pathlib.Path(__file__).resolve().parent
 
@@ -44,16 +43,11 @@ component = "y"
 
 
 def made(arguments, name, design):
-    """Makes a study; returns its folder."""
+    """Makes a study, and reads it."""
     (arguments.out / f"{name}.toml").write_text(STUDY.format(scene=HERE / "small.toml", design=design), "utf-8")
     subprocess.run([arguments.programs / "jointcreep", "study", arguments.out / f"{name}.toml", "-o", arguments.out / name, "--quiet",
                     "-j", str(arguments.jobs)], check=True)
-    return arguments.out / name
-
-
-def rows_of(path):
-    with open(path, encoding="utf-8") as file:
-        return list(csv.DictReader(file))
+    return jointcreep.read(arguments.out / name)
 
 
 def main():
@@ -67,9 +61,9 @@ def main():
     arguments = parser.parse_args()
     arguments.out.mkdir(parents=True, exist_ok=True)
 
-    pairs = rows_of(made(arguments, "pairs", f'kind = "networks x parameters"\nnetworks = {arguments.networks}\n'
-                         f"parameters = {arguments.parameters}\nseed = 7") / "runs.csv")
-    values = np.array([float(row["floor (mm)"]) for row in pairs]).reshape(arguments.networks, arguments.parameters)
+    pairs = made(arguments, "pairs", f'kind = "networks x parameters"\nnetworks = {arguments.networks}\n'
+                         f"parameters = {arguments.parameters}\nseed = 7").runs
+    values = pairs["floor (mm)"].reshape(arguments.networks, arguments.parameters)
     rest = values - values.mean(axis=1)[:, None] - values.mean(axis=0)[None, :] + values.mean()
     noise = (rest**2).sum() / ((arguments.networks - 1) * (arguments.parameters - 1))
     of_networks = values.mean(axis=1).var(ddof=1) - noise / arguments.parameters  # of the means over parameters
@@ -78,12 +72,12 @@ def main():
     wanted = {"network": of_networks / total, "stiffness": of_parameters / total}
 
     bad = 0
-    for row in rows_of(made(arguments, "indices", f'kind = "sobol indices"\npoints = {arguments.points}') / "shares.csv"):
-        if row["measure"] == "first order index":
-            value, low, high = (float(row[name]) for name in ("value", "low", "high"))
-            is_in = low <= wanted[row["input"]] <= high
+    shares = made(arguments, "indices", f'kind = "sobol indices"\npoints = {arguments.points}').shares
+    for name, measure, value, low, high in zip(*(shares[column] for column in ("input", "measure", "value", "low", "high"))):
+        if measure == "first order index":
+            is_in = low <= wanted[name] <= high
             bad += not is_in
-            print(f"{row['input']}: all pairs {wanted[row['input']]:.3f}; Sobol index {value:.3f}, {low:.3f} to {high:.3f}"
+            print(f"{name}: all pairs {wanted[name]:.3f}; Sobol index {value:.3f}, {low:.3f} to {high:.3f}"
                   f"{'' if is_in else ': NOT in the interval'}")
     sys.exit(1 if bad else 0)
 

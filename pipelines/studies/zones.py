@@ -14,17 +14,15 @@ cheapest numbers of runs cost (sqrt(1 - r^2) + r sqrt(c_c / c_f))^2 of plain sam
 processor.
 """
 
-import csv
 import math
 import subprocess
-import sys
 
 import numpy as np
 
 import slope
 
-sys.path.insert(0, str(slope.ROOT / "pipelines"))
-from jointcreep import intervals  # noqa: E402
+import jointcreep
+from jointcreep import intervals
 
 QUANTITY = "crest x (mm)"
 
@@ -36,9 +34,8 @@ def computed(arguments, name, options):
     words = ", ".join(f'"{option}"' for option in options)
     file.write_text(f"demsolve_options = [{words}]\n{study}" if options else study, "utf-8")
     subprocess.run(slope.command(arguments, file, folder, arguments.jobs), check=True)
-    with open(folder / "runs.csv", encoding="utf-8") as runs, open(folder / "times.csv", encoding="utf-8") as times:
-        moves = np.array([float(row[QUANTITY] or "nan") for row in csv.DictReader(runs)])
-        return moves, float(np.mean([float(row["processor_seconds"]) for row in csv.DictReader(times)]))
+    study = jointcreep.read(folder)
+    return study.runs[QUANTITY], float(study.times["processor_seconds"].mean())
 
 
 def plain_runs(moves, error):

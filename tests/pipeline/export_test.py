@@ -3,8 +3,6 @@
 import base64
 import csv
 import functools
-import pathlib
-import sys
 import tomllib
 import xml.etree.ElementTree
 
@@ -12,8 +10,7 @@ import numpy
 
 from chain import ChainTest, changed, datasets, main
 
-sys.path.insert(0, str(pathlib.Path(__file__).parents[2] / "pipelines" / "plots"))
-import joint_sets  # noqa: E402
+import joint_sets
 
 KINDS = ["boundary", "joint", "bonded"]
 FATES = ["kept", "clipped", "trimmed", "merged", "dropped"]

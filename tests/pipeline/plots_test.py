@@ -54,8 +54,6 @@ def in_a_copy(arguments):
 class Plots(ChainTest):
     def setUp(self):
         self.plots = self.chain.source / "pipelines" / "plots"
-        sys.path.insert(0, str(self.plots))
-        self.addCleanup(sys.path.remove, str(self.plots))
 
     started = set()
 

@@ -10,11 +10,9 @@ real program, gives up on purpose, or hangs until it is killed. What else may st
 import csv
 import math
 import os
-import pathlib
 import shutil
 import signal
 import subprocess
-import sys
 import time
 
 import h5py
@@ -22,8 +20,7 @@ import numpy
 
 from chain import LONGEST_RUN, ChainTest, alive, datasets, main
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "pipelines"))
-from jointcreep import ensemble, files  # noqa: E402
+from jointcreep import ensemble, files
 
 N = 4
 STUDENT_97_5_PERCENT = {3: 3.182446305}  # by degrees of freedom, from tables

@@ -14,7 +14,6 @@ import re
 import shutil
 import signal
 import subprocess
-import sys
 import time
 import unittest
 
@@ -23,10 +22,9 @@ import numpy as np
 
 from chain import LONGEST_RUN, ChainTest, alive, datasets, main
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "pipelines"))
 from jointcreep import answers, failure, intervals, scene_keys, study_file
-from jointcreep import design as draw_design  # noqa: E402
-from jointcreep.errors import NotWanted  # noqa: E402
+from jointcreep import design as draw_design
+from jointcreep.errors import NotWanted
 
 SCENE = (pathlib.Path(__file__).resolve().parents[2] / "pipelines/studies/small.toml").read_text()
 HAS_OPENTURNS = importlib.util.find_spec("openturns") is not None
