@@ -20,6 +20,7 @@ In the order in which a study passes through them:
     chain.py        programs of the chain, for scripts
     files.py        text in HDF5 files; files that are written whole or not at all
     ensemble.py     statistics of the histories of all runs
+    plots.py        the plots of pipelines/plots as functions
     report.py       one page of HTML
     errors.py       what ends a command with a message
 

@@ -7,15 +7,13 @@ pictures.json lists them by quantity.
 import json
 import textwrap
 
-import h5py
 import matplotlib.ticker
 import numpy as np
 
-from . import answers, files, intervals
+from . import answers, files, intervals, plots
 
 
 import figure
-import plot_ensemble
 from stage_names import plain
 
 BAND = "#c9d8ea"
@@ -104,11 +102,7 @@ def parameters(quantity, study, values, run, given, of_shares):
 def of_histories(out):
     """Draws ensemble.png and ensemble-y.png, the histories of all points over time."""
     for component, name in (("x", "ensemble.png"), ("y", "ensemble-y.png")):
-        with h5py.File(out / "ensemble.h5") as file:
-            picture = plot_ensemble.draw(file, component)
-        figure.draw_names_as_they_are(picture)
-        figure.save(picture, out / name)
-        figure.plt.close(picture)
+        plots.save("ensemble", out / "ensemble.h5", out / name, component=component)
 
 
 def write(study, rows, given, found, out):

@@ -6,7 +6,6 @@ import html
 import os
 import pathlib
 import subprocess
-import sys
 import tempfile
 import tomllib
 
@@ -15,7 +14,6 @@ import h5py
 from . import files, intervals, plan, study_file
 from .errors import NotWanted
 
-PLOTS = pathlib.Path(__file__).resolve().parent.parent / "plots"
 STYLE = """
 body { font: 15px/1.5 sans-serif; color: #222; max-width: 62em; margin: 2em auto; padding: 0 1em; }
 h1, h2, h3 { line-height: 1.2; color: #1b2a5c; } h2 { border-bottom: 1px solid #ccd; margin-top: 2em; }
@@ -64,13 +62,14 @@ def picture(path, caption):
             f"<figcaption>{escaped(caption)}</figcaption></figure>")
 
 
-def drawn(script, source, folder, caption, *options):
+def drawn(name, source, folder, caption, **options):
     """A picture by one of the plots, as HTML; in its place the plot's message where it has nothing to draw."""
-    path = folder / f"{script}-{'-'.join(options).replace('/', '')}.png"
-    done = subprocess.run([sys.executable, "-B", PLOTS / f"{script}.py", source, *options, "-o", path], capture_output=True, text=True)
-    if done.returncode != 0:
-        return f"<p>{escaped(caption)} Not drawn: {escaped(done.stderr.strip())}</p>"
-    return picture(path, caption)
+    from . import plots  # matplotlib takes long to load
+    try:
+        plots.save(name, source, folder / "picture.png", **options)
+    except NotWanted as error:
+        return f"<p>{escaped(caption)} Not drawn: {escaped(error)}</p>"
+    return picture(folder / "picture.png", caption)
 
 
 def page(title, parts):
@@ -106,18 +105,18 @@ def of_run(source, programs, folder):
                    ("largest unbalanced force ratio", file["/equilibria/unbalanced_force_ratio"][()].max(initial=0)),
                    ("seed", int(file.attrs["seed"])), ("realization", int(file.attrs["realization"]))]
     parts = [f'<p class="bad">The run ended early: {escaped(failure[0])}</p>'] if failure else []
-    parts += ["<h2>Section and network</h2>", drawn("plot_section", source, folder, "The section, its joints, stages and points."),
-              drawn("plot_blocks", source, folder, "Blocks by size."),
+    parts += ["<h2>Section and network</h2>", drawn("section", source, folder, "The section, its joints, stages and points."),
+              drawn("blocks", source, folder, "Blocks by size."),
               "<h2>Histories</h2>"]
     if points:
         for component, caption in (("x", "Horizontal displacement of the points, to the right."), ("y", "Vertical displacement, upward.")):
-            parts.append(drawn("plot_histories", source, folder, caption, "--component", component))
+            parts.append(drawn("histories", source, folder, caption, component=component))
         parts.append(table(["point", f"x on day {time[-1]:g} (mm)", "y (mm)", ""],
                            [(name, 1e3 * x, 1e3 * y, "" if there else "excavated; its last displacement")
                             for name, (x, y), there in zip(points, last, present)]))
     parts.append("<h2>State in the end</h2>")
     for field, caption in (("displacement", "Displacements."), ("stress", "Stresses."), ("contacts", "Contacts that slip or open.")):
-        parts.append(drawn("plot_state", source, folder, caption, "--field", field))
+        parts.append(drawn("state", source, folder, caption, field=field))
     parts += ["<h2>Numbers</h2>", table(["", ""], numbers), "<h2>Settings</h2>", settings(scene), "<h2>Warnings</h2>",
               table(["program", "warning"], warnings) if warnings else "<p>None.</p>",
               "<h2>Checks</h2>", checks(source, programs),
@@ -166,7 +165,7 @@ def of_study(out, programs, folder):
     with tempfile.TemporaryDirectory(dir=folder) as work:
         network = pathlib.Path(work) / "network.h5"
         done = subprocess.run([programs / "jointgen", out / "scene.toml", "-o", network], capture_output=True, text=True)
-        parts.append(drawn("plot_section", network, folder, "The section with the first network, stages and points.")
+        parts.append(drawn("section", network, folder, "The section with the first network, stages and points.")
                      if done.returncode == 0 else f"<p>The section is not drawn: {escaped(done.stderr)}</p>")
     parts.append("<h2>Answers</h2>")
     parts.append(f"<p>From, to: {100 * intervals.CONFIDENCE:.0f} percent confidence interval; empty where the runs are too few or the "

@@ -59,6 +59,10 @@ class NotWanted(Exception):
     """The file, or an option, is not what the plot needs."""
 
 
+class Named(NotWanted):
+    """The same, with the name of the file."""
+
+
 def arguments_of(description, *options):
     """The command line FILE.h5 -o NAME.png and `options`, each a pair (names, keywords) for argparse."""
     parser = argparse.ArgumentParser(description=description)
@@ -70,23 +74,46 @@ def arguments_of(description, *options):
 
 
 @contextlib.contextmanager
-def opened(path):
-    """A file of jointcreep. Whatever is not as wanted in it ends in one line on stderr and exit code 2."""
+def checked(path):
+    """A file of jointcreep. Whatever is not as wanted in it raises Named."""
     try:
         with h5py.File(path, "r") as file:
             if not file_type(file).startswith("jointcreep"):
                 raise NotWanted("this is not a file of jointcreep")
             yield file
+    except Named:  # of another file that was opened in between
+        raise
     except (OSError, NotWanted) as error:
-        print(f"{Path(sys.argv[0]).name}: {path}: {error}", file=sys.stderr)
+        raise Named(f"{path}: {error}") from error
+
+
+@contextlib.contextmanager
+def opened(path):
+    """The same for a script: whatever is not as wanted ends in one line on stderr and exit code 2."""
+    try:
+        with checked(path) as file:
+            yield file
+    except Named as error:
+        print(f"{Path(sys.argv[0]).name}: {error}", file=sys.stderr)
         sys.exit(2)
 
 
-def run(draw, arguments):
-    """Opens the file, draws, saves."""
-    with opened(arguments.file) as file:
-        figure = draw(file, arguments)
+def drawn(draw, path, **options):
+    """The figure that draw(file, **options) makes of a file. Raises Named."""
+    with checked(path) as file:
+        figure = draw(file, **options)
     draw_names_as_they_are(figure)
+    return figure
+
+
+def run(draw, arguments):
+    """A script's work: opens the file, draws with its options, saves."""
+    options = {name: value for name, value in vars(arguments).items() if name not in ("file", "output")}
+    try:
+        figure = drawn(draw, arguments.file, **options)
+    except Named as error:
+        print(f"{Path(sys.argv[0]).name}: {error}", file=sys.stderr)
+        sys.exit(2)
     try:
         save(figure, Path(arguments.output))
     except (OSError, ValueError) as error:
@@ -107,7 +134,8 @@ def save(figure, path):
     """The picture appears under its name only once it is whole."""
     partial = path.with_name(f"{path.stem}.partial-{os.getpid()}{path.suffix}")
     try:
-        figure.savefig(partial)
+        cut = {"bbox_inches": "tight", "pad_inches": 0.03} if getattr(figure, "cuts_margins", False) else {}
+        figure.savefig(partial, **cut)
         os.replace(partial, path)
     finally:
         partial.unlink(missing_ok=True)
@@ -170,9 +198,8 @@ def section_axes(outline, window=None):
     low, high = np.min(outline, axis=0), np.max(outline, axis=0)
     width, height = high - low
     scale = min((TWO_COLUMNS - 0.8) / width, 5.5 / height)
-    if window:  # it has no margins of its own, into which a legend could reach
-        plt.rcParams.update({"savefig.bbox": "tight", "savefig.pad_inches": 0.03})
     figure, axes = plt.subplots(figsize=(max(ONE_COLUMN, width * scale + 0.8), height * scale + 0.5))
+    figure.cuts_margins = window is not None  # it has no margins of its own, into which a legend could reach
     margin = 0 if window else 0.05 * max(width, height)
     axes.set_xlim(low[0] - margin, high[0] + margin)
     axes.set_ylim(low[1] - margin, high[1] + margin)

@@ -78,15 +78,16 @@ def draw_edges(file, axes):
     return entries
 
 
-def draw(file, arguments):
+def draw(file, window=None, by="size"):
+    """Figure of the blocks: by "size", "set", "rock" or "stage". window: x0, y0, x1, y1 [m]."""
     paths = block_paths(file)
     position = figure.array(file, "/vertices/position")
     area = figure.array(file, "/blocks/area")
-    plot, axes = figure.section_axes(position, arguments.window)
+    plot, axes = figure.section_axes(position, window)
     entries = draw_edges(file, axes)
 
     fills = []
-    if arguments.by == "size":
+    if by == "size":
         low, high = size_range(area[whole_blocks(paths, axes)])
         blocks = PathCollection(paths, cmap=figure.SHADES.with_extremes(over=LARGER),
                                 norm=matplotlib.colors.LogNorm(low, high), zorder=0)
@@ -98,15 +99,15 @@ def draw(file, arguments):
         scale.ax.yaxis.set_major_formatter("{x:g}")
         scale.ax.yaxis.set_minor_locator(matplotlib.ticker.NullLocator())
     else:
-        code = set_of_blocks(file) if arguments.by == "set" else figure.array(file, f"/blocks/{arguments.by}")
-        names = figure.texts(file, "/names/joint_set" if arguments.by == "set" else f"/names/{arguments.by}")
-        others = {"stage": "stays", "set": "no joint"}.get(arguments.by)
+        code = set_of_blocks(file) if by == "set" else figure.array(file, f"/blocks/{by}")
+        names = figure.texts(file, "/names/joint_set" if by == "set" else f"/names/{by}")
+        others = {"stage": "stays", "set": "no joint"}.get(by)
         shades = figure.SHADES(np.linspace(0.1, 0.95, max(len(names), 2)))
         for i in np.unique(code):  # -1 comes first
             shade = "white" if i < 0 else shades[i]
             of_code = [path for path, c in zip(paths, code) if c == i]
             axes.add_collection(PathCollection(of_code, facecolor=[shade], zorder=0))
-            label = others if i < 0 else f"outline mostly {names[i]}" if arguments.by == "set" else names[i]
+            label = others if i < 0 else f"outline mostly {names[i]}" if by == "set" else names[i]
             fills.append(matplotlib.patches.Patch(facecolor=shade, edgecolor="k", linewidth=0.5, label=label))
     entries.append(matplotlib.lines.Line2D([], [], linestyle="none", label=f"{len(paths)} blocks in the section"))
     figure.legend_below(axes, entries + fills)

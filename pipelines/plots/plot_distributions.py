@@ -100,7 +100,8 @@ def draw_areas(axes, area):
                 loc="lower right", bbox_to_anchor=(1, 0.98), ncol=2)
 
 
-def draw(file, _):
+def draw(file):
+    """Figure of spacings, trace lengths and block areas, beside their laws."""
     joints = joint_sets.Joints(file)
     area = figure.array(file, "/blocks/area")
     count = len(joints.sets)

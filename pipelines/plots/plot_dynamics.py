@@ -41,7 +41,8 @@ def draw_blocks(axes, file, row):
     axes.set_title(f"{figure.array(file, '/dynamics/dynamic_time')[row]:.2f} s")
 
 
-def draw(file, arguments):
+def draw(file):
+    """Figure of blocks at six moments, and of energies over time."""
     rows = moments_of(file)
     chosen = rows[np.unique(np.linspace(0, len(rows) - 1, MOMENTS).astype(int))]
     canvas = figure.plt.figure(figsize=(figure.TWO_COLUMNS, 6.6))

@@ -30,13 +30,13 @@ def draw_point(axes, time, statistics, probabilities, there, every):
     axes.errorbar(time[shown], mean, yerr=[mean - low, high - mean], zorder=3, **MEAN)
 
 
-def draw(file, component="x", point_names=(), since_first_reading=False):
+def draw(file, component="x", point=(), since_first_reading=False):
     """A figure of an open ensemble.h5: one component ("x", "y"), of all points or those that are named."""
     kind = "/displacement_since_first_reading" if since_first_reading else "/displacement"
     time = figure.array(file, "/history/time")
     event = figure.texts(file, "/history/event")
     names = figure.texts(file, "/history/point")
-    chosen = [figure.name_index(names, name, "point") for name in point_names] or list(range(len(names)))
+    chosen = [figure.name_index(names, name, "point") for name in point] or list(range(len(names)))
     if not chosen:
         raise figure.NotWanted("there is no monitoring point in this file")
     probabilities = figure.array(file, "/probability")
@@ -81,7 +81,7 @@ def draw(file, component="x", point_names=(), since_first_reading=False):
 
 
 if __name__ == "__main__":
-    figure.run(lambda file, options: draw(file, options.component, options.point, options.since_first_reading), figure.arguments_of(
+    figure.run(draw, figure.arguments_of(
         __doc__,
         (["--component"], {"choices": list(LABELS), "default": "x", "help": "default: x"}),
         (["--point"], {"action": "append", "default": [], "help": "only this point; may be given several times"}),

@@ -22,23 +22,23 @@ LABELS = {
 class Histories:
     """Times, names and curves of the chosen points, as rows in which a point is there and has been read."""
 
-    def __init__(self, file, arguments):
+    def __init__(self, file, component, point, readings, since_reset):
         self.time = figure.array(file, "/history/time")
         self.event = figure.texts(file, "/history/event")
         names = figure.texts(file, "/history/point")
         if not names:
             raise figure.NotWanted("there is no monitoring point in this file")
-        chosen = [figure.name_index(names, name, "point") for name in arguments.point] or list(range(len(names)))
+        chosen = [figure.name_index(names, name, "point") for name in point] or list(range(len(names)))
         self.names = [names[i] for i in chosen]
         first = figure.array(file, "/history/first_reading_row")
-        values = component_of(file, figure.array(file, "/history/displacement"), arguments.component)
-        if arguments.readings:
+        values = component_of(file, figure.array(file, "/history/displacement"), component)
+        if readings:
             values = values - values[first, np.arange(len(names))]
-        if arguments.since_reset:
+        if since_reset:
             values = values - values[figure.array(file, "/history/reset_row")]
         self.values = 1e3 * values[:, chosen]  # [mm]
         self.shown = figure.array(file, "/history/present")[:, chosen] == 1
-        if arguments.readings:
+        if readings:
             self.shown &= np.arange(len(self.time))[:, None] >= first[chosen]
 
 
@@ -72,24 +72,27 @@ def draw_exact(file, axes, names, looks):
                   color=look["color"], linewidth=0.9, linestyle=look["linestyle"])
 
 
-def without(arguments, file):
-    """The histories of the result file given with --without."""
-    with figure.opened(arguments.without) as other:
+def histories_without(path, file, *options):
+    """The histories of the result file without creep."""
+    with figure.checked(path) as other:
         if figure.texts(other, "/scene") != figure.texts(file, "/scene"):
-            raise figure.NotWanted(f"this was made from another scene than {arguments.file}")
-        return Histories(other, arguments)
+            raise figure.NotWanted(f"this was made from another scene than {file.filename}")
+        return Histories(other, *options)
 
 
-def draw(file, arguments):
-    histories = Histories(file, arguments)
+def draw(file, component="y", point=(), readings=False, since_reset=False, without=None, closed_form=None):
+    """Figure of histories: component "x", "y" or "toward"; of all points, or those that are named; readings: since each point's first;
+    without: path of a result of the same scene without creep."""
+    options = component, point, readings, since_reset
+    histories = Histories(file, *options)
     names = histories.names
     plot, axes = figure.plt.subplots(figsize=(figure.TWO_COLUMNS * 0.8, 3.4))
     looks = [{"color": figure.COLORS[i % 6], "marker": figure.MARKERS[i % 6], "markerfacecolor": "white",
               "markeredgewidth": 0.8, "linewidth": 1.0,
-              "linestyle": "-" if arguments.without else figure.LINES[i % 6]} for i in range(len(names))]
-    exact, title = arguments.closed_form == "column", "monitoring point"
+              "linestyle": "-" if without else figure.LINES[i % 6]} for i in range(len(names))]
+    exact, title = closed_form == "column", "monitoring point"
     if exact:
-        if arguments.component != "y" or arguments.readings or arguments.since_reset or arguments.without:
+        if component != "y" or readings or since_reset or without:
             raise figure.NotWanted("the column's closed form is vertical, with creep and since the in-situ "
                                    "equilibrium: --component y, and neither --readings nor --without")
         draw_exact(file, axes, names, looks)
@@ -104,8 +107,8 @@ def draw(file, arguments):
         drawn = {**look, "linestyle": "none"} if exact else {**look, "markevery": max(1, len(shown) // 25)}
         axes.plot(histories.time[shown], histories.values[shown, i], zorder=3, **drawn)
         entries.append(matplotlib.lines.Line2D([], [], label=f"point {name}" if exact else name, **look))
-    if arguments.without:
-        other = without(arguments, file)
+    if without:
+        other = histories_without(without, file, *options)
         thin = {"linestyle": (0, (4, 2)), "linewidth": 0.7}
         for i, look in enumerate(looks):
             shown = other.shown[:, i]
@@ -116,12 +119,12 @@ def draw(file, arguments):
     stages = [row for row, name in enumerate(histories.event) if name]
     figure.mark_stages(axes, histories.time[stages], [histories.event[row] for row in stages])
     since = "since the in-situ equilibrium"
-    if arguments.readings or arguments.since_reset:
-        since = "since each point's first reading" if arguments.readings else "since the last reset"
-    if arguments.readings and arguments.since_reset:
+    if readings or since_reset:
+        since = "since each point's first reading" if readings else "since the last reset"
+    if readings and since_reset:
         raise figure.NotWanted("wanted either --readings or --since-reset, not both")
     axes.set_xlabel("\n".join(filter(None, (figure.time_label(file), figure.ending_of(file)))))
-    axes.set_ylabel(f"{LABELS[arguments.component]},\n{since} (mm)")
+    axes.set_ylabel(f"{LABELS[component]},\n{since} (mm)")
     place = {"loc": "best"}
     if len(entries) > 4:  # too many to find room among the curves
         plot.set_figwidth(figure.TWO_COLUMNS)

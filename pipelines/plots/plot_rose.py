@@ -13,9 +13,9 @@ import figure
 import joint_sets
 
 
-def draw(file, arguments):
+def draw(file, width=10):
+    """Figure of the directions of joint traces, in classes of `width` degrees."""
     joints = joint_sets.Joints(file)
-    width = arguments.width
     if not 1 <= width <= 90 or 180 % width != 0:
         raise figure.NotWanted(f"--width {width}: wanted a part of 180 degrees, from 1 to 90")
     bins = round(180 / width)

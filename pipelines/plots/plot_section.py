@@ -140,10 +140,11 @@ def draw_places(scene, key, label, marker, axes):
     return [matplotlib.lines.Line2D([], [], label=label, **look)] if places else []
 
 
-def draw(file, arguments):
+def draw(file, window=None):
+    """Figure of the section. window: x0, y0, x1, y1 [m]."""
     scene = figure.scene_of(file)
     outline = np.array(scene["section"]["outline_m"], float)
-    plot, axes = figure.section_axes(outline, arguments.window)
+    plot, axes = figure.section_axes(outline, window)
     inside = matplotlib.patches.Polygon(outline, facecolor="none", edgecolor="k", linewidth=1.0, zorder=3)
     for hole in scene["section"].get("holes_m", []):
         axes.add_patch(matplotlib.patches.Polygon(hole, facecolor="w", edgecolor="k", linewidth=1.0, zorder=3))

@@ -26,8 +26,6 @@ COMPONENTS = {
     "xx": "horizontal stress $\\sigma_{xx}$",
     "yy": "vertical stress $\\sigma_{yy}$",
 }
-figure.plt.rcParams["savefig.bbox"] = "tight"  # scales and legends leave margins of different widths
-figure.plt.rcParams["savefig.pad_inches"] = 0.03
 
 
 def name_of(file, state):
@@ -123,12 +121,12 @@ def add_scale(axes, colored, label, low, high, values):
                          extend=figure.extension(values, low, high))
 
 
-def draw_displacement(file, state, section, axes, arguments):
+def draw_displacement(file, state, section, axes, since_reset, limits):
     size = 1e3 * np.linalg.norm(section.displacement, axis=1)
-    low, high = arguments.range or (0, size[np.unique(section.zones)].max() or 1)
+    low, high = limits or (0, size[np.unique(section.zones)].max() or 1)
     colored = axes.tripcolor(section.triangles, size, shading="gouraud", cmap=figure.SHADES, vmin=low, vmax=high,
                              rasterized=True)
-    since = "reset" if arguments.since_reset else "the in-situ equilibrium"
+    since = "reset" if since_reset else "the in-situ equilibrium"
     add_scale(axes, colored, f"displacement since {since} (mm)", low, high,
               size[np.unique(section.zones)])
     draw_borders(section, axes)
@@ -136,7 +134,7 @@ def draw_displacement(file, state, section, axes, arguments):
     chosen, spacing = section.on_grid(26)
     place = section.position[section.zones[chosen]].mean(axis=1)
     arrow = 1e3 * section.displacement[section.zones[chosen]].mean(axis=1)
-    longest = high if arguments.range else max(np.linalg.norm(arrow, axis=1).max(), 1e-12)
+    longest = high if limits else max(np.linalg.norm(arrow, axis=1).max(), 1e-12)
     arrows = axes.quiver(*place.T, *arrow.T, angles="xy", scale_units="xy", scale=longest / (1.25 * spacing),
                          units="inches", width=0.012, headwidth=4, headlength=5, headaxislength=4.5, minlength=0.6,
                          zorder=5)
@@ -189,20 +187,20 @@ def draw_crosses(section, stress, axes):
     return entries
 
 
-def draw_stress(file, state, section, axes, arguments):
+def draw_stress(file, state, section, axes, component, limits):
     stress = figure.array(file, "/states/stress")[state][section.there]
     major, minor, _ = principal(stress)
     value = 1e-6 * {"major": major, "minor": minor, "mean": (major + minor) / 2,
-                    "xx": -stress[:, 0], "yy": -stress[:, 1]}[arguments.component]
+                    "xx": -stress[:, 0], "yy": -stress[:, 1]}[component]
     # A few zones in corners would take most of the scale.
-    low, high = arguments.range or np.percentile(value, [0.5, 99.5])
+    low, high = limits or np.percentile(value, [0.5, 99.5])
     if not low < high:
         low, high = low - 0.5, high + 0.5
     colored = axes.tripcolor(section.triangles, facecolors=value, cmap=figure.SHADES, vmin=low, vmax=high,
                              edgecolors="face", linewidth=0.1, rasterized=True)
-    add_scale(axes, colored, f"{COMPONENTS[arguments.component]},\ncompressive (MPa)", low, high, value)
+    add_scale(axes, colored, f"{COMPONENTS[component]},\ncompressive (MPa)", low, high, value)
     draw_borders(section, axes)
-    return draw_crosses(section, stress, axes) if arguments.component in ("major", "minor") else []
+    return draw_crosses(section, stress, axes) if component in ("major", "minor") else []
 
 
 def contact_lines(file, section):
@@ -233,7 +231,7 @@ def contact_lines(file, section):
     return np.reshape(lines, (-1, 2, 2)), np.array(of_contact, int)
 
 
-def draw_contacts(file, state, section, axes, _):
+def draw_contacts(file, state, section, axes):
     status = figure.array(file, "/states/contact_status")[state]
     opening, shear = 1e3 * np.abs(figure.array(file, "/states/relative_displacement")[state].T)  # [mm]
     lines, of_contact = contact_lines(file, section)
@@ -264,18 +262,25 @@ def draw_contacts(file, state, section, axes, _):
     return entries
 
 
-def draw(file, arguments):
+def draw(file, state="last", field="displacement", component="major", since_reset=False, window=None, magnify=0, limits=None):
+    """Figure of one state: field "displacement", "stress" or "contacts". state: plain words for a stage, or "last"; component of
+    the stress; window: x0, y0, x1, y1 [m]; limits: low, high of the colour scale."""
     if figure.file_type(file) not in ("jointcreep result", "jointcreep checkpoint"):
         raise figure.NotWanted("there are no states in this file; demsolve makes one that has them")
-    state = state_index(file, arguments.state)
-    section = Section(file, state, arguments.magnify, arguments.window, arguments.since_reset)
-    plot, axes = figure.section_axes(section.start, arguments.window)
+    state = state_index(file, state)
+    section = Section(file, state, magnify, window, since_reset)
+    plot, axes = figure.section_axes(section.start, window)
+    plot.cuts_margins = True  # scales and legends leave margins of different widths
     plot.set_figheight(plot.get_figheight() + 0.2)  # for the title
-    field = {"displacement": draw_displacement, "stress": draw_stress, "contacts": draw_contacts}[arguments.field]
-    entries = field(file, state, section, axes, arguments)
+    if field == "displacement":
+        entries = draw_displacement(file, state, section, axes, since_reset, limits)
+    elif field == "stress":
+        entries = draw_stress(file, state, section, axes, component, limits)
+    else:
+        entries = draw_contacts(file, state, section, axes)
     title = name_of(file, state)
-    if arguments.magnify:
-        title += f"; positions displaced {arguments.magnify:g} times"
+    if magnify:
+        title += f"; positions displaced {magnify:g} times"
     if figure.ending_of(file):
         title += f"; {figure.ending_of(file)}"
     axes.set_title(title, loc="left")
@@ -297,6 +302,6 @@ if __name__ == "__main__":
         figure.WINDOW,
         (["--magnify"], {"type": float, "default": 0, "metavar": "TIMES",
                          "help": "draw the rock displaced so many times; default: 0"}),
-        (["--range"], {"nargs": 2, "type": float, "metavar": ("LOW", "HIGH"),
+        (["--range"], {"dest": "limits", "nargs": 2, "type": float, "metavar": ("LOW", "HIGH"),
                        "help": "of the colour scale, in its unit, for pictures to compare; default: what is there"}),
     ))

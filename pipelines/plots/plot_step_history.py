@@ -55,17 +55,18 @@ def spread(places, apart):
     return chosen
 
 
-def draw(file, arguments):
+def draw(file, point=None, gauge=None, days=(-np.inf, np.inf)):
+    """Figure of the steps of dynamic relaxation, at a point and a gauge; the first of each without names."""
     if "/step_history" not in file:
         raise figure.NotWanted("this file has no step history; demsolve --step-history N writes one")
     day = figure.array(file, "/step_history/time")
     solver_time = figure.array(file, "/step_history/solver_time")
     points, gauges = figure.texts(file, "/history/point"), figure.texts(file, "/step_history/gauge")
-    point = figure.name_index(points, arguments.point, "point")
-    gauge = figure.name_index(gauges, arguments.gauge, "gauge")
-    shown = (day >= arguments.days[0]) & (day <= arguments.days[1])
+    point = figure.name_index(points, point, "point")
+    gauge = figure.name_index(gauges, gauge, "gauge")
+    shown = (day >= days[0]) & (day <= days[1])
     if not np.any(shown):
-        raise figure.NotWanted(f"the step history has no row from day {arguments.days[0]} to {arguments.days[1]}")
+        raise figure.NotWanted(f"the step history has no row from day {days[0]} to {days[1]}")
     rise = 1e3 * figure.array(file, "/step_history/displacement")[shown, point, 1]
     stress = -1e-6 * figure.array(file, "/step_history/traction")[shown, gauge, 0]
     stages = {name: solver_time[row] for name, row in stage_rows(file).items() if shown[row]}

@@ -58,7 +58,8 @@ def draw_density(axes, vectors):
     scale.ax.tick_params(length=0)
 
 
-def draw(file, _):
+def draw(file):
+    """Figure of the poles of the joints."""
     joints = joint_sets.Joints(file)
     azimuth = joints.scene["section"].get("azimuth_deg")
     has_pole = np.any(joints.pole != 0, axis=1)

@@ -35,13 +35,14 @@ def draw_set(file, row, name, axes, most):
     return entries
 
 
-def draw(file, arguments):
+def draw(file, compression=None):
+    """Figure of the strength of each joint set, up to a compression [MPa]."""
     names = figure.texts(file, "/names/joint_set")
     sets = [row for row in range(len(names)) if figure.array(file, "/sets/edge_length")[row] > 0]
     if not sets:
         raise figure.NotWanted("no joint set has edges")
     largest = max(figure.array(file, f"/sets/{prefix}cohesion")[sets].max() for prefix, *_ in CURVES) / 1e6
-    most = arguments.compression or max(1, 2 * largest)
+    most = compression or max(1, 2 * largest)
     columns = min(2, len(sets))
     rows = -(-len(sets) // columns)
     plot, all_axes = figure.plt.subplots(

@@ -80,9 +80,9 @@ def draw_plan(scene):
     return plot
 
 
-def draw(file, arguments):
+def draw(file, plan=False):
     scene = figure.scene_of(file)
-    return draw_plan(scene) if arguments.plan else draw_section(scene)
+    return draw_plan(scene) if plan else draw_section(scene)
 
 
 if __name__ == "__main__":

@@ -36,18 +36,18 @@ def draw_bands(axes, targets, end, days):
                                                     edgecolor=color, hatch="/////", linewidth=0.8, zorder=4))
 
 
-def draw(file, arguments):
+def draw(file, side, without=None, targets=None):
     record = records.record_of(file)
     other = None
-    if arguments.without:
-        with figure.opened(arguments.without) as without:
-            other = records.record_of(without)
+    if without:
+        with figure.checked(without) as other_file:
+            other = records.record_of(other_file)
         if other.names != record.names:
-            raise figure.NotWanted(f"{arguments.without} has other points")
-    targets = records.targets_of(arguments.targets)
-    chosen = [i for i, name in enumerate(record.names) if name.startswith(arguments.side)]
+            raise figure.NotWanted(f"{without} has other points")
+    targets = records.targets_of(targets)
+    chosen = [i for i, name in enumerate(record.names) if name.startswith(side)]
     if not chosen:
-        raise figure.NotWanted(f"no point's name begins with {arguments.side}")
+        raise figure.NotWanted(f"no point's name begins with {side}")
     chosen.sort(key=lambda i: -record.position[i, 1])
     dates_of = lambda one: [datetime.datetime.combine(one.start, datetime.time()) + datetime.timedelta(float(day))
                             for day in one.days]
@@ -82,7 +82,7 @@ def draw(file, arguments):
     for axes in panels[:rows, 0]:
         axes.set_ylabel("toward the lock\n(mm)")
 
-    levels = records.levels_of(record.scene, arguments.side)
+    levels = records.levels_of(record.scene, side)
     for axes in panels[rows]:
         axes.plot([date for date, _ in levels], [level for _, level in levels], drawstyle="steps-post", color="k",
                   linewidth=1.0)

@@ -55,6 +55,28 @@ class Plots(ChainTest):
     def setUp(self):
         self.plots = self.chain.source / "pipelines" / "plots"
 
+    def test_functions(self):
+        """What the functions draw is what the scripts draw, also one after another; what a file lacks is an exception."""
+        from jointcreep import NotWanted, plots
+        result = self.chain.result(self.chain.small())
+        folder = result.parent
+        for name, words, options in [
+            ("state", ["--field", "stress", "--window", "5", "5", "25", "15"], {"field": "stress", "window": (5, 5, 25, 15)}),
+            ("histories", ["--component", "x", "--point", "floor"], {"component": "x", "point": ["floor"]}),
+            ("blocks", ["--by", "set"], {"by": "set"}), ("section", [], {}), ("rose", ["--width", "20"], {"width": 20})]:
+            with self.subTest(name):
+                subprocess.run([sys.executable, self.plots / f"plot_{name}.py", result, *words, "-o", folder / "script.png"], check=True)
+                plots.save(name, result, folder / "function.png", **options)
+                self.assertEqual((folder / "script.png").read_bytes(), (folder / "function.png").read_bytes())
+        self.assertEqual({f"plot_{name}.py" for name in plots.NAMES} | {"plot_fit.py"}, {path.name for path in self.plots.glob("plot_*.py")})
+        network = result.with_name("network.h5")
+        for call, expected in [(lambda: plots.draw("state", network), "network.h5: there are no states in this file"),
+                               (lambda: plots.draw("states", result), 'no plot "states"; there are: section, '),
+                               (lambda: plots.draw("histories", result, without=network), "network.h5: "),
+                               (lambda: plots.draw("section", folder / "none.h5"), "none.h5: ")]:
+            with self.assertRaisesRegex(NotWanted, expected):
+                call()
+
     started = set()
 
     def plot(self, name, source, picture, *options):
