@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """A study killed at random moments by SIGKILL, and gone on each time by the same command: are its results the same bytes?
 
-    kills.py PROGRAMS OUT [--runs 1000] [--kills 3] [--jobs 1] [--seed 1]
+    kills.py PROGRAMS OUT [--runs 1000] [--kills 3] [--jobs 1] [--seed 1] [--quick]
 
 The undisturbed study is made first. Moments are drawn over its time; every second kill is of the command alone,
 the others of all its processes. The exit code is 1 if anything differs.

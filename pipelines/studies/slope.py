@@ -27,11 +27,12 @@ what = "failed"
 
 
 def options(description, more=lambda parser: None):
-    """The command line PROGRAMS OUT --runs N, and what `more` adds."""
+    """The command line PROGRAMS OUT --runs N --quick, and what `more` adds."""
     parser = argparse.ArgumentParser(description=description, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("programs", type=pathlib.Path)
     parser.add_argument("out", type=pathlib.Path)
     parser.add_argument("--runs", type=int, default=1000)
+    parser.add_argument("--quick", action="store_true", help="with large zones and without creep")
     more(parser)
     return parser.parse_args()
 
@@ -41,7 +42,8 @@ def written(arguments, name):
     arguments.out.mkdir(parents=True, exist_ok=True)
     folder, file = arguments.out / name, arguments.out / f"{name}.toml"
     shutil.rmtree(folder, ignore_errors=True)
-    file.write_text(STUDY.format(scene=ROOT / "data/slope/scene.toml", runs=arguments.runs), "utf-8")
+    quick = 'demsolve_options = ["--zone-size", "12", "--no-creep"]\n' if arguments.quick else ""
+    file.write_text(quick + STUDY.format(scene=ROOT / "data/slope/scene.toml", runs=arguments.runs), "utf-8")
     return file, folder
 
 
