@@ -14,7 +14,7 @@ import tomllib
 import h5py
 import numpy as np
 
-from . import files, histories, intervals
+from . import files, histories, intervals, reading
 from .errors import NotWanted
 from .intervals import CONFIDENCE
 
@@ -93,15 +93,16 @@ def area_error(file):
 def of_run(path):
     """What statistics need of a result file, as JSON takes it: histories, and the values of OF_EACH by name."""
     with h5py.File(path) as file:
+        history = reading.history_of(file)
         return {
-            "point": files.texts(file, "/history/point"),
-            "point_position": file["/history/point_position"][()].tolist(),
-            "time": file["/history/time"][()].tolist(),
-            "event": files.texts(file, "/history/event"),
-            "first_reading_row": file["/history/first_reading_row"][()].tolist(),
-            "dates": np.unique(file["/states/time"][()]).tolist(),  # on which something happens
-            "displacement": file["/history/displacement"][()].tolist(),
-            "present": file["/history/present"][()].tolist(),
+            "point": history.point,
+            "point_position": history.position.tolist(),
+            "time": history.time.tolist(),
+            "event": history.event,
+            "first_reading_row": history.first_reading_row.tolist(),
+            "dates": history.dates.tolist(),
+            "displacement": history.displacement.tolist(),
+            "present": history.present.tolist(),
             "like": {
                 "blocks": len(file["/blocks/area"]),
                 "zones": len(file["/mesh/zone_block"]),
@@ -128,7 +129,7 @@ def stages_of(one):
 
 def on_days_of(first, one):
     """Displacement [time, point, 2] and presence [time, point] of a run on the days of the first one's rows."""
-    moves, there = np.array(one["displacement"]), np.array(one["present"]) == 1
+    moves, there = np.array(one["displacement"]), np.array(one["present"])
     if all(first[name] == one[name] for name in ("time", "event", "first_reading_row")):
         return moves, there
     stages, wanted = stages_of(one), stages_of(first)
@@ -273,7 +274,7 @@ def taken_points(rows):
     """Lines of the points that an excavation takes in some runs and not in others."""
     lines = []
     for point, name in enumerate(rows[0]["history"]["point"]):
-        taken = [row["run"] for row in rows if row["history"]["present"][-1][point] != 1]
+        taken = [row["run"] for row in rows if not row["history"]["present"][-1][point]]
         if 0 < len(taken) < len(rows):
             lines.append(f'point "{name}": an excavation takes it in {len(taken)} of {len(rows)} runs: {files.listed(taken)}')
     return lines

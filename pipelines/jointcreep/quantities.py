@@ -5,7 +5,7 @@ import datetime
 import h5py
 import numpy as np
 
-from . import files, histories
+from . import histories, reading
 from .errors import NotWanted
 
 NO_EQUILIBRIUM = 3  # exit code of demsolve
@@ -44,21 +44,20 @@ def day_of(quantity, scene):
 
 def displacement(file, quantity, scene):
     """Displacement of a point at a time [mm], or None if an excavation has taken the point."""
-    time = file["/history/time"][()]
-    events = files.texts(file, "/history/event")
-    point = files.texts(file, "/history/point").index(quantity.point)
-    moves, there = file["/history/displacement"][()], file["/history/present"][()] == 1
-    first = int(file["/history/first_reading_row"][point])
+    history = reading.history_of(file)
+    time, moves, there = history.time, history.displacement, history.present
+    point = history.point.index(quantity.point)
+    first = int(history.first_reading_row[point])
     if quantity.stage:
-        row = events.index(quantity.stage)
+        row = history.event.index(quantity.stage)
         day, value, is_there = time[row], moves[row], there[row]
     elif quantity.date is None:
         day, value, is_there = time[-1], moves[-1], there[-1]
     else:
         day = day_of(quantity, scene)
-        stages = np.cumsum([bool(name) for name in events])
+        stages = history.stages()
         done = int(stages[time <= day * (1 + histories.SAME_DAY)].max(initial=0))  # after a stage of that day
-        found = histories.at(time, stages, np.unique(file["/states/time"][()]), moves, there, day, done)
+        found = histories.at(time, stages, history.dates, moves, there, day, done)
         if found is None:
             return None
         value, is_there, _ = found

@@ -91,6 +91,13 @@ class History:
         return table
 
 
+def history_of(file):
+    """History of an open result file."""
+    return History(file["/history/time"][()], files.texts(file, "/history/event"), files.texts(file, "/history/point"),
+                   file["/history/point_position"][()], file["/history/displacement"][()], file["/history/present"][()] == 1,
+                   file["/history/first_reading_row"][()], np.unique(file["/states/time"][()]))
+
+
 class File:
     """A network, joints, result or checkpoint file. Everything is read when asked for."""
 
@@ -114,9 +121,13 @@ class File:
     def __getitem__(self, path):
         """A dataset: an array, or a list of str."""
         with self.opened() as file:
-            if path not in file:
-                raise NotWanted(f"{self.path}: there is no {path} in this {self.kind} file")
+            self.check(path, file)
             return files.texts(file, path) if file[path].dtype.kind in "SO" else file[path][()]
+
+    def check(self, path, file):
+        """Refuses what is not there."""
+        if path not in file:
+            raise NotWanted(f"{self.path}: there is no {path} in this {self.kind} file")
 
     def unit(self, path):
         """Unit of a dataset, "1" if it has none."""
@@ -151,9 +162,9 @@ class File:
 
     def history(self):
         """History of the monitoring points; of result files."""
-        return History(self["/history/time"], self["/history/event"], self["/history/point"], self["/history/point_position"],
-                       self["/history/displacement"], self["/history/present"] == 1, self["/history/first_reading_row"],
-                       np.unique(self["/states/time"]))
+        with self.opened() as file:
+            self.check("/history/time", file)
+            return history_of(file)
 
     def states(self):
         """Table of the recorded states: time (day), and the stage that it is the first after."""

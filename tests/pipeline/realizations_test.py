@@ -72,13 +72,15 @@ class Realizations(ChainTest):
         self.assertEqual(done.returncode, 0, done.stdout + done.stderr)
         return out / "realizations"
 
-    def stopped(self, out, programs, stop, called):
-        """Two at a time, until demsolve of realization `called` is called; then stops make, and waits until nothing works any more."""
+    def stopped(self, out, programs, stop, called, ended=()):
+        """Two at a time, until demsolve of realization `called` is called and these have ended; then stops make, and waits until nothing
+        works any more."""
         running = subprocess.Popen(self.command(out, programs, "-j2"), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
                                    env=self.environment(), start_new_session=True)
         calls = programs / "calls"
         try:
-            wait_until(lambda: calls.exists() and f"/{called:06d} --quiet joints.h5" in calls.read_text())
+            wait_until(lambda: calls.exists() and f"/{called:06d} --quiet joints.h5" in calls.read_text() and
+                       all((out / "realizations" / "groups" / f"{number:06d}.rows").exists() for number in ended))
             stop(running.pid)
             self.assertNotEqual(running.wait(LONGEST_RUN), 0)
             wait_until(lambda: not alive(running.pid), "something works on after make was stopped")
@@ -186,7 +188,7 @@ class Small(Realizations):
         for number, stop in ((1, lambda pid: os.kill(pid, signal.SIGKILL)), (3, lambda pid: os.killpg(pid, signal.SIGKILL)),
                              (3, lambda pid: os.killpg(pid, signal.SIGINT))):
             programs = self.programs(hangs(number))
-            self.stopped(out, programs, stop, number)
+            self.stopped(out, programs, stop, number, ended=[0])
             calls += (programs / "calls").read_text().splitlines()
         programs = self.programs()
         self.assert_same(whole, self.made(out, programs, "-j2"))
@@ -275,7 +277,7 @@ class Small(Realizations):
         """It is named with its realizations, and counts in the others; here after a history has been falsified."""
         rows = self.rows()
         for present in rows[2]["history"]["present"][-3:]:
-            present[0] = 0
+            present[0] = False
         lines = ensemble.write(rows, self.text, self.folder)
         self.assertIn('point "crest": an excavation takes it in 1 of 4 runs: 2', lines)
         self.assertEqual(datasets(self.folder / "ensemble.h5")["/displacement/count"][-1, 0], 3)
