@@ -1,6 +1,7 @@
 """jointcreep.read: tables of files and studies, against the datasets themselves."""
 
 import math
+import re
 import subprocess
 
 import jointcreep
@@ -86,7 +87,8 @@ class Files(ChainTest):
         folder = self.chain.new_folder()
         (folder / "scene.toml").write_text(self.chain.small())
         (folder / "study.toml").write_text('scene = "scene.toml"\n[[vary]]\nnetwork = true\n[design]\nruns = 3\n[[collect]]\n'
-                                           'name = "n"\nwhat = "blocks"\nstatistic = "number"\n')
+                                           'name = "n"\nwhat = "blocks"\nstatistic = "number"\n[[collect]]\nname = "crest"\n'
+                                           'what = "displacement"\npoint = "crest"\ncomponent = "x"\n')
         subprocess.run([self.chain.programs / "jointcreep", "study", folder / "study.toml", "-o", folder / "out", "-q"], check=True,
                        timeout=LONGEST_RUN)
         study = jointcreep.read(folder / "out")
@@ -94,11 +96,23 @@ class Files(ChainTest):
         value, low, high = study.answer("mean", "n")
         self.assertAlmostEqual(value, study.runs["n"].mean(), delta=1e-12)
         self.assertLess(low, value)
-        self.assertEqual(study.answer("mean"), (value, low, high))
+        with self.assertRaisesRegex(jointcreep.NotWanted, '"mean" is there 2 times'):
+            study.answer("mean")
         with self.assertRaisesRegex(jointcreep.NotWanted, '"mode" is there 0 times'):
             study.answer("mode")
         with self.assertRaisesRegex(AttributeError, "has no moons.csv"):
             study.moons
+
+        # The example of docs/studies.md.
+        page = self.chain.text("docs/studies.md")
+        (example,) = re.findall(r"```python\n(.*?)```", page, flags=re.DOTALL)
+        for path, ours in (("out/first", folder / "out"), ("out/slope/result.h5", self.result()), ("stress.png", folder / "stress.png")):
+            self.assertIn(f'"{path}"', example)
+            example = example.replace(f'"{path}"', repr(str(ours)))
+        names = {}
+        exec(example, names)
+        self.assertEqual(names["mean"], study.answer("mean", "crest")[0])
+        self.assertEqual((folder / "stress.png").read_bytes()[:4], b"\x89PNG")
 
     def test_the_example(self):
         """That at the head of reading.py runs, on the folder of a study and the bench slope's result."""
