@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """The mean of a slope's displacement to a wanted error, by plain sampling and by two levels: how much time each takes.
 
-    levels.py PROGRAMS OUT [--error 0.01] [--fine 2] [--coarse 12] [--coarse-per-fine 25] [--no-creep] [--jobs 1]
+    levels.py PROGRAMS OUT [--error 0.01] [--fine 2] [--coarse 12] [--coarse-per-fine 30] [--no-creep] [--jobs 1]
 
 Both studies are of the crest of the bench slope with zones of `fine` m, and end by their stop rule when half of the mean's 95 percent
 interval is the wanted part of the mean. Coarse runs have zones of `coarse` m, and no creep if so said. The times are those of the
@@ -40,7 +40,7 @@ def main():
         parser.add_argument("--error", type=float, default=0.01)
         parser.add_argument("--fine", type=float, default=2)
         parser.add_argument("--coarse", type=float, default=12)
-        parser.add_argument("--coarse-per-fine", type=int, default=25)
+        parser.add_argument("--coarse-per-fine", type=int, default=30)
         parser.add_argument("--no-creep", action="store_true")
         parser.add_argument("--jobs", type=int, default=1)
 
