@@ -301,7 +301,7 @@ def summary(study, rows, why, of_each, of_histories):
               f"runs                 {len(rows)}" + (f"{of_all}, ended {why}" if why else ""),
               f"without equilibrium  {without}", f"failed otherwise     {other}"]
     for quantity, found, of_shares in of_each:
-        lines += ["", quantity.title() + f", {found['runs']} runs"]
+        lines += ["", quantity.title() + f", {found['runs']} {study.design.counted()}"]
         lines += in_columns([["", "value", "from", "to"],
                              *([name, *map(number_text, numbers)] for name, *numbers in found["statistics"])])
         if of_shares:

@@ -31,7 +31,7 @@ def distribution(quantity, study, values):
         ends = np.array([intervals.probability(int(count), n)[1:] for count in counts])
         axes.fill_between(ordered[counts - 1], 100 * ends[:, 0], 100 * ends[:, 1], step="post" if n <= BAND_POINTS else None, facecolor=BAND,
                           linewidth=0, label="95 % confidence")
-    axes.step(ordered, 100 * np.arange(1, n + 1) / n, where="post", color=figure.COLORS[0], label=f"{n} runs")
+    axes.step(ordered, 100 * np.arange(1, n + 1) / n, where="post", color=figure.COLORS[0], label=f"{n} {study.design.counted()}")
     for place, limit in enumerate([*quantity.above, *quantity.below]):
         axes.axvline(limit, color=figure.COLORS[1], linewidth=0.8, linestyle="--", label="limit" if place == 0 else None)
     axes.set_xlabel(quantity.title())
@@ -41,7 +41,7 @@ def distribution(quantity, study, values):
     return plot
 
 
-def convergence(quantity, rows, stop):
+def convergence(quantity, rows, stop, counted):
     """Statistics over the number of runs, each with its interval."""
     names = list(dict.fromkeys(name for name, *_ in rows))
     plot, panels = figure.plt.subplots(len(names), 1, figsize=(figure.ONE_COLUMN, 0.6 + 1.7 * len(names)), squeeze=False, sharex=True)
@@ -66,7 +66,7 @@ def convergence(quantity, rows, stop):
         axes.set_ylabel(f"mean of {quantity.title()}" if name == "mean" else f"{name} (percent)")
         if axes is panels[0, 0]:
             axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncol=3)
-    panels[-1, 0].set_xlabel("number of runs")
+    panels[-1, 0].set_xlabel(f"number of {counted}")
     return plot
 
 
@@ -117,7 +117,7 @@ def write(study, rows, given, found, out):
             drawn["distribution"] = distribution(quantity, study, values)
         over_runs = answers.convergence(study, rows, of["at"])
         if len({runs for _, runs, *_ in over_runs}) > 1:
-            drawn["convergence"] = convergence(quantity, over_runs, study.stop)
+            drawn["convergence"] = convergence(quantity, over_runs, study.stop, study.design.counted())
         if of_shares:
             drawn["parameters"] = parameters(quantity, study, values, run, given, of_shares)
         for name, picture in drawn.items():

@@ -98,6 +98,10 @@ class Design:
         """Networks of a design in which each run, or each coarse run, has its own."""
         return self.fine_runs * self.coarse_per_fine if self.fine_runs else self.runs
 
+    def counted(self):
+        """What values are counted in: runs, of two levels the fine ones."""
+        return "fine runs" if self.fine_runs else "runs"
+
     def level(self, run):
         """What a run is of "two levels"; else nothing."""
         return "" if not self.fine_runs else "coarse" if run % self.block() else "fine"
