@@ -3,10 +3,11 @@
 
     kills.py PROGRAMS OUT [--runs 1000] [--kills 3] [--jobs 1] [--seed 1] [--quick]
 
-The undisturbed study is made first. Moments are drawn over its time; every second kill is of the command alone,
-the others of all its processes. The exit code is 1 if anything differs.
+The undisturbed study is made first. A kill comes up to a second after so many runs have ended as is drawn; every second kill is of the
+command alone, the others of all its processes. The exit code is 1 if anything differs.
 """
 
+import contextlib
 import os
 import pathlib
 import random
@@ -17,6 +18,15 @@ import sys
 import time
 
 import slope
+
+
+def ended(folder):
+    """How many runs of a study have ended."""
+    count = 0
+    for path in (folder / "groups").glob("*.rows*"):
+        with contextlib.suppress(FileNotFoundError):  # it has another name meanwhile
+            count += path.read_bytes().count(b"\n")
+    return count
 
 
 def main():
@@ -34,24 +44,24 @@ def main():
 
     killed = pathlib.Path(arguments.out) / "killed"
     shutil.rmtree(killed, ignore_errors=True)
-    chance, count = random.Random(arguments.seed), 0
-    while count < arguments.kills:
+    chance = random.Random(arguments.seed)
+    moments = sorted(chance.randrange(arguments.runs * 9 // 10) for _ in range(arguments.kills))
+    for number, wanted in enumerate(moments, 1):
         running = subprocess.Popen(slope.command(arguments, file, killed, arguments.jobs), start_new_session=True)
-        try:
-            running.wait(chance.uniform(0, seconds / (arguments.kills + 1)))
-            break  # it has ended before
-        except subprocess.TimeoutExpired:
-            count += 1
-        if count % 2:
+        while ended(killed) < wanted and running.poll() is None:
+            time.sleep(0.05)
+        time.sleep(chance.random())
+        if running.poll() is not None:
+            sys.exit(f"kill {number}: the study has ended before")
+        if number % 2:
             os.kill(running.pid, signal.SIGKILL)
         else:
             os.killpg(running.pid, signal.SIGKILL)
         running.wait()
-        ended = sum(path.read_bytes().count(b"\n") for path in (killed / "groups").glob("*.rows*"))
-        print(f"kill {count}: {ended} runs have ended", flush=True)
+        print(f"kill {number}: {ended(killed)} runs have ended", flush=True)
     slope.made(arguments, file, killed, arguments.jobs)
     different = slope.differing(whole, killed)
-    print(f"{count} kills: " + (f"DIFFERENT: {', '.join(different)}" if different else "the same bytes"))
+    print(f"{arguments.kills} kills: " + (f"DIFFERENT: {', '.join(different)}" if different else "the same bytes"))
     sys.exit(1 if different else 0)
 
 
