@@ -14,8 +14,7 @@ import sys
 import h5py
 import numpy as np
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
-from jointcreep import length_laws, orientation_laws, plan, traces  # noqa: E402
+from jointcreep import files, length_laws, orientation_laws, traces
 
 WINDOW = [[0, 0], [30, 0], [30, 20], [0, 20]]  # m
 ANGLE = {"mean_deg": 50, "deviation_deg": 12}
@@ -133,7 +132,7 @@ def main():
             lines.append(f"| {law.word} | {shortest} | {counts} | {name} | {rows[0][0]:.3g} | {np.nanmedian([row[1][0] for row in rows]):.3g} | "
                          f"{share:.3f} | {naive} | {'' if is_right else 'OFF'} |")
             print(lines[-1], flush=True)
-    plan.written(given.out / "fits.md", "\n".join(lines) + "\n")
+    files.write_text(given.out / "fits.md", "\n".join(lines) + "\n")
     sys.exit(failed)
 
 

@@ -5,7 +5,7 @@ import pathlib
 
 import numpy as np
 
-from . import length_laws, orientation_laws, plan, traces
+from . import files, length_laws, orientation_laws, traces
 from .errors import NotWanted
 
 
@@ -161,7 +161,7 @@ def run(source, options, programs, version):
     head = (f"# Fitted by jointcreep {version} to {source.name}, window {options['window']}"
             f"{f', traces from {shortest:g} m on' if shortest else ''}. Laws are those of all joints, not of those in the window.\n")
     material = options.get("material") or "joint"
-    plan.written(output, head + "\n" + "\n".join(set_text(one, material, poles) for one in sets))
+    files.write_text(output, head + "\n" + "\n".join(set_text(one, material, poles) for one in sets))
     if not options.get("quiet"):
         print("\n".join(summary(one) for one in sets))
     return 0

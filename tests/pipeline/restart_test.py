@@ -16,7 +16,8 @@ from chain import ChainTest, changed, datasets, main
 from large_displacements_test import incline
 from small_scene import held, joint, material, scene
 
-SCENE = pathlib.Path(__file__).with_name("benches.toml").read_text()
+# With quadratic zones, the default where rock yields, this slope falls.
+SCENE = pathlib.Path(__file__).with_name("benches.toml").read_text().replace("[zones]\n", '[zones]\nkind = "constant strain"\n')
 
 
 def sliding_block(more):
