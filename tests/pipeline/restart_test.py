@@ -16,8 +16,7 @@ from chain import ChainTest, changed, datasets, main
 from large_displacements_test import incline
 from small_scene import held, joint, material, scene
 
-# With quadratic zones, the default where rock yields, this slope falls.
-SCENE = pathlib.Path(__file__).with_name("benches.toml").read_text().replace("[zones]\n", '[zones]\nkind = "constant strain"\n')
+SCENE = pathlib.Path(__file__).with_name("benches.toml").read_text()
 
 
 def sliding_block(more):
