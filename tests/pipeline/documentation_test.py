@@ -107,7 +107,7 @@ class Documentation(ChainTest):
 
     def test_slope_and_cavern(self):
         """The commands of both pages run, their figures are those of the runs, and the scenes are as quoted."""
-        for name, blocks, point in ("slope", 372, 3), ("cavern", 235, 1):
+        for name, blocks, point in ("slope", 372, 3), ("cavern", 228, 1):
             with self.subTest(name):
                 page, folder = self.chain.text(f"docs/{name}.md"), self.chain.new_folder()
                 done = self.run_commands(page, folder)
