@@ -237,7 +237,7 @@ class Small(Realizations):
         self.assertIn(FAILS, found["/failed/reason"][0])
 
     def test_all_failed(self):
-        done = self.make(self.folder / "out", self.programs('*/work/*) echo "demsolve: no" >&2; exit 3 ;;'))
+        done = self.make(self.folder / "out", self.programs('*/realizations/work/*) echo "demsolve: no" >&2; exit 3 ;;'))
         self.assertNotEqual(done.returncode, 0)
         self.assertIn("run 0 failed: demsolve, exit code 3: demsolve: no\n", done.stdout)
         self.assertFalse((self.folder / "out" / "realizations" / "ensemble.h5").exists())
