@@ -170,12 +170,12 @@ std::size_t corner_in_sight(const Layer& layer, std::size_t row, const std::vect
     return seen;
 }
 
-double twice_area(const Layer& layer, std::span<const Index> ring)
+double area_of_ring(const Layer& layer, std::span<const Index> ring)
 {
-    double twice = 0;
-    for (std::size_t i = 1; i + 1 < ring.size(); ++i)
-        twice += cross(at(layer, ring[i]) - at(layer, ring[0]), at(layer, ring[i + 1]) - at(layer, ring[0]));
-    return twice;
+    Polygon polygon;
+    for (const Index corner : ring)
+        polygon.push_back(at(layer, corner));
+    return area_of(polygon);
 }
 
 // Refuses parts that do not add up to their polygon.
@@ -183,9 +183,9 @@ void check_areas(const Layer& layer, std::size_t row, const std::vector<std::vec
 {
     double wanted = 0, found = 0;
     for (Index r = layer.first_ring[row]; r < layer.first_ring[row + 1]; ++r)
-        wanted += (r == layer.first_ring[row] ? 0.5 : -0.5) * std::abs(twice_area(layer, layer.ring(r)));
+        wanted += (r == layer.first_ring[row] ? 1 : -1) * area_of_ring(layer, layer.ring(r));
     for (const std::vector<Index>& part : parts)
-        found += std::abs(twice_area(layer, part)) / 2;
+        found += area_of_ring(layer, part);
     if (!(std::abs(found - wanted) <= 1e-9 * wanted))
         throw input_error("block " + std::to_string(row) +
                           " could not be divided into convex parts: they have " + shown(found) +

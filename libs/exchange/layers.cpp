@@ -189,10 +189,7 @@ Layer blocks_layer(const Section& section)
 
 std::vector<Vector3d> ring_of(Polygon polygon, bool counter_clockwise)
 {
-    double twice = 0;
-    for (std::size_t i = 1; i + 1 < polygon.size(); ++i)
-        twice += cross(polygon[i] - polygon[0], polygon[i + 1] - polygon[0]);
-    if ((twice > 0) != counter_clockwise)
+    if ((signed_area_of(polygon) > 0) != counter_clockwise)
         std::reverse(polygon.begin(), polygon.end());
     std::vector<Vector3d> ring;
     for (const Vector2d& corner : polygon)

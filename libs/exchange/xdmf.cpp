@@ -1,6 +1,7 @@
 #include "exchange/xdmf.hpp"
 
 #include "exchange/forces.hpp"
+#include "exchange/text.hpp"
 #include "model/error.hpp"
 #include "model/utf8.hpp"
 
@@ -39,26 +40,7 @@ std::string escaped(const std::string& text)
         throw input_error(
             text + ": an .xdmf2 file cannot refer to a name with control characters, or one that is not "
                    "UTF-8. Rename the file");
-    std::string safe;
-    for (const char c : text) {
-        switch (c) {
-        case '&':
-            safe += "&amp;";
-            break;
-        case '<':
-            safe += "&lt;";
-            break;
-        case '>':
-            safe += "&gt;";
-            break;
-        case '"':
-            safe += "&quot;";
-            break;
-        default:
-            safe += c;
-        }
-    }
-    return safe;
+    return xml_text(text);
 }
 
 // Times that tell the states apart, strictly increasing [day].

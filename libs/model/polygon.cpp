@@ -56,12 +56,17 @@ double distance_to_sides(const Polygon& polygon, const Vector2d& place)
     return nearest;
 }
 
-double area_of(const Polygon& polygon)
+double signed_area_of(const Polygon& polygon)
 {
     double twice = 0;
     for (std::size_t i = 1; i + 1 < polygon.size(); ++i)
         twice += cross(polygon[i] - polygon[0], polygon[i + 1] - polygon[0]);
-    return std::abs(twice) / 2;
+    return twice / 2;
+}
+
+double area_of(const Polygon& polygon)
+{
+    return std::abs(signed_area_of(polygon));
 }
 
 } // namespace jointcreep

@@ -39,7 +39,8 @@ bool covers(const Polygon& polygon, const Eigen::Vector2d& place);
 // Distance of a place from the nearest side [m].
 double distance_to_sides(const Polygon& polygon, const Eigen::Vector2d& place);
 
-// About a corner of its own, whichever way round the polygon runs [m2].
+// About a corner of its own, whichever way round the polygon runs; or positive if counter-clockwise [m2].
 double area_of(const Polygon& polygon);
+double signed_area_of(const Polygon& polygon);
 
 } // namespace jointcreep
