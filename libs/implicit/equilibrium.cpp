@@ -18,10 +18,9 @@ namespace
 constexpr int most_corrections = 80, most_corrections_to_mend = 20;
 constexpr int patience = 15; // iterations with an old factor: a new one costs 10 to 20 of them
 constexpr int most_leaps = 5;
-constexpr int patience_with_flow = 4; // corrections without gain of rock that yields
+constexpr int most_without_gain = 15, most_without_gain_with_flow = 4;        // corrections
 constexpr int most_trials = 50, most_trials_with_flow = 4, most_halvings = 6; // along a correction
 constexpr double least_kept_share = 1e-2;
-constexpr double soft = 1e-6; // share of their springs that open and slipping contacts keep in the factor
 
 } // namespace
 
@@ -78,7 +77,7 @@ bool Solver::mend_bonds(const Assembly& assembly)
 VectorXd Solver::correction(const Assembly& assembly, const State& start, const VectorXd& force,
                             double enough, double kept_share)
 {
-    const Tangents acting = tangents(assembly, start, std::max(soft, kept_share));
+    const Tangents acting = tangents(assembly, start, std::max(soft_in_factor, kept_share));
     if (yields(assembly)) {
         ++factorisations_;
         ++solves_;
@@ -245,7 +244,7 @@ bool Solver::converge(Assembly& assembly, const State& start, const Equilibrium&
         if (is_balanced && is_at_rest(assembly, start, balance.mean, settings.tolerance, convergence))
             return true;
         if (corrections_ - first == most_corrections ||
-            course.since_least == (yields(assembly) ? patience_with_flow : 15)) {
+            course.since_least == (yields(assembly) ? most_without_gain_with_flow : most_without_gain)) {
             reason_ = unsupported_ < 0
                           ? "forces do not come into balance"
                           : "contacts do not carry the weight of, and the loads on, the rock at " +
@@ -371,7 +370,7 @@ std::optional<Convergence> Solver::equilibrate(Assembly& assembly, const Equilib
     if (!stiffness_.has_factor()) {
         space_.forget();
         linear_space_.forget();
-        acting_ = tangents(assembly, start, soft);
+        acting_ = tangents(assembly, start, soft_in_factor);
         ++factorisations_;
         if (!stiffness_.factorise(assembly, acting_)) {
             reason_ = "some rock has no support";

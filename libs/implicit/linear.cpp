@@ -8,7 +8,6 @@ namespace jointcreep::implicit
 VectorXd Solver::solve_linear(const Assembly& assembly, const Tangents& tangents, const VectorXd& right)
 {
     constexpr double exact = 1e-10, hardly = 1e-6; // residuals over the right side
-    const double soft = 1e-6;
     // Several right sides come with the same tangents: a factor of these very tangents is soon worth its
     // cost.
     constexpr int patience = 3, patience_with_own = 60, most_refinements = 3;
@@ -34,8 +33,8 @@ VectorXd Solver::solve_linear(const Assembly& assembly, const Tangents& tangents
     };
     Tangents firm = tangents; // a Cholesky factor does not know slip
     for_each_force(
-        [&](const auto& force, auto& of_force) { of_force = without_zeros(force, of_force, soft); }, assembly,
-        firm);
+        [](const auto& force, auto& of_force) { of_force = without_zeros(force, of_force, soft_in_factor); },
+        assembly, firm);
     const bool is_own = stiffness_.has_factor_of(firm);
     if (stiffness_.has_factor())
         refine(is_own ? patience_with_own : patience, is_own ? most_refinements : 1);

@@ -308,12 +308,13 @@ bool Stiffness::factorise(const Assembly& assembly, const Tangents& tangents)
 {
     std::copy(constant_.valuePtr(), constant_.valuePtr() + constant_.nonZeros(), factorised_.valuePtr());
     for_each_force(
-        [&](const auto& force, auto of_force, const Part& part) {
+        [&](const auto& force, const auto& of_force, const Part& part) {
             if constexpr (!HasConstants<decltype(force)>) {
-                for (auto& tangent : of_force)
+                auto symmetric = of_force;
+                for (auto& tangent : symmetric)
                     tangent = tangent.symmetric();
                 add(factorised_, force, part,
-                    [&](const auto& add_block) { add_stiffness(force, part.there, of_force, add_block); });
+                    [&](const auto& add_block) { add_stiffness(force, part.there, symmetric, add_block); });
             }
         },
         assembly, tangents, parts_);

@@ -5,10 +5,9 @@
 // stiffness; only where it yields it has tangents in its place, and K is factorised for each correction. The others, as
 // contacts, have tangents all the time, by what each does now; products with them are added.
 // A contact that slips couples its shear traction to its normal displacement, and, if it dilates, its normal
-// traction to its shear displacement: then K is not symmetric. The factor is
-// one of the symmetric part in which open and slipping contacts keep a small part of their springs, so that
-// it exists also where K is singular; it preconditions, and only its nearness to K decides how many
-// iterations a solution takes.
+// traction to its shear displacement: then K is not symmetric. The factor is one of K without these couplings, in
+// which open and slipping contacts keep a small part of their springs, so that it exists also where K is
+// singular; it preconditions, and only its nearness to K decides how many iterations a solution takes.
 
 #pragma once
 
@@ -33,6 +32,9 @@ using Eigen::VectorXd;
 using mechanics::Assembly;
 using mechanics::Tangents;
 using mechanics::Vector2d;
+
+// Share of their springs that open and slipping contacts keep in the factor.
+constexpr double soft_in_factor = 1e-6;
 
 class Stiffness
 {
@@ -84,7 +86,7 @@ private:
     using UnsymmetricFactor = Eigen::SparseLU<Matrix>;
 #endif
 
-    // What the matrix has of a kind of force: groups of gridpoints that it couples.
+    // What the matrix has of a kind of force: groups of gridpoints that it couples, as many in each.
     struct Part {
         std::vector<Index> there;            // groups
         std::vector<int> entry;              // where the square of each group goes, row by row; -1 nowhere

@@ -81,8 +81,8 @@ void add_force_change(const Contacts& contacts, Index c, const Tangent& tangent,
     add(0, -force);
 }
 
-// The tangent of a contact's springs: where it is open or slips, and a smooth joint in shear, they keep the share `soft`
-// only.
+// The tangent of a contact's springs. An open contact keeps the share `soft` of both; one that slips, and a smooth joint,
+// keeps that share of the shear spring.
 Tangent tangent_of_springs(const Contacts& contacts, std::size_t c, double soft);
 
 // The same as add_stiffness by these springs. Returns the stiffest one [Pa].

@@ -137,7 +137,7 @@ void record_state(const Assembly& assembly, States& states);
 // they close count with joint::room_to_stiffen.
 std::vector<double> stiffness_row_sums(const Assembly& assembly);
 
-// Mass of every gridpoint: a third of each present zone around it [kg/m].
+// Mass of every gridpoint: its shares of the present zones around it [kg/m]; see rock::add_masses.
 std::vector<double> lumped_masses(const Assembly& assembly);
 
 // The cost of an equilibrium, with the rejected and failed searches before it.
@@ -155,8 +155,7 @@ struct Convergence {
     // Largest over the last 100 steps, or by one more correction; over the mean force on a gridpoint [-].
     double contact_force_change = 0;
     double remaining_displacement = 0; // largest, by estimate [m]
-    // Energy balance: work of loads = stored in zones and contacts + dissipated in contacts + taken by damping
-    // [J/m].
+    // Energy balance: work of loads = stored in zones and contacts + dissipated by both + taken by damping [J/m].
     double work_of_loads = 0, stored = 0, dissipated = 0, damped = 0;
 };
 

@@ -6,8 +6,10 @@
 //   find_incidence, find_forces_in_team, add_force_on, add_magnitudes_on, reported_forces, add_row_sums, stored_energy,
 //   begin_search, dissipated, yields, hold_yield, is_within_strength, is_finite, pass, state_of, go_back,
 //   start_from_here, transfer, record_state, join, remove_at.
-// Its tangents are in rock/zone_stiffness.hpp and joint/contact_stiffness.hpp, and what it does in a search for
-// equilibrium by tangents in rock/active_zones.hpp and joint/active_contacts.hpp.
+// rock/zone_stiffness.hpp and joint/contact_stiffness.hpp have its Tangent, and
+//   present, coupled_by, add_stiffness, add_springs, without_zeros; with a constant stiffness constants and
+//   add_constant_stiffness, without one add_force_change.
+// What it does in a search for equilibrium by tangents is in rock/active_zones.hpp and joint/active_contacts.hpp.
 
 #pragma once
 
