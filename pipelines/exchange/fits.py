@@ -8,13 +8,12 @@ seen as whole and every trace as met alike. Ends with exit code 1 where the shar
 import argparse
 import math
 import pathlib
-import subprocess
 import sys
 
 import h5py
 import numpy as np
 
-from jointcreep import files, length_laws, orientation_laws, traces
+from jointcreep import chain, files, length_laws, orientation_laws, traces
 
 WINDOW = [[0, 0], [30, 0], [30, 20], [0, 20]]  # m
 ANGLE = {"mean_deg": 50, "deviation_deg": 12}
@@ -77,7 +76,7 @@ seed = 2003
 
 
 def seen_in(programs, path, network, realization, shortest):
-    subprocess.run([programs / "jointgen", path, "-q", "--realization", str(realization), "-o", network], check=True)
+    chain.run(programs / "jointgen", path, "-q", "--realization", realization, "-o", network)
     with h5py.File(network) as file:
         return traces.Seen(traces.Window(WINDOW), file["/joints/from"][:], file["/joints/to"][:], 0.0, shortest)
 

@@ -122,17 +122,12 @@ def of_run(path):
 # --- Of all runs ----------------------------------------------------------------------------------------------------
 
 
-def stages_of(one):
-    """How many stages there have been, by row of the histories of a run."""
-    return np.cumsum([bool(name) for name in one["event"]])
-
-
 def on_days_of(first, one):
     """Displacement [time, point, 2] and presence [time, point] of a run on the days of the first one's rows."""
     moves, there = np.array(one["displacement"]), np.array(one["present"])
     if all(first[name] == one[name] for name in ("time", "event", "first_reading_row")):
         return moves, there
-    stages, wanted = stages_of(one), stages_of(first)
+    stages, wanted = (histories.stages_of(run["event"]) for run in (one, first))
     if stages[-1] != wanted[-1]:
         raise NotWanted(f"it has {stages[-1]} stages, and not {wanted[-1]}")
     time, dates = np.array(one["time"]), np.array(one["dates"])

@@ -9,6 +9,11 @@ import numpy as np
 SAME_DAY = 1e-9  # of a day's number: runs may differ in the last digit
 
 
+def stages_of(event):
+    """How many stages there have been, by row; event: the stage that a row is the first after, "" for others."""
+    return np.cumsum([bool(name) for name in event])
+
+
 def polynomial(time, values, wanted):
     """At a wanted time, the polynomial through values [row, ...] at these times."""
     weight = [np.prod([(wanted - other) / (one - other) for other in time if other != one]) for one in time]

@@ -22,7 +22,7 @@ import tomllib
 import h5py
 import numpy as np
 
-from . import files
+from . import files, histories
 from .errors import NotWanted
 
 AXES = {2: ["x", "y"], 3: ["xx", "yy", "xy"]}  # parts of a dataset's last dimension
@@ -69,7 +69,7 @@ class History:
 
     def stages(self):
         """[time]: how many stages there have been."""
-        return np.cumsum([bool(name) for name in self.event])
+        return histories.stages_of(self.event)
 
     def of(self, point):
         """Displacement of a point [time, {x, y}] [m]. Raises NotWanted if there is none of that name."""
