@@ -15,7 +15,7 @@
 
 #include "exchange/csv.hpp"
 #include "exchange/format.hpp"
-#include "exchange/vtu.hpp"
+#include "exchange/grids.hpp"
 #include "exchange/xdmf.hpp"
 #include "model/error.hpp"
 #include "scene/scene.hpp"
@@ -137,8 +137,9 @@ std::string text_of_result(const Arguments& arguments, const Format& format, con
                                : exchange::contacts_xdmf(file.result, result_file);
     }
     const std::size_t state = chosen_state(arguments, file.result.states);
-    return what == "zones" ? exchange::zones_vtu(file.network, file.result, state)
-                           : exchange::contacts_vtu(file.result, state);
+    const exchange::Grid grid = what == "zones" ? exchange::zones_grid(file.network, file.result, state)
+                                                : exchange::contacts_grid(file.result, state);
+    return format.name == "vtkhdf" ? vtkhdf_of(grid) : vtu_of(grid);
 }
 
 exchange::Section section_of(const std::string& path, bool with_properties)

@@ -1,5 +1,5 @@
-// The writers of single formats: from a job to files. Inside libs/exchange only; exchange/format.hpp lists them. Numbers
-// are written so that they read back as the same doubles, unless a writer says otherwise.
+// The writers of single formats: from a job to files. Inside libs/exchange only; exchange/format.hpp lists them.
+// Numbers are written so that they read back as the same doubles, unless a writer says otherwise.
 
 #pragma once
 
@@ -10,6 +10,7 @@ namespace jointcreep::exchange
 
 std::vector<File> write_csv(const Job& job);
 std::vector<File> write_vtu(const Job& job);
+std::vector<File> write_vtkhdf(const Job& job);
 std::vector<File> write_geojson(const Job& job);
 std::vector<File> write_svg(const Job& job);
 

@@ -235,6 +235,23 @@ void write_numbers(hid_t object, const std::string& name, hid_t type, const void
     ok(H5Awrite(attribute, type, values), "write the attribute " + name);
 }
 
+hid_t plain_type_of(std::span<const double>)
+{
+    return H5T_IEEE_F64LE;
+}
+hid_t plain_type_of(std::span<const Index>)
+{
+    return H5T_STD_I32LE;
+}
+hid_t plain_type_of(std::span<const std::int64_t>)
+{
+    return H5T_STD_I64LE;
+}
+hid_t plain_type_of(std::span<const unsigned char>)
+{
+    return H5T_STD_U8LE;
+}
+
 std::string without_padding(std::string text)
 {
     text.erase(text.find_last_not_of('\0') + 1);
@@ -403,40 +420,74 @@ void Object::close(const std::string& what)
 
 Image::Image() : file_(create_in(memory_)) {}
 
-void Image::add(const Field& field, const Dimensions& dimensions)
+void Image::make_group_of(const std::string& path)
 {
-    const std::string group = field.path.substr(0, field.path.rfind('/'));
-    if (!group.empty() && groups_.insert(group).second) {
-        const Object creation = timeless(H5P_GROUP_CREATE);
-        Object(H5Gcreate2(file_, group.c_str(), H5P_DEFAULT, creation, H5P_DEFAULT), H5Gclose,
-               "create " + group);
-    }
+    const std::string group = path.substr(0, path.rfind('/'));
+    if (group.empty() || !groups_.insert(group).second)
+        return;
+    make_group_of(group);
+    const Object creation = timeless(H5P_GROUP_CREATE);
+    Object(H5Gcreate2(file_, group.c_str(), H5P_DEFAULT, creation, H5P_DEFAULT), H5Gclose, "create " + group);
+}
 
-    Written values = std::visit([](auto span) { return written(span); }, fields::flat(field.values));
-    if (!values.text.empty())
-        values.data = values.text.data();
-    const std::vector<hsize_t> extents = extents_of(field, dimensions);
+// The dataset, with its values.
+Object Image::add(const std::string& path, hid_t type, const void* data, const std::vector<hsize_t>& extents)
+{
+    make_group_of(path);
     const int rank = static_cast<int>(extents.size());
     const bool empty = std::ranges::find(extents, hsize_t(0)) != extents.end();
     const Object space(H5Screate_simple(rank, extents.data(), nullptr), H5Sclose, "set up HDF5");
     const Object creation = timeless(H5P_DATASET_CREATE);
     if (!empty) {
-        const std::size_t element_bytes = H5Tget_size(values.type);
+        const std::size_t element_bytes = H5Tget_size(type);
         const auto elements = static_cast<std::size_t>(H5Sget_simple_extent_npoints(space));
         ok(H5Pset_chunk(creation, rank, chunk_of(extents, element_bytes).data()), "set up HDF5");
-        if (is_worth_deflating(values.data, elements, element_bytes)) {
+        if (is_worth_deflating(data, elements, element_bytes)) {
             ok(H5Pset_shuffle(creation), "set up HDF5");
             ok(H5Pset_deflate(creation, deflation), "set up HDF5");
         }
         ok(H5Pset_fletcher32(creation), "set up HDF5");
     }
-    const Object dataset(
-        H5Dcreate2(file_, field.path.c_str(), values.type, space, H5P_DEFAULT, creation, H5P_DEFAULT),
-        H5Dclose, "create " + field.path);
+    Object dataset(H5Dcreate2(file_, path.c_str(), type, space, H5P_DEFAULT, creation, H5P_DEFAULT), H5Dclose,
+                   "create " + path);
     if (!empty)
-        ok(H5Dwrite(dataset, values.type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data), "write " + field.path);
+        ok(H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, data), "write " + path);
+    return dataset;
+}
+
+void Image::add(const Field& field, const Dimensions& dimensions)
+{
+    Written values = std::visit([](auto span) { return written(span); }, fields::flat(field.values));
+    if (!values.text.empty())
+        values.data = values.text.data();
+    const Object dataset = add(field.path, values.type, values.data, extents_of(field, dimensions));
     write_text(dataset, "units", field.units);
     write_text(dataset, "description", field.description);
+}
+
+void Image::add(const PlainArray& array)
+{
+    std::visit(
+        [&](const auto& values) {
+            std::vector<hsize_t> extents{values.size() / array.components};
+            if (array.components > 1)
+                extents.push_back(array.components);
+            add(array.path, plain_type_of(values), values.data(), extents);
+        },
+        array.values);
+}
+
+void Image::set_text_of(const std::string& group, const std::string& attribute, const std::string& value)
+{
+    const Object owner(H5Gopen2(file_, group.c_str(), H5P_DEFAULT), H5Gclose, "open " + group);
+    write_text(owner, attribute, value);
+}
+
+void Image::set_numbers_of(const std::string& group, const std::string& attribute,
+                           const std::vector<std::int64_t>& values)
+{
+    const Object owner(H5Gopen2(file_, group.c_str(), H5P_DEFAULT), H5Gclose, "open " + group);
+    write_numbers(owner, attribute, H5T_STD_I64LE, values.data(), values.size());
 }
 
 void Image::set_text(const std::string& attribute, const std::string& value)

@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include "store/arrays.hpp"
 #include "store/check.hpp"
 
 #include <hdf5.h>
@@ -45,7 +46,11 @@ public:
     Image(const Image&) = delete; // HDF5 knows where memory_ is
     Image& operator=(const Image&) = delete;
     void add(const fields::Field& field, const schema::Dimensions& dimensions);
+    void add(const PlainArray& array);
     void set_text(const std::string& attribute, const std::string& value);
+    void set_text_of(const std::string& group, const std::string& attribute, const std::string& value);
+    void set_numbers_of(const std::string& group, const std::string& attribute,
+                        const std::vector<std::int64_t>& values);
     void set_integers(const std::string& attribute,
                       const std::vector<Index>& values); // a single one as a scalar
     void set_natural(const std::string& attribute, std::uint64_t value);
@@ -53,6 +58,9 @@ public:
     std::span<const std::byte> close();
 
 private:
+    void make_group_of(const std::string& path);
+    Object add(const std::string& path, hid_t type, const void* data, const std::vector<hsize_t>& extents);
+
     std::vector<std::byte> memory_;
     Object file_;
     std::set<std::string> groups_;

@@ -140,6 +140,20 @@ class Check:
                 self.add(name, "VTK", numpy.linalg.norm(ends[:, 1] - ends[:, 0], axis=1).sum(), network.edge_length.sum(),
                          "length [m]")
 
+    def vtkhdf(self):
+        path = self.write("blocks.vtkhdf")
+        try:
+            from vtkmodules.vtkIOHDF import vtkHDFReader
+            from vtkmodules.util.numpy_support import vtk_to_numpy
+        except ImportError:
+            return print("not installed: VTK (python3-vtk9)")
+        reader = vtkHDFReader()
+        reader.SetFileName(str(path))
+        reader.Update()
+        grid = reader.GetOutput()
+        self.add("blocks.vtkhdf", "VTK", grid.GetNumberOfCells(), len(self.network.area), "cells")
+        self.add("blocks.vtkhdf", "VTK", vtk_to_numpy(grid.GetCellData().GetArray("area")).sum(), self.network.area.sum(), "area [m2]")
+
     def yade(self):
         if not shutil.which("yade"):
             return print("not installed: yade")
@@ -172,6 +186,7 @@ def main():
     check.dxf(len(table), length)
     check.gmsh()
     check.vtu()
+    check.vtkhdf()
     check.yade()
     lines = ["| file | reader | what | read back | in the HDF5 file | |", "|---|---|---|---|---|---|"]
     lines += ["| " + " | ".join(row) + " |" for row in check.rows]

@@ -1,6 +1,6 @@
 // What a reader of the grids gets back is what was in the records.
 
-#include "exchange/vtu.hpp"
+#include "exchange/grids.hpp"
 
 #include "section.hpp"
 
@@ -84,12 +84,12 @@ using Numbers = std::vector<double>;
 
 std::string blocks_vtu(const Section& section)
 {
-    return layer_vtu(layer_of(section, "blocks"));
+    return vtu_of(layer_grid(layer_of(section, "blocks")));
 }
 
 std::string edges_vtu(const Section& section)
 {
-    return layer_vtu(layer_of(section, "edges"));
+    return vtu_of(layer_grid(layer_of(section, "edges")));
 }
 
 TEST(blocks_vtu, has_one_polygon_a_block_with_its_area)
@@ -179,8 +179,8 @@ TEST(edges_vtu, has_the_strengths_once_they_are_known)
 TEST(zones_vtu, has_only_what_is_present_in_that_state)
 {
     const Result result = small_result();
-    const std::string before = zones_vtu(small_network(), result, 0),
-                      after = zones_vtu(small_network(), result, 1);
+    const std::string before = vtu_of(zones_grid(small_network(), result, 0)),
+                      after = vtu_of(zones_grid(small_network(), result, 1));
     EXPECT_EQ(array_of(before, "zone"), (Numbers{0, 1, 2, 3}));
     EXPECT_EQ(array_of(after, "zone"), (Numbers{2, 3}));
     EXPECT_EQ(array_of(after, "gridpoint"), (Numbers{4, 5, 6, 7})); // those of removed rock are gone
@@ -193,7 +193,7 @@ TEST(zones_vtu, has_only_what_is_present_in_that_state)
 TEST(zones_vtu, takes_displacement_and_stress_of_that_state)
 {
     const Result result = small_result();
-    const std::string after = zones_vtu(small_network(), result, 1);
+    const std::string after = vtu_of(zones_grid(small_network(), result, 1));
     const Numbers displacement = array_of(after, "displacement");
     ASSERT_EQ(displacement.size(), 12u);
     for (std::size_t point = 0; point < 4; ++point) {
@@ -206,13 +206,13 @@ TEST(zones_vtu, takes_displacement_and_stress_of_that_state)
     EXPECT_EQ(array_of(after, "block"), (Numbers{1, 1}));
     EXPECT_EQ(array_of(after, "rock"), (Numbers{1, 1}));
     EXPECT_EQ(array_of(after, "stage"), (Numbers{-1, -1}));
-    EXPECT_THROW(zones_vtu(small_network(), result, 2), input_error);
+    EXPECT_THROW(zones_grid(small_network(), result, 2), input_error);
 }
 
 TEST(zones_vtu, counts_displacements_anew_from_a_state_that_resets)
 {
     Result result = small_result();
-    EXPECT_EQ(zones_vtu(small_network(), result, 1).find("since_reset"), std::string::npos);
+    EXPECT_EQ(vtu_of(zones_grid(small_network(), result, 1)).find("since_reset"), std::string::npos);
     for (std::size_t g = 0; g < 9; ++g) // a third state, moved on by [1, 2] m since the second
         result.states.displacement.push_back(result.states.displacement[9 + g] + Eigen::Vector2d(1, 2));
     const auto again = [](auto& values, std::size_t n) {
@@ -224,8 +224,10 @@ TEST(zones_vtu, counts_displacements_anew_from_a_state_that_resets)
     again(result.states.stress, 4);
     again(result.states.zone_present, 4);
     result.states.reset_state = {0, 1, 1};
-    EXPECT_EQ(array_of(zones_vtu(small_network(), result, 1), "displacement_since_reset"), Numbers(12, 0.0));
-    const Numbers since = array_of(zones_vtu(small_network(), result, 2), "displacement_since_reset");
+    EXPECT_EQ(array_of(vtu_of(zones_grid(small_network(), result, 1)), "displacement_since_reset"),
+              Numbers(12, 0.0));
+    const Numbers since =
+        array_of(vtu_of(zones_grid(small_network(), result, 2)), "displacement_since_reset");
     ASSERT_EQ(since.size(), 12u);
     for (std::size_t point = 0; point < 4; ++point) {
         EXPECT_NEAR(since[3 * point], 1, 1e-12);
@@ -236,7 +238,7 @@ TEST(zones_vtu, counts_displacements_anew_from_a_state_that_resets)
 TEST(contacts_vtu, leaves_out_removed_contacts)
 {
     const Result result = small_result();
-    const std::string before = contacts_vtu(result, 0), after = contacts_vtu(result, 1);
+    const std::string before = vtu_of(contacts_grid(result, 0)), after = vtu_of(contacts_grid(result, 1));
     EXPECT_EQ(array_of(before, "contact"), (Numbers{0, 1}));
     EXPECT_EQ(array_of(before, "position"), (Numbers{7.5, 5, 0, 2.5, 0, 0}));
     EXPECT_EQ(array_of(before, "displacement"),

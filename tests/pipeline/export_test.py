@@ -6,6 +6,7 @@ import functools
 import tomllib
 import xml.etree.ElementTree
 
+import h5py
 import numpy
 
 from chain import ChainTest, changed, datasets, main
@@ -225,6 +226,31 @@ class Export(ChainTest):
                     for name in "traction", "relative_displacement":
                         wanted = data["/states/" + name][state][contact, component]
                         self.assert_same(grid.point[f"{direction}_{name}"], wanted)
+
+    def test_vtkhdf(self):
+        """The same grids as .vtu files have, in VTK's HDF5."""
+        for path, _ in self.results():
+            for what in "blocks", "edges", "joints", "zones", "contacts":
+                grid = Grid(self.export(path, "x.vtu", "--what", what))
+                with h5py.File(self.export(path, "x.vtkhdf", "--what", what)) as file:
+                    root = file["VTKHDF"]
+                    self.assertEqual((root.attrs["Type"], list(root.attrs["Version"])), (b"UnstructuredGrid", [1, 0]))
+                    sizes = [len(grid.points), len(grid.types), sum(map(len, grid.connectivity))]
+                    names = "NumberOfPoints", "NumberOfCells", "NumberOfConnectivityIds"
+                    self.assertEqual([root[name][()].tolist() for name in names], [[size] for size in sizes])
+                    self.assert_same(root["Points"], grid.points)
+                    self.assert_same(root["Types"], grid.types)
+                    self.assert_same(root["Offsets"], numpy.cumsum([0, *map(len, grid.connectivity)]))
+                    self.assert_same(root["Connectivity"], numpy.concatenate(grid.connectivity))
+                    for section, arrays in ("PointData", grid.point), ("CellData", grid.cell), ("FieldData", grid.field):
+                        self.assertEqual(set(root.get(section, [])), set(arrays))
+                        for name, values in arrays.items():
+                            found = root[section][name][()]
+                            if name.endswith("_names"):
+                                self.assertEqual(found.tobytes().decode().split("\0")[:-1], values)
+                            else:
+                                self.assert_same(found, values)
+                                self.assertEqual(found.dtype, values.dtype)
 
     def test_states_by_name(self):
         """A stage stands for the state after it; the last state is the default."""
