@@ -4,6 +4,7 @@ import csv
 import io
 import json
 import math
+import re
 import sqlite3
 import struct
 import subprocess
@@ -288,22 +289,47 @@ class Fits(ChainTest):
         with h5py.File(network) as file:
             self.assertEqual(list(file["names/joint_set"].asstr()[:]), ["flat", "steep"])
 
-    def test_the_window_may_cut_the_file(self):
-        """Traces clipped to the window give the same sets as whole ones; a mapped edge that is not exact needs --edge."""
-        path = self.traces()
-        whole = self.fit(path, "--window", self.WINDOW, "--property", "set", "-q")
-        self.assertEqual(whole.returncode, 0, whole.stderr)
-        before = path.with_name("sets.toml").read_text()
+    def clip(self, path, short=0.0):
+        """Clips the traces of a file to the window; where it cuts them they end so far inside [m]."""
         rows = list(csv.reader(path.read_text().splitlines()))
         kept = [rows[0]]
         for row in rows[1:]:
             a, b = np.array(row[:2], float), np.array(row[2:4], float)
             with np.errstate(divide="ignore"):
                 ends = np.sort(np.array([(np.zeros(2) - a) / (b - a), (np.array([30, 20]) - a) / (b - a)]), axis=0)
-            low, high = max(0, ends[0].max()), min(1, ends[1].min())
+            low, high = ends[0].max(), ends[1].min()
+            share = short / np.linalg.norm(b - a)
+            low, high = low + share if low > 0 else 0, high - share if high < 1 else 1
             if low < high:
                 kept.append([*map(repr, map(float, [*(a + low * (b - a)), *(a + high * (b - a))])), row[4]])
         path.write_text("\n".join(",".join(row) for row in kept) + "\n")
+
+    def test_an_edge_that_is_not_exact(self):
+        """Traces that were mapped to 5 mm before the edge count as cut there with --edge, and as whole without."""
+        path = self.traces()
+        options = "--window", self.WINDOW, "--property", "set", "--law", "negative exponential"
+
+        def whole(*more):
+            done = self.fit(path, *options, *more)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            return [tuple(map(int, found)) for found in
+                    re.findall(r": (\d+) traces in the window, (\d+) whole, (\d+) cut at one end, (\d+) at both", done.stdout)]
+
+        wanted = whole()
+        self.assertEqual(len(wanted), 2)
+        self.clip(path, 0.005)
+        for one, other in zip(whole("--edge", "0.02"), wanted):
+            np.testing.assert_allclose(one, other, atol=3)  # ends of whole traces within 2 cm of the edge; bits of traces
+        for traces, uncut, *_ in whole():
+            self.assertEqual(traces, uncut)
+
+    def test_the_window_may_cut_the_file(self):
+        """Traces clipped to the window give the same sets as whole ones."""
+        path = self.traces()
+        whole = self.fit(path, "--window", self.WINDOW, "--property", "set", "-q")
+        self.assertEqual(whole.returncode, 0, whole.stderr)
+        before = path.with_name("sets.toml").read_text()
+        self.clip(path)
         cut = self.fit(path, "--window", self.WINDOW, "--property", "set", "-q")
         self.assertEqual(cut.returncode, 0, cut.stderr)
         numbers = [np.array([float(word) for word in text.replace(",", " ").split() if word.replace(".", "", 1).isdecimal()])
