@@ -76,14 +76,15 @@ Tangent ActiveContacts::tangent(const Contacts& contacts, std::size_t c, const S
                                 double soft) const
 {
     const Slopes law = slopes(contacts.law[c], contacts.state[c], contacts.traction[c].x());
+    const double soft_shear = soft * (law.k_s > 0 ? law.k_s : law.k_n); // a smooth joint has no shear spring
     const bool slips = contacts.status[c] == ContactStatus::slipping;
     if (remembers(contacts.law[c]) && active_[c] != Active::open && slips == (active_[c] != Active::stuck)) {
         const double kept = slips ? soft : 0;
         const Tangent found = tangent_of_response(contacts, c, start);
-        return {found.normal + kept * (law.k_n - found.normal), found.shear + kept * (law.k_s - found.shear),
+        return {found.normal + kept * (law.k_n - found.normal),
+                law.k_s > 0 ? found.shear + kept * (law.k_s - found.shear) : soft_shear,
                 (1 - kept) * found.friction, (1 - kept) * found.dilation};
     }
-    const double soft_shear = soft * (law.k_s > 0 ? law.k_s : law.k_n);
     switch (active_[c]) {
     case Active::open:
         return {soft * law.k_n, soft_shear, 0, 0};
@@ -125,9 +126,9 @@ bool ActiveContacts::break_bonds(const Contacts& contacts, const ContactsState& 
     for (std::size_t c = 0; c < breaks_.size(); ++c) {
         const Law& law = contacts.law[c];
         const bool is_open = contacts.status[c] == ContactStatus::open;
-        const bool changes = weakens_by_slip(law)
-                                 ? contacts.state[c].is_broken != (is_broken_[c] != 0)
-                                 : is_open != (active_[c] == Active::open) && cohesion(law) > 0;
+        const bool changes = weakens_by_slip(law) ? contacts.state[c].is_broken != (is_broken_[c] != 0)
+                                                  : is_open != (active_[c] == Active::open) &&
+                                                        (cohesion(law) > 0 || tensile_strength(law) > 0);
         if (contacts.status[c] != ContactStatus::removed && changes && !breaks_[c] &&
             !start.state[c].is_broken) {
             breaks_[c] = 1;

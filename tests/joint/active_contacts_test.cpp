@@ -120,4 +120,31 @@ TEST(active_contacts, break_bonds_that_hinder)
     EXPECT_TRUE(contacts.state[0].is_broken);
 }
 
+// A joint with tensile strength alone has a bond, too.
+TEST(active_contacts, break_bonds_without_cohesion)
+{
+    Coulomb law = std::get<Coulomb>(bonded());
+    law.cohesion = 0;
+    auto [contacts, start, active] = begun(contact(law, {0, 1}, {-1e6, 0}));
+    part(contacts, {2e-3, 0});
+    EXPECT_TRUE(active.break_bonds(contacts, start));
+    law.tensile_strength = 0;
+    auto [loose, loose_start, loose_active] = begun(contact(law, {0, 1}, {-1e6, 0}));
+    part(loose, {2e-3, 0});
+    EXPECT_FALSE(loose_active.break_bonds(loose, loose_start));
+}
+
+// The factor needs some stiffness where there is no shear spring, also of a law with a memory.
+TEST(active_contacts, smooth_joints_keep_a_share)
+{
+    Coulomb law = std::get<Coulomb>(bonded());
+    WearingDilation with_memory{};
+    law.k_s = 0;
+    with_memory.k_n = law.k_n;
+    for (const Law& smooth : {Law(law), Law(with_memory)}) {
+        const auto [contacts, start, active] = begun(contact(smooth, {0, 1}, {-1e6, 0}));
+        EXPECT_EQ(active.tangents(contacts, {}, start, 1e-6)[0].shear, 1e3);
+    }
+}
+
 } // namespace active_contacts_test
