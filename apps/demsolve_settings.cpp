@@ -25,6 +25,11 @@ std::string as_option(std::string_view word)
     return option;
 }
 
+// A word of earlier versions, refused by a message that has the new one.
+struct RenamedWord {
+    std::string_view before, now;
+};
+
 // "published, backward, linear-force or fitted": `last` stands before the last one.
 template <class Choice>
 std::string listed(const keys::Words<Choice>& words, const std::string& last = ", ")
@@ -36,11 +41,15 @@ std::string listed(const keys::Words<Choice>& words, const std::string& last = "
 }
 
 template <class Choice>
-Choice chosen_from(const keys::Words<Choice>& words, const std::string& option, const std::string& name)
+Choice chosen_from(const keys::Words<Choice>& words, const RenamedWord& renamed, const std::string& option,
+                   const std::string& name)
 {
     for (const auto& [word, choice] : words)
         if (as_option(word) == name)
             return choice;
+    if (!name.empty() && name == renamed.before)
+        throw input_error("--" + option + " " + name + " is now called --" + option + " " +
+                          std::string(renamed.now));
     throw input_error("--" + option + ": \"" + name + "\" is none of " + listed(words));
 }
 
@@ -70,11 +79,12 @@ auto number(const Range& range, std::string_view unit, const std::function<void(
 
 // One of some words.
 template <class Choice>
-auto word(const keys::Words<Choice>& words, const std::function<void(Scene&, Choice)>& set)
+auto word(const keys::Words<Choice>& words, const RenamedWord& renamed,
+          const std::function<void(Scene&, Choice)>& set)
 {
     return [=](const Arguments& arguments, const std::string& option, Scene& scene) {
         std::string value = arguments.text(option).value();
-        set(scene, chosen_from(words, option, value));
+        set(scene, chosen_from(words, renamed, option, value));
         return value;
     };
 }
@@ -107,11 +117,11 @@ std::vector<Setting> settings()
         {{"tolerance", "T", "unbalanced force ratio of an equilibrium (default: the scene's)"},
          number(scene::equilibrium_tolerances, "(ratio)",
                 [](Scene& scene, double tolerance) { scene.equilibrium.tolerance = tolerance; })},
-        {{"engine", "NAME", "auto, relaxation (dynamic relaxation) or implicit (default: the scene's)"},
-         word<EngineChoice>(scene::engine_words(),
+        {{"engine", "NAME", listed(scene::engine_words(), " or ") + " (default: the scene's)"},
+         word<EngineChoice>(scene::engine_words(), {scene::former_engine_word, scene::engine_word_for_it},
                             [](Scene& scene, EngineChoice engine) { scene.equilibrium.engine = engine; })},
         {{"creep-scheme", "NAME", listed(scene::creep_scheme_words(), " or ") + " (default: the scene's)"},
-         word<CreepScheme>(scene::creep_scheme_words(),
+         word<CreepScheme>(scene::creep_scheme_words(), {},
                            [](Scene& scene, CreepScheme scheme) { scene.creep->scheme = scheme; }),
          true},
         {{"creep-step", "DAYS", "creep step of a fixed length [day] (default: the scene's)"},

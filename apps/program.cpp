@@ -37,23 +37,18 @@ namespace
 
 constexpr unsigned text_width = 100; // of the help [columns]
 
-// Options of earlier versions, refused by a message that has the new name. Without values: the whole option.
+// Options of earlier versions, refused by a message that has the new name.
 struct RenamedOption {
-    std::string_view before, value_before, now, value_now;
+    std::string_view before, now;
 };
-constexpr std::array<RenamedOption, 2> renamed_options{
-    {{"trace", "", "step-history", ""}, {"engine", "explicit", "engine", "relaxation"}}};
+constexpr std::array<RenamedOption, 1> renamed_options{{{"trace", "step-history"}}};
 
-void refuse_renamed(const Program& program, std::string_view option, std::string_view value)
+void refuse_renamed(const Program& program, std::string_view option)
 {
-    const auto written = [](std::string_view name, std::string_view of) {
-        return "--" + std::string(name) + (of.empty() ? "" : " ") + std::string(of);
-    };
-    for (const auto& [before, value_before, now, value_now] : renamed_options)
+    for (const auto& [before, now] : renamed_options)
         for (const Option& known : program.options)
-            if (before == option && value_before == value && known.name == now)
-                throw input_error(written(before, value_before) + " is now called " +
-                                  written(now, value_now));
+            if (before == option && known.name == now)
+                throw input_error("--" + std::string(before) + " is now called --" + std::string(now));
 }
 
 // A range in words: "above 0 and at most 1".
@@ -126,7 +121,7 @@ po::variables_map parsed(const Program& program, int argc, char** argv)
     } catch (const po::unknown_option& error) {
         std::string name = error.get_option_name(); // "--trace", "--trace=20"
         name = name.substr(0, name.find('='));
-        refuse_renamed(program, name.substr(std::min<std::size_t>(2, name.size())), "");
+        refuse_renamed(program, name.substr(std::min<std::size_t>(2, name.size())));
         throw input_error(error.what());
     } catch (const po::too_many_positional_options_error&) {
         throw input_error("more than one " + program.input + " is given");
@@ -370,8 +365,6 @@ int run(const Program& program, int argc, char** argv, const std::function<void(
             }
             const auto* text = boost::any_cast<std::string>(&value.value());
             arguments.given_[name] = text ? *text : "";
-            if (text)
-                refuse_renamed(program, name, *text);
         }
         if (arguments.has("input") && arguments.has("output"))
             refuse_overwriting(arguments.files({"input"}), arguments.files({"output"}));

@@ -758,7 +758,7 @@ Table<Equilibrium> equilibrium()
         {choice("engine", &E::engine, engine_words(),
                 "Dynamic relaxation, or the implicit engine, which solves for the equilibrium at once; auto "
                 "takes the implicit one unless the masses are real.")
-             .former_word("explicit", "relaxation")
+             .former_word(std::string(former_engine_word), std::string(engine_word_for_it))
              .or_else(std::string("auto")),
          number("tolerance", &E::tolerance, no_unit, equilibrium_tolerances,
                 "Of the unbalanced force ratio. Dynamic relaxation also needs a remaining displacement below "

@@ -6,6 +6,8 @@
 #include "model/quantity.hpp"
 #include "model/scene.hpp"
 
+#include <string_view>
+
 namespace jointcreep::scene
 {
 
@@ -21,6 +23,8 @@ inline keys::Words<EngineChoice> engine_words()
             {"relaxation", EngineChoice::relaxation},
             {"implicit", EngineChoice::implicit}};
 }
+// The word that earlier versions had for one of them, and its word now.
+inline constexpr std::string_view former_engine_word = "explicit", engine_word_for_it = "relaxation";
 
 // The command line has "-" in place of " ".
 inline keys::Words<CreepScheme> creep_scheme_words()
