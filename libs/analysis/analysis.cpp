@@ -48,8 +48,8 @@ double last_event_of(const Section& section)
 Analysis::Analysis(const Scene& scene, const Network& network, const EquivalentJoints& joints, int threads,
                    const Recording& recording, const Observer& observe)
     : section_(scene, network, joints, threads, recording, observe),
-      step_history_(section_, recording.step_history_every), engines_(section_, step_history_),
-      guards_(section_), records_(section_), checkpoints_(section_, step_history_, recording,
+      step_recorder_(section_, recording.step_history_every), engines_(section_, step_recorder_),
+      guards_(section_), records_(section_), checkpoints_(section_, step_recorder_, recording,
                                                           [this] {
                                                               Checkpoint kept;
                                                               transfer(Transfer(Transfer::Way::keep), kept);
@@ -236,7 +236,7 @@ void Analysis::transfer(const Transfer& to, Checkpoint& kept)
     to.value(unloaded_, kept.unloaded);
     to.value(increment_, kept.increment);
     section_.transfer(to, kept);
-    step_history_.transfer(to, kept);
+    step_recorder_.transfer(to, kept);
     creep_.transfer(to, kept);
     if (dynamics_)
         dynamics_->transfer(to, kept);

@@ -14,7 +14,7 @@
 #include "analysis/records.hpp"
 #include "analysis/section.hpp"
 #include "analysis/sensitivities.hpp"
-#include "analysis/step_history.hpp"
+#include "analysis/step_recorder.hpp"
 #include "analysis/watcher.hpp"
 
 #include <optional>
@@ -66,7 +66,7 @@ private:
     void transfer(const Transfer& to, Checkpoint& kept);
 
     Section section_;
-    StepHistory step_history_;
+    StepRecorder step_recorder_;
     Engines engines_;
     Guards guards_;
     Records records_;

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "analysis/section.hpp"
-#include "analysis/step_history.hpp"
+#include "analysis/step_recorder.hpp"
 #include "analysis/watcher.hpp"
 
 #include <chrono>
@@ -17,10 +17,10 @@ class Checkpoints : public Watcher, public SearchKeeper
 {
 public:
     // `take` makes a checkpoint of the analysis as it is.
-    Checkpoints(Section& section, StepHistory& step_history, const Recording& recording,
+    Checkpoints(Section& section, StepRecorder& step_history, const Recording& recording,
                 std::function<Checkpoint()> take)
-        : section_(section), step_history_(step_history), keep_(recording.keep), every_(recording.keep_every),
-          keeps_next_(recording.keep_beginning), take_(std::move(take))
+        : section_(section), step_recorder_(step_history), keep_(recording.keep),
+          every_(recording.keep_every), keeps_next_(recording.keep_beginning), take_(std::move(take))
     {
         section.keeper = this;
     }
@@ -50,7 +50,7 @@ public:
         section_.result = std::move(so_far_);
         Tape tape(std::exchange(search_, {}));
         pass(tape);
-        tape(step_history_);
+        tape(step_recorder_);
         tape.check_end();
         return true;
     }
@@ -60,7 +60,7 @@ public:
             return;
         Tape tape;
         pass(tape);
-        tape(step_history_);
+        tape(step_recorder_);
         here_.search_number = searches_ - 1;
         here_.search = std::move(tape).numbers();
         keep();
@@ -90,7 +90,7 @@ private:
     }
 
     Section& section_;
-    StepHistory& step_history_;
+    StepRecorder& step_recorder_;
     std::function<void(const Result&, const Checkpoint&)> keep_;
     std::optional<std::chrono::duration<double>> every_;
     bool keeps_next_; // whether due or not

@@ -76,7 +76,7 @@ bool DynamicStage::goes_on()
 void DynamicStage::pass(Tape& tape)
 {
     tape(due_, largest_energy_, largest_error_, section_.settled.effort.steps, dynamics_);
-    joint::pass(tape, section_.assembly.contacts); // of records so far
+    joint::pass(tape, section_.assembly.contacts); // joints only: dynamics_ keeps rock's
 }
 
 void DynamicStage::settle_in_situ()

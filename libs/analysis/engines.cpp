@@ -77,13 +77,13 @@ void Engines::settle_by_relaxation(double time)
 mechanics::Convergence Engines::relax(double time)
 {
     const Equilibrium& settings = section_.scene.equilibrium;
-    if (!step_history_.is_wanted())
+    if (!step_recorder_.is_wanted())
         return relaxation::relax(section_.assembly, settings, {}, section_.keeper);
-    step_history_.begin(time);
+    step_recorder_.begin(time);
     const auto convergence = relaxation::relax(
-        section_.assembly, settings, [&](double since_begin) { step_history_.step(since_begin); },
+        section_.assembly, settings, [&](double since_begin) { step_recorder_.step(since_begin); },
         section_.keeper);
-    step_history_.end();
+    step_recorder_.end();
     return convergence;
 }
 

@@ -4,7 +4,7 @@
 #pragma once
 
 #include "analysis/section.hpp"
-#include "analysis/step_history.hpp"
+#include "analysis/step_recorder.hpp"
 
 namespace jointcreep::analysis
 {
@@ -12,7 +12,7 @@ namespace jointcreep::analysis
 class Engines
 {
 public:
-    Engines(Section& section, StepHistory& step_history) : section_(section), step_history_(step_history) {}
+    Engines(Section& section, StepRecorder& step_history) : section_(section), step_recorder_(step_history) {}
 
     // Equilibrium at `time` since start [s]; messages and the step history have that time. What was found is
     // in Section::settled. Throws equilibrium_error where there is none.
@@ -43,7 +43,7 @@ private:
     mechanics::Convergence relax(double time);
 
     Section& section_;
-    StepHistory& step_history_;
+    StepRecorder& step_recorder_;
     implicit::Solver implicit_;
     bool has_learnt_ = false;
 };

@@ -1,9 +1,10 @@
 // Factor of safety by strength reduction: the largest factor F that strengths can be divided by before the rock fails
 // (libs/joint/strength_factor.hpp). The result is a bracket of F, by whole runs.
 //
-// Rock fails where there is no equilibrium, or where its displacement grows without bound. Zones that lock in plastic flow
-// carry more than the rock does, and are in equilibrium long after it would have collapsed. The measure is the largest
-// displacement over that of the same run with strengths 64 times as large, in which hardly anything slips or yields.
+// Rock fails where there is no equilibrium, or where its displacement grows without bound. Zones that lock in
+// plastic flow carry more than the rock does, and are in equilibrium long after it would have collapsed. The measure
+// is the largest displacement over that of the same run with strengths 64 times as large, in which hardly anything
+// slips or yields.
 
 #pragma once
 
@@ -64,9 +65,9 @@ using RunWith = std::function<Outcome(double factor, double most_displacement, c
 // Run i of those.
 Outcome outcome_of(const Safety& trials, std::size_t i);
 
-// First a run with strengths 64 times as large; the displacement of others may be `runs_away` times as large as its own.
-// Then doubles or halves the factor from 1, to 64 or 1/64 at most. Then halves the bracket until it is no wider than
-// `width` times its lower end. Undecided runs count as without equilibrium.
+// First a run with strengths 64 times as large; the displacement of others may be `runs_away` times as large as its
+// own. Then doubles or halves the factor from 1, to 64 or 1/64 at most. Then halves the bracket until it is no wider
+// than `width` times its lower end. Undecided runs count as without equilibrium.
 Bracket bracket_of(const RunWith& run_with, double width, double runs_away);
 
 } // namespace jointcreep::analysis

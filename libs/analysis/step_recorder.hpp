@@ -8,10 +8,10 @@
 namespace jointcreep::analysis
 {
 
-class StepHistory
+class StepRecorder
 {
 public:
-    StepHistory(Section& section, std::uint64_t every) : section_(section), every_(every) {}
+    StepRecorder(Section& section, std::uint64_t every) : section_(section), every_(every) {}
 
     bool is_wanted() const { return every_ > 0; }
 
