@@ -38,8 +38,8 @@ struct WithoutAnswer {
 
 struct Found {
     std::vector<double> factors;
-    // Over logarithms; residuals over deviations, or over 1 mm where there are none, made independent where they share a
-    // first reading's error.
+    // Over logarithms; residuals over deviations, or over 1 mm where there are none, made independent where they
+    // share a first reading's error.
     estimation::Minimum minimum;
     estimation::Confidence confidence;
     std::vector<Computed> computed; // of the measurements

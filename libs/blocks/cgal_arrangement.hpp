@@ -1,5 +1,5 @@
-// CGAL's exact arrangement (Arrangement_2 over exact constructions), a second method beside blocks::arrange(). Compiling it takes
-// long: inside libs/blocks/arrange_with_cgal.cpp, tests and benchmark only.
+// CGAL's exact arrangement (Arrangement_2 over exact constructions), a second method beside blocks::arrange().
+// Compiling it takes long: inside libs/blocks/arrange_with_cgal.cpp, tests and benchmark only.
 
 #pragma once
 

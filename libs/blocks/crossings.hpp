@@ -9,12 +9,12 @@
 namespace jointcreep::blocks
 {
 
-// More are refused: they take five minutes and 22 GB (page docs/cutting.md), ten times as many do not fit the numbers of
-// edges.
+// More are refused: they take five minutes and 22 GB (page docs/cutting.md), ten times as many do not fit the
+// numbers of edges.
 inline constexpr double most_crossings = 5e7;
 
-// Crossings of two joints in a box, estimated from pairs of joints, always the same ones; exact to a tenth or so where there
-// are `most_crossings`. None is looked for if there are too few pairs for that.
+// Crossings of two joints in a box, estimated from pairs of joints, always the same ones; exact to a tenth or so
+// where there are `most_crossings`. None is looked for if there are too few pairs for that.
 struct ExpectedCrossings {
     double number = 0;
     Index set = -1; // whose joints have most of them

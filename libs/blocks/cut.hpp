@@ -8,9 +8,9 @@
 namespace jointcreep::blocks
 {
 
-// What finds the crossings of lines and divides them there: this project's own subdivision, or CGAL's Arrangement_2. Both give the
-// same blocks, bit by bit; lengths in Blocks::fates may differ by rounding, as CGAL also divides lines outside the section. CGAL
-// takes longer, and only programs built with the tests have it.
+// What finds the crossings of lines and divides them there: this project's own subdivision, or CGAL's Arrangement_2.
+// Both give the same blocks, bit by bit; lengths in Blocks::fates may differ by rounding, as CGAL also divides lines
+// outside the section. CGAL takes longer, and only programs built with the tests have it.
 enum class Subdivision { own, cgal };
 
 // The blocks of the section. `joints` may cross, touch, overlap, reach beyond the outline or run along it.
@@ -26,8 +26,8 @@ enum class Subdivision { own, cgal };
 //  - An edge on several joints belongs to the one with the largest joint fraction, then to the first.
 //  - Joint edges have the direction of their joint; boundary edges have the rock on their left.
 //
-// Throws input_error where there are more crossings than can be found, where a boundary condition does not lie on the outline, where merging does not settle,
-// or where the check fails.
+// Throws input_error where there are more crossings than can be found, where a boundary condition does not lie on
+// the outline, where merging does not settle, or where the check fails.
 Blocks cut(const Scene& scene, const Joints& joints, Subdivision subdivision = Subdivision::own);
 
 } // namespace jointcreep::blocks

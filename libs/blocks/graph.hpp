@@ -89,8 +89,8 @@ struct Box {
 };
 Graph arrange(const Graph& lines, Sources& sources, const std::optional<Box>& window = {});
 
-// The same by CGAL's Arrangement_2, without a window; no edge is settled. Vertices that no edge has are left out. Throws
-// input_error where the library was built without it.
+// The same by CGAL's Arrangement_2, without a window; no edge is settled. Vertices that no edge has are left out.
+// Throws input_error where the library was built without it.
 Graph arrange_with_cgal(const Graph& lines, Sources& sources);
 
 // Whether edges meet at common ends only; exact. Two settled ones are not compared again.

@@ -217,8 +217,8 @@ std::vector<std::array<Index, 2>> neighbours_along_outline(const Graph& graph, c
 }
 
 // The vertex that each one joins: the nearest within reach that does not move itself, or none but itself. Vertices of a
-// higher level choose first, then those of a lower number. Only vertices that stay are in the grid, no two of them within
-// reach but on the outline: so it takes no longer where thousands lie together.
+// higher level choose first, then those of a lower number. Only vertices that stay are in the grid, no two of them
+// within reach but on the outline: so it takes no longer where thousands lie together.
 std::vector<Index> join_vertices(const Graph& graph, const Sources& sources, const std::vector<Index>& used,
                                  const std::vector<Level>& level, double reach, CuttingReport& report)
 {

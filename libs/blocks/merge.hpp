@@ -11,7 +11,8 @@ namespace jointcreep::blocks
 struct MergeLimits {
     // Vertices closer than this to each other, or than half of it to an edge, merge [m].
     double shortest_edge;
-    // Wedges narrower than this are closed if that moves no vertex by more than `farthest_closing` shortest edges [rad].
+    // Wedges narrower than this are closed if that moves no vertex by more than `farthest_closing` shortest edges
+    // [rad].
     double smallest_angle;
     static constexpr double farthest_closing = 5; // [-]
 };

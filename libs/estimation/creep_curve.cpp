@@ -168,8 +168,8 @@ private:
     VectorXd best_;
 };
 
-// What a curve is fitted over: {d_e unless that is known, d_c, ln tau}. Displacements are in a unit of their own size, so
-// that all unknowns are numbers of about 1.
+// What a curve is fitted over: {d_e unless that is known, d_c, ln tau}. Displacements are in a unit of their own
+// size, so that all unknowns are numbers of about 1.
 struct Unknowns {
     Eigen::Index elastic, creep, log_tau; // places of d_e, or -1 if it is known, d_c and ln tau
     double size;                          // unit of displacements [m]

@@ -106,8 +106,8 @@ bool is_before(const Vector2d& a, const Vector2d& b)
     return a.x() != b.x() ? a.x() < b.x() : a.y() < b.y();
 }
 
-// The first side of a ring, counter-clockwise, that a ray from a place inside to the right meets: the farther right of its two
-// ends, and where it is met.
+// The first side of a ring, counter-clockwise, that a ray from a place inside to the right meets: the farther right
+// of its two ends, and where it is met.
 struct SideInSight {
     std::size_t end;
     Vector2d met;
@@ -142,9 +142,9 @@ bool looks_at(const Layer& layer, const std::vector<Index>& ring, std::size_t i,
     return cross(b - a, c - b) > 0 ? left_of_first && left_of_second : left_of_first || left_of_second;
 }
 
-// A corner of a ring that a place inside sees, to the right of it (Eberly 2015, Triangulation by ear clipping, section 3): the end of
-// the side in sight, or, where corners are between, the one nearest to the ray. A corner at which bridges begin comes
-// more than once in a ring; the one that looks at the place is taken.
+// A corner of a ring that a place inside sees, to the right of it (Eberly 2015, Triangulation by ear clipping,
+// section 3): the end of the side in sight, or, where corners are between, the one nearest to the ray. A corner at
+// which bridges begin comes more than once in a ring; the one that looks at the place is taken.
 std::size_t corner_in_sight(const Layer& layer, std::size_t row, const std::vector<Index>& ring,
                             const Vector2d& place)
 {

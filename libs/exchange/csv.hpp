@@ -13,8 +13,8 @@
 namespace jointcreep::exchange
 {
 
-// Text as one field of such a table. Quotes do not change what is read. Spreadsheets can be told to take fields in quotes
-// as text; without quotes, one that begins with = + - @ or a tab may be taken for a formula.
+// Text as one field of such a table. Quotes do not change what is read. Spreadsheets can be told to take fields in
+// quotes as text; without quotes, one that begins with = + - @ or a tab may be taken for a formula.
 std::string csv_field(const std::string& text);
 
 // One row a row of the layers, which have the same attributes: attributes, and coordinates after the leading ones.

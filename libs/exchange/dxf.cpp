@@ -1,5 +1,5 @@
-// DXF of AutoCAD R12 (AC1009): what CAD programs, GIS and 3DEC's `geometry import` all read. It has no attributes, so a table of
-// ids is beside it: the id of a row is the handle of its entity.
+// DXF of AutoCAD R12 (AC1009): what CAD programs, GIS and 3DEC's `geometry import` all read. It has no attributes,
+// so a table of ids is beside it: the id of a row is the handle of its entity.
 
 #include "exchange/text.hpp"
 #include "exchange/writers.hpp"

@@ -59,8 +59,8 @@ std::vector<File> write_fracman(const Job& job)
     return {{"ids", ".csv", ids_csv(job.all("planes"), counted_from(1))}, {"", "", text}};
 }
 
-// The domain of dfnWorks has its centre at the origin: all places count from the middle of the polygons' box, which the table
-// of ids says in its first comment line.
+// The domain of dfnWorks has its centre at the origin: all places count from the middle of the polygons' box, which
+// the table of ids says in its first comment line.
 std::vector<File> write_dfnworks(const Job& job)
 {
     const std::vector<Plane> planes = planes_of(job.sections[0], job.width);

@@ -1,5 +1,5 @@
-// GeoPackage and Shapefile by GDAL, written in GDAL's memory and handed over as bytes. Without a reference system, or a plain one: these are
-// metres of a section. No dates, so that the same records give the same bytes.
+// GeoPackage and Shapefile by GDAL, written in GDAL's memory and handed over as bytes. Without a reference system,
+// or a plain one: these are metres of a section. No dates, so that the same records give the same bytes.
 
 #include "exchange/writers.hpp"
 

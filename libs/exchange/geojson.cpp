@@ -1,5 +1,5 @@
-// GeoJSON (RFC 7946), but for its coordinates: these are metres of the section. Foreign members say so, and "crs" is null,
-// by which GDAL and what is built on it take them for plain coordinates.
+// GeoJSON (RFC 7946), but for its coordinates: these are metres of the section. Foreign members say so, and "crs" is
+// null, by which GDAL and what is built on it take them for plain coordinates.
 
 #include "exchange/text.hpp"
 #include "exchange/writers.hpp"

@@ -1,6 +1,6 @@
 // Gmsh's own geometry (.geo), of its built-in kernel: points, curves and surfaces that meet at common ends only, as
-// the cut section has them. Physical curves are the joint sets and the outline, physical surfaces the rocks, those that a stage
-// removes apart. Surfaces can be meshed at once: gmsh -2 NAME.geo.
+// the cut section has them. Physical curves are the joint sets and the outline, physical surfaces the rocks, those
+// that a stage removes apart. Surfaces can be meshed at once: gmsh -2 NAME.geo.
 
 #include "exchange/text.hpp"
 #include "exchange/writers.hpp"

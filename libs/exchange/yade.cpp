@@ -1,5 +1,5 @@
-// A script of YADE that makes the blocks: convex polyhedra, --width wide (1 m by default), x along the section, y across
-// it, z up. `yade NAME.py` makes the bodies; stiffness and friction of the material are the user's.
+// A script of YADE that makes the blocks: convex polyhedra, --width wide (1 m by default), x along the section, y
+// across it, z up. `yade NAME.py` makes the bodies; stiffness and friction of the material are the user's.
 
 #include "exchange/convex.hpp"
 #include "exchange/text.hpp"

@@ -194,9 +194,9 @@ bool Solver::is_too_far(const Assembly& assembly, const Equilibrium& settings)
     return largest > std::min(settings.largest_displacement, too_far_);
 }
 
-// After a correction, from displacements `from`, that gained almost nothing. Bonds that hinder it break. If there are none,
-// contacts that slip or are open keep more of their springs; once they keep all, displacements leap on, even if forces grow.
-// False if that does not help: reason_.
+// After a correction, from displacements `from`, that gained almost nothing. Bonds that hinder it break. If there
+// are none, contacts that slip or are open keep more of their springs; once they keep all, displacements leap on,
+// even if forces grow. False if that does not help: reason_.
 bool Solver::get_past(Assembly& assembly, const State& start, const std::vector<Vector2d>& from,
                       const VectorXd& correction_made, const Advance& advance, double enough, Course& course)
 {

@@ -6,10 +6,10 @@
 // the same law as in dynamic relaxation, each from its state at the start of the equilibrium straight to the one at
 // its end (backward Euler; joint/active_contacts.hpp).
 //
-// Rock that yields goes straight from its state at the start to that at the end, too. Then K has the consistent tangents of
-// zones, is not symmetric where flow is not associated, and is factorised for each correction. Where Newton's method
-// finds no equilibrium, gridpoints move against dashpots: to an equilibrium, or until displacements are too large
-// (implicit/flow.cpp).
+// Rock that yields goes straight from its state at the start to that at the end, too. Then K has the consistent
+// tangents of zones, is not symmetric where flow is not associated, and is factorised for each correction. Where
+// Newton's method finds no equilibrium, gridpoints move against dashpots: to an equilibrium, or until displacements
+// are too large (implicit/flow.cpp).
 //
 // The energy balance is that of backward Euler, too: a contact slips under the traction it ends with. What is
 // neither stored nor dissipated so counts as damped.
@@ -39,14 +39,15 @@ public:
     std::optional<mechanics::Convergence> equilibrate(Assembly& assembly, const Equilibrium& settings,
                                                       const std::vector<Vector2d>& guess = {});
     const std::string& reason() const { return reason_; }
-    // Set if it has found none because displacements of rock that yields grow without bound. The assembly is then not as
-    // it was, but as it moves.
+    // Set if it has found none because displacements of rock that yields grow without bound. The assembly is then
+    // not as it was, but as it moves.
     const std::optional<mechanics::no_equilibrium>& collapse() const { return collapse_; }
 
     // Forgets the factor and solutions: the next equilibrium is found as by a new solver.
     void forget() { stiffness_.forget_factor(); }
 
-    // After equilibrate(), at the same stiffnesses: the x with K x = right, with K from the given tangents. Uses the last factor, which is renewed where it is too far off. Empty if K has no inverse.
+    // After equilibrate(), at the same stiffnesses: the x with K x = right, with K from the given tangents. Uses the
+    // last factor, which is renewed where it is too far off. Empty if K has no inverse.
     VectorXd solve_linear(const Assembly& assembly, const Tangents& tangents, const VectorXd& right);
     const Stiffness& stiffness() const { return stiffness_; }
 

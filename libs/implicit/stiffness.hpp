@@ -1,13 +1,13 @@
 // The tangent stiffness of an assembly, sparse, and a Cholesky factor of something close to it.
 //
 // Unknowns are the displacements of gridpoints that are free; gridpoints tied to another share its unknowns.
-// The tangent K is the sum over all kinds of force, in one of two ways. A kind with constants(), as rock, has a constant
-// stiffness; only where it yields it has tangents in its place, and K is factorised for each correction. The others, as
-// contacts, have tangents all the time, by what each does now; products with them are added.
-// A contact that slips couples its shear traction to its normal displacement, and, if it dilates, its normal
-// traction to its shear displacement: then K is not symmetric. The factor is one of K without these couplings, in
-// which open and slipping contacts keep a small part of their springs, so that it exists also where K is
-// singular; it preconditions, and only its nearness to K decides how many iterations a solution takes.
+// The tangent K is the sum over all kinds of force, in one of two ways. A kind with constants(), as rock, has a
+// constant stiffness; only where it yields it has tangents in its place, and K is factorised for each correction.
+// The others, as contacts, have tangents all the time, by what each does now; products with them are added. A
+// contact that slips couples its shear traction to its normal displacement, and, if it dilates, its normal traction
+// to its shear displacement: then K is not symmetric. The factor is one of K without these couplings, in which open
+// and slipping contacts keep a small part of their springs, so that it exists also where K is singular; it
+// preconditions, and only its nearness to K decides how many iterations a solution takes.
 
 #pragma once
 
@@ -50,8 +50,8 @@ public:
     VectorXd gathered(const Assembly& assembly, const std::vector<Vector2d>& over_gridpoints) const;
     void add_to(std::vector<Vector2d>& over_gridpoints, const VectorXd& unknowns, double factor) const;
 
-    // The solution of K x = right with all these tangents, not symmetric, and factorised for this one; with `dashpots` on
-    // the diagonal [Pa], or none if empty. Empty if K has no inverse.
+    // The solution of K x = right with all these tangents, not symmetric, and factorised for this one; with
+    // `dashpots` on the diagonal [Pa], or none if empty. Empty if K has no inverse.
     VectorXd solve_yielding(const Assembly& assembly, const Tangents& tangents, const VectorXd& dashpots,
                             const VectorXd& right);
 

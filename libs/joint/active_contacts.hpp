@@ -27,8 +27,8 @@ public:
     // Takes over what contacts do now. A contact slides back only after it has stuck, unless this is the `first` time.
     void take(const Contacts& contacts, const ContactsState& start, bool first);
 
-    // Tangents for what they do. Open and slipping contacts keep the share `soft` of their springs. Contacts know how far
-    // they are displaced.
+    // Tangents for what they do. Open and slipping contacts keep the share `soft` of their springs. Contacts know
+    // how far they are displaced.
     std::vector<Tangent> tangents(const Contacts& contacts, std::span<const Vector2d> displacement,
                                   const ContactsState& start, double soft) const;
 

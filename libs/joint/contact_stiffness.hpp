@@ -1,5 +1,5 @@
-// Tangents of contacts and their part of a stiffness matrix. They change often: whenever a contact opens, closes, sticks
-// or slips.
+// Tangents of contacts and their part of a stiffness matrix. They change often: whenever a contact opens, closes,
+// sticks or slips.
 
 #pragma once
 
@@ -81,8 +81,8 @@ void add_force_change(const Contacts& contacts, Index c, const Tangent& tangent,
     add(0, -force);
 }
 
-// The tangent of a contact's springs. An open contact keeps the share `soft` of both; one that slips, and a smooth joint,
-// keeps that share of the shear spring.
+// The tangent of a contact's springs. An open contact keeps the share `soft` of both; one that slips, and a smooth
+// joint, keeps that share of the shear spring.
 Tangent tangent_of_springs(const Contacts& contacts, std::size_t c, double soft);
 
 // The same as add_stiffness by these springs. Returns the stiffest one [Pa].

@@ -168,6 +168,12 @@ bool are_beyond(const Contacts& contacts, const std::vector<Stiffening>& stiffen
     });
 }
 
+void pass(Tape& tape, std::vector<Stiffening>& stiffening)
+{
+    for (Stiffening& one : stiffening)
+        tape(one.most);
+}
+
 void begin_search(Contacts& contacts, bool /*damps_stiffness*/)
 {
     std::fill(contacts.work.begin(), contacts.work.end(), 0.0);
@@ -298,8 +304,8 @@ void transfer(const Transfer& to, Contacts& contacts, Checkpoint& kept)
 void pass(Tape& tape, Contacts& contacts)
 {
     const auto pass_states = [&](std::vector<State>& states) {
-        for (auto& [slip, dilation, is_broken, memory] : states)
-            tape(slip, dilation, is_broken, memory);
+        for (State& one : states)
+            tape(one.slip, one.dilation, one.is_broken, one.memory);
     };
     pass_states(contacts.state);
     tape(contacts.traction, contacts.relative_displacement, contacts.status, contacts.work);

@@ -120,14 +120,15 @@ struct Stiffening {
 std::vector<Stiffening> stiffening_of(const Contacts& contacts);
 // Whether any of them is stiffer now.
 bool are_beyond(const Contacts& contacts, const std::vector<Stiffening>& stiffening);
+void pass(Tape& tape, std::vector<Stiffening>& stiffening);
 
 // Energy stored in contacts [J/m]; only differences have a meaning.
 double stored_energy(const Contacts& contacts);
 
 // Before a search for equilibrium: counts dissipated energy from here. Contacts need not know of stiffness damping.
 void begin_search(Contacts& contacts, bool damps_stiffness);
-// Energy lost by slip and dilation since then [J/m]: along the path; or straight from the states at the start, under the
-// present tractions (backward Euler).
+// Energy lost by slip and dilation since then [J/m]: along the path; or straight from the states at the start, under
+// the present tractions (backward Euler).
 double dissipated(const Contacts& contacts);
 double dissipated(const Contacts& contacts, const ContactsState& start);
 

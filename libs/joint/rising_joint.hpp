@@ -1,11 +1,12 @@
 // Dilation of a joint at large displacements, in one time step.
 //
 // Slip raises a joint that dilates by x, the same along the whole joint. x = sum of F tan(psi) slip(x) over sum of F,
-// where F are the normal forces of its closed parts, and slip(x) reduces the shear force of a part to its strength after
-// the rise. The right side falls with x.
+// where F are the normal forces of its closed parts, and slip(x) reduces the shear force of a part to its strength
+// after the rise. The right side falls with x.
 //
-// For laws whose dilation wears off, tan(psi) is the mean over the parts: the joint is raised as a whole. With a tan(psi)
-// for each part, the rise would depend on where the pressure is. A block that rocks would then rock ever more.
+// For laws whose dilation wears off, tan(psi) is the mean over the parts: the joint is raised as a whole. With a
+// tan(psi) for each part, the rise would depend on where the pressure is. A block that rocks would then rock ever
+// more.
 
 #pragma once
 

@@ -2,8 +2,8 @@
 // and the member it fills; reading, the check for unknown keys, the page of keys and the key list follow from
 // it.
 //
-//     number("poissons_ratio", &Rock::poissons_ratio, none, from(0).below(0.5), "Poisson's ratio.")
-//     number("azimuth_deg", &Scene::azimuth, deg, from(0).to(360), "Bearing of +x.").optional()
+//     number("poissons_ratio", &Rock::poissons_ratio, no_unit, from(0).below(0.5), "Poisson's ratio.")
+//     number("azimuth_deg", &Scene::azimuth, degrees, from(0).to(360), "Bearing of +x.").optional()
 
 #pragma once
 

@@ -214,14 +214,14 @@ void FaceContacts::find_active()
         if (pair.is_known)
             most_lead = std::max({most_lead, pair.lead[0], pair.lead[1]});
     active_.clear();
-    way_to_.clear();
+    clearance_.clear();
     for (std::size_t p = 0; p < pairs_.size(); ++p) {
         const double way =
-            pairs_[p].is_closed || pairs_[p].is_bonded() ? 0.0 : way_to_touch(pairs_[p], most_lead);
+            pairs_[p].is_closed || pairs_[p].is_bonded() ? 0.0 : distance_to_touch(pairs_[p], most_lead);
         if (way > skin_ / 2)
             continue;
         active_.push_back(static_cast<Index>(p));
-        way_to_.push_back(way);
+        clearance_.push_back(way);
     }
     find_touched();
     for (std::size_t i = 0; i < active_.size(); ++i)
@@ -231,7 +231,7 @@ void FaceContacts::find_active()
 // The least displacement of gridpoints before an open pair touches [m]. Between two searches no gridpoint moves by more
 // than half the skin. So faces turn little, and approach each other by at most twice the displacement. If a face is in
 // another one, or gets into it, faces slide out of it no farther than that.
-double FaceContacts::way_to_touch(const FacePair& pair, double most_lead) const
+double FaceContacts::distance_to_touch(const FacePair& pair, double most_lead) const
 {
     constexpr double never = std::numeric_limits<double>::infinity();
     const auto turn = [&](const Vector2d& face) { // at most

@@ -134,7 +134,7 @@ void FaceContacts::update(const std::vector<Vector2d>& place, const std::vector<
 FaceContacts::Sum FaceContacts::find_forces(const TimeStep& step, int threads)
 {
     return sum_in_chunks<Sum>(static_cast<Index>(active_.size()), threads, [&](Index i, Sum& some) {
-        if (!is_sought_ && farthest_ + raised_ < way_to_[i])
+        if (!is_sought_ && farthest_ + raised_ < clearance_[i])
             return;
         const Index p = active_[i];
         FacePair& pair = pairs_[p];
@@ -180,14 +180,10 @@ void FaceContacts::find_forces_of_new(const TimeStep& step, Sum& sum)
         }
 }
 
+// The other members of pairs are of one update alone.
 void FaceContacts::transfer(const Transfer& to, DynamicsState& kept)
 {
     to.size(pairs_, kept.pair);
-    for (FacePair& pair :
-         pairs_) // all members, so that no new one is forgotten; those not passed on are of one update alone
-        [[maybe_unused]] auto& [a, b, law, lead, dilation, tau, is_known, is_new, is_closed, is_broken,
-                                memory, is_slipping, on_a, on_b, force, normal, raised, opened, length, sigma,
-                                stiffest, held, pressed_in, sheared_in, friction, damped] = pair;
     std::vector<std::array<Index, 2>> faces;
     for (const FacePair& pair : pairs_)
         faces.push_back({pair.a, pair.b});
@@ -214,43 +210,37 @@ void FaceContacts::transfer(const Transfer& to, DynamicsState& kept)
     to.values(pairs_, kept.sheared_in, &FacePair::sheared_in);
 }
 
+// The other members are as set_faces() makes them, or of one update alone.
 void FaceContacts::pass(Tape& tape)
 {
-    // All members, so that no new one is forgotten. Those not passed on are as set_faces() makes them, or of one update
-    // alone.
-    auto& [laws, material, origin, stiffens, dilates, stiffest_open, stiffest, faces, shapes, pairs, of_face,
-           side, joints, active, way_to, closes, touched, touched_start, corner_force, corner_place,
-           sought_at, farthest, raised, reach, skin, is_sought, most_lead, energy, searches] = *this;
-    const std::size_t n_faces = faces.gridpoint.size();
-    tape(stiffest, farthest, raised, is_sought, most_lead, energy.stored, energy.friction, energy.damped,
-         searches, sought_at);
-    for (FaceShape& shape : shapes)
+    const std::size_t n_faces = faces_.gridpoint.size();
+    tape(stiffest_, farthest_, raised_, is_sought_, most_lead_, energy_.stored, energy_.friction,
+         energy_.damped, searches_, sought_at_);
+    for (FaceShape& shape : shapes_)
         tape(shape.along, shape.length, shape.sharp);
-    pairs.resize(tape.size(pairs.size()), FacePair{.a = 0, .b = 0});
-    for (FacePair& pair : pairs) {
-        auto& [a, b, law, lead, dilation, tau, is_known, is_new, is_closed, is_broken, memory, is_slipping,
-               on_a, on_b, force, normal, raised_by, opened, length, sigma, stiffest_spring, held, pressed_in,
-               sheared_in, friction, damped] = pair;
-        tape.index(a, n_faces);
-        tape.index(b, n_faces);
-        tape.index(law, laws.size());
-        tape(lead, dilation, tau, is_known, is_new, is_closed, is_broken, memory, is_slipping, on_a, on_b,
-             force, normal, raised_by, opened, length, sigma, stiffest_spring, held, pressed_in, sheared_in,
-             friction, damped);
+    pairs_.resize(tape.size(pairs_.size()), FacePair{.a = 0, .b = 0});
+    for (FacePair& pair : pairs_) {
+        tape.index(pair.a, n_faces);
+        tape.index(pair.b, n_faces);
+        tape.index(pair.law, laws_.size());
+        tape(pair.lead, pair.dilation, pair.tau, pair.is_known, pair.is_new, pair.is_closed, pair.is_broken,
+             pair.memory, pair.is_slipping, pair.on_a, pair.on_b, pair.force, pair.normal, pair.raised,
+             pair.opened, pair.length, pair.sigma, pair.stiffest, pair.held, pair.pressed_in, pair.sheared_in,
+             pair.friction, pair.damped);
     }
-    tape.list_of(n_faces, reach);
+    tape.list_of(n_faces, reach_);
     if (tape.reads())
         list_pairs();
-    tape.indices(side, n_faces);
-    joints.resize(tape.size(joints.size()));
-    for (std::vector<Index>& joint : joints)
-        tape.indices(joint, pairs.size());
-    tape.indices(active, pairs.size());
-    tape.list(way_to);
-    Tape::check(side.size() == n_faces && (way_to.empty() || way_to.size() == active.size()));
+    tape.indices(side_, n_faces);
+    joints_.resize(tape.size(joints_.size()));
+    for (std::vector<Index>& joint : joints_)
+        tape.indices(joint, pairs_.size());
+    tape.indices(active_, pairs_.size());
+    tape.list(clearance_);
+    Tape::check(side_.size() == n_faces && (clearance_.empty() || clearance_.size() == active_.size()));
     if (tape.reads())
         find_touched();
-    tape(corner_force);
+    tape(corner_force_);
 }
 
 void FaceContacts::take_forces(Index active)

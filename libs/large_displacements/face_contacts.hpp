@@ -164,7 +164,7 @@ private:
     void list_pairs();
     void find_joints(const std::vector<Vector2d>& place);
     void find_active();
-    double way_to_touch(const FacePair& pair, double most_lead) const;
+    double distance_to_touch(const FacePair& pair, double most_lead) const;
     void find_touched();
     const FacePair* contact_before(const FacePair& pair, const Vector2d& normal,
                                    const std::vector<Vector2d>& place) const;
@@ -197,7 +197,7 @@ private:
     std::vector<Index> side_;                 // of each face: the lowest one of its straight side
     std::vector<std::vector<Index>> joints_;  // pairs between the same two sides, if any law dilates
     std::vector<Index> active_;               // pairs that may carry a load before the next search
-    std::vector<double> way_to_;              // displacement of gridpoints before they can [m]
+    std::vector<double> clearance_;           // displacement of gridpoints before they can [m]
     std::vector<char> closes_;                // pairs that may in this update
     // The gridpoints of active pairs, and the forces added to each of them [N/m]: by each corner of each pair, its
     // shares of the two forces.

@@ -286,6 +286,33 @@ void record_state(const Assembly& assembly, States& states)
     for_each_force([&](const auto& one) { record_state(one, states); }, assembly);
 }
 
+Stiffening stiffening_of(const Assembly& assembly)
+{
+    Stiffening all;
+    for_each_force([](const auto& force, auto& of_force) { of_force = stiffening_of(force); }, assembly, all);
+    return all;
+}
+
+bool has_any(const Stiffening& stiffening)
+{
+    bool any = false;
+    for_each_force([&](const auto& of_force) { any = any || !of_force.empty(); }, stiffening);
+    return any;
+}
+
+bool are_beyond(const Assembly& assembly, const Stiffening& stiffening)
+{
+    bool any = false;
+    for_each_force([&](const auto& force, const auto& of_force) { any = any || are_beyond(force, of_force); },
+                   assembly, stiffening);
+    return any;
+}
+
+void pass(Tape& tape, Stiffening& stiffening)
+{
+    for_each_force([&](auto& of_force) { pass(tape, of_force); }, stiffening);
+}
+
 std::vector<double> stiffness_row_sums(const Assembly& assembly)
 {
     std::vector<Vector2d> sums(assembly.position.size(), Vector2d::Zero());

@@ -133,9 +133,16 @@ void pass(Tape& tape, Assembly& assembly);
 void record_state(const Assembly& assembly, States& states);
 
 // Row sums of the stiffness matrix's magnitudes, the larger of x and y, of every gridpoint [Pa]: no
-// eigenvalue of stiffness over mass is above the largest row sum over its mass (Gershgorin). Joints that grow stiffer as
-// they close count with joint::room_to_stiffen.
+// eigenvalue of stiffness over mass is above the largest row sum over its mass (Gershgorin). Joints that grow
+// stiffer as they close count with joint::room_to_stiffen.
 std::vector<double> stiffness_row_sums(const Assembly& assembly);
+
+// Forces that grow stiffer as they deform, with the stiffness up to which row sums hold now; whether there are any, and
+// whether one is stiffer now.
+Stiffening stiffening_of(const Assembly& assembly);
+bool has_any(const Stiffening& stiffening);
+bool are_beyond(const Assembly& assembly, const Stiffening& stiffening);
+void pass(Tape& tape, Stiffening& stiffening);
 
 // Mass of every gridpoint: its shares of the present zones around it [kg/m]; see rock::add_masses.
 std::vector<double> lumped_masses(const Assembly& assembly);

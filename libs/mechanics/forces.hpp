@@ -3,8 +3,8 @@
 //
 // A kind has, in its own folder, the functions that are called with it; rock/zones.hpp and joint/contacts.hpp say what
 // they do:
-//   find_incidence, find_forces_in_team, add_force_on, add_magnitudes_on, reported_forces, add_row_sums, stored_energy,
-//   begin_search, dissipated, yields, hold_yield, is_within_strength, is_finite, pass, state_of, go_back,
+//   find_incidence, find_forces_in_team, add_force_on, add_magnitudes_on, reported_forces, add_row_sums, stiffening_of,
+//   are_beyond, stored_energy, begin_search, dissipated, yields, hold_yield, is_within_strength, is_finite, pass, state_of, go_back,
 //   start_from_here, transfer, record_state, join, remove_at.
 // rock/zone_stiffness.hpp and joint/contact_stiffness.hpp have its Tangent, and
 //   present, coupled_by, add_stiffness, add_springs, without_zeros; with a constant stiffness constants and
@@ -45,6 +45,7 @@ void for_each_force(const Call& call, Of&&... of)
 using Forces = ByForce<rock::Zones, joint::Contacts>;
 using ForcesState = ByForce<rock::ZonesState, joint::ContactsState>;
 using Tangents = ByForce<std::vector<rock::Tangent>, std::vector<joint::Tangent>>;
+using Stiffening = ByForce<std::vector<rock::Stiffening>, std::vector<joint::Stiffening>>;
 using ActiveForces = ByForce<rock::ActiveZones, joint::ActiveContacts>;
 template <class T>
 using OfEachForce = ByForce<T, T>;

@@ -33,7 +33,7 @@ struct Body {
     }
 };
 
-// Whether no gridpoint is out of balance by more than a share of its own load: then no body is either.
+// Whether no gridpoint has an unbalanced force above a share of its own load: then no body has one either.
 bool is_plain(const Assembly& assembly, double share, double rounding)
 {
     const double n = static_cast<double>(assembly.force.size());

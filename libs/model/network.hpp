@@ -110,8 +110,8 @@ struct Blocks {
     std::vector<Index> block_rock;  // into Names::rock
     std::vector<Index> block_stage; // that removes it, into Names::stage; -1 stays
     std::vector<double> block_area; // [m2]
-    // [blocks + 1] The rings of block i are rows block_ring[i] .. block_ring[i + 1] of ring_start. The first is the outer
-    // one, counter-clockwise, the others are holes, clockwise.
+    // [blocks + 1] The rings of block i are rows block_ring[i] .. block_ring[i + 1] of ring_start. The first is the
+    // outer one, counter-clockwise, the others are holes, clockwise.
     std::vector<Index> block_ring;
     std::vector<Index> ring_start;  // [rings + 1] its vertices are rows ring_start[r] .. of ring_vertex
     std::vector<Index> ring_vertex; // into vertex

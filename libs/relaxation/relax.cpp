@@ -148,7 +148,7 @@ public:
                 starts_from_rest = settings_.damping == Damping::kinetic && sums.energy < last_energy;
                 last_energy = starts_from_rest ? 0.0 : sums.energy;
                 find_forces_in_team(a_, i + 1 < steps);
-                if (!stiffening_.empty()) {
+                if (has_any(stiffening_)) {
 #pragma omp barrier
 #pragma omp single
                     follow_stiffness();
@@ -259,9 +259,8 @@ public:
         mechanics::pass(tape, a_);
         tape(velocity_, patience_ago_, last_force_, older_, newer_, mass_, work_of_changes_, work_,
              time_before_, steps_since_, dt_, alpha_, checks_in_movement_, last_energy_, starts_from_rest_);
-        for (auto& [contact, most] : stiffening_)
-            tape(most);
-        find_inverse_masses();
+        mechanics::pass(tape, stiffening_);
+        follow_masses_and_step();
     }
 
     // Ends the movement and settles the energy balance.
@@ -296,7 +295,7 @@ private:
         return work > 0 && work * moved > answer * too_far_;
     }
 
-    // Masses and step for these row sums.
+    // Masses and step for these row sums, and all that follows from them.
     void take_stiffness(const std::vector<double>& row_sums)
     {
         const double local = 1 + local_damping();
@@ -317,11 +316,12 @@ private:
             for (const double sum : row_sums)
                 mass_.push_back(sum * local / (4 * safety * safety));
         }
-        find_inverse_masses();
-        stiffening_ = stiffening_of(a_.contacts);
+        follow_masses_and_step();
+        stiffening_ = stiffening_of(a_);
     }
 
-    void find_inverse_masses()
+    // Inverse masses, and the rate of stiffness damping over a step.
+    void follow_masses_and_step()
     {
         inverse_mass_.clear();
         for (const double m : mass_)
@@ -333,7 +333,7 @@ private:
     // kinetic energy, or energies would not balance.
     void follow_stiffness()
     {
-        if (!are_beyond(a_.contacts, stiffening_))
+        if (!are_beyond(a_, stiffening_))
             return;
         const std::vector<double> before = mass_;
         const double last_dt = dt_;
@@ -436,8 +436,8 @@ private:
     std::vector<Sums> sums_;                  // of each chunk
     double work_of_changes_ = 0;              // of the step, apart as every thread adds up work_ for itself
     double work_ = 0, stored_at_start_ = 0;
-    std::vector<joint::Stiffening> stiffening_; // for which mass_ and dt_ are stable
-    double time_before_ = 0;                    // at the last change of the step [s]
+    mechanics::Stiffening stiffening_; // for which mass_ and dt_ are stable
+    double time_before_ = 0;           // at the last change of the step [s]
     Index steps_since_ = 0;
     double dt_ = 0, too_far_ = 0, alpha_ = 0;
     Index checks_in_movement_ = 0; // in a row, every `patience` steps

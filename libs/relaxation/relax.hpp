@@ -35,8 +35,9 @@ using StepObserver = std::function<void(double solver_time)>;
 // Starts from rest. A state in balance to rounding is left as it is, after 0 steps.
 //
 // Throws no_equilibrium when a gridpoint has moved by a tenth of the section's size, in this equilibrium or since
-// the in-situ state; when rock moves steadily while the unbalanced forces do not decrease; when forces are no
-// longer numbers; and after settings.most_steps.
+// the in-situ state, or by more than settings.largest_displacement since then; when rock moves steadily while the
+// unbalanced forces do not decrease; when displacements or forces are no longer finite; and after settings.most_steps.
+// Throws input_error for mass damping of scaled masses.
 //
 // With a keeper, it may be kept after every 100 steps, and continued from there: all numbers are then the same.
 mechanics::Convergence relax(mechanics::Assembly& assembly, const Equilibrium& settings,

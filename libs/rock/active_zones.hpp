@@ -1,5 +1,5 @@
-// What zones do in a search for equilibrium that goes by tangents: straight from their states at the start of the search to
-// those at its end. joint/active_contacts.hpp has the same functions; zones have no bonds.
+// What zones do in a search for equilibrium that goes by tangents: straight from their states at the start of the
+// search to those at its end. joint/active_contacts.hpp has the same functions; zones have no bonds.
 
 #pragma once
 

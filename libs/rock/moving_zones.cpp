@@ -116,38 +116,32 @@ void put_back(const MovingZones& moving, Index z, const std::vector<Vector2d>& p
 
 void transfer(const Transfer& to, MovingZones& moving, DynamicsState& kept)
 {
-    // All members, so that no new one is forgotten.
-    auto& [zones, yielding, corner_force] = moving;
     std::vector<Eigen::Vector4d> inverse;
-    for (const MovingZone& zone : zones)
+    for (const MovingZone& zone : moving.zone)
         inverse.emplace_back(zone.inverse.reshaped());
     to.values(inverse, kept.inverse);
-    for (std::size_t z = 0; z < zones.size(); ++z)
-        zones[z].inverse = inverse[z].reshaped(2, 2);
-    for (MovingZone& zone : zones)
-        [[maybe_unused]] auto& [gridpoint, of_edges, area, stiffness, strain, held] = zone;
-    to.values(zones, kept.area, &MovingZone::area);
-    to.values(zones, kept.strain, &MovingZone::strain);
-    for (MovingYieldingZone& one : yielding)
-        [[maybe_unused]] auto& [zone, stress] = one;
+    for (std::size_t z = 0; z < moving.zone.size(); ++z)
+        moving.zone[z].inverse = inverse[z].reshaped(2, 2);
+    to.values(moving.zone, kept.area, &MovingZone::area);
+    to.values(moving.zone, kept.strain, &MovingZone::strain);
     const auto of_zone = [](auto member) {
         return [member](MovingYieldingZone & one) -> auto&
         {
             return one.zone.*member;
         };
     };
-    to.values(yielding, kept.plastic_strain, of_zone(&YieldingZone::plastic));
-    to.values(yielding, kept.initial_zz, of_zone(&YieldingZone::initial_zz));
-    to.values(yielding, kept.stress_zz, of_zone(&YieldingZone::stress_zz));
-    to.values(yielding, kept.stress, &MovingYieldingZone::stress);
+    to.values(moving.yielding, kept.plastic_strain, of_zone(&YieldingZone::plastic));
+    to.values(moving.yielding, kept.initial_zz, of_zone(&YieldingZone::initial_zz));
+    to.values(moving.yielding, kept.stress_zz, of_zone(&YieldingZone::stress_zz));
+    to.values(moving.yielding, kept.stress, &MovingYieldingZone::stress);
 }
 
 void pass(Tape& tape, MovingZones& moving)
 {
-    for (auto& [gridpoint, inverse, area, stiffness, strain, held] : moving.zone)
-        tape(strain, held);
-    for (auto& [zone, stress] : moving.yielding)
-        tape(zone.plastic, zone.stress_zz, zone.dissipated, stress);
+    for (MovingZone& one : moving.zone)
+        tape(one.strain, one.held);
+    for (MovingYieldingZone& one : moving.yielding)
+        tape(one.zone.plastic, one.zone.stress_zz, one.zone.dissipated, one.stress);
     tape(moving.corner_force);
 }
 

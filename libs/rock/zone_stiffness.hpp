@@ -1,4 +1,5 @@
-// Tangents of zones and their part of a stiffness matrix. Where rock is elastic the stiffness is constant, until it creeps.
+// Tangents of zones and their part of a stiffness matrix. Where rock is elastic the stiffness is constant, until it
+// creeps.
 
 #pragma once
 
@@ -15,8 +16,8 @@ namespace jointcreep::rock
 // Change of the stress {xx, yy, xy} at a stress point over change of its strain {xx, yy, gamma_xy} [Pa].
 using Tangent = Eigen::Matrix3d;
 
-// The tangent at the displacements of all gridpoints [m]; the strain path is straight from the state at the start. Of all
-// stress points, 0 for those that are removed.
+// The tangent at the displacements of all gridpoints [m]; the strain path is straight from the state at the start.
+// Of all stress points, 0 for those that are removed.
 Tangent tangent_at(const Zones& zones, std::size_t z, std::span<const Vector2d> displacement,
                    const ZonesState& start);
 std::vector<Tangent> tangents_of(const Zones& zones, std::span<const Vector2d> displacement,
@@ -45,8 +46,8 @@ inline const std::vector<Vector3d>& constants(const Zones& zones)
     return zones.stiffness;
 }
 
-// Calls add(zone, i, j, block) with the stiffness between gridpoints i and j of each zone that is `there` [Pa], for each
-// of its stress points; between(z, i, j) is that of a stress point per area.
+// Calls add(zone, i, j, block) with the stiffness between gridpoints i and j of each zone that is `there` [Pa], for
+// each of its stress points; between(z, i, j) is that of a stress point per area.
 template <class Between, class Add>
 void add_points(const Zones& zones, const std::vector<Index>& there, const Between& between, const Add& add)
 {

@@ -503,8 +503,8 @@ void transfer(const Transfer& to, Zones& zones, Checkpoint& kept)
 void pass(Tape& tape, Zones& zones)
 {
     tape(zones.stress, zones.last_stress);
-    for (auto& [law, initial_zz, plastic, stress_zz, dissipated] : zones.yielding)
-        tape(plastic, stress_zz, dissipated);
+    for (YieldingZone& one : zones.yielding)
+        tape(one.plastic, one.stress_zz, one.dissipated);
 }
 
 } // namespace jointcreep::rock

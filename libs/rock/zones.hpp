@@ -135,6 +135,19 @@ void add_masses(const Zones& zones, std::vector<double>& mass);
 // quadratic zone only to the middles of the sides, by its shape functions.
 void add_weight(const Zones& zones, std::size_t z, double share, std::vector<Vector2d>& load);
 
+// Of joints only (joint/contacts.hpp): rock does not grow stiffer as it deforms.
+struct Stiffening {
+};
+inline std::vector<Stiffening> stiffening_of(const Zones&)
+{
+    return {};
+}
+inline bool are_beyond(const Zones&, const std::vector<Stiffening>&)
+{
+    return false;
+}
+inline void pass(Tape&, std::vector<Stiffening>&) {}
+
 // Energy stored in present zones [J/m]; only differences have a meaning.
 double stored_energy(const Zones& zones);
 

@@ -23,8 +23,8 @@ Scene parse_scene(std::string_view text, const std::string& name);
 // fit the network of that file, as the text was changed.
 Scene parse_scene_of_file(std::string_view text, const std::string& path, const Network& network);
 
-// The text of a scene file without byte order mark, with the files beside it that it names behind it, each as a table [[file]]: so
-// the text says everything, wherever it goes.
+// The text of a scene file without byte order mark, with the files beside it that it names behind it, each as a
+// table [[file]]: so the text says everything, wherever it goes.
 struct SceneText {
     std::string text;
     std::vector<std::string> files; // paths of those that it names

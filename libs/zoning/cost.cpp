@@ -19,8 +19,8 @@ namespace
 
 constexpr double share = 0.2, least_per_corner = 0.5, most_per_corner = 3;
 
-// Integral of 1/size^2 over the section. Triangles between the first corner and the sides of a polygon, with their sign,
-// make its area whatever its shape. They are halved until the size hardly changes in them.
+// Integral of 1/size^2 over the section. Triangles between the first corner and the sides of a polygon, with their
+// sign, make its area whatever its shape. They are halved until the size hardly changes in them.
 class Integral
 {
 public:

@@ -4,8 +4,9 @@
 //     c = 1/2 + 5/2 (area of the block / size^2), at most 3
 //
 // `size` is that of [zones] at a place [m]. The triangulation aims at a longest side, and its mean zone has the area
-// share * size^2. Corners of blocks ask for smaller zones around them; a block much smaller than a zone should be has few.
-// The numbers are fitted to the sections of data/: tests/zoning/cost_test.cpp holds the result to what is made.
+// share * size^2. Corners of blocks ask for smaller zones around them; a block much smaller than a zone should be
+// has few. The numbers are fitted to the sections of data/: tests/zoning/cost_test.cpp holds the result to what is
+// made.
 
 #pragma once
 

@@ -127,8 +127,8 @@ void add_middles(Mesh& mesh, const Triangulation& t, const Blocks& blocks)
         }
 }
 
-// What a side of a zone gives to its ends and, if there is one, its middle, where a traction is linear along it: a share of
-// its length, and the place where the traction has its mean over that share.
+// What a side of a zone gives to its ends and, if there is one, its middle, where a traction is linear along it: a
+// share of its length, and the place where the traction has its mean over that share.
 struct OfSide {
     double share;          // [-]
     double end, other_end; // weights of the two ends in the place [-]
