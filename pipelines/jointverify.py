@@ -49,7 +49,7 @@ ROUNDING = 1e-12
 ENERGY_OF_DYNAMICS = 0.01  # demsolve warns above this
 AT_STRENGTH = 1e-6  # a contact this near its strength counts as slipping
 REMOVED, STUCK, SLIPPING, OPEN = range(4)
-COULOMB, RESIDUAL, BARTON_BANDIS, WEARING, YIELDING = range(5)
+COULOMB, RESIDUAL, BARTON_BANDIS, WEARING, YIELDING = LAWS = range(5)
 DEGREE = np.pi / 180
 
 
@@ -198,6 +198,7 @@ class Scene:
         self.divisor = self.option("--strength-factor", 1.0)
         self.has_dashpots = "stiffness_damping_s" in equilibrium  # which the report's forces have, too
         self.large_displacements = "large_displacements" in self.tables
+        self.stop = self.tables.get("large_displacements", {}).get("stop_s")
         creep = self.table("creep", {})
         self.creeps = "creep" in self.tables and "--no-creep" not in self.options
         self.scheme = self.options.get("--creep-scheme", str(creep.get("scheme", "auto"))).replace("-", " ")
@@ -415,7 +416,7 @@ class Section:
         def divided(name):
             return np.tan(of_edges(name)) / scene.divisor
 
-        self.law = index("/equivalent/law", 5, "edge")[self.edge]
+        self.law = index("/equivalent/law", len(LAWS), "edge")[self.edge]
         self.k_n, self.k_s = of_edges("normal_stiffness"), of_edges("shear_stiffness")
         self.cohesion, self.strength_in_tension = (of_edges(name) / scene.divisor for name in ("cohesion", "tensile_strength"))
         self.tan_phi, self.tan_psi = divided("friction_angle"), divided("dilation_angle")
@@ -527,6 +528,9 @@ class Verification:
         # Moments of a dynamic analysis have no row of the history and are not at rest, but for its end.
         moments = self.file.index("/dynamics/state", "state", "moment") if self.file.has("/dynamics") else []
         self.moving = {int(s) for s in moments if not self.states.event[s]}
+        # The last analysis may end when the scene asks for it: then it has no equilibrium.
+        self.is_ended = self.scene.stop is not None and len(self.equilibria["time"]) <= sum(map(bool, self.states.event[moments]))
+        self.moving |= set(range(int(moments[-1]), len(self.states.time))) if self.is_ended else set()
         self.is_at_rest = len(self.equilibria["time"]) > 0 or not self.file.has("/failure")
 
     # Where a value is.
@@ -1145,6 +1149,9 @@ class Verification:
             "work_of_loads", "kinetic_energy", "stored_energy", "friction_energy", "damped_energy")}
         dynamic_time = file.numbers("/dynamics/dynamic_time", "moment")
         fastest = file.numbers("/dynamics/fastest", "moment")
+        if self.is_ended:
+            self.checks.see("the last dynamic analysis ends when the scene asks for it", "s",
+                            np.maximum(0, self.scene.stop - dynamic_time[-1:]), 0, lambda i: "/dynamics/dynamic_time[-1]")
         begins = np.flatnonzero(np.concatenate([[True], dynamic_time[1:] <= dynamic_time[:-1]])) if len(time) else []
         for first, end in zip(begins, [*begins[1:], len(time)]):
             rows = slice(first, end)

@@ -127,8 +127,7 @@ TEST(contacts, row_sums_have_room_where_a_joint_stiffens)
         Contacts level = contact(law, {0, 1}, {-1e6, 0});
         std::vector<Vector2d> sums(2, Vector2d(1, 1));
         add_row_sums(level, sums);
-        const double k =
-            slopes(law, {}, -1e6).k_n * (laws()[place].name == "Barton-Bandis" ? room_to_stiffen : 1);
+        const double k = slopes(law, {}, -1e6).k_n * (stiffens(law) ? room_to_stiffen : 1);
         for (const Vector2d& sum : sums)
             EXPECT_LT((sum - Vector2d(1 + 5 * 5e8, 1 + 5 * k)).norm(), 1e-6 * k) << laws()[place].name;
     }
@@ -286,7 +285,9 @@ RC_GTEST_PROP(contacts, go_on_as_before_once_they_start_from_here, ())
     Contacts contacts = kept;
     start_from_here(contacts);
     part(contacts, {0, 0});
-    const double rounding = 1e-6 * 1e6;
+    // A continuously yielding joint takes a reversal by less than 1e-4 of its strength for elastic. From where it starts
+    // depends on what it takes so.
+    const double rounding = (std::holds_alternative<ContinuouslyYielding>(law) ? 1e-4 : 1e-6) * 1e6;
     RC_ASSERT((contacts.traction[0] - kept.traction[0]).norm() < rounding);
     RC_ASSERT(contacts.status[0] == kept.status[0]);
     RC_ASSERT(contacts.state[0].is_broken == kept.state[0].is_broken);
