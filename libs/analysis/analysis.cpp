@@ -185,7 +185,7 @@ void Analysis::complete(const Stage& stage)
     section_.say(stage.name);
     section_.stage = stage.name;
     if (dynamics_)
-        dynamics_->run();
+        dynamics_->run(&stage == &section_.scene.stages.back());
     else {
         unload();
         creep_.start_afresh();

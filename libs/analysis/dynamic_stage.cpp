@@ -87,25 +87,30 @@ void DynamicStage::settle_in_situ()
     dynamics_.count_from_here();
 }
 
-void DynamicStage::run()
+void DynamicStage::run(bool is_last)
 {
+    constexpr double never = std::numeric_limits<double>::infinity();
+    const double stop = is_last ? section_.scene.large_displacements->stop.value_or(never) : never;
     dynamics_.start();
     largest_energy_ = largest_error_ = 0;
     due_ = 0;
-    bool is_recorded = goes_on();
-    do {
+    bool is_recorded = goes_on(), rests = false;
+    while (!rests && dynamics_.time() < stop) {
         section_.say(section_.stage + ", " + shown(due_) + " s");
-        if (std::exchange(is_recorded, false))
-            continue;
-        due_ = std::max(due_ + section_.scene.large_displacements->record_every, // once a step at most
-                        std::nextafter(dynamics_.time(), std::numeric_limits<double>::infinity()));
-        dynamics_.put_back();
-        watchers_.tell(&Watcher::state_is_due, "");
-        record();
-    } while (!comes_to_rest(due_));
+        if (!std::exchange(is_recorded, false)) {
+            due_ = std::max(due_ + section_.scene.large_displacements->record_every, // once a step at most
+                            std::nextafter(dynamics_.time(), never));
+            dynamics_.put_back();
+            watchers_.tell(&Watcher::state_is_due, "");
+            record();
+        }
+        rests = comes_to_rest(std::min(due_, stop));
+    }
     dynamics_.put_back();
-    note_rest();
-    watchers_.tell(&Watcher::equilibrium_ends, 0.0);
+    if (rests) {
+        note_rest();
+        watchers_.tell(&Watcher::equilibrium_ends, 0.0);
+    }
     watchers_.row_and_state_are_due(section_.stage);
     record();
     check_energy();

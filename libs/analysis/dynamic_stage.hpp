@@ -20,9 +20,9 @@ public:
     void settle_in_situ();
 
     // After a stage's rock is removed: the dynamic analysis until equilibrium, recorded every so many seconds, with
-    // a row and a state at equilibrium. Throws equilibrium_error where there is none; the result has the last
-    // state.
-    void run();
+    // a row and a state at equilibrium. That of the last stage ends at the time that the scene asks for, too. Throws
+    // equilibrium_error where there is no equilibrium; the result has the last state.
+    void run(bool is_last);
 
     // What a checkpoint keeps of it.
     void transfer(const Transfer& to, Checkpoint& kept) { dynamics_.transfer(to, kept.dynamics); }

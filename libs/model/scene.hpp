@@ -302,6 +302,7 @@ struct LargeDisplacements {
     double mass_damping = 0;                // [1/s]
     double release = 0;                     // time in which the forces of a stage's rock go to 0 [s]
     double longest = 0;                     // of one dynamic analysis [s]
+    std::optional<double> stop{};           // that of the last stage ends then, at rest or not [s]
     double record_every = 0;                // [s]
 };
 

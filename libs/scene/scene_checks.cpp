@@ -449,6 +449,13 @@ private:
                 .refuse("release_s", "wanted less than longest_s, " +
                                          shown(scene_.large_displacements->longest) +
                                          " s; no rest is possible before");
+        if (scene_.large_displacements->stop && scene_.stages.empty())
+            once("large_displacements")
+                .refuse("stop_s", "the scene has no [[stage]], whose analysis would end");
+        if (scene_.large_displacements->stop > scene_.large_displacements->longest)
+            once("large_displacements")
+                .refuse("stop_s",
+                        "wanted at most longest_s, " + shown(scene_.large_displacements->longest) + " s");
         if (scene_.equilibrium.unloading_increments > 1)
             once("equilibrium")
                 .refuse("unloading_increments",

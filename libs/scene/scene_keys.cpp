@@ -826,6 +826,10 @@ Table<LargeDisplacements> large_displacements()
              "Longest time of a dynamic analysis, the first of which begins at the equilibrium in situ. If rock "
              "still moves then, the exit code is 3.")
              .or_else(60.0),
+         number(
+             "stop_s", &LargeDisplacements::stop, seconds, above(0).to(1e6),
+             "The dynamic analysis of the last stage ends at this time, at rest or not. Without it, at rest.")
+             .optional(),
          number("record_every_s", &LargeDisplacements::record_every, seconds, above(0).to(1e6),
                 "The section and the balance of energy are recorded that often.")
              .or_else(1.0)}};

@@ -139,6 +139,27 @@ class Blocks(ChainTest):
             self.assertLessEqual(data["/equilibria/unbalanced_force_ratio"].max(), 1e-6)
             self.assertLess(error_of_energy(data), ACCOUNT, more)
 
+    def test_the_last_analysis_ends_when_asked_to(self):
+        """While the block still slides: that is no failure."""
+        dip, friction, stop = 30, 20, 1.25
+        text = incline(dip, friction, more=RIGID + f"\nstop_s = {stop}")
+        path = self.chain.result(text)
+        data = datasets(path)
+        acceleration = GRAVITY * (math.sin(math.radians(dip)) - math.cos(math.radians(dip)) * math.tan(math.radians(friction)))
+        time, speed = data["/dynamics/dynamic_time"][-1], data["/dynamics/fastest"][-1]
+        self.assertAlmostEqual(time, stop, delta=0.01)
+        self.assertAlmostEqual(speed / (acceleration * time), 1, delta=5e-3)
+        self.assertAlmostEqual(self.along(data, dip) / (acceleration * time**2 / 2), 1, delta=5e-3)
+        self.assertEqual(data["/history/event"][-2:].tolist(), ["stop removed", ""])
+        self.assertEqual(len(data["/equilibria/time"]), 1)  # in situ
+        self.assertLess(error_of_energy(data), ACCOUNT)
+        verified = self.chain.answer("jointverify", path)
+        self.assertEqual(verified.returncode, 0, verified.stdout + verified.stderr)
+        # After it has come to rest nothing changes.
+        more = f"{RIGID}\nstop_s = 50"
+        ended = [datasets(self.chain.result(incline(dip, friction, length=7, more=some))) for some in (RIGID, more)]
+        self.assertTrue((ended[0]["/history/displacement"] == ended[1]["/history/displacement"]).all())
+
     # The peak strength decides whether it goes, the residual one how.
     def test_a_joint_that_has_slipped_is_as_weak_as_its_residual_strength(self):
         dip, residual = 30, 20
