@@ -23,6 +23,7 @@
 #include "store/files.hpp"
 #include "zoning/cost.hpp"
 
+#include <algorithm>
 #include <functional>
 #include <limits>
 #include <memory>
@@ -50,16 +51,16 @@ using Kept = std::optional<store::CheckpointFile>;
 
 // A run with strengths divided by a factor, which fails where displacement is more than that [m]. It continues from a
 // checkpoint, if there is one; its own ones have the runs before, and without these it writes none.
-using RunWith = std::function<std::unique_ptr<Trial>(double factor, double most_displacement, Kept kept,
-                                                     const Safety* runs_before)>;
+using RunWith = std::function<std::unique_ptr<Trial>(
+    const Scene& scene, double factor, double most_displacement, Kept kept, const Safety* runs_before)>;
 
 // One run, written; the run itself.
-std::unique_ptr<Trial> run_once(double factor, const RunWith& run_with, const demsolve::Files& files,
-                                Kept kept)
+std::unique_ptr<Trial> run_once(double factor, const Scene& scene, const RunWith& run_with,
+                                const demsolve::Files& files, Kept kept)
 {
     const Safety none;
     std::unique_ptr<Trial> run =
-        run_with(factor, std::numeric_limits<double>::infinity(), std::move(kept), &none);
+        run_with(scene, factor, std::numeric_limits<double>::infinity(), std::move(kept), &none);
     if (run->outcome().ending != Ending::stands)
         throw equilibrium_error(run->message() + '\n' + files.write_failed(*run) +
                                 demsolve::warning_lines(*run));
@@ -67,11 +68,43 @@ std::unique_ptr<Trial> run_once(double factor, const RunWith& run_with, const de
     return run;
 }
 
+// The scene with zones twice as large.
+Scene with_coarse_zones(Scene scene)
+{
+    scene.zone_size *= 2;
+    if (scene.zone_size_at_faces)
+        *scene.zone_size_at_faces *= 2;
+    return scene;
+}
+
+// Where rock yields: a search with zones twice as large.
+std::optional<demsolve::MeshEstimate> estimate_mesh(const Scene& scene, const RunWith& run_with,
+                                                    const demsolve::SafetySearch& search,
+                                                    const Bracket& bracket, std::size_t zones)
+{
+    const bool yields =
+        std::ranges::any_of(scene.rocks, [](const Rock& rock) { return rock.law == RockLaw::mohr_coulomb; });
+    if (!yields || !search.estimates_mesh || !bracket.not_above)
+        return std::nullopt;
+    const Scene with_coarse = with_coarse_zones(scene);
+    std::size_t coarse_zones = 0;
+    Bracket coarse = analysis::bracket_near(
+        *bracket.stands,
+        [&](double factor, double most_displacement, const Safety&) {
+            const auto run = run_with(with_coarse, factor, most_displacement, std::nullopt, nullptr);
+            coarse_zones = run->analysis().result().mesh.zone_gridpoint.size();
+            return run->outcome();
+        },
+        search.width, search.runs_away);
+    return demsolve::MeshEstimate{std::move(coarse),
+                                  static_cast<double>(coarse_zones) / static_cast<double>(zones)};
+}
+
 // Runs with different factors. Writes and returns the run of the largest factor at which every equilibrium is found.
 // Writes the run of the next larger factor as failed. Runs that an earlier search has made are not made again, but for
 // these two, from their last checkpoint.
 std::unique_ptr<Trial> bracket_safety(const demsolve::StrengthReduction& reduction, const Scene& scene,
-                                      const RunWith& run_with, const demsolve::Files& files, Kept kept,
+                                      const RunWith& run_with, demsolve::Files& files, Kept kept,
                                       Summary& summary)
 {
     const Safety made_before = kept ? kept->safety : Safety{};
@@ -81,7 +114,7 @@ std::unique_ptr<Trial> bracket_safety(const demsolve::StrengthReduction& reducti
         std::unique_ptr<Trial> run; // none: by an earlier search
     };
     std::optional<Made> stands, falls; // the last ones
-    const Bracket bracket = analysis::bracket_of(
+    Bracket bracket = analysis::bracket_of(
         [&](double factor, double most_displacement, const Safety& so_far) {
             const std::size_t number = so_far.factor.size();
             Made made{factor, most_displacement, number, nullptr};
@@ -89,7 +122,8 @@ std::unique_ptr<Trial> bracket_safety(const demsolve::StrengthReduction& reducti
             if (number < made_before.factor.size())
                 outcome = analysis::outcome_of(made_before, number);
             else {
-                made.run = run_with(factor, most_displacement, std::exchange(kept, std::nullopt), &so_far);
+                made.run =
+                    run_with(scene, factor, most_displacement, std::exchange(kept, std::nullopt), &so_far);
                 outcome = made.run->outcome();
                 files.keep_last_checkpoint(outcome.ending == Ending::stands);
             }
@@ -99,7 +133,7 @@ std::unique_ptr<Trial> bracket_safety(const demsolve::StrengthReduction& reducti
         reduction.search->width, reduction.search->runs_away);
     const auto run_of = [&](std::optional<Made>& made, bool stood) {
         if (made && !made->run)
-            made->run = run_with(made->factor, made->most_displacement,
+            made->run = run_with(scene, made->factor, made->most_displacement,
                                  files.kept_run(stood, made->number, scene, reduction), nullptr);
         return made ? std::move(made->run) : nullptr;
     };
@@ -109,9 +143,20 @@ std::unique_ptr<Trial> bracket_safety(const demsolve::StrengthReduction& reducti
                                 " times as large there is still " + failed->message() + '\n' +
                                 files.write_failed(*failed, bracket.trials));
     demsolve::add_safety(summary, bracket, failed ? failed->message() : "");
+    const auto estimate = estimate_mesh(scene, run_with, *reduction.search, bracket,
+                                        run->analysis().result().mesh.zone_gridpoint.size());
+    if (estimate) {
+        bracket.trials.coarse_factor = estimate->coarse.trials.factor;
+        bracket.trials.coarse_stands = estimate->coarse.trials.stands;
+        bracket.trials.coarse_largest_displacement = estimate->coarse.trials.largest_displacement;
+        if (const std::string warning = demsolve::mesh_warning(bracket, *estimate); !warning.empty())
+            files.warn(warning);
+    }
     files.write_result(*run, bracket.trials);
     if (failed)
         summary.add("  at this factor", files.write_failed(*failed, bracket.trials));
+    if (estimate)
+        demsolve::add_mesh_estimate(summary, bracket, *estimate);
     return run;
 }
 
@@ -141,7 +186,7 @@ void solve(const Arguments& arguments)
         summary.add("continued from", demsolve::place_of(kept->checkpoint, scene));
 
     // 3. The analysis: in-situ equilibrium, excavation in stages, creep.
-    const RunWith run_with = [&](double divisor, double most_displacement, Kept from,
+    const RunWith run_with = [&](const Scene& of, double divisor, double most_displacement, Kept from,
                                  const Safety* runs_before) {
         Progress progress(arguments.quiet());
         const std::string which = reduction.search ? "strengths / " + shown(divisor) + ", " : "";
@@ -153,7 +198,7 @@ void solve(const Arguments& arguments)
             };
         }
         auto trial = of_file(input, [&] {
-            return std::make_unique<Trial>(scene, file.network, file.equivalent, divisor, most_displacement,
+            return std::make_unique<Trial>(of, file.network, file.equivalent, divisor, most_displacement,
                                            threads, with_checkpoints,
                                            [&progress, which](double fraction, const std::string& what) {
                                                progress.show(fraction, which + what);
@@ -171,7 +216,7 @@ void solve(const Arguments& arguments)
     // 4. Once, or with strengths divided by factors until rock moves.
     const std::unique_ptr<Trial> run =
         reduction.search ? bracket_safety(reduction, scene, run_with, files, std::move(kept), summary)
-                         : run_once(reduction.factor, run_with, files, std::move(kept));
+                         : run_once(reduction.factor, scene, run_with, files, std::move(kept));
     demsolve::add_run(summary, file.network, *run);
     summary.print(arguments);
 }

@@ -178,6 +178,8 @@ std::vector<Option> options()
         {"safety-width", "W", "width of that bracket, over F (default 0.01)"},
         {"safety-displacement", "R",
          "largest displacement that counts as failure, over that with strengths 64 times as large (default 10)"},
+        {"no-mesh-estimate", "",
+         "where rock yields: no second search with zones twice as large, which estimates what the mesh adds to F"},
         {"until", "DAY", "end there instead of at the scene's end, before or after it [day]"},
         {"checkpoint", "FILE",
          "before every stage, and every now and then, write the state there; if FILE exists, continue from it"},
@@ -241,7 +243,7 @@ std::string StrengthReduction::text() const
 {
     if (search)
         return "--factor-of-safety --safety-width " + shown(search->width) + " --safety-displacement " +
-               shown(search->runs_away);
+               shown(search->runs_away) + (search->estimates_mesh ? "" : " --no-mesh-estimate");
     return factor == 1 ? "" : "--strength-factor " + shown(factor);
 }
 
@@ -254,7 +256,7 @@ StrengthReduction strength_reduction(const Arguments& arguments, const Scene& sc
     const double width = arguments.number("safety-width", from(1e-4).to(1), "(ratio)").value_or(0.01);
     const double runs_away = arguments.number("safety-displacement", from(2).to(1e6), "(ratio)").value_or(10);
     if (!has_bracket) {
-        for (const std::string option : {"safety-width", "safety-displacement"})
+        for (const std::string option : {"safety-width", "safety-displacement", "no-mesh-estimate"})
             if (arguments.has(option))
                 throw input_error("--" + option + " goes with --factor-of-safety only");
         return {factor, {}};
@@ -269,7 +271,7 @@ StrengthReduction strength_reduction(const Arguments& arguments, const Scene& sc
         throw input_error(
             "--factor-of-safety: the scene has [large_displacements], where rock that fails reaches a new equilibrium; "
             "wanted a scene without");
-    return {factor, demsolve::SafetySearch{width, runs_away}};
+    return {factor, demsolve::SafetySearch{width, runs_away, !arguments.has("no-mesh-estimate")}};
 }
 
 analysis::Recording recording(const Arguments& arguments)

@@ -31,6 +31,7 @@ std::string end_scene(const Arguments& arguments, Scene& scene);
 struct SafetySearch {
     double width;     // of the bracket, over the factor [-]
     double runs_away; // displacement that counts as failure, over that with strengths 64 times as large [-]
+    bool estimates_mesh; // what the mesh adds to the factor, by zones twice as large
 };
 
 // Strength reduction factor.

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <optional>
 
 namespace jointcreep::demsolve
 {
@@ -81,6 +82,14 @@ void add_equilibria(Summary& summary, const Scene& scene, const Analysis& run)
                 "m");
 }
 
+void add_dynamics(Summary& summary, const DynamicsHistory& dynamics)
+{
+    if (dynamics.dynamic_time.empty())
+        return;
+    summary.add("last dynamic analysis ends after", dynamics.dynamic_time.back(), "s");
+    summary.add("  fastest gridpoint then", dynamics.fastest.back(), "m/s");
+}
+
 void add_creep(Summary& summary, const Analysis& run)
 {
     if (const auto& limit = run.stable_limit())
@@ -117,6 +126,21 @@ void add_lines(Summary& summary, const std::string& label, const std::string& te
     }
 }
 
+// Of the factor [-]; none where there is no estimate.
+std::optional<double> mesh_share(const analysis::Bracket& bracket, const MeshEstimate& estimate)
+{
+    constexpr double hardly_fewer = 0.6; // zones follow the edges of blocks, and hardly grow
+    const auto middle = [](const analysis::Bracket& of) { return (*of.stands + *of.not_above) / 2; };
+    if (!estimate.coarse.stands || !estimate.coarse.not_above || estimate.share_of_zones > hardly_fewer)
+        return std::nullopt;
+    return middle(estimate.coarse) / middle(bracket) - 1;
+}
+
+std::string in_percent(double share)
+{
+    return shown(std::round(1000 * share) / 10) + " percent";
+}
+
 // The smallest factor with which rock was seen to move; infinite if there is none.
 double smallest_that_fails(const Safety& trials)
 {
@@ -135,6 +159,7 @@ void add_run(Summary& summary, const Network& network, const analysis::Trial& tr
     add_mesh(summary, network, run.result().mesh);
     summary.add("stages", trial.scene().stages.size());
     add_equilibria(summary, trial.scene(), run);
+    add_dynamics(summary, run.result().dynamics);
     add_creep(summary, run);
     add_contacts(summary, run.assembly().contacts.status);
     add_yield(summary, run);
@@ -163,6 +188,29 @@ void add_safety(Summary& summary, const analysis::Bracket& bracket, const std::s
         return;
     if (const double factor = smallest_that_fails(trials); std::isfinite(factor)) // known all the same
         summary.add("factor of safety, below", shown(factor));
+}
+
+void add_mesh_estimate(Summary& summary, const analysis::Bracket& bracket, const MeshEstimate& estimate)
+{
+    const std::string what = "mesh's share of the factor, by estimate";
+    if (!estimate.coarse.stands || !estimate.coarse.not_above)
+        return summary.add(what, "none: no bracket with zones twice as large");
+    summary.add("with zones twice as large",
+                shown(*estimate.coarse.stands) + " to " + shown(*estimate.coarse.not_above));
+    const auto share = mesh_share(bracket, estimate);
+    const double width = (*bracket.not_above - *bracket.stands) / *bracket.stands;
+    summary.add(what, !share           ? "none: block edges set the size of zones"
+                      : *share > width ? in_percent(*share)
+                                       : "below " + in_percent(std::max(width, -*share)));
+}
+
+std::string mesh_warning(const analysis::Bracket& bracket, const MeshEstimate& estimate)
+{
+    constexpr double much = 0.05;
+    const double share = mesh_share(bracket, estimate).value_or(0);
+    return share > much ? "the factor of safety is too high by about " + in_percent(share) +
+                              ", by estimate from zones twice as large; use smaller zones"
+                        : "";
 }
 
 std::vector<std::string> warnings_of(const analysis::Trial& trial)

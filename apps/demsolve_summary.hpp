@@ -20,6 +20,16 @@ void add_run(Summary& summary, const Network& network, const analysis::Trial& ru
 // The bracket of the factor of safety, and the blocks that move at its upper end.
 void add_safety(Summary& summary, const analysis::Bracket& bracket, const std::string& what_moves);
 
+// The bracket that zones twice as large give, and their number over that of the others. The error of the factor is
+// proportional to the size of zones: what the mesh adds to it is about the difference of both.
+struct MeshEstimate {
+    analysis::Bracket coarse;
+    double share_of_zones;
+};
+void add_mesh_estimate(Summary& summary, const analysis::Bracket& bracket, const MeshEstimate& estimate);
+// A warning if it is much; else "".
+std::string mesh_warning(const analysis::Bracket& bracket, const MeshEstimate& estimate);
+
 // The warnings of a run; and as lines that end a message, each after a line break.
 std::vector<std::string> warnings_of(const analysis::Trial& run);
 std::string warning_lines(const analysis::Trial& run);

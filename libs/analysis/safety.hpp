@@ -70,4 +70,8 @@ Outcome outcome_of(const Safety& trials, std::size_t i);
 // than `width` times its lower end. Undecided runs count as without equilibrium.
 Bracket bracket_of(const RunWith& run_with, double width, double runs_away);
 
+// The same near a known factor: after the first run it goes up or down from there, by a twentieth and then by steps twice
+// as large each, until it has a bracket.
+Bracket bracket_near(double known, const RunWith& run_with, double width, double runs_away);
+
 } // namespace jointcreep::analysis

@@ -155,6 +155,11 @@ struct Safety {
     std::vector<Index> stands{};  // 1 every equilibrium was found, 0 rock slides or falls, -1 undecided
     std::vector<double> largest_displacement{};   // since the in-situ equilibrium, at the end [m]
     std::vector<double> largest_plastic_strain{}; // shear strain of a zone, at the end [-]
+
+    // The same with zones twice as large, which tell what the mesh adds to the factor; empty where not asked for.
+    std::vector<double> coarse_factor{};
+    std::vector<Index> coarse_stands{};
+    std::vector<double> coarse_largest_displacement{};
 };
 
 struct Result {

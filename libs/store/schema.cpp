@@ -419,6 +419,12 @@ std::vector<Field> fields_of(Safety& safety)
          "Largest displacement since the in-situ equilibrium, at the end of the run."},
         {"/safety/largest_plastic_strain", &safety.largest_plastic_strain, {"trial"}, "1", at_least(0),
          "Largest plastic shear strain of a zone, at the end of the run."},
+        {"/safety/coarse_factor", &safety.coarse_factor, {"coarse_trial"}, "1", positive(),
+         "The same for runs with zones twice as large, which tell what the mesh adds to the factor: the factor."},
+        {"/safety/coarse_stands", &safety.coarse_stands, {"coarse_trial"}, "1", between(-1, 1),
+         "How they ended, as stands."},
+        {"/safety/coarse_largest_displacement", &safety.coarse_largest_displacement, {"coarse_trial"}, "m", at_least(0),
+         "Their largest displacement."},
     };
     // clang-format on
 }
@@ -570,6 +576,8 @@ const std::vector<Described>& dimensions()
         {"moment", "a recorded moment of a dynamic analysis"},
         {"moving_block", "a block that had no equilibrium"},
         {"trial", "a run by which a factor of safety was found"},
+        {"coarse_trial",
+         "a run with zones twice as large, by which the mesh's share of a factor of safety was estimated"},
         {"remark", "a line of the summary so far"},
         {"search_value", "a number of the state of a search for equilibrium"},
         {"warning", "a warning of a program"},

@@ -52,7 +52,7 @@ def programs_of(study, run):
     if needs["result.h5"]:
         chain.append(("demsolve", ["joints.h5", *options, "-o", "result.h5"]))
     if needs["safety.h5"]:
-        chain.append(("demsolve", ["joints.h5", *options, "--factor-of-safety", "-o", "safety.h5"]))
+        chain.append(("demsolve", ["joints.h5", *options, "--factor-of-safety", "--no-mesh-estimate", "-o", "safety.h5"]))
     return chain
 
 

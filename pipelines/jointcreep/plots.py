@@ -15,7 +15,7 @@ import figure
 
 from .errors import NotWanted
 
-NAMES = ["section", "blocks", "stereonet", "rose", "distributions", "strength", "histories", "state", "step_history", "dynamics",
+NAMES = ["section", "blocks", "stereonet", "rose", "distributions", "strength", "histories", "state", "step_history", "dynamics", "safety",
          "ensemble"]
 
 

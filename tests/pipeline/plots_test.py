@@ -68,11 +68,17 @@ class Plots(ChainTest):
                 subprocess.run([sys.executable, self.plots / f"plot_{name}.py", result, *words, "-o", folder / "script.png"], check=True)
                 plots.save(name, result, folder / "function.png", **options)
                 self.assertEqual((folder / "script.png").read_bytes(), (folder / "function.png").read_bytes())
+        safety = self.chain.run("demsolve", self.chain.joints(self.chain.text("data/verification/vertical-cut/scene.toml")),
+                                folder / "safety.h5", "--factor-of-safety", "-q")
+        subprocess.run([sys.executable, self.plots / "plot_safety.py", safety, "-o", folder / "script.png"], check=True)
+        plots.save("safety", safety, folder / "function.png")
+        self.assertEqual((folder / "script.png").read_bytes(), (folder / "function.png").read_bytes())
         self.assertEqual({f"plot_{name}.py" for name in plots.NAMES} | {"plot_fit.py"}, {path.name for path in self.plots.glob("plot_*.py")})
         network = result.with_name("network.h5")
         for call, expected in [(lambda: plots.draw("state", network), "network.h5: there are no states in this file"),
                                (lambda: plots.draw("states", result), 'no plot "states"; there are: section, '),
                                (lambda: plots.draw("histories", result, without=network), "network.h5: "),
+                               (lambda: plots.draw("safety", result), "no runs of a factor of safety"),
                                (lambda: plots.draw("section", folder / "none.h5"), "none.h5: ")]:
             with self.assertRaisesRegex(NotWanted, expected):
                 call()

@@ -1,0 +1,57 @@
+#!/usr/bin/python3
+"""The largest displacement over the strength reduction factor: runs that stand, that fail, and the bracket of the factor of safety.
+
+Needs a result of demsolve --factor-of-safety. Where rock yields, the runs with zones twice as large are drawn beside it. The displacement
+of a run that fails is that at which it was ended.
+"""
+
+import numpy as np
+
+import figure
+
+STANDS, FAILS, UNDECIDED = 1, 0, -1
+KINDS = [(STANDS, "o", "stands"), (FAILS, "x", "fails"), (UNDECIDED, "s", "undecided")]
+
+
+def bracket(factor, stands):
+    """The largest factor that stands and the smallest above it that does not; None where there is none."""
+    low = factor[stands == STANDS].max(initial=-np.inf)
+    high = factor[(stands != STANDS) & (factor > low)].min(initial=np.inf)
+    return (low if np.isfinite(low) else None), (high if np.isfinite(high) else None)
+
+
+def draw_runs(axes, factor, stands, displacement, color, label):
+    """The runs of a search in the order of their factors, but for the one with hardly any slip."""
+    order = np.argsort(factor)[1:]
+    factor, stands, displacement = factor[order], stands[order], 1e3 * displacement[order]
+    stood = stands == STANDS
+    axes.plot(factor[stood], displacement[stood], color=color, linewidth=0.8, label=label)
+    for kind, marker, _ in KINDS:
+        some = stands == kind
+        axes.plot(factor[some], displacement[some], color=color, linestyle="none", marker=marker, markersize=4)
+
+
+def draw(file):
+    """Figure of the displacement over the strength reduction factor."""
+    if "/safety" not in file:
+        raise figure.NotWanted("this file has no runs of a factor of safety; demsolve --factor-of-safety writes them")
+    plot, axes = figure.plt.subplots(figsize=(figure.ONE_COLUMN * 1.2, 2.8))
+    for prefix, color, label in ("", "k", "zones of the scene"), ("coarse_", figure.COLORS[1], "zones twice as large"):
+        if f"/safety/{prefix}factor" in file and len(factor := figure.array(file, f"/safety/{prefix}factor")) > 1:
+            stands = figure.array(file, f"/safety/{prefix}stands")
+            draw_runs(axes, factor, stands, figure.array(file, f"/safety/{prefix}largest_displacement"), color, label)
+            low, high = bracket(factor, stands)
+            if low is not None and high is not None:
+                axes.axvspan(low, high, color=color, alpha=0.15, linewidth=0)
+    for kind, marker, label in KINDS:
+        if kind in figure.array(file, "/safety/stands"):
+            axes.plot([], [], color="0.4", linestyle="none", marker=marker, markersize=4, label=label)
+    axes.set_yscale("log")
+    axes.set_xlabel("strength reduction factor")
+    axes.set_ylabel("largest displacement (mm)")
+    axes.legend(fontsize=6)
+    return plot
+
+
+if __name__ == "__main__":
+    figure.run(draw, figure.arguments_of(__doc__))
