@@ -50,6 +50,7 @@ const Program program{
          {"layer", "NAME", "with --traces: layer of the file"},
          {"property", "NAME", "with --traces: property whose value is printed"},
          {"scene-keys", "", "print every scene key as a table, tab separated"},
+         {"scene-schema", "", "print the JSON Schema of scenes, for editors"},
          {"scene-keys-markdown", "", "print docs/scene.md"}},
     .example = "jointgen data/column/scene.toml -o network.h5",
     .other_usage = "SCENE.toml --check",
@@ -165,10 +166,14 @@ void generate(const Arguments& arguments)
         if (arguments.has(option))
             throw input_error("--" + std::string(option) +
                               " goes with --traces; in a scene it is a key of [[mapped]]");
-    if (arguments.has("scene-keys") || arguments.has("scene-keys-markdown")) {
-        std::cout << (arguments.has("scene-keys") ? scene::scene_keys_tsv() : scene::scene_keys_markdown());
-        return;
-    }
+    using Page = std::pair<const char*, std::string (*)()>;
+    for (const auto& [option, text] :
+         {Page("scene-keys", scene::scene_keys_tsv), Page("scene-schema", scene::scene_schema),
+          Page("scene-keys-markdown", scene::scene_keys_markdown)})
+        if (arguments.has(option)) {
+            std::cout << text();
+            return;
+        }
     const std::string& input = arguments.input();
     const bool check = arguments.has("check");
     if (!check)

@@ -45,4 +45,7 @@ std::string scene_keys_markdown();
 // written joint_set.spacing; required is yes, no or together (all keys marked so in one table, or none).
 std::string scene_keys_tsv();
 
+// The JSON Schema (draft 7) of a scene. What depends on several keys is not in it.
+std::string scene_schema();
+
 } // namespace jointcreep::scene

@@ -6,9 +6,11 @@ import re
 import shutil
 import subprocess
 import sys
+import tomllib
 import unittest
 
 import h5py
+import jsonschema
 
 from chain import ChainTest, main
 
@@ -33,6 +35,26 @@ class Documentation(ChainTest):
     def test_generated_pages(self):
         self.assertEqual(self.output_of("jointgen", "--scene-keys-markdown"), self.chain.text("docs/scene.md"))
         self.assertEqual(self.output_of("jointexport", "--file-format"), self.chain.text("docs/file-format.md"))
+
+    def test_schema(self):
+        """All scenes of the project keep to the schema, and a key that is wrong does not."""
+        validator = jsonschema.Draft7Validator(json.loads(self.output_of("jointgen", "--scene-schema")))
+        jsonschema.Draft7Validator.check_schema(validator.schema)
+        scenes = [path for folder in ("data", "tests") for path in (self.chain.source / folder).rglob("*.toml")
+                  if "[section]" in path.read_text(encoding="utf-8")]
+        self.assertGreater(len(scenes), 20)
+        for path in scenes:
+            scene = json.loads(json.dumps(tomllib.loads(path.read_text(encoding="utf-8")), default=str))  # dates as text
+            errors = [error.message for error in validator.iter_errors(scene)]
+            self.assertEqual(errors, [], path)
+        for table, key, value, says in [("section", "gravity", 9.81, "'gravity' was unexpected"),
+                                        ("rock", "poissons_ratio", 0.5, "0.5"), ("rock", "poissons_ratio", "0.2", "is not of type 'number'"),
+                                        ("point", "at_m", [1, 2, 3], "too long"), ("stage", "date", [1], "is not of type"),
+                                        ("joint_set", "spacing", {"law": "normals"}, "'normals' is not one of"),
+                                        ("zones", "kind", "cubic", "'cubic' is not one of")]:
+            scene = json.loads(json.dumps(tomllib.loads(self.chain.text("data/slope/scene.toml")), default=str))
+            (scene[table][0] if isinstance(scene[table], list) else scene[table])[key] = value
+            self.assertIn(says, " ".join(error.message for error in validator.iter_errors(scene)), (table, key))
 
     def test_two_commands(self):
         commands = [block.strip() for block in code_blocks(self.chain.text("README.md"), "sh")]
