@@ -17,9 +17,11 @@
 #include "demsolve_summary.hpp"
 #include "program.hpp"
 
+#include "analysis/increments.hpp"
 #include "analysis/safety.hpp"
 #include "model/error.hpp"
 #include "scene/scene.hpp"
+#include "scene/shared_settings.hpp"
 #include "store/files.hpp"
 #include "zoning/cost.hpp"
 
@@ -54,13 +56,43 @@ using Kept = std::optional<store::CheckpointFile>;
 using RunWith = std::function<std::unique_ptr<Trial>(
     const Scene& scene, double factor, double most_displacement, Kept kept, const Safety* runs_before)>;
 
+// Runs with twice as many increments each, until the results hardly change. The last one. Without an equilibrium the run
+// that has none.
+std::unique_ptr<Trial> run_by_increments(double factor, Scene scene, const RunWith& run_with,
+                                         demsolve::Files& files, Summary& summary)
+{
+    const Safety none;
+    std::unique_ptr<Trial> coarser, run;
+    double change = 0;
+    auto& increments = scene.equilibrium.unloading_increments;
+    for (;; increments *= 2) {
+        coarser = std::move(run);
+        run = run_with(scene, factor, std::numeric_limits<double>::infinity(), std::nullopt, &none);
+        if (run->outcome().ending != Ending::stands)
+            return run;
+        if (coarser)
+            change = analysis::change_between(coarser->analysis().result(), run->analysis().result());
+        const bool is_last = 2 * increments > scene::numbers_of_increments.most;
+        if ((coarser && change <= *scene.equilibrium.increments_tolerance) || is_last)
+            break;
+    }
+    summary.add("unloading increments, chosen", increments);
+    summary.add("  change from half as many", change);
+    if (change > *scene.equilibrium.increments_tolerance)
+        files.warn("from half as many increments results still change by " + shown(100 * change) +
+                   " percent");
+    return run;
+}
+
 // One run, written; the run itself.
 std::unique_ptr<Trial> run_once(double factor, const Scene& scene, const RunWith& run_with,
-                                const demsolve::Files& files, Kept kept)
+                                demsolve::Files& files, Kept kept, Summary& summary)
 {
     const Safety none;
     std::unique_ptr<Trial> run =
-        run_with(scene, factor, std::numeric_limits<double>::infinity(), std::move(kept), &none);
+        scene.equilibrium.increments_tolerance
+            ? run_by_increments(factor, scene, run_with, files, summary)
+            : run_with(scene, factor, std::numeric_limits<double>::infinity(), std::move(kept), &none);
     if (run->outcome().ending != Ending::stands)
         throw equilibrium_error(run->message() + '\n' + files.write_failed(*run) +
                                 demsolve::warning_lines(*run));
@@ -216,7 +248,7 @@ void solve(const Arguments& arguments)
     // 4. Once, or with strengths divided by factors until rock moves.
     const std::unique_ptr<Trial> run =
         reduction.search ? bracket_safety(reduction, scene, run_with, files, std::move(kept), summary)
-                         : run_once(reduction.factor, scene, run_with, files, std::move(kept));
+                         : run_once(reduction.factor, scene, run_with, files, std::move(kept), summary);
     demsolve::add_run(summary, file.network, *run);
     summary.print(arguments);
 }

@@ -72,6 +72,9 @@ std::string Files::write_failed(const Trial& run, const Safety& safety) const
 void Files::write(const Trial& run, const Safety& safety, const std::string& path) const
 {
     std::string options = options_of({run.factor(), {}});
+    if (run.scene().equilibrium.increments_tolerance) // chosen: each file is that of a run with its number
+        options += (options.empty() ? "--increments " : " --increments ") +
+                   std::to_string(run.scene().equilibrium.unloading_increments);
     if (!end_.empty())
         options += (options.empty() ? "" : " ") + end_;
     Provenance with_warnings = provenance(options);

@@ -117,6 +117,18 @@ std::vector<Setting> settings()
         {{"tolerance", "T", "unbalanced force ratio of an equilibrium (default: the scene's)"},
          number(scene::equilibrium_tolerances, "(ratio)",
                 [](Scene& scene, double tolerance) { scene.equilibrium.tolerance = tolerance; })},
+        {{"increments", "N", "increments of excavation and of loads that change (default: the scene's)"},
+         [](const Arguments& arguments, const std::string& option, Scene& scene) {
+             const auto number =
+                 arguments
+                     .whole_number(option, 1, static_cast<std::uint64_t>(scene::numbers_of_increments.most))
+                     .value();
+             scene.equilibrium.unloading_increments = static_cast<std::int32_t>(number);
+             scene.equilibrium.increments_tolerance.reset();
+             return std::to_string(number);
+         },
+         false,
+         "increments-tolerance"},
         {{"engine", "NAME", listed(scene::engine_words(), " or ") + " (default: the scene's)"},
          word<EngineChoice>(scene::engine_words(), {scene::former_engine_word, scene::engine_word_for_it},
                             [](Scene& scene, EngineChoice engine) { scene.equilibrium.engine = engine; })},
@@ -167,6 +179,9 @@ std::vector<Option> options()
     for (const Setting& setting : settings())
         all.push_back(setting.option);
     const std::vector<Option> others{
+        {"increments-tolerance", "T",
+         "double the increments until displacements and tractions change by less than T; result.h5 is that of "
+         "--increments N, with the last N (default: the scene's)"},
         {"no-creep", "", "excavate only"},
         {"strength-factor", "F",
          "divide all strengths of joints and of rock that yields by F: cohesion, tensile strength, "
@@ -212,6 +227,20 @@ std::string replace_settings(const Arguments& arguments, Scene& scene)
         if (arguments.has(setting.not_with))
             refuse_together(option, setting.not_with);
     }
+    // Not noted: the file has the number of increments.
+    if (const auto tolerance =
+            arguments.number("increments-tolerance", scene::increments_tolerances, "(ratio)"))
+        scene.equilibrium.increments_tolerance = tolerance;
+    if (scene.large_displacements)
+        for (const char* option : {"increments", "increments-tolerance"})
+            if (arguments.has(option))
+                throw input_error("--" + std::string(option) +
+                                  ": the scene has [large_displacements], where forces go to 0 in release_s");
+    if (scene.equilibrium.increments_tolerance)
+        for (const char* option : {"factor-of-safety", "checkpoint"})
+            if (arguments.has(option))
+                throw input_error("--" + std::string(option) +
+                                  " does not go with increments chosen by error; wanted --increments N");
     if (arguments.has("no-creep")) {
         scene.creep.reset();
         noted.add("no-creep");

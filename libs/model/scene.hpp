@@ -288,7 +288,9 @@ struct Equilibrium {
     double stiffness_damping = 0; // beta of zones and of the joints' dashpots, with damping "mass" [s]
     double local_damping = 0;     // with damping "local" or "combined" [-]
     std::int32_t unloading_increments = 1; // increments of excavation, and of loads that change between dates
-    std::int32_t most_steps = 0;           // largest number of steps for an equilibrium
+    std::optional<double>
+        increments_tolerance{};  // they are doubled until results change by less than this [-]
+    std::int32_t most_steps = 0; // largest number of steps for an equilibrium
     // Rock that has moved farther since the in-situ state fails; no key: analysis::Trial sets it [m].
     double largest_displacement = std::numeric_limits<double>::infinity();
 };

@@ -461,6 +461,9 @@ private:
                 .refuse("unloading_increments",
                         "with [large_displacements] a stage excavates its rock at once; wanted 1, and "
                         "[large_displacements] release_s for forces that go to 0 in time");
+        if (scene_.equilibrium.increments_tolerance)
+            once("equilibrium")
+                .refuse("increments_tolerance", "a scene with [large_displacements] has no increments");
         for (std::size_t i = 0; i < scene_.boundaries.size(); ++i)
             for (const char* key : {"displacement_mm", "load_history"})
                 if (const Given boundary = in_list("boundary", i); boundary.find(key))

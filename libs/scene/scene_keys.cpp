@@ -785,10 +785,15 @@ Table<Equilibrium> equilibrium()
          number("local_damping", &E::local_damping, no_unit, above(0).below(1),
                 "Fraction of the unbalanced force; with damping = \"local\" or \"combined\" only.")
              .optional("0.8"),
-         integer("unloading_increments", &E::unloading_increments, from(1).to(1000),
+         integer("unloading_increments", &E::unloading_increments, numbers_of_increments,
                  "Number of increments of excavation, and of loads that change between dates. With "
                  "[large_displacements] 1; there release_s is used.")
              .or_else(std::int64_t{1}),
+         number(
+             "increments_tolerance", &E::increments_tolerance, no_unit, increments_tolerances,
+             "Increments chosen by error: from unloading_increments on, the run is made again with twice as "
+             "many, until displacements and joint tractions change by less than this share.")
+             .optional(),
          integer(
              "most_steps", &E::most_steps, from(1).to(2147483647),
              "Largest number of steps of dynamic relaxation for an equilibrium; then the exit code is 3. With "

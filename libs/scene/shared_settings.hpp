@@ -14,8 +14,10 @@ namespace jointcreep::scene
 inline constexpr Range seeds = from(0).to(9007199254740992.0); // 2^53: up to it each whole number is a double
 inline constexpr Range zone_sizes = above(0).to(keys::farthest_metre); // [m]
 inline constexpr Range equilibrium_tolerances = from(1e-12).to(1e-2);  // [-]
-inline constexpr Range creep_steps = above(0).to(keys::farthest_day);  // [day]
-inline constexpr Range creep_tolerances = above(0).to(1);              // [m]
+inline constexpr Range numbers_of_increments = from(1).to(1000);
+inline constexpr Range increments_tolerances = above(0).to(1);        // [-]
+inline constexpr Range creep_steps = above(0).to(keys::farthest_day); // [day]
+inline constexpr Range creep_tolerances = above(0).to(1);             // [m]
 
 inline keys::Words<EngineChoice> engine_words()
 {

@@ -6,6 +6,8 @@ of solver time; the axis between the curves says which day it belongs to, and da
 ends when its point or joint is removed.
 """
 
+import re
+
 import numpy as np
 
 import figure
@@ -33,6 +35,8 @@ def stage_rows(file):
     before = np.concatenate([[0], np.cumsum(steps)])
     rows = len(figure.array(file, "/step_history/time"))
     increments = figure.scene_of(file).get("equilibrium", {}).get("unloading_increments", 1)
+    if given := re.search(r"--increments (\d+)", figure.texts(file, "/provenance/options")[-1]):
+        increments = int(given[1])
     of_day = {}
     for day, name in zip(figure.array(file, "/history/time"), figure.texts(file, "/history/event")):
         if name:

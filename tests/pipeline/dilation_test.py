@@ -2,6 +2,9 @@
 constant load and between plates that hold it down, against closed forms and against tiny steps of its own."""
 
 import math
+import re
+
+import numpy as np
 
 from chain import ChainTest, changed, datasets, main
 
@@ -142,6 +145,36 @@ class Dilation(ChainTest):
                 for found in data["/states/traction"][-1]:
                     self.assertAlmostEqual(found[0] / sigma_n, 1, delta=delta)
                     self.assertAlmostEqual(found[1] / tau, 1, delta=delta)
+
+    def test_increments_chosen_by_error(self):
+        """Twice as many each time, until little changes; the file is that of the last number alone."""
+        _, sigma_n, tau = sheared(4e-3, 1 / (1 / K_N + 1 / STEEL))
+        text = changed(changed(SCENE, *HELD), "^tolerance = 1e-9", 'tolerance = 1e-9\nengine = "relaxation"')
+        joints = self.chain.joints(text)
+
+        def error(path):
+            off = datasets(path)["/states/traction"][-1] - [sigma_n, tau]
+            return (np.sqrt((off**2).mean(axis=0)) / [abs(sigma_n + 1e6), tau]).max()  # over the change since the start
+
+        once = self.chain.run("demsolve", joints, joints.with_name("once.h5"), "-q")
+        self.assertGreater(error(once), 0.02)
+        numbers = []
+        for tolerance in 0.02, 0.005:
+            chosen = self.chain.run("demsolve", joints, joints.with_name("chosen.h5"), "-q", "--increments-tolerance", tolerance)
+            self.assertLess(error(chosen), tolerance)
+            options = datasets(chosen)["/provenance/options"][-1]
+            alone = self.chain.run("demsolve", joints, joints.with_name("alone.h5"), "-q", *options.split())
+            self.assertEqual(chosen.read_bytes(), alone.read_bytes())
+            numbers.append(int(re.fullmatch(r"--increments (\d+)", options)[1]))
+        self.assertLess(*numbers)
+        # The key of a scene does the same as the option.
+        by_key = self.chain.result(changed(text, "^tolerance", "increments_tolerance = 0.02\ntolerance"))
+        self.assertEqual(datasets(by_key)["/provenance/options"][-1], f"--increments {numbers[0]}")
+        self.assertLess(error(by_key), 0.02)
+        for option in "--factor-of-safety", "--checkpoint=kept.h5", "--increments=2":
+            done = self.chain.answer("demsolve", joints, "--increments-tolerance", "0.1", option, "-o", joints.with_name("no.h5"))
+            self.assertEqual(done.returncode, 2)
+            self.assertIn("increments", done.stderr)
 
     def test_it_ends_at_the_slip_that_is_given(self):
         """Beyond it the block rises no farther, and held down it is pressed no more."""
