@@ -32,13 +32,13 @@ struct Column {
 
 // A component of the vectors in a dataset [state, row]; those of the state begin at `first`.
 template <class Vector>
-Column component_column(std::string name, std::string units, std::string dataset,
+Column component_column(const std::string& name, const std::string& units, const std::string& dataset,
                         const std::vector<Vector>& values, std::size_t first, int component)
 {
-    return {.name = std::move(name),
-            .units = std::move(units),
+    return {.name = name,
+            .units = units,
             .value = [&values, first, component](std::size_t row) { return values[first + row][component]; },
-            .dataset = std::move(dataset),
+            .dataset = dataset,
             .components = static_cast<std::size_t>(Vector::RowsAtCompileTime),
             .component = static_cast<std::size_t>(component)};
 }

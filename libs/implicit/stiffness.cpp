@@ -172,10 +172,12 @@ void Stiffness::add(Matrix& matrix, const Force& force, const Part& part, const 
     const std::size_t n = coupled_by(force, part.there[0]).size();
     call([&](Index group, int i, int j, const Eigen::Matrix2d& block) {
         const int* const entries = part.square(group, n);
-        for (int row = 0; row < 2; ++row)
+        for (int row = 0; row < 2; ++row) {
+            const int* const of_row = entries + 2 * n * static_cast<std::size_t>(2 * i + row);
             for (int column = 0; column < 2; ++column)
-                if (const int entry = entries[2 * n * (2 * i + row) + 2 * j + column]; entry >= 0)
+                if (const int entry = of_row[2 * j + column]; entry >= 0)
                     values[entry] += block(row, column);
+        }
     });
 }
 
