@@ -52,7 +52,7 @@ Json words_of(const std::string& kind)
 // What a key may have as its value. `inside` is the name of the table that may stand there.
 Json value_of(const KeyInfo& key, const std::string& inside)
 {
-    const Json table{{"$ref", "#/$defs/" + inside}}, pair = point_in(std::nullopt);
+    Json table{{"$ref", "#/$defs/" + inside}};
     if (key.kind == "number" || key.kind == "integer")
         return number_in(key.kind.c_str(), key.range);
     if (key.kind == "text" || key.kind == "file text")
@@ -70,7 +70,7 @@ Json value_of(const KeyInfo& key, const std::string& inside)
     if (key.kind == "polygons")
         return list_of(list_of(point_in(key.range), 3), 1);
     if (key.kind == "load history" || key.kind == "poles")
-        return list_of(pair, 1);
+        return list_of(point_in(std::nullopt), 1);
     if (key.kind == "law" || key.kind == "density")
         return table;
     if (key.kind == "Kelvin units" || key.kind == "levels" || key.kind == "rocks and materials")
