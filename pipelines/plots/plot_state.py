@@ -4,18 +4,24 @@ drawn, and positions are those at the start, unless displacements are magnified.
 
 The state is its number, counted from 0, the name of the stage that it follows, the plain word for that name
 (stage_names.py), or "last".
+
+Of a run that found no equilibrium, the last state also shows what happened after it: the rock that was excavated, and the moving
+blocks, with arrows along their motion. The title says why the run ended.
 """
 
 import datetime
+import textwrap
 
 import matplotlib.colors
 import matplotlib.lines
+import matplotlib.patches
 import matplotlib.patheffects
 import matplotlib.tri
 import numpy as np
-from matplotlib.collections import LineCollection
+from matplotlib.collections import LineCollection, PathCollection
 
 import figure
+from plot_blocks import block_paths
 from stage_names import plain
 
 STUCK, SLIPPING, OPEN = 1, 2, 3  # /states/contact_status
@@ -123,7 +129,12 @@ def add_scale(axes, colored, label, low, high, values):
 
 def draw_displacement(file, state, section, axes, since_reset, limits):
     size = 1e3 * np.linalg.norm(section.displacement, axis=1)
-    low, high = limits or (0, size[np.unique(section.zones)].max() or 1)
+    largest = size[np.unique(section.zones)].max()
+    if largest == 0 and not limits:
+        axes.tripcolor(section.triangles, size, shading="gouraud", cmap=figure.SHADES, vmin=0, vmax=1, rasterized=True)
+        draw_borders(section, axes)
+        return [matplotlib.lines.Line2D([], [], linestyle="none", label="no displacement in this state")]
+    low, high = limits or (0, largest)
     colored = axes.tripcolor(section.triangles, size, shading="gouraud", cmap=figure.SHADES, vmin=low, vmax=high,
                              rasterized=True)
     since = "reset" if since_reset else "the in-situ equilibrium"
@@ -262,6 +273,38 @@ def draw_contacts(file, state, section, axes):
     return entries
 
 
+def draw_failure(file, state, section, axes):
+    """What happened after the last state of a run without equilibrium: rock that was excavated, and the moving blocks. Their
+    arrows are in proportion to their motion; the fastest one's is as long as a tenth of the section. Returns legend entries."""
+    paths, entries = block_paths(file), []
+    stage, excavated = figure.texts(file, "/failure/stage")[0], set()
+    if stage:
+        of_stage = np.flatnonzero(figure.array(file, "/blocks/stage") == figure.texts(file, "/names/stage").index(stage))
+        there = figure.array(file, "/mesh/zone_block")[section.there]
+        excavated = set(of_stage) & set(there)
+    if excavated:
+        look = {"facecolor": "white", "edgecolor": "0.25", "linewidth": 0.6, "linestyle": (0, (4, 2))}
+        axes.add_collection(PathCollection([paths[block] for block in sorted(excavated)], zorder=6, **look))
+        entries.append(matplotlib.patches.Patch(label=f"excavated then: {stage}", **look))
+
+    blocks, motion = figure.array(file, "/failure/block"), figure.array(file, "/failure/motion")
+    if len(blocks) == 0:
+        return entries
+    look = {"facecolor": matplotlib.colors.to_rgba(figure.COLORS[1], 0.45), "edgecolor": figure.COLORS[1], "linewidth": 1.2}
+    axes.add_collection(PathCollection([paths[block] for block in blocks], zorder=7, **look))
+    undecided = figure.array(file, "/failure/moves_on")[0] == 0
+    moving = "blocks that moved most" if undecided else "moving blocks"
+    moving = f"{len(blocks)} {moving if len(blocks) > 1 else moving.replace('blocks', 'block')}"
+    largest = np.linalg.norm(motion, axis=1).max()
+    if largest > 0:
+        axes.quiver(*figure.array(file, "/failure/place").T, *motion.T, angles="xy", scale_units="xy",
+                    scale=largest / (0.1 * np.ptp(section.start, axis=0).max()), units="inches", width=0.024, headwidth=4, headlength=5,
+                    headaxislength=4.5, minlength=0.6, color=figure.COLORS[1], edgecolor="white", linewidth=0.5, zorder=8)
+        seconds, steps = figure.array(file, "/failure/seconds")[0], figure.array(file, "/failure/steps")[0]
+        moving += f", up to {1e3 * largest:.3g} mm in " + (f"{seconds:.3g} s" if seconds > 0 else f"{steps} steps")
+    return [*entries, matplotlib.patches.Patch(label=moving, **look)]
+
+
 def draw(file, state="last", field="displacement", component="major", since_reset=False, window=None, magnify=0, limits=None):
     """Figure of one state: field "displacement", "stress" or "contacts". state: plain words for a stage, or "last"; component of
     the stress; window: x0, y0, x1, y1 [m]; limits: low, high of the colour scale."""
@@ -283,6 +326,12 @@ def draw(file, state="last", field="displacement", component="major", since_rese
         title += f"; positions displaced {magnify:g} times"
     if figure.ending_of(file):
         title += f"; {figure.ending_of(file)}"
+    if "/failure" in file and state == len(figure.array(file, "/states/time")) - 1:
+        entries += draw_failure(file, state, section, axes)
+        reason = figure.texts(file, "/failure/reason")[0].removeprefix("no equilibrium: ")
+        why = textwrap.wrap(reason, int(15 * plot.get_figwidth()))
+        title = "\n".join([title, *why])
+        plot.set_figheight(plot.get_figheight() + 0.13 * len(why))
     axes.set_title(title, loc="left")
     if entries:
         figure.legend_below(axes, entries)
