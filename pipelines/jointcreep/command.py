@@ -1,11 +1,15 @@
-"""jointcreep: Runs a study of many networks and parameters, writes reports, and fits joint sets to mapped traces.
+"""jointcreep: Runs a scene, or a study of many networks and parameters, writes reports, and fits joint sets to mapped traces.
 
+usage: jointcreep run SCENE.toml -o OUT/ [options] [-- OPTIONS OF DEMSOLVE]
 usage: jointcreep study STUDY.toml -o OUT/ [options]
 usage: jointcreep report OUT/ -o REPORT.html [options]
 usage: jointcreep report RESULT.h5 -o REPORT.html [options]
 usage: jointcreep fit TRACES -o SETS.toml --window WINDOW [options]
 
 Description:
+run makes network.h5, joints.h5 and result.h5 of a scene, pictures, histories.csv, states.xdmf2 (for ParaView) and report.html. It
+shows each command, and makes only what is missing or whose scene, options or programs have changed. An interrupted run goes on by
+the same command. A run without equilibrium has pictures of the blocks that move, and a report.
 study makes the runs that a study file asks for, and writes what they have in common: runs.csv and runs.h5 (a row a run),
 answers.csv (means, quantiles and probabilities with confidence), convergence.csv, shares.csv, summary.txt and pictures. An
 interrupted study goes on by the same command. Two studies never work in one folder at once.
@@ -14,11 +18,12 @@ fit finds the laws of joint sets from traces that a convex window shows (GeoJSON
 censored, and writes them as [[joint_set]]. The laws are those of all joints, not of the traces in the window.
 
 Options:
-  -o [ --output ] OUT       the folder of a study, or the report or sets to write
+  -o [ --output ] OUT       the folder of a run or study, or the report or sets to write
   -j [ --jobs ] N           study: runs at a time (default 1)
   --snakemake PROFILE       study: make runs by Snakemake with this profile, a folder with config.yaml, in place of Make
+  --makefile                run: write OUT/Makefile with these commands, and make nothing else
   --programs FOLDER         where jointgen, strength-averaging and demsolve are (default: beside jointcreep, then PATH)
-  -q [ --quiet ]            study, fit: no progress and no summary
+  -q [ --quiet ]            run, study, fit: no commands, no progress and no summary
   --window WINDOW           fit: x1,y1,x2,y2 of a rectangle in metres, or more corners, or a scene file whose outline it is
   --layer NAME              fit: layer of the file
   --property NAME           fit: a set for each value of this property, in CSV a column
@@ -38,11 +43,12 @@ Options:
 Exit codes:
   0  done
   2  the command line, the study, the scene or a file is not as expected
-  3  no run ended with a value, so there are no answers
+  3  run: no equilibrium was found; study: no run ended with a value, so there are no answers
   4  a file could not be read or written, or runs were stopped; the same command goes on
   5  internal error, or out of memory
 
 Example:
+  jointcreep run scene.toml -o out/ -- --no-creep
   jointcreep study slope.toml -o out/ -j 2
 """
 
@@ -60,7 +66,7 @@ INTERRUPTED = 128 + signal.SIGINT
 FIT_OPTIONS = ("window", "layer", "property", "name", "material", "law", "shortest", "longest", "edge", "poles", "azimuth",
                "scanline-trend", "scanline-plunge")
 OF_ALL = {"-o": "output", "--output": "output", "--programs": "programs"}  # options of every subcommand
-FLAGS = {"quiet"}  # options without a value
+FLAGS = {"quiet", "makefile"}  # options without a value
 
 
 @dataclasses.dataclass
@@ -68,6 +74,7 @@ class Subcommand:
     """One of SUBCOMMANDS, below."""
     run: object  # run(source, options, beside) makes it, and returns the exit code
     words: dict  # its own options: word on the command line, name in `options`
+    passes_on: bool = False  # what follows "--" to demsolve, as options["rest"]
 
 
 def options_of(arguments):
@@ -79,6 +86,9 @@ def options_of(arguments):
         raise NotWanted(f'unknown subcommand "{name}"; expected {" or ".join(SUBCOMMANDS)}\n{usage()}')
     known = {**OF_ALL, **SUBCOMMANDS[name].words}
     found, source = {}, None
+    if SUBCOMMANDS[name].passes_on:
+        end = rest.index("--") if "--" in rest else len(rest)
+        rest, found["rest"] = rest[:end], rest[end + 1:]
     while rest:
         word = rest.pop(0)
         word, equals, value = word.partition("=") if word.startswith("--") else (word, "", "")
@@ -120,6 +130,12 @@ def programs_in(folder, beside):
     if not found:
         raise NotWanted("jointgen is neither beside jointcreep nor in the PATH; expected --programs FOLDER")
     return pathlib.Path(found).resolve().parent
+
+
+def run(source, options, beside):
+    """Makes the results, pictures and report of a scene."""
+    from . import run as of_scene
+    return of_scene.run(source, options, programs_in(options.get("programs"), beside), beside / "jointcreep")
 
 
 def study(source, options, beside):
@@ -170,6 +186,7 @@ def fit(source, options, beside):
 
 
 SUBCOMMANDS = {
+    "run": Subcommand(run, {"--makefile": "makefile", "-q": "quiet", "--quiet": "quiet"}, passes_on=True),
     "study": Subcommand(study, {"-j": "jobs", "--jobs": "jobs", "--snakemake": "snakemake", "-q": "quiet", "--quiet": "quiet"}),
     "report": Subcommand(report, {}),
     "fit": Subcommand(fit, {"-q": "quiet", "--quiet": "quiet", **{f"--{name}": name for name in FIT_OPTIONS}}),

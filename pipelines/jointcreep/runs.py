@@ -17,7 +17,6 @@ import time
 from . import files, group, plan
 from .errors import NotDone, NotWanted
 
-LOCK = "study.lock"
 PATIENCE = 5  # s to wait for processes of a study that was killed
 LOOKS = 0.5  # s between two looks at how far the runs are
 SPOKEN = 10  # lines of progress where there is no terminal
@@ -48,12 +47,13 @@ rule group:
 
 
 @contextlib.contextmanager
-def locked(out):
-    """Holds the folder's lock; yields its file, which processes inherit. A folder that has something and no such file is of someone
-    else."""
-    if any(out.iterdir()) and not (out / LOCK).exists():
-        raise NotWanted(f"{out}: has files, and is not the folder of a study; expected a new or empty folder")
-    with open(out / LOCK, "a") as file:
+def locked(out, kind="study"):
+    """Holds the lock of the folder of a "study" or a "run"; yields its file, which processes inherit. A folder that has something and
+    no such file is of someone else."""
+    path = out / f"{kind}.lock"
+    if any(out.iterdir()) and not path.exists():
+        raise NotWanted(f"{out}: has files, and is not the folder of a {kind}; expected a new or empty folder")
+    with open(path, "a") as file:
         end = time.monotonic() + PATIENCE
         while True:
             try:
@@ -61,7 +61,7 @@ def locked(out):
                 break
             except BlockingIOError:
                 if time.monotonic() > end:
-                    raise NotWanted(f"another study works in {out}; wait until it has ended, or choose another folder") from None
+                    raise NotWanted(f"another {kind} works in {out}; wait until it has ended, or choose another folder") from None
                 time.sleep(0.1)
         os.set_inheritable(file.fileno(), True)
         yield file

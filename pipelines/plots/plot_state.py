@@ -323,7 +323,7 @@ def draw(file, state="last", field="displacement", component="major", since_rese
         entries = draw_contacts(file, state, section, axes)
     title = name_of(file, state)
     if magnify:
-        title += f"; positions displaced {magnify:g} times"
+        title += "; positions displaced" + (f" {magnify:g} times" if magnify != 1 else "")
     if figure.ending_of(file):
         title += f"; {figure.ending_of(file)}"
     if "/failure" in file and state == len(figure.array(file, "/states/time")) - 1:

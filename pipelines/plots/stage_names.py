@@ -3,20 +3,22 @@
 
     stage_names.py SCENE.toml      prints them, in the order of the scene
 
-A word has letters, digits, "." and "_" of the stage's name, and "-" for all else. A word that another stage has, or that means
-something else to --state, gets a number after it.
+A word has letters, digits, "." and "_" of the stage's name, and "-" for all else, 80 characters at most. A word that another stage
+has, or that means something else to --state, gets a number after it.
 """
 
 import re
 import sys
 import tomllib
 
+LONGEST = 80  # characters; names of files have a limit
+
 
 def plain(names):
     """A word for each name, all different."""
     words = []
     for name in names:
-        word = re.sub(r"[^A-Za-z0-9._]+", "-", name).strip("-.") or "stage"
+        word = re.sub(r"[^A-Za-z0-9._]+", "-", name)[:LONGEST].strip("-.") or "stage"
         number, unique = 2, "stage-" + word if word.isdecimal() else word
         while unique in [*words, "last"] or (unique != name and unique in names):
             unique, number = f"{word}-{number}", number + 1
