@@ -18,12 +18,12 @@ import matplotlib.patches
 import matplotlib.patheffects
 import matplotlib.tri
 import numpy as np
-from matplotlib.collections import LineCollection, PathCollection
+from matplotlib.collections import LineCollection, PolyCollection
 
 import figure
-from plot_blocks import block_paths
 from stage_names import plain
 
+MOVING = "#dfaaa0"  # fill of moving blocks
 STUCK, SLIPPING, OPEN = 1, 2, 3  # /states/contact_status
 COMPONENTS = {
     "major": "larger principal stress",
@@ -273,36 +273,50 @@ def draw_contacts(file, state, section, axes):
     return entries
 
 
-def draw_failure(file, state, section, axes):
+def draw_blocks(section, of_block, axes, zorder, facecolor, **look):
+    """Some blocks, filled: of_block says which of the present zones are theirs, as their block's number, and -1 of others. Returns a
+    legend entry without a label."""
+    chosen = of_block >= 0
+    zones = section.zones[chosen]
+    axes.add_collection(PolyCollection(section.position[zones], facecolor=facecolor, edgecolor=facecolor, linewidth=0.3, zorder=zorder))
+    sides = np.concatenate([zones[:, pair] for pair in ((0, 1), (1, 2), (2, 0))])
+    both, count = np.unique(np.column_stack([np.sort(sides, axis=1), np.tile(of_block[chosen], 3)]), axis=0, return_counts=True)
+    outline = section.position[both[count == 1][:, :2]]
+    axes.add_collection(LineCollection(outline, color=look["edgecolor"], linewidth=look["linewidth"], linestyle=look.get("linestyle", "-"),
+                                       zorder=zorder + 0.5))
+    return matplotlib.patches.Patch(facecolor=facecolor, **look)
+
+
+def draw_failure(file, section, axes):
     """What happened after the last state of a run without equilibrium: rock that was excavated, and the moving blocks. Their
     arrows are in proportion to their motion; the fastest one's is as long as a tenth of the section. Returns legend entries."""
-    paths, entries = block_paths(file), []
-    stage, excavated = figure.texts(file, "/failure/stage")[0], set()
-    if stage:
-        of_stage = np.flatnonzero(figure.array(file, "/blocks/stage") == figure.texts(file, "/names/stage").index(stage))
-        there = figure.array(file, "/mesh/zone_block")[section.there]
-        excavated = set(of_stage) & set(there)
-    if excavated:
-        look = {"facecolor": "white", "edgecolor": "0.25", "linewidth": 0.6, "linestyle": (0, (4, 2))}
-        axes.add_collection(PathCollection([paths[block] for block in sorted(excavated)], zorder=6, **look))
-        entries.append(matplotlib.patches.Patch(label=f"excavated then: {stage}", **look))
+    entries = []
+    block = figure.array(file, "/mesh/zone_block")[section.there]
+    stage = figure.texts(file, "/failure/stage")[0]
+    number = figure.texts(file, "/names/stage").index(stage) if stage else -1
+    excavated = np.where(figure.array(file, "/blocks/stage")[block] == number, block, -1) if stage else np.full(len(block), -1)
+    if np.any(excavated >= 0):
+        entries.append(draw_blocks(section, excavated, axes, 6, "white", edgecolor="0.25", linewidth=0.6, linestyle=(0, (4, 2))))
+        entries[-1].set_label(f"excavated then: {stage}")
 
-    blocks, motion = figure.array(file, "/failure/block"), figure.array(file, "/failure/motion")
-    if len(blocks) == 0:
+    moving, motion = figure.array(file, "/failure/block"), figure.array(file, "/failure/motion")
+    of_moving = np.where(np.isin(block, moving), block, -1)
+    if not np.any(of_moving >= 0):
         return entries
-    look = {"facecolor": matplotlib.colors.to_rgba(figure.COLORS[1], 0.45), "edgecolor": figure.COLORS[1], "linewidth": 1.2}
-    axes.add_collection(PathCollection([paths[block] for block in blocks], zorder=7, **look))
-    undecided = figure.array(file, "/failure/moves_on")[0] == 0
-    moving = "blocks that moved most" if undecided else "moving blocks"
-    moving = f"{len(blocks)} {moving if len(blocks) > 1 else moving.replace('blocks', 'block')}"
+    entries.append(draw_blocks(section, of_moving, axes, 7, MOVING, edgecolor=figure.COLORS[1], linewidth=1.2))
+    label = "blocks that moved most" if figure.array(file, "/failure/moves_on")[0] == 0 else "moving blocks"
+    label = f"{len(moving)} {label if len(moving) > 1 else label.replace('blocks', 'block')}"
     largest = np.linalg.norm(motion, axis=1).max()
     if largest > 0:
-        axes.quiver(*figure.array(file, "/failure/place").T, *motion.T, angles="xy", scale_units="xy",
-                    scale=largest / (0.1 * np.ptp(section.start, axis=0).max()), units="inches", width=0.024, headwidth=4, headlength=5,
-                    headaxislength=4.5, minlength=0.6, color=figure.COLORS[1], edgecolor="white", linewidth=0.5, zorder=8)
+        shift = (section.position - section.start)[section.zones].mean(axis=1)
+        place = figure.array(file, "/failure/place") + [shift[block == one].mean(axis=0) if one in block else (0, 0) for one in moving]
+        axes.quiver(*place.T, *motion.T, angles="xy", scale_units="xy", scale=largest / (0.1 * np.ptp(section.start, axis=0).max()),
+                    units="inches", width=0.024, headwidth=4, headlength=5, headaxislength=4.5, minlength=0.6, color=figure.COLORS[1],
+                    edgecolor="white", linewidth=0.5, zorder=8)
         seconds, steps = figure.array(file, "/failure/seconds")[0], figure.array(file, "/failure/steps")[0]
-        moving += f", up to {1e3 * largest:.3g} mm in " + (f"{seconds:.3g} s" if seconds > 0 else f"{steps} steps")
-    return [*entries, matplotlib.patches.Patch(label=moving, **look)]
+        label += f", up to {1e3 * largest:.3g} mm in " + (f"{seconds:.3g} s" if seconds > 0 else f"{steps} steps")
+    entries[-1].set_label(label)
+    return entries
 
 
 def draw(file, state="last", field="displacement", component="major", since_reset=False, window=None, magnify=0, limits=None):
@@ -327,7 +341,7 @@ def draw(file, state="last", field="displacement", component="major", since_rese
     if figure.ending_of(file):
         title += f"; {figure.ending_of(file)}"
     if "/failure" in file and state == len(figure.array(file, "/states/time")) - 1:
-        entries += draw_failure(file, state, section, axes)
+        entries += draw_failure(file, section, axes)
         reason = figure.texts(file, "/failure/reason")[0].removeprefix("no equilibrium: ")
         why = textwrap.wrap(reason, int(15 * plot.get_figwidth()))
         title = "\n".join([title, *why])
