@@ -1,4 +1,5 @@
-"""Files of jointcreep as tables, and Monte Carlo studies: one study file in, many runs of the programs, statistics and a report out.
+"""Files of jointcreep as tables, runs of one scene, and Monte Carlo studies: one study file in, many runs of the programs, statistics
+and a report out.
 
 In the order in which a study passes through them:
 
@@ -22,6 +23,7 @@ In the order in which a study passes through them:
     ensemble.py     statistics of the histories of all runs
     plots.py        the plots of pipelines/plots as functions
     report.py       one page of HTML
+    run.py          one scene from its file to results, pictures and a report
     errors.py       what ends a command with a message
 
 Joint sets from mapped traces:

@@ -33,7 +33,7 @@ RECORD, LAYOUT = "run.json", 1  # the number is raised when what it has changes
 RESULT, FAILED = "result.h5", "result.failed.h5"
 PYTHON = pathlib.Path(sys.executable)
 PLOTS = pathlib.Path(importlib.util.find_spec("figure").origin).resolve().parent
-MAKEFILE = "# The files of a scene; jointcreep run --makefile wrote it. Variables of the shell and of make are not used."
+MAKEFILE = "# The files of a scene, in this folder: jointcreep run --makefile wrote these commands."
 NOT_IN_MAKE = set("\n\r\t:;=|\\~*?[]")  # in names of files that others depend on
 
 
@@ -49,7 +49,8 @@ class Step:
 
     def inputs(self):
         """Paths of all inputs."""
-        return [word for word in self.command if isinstance(word, pathlib.Path) and word != PYTHON and str(word) != self.makes] + self.needs
+        named = [word for word in self.command if isinstance(word, pathlib.Path) and word != PYTHON and str(word) != self.makes]
+        return [path for path in named if not path.is_dir()] + self.needs
 
 
 def typed(path):
@@ -174,6 +175,7 @@ class Plan:
             report.write(folder / result, folder / "report.html", self.programs)
 
         page = [self.launcher, "report", result, "-o", pathlib.Path("report.html")]
+        page += ["--programs", self.programs] if self.programs != self.launcher.parent else []
         return [*steps, Step("report.html", page, [self.programs / "jointverify"], draw=write)]
 
 
@@ -324,7 +326,7 @@ def in_make(path):
     if NOT_IN_MAKE & set(str(path)):
         raise NotWanted(f'--makefile: make cannot depend on a file called "{path}"; expected a path without line breaks, tabs, and the '
                         f"characters {' '.join(sorted(NOT_IN_MAKE - set(chr(9) + chr(10) + chr(13))))}")
-    return str(path).replace("$", "$$").replace("#", "\\#").replace("%", "\\%").replace(" ", "\\ ")
+    return str(path).replace("$", "$$").replace("#", "\\#").replace(" ", "\\ ")
 
 
 def makefile_text(steps):

@@ -112,12 +112,16 @@ class Documentation(ChainTest):
         """The scene of docs/first-scene.md runs through the commands of the page, and rises as the page says."""
         page = self.chain.text("docs/first-scene.md")
         (scene,) = code_blocks(page, "toml")
-        chain = code_blocks(page, "sh")[0].splitlines()
-        self.assertEqual([command.split()[0] for command in chain], ["export", *CHAIN, "jointverify"])
+        one, chain = (block.splitlines() for block in code_blocks(page, "sh")[:2])
+        self.assertEqual(one, [PATH.strip(), "jointcreep run two.toml -o two"])
+        self.assertEqual([command.split()[0] for command in chain], [*CHAIN, "jointverify"])
         folder = self.chain.new_folder()
         (folder / "two.toml").write_text(scene)
         done = self.run_commands(page, folder)
         self.assertIn("factor of safety, at least                   64\n", done.stdout)
+        self.assertEqual((folder / "two/result.h5").read_bytes(), (folder / "result.h5").read_bytes())
+        for name in "section.png", "upper-block-removed-displacement.png", "histories.csv", "states.xdmf2", "report.html":
+            self.assertTrue((folder / "two" / name).is_file(), name)
         with h5py.File(folder / "result.h5") as file:
             # Below C are 5 m of rock and the base's joint: dF (z (1 - nu^2) / E_r + 1 / K) at once. Later 1 / E comes
             # on top. The base is rough, which the formula leaves out.
