@@ -1,4 +1,4 @@
-"""jointcreep: Runs a scene, or a study of many networks and parameters, writes reports, and fits joint sets to mapped traces.
+"""jointcreep: Runs scenes, and studies of many networks, writes reports, and fits joint sets to mapped traces.
 
 usage: jointcreep run SCENE.toml -o OUT/ [options] [-- OPTIONS OF DEMSOLVE]
 usage: jointcreep study STUDY.toml -o OUT/ [options]
@@ -8,8 +8,8 @@ usage: jointcreep fit TRACES -o SETS.toml --window WINDOW [options]
 
 Description:
 run makes network.h5, joints.h5 and result.h5 of a scene, pictures, histories.csv, states.xdmf2 (for ParaView) and report.html. It
-shows each command, and makes only what is missing or whose scene, options or programs have changed. An interrupted run goes on by
-the same command. A run without equilibrium has pictures of the blocks that move, and a report.
+shows each command, and makes only what is missing or whose scene, options or programs have changed. The same command
+continues an interrupted run. A run without equilibrium has pictures of the moving blocks, and a report.
 study makes the runs that a study file asks for, and writes what they have in common: runs.csv and runs.h5 (a row a run),
 answers.csv (means, quantiles and probabilities with confidence), convergence.csv, shares.csv, summary.txt and pictures. An
 interrupted study goes on by the same command. Two studies never work in one folder at once.

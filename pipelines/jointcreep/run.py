@@ -1,7 +1,7 @@
 """One scene from its file to results, pictures and a report, in a folder.
 
 A step is one command. It is made if what it made is not there as it was, or if its command or the content of one of its inputs has
-changed; run.json in the folder keeps digests of them. So what is there already is not computed again, and an interrupted run goes on.
+changed; run.json in the folder keeps digests of them. So what is there already is not computed again, and the same command continues an interrupted run.
 """
 
 import dataclasses
@@ -265,7 +265,7 @@ class Folder:
             try:
                 step.draw(self.out)
             except NotWanted as error:
-                makes, said = [], f"{self.shown(step.makes)} is not drawn: {error}"
+                makes, said = [], f"{self.shown(step.makes)} is not made: {error}"
                 self.say(said)
         else:
             code = self.call(self.line(step), step)
@@ -295,7 +295,7 @@ class Folder:
         done = subprocess.run(words, stdin=subprocess.DEVNULL, pass_fds=[self.lock.fileno()], preexec_fn=lambda: group.die_with(parent))
         code = done.returncode
         if was_stopped(code) and code != CANNOT_WRITE:
-            raise NotDone(f"{step.command[0].name} was stopped (exit code {code}); the same command goes on")
+            raise NotDone(f"{step.command[0].name} was stopped (exit code {code}); the same command continues")
         return code if code >= 0 else 128 - code
 
     def say(self, words):
@@ -405,7 +405,8 @@ def make(folder, of_scene, why):
             return of_step
     folder.tidy([*chain, *steps])
     if not folder.quiet:
-        print(f"{folder.out}: {len(folder.made)} files made, {len(folder.kept)} were there; report: {folder.out / 'report.html'}", flush=True)
+        print(f"{folder.out}: {len(folder.made)} files made, {len(folder.kept)} were there; report: {folder.out / 'report.html'}",
+              flush=True)
     if reason:
         folder.say(f"{folder.out / FAILED}: {reason}")
     return code

@@ -32,7 +32,8 @@ def state_fields(scene):
     shows = {
         "displacement": True,
         "stress": any(rock["name"] not in rigid for rock in scene["rock"]),
-        "contacts": any(name in scene for name in ("joint", "joint_set", "mapped")) or any("joint" in one for one in scene.get("boundary", [])),
+        "contacts": any(name in scene for name in ("joint", "joint_set", "mapped")) or
+                    any("joint" in boundary for boundary in scene.get("boundary", [])),
     }
     return [name for name, is_shown in shows.items() if is_shown]
 
