@@ -109,9 +109,11 @@ class Plan:
 
     def chain(self):
         scene, network, joints, result = self.source, *map(pathlib.Path, ("network.h5", "joints.h5", RESULT))
+        by_error = "increments_tolerance" in self.scene.get("equilibrium", {}) or value_of(self.options, "--increments-tolerance")
+        keeps = [] if by_error else ["--checkpoint", CHECKPOINTS[0]]  # demsolve keeps none of runs that it makes again
         return [Step("network.h5", [self.programs / "jointgen", scene, "-o", network], named_files(self.scene, scene.parent)),
                 Step("joints.h5", [self.programs / "strength-averaging", network, "-o", joints]),
-                Step(RESULT, [self.programs / "demsolve", joints, *self.options, "--checkpoint", CHECKPOINTS[0], "-o", result],
+                Step(RESULT, [self.programs / "demsolve", joints, *self.options, *keeps, "-o", result],
                      options=self.harmless, solves=True)]
 
     def states(self, failed):
@@ -165,6 +167,8 @@ class Plan:
         without equilibrium."""
         result = pathlib.Path(RESULT if failed is None else FAILED)
         steps = list(self.pictures(failed))
+        if failed is None and "--factor-of-safety" in self.options:
+            steps.append(self.picture("safety", result, "safety"))
         if falls:
             steps.append(self.picture("state", pathlib.Path(FAILED), "failure", state="last", field="displacement"))
         for name in ["histories.csv"] * ("point" in self.scene) + ["states.xdmf2"]:
@@ -232,7 +236,7 @@ class Folder:
             return self.words.get(word) or (word.name if found and os.path.realpath(found) == str(word) else str(word))
 
         words = [word_of(word) for word in [*step.command, *step.options]]
-        if step.solves:
+        if CHECKPOINTS[0] in words:
             place = words.index(CHECKPOINTS[0])
             words[place] = self.shown(CHECKPOINTS[0])
         return words

@@ -131,6 +131,10 @@ class Run(ChainTest):
         self.assertEqual(self.names(), {name for name in OF_SMALL if not name.startswith("bench-")} | OF_RUN)
         self.assertEqual(max(datasets(self.out / "result.h5")["/history/time"]), 1)
 
+        # Increments chosen by error go without checkpoints.
+        self.assertIn("result.h5", self.made("--", "--no-creep", "--until", "1", "--increments-tolerance", "0.5"))
+        self.assertRegex(datasets(self.out / "result.h5")["/provenance/options"][-1], "--increments [0-9]+ ")
+
     def failing(self):
         """The text of a scene in which a block slides once the bench is excavated."""
         text = self.chain.small()
@@ -179,8 +183,8 @@ class Run(ChainTest):
         self.assertEqual(self.made(code=3), set())
 
         # A factor of safety below 1: the result is that of the largest factor with equilibrium, and the other run has a picture.
-        self.assertEqual(self.made("--", "--factor-of-safety", "--no-creep"), OF_SMALL - OF_NETWORK | {"failure.png"})
-        self.assertEqual(self.names(), OF_SMALL | OF_RUN | {"failure.png", "result.failed.h5"})
+        self.assertEqual(self.made("--", "--factor-of-safety", "--no-creep"), OF_SMALL - OF_NETWORK | {"failure.png", "safety.png"})
+        self.assertEqual(self.names(), OF_SMALL | OF_RUN | {"failure.png", "result.failed.h5", "safety.png"})
 
     def fakes(self, script):
         """A folder of programs in which demsolve is this script."""
