@@ -308,6 +308,9 @@ const TomlValue::List& list_of(const TableInfo& info, const TomlValue& root, con
 
 std::string nearest(const std::string& name, const std::vector<std::string>& known)
 {
+    for (const auto& candidate : known) // without its unit
+        if (!name.empty() && candidate.starts_with(name + '_'))
+            return candidate;
     std::string best;
     std::size_t fewest = std::max<std::size_t>(2, name.size() / 3) + 1; // further ones are another word
     for (const auto& candidate : known)

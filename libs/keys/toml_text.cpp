@@ -293,7 +293,10 @@ TomlValue parse_toml(std::string_view text, const std::string& name)
     try {
         return converted(toml::parse(text));
     } catch (const toml::parse_error& error) {
-        refuse(name, error.source().begin.line, shortened(std::string(error.description())));
+        std::string what = shortened(std::string(error.description()));
+        if (what.ends_with("saw ','"))
+            what += ". (A decimal number has a point: 0.2, not 0,2. A list is in brackets: [0, 2])";
+        refuse(name, error.source().begin.line, what);
     }
 }
 

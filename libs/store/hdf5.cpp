@@ -305,6 +305,9 @@ std::uint64_t size_of_file(const std::string& path)
 
 Object open_for_reading(const std::string& path)
 {
+    if (path.ends_with(".toml"))
+        throw input_error("is a scene; wanted a file of the chain. First run: jointgen " + path +
+                          " -o network.h5, then strength-averaging network.h5 -o joints.h5");
     begin();
     const Object access = properties(H5P_FILE_ACCESS);
     ok(H5Pset_file_locking(access, false, true), "set up HDF5"); // files are never changed in place

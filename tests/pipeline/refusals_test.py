@@ -60,7 +60,7 @@ class Refusals(ChainTest):
     def test_wrong_kind_of_file(self):
         """Earlier files lack something; jointgen wants a scene, the others HDF5."""
         for program in PROGRAMS[1:]:
-            self.assert_refuses(BAD_FILE, program, self.files["jointgen"], says="scene.toml")
+            self.assert_refuses(BAD_INPUT, program, self.files["jointgen"], says=["scene.toml: is a scene", "First run: jointgen"])
         self.assert_refuses(BAD_INPUT, "demsolve", self.files["strength-averaging"],
                             says=["network.h5", "jointcreep network", "jointcreep joints"])
         for name in "strength-averaging", "demsolve", "result":

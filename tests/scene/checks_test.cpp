@@ -55,6 +55,8 @@ TEST(checks, an_unknown_key_is_refused_with_the_nearest)
     expect_refused("gravity_m_per_s2 = 9.81", "gravity = 9.81\ngravity_m_per_s2 = 9.81",
                    "[section] has no key \"gravity\"");
     expect_refused("density_kg_per_m3", "density_kg_per_m", "did you mean density_kg_per_m3?");
+    expect_refused("density_kg_per_m3", "density", "did you mean density_kg_per_m3?");
+    expect_refused("poissons_ratio = 0.3", "poissons_ratio = 0,3", "A decimal number has a point: 0.2, not 0,2.");
     expect_refused("[zones]", "[zone]", "the scene has no key \"zone\"; did you mean zones?");
 }
 
