@@ -48,6 +48,7 @@ stiffness_damping_s = 1e-3
 mass_damping_per_s = 0.1
 release_s = 0.5
 longest_s = 20
+stop_s = 10
 record_every_s = 0.5
 """)
 OTHERWISE = {"large_displacements": WITH_LARGE_DISPLACEMENTS, "ground_m": WITH_GROUND, "profile": WITH_PROFILE,
@@ -186,7 +187,7 @@ def fault(jointgen, folder, number, text, line, name):
 def at_rest(text):
     """Without boundaries that move and unloading increments, which do not go together with [large_displacements]."""
     text = text.replace("displacement_mm = [-0.1, 0]\nload_history = [[1, 0], [4, 1]]\n", "")
-    return text.replace("unloading_increments = 2\n", "")
+    return text.replace("unloading_increments = 2\nincrements_tolerance = 0.02\n", "")
 
 
 def main():

@@ -176,6 +176,7 @@ TEST(every_key, all_else)
     EXPECT_EQ(scene.holes[0][2], Eigen::Vector2d(5, 16));
     EXPECT_EQ(scene.equilibrium.tolerance, 1e-5);
     EXPECT_EQ(scene.equilibrium.unloading_increments, 2);
+    EXPECT_EQ(scene.equilibrium.increments_tolerance, 0.02);
     EXPECT_EQ(scene.equilibrium.most_steps, 100000);
     EXPECT_FALSE(scene.stages.at(0).reset_displacements);
     EXPECT_TRUE(scene.stages.at(1).reset_displacements);
