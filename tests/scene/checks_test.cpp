@@ -56,7 +56,8 @@ TEST(checks, an_unknown_key_is_refused_with_the_nearest)
                    "[section] has no key \"gravity\"");
     expect_refused("density_kg_per_m3", "density_kg_per_m", "did you mean density_kg_per_m3?");
     expect_refused("density_kg_per_m3", "density", "did you mean density_kg_per_m3?");
-    expect_refused("poissons_ratio = 0.3", "poissons_ratio = 0,3", "A decimal number has a point: 0.2, not 0,2.");
+    expect_refused("poissons_ratio = 0.3", "poissons_ratio = 0,3",
+                   "A decimal number has a point: 0.2, not 0,2.");
     expect_refused("[zones]", "[zone]", "the scene has no key \"zone\"; did you mean zones?");
 }
 
@@ -75,7 +76,8 @@ TEST(checks, a_word_of_earlier_versions_is_refused_with_its_new_name)
 
 TEST(checks, a_missing_key_is_refused_at_its_table)
 {
-    expect_refused("[zones]\nkind = \"constant strain\"\nsize_m = 4\n", "[zones]\n", "[zones] has no size_m: wanted a number");
+    expect_refused("[zones]\nkind = \"constant strain\"\nsize_m = 4\n", "[zones]\n",
+                   "[zones] has no size_m: wanted a number");
     expect_refused("cohesion_MPa = 0.5\n", "", "has no cohesion_MPa", "[[rock]]\nname = \"soft\"");
     expect_part(refusal(replaced(text, "shear_kelvin_stiffness_MPa_per_m = 8000\n", "")),
                 "comes together with");
