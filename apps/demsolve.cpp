@@ -109,14 +109,19 @@ Scene with_coarse_zones(Scene scene)
     return scene;
 }
 
-// Where rock yields: a search with zones twice as large.
+bool yields(const Scene& scene)
+{
+    return std::ranges::any_of(scene.rocks,
+                               [](const Rock& rock) { return rock.law == RockLaw::mohr_coulomb; });
+}
+
+// Where rock yields in quadratic zones: a search with zones twice as large. Zones of constant strain lock whatever their
+// size, so that the difference of two sizes says little.
 std::optional<demsolve::MeshEstimate> estimate_mesh(const Scene& scene, const RunWith& run_with,
                                                     const demsolve::SafetySearch& search,
                                                     const Bracket& bracket, std::size_t zones)
 {
-    const bool yields =
-        std::ranges::any_of(scene.rocks, [](const Rock& rock) { return rock.law == RockLaw::mohr_coulomb; });
-    if (!yields || !search.estimates_mesh || !bracket.not_above)
+    if (!yields(scene) || !scene.zones_are_quadratic() || !search.estimates_mesh || !bracket.not_above)
         return std::nullopt;
     const Scene with_coarse = with_coarse_zones(scene);
     std::size_t coarse_zones = 0;
@@ -184,6 +189,10 @@ std::unique_ptr<Trial> bracket_safety(const demsolve::StrengthReduction& reducti
         if (const std::string warning = demsolve::mesh_warning(bracket, *estimate); !warning.empty())
             files.warn(warning);
     }
+    if (yields(scene) && !scene.zones_are_quadratic())
+        files.warn(
+            "zones of constant strain lock where rock yields: the factor of safety may be too high by tens of "
+            "percent; use zones of kind \"quadratic\"");
     files.write_result(*run, bracket.trials);
     if (failed)
         summary.add("  at this factor", files.write_failed(*failed, bracket.trials));

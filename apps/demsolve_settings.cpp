@@ -117,18 +117,6 @@ std::vector<Setting> settings()
         {{"tolerance", "T", "unbalanced force ratio of an equilibrium (default: the scene's)"},
          number(scene::equilibrium_tolerances, "(ratio)",
                 [](Scene& scene, double tolerance) { scene.equilibrium.tolerance = tolerance; })},
-        {{"increments", "N", "increments of excavation and of loads that change (default: the scene's)"},
-         [](const Arguments& arguments, const std::string& option, Scene& scene) {
-             const auto number =
-                 arguments
-                     .whole_number(option, 1, static_cast<std::uint64_t>(scene::numbers_of_increments.most))
-                     .value();
-             scene.equilibrium.unloading_increments = static_cast<std::int32_t>(number);
-             scene.equilibrium.increments_tolerance.reset();
-             return std::to_string(number);
-         },
-         false,
-         "increments-tolerance"},
         {{"engine", "NAME", listed(scene::engine_words(), " or ") + " (default: the scene's)"},
          word<EngineChoice>(scene::engine_words(), {scene::former_engine_word, scene::engine_word_for_it},
                             [](Scene& scene, EngineChoice engine) { scene.equilibrium.engine = engine; })},
@@ -179,6 +167,7 @@ std::vector<Option> options()
     for (const Setting& setting : settings())
         all.push_back(setting.option);
     const std::vector<Option> others{
+        {"increments", "N", "increments of excavation and of loads that change (default: the scene's)"},
         {"increments-tolerance", "T",
          "double the increments until displacements and tractions change by less than T; result.h5 is that of "
          "--increments N, with the last N (default: the scene's)"},
@@ -227,10 +216,17 @@ std::string replace_settings(const Arguments& arguments, Scene& scene)
         if (arguments.has(setting.not_with))
             refuse_together(option, setting.not_with);
     }
-    // Not noted: the file has the number of increments.
+    if (const auto number = arguments.whole_number(
+            "increments", 1, static_cast<std::uint64_t>(scene::numbers_of_increments.most))) {
+        scene.equilibrium.unloading_increments = static_cast<std::int32_t>(*number);
+        scene.equilibrium.increments_tolerance.reset();
+    }
     if (const auto tolerance =
-            arguments.number("increments-tolerance", scene::increments_tolerances, "(ratio)"))
+            arguments.number("increments-tolerance", scene::increments_tolerances, "(ratio)")) {
+        if (arguments.has("increments"))
+            refuse_together("increments", "increments-tolerance");
         scene.equilibrium.increments_tolerance = tolerance;
+    }
     if (scene.large_displacements)
         for (const char* option : {"increments", "increments-tolerance"})
             if (arguments.has(option))
@@ -253,6 +249,8 @@ std::string replace_settings(const Arguments& arguments, Scene& scene)
                     ": the scene has [large_displacements], which records the section every record_every_s");
             noted.add(option, std::to_string(*every));
         }
+    if (arguments.has("increments")) // the last one, as where they are chosen (demsolve_files.cpp)
+        noted.add("increments", std::to_string(scene.equilibrium.unloading_increments));
     return noted.text();
 }
 

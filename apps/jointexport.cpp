@@ -363,7 +363,7 @@ int main(int argc, char** argv)
               {"width", "M",
                "how far joints that are no discs reach across the section, and blocks of 3dec and yade (1 m)"},
               {"state", "STATE",
-               "of zones and contacts in a .vtu file: its number, counted from 0, the stage that it "
+               "of zones and contacts in a .vtu or .vtkhdf file: its number, counted from 0, the stage that it "
                "follows, or last (default)"},
               {"file-format", "", "show the format of the HDF5 files of the chain, and no more"}},
          .example = "jointexport result.h5 -o zones.vtu --state \"block 2 removed\"",

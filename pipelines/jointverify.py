@@ -77,6 +77,8 @@ class File:
         try:
             self.file = h5py.File(path, "r")
         except OSError:
+            if str(path).endswith(".toml"):
+                raise NotWanted(f"{path}: is a scene; expected a result file of demsolve. First run: jointcreep run {path} -o OUT/") from None
             raise NotWanted(f"{path}: is no HDF5 file, or a damaged one; expected a result file of demsolve") from None
         kind = self.attribute("filetype")
         kind = kind.decode("utf-8", "replace") if isinstance(kind, bytes) else str(kind)

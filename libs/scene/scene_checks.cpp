@@ -456,6 +456,12 @@ private:
             once("large_displacements")
                 .refuse("stop_s",
                         "wanted at most longest_s, " + shown(scene_.large_displacements->longest) + " s");
+        if (scene_.large_displacements->stop &&
+            *scene_.large_displacements->stop <= scene_.large_displacements->release)
+            once("large_displacements")
+                .refuse("stop_s", "wanted more than release_s, " +
+                                      shown(scene_.large_displacements->release) +
+                                      " s, in which the rock of the stage goes");
         if (scene_.equilibrium.unloading_increments > 1)
             once("equilibrium")
                 .refuse("unloading_increments",

@@ -95,7 +95,7 @@ def named_files(scene, folder):
 
 def is_before(date, until, start):
     """Whether a stage's date, or day, is not after the day `until`."""
-    day = (date - start).days if isinstance(date, datetime.date) else date
+    day = (date - start).days if isinstance(date, datetime.date) else date - start
     return until is None or day <= until
 
 

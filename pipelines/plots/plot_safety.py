@@ -36,15 +36,17 @@ def draw(file):
     if "/safety" not in file:
         raise figure.NotWanted("this file has no runs of a factor of safety; demsolve --factor-of-safety writes them")
     plot, axes = figure.plt.subplots(figsize=(figure.ONE_COLUMN * 1.2, 2.8))
+    seen = set()
     for prefix, color, label in ("", "k", "zones of the scene"), ("coarse_", figure.COLORS[1], "zones twice as large"):
         if f"/safety/{prefix}factor" in file and len(factor := figure.array(file, f"/safety/{prefix}factor")) > 1:
             stands = figure.array(file, f"/safety/{prefix}stands")
+            seen |= set(stands)
             draw_runs(axes, factor, stands, figure.array(file, f"/safety/{prefix}largest_displacement"), color, label)
             low, high = bracket(factor, stands)
             if low is not None and high is not None:
                 axes.axvspan(low, high, color=color, alpha=0.15, linewidth=0)
     for kind, marker, label in KINDS:
-        if kind in figure.array(file, "/safety/stands"):
+        if kind in seen:
             axes.plot([], [], color="0.4", linestyle="none", marker=marker, markersize=4, label=label)
     axes.set_yscale("log")
     axes.set_xlabel("strength reduction factor")

@@ -167,6 +167,12 @@ class Dilation(ChainTest):
             self.assertEqual(chosen.read_bytes(), alone.read_bytes())
             numbers.append(int(re.fullmatch(r"--increments (\d+)", options)[1]))
         self.assertLess(*numbers)
+        others = "-q", "--engine", "relaxation", "--tolerance", "1e-8"
+        chosen = self.chain.run("demsolve", joints, joints.with_name("chosen.h5"), *others, "--increments-tolerance", "0.02")
+        given = datasets(chosen)["/provenance/options"][-1].split()
+        self.assertIn("--engine", given)
+        alone = self.chain.run("demsolve", joints, joints.with_name("alone.h5"), "-q", *given)
+        self.assertEqual(chosen.read_bytes(), alone.read_bytes())
         # The key of a scene does the same as the option.
         by_key = self.chain.result(changed(text, "^tolerance", "increments_tolerance = 0.02\ntolerance"))
         self.assertEqual(datasets(by_key)["/provenance/options"][-1], f"--increments {numbers[0]}")

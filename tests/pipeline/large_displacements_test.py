@@ -270,11 +270,15 @@ class Blocks(ChainTest):
                               ("[equilibrium]\nunloading_increments = 2\n",
                                r"unloading_increments = 2: with \[large_displacements\] a stage excavates its rock at once; wanted 1"),
                               ("", r"release_s = 5: wanted less than longest_s, 5 s"),
+                              ("", r"stop_s = 0.1: wanted more than release_s, 0.2 s"), ("", r"stop_s = 100: wanted at most longest_s, 60 s"),
                               ("", r"rigid_rocks.*wanted the name of a \[\[rock\]\]"), ("", "new_contacts = .clay")):
             scene = text + more
             if "rigid" in message:
                 scene = scene.replace("record_every_s", 'rigid_rocks = ["granite"]\nrecord_every_s')
-            if "release" in message:
+            if "stop" in message:
+                stop = re.search(r"stop_s = ([0-9.]+)", message)[1]
+                scene = scene.replace("record_every_s", f"release_s = 0.2\nstop_s = {stop}\nrecord_every_s")
+            elif "release" in message:
                 scene = scene.replace("record_every_s", "release_s = 5\nlongest_s = 5\nrecord_every_s")
             if "clay" in message:
                 scene = scene.replace('new_contacts = "plane"', 'new_contacts = "clay"')

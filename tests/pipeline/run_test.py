@@ -130,6 +130,8 @@ class Run(ChainTest):
         self.assertEqual(self.made("--", "--no-creep", "--until", "1"), {name for name in OF_SMALL - OF_NETWORK if not name.startswith("bench-")})
         self.assertEqual(self.names(), {name for name in OF_SMALL if not name.startswith("bench-")} | OF_RUN)
         self.assertEqual(max(datasets(self.out / "result.h5")["/history/time"]), 1)
+        self.assertTrue(of_scene.is_before(7, 3, 5))  # days count from the start
+        self.assertFalse(of_scene.is_before(9, 3, 5))
 
         # Increments chosen by error go without checkpoints.
         self.assertIn("result.h5", self.made("--", "--no-creep", "--until", "1", "--increments-tolerance", "0.5"))
