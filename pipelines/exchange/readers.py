@@ -1,6 +1,7 @@
 """Reads back what jointexport writes, by readers of other projects, and says what agrees:  readers.py PROGRAMS SCENE OUT
 
-A row for each format: the reader, what it found, and what the HDF5 file has. Ends with exit code 1 where they differ. A
+A row for each format: the reader, what it found, and what the HDF5 file has: joint traces are clipped to the section here, by another
+method than jointexport's. Ends with exit code 1 where they differ. A
 reader that is not installed is named, and its row left out.
 """
 
@@ -11,9 +12,12 @@ import re
 import shutil
 import subprocess
 import sys
+import tomllib
 
 import h5py
 import numpy
+
+import joint_sets
 
 
 def run(*command):
@@ -39,6 +43,13 @@ class Network:
             self.kind, self.joint = file["/edges/kind"][:], file["/edges/joint"][:]
             self.sets = list(file["/names/joint_set"].asstr()[:])
             self.set_of = file["/joints/set"][:]
+            section = tomllib.loads(file["/scene"].asstr()[0])["section"]
+            polygons = [numpy.array(section["outline_m"], float)]
+            pieces = [(int(joint), high - low)
+                      for joint, begin, end in zip(file["/traces/joint"][:], file["/traces/from"][:], file["/traces/to"][:])
+                      for low, high in joint_sets.inside(polygons, begin, end) if high - low > 1e-9]
+            self.trace_joint = sorted(joint for joint, _ in pieces)
+            self.trace_length = sum(length for _, length in pieces)
 
 
 class Check:
@@ -50,6 +61,12 @@ class Check:
         agrees = abs(found - wanted) <= tolerance * abs(wanted)
         self.failed |= not agrees
         self.rows.append((name, reader, what, f"{found:.10g}", f"{wanted:.10g}", "" if agrees else "DIFFERS"))
+
+    def same(self, name, reader, found, wanted, what):
+        """Ids, or values by id: how many are the same."""
+        found, wanted = numpy.asarray(found, float), numpy.asarray(wanted, float)
+        same = int(numpy.isclose(found, wanted, rtol=1e-9, atol=0).sum()) if found.shape == wanted.shape else 0
+        self.add(name, reader, same, len(wanted), what)
 
     def write(self, name, *options):
         self.export(self.out / name, *options)
@@ -64,6 +81,11 @@ class Check:
         count, total = re.search(r"n \(.*\) = (\d+)", text).group(1), re.search(r"s \(.*\) = (\S+)", text).group(1)
         self.add(name, "GDAL", int(count), rows, f"{layer}, rows")
         self.add(name, "GDAL", float(total), wanted, f"{layer}, {'length [m]' if 'Length' in measure else 'area [m2]'}")
+        if layer != "entities":
+            of = "joint" if layer == "joints" else "block"
+            table = run("ogr2ogr", "-f", "CSV", "/vsistdout/", path, "-dialect", "SQLite", "-sql", f'SELECT "{of}" FROM "{layer}"')
+            found = sorted(int(row[of]) for row in csv.DictReader(table.splitlines()))
+            self.same(name, "GDAL", found, self.network.trace_joint if of == "joint" else range(rows), f"{layer}, same ids")
 
     def geo(self, joints, length):
         network = self.network
@@ -90,6 +112,8 @@ class Check:
         ids = {row["id"]: row for row in rows_of(self.out / "joints.ids.csv")}
         right = sum(ids[line.dxf.handle.lstrip("0")]["set"] == line.dxf.layer for line in lines)
         self.add("joints.dxf", "ezdxf", right, joints, "lines on the layer of their set")
+        found = sorted(int(ids[line.dxf.handle.lstrip("0")]["joint"]) for line in lines)
+        self.same("joints.dxf", "ezdxf", found, self.network.trace_joint, "lines, same ids of joints")
         self.add("joints.dxf", "ezdxf", len(document.audit().errors), 0, "errors in its audit")
 
     def gmsh(self):
@@ -102,8 +126,10 @@ class Check:
         read = meshio.read(mesh)
         triangles = read.cells_dict["triangle"]
         a, b, c = (read.points[triangles[:, i], :2] for i in range(3))
-        area = numpy.abs((b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0]).sum() / 2
-        self.add(name, "gmsh", area, network.area.sum(), "area of the mesh [m2]")
+        area = numpy.abs((b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0]) / 2
+        self.add(name, "gmsh", area.sum(), network.area.sum(), "area of the mesh [m2]")
+        of_block = read.cell_data_dict["gmsh:geometrical"]["triangle"] - 1  # surface b + 1 is block b
+        self.same(name, "gmsh", numpy.bincount(of_block, area, len(network.area)), network.area, "blocks with their area")
         lines = read.points[read.cells_dict["line"]][:, :, :2]
         group = read.cell_data_dict["gmsh:physical"]["line"]
         lengths = numpy.linalg.norm(lines[:, 1] - lines[:, 0], axis=1)
@@ -120,6 +146,9 @@ class Check:
             areas = numpy.concatenate(read.cell_data["area"]).sum()
             self.add("blocks.vtu", "meshio", sum(len(block.data) for block in read.cells), len(network.area), "cells")
             self.add("blocks.vtu", "meshio", areas, network.area.sum(), "area [m2]")
+            by_block = numpy.zeros(len(network.area))
+            by_block[numpy.concatenate(read.cell_data["block"])] = numpy.concatenate(read.cell_data["area"])
+            self.same("blocks.vtu", "meshio", by_block, network.area, "blocks with their area")
         except ImportError:
             print("not installed: meshio (python3-meshio)")
         try:
@@ -152,6 +181,9 @@ class Check:
         reader.Update()
         grid = reader.GetOutput()
         self.add("blocks.vtkhdf", "VTK", grid.GetNumberOfCells(), len(self.network.area), "cells")
+        by_block = numpy.zeros(len(self.network.area))
+        by_block[vtk_to_numpy(grid.GetCellData().GetArray("block"))] = vtk_to_numpy(grid.GetCellData().GetArray("area"))
+        self.same("blocks.vtkhdf", "VTK", by_block, self.network.area, "blocks with their area")
         self.add("blocks.vtkhdf", "VTK", vtk_to_numpy(grid.GetCellData().GetArray("area")).sum(), self.network.area.sum(), "area [m2]")
 
     def yade(self):
@@ -160,12 +192,14 @@ class Check:
         script, found = self.write("blocks.py"), self.out / "yade.json"
         script.with_name("count.py").write_text(
             script.read_text() + "\nimport json\nfrom yade import polyhedra_utils\n"
-            f"json.dump([len(O.bodies), len(set(block_of.values())), sum(b.state.mass / b.material.density for b in O.bodies)],"
-            f" open({str(found)!r}, 'w'))\n")
+            f"json.dump([[block_of[b.id], b.state.mass / b.material.density] for b in O.bodies], open({str(found)!r}, 'w'))\n")
         run("yade", "-n", "-x", script.with_name("count.py"))
-        _, blocks, volume = json.loads(found.read_text())
-        self.add("blocks.py", "YADE", blocks, len(self.network.area), "blocks")
-        self.add("blocks.py", "YADE", volume, self.network.area.sum(), "volume of a slice of 1 m [m3]", 1e-6)
+        blocks, volumes = zip(*json.loads(found.read_text()))
+        self.add("blocks.py", "YADE", len(set(blocks)), len(self.network.area), "blocks")
+        self.add("blocks.py", "YADE", sum(volumes), self.network.area.sum(), "volume of a slice of 1 m [m3]", 1e-6)
+        of_block = numpy.bincount(blocks, volumes, len(self.network.area))
+        self.add("blocks.py", "YADE", int(numpy.isclose(of_block, self.network.area, rtol=1e-6).sum()), len(self.network.area),
+                 "blocks with their volume")
 
 
 def main():
@@ -179,11 +213,10 @@ def main():
 
     network = Network(source)
     check = Check(export, network, out)
-    table = rows_of(check.write("joints.csv"))
-    length = sum(numpy.hypot(float(row["x2_m"]) - float(row["x1_m"]), float(row["y2_m"]) - float(row["y1_m"])) for row in table)
+    traces, length = len(network.trace_joint), network.trace_length
     check.outline = network.edge_length[network.kind == 0].sum()
-    check.geo(len(table), length)
-    check.dxf(len(table), length)
+    check.geo(traces, length)
+    check.dxf(traces, length)
     check.gmsh()
     check.vtu()
     check.vtkhdf()

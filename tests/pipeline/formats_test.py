@@ -255,6 +255,7 @@ region_m = [[2, 2], [78, 2], [78, 12], [50, 12], [50, 6], [25, 6], [25, 45], [2,
         self.assertTrue((centre[:, 2] > 0).any() and (centre[:, 2] < 0).any())
 
     def test_fracman(self):
+        data = self.disc_data
         joint, diameter, centre, normal = self.planes()
         lines = self.export("x.fab", "--width", 5, source=self.discs).read_text().splitlines()
         self.assertNotIn("", lines)
@@ -263,7 +264,8 @@ region_m = [[2, 2], [78, 2], [78, 12], [50, 12], [50, 6], [25, 6], [25, 45], [2,
         self.assertTrue(all(len(words) == 2 and words[1].count('"') == 2 for words in sets))
         rows, found = iter(lines[lines.index("BEGIN FRACTURE") + 1:lines.index("END FRACTURE")]), {}
         for row in rows:
-            _, nodes, _, of, _, size = row.split()
+            _, nodes, joint_set, of, number, size = row.split()
+            self.assertEqual((int(joint_set), int(number)), (data["/joints/set"][int(of)] + 1, data["/joints/number"][int(of)]))
             corners = [[float(word) for word in next(rows).split()[1:]] for _ in range(int(nodes))]
             zero, *own = next(rows).split()
             self.assertEqual(zero, "0")
@@ -287,7 +289,19 @@ region_m = [[2, 2], [78, 2], [78, 12], [50, 12], [50, 6], [25, 6], [25, 45], [2,
         self.assertGreaterEqual(min(map(len, corners)), 4)
         every = numpy.concatenate(corners)
         numpy.testing.assert_allclose(every.min(axis=0) + every.max(axis=0), 0, atol=1e-9)
-        self.assertEqual(len(self.ids(path)), len(lines))
+        # Each polygon is the plane of the joint that the table of ids names, in its place and direction.
+        ids = self.ids(path)
+        self.assertEqual(len(ids), len(lines))
+        first = path.with_name("x.ids.csv").read_text().splitlines()[0]
+        middle = numpy.array(first.partition("[m]: ")[2].split(","), float)
+        discs = {j: (c, n) for j, _, c, n in zip(*self.planes())}
+        seen = [int(row["joint"]) for row, ring in zip(ids, corners) if len(ring) == 16]
+        self.assertEqual(seen, list(discs))
+        for row, ring in zip(ids, corners):
+            if len(ring) == 16:
+                centre, normal = discs[int(row["joint"])]
+                numpy.testing.assert_allclose(ring.mean(axis=0) + middle, centre, atol=1e-9)
+                self.assertAlmostEqual(abs(polygon_area(ring)[1] @ normal), 1, places=9)
         areas = sum(polygon_area(ring)[0] for ring in corners if len(ring) == 16)
         self.assertAlmostEqual(areas, (math.pi / 4 * self.planes()[1] ** 2).sum(), delta=1e-9 * areas)
 
