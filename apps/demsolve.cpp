@@ -25,7 +25,6 @@
 #include "store/files.hpp"
 #include "zoning/cost.hpp"
 
-#include <algorithm>
 #include <functional>
 #include <limits>
 #include <memory>
@@ -100,30 +99,17 @@ std::unique_ptr<Trial> run_once(double factor, const Scene& scene, const RunWith
     return run;
 }
 
-// The scene with zones twice as large.
-Scene with_coarse_zones(Scene scene)
-{
-    scene.zone_size *= 2;
-    if (scene.zone_size_at_faces)
-        *scene.zone_size_at_faces *= 2;
-    return scene;
-}
-
-bool yields(const Scene& scene)
-{
-    return std::ranges::any_of(scene.rocks,
-                               [](const Rock& rock) { return rock.law == RockLaw::mohr_coulomb; });
-}
-
 // Where rock yields in quadratic zones: a search with zones twice as large. Zones of constant strain lock whatever their
 // size, so that the difference of two sizes says little.
 std::optional<demsolve::MeshEstimate> estimate_mesh(const Scene& scene, const RunWith& run_with,
                                                     const demsolve::SafetySearch& search,
                                                     const Bracket& bracket, std::size_t zones)
 {
-    if (!yields(scene) || !scene.zones_are_quadratic() || !search.estimates_mesh || !bracket.not_above)
+    if (!scene.has_rock_that_yields() || !scene.zones_are_quadratic() || !search.estimates_mesh ||
+        !bracket.not_above)
         return std::nullopt;
-    const Scene with_coarse = with_coarse_zones(scene);
+    Scene with_coarse = scene;
+    demsolve::set_zone_size(with_coarse, 2 * scene.zone_size);
     std::size_t coarse_zones = 0;
     Bracket coarse = analysis::bracket_near(
         *bracket.stands,
@@ -189,7 +175,7 @@ std::unique_ptr<Trial> bracket_safety(const demsolve::StrengthReduction& reducti
         if (const std::string warning = demsolve::mesh_warning(bracket, *estimate); !warning.empty())
             files.warn(warning);
     }
-    if (yields(scene) && !scene.zones_are_quadratic())
+    if (scene.has_rock_that_yields() && !scene.zones_are_quadratic())
         files.warn(
             "zones of constant strain lock where rock yields: the factor of safety may be too high by tens of "
             "percent; use zones of kind \"quadratic\"");

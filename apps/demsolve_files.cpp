@@ -16,6 +16,12 @@ using analysis::Trial;
 namespace
 {
 
+// Options, one behind the other; either may be none.
+std::string joined(const std::string& options, const std::string& more)
+{
+    return options + (options.empty() || more.empty() ? "" : " ") + more;
+}
+
 // "kept.stands.h5" for "kept.h5".
 std::string name_of_run(const std::string& checkpoint, bool stands)
 {
@@ -73,11 +79,9 @@ void Files::write(const Trial& run, const Safety& safety, const std::string& pat
 {
     std::string options = options_of({run.factor(), {}});
     if (run.scene().equilibrium.increments_tolerance) // chosen: each file is that of a run with its number
-        options += (options.empty() ? "--increments " : " --increments ") +
-                   std::to_string(run.scene().equilibrium.unloading_increments);
-    if (!end_.empty())
-        options += (options.empty() ? "" : " ") + end_;
-    Provenance with_warnings = provenance(options);
+        options =
+            joined(options, "--increments " + std::to_string(run.scene().equilibrium.unloading_increments));
+    Provenance with_warnings = provenance(joined(options, end_));
     for (const std::string& warning : warnings_of(run))
         with_warnings.warnings.add(with_warnings.program.back(), warning);
     store::write_result(path, with_warnings, file_.network, file_.equivalent, run.analysis().result(),
@@ -142,10 +146,7 @@ void Files::check_same_run(const std::string& path, const StrengthReduction& red
 
 std::string Files::options_of(const StrengthReduction& reduction) const
 {
-    std::string options = reduction.text();
-    if (!options.empty() && !options_.empty())
-        options += ' ';
-    return options + options_;
+    return joined(reduction.text(), options_);
 }
 
 Provenance Files::provenance(const std::string& options) const

@@ -89,13 +89,6 @@ auto word(const keys::Words<Choice>& words, const RenamedWord& renamed,
     };
 }
 
-void set_zone_size(Scene& scene, double size)
-{
-    if (scene.zone_size_at_faces)
-        *scene.zone_size_at_faces *= size / scene.zone_size;
-    scene.zone_size = size;
-}
-
 void set_creep_step(Scene& scene, double days)
 {
     scene.creep->step = days * unit::day;
@@ -159,6 +152,13 @@ private:
 };
 
 } // namespace
+
+void set_zone_size(Scene& scene, double size)
+{
+    if (scene.zone_size_at_faces)
+        *scene.zone_size_at_faces *= size / scene.zone_size;
+    scene.zone_size = size;
+}
 
 std::vector<Option> options()
 {

@@ -20,6 +20,9 @@ std::vector<Option> options();
 // A word of an engine: "auto".
 std::string name_of(EngineChoice engine);
 
+// The longest side of zones [m]; that of zones at faces changes in proportion.
+void set_zone_size(Scene& scene, double size);
+
 // Puts the command line's settings in place of the scene's. Returns these options, and those of recording, as the
 // result file records them.
 std::string replace_settings(const Arguments& arguments, Scene& scene);

@@ -88,6 +88,13 @@ GridArray array_of(const Column& column, const std::vector<Index>& rows)
                              : array_of(column.name, values_of<double>(column, rows));
 }
 
+void check_state(const States& states, std::size_t state)
+{
+    if (state >= states.time.size())
+        throw input_error("state " + std::to_string(state) + " is not among the result's " +
+                          std::to_string(states.time.size()) + " states");
+}
+
 GridArray time_of(double time)
 {
     return array_of("TimeValue", std::vector<double>{time});
@@ -126,9 +133,7 @@ Grid zones_grid(const Network& network, const Result& result, std::size_t state)
 {
     const Mesh& mesh = result.mesh;
     const States& states = result.states;
-    if (state >= states.time.size())
-        throw input_error("state " + std::to_string(state) + " is not among the result's " +
-                          std::to_string(states.time.size()) + " states");
+    check_state(states, state);
     const std::size_t zones = mesh.zone_block.size();
 
     std::vector<Index> present;
@@ -181,9 +186,7 @@ Grid contacts_grid(const Result& result, std::size_t state)
 {
     const Mesh& mesh = result.mesh;
     const States& states = result.states;
-    if (state >= states.time.size())
-        throw input_error("state " + std::to_string(state) + " is not among the result's " +
-                          std::to_string(states.time.size()) + " states");
+    check_state(states, state);
     const std::size_t contacts = mesh.contact_edge.size();
     const std::size_t first_gridpoint = state * mesh.gridpoint.size();
 

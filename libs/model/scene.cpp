@@ -40,14 +40,18 @@ void InSituStress::multiply_horizontal(double factor)
         level.compression_xx *= factor;
 }
 
+bool Scene::has_rock_that_yields() const
+{
+    return std::ranges::any_of(rocks, [](const Rock& one) { return one.law == RockLaw::mohr_coulomb; });
+}
+
 bool Scene::zones_are_quadratic() const
 {
     if (asks_for_quadratic_zones)
         return *asks_for_quadratic_zones;
     const bool is_implicit =
         equilibrium.engine != EngineChoice::relaxation && equilibrium.masses != Masses::real;
-    return is_implicit && !large_displacements &&
-           std::ranges::any_of(rocks, [](const Rock& one) { return one.law == RockLaw::mohr_coulomb; });
+    return is_implicit && !large_displacements && has_rock_that_yields();
 }
 
 } // namespace jointcreep

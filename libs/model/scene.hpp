@@ -357,6 +357,7 @@ struct Scene {
 
     std::uint64_t seed = 0; // needed by joint sets only
     std::optional<CreepSettings> creep;
+    bool has_rock_that_yields() const;
     std::optional<bool> asks_for_quadratic_zones{};
     // Six gridpoints a zone; else three, and constant strain. If the scene does not say: where rock yields,
     // displacements are small, and equilibrium is not by dynamic relaxation alone, which overshoots more with them.

@@ -174,9 +174,7 @@ Zones zones_of(const Scene& scene, const Network& network, const Mesh& mesh)
 {
     Zones zones;
     const std::size_t n = mesh.zone_gridpoint.size();
-    const bool is_quadratic = !mesh.zone_middle.empty(),
-               any_yields = std::any_of(scene.rocks.begin(), scene.rocks.end(),
-                                        [](const Rock&rock) { return rock.law == RockLaw::mohr_coulomb; });
+    const bool is_quadratic = !mesh.zone_middle.empty(), any_yields = scene.has_rock_that_yields();
     if (is_quadratic) {
         zones.gridpoints_of_zone = 6;
         zones.points_of_zone = 3;

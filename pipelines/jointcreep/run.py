@@ -163,8 +163,8 @@ class Plan:
         return Step(str(output), [PYTHON, script, source, *words, "-o", output], draw=draw)
 
     def rest(self, failed=None, falls=False):
-        """What follows demsolve: pictures, tables and the report. falls: beside the result there is one of the smallest strength factor
-        without equilibrium."""
+        """The steps after demsolve: pictures, tables and the report. failed: as in states(). falls: there is also a result.failed.h5, of the
+        run with the smallest strength factor that found no equilibrium."""
         result = pathlib.Path(RESULT if failed is None else FAILED)
         steps = list(self.pictures(failed))
         if failed is None and "--factor-of-safety" in self.options:

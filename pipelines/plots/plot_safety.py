@@ -14,7 +14,8 @@ KINDS = [(STANDS, "o", "stands"), (FAILS, "x", "fails"), (UNDECIDED, "s", "undec
 
 
 def bracket(factor, stands):
-    """The largest factor that stands and the smallest above it that does not; None where there is none."""
+    """The two ends of the bracket: the largest factor of a run that stands, and the smallest factor above it of a run that does not stand.
+    None for an end that no run gives."""
     low = factor[stands == STANDS].max(initial=-np.inf)
     high = factor[(stands != STANDS) & (factor > low)].min(initial=np.inf)
     return (low if np.isfinite(low) else None), (high if np.isfinite(high) else None)

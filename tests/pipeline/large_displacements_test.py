@@ -155,7 +155,7 @@ class Blocks(ChainTest):
         self.assertLess(error_of_energy(data), ACCOUNT)
         verified = self.chain.answer("jointverify", path)
         self.assertEqual(verified.returncode, 0, verified.stdout + verified.stderr)
-        # After it has come to rest nothing changes.
+        # Where the block is at rest before stop_s, the result is the same as without stop_s.
         more = f"{RIGID}\nstop_s = 50"
         ended = [datasets(self.chain.result(incline(dip, friction, length=7, more=some))) for some in (RIGID, more)]
         self.assertTrue((ended[0]["/history/displacement"] == ended[1]["/history/displacement"]).all())
