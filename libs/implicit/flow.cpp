@@ -14,18 +14,20 @@ namespace
 constexpr int most_steps = 60;
 constexpr double first_step = 16, least_step = 1e-3; // over the time in which dashpots answer like springs
 constexpr double much_worse = 4;                     // merit of a step that is taken back, over the last one
+constexpr double diverged = 20;                      // merit with which steps were too long, over the least
 
 } // namespace
 
 // Every gridpoint moves against a dashpot, by implicit steps that grow without bound: (K + D / t) du = unbalanced
 // force, with D the stiffness against which it acts (pseudo-transient continuation: Kelley and Keyes, SIAM J. Numer.
 // Anal. 35, 1998). With an equilibrium, forces fade and the steps become Newton's. Without one, the part of the forces
-// that nothing balances stays and displacement grows with the steps: collapse_ has the last one.
+// that nothing balances stays and displacement grows with the steps: collapse_ has the last one. Where forces have
+// grown with displacement the steps were too long, and nothing is known.
 bool Solver::flow_to_rest(Assembly& assembly, const State& start, const Equilibrium& settings,
                           Convergence& convergence)
 {
     assembly.displacement = start.displacement;
-    double merit = evaluate(assembly, start), time = first_step;
+    double merit = evaluate(assembly, start), least = merit, time = first_step;
     take(assembly, start, true);
     const double most = std::min(settings.largest_displacement, too_far_);
     for (int step = 0; step < most_steps; ++step) {
@@ -52,8 +54,11 @@ bool Solver::flow_to_rest(Assembly& assembly, const State& start, const Equilibr
         }
         time *= found < merit / 100 ? 16 : 2;
         merit = found;
+        least = std::min(least, merit);
         take(assembly, start, false);
         if (largest_displacement(assembly).first > most) {
+            if (merit > diverged * least)
+                break;
             const std::size_t at = largest_displacement(assembly).second;
             collapse_.emplace("the displacement of the rock at " + shown(assembly.position[at]) +
                               " grows without bound: no equilibrium with displacements up to " + shown(most) +
