@@ -13,25 +13,21 @@
 namespace jointcreep::creepfit
 {
 
-using sensitivity::Parameter;
-
 namespace
 {
 
 struct Name {
     std::string_view option, words;
-    Parameter parameter;
+    Scaled scaled;
 };
-constexpr std::array<Name, 4> names{
-    {{"kelvin-stiffness", "Kelvin stiffness E", Parameter::kelvin_stiffness},
-     {"kelvin-viscosity", "Kelvin viscosity eta", Parameter::kelvin_viscosity},
-     {"joint-stiffness", "joint stiffness K", Parameter::joint_stiffness},
-     {"horizontal-stress", "horizontal stress", Parameter::horizontal_stress}}};
+constexpr std::array<Name, 4> names{{{"kelvin-stiffness", "Kelvin stiffness E", Scaled::kelvin_stiffness},
+                                     {"kelvin-viscosity", "Kelvin viscosity eta", Scaled::kelvin_viscosity},
+                                     {"joint-stiffness", "joint stiffness K", Scaled::joint_stiffness},
+                                     {"horizontal-stress", "horizontal stress", Scaled::horizontal_stress}}};
 
-const Name& name_of(Parameter parameter)
+const Name& name_of(Scaled scaled)
 {
-    return *std::find_if(names.begin(), names.end(),
-                         [&](const Name& name) { return name.parameter == parameter; });
+    return *std::find_if(names.begin(), names.end(), [&](const Name& name) { return name.scaled == scaled; });
 }
 
 std::string trimmed(const std::string& text)
@@ -40,13 +36,13 @@ std::string trimmed(const std::string& text)
     return begin == std::string::npos ? std::string() : text.substr(begin, end - begin + 1);
 }
 
-Parameter parameter_in(const std::string& option)
+Scaled scaled_by(const std::string& option)
 {
     const auto name =
         std::find_if(names.begin(), names.end(), [&](const Name& n) { return n.option == option; });
     if (name == names.end())
         throw input_error("--fit: \"" + option + "\" is none of " + all_options(", "));
-    return name->parameter;
+    return name->scaled;
 }
 
 // The search starts from 1, or from the geometric mean of the bounds if 1 is outside them.
@@ -66,14 +62,14 @@ void set_bounds(back_analysis::Factor& factor, const std::string& option, const 
 
 } // namespace
 
-std::string option_of(Parameter parameter)
+std::string option_of(Scaled scaled)
 {
-    return std::string(name_of(parameter).option);
+    return std::string(name_of(scaled).option);
 }
 
-std::string words_of(Parameter parameter)
+std::string words_of(Scaled scaled)
 {
-    return std::string(name_of(parameter).words);
+    return std::string(name_of(scaled).words);
 }
 
 std::string all_options(const std::string& last)
@@ -97,9 +93,9 @@ Factors factors_in(const std::string& text)
                                   : "--fit: \"" + text + "\" has nothing before or after a comma");
         const std::size_t equals = item.find('=');
         const std::string option = trimmed(item.substr(0, equals));
-        back_analysis::Factor factor{parameter_in(option)};
+        back_analysis::Factor factor{scaled_by(option)};
         for (const back_analysis::Factor& other : factors)
-            if (other.parameter == factor.parameter)
+            if (other.scaled == factor.scaled)
                 throw input_error("--fit: " + option + " is given twice");
         if (equals != std::string::npos)
             set_bounds(factor, option, item.substr(equals + 1));
@@ -112,7 +108,7 @@ std::string in_words(const Factors& factors, const std::vector<double>& values)
 {
     std::string words;
     for (std::size_t i = 0; i < factors.size(); ++i)
-        words += (i > 0 ? ", " : "") + option_of(factors[i].parameter) + ' ' + rounded(values[i]);
+        words += (i > 0 ? ", " : "") + option_of(factors[i].scaled) + ' ' + rounded(values[i]);
     return words;
 }
 

@@ -13,9 +13,9 @@ namespace jointcreep::creepfit
 using Factors = std::vector<back_analysis::Factor>;
 
 // The name for --fit: "kelvin-stiffness".
-std::string option_of(sensitivity::Parameter parameter);
+std::string option_of(Scaled scaled);
 // "Kelvin stiffness E".
-std::string words_of(sensitivity::Parameter parameter);
+std::string words_of(Scaled scaled);
 // All that --fit may have, with `last` before the last one: "kelvin-stiffness, ... and horizontal-stress".
 std::string all_options(const std::string& last);
 

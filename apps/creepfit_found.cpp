@@ -20,7 +20,6 @@ using back_analysis::Found;
 using estimation::AtBound;
 using estimation::Confidence;
 using estimation::Interval;
-using sensitivity::Parameter;
 using Measurements = std::vector<scene::Measurement>;
 
 namespace
@@ -67,13 +66,13 @@ std::string shown_factor(const Found& found, std::size_t i)
 void add_factors(Summary& summary, const Found& found, const Factors& factors)
 {
     for (std::size_t i = 0; i < factors.size(); ++i)
-        summary.add("factor on " + words_of(factors[i].parameter), shown_factor(found, i));
+        summary.add("factor on " + words_of(factors[i].scaled), shown_factor(found, i));
     const Confidence& confidence = found.confidence;
     for (std::size_t i = 0; i < factors.size(); ++i)
         for (std::size_t j = i + 1; j < factors.size(); ++j)
             if (!confidence.is_fixed[i] && !confidence.is_fixed[j])
-                summary.add("correlation of " + option_of(factors[i].parameter) + " and " +
-                                option_of(factors[j].parameter),
+                summary.add("correlation of " + option_of(factors[i].scaled) + " and " +
+                                option_of(factors[j].scaled),
                             rounded(confidence.correlation(static_cast<Eigen::Index>(i),
                                                            static_cast<Eigen::Index>(j)),
                                     3));
@@ -144,7 +143,7 @@ std::string combination_in_words(const Eigen::VectorXd& direction, double by, co
         const double share = direction[static_cast<Eigen::Index>(i)];
         if (std::abs(share) < 0.1)
             continue;
-        words += (words.empty() ? "" : " with ") + option_of(factors[i].parameter) + " x " +
+        words += (words.empty() ? "" : " with ") + option_of(factors[i].scaled) + " x " +
                  rounded(std::exp(share * by), 3);
     }
     return words;
@@ -199,19 +198,19 @@ void print_for_the_scene(const Found& found, const Scene& scene, const Factors& 
         if (found.confidence.is_fixed[i] && found.minimum.at_bound[i] == AtBound::no)
             continue;
         const double f = found.factors[i];
-        switch (factors[i].parameter) {
-        case Parameter::kelvin_stiffness:
+        switch (factors[i].scaled) {
+        case Scaled::kelvin_stiffness:
             E *= f;
             break;
-        case Parameter::kelvin_viscosity:
+        case Scaled::kelvin_viscosity:
             eta *= f;
             break;
-        case Parameter::joint_stiffness:
+        case Scaled::joint_stiffness:
             K *= f;
             E *= f;
             eta *= f;
             break;
-        case Parameter::horizontal_stress:
+        case Scaled::horizontal_stress:
             print_stress(scene.in_situ_stress, f);
         }
     }
@@ -239,17 +238,16 @@ std::string found_table(const Found& found, const Factors& factors, bool knows_d
         "factor,value,low_95,high_95,low_95_all,high_95_all,standard_error_of_logarithm,at_bound,"
         "weak_combination_times,converged,runs,chi_squared,degrees_of_freedom,condition_number";
     for (const back_analysis::Factor& factor : factors)
-        table += ",correlation_" + option_of(factor.parameter);
+        table += ",correlation_" + option_of(factor.scaled);
     table += '\n';
     for (std::size_t i = 0; i < factors.size(); ++i) {
         const auto index = static_cast<Eigen::Index>(i);
         const double logarithm = found.minimum.parameters[index];
         const Interval each = confidence.interval(logarithm, index),
                        all = confidence.interval(logarithm, index, true);
-        table += option_of(factors[i].parameter) + ',' + shown(found.factors[i]) + ',' +
-                 shown_bound(each.low) + ',' + shown_bound(each.high) + ',' + shown_bound(all.low) + ',' +
-                 shown_bound(all.high) + ',' +
-                 (confidence.is_fixed[i] ? "" : shown(confidence.standard_error(index))) + ',' +
+        table += option_of(factors[i].scaled) + ',' + shown(found.factors[i]) + ',' + shown_bound(each.low) +
+                 ',' + shown_bound(each.high) + ',' + shown_bound(all.low) + ',' + shown_bound(all.high) +
+                 ',' + (confidence.is_fixed[i] ? "" : shown(confidence.standard_error(index))) + ',' +
                  word_of(found.minimum.at_bound[i]) + ',' +
                  (weak ? shown(std::exp(weak->direction[index] * confidence.quantile * weak->standard_error))
                        : "") +

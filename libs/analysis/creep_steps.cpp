@@ -41,17 +41,14 @@ std::optional<StableLimit> limit_of_published(const Section& section)
     const Scene& scene = section.scene;
     if (!scene.creep || scene.creep->scheme != CreepScheme::published)
         return {};
-    const creep::StepLimit limit = creep::longest_step(section.joints, scene.rocks);
-    if (limit.rock < 0 && limit.edge < 0)
+    const creep::StepLimit limit = mechanics::longest_stable_step(scene, section.network, section.joints);
+    if (limit.set_by.empty())
         return {};
-    const std::string of = limit.rock >= 0
-                               ? "rock \"" + scene.rocks[limit.rock].name + "\""
-                               : "joint \"" + joint_name(scene, section.network, limit.edge) + "\"";
     if (scene.creep->step && *scene.creep->step >= limit.step)
         throw unstable_step("creep step of " + shown(*scene.creep->step / unit::day) +
                             " day: the published scheme is stable only below " +
-                            shown(limit.step / unit::day) + " day, the limit of " + of);
-    return StableLimit{limit.step, of};
+                            shown(limit.step / unit::day) + " day, the limit of " + limit.set_by);
+    return StableLimit{limit.step, limit.set_by};
 }
 
 } // namespace
@@ -145,9 +142,9 @@ bool CreepSteps::step_to(double target, int& cuts_left)
 {
     mechanics::Assembly& assembly = section_.assembly;
     const mechanics::State start = state_of(assembly);
-    const std::optional<creep::Creep> creep_at_start = creep_;
+    const std::optional<mechanics::Creep> creep_at_start = creep_;
     if (closing_)
-        closing_->start(assembly);
+        closing_->start(assembly.contacts);
     watchers_.tell(&Watcher::step_begins);
     const Step step = settle(target, start, cuts_left);
     watchers_.tell(&Watcher::step_settles, step);
@@ -159,7 +156,7 @@ bool CreepSteps::step_to(double target, int& cuts_left)
         return false;
     }
     if (closing_)
-        closing_->finish(assembly, step.duration);
+        closing_->finish(assembly.contacts, step.duration);
     last_duration_ = step.duration;
     last_move_ = assembly.displacement;
     for (std::size_t g = 0; g < last_move_.size(); ++g)
@@ -188,8 +185,9 @@ Step CreepSteps::settle(double target, const mechanics::State& start, int& cuts_
         }
         const Step step{end, duration, end == target, creeps() ? &*creep_ : nullptr,
                         closing_ ? &*closing_ : nullptr};
-        const double longest =
-            closing_ && cuts_left > 0 ? closing_->longest_step(section_.assembly, duration) : duration;
+        const double longest = closing_ && cuts_left > 0
+                                   ? closing_->longest_step(section_.assembly.contacts, duration)
+                                   : duration;
         if (longest >= duration || longest < 1e-9 * (target - section_.now))
             return step;
         --cuts_left;

@@ -5,9 +5,9 @@
 #include "analysis/engines.hpp"
 #include "analysis/section.hpp"
 #include "analysis/watcher.hpp"
-#include "creep/closing.hpp"
-#include "creep/creep.hpp"
 #include "creep/step_length.hpp"
+#include "joint/closing.hpp"
+#include "mechanics/creep.hpp"
 #include "model/error.hpp"
 
 #include <optional>
@@ -67,9 +67,9 @@ private:
     const Watchers& watchers_;
     std::uint64_t state_every_;
     std::optional<StableLimit> stable_limit_;
-    std::optional<creep::Creep> creep_;
+    std::optional<mechanics::Creep> creep_;
     std::optional<creep::StepLength> length_;
-    std::optional<creep::Closing> closing_;
+    std::optional<joint::Closing> closing_;
     std::vector<Vector2d> last_move_; // of gridpoints in the last step [m]; none after a sudden change
     double last_duration_ = 0;        // of the last step [s]
     std::uint64_t steps_ = 0;         // of creep, whole ones

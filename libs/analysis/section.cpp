@@ -1,5 +1,6 @@
 #include "analysis/section.hpp"
 
+#include "joint/equivalent.hpp"
 #include "mechanics/failure.hpp"
 #include "model/error.hpp"
 #include "model/units.hpp"
@@ -96,20 +97,13 @@ void Section::transfer(const Transfer& to, Checkpoint& kept)
     findings.transfer(to, kept);
 }
 
-std::string joint_name(const Scene& scene, const Network& network, Index edge)
-{
-    const Index joint = network.blocks.edge_joint[edge];
-    return joint < 0 ? scene.boundaries[network.blocks.edge_boundary[edge]].joint
-                     : network.names.joint_set[network.joints.set[joint]];
-}
-
 Findings::Counts contacts_at_yield(const Section& section)
 {
     Findings::Counts contacts;
     const std::vector<ContactStatus>& status = section.assembly.contacts.status;
     for (std::size_t c = 0; c < status.size(); ++c)
         if (status[c] != ContactStatus::stuck)
-            ++contacts[joint_name(section.scene, section.network, section.mesh().contact_edge[c])];
+            ++contacts[joint::joint_name(section.scene, section.network, section.mesh().contact_edge[c])];
     return contacts;
 }
 

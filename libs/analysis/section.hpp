@@ -27,7 +27,7 @@ struct Recording {
     std::uint64_t state_every = 0;        // creep steps
     std::uint64_t step_history_every = 0; // solver steps
     // Parameters of sensitivities, found with the histories by the implicit engine alone.
-    std::vector<sensitivity::Parameter> parameters{};
+    std::vector<Scaled> parameters{};
     // Gets the state before every stage, and the result so far; and whenever that much time has passed, if it is given.
     std::function<void(const Result&, const Checkpoint&)> keep{};
     std::optional<std::chrono::duration<double>> keep_every{};
@@ -91,9 +91,6 @@ struct Section {
     Findings findings;
     SearchKeeper* keeper = nullptr; // of long searches for equilibrium, if they are kept
 };
-
-// The name of an edge's joint: its set, or the material of the joint that a boundary rests on.
-std::string joint_name(const Scene& scene, const Network& network, Index edge);
 
 // Contacts, by joint, that do not stick.
 Findings::Counts contacts_at_yield(const Section& section);

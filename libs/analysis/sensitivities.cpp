@@ -3,8 +3,7 @@
 namespace jointcreep::analysis
 {
 
-Sensitivities::Sensitivities(std::vector<sensitivity::Parameter> parameters, Section& section,
-                             implicit::Solver& engine)
+Sensitivities::Sensitivities(std::vector<Scaled> parameters, Section& section, implicit::Solver& engine)
     : section_(section), engine_(engine),
       sensitivity_(std::move(parameters), section.scene, section.mesh(), section.assembly)
 {
@@ -21,7 +20,7 @@ void Sensitivities::displacements_start()
     sensitivity_.start_from_here(section_.assembly);
 }
 
-void Sensitivities::creep_begins(const creep::Creep& creep)
+void Sensitivities::creep_begins(const mechanics::Creep& creep)
 {
     sensitivity_.start_creep(creep);
 }

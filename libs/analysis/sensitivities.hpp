@@ -15,11 +15,11 @@ class Sensitivities : public Watcher
 public:
     // Before the in-situ equilibrium. `engine` is the one that finds the equilibria. Rows go into
     // Section::sensitivities.
-    Sensitivities(std::vector<sensitivity::Parameter> parameters, Section& section, implicit::Solver& engine);
+    Sensitivities(std::vector<Scaled> parameters, Section& section, implicit::Solver& engine);
 
     void equilibrium_ends(double still_applied) override;
     void displacements_start() override;
-    void creep_begins(const creep::Creep& creep) override;
+    void creep_begins(const mechanics::Creep& creep) override;
     void step_begins() override;
     void step_settles(const Step& step) override;
     void step_is_rejected() override;

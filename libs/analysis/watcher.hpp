@@ -3,8 +3,8 @@
 
 #pragma once
 
-#include "creep/closing.hpp"
-#include "creep/creep.hpp"
+#include "joint/closing.hpp"
+#include "mechanics/creep.hpp"
 
 #include <string>
 #include <vector>
@@ -17,8 +17,8 @@ struct Step {
     double end;                    // since start [s]
     double duration;               // [s]
     bool is_whole;                 // has its full length: not cut short where a contact closes
-    const creep::Creep* creep;     // none: only the loading changes
-    const creep::Closing* closing; // none: the creep scheme is of first order, and no step is cut
+    const mechanics::Creep* creep; // none: only the loading changes
+    const joint::Closing* closing; // none: the creep scheme is of first order, and no step is cut
 };
 
 class Watcher
@@ -31,7 +31,7 @@ public:
     // In situ, at equilibrium: displacements count from here.
     virtual void displacements_start() {}
     // Called after that, with the creep of joints and rock.
-    virtual void creep_begins(const creep::Creep&) {}
+    virtual void creep_begins(const mechanics::Creep&) {}
 
     // A step of creep and loading begins. An equilibrium is found at its end. Then the step is rejected for its error,
     // and everything is as it was at its start; or it is accepted and has ended.

@@ -213,7 +213,7 @@ public:
         if (whitening_.readings().empty())
             throw input_error("all readings are first readings, from which measurements count");
         for (const Factor& factor : settings.factors)
-            recording_.parameters.push_back(factor.parameter);
+            recording_.parameters.push_back(factor.scaled);
     }
 
     std::size_t readings() const { return whitening_.readings().size(); }
@@ -262,7 +262,7 @@ private:
         Scene changed = scene_;
         EquivalentJoints stiffer = joints_;
         for (std::size_t i = 0; i < factors.size(); ++i)
-            sensitivity::scale(stiffer, changed.in_situ_stress, settings_.factors[i].parameter, factors[i]);
+            sensitivity::scale(stiffer, changed.in_situ_stress, settings_.factors[i].scaled, factors[i]);
         analysis::Analysis analysis(changed, network_, stiffer, settings_.threads, recording_,
                                     [](double, const std::string&) {});
         analysis.run();

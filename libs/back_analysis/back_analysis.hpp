@@ -13,7 +13,7 @@ namespace jointcreep::back_analysis
 {
 
 struct Factor {
-    sensitivity::Parameter parameter;
+    Scaled scaled;
     double start = 1, low = 0.05, high = 20; // [-]
 };
 

@@ -2,7 +2,8 @@
 
 #pragma once
 
-#include "creep/creep.hpp"
+#include "creep/scheme.hpp"
+#include "model/checkpoint.hpp"
 
 namespace jointcreep::creep
 {
@@ -26,7 +27,7 @@ public:
 
     void transfer(const Transfer& to, Checkpoint& kept) { to.value(wanted_, kept.creep_step); }
 
-    // The error that a re-closing contact may be left with [m] (creep/closing.hpp).
+    // The error that a re-closing contact may be left with [m] (joint/closing.hpp).
     double closing_tolerance() const;
 
 private:

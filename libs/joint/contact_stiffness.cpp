@@ -10,11 +10,11 @@ Tangent tangent_of_response(const Contacts& contacts, std::size_t c, const State
     return {by_opening.x(), by_shear.y(), by_opening.y(), by_shear.x()};
 }
 
-std::vector<Tangent> tangents_of_responses(const Contacts& contacts, const std::vector<State>& start)
+std::vector<Tangent> tangents_of_responses(const Contacts& contacts, const ContactsState& start)
 {
     std::vector<Tangent> tangents(contacts.law.size());
     for (const Index c : present(contacts))
-        tangents[c] = tangent_of_response(contacts, c, start[c]);
+        tangents[c] = tangent_of_response(contacts, c, start.state[c]);
     return tangents;
 }
 

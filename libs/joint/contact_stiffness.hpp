@@ -40,7 +40,7 @@ struct Tangent {
 // The tangent of the response to the present displacement from the state `start`; of all contacts, 0 for those that are
 // removed.
 Tangent tangent_of_response(const Contacts& contacts, std::size_t c, const State& start);
-std::vector<Tangent> tangents_of_responses(const Contacts& contacts, const std::vector<State>& start);
+std::vector<Tangent> tangents_of_responses(const Contacts& contacts, const ContactsState& start);
 
 // The tangents with the share `soft` of the springs wherever they have no stiffness.
 std::vector<Tangent> without_zeros(const Contacts& contacts, std::vector<Tangent> tangents, double soft);

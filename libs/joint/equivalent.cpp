@@ -466,6 +466,13 @@ SetAverages averages_of(const Scene& scene, const Network& network, const Pieces
 
 } // namespace
 
+std::string joint_name(const Scene& scene, const Network& network, Index edge)
+{
+    const Index joint = network.blocks.edge_joint[edge];
+    return joint < 0 ? scene.boundaries[network.blocks.edge_boundary[edge]].joint
+                     : network.names.joint_set[network.joints.set[joint]];
+}
+
 const JointMaterial& material_of(const Scene& scene, const Network& network, std::size_t edge)
 {
     const auto material = [&](const std::string& name) -> const JointMaterial& {

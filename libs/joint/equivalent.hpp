@@ -50,4 +50,7 @@ EquivalentJoints average_strength(const Scene& scene, const Network& network);
 // two rocks the softer one in normal direction; or the one that a boundary rests on.
 const JointMaterial& material_of(const Scene& scene, const Network& network, std::size_t edge);
 
+// The name of an edge's joint: its set, or the material of the joint that a boundary rests on.
+std::string joint_name(const Scene& scene, const Network& network, Index edge);
+
 } // namespace jointcreep::joint

@@ -9,14 +9,20 @@
 // rock/zone_stiffness.hpp and joint/contact_stiffness.hpp have its Tangent, and
 //   present, coupled_by, add_stiffness, add_springs, without_zeros; with a constant stiffness constants and
 //   add_constant_stiffness, without one add_force_change.
-// What it does in a search for equilibrium by tangents is in rock/active_zones.hpp and joint/active_contacts.hpp.
+// What it does in a search for equilibrium by tangents is in rock/active_zones.hpp and joint/active_contacts.hpp. What
+// creeps of it is in rock/creep.hpp and joint/creep.hpp; its derivatives by factors are in rock/zone_changes.hpp,
+// joint/contact_changes.hpp, and for creep in the two creep_changes.hpp.
 
 #pragma once
 
 #include "joint/active_contacts.hpp"
 #include "joint/contact_stiffness.hpp"
 #include "joint/contacts.hpp"
+#include "joint/creep.hpp"
+#include "joint/creep_changes.hpp"
 #include "rock/active_zones.hpp"
+#include "rock/creep.hpp"
+#include "rock/creep_changes.hpp"
 #include "rock/zone_stiffness.hpp"
 #include "rock/zones.hpp"
 
@@ -47,6 +53,9 @@ using ForcesState = ByForce<rock::ZonesState, joint::ContactsState>;
 using Tangents = ByForce<std::vector<rock::Tangent>, std::vector<joint::Tangent>>;
 using Stiffening = ByForce<std::vector<rock::Stiffening>, std::vector<joint::Stiffening>>;
 using ActiveForces = ByForce<rock::ActiveZones, joint::ActiveContacts>;
+using CreepingForces = ByForce<rock::CreepingZones, joint::CreepingContacts>;
+using Changes = ByForce<rock::ZoneChanges, joint::ContactChanges>;
+using CreepChanges = ByForce<rock::CreepingZoneChanges, joint::CreepingContactChanges>;
 template <class T>
 using OfEachForce = ByForce<T, T>;
 

@@ -21,46 +21,8 @@ void add_by_shear_modulus(const Zones& zones, const ZoneChanges& changes, std::s
         stress += stress_by(zones, z, displacement, changes.shear_modulus[z] * Vector3d(4. / 3, -2. / 3, 1));
 }
 
-} // namespace
-
-ZoneChanges unchanged(const Zones& zones)
-{
-    const std::size_t n = zones.area.size();
-    const std::vector<Vector3d> none(n, Vector3d::Zero());
-    return {.initial_stress = none, .stress = none, .shear_modulus = std::vector<double>(n, 0.0)};
-}
-
-ZoneChanges changed_by_horizontal_stress(const Zones& zones)
-{
-    ZoneChanges changes = unchanged(zones);
-    for (std::size_t z = 0; z < zones.area.size(); ++z)
-        changes.initial_stress[z].x() = zones.initial_stress[z].x();
-    return changes;
-}
-
-std::vector<Vector3d> stresses_at_fixed_gridpoints(const Zones& zones, const ZoneChanges& changes,
-                                                   std::span<const Vector2d> displacement)
-{
-    std::vector<Vector3d> stresses = changes.initial_stress;
-    for (std::size_t z = 0; z < stresses.size(); ++z)
-        add_by_shear_modulus(zones, changes, z, displacement, stresses[z]);
-    return stresses;
-}
-
-void take_response(const Zones& zones, std::span<const Vector2d> displacement,
-                   std::span<const Vector2d> displacement_change, ZoneChanges& changes)
-{
-    for (std::size_t z = 0; z < zones.area.size(); ++z) {
-        changes.stress[z].setZero();
-        if (!zones.is_present[z])
-            continue;
-        changes.stress[z] =
-            changes.initial_stress[z] + stress_by(zones, z, displacement_change, zones.stiffness[z]);
-        add_by_shear_modulus(zones, changes, z, displacement, changes.stress[z]);
-    }
-}
-
-void add_forces(const Zones& zones, const std::vector<Vector3d>& stress, std::vector<Vector2d>& force)
+// Adds the forces of zones with these stresses [Pa] to the forces on gridpoints [N/m].
+void add_forces_of(const Zones& zones, const std::vector<Vector3d>& stress, std::vector<Vector2d>& force)
 {
     for (std::size_t z = 0; z < zones.area.size(); ++z) {
         if (!zones.is_present[z])
@@ -75,7 +37,49 @@ void add_forces(const Zones& zones, const std::vector<Vector3d>& stress, std::ve
     }
 }
 
-void start_from_here(ZoneChanges& changes)
+} // namespace
+
+ZoneChanges changed_by(const Zones& zones, Scaled scaled, const Scene& /*scene*/, const Mesh& /*mesh*/)
+{
+    const std::size_t n = zones.area.size();
+    const std::vector<Vector3d> none(n, Vector3d::Zero());
+    ZoneChanges changes{.initial_stress = none, .stress = none, .shear_modulus = std::vector<double>(n, 0.0)};
+    if (scaled == Scaled::horizontal_stress)
+        for (std::size_t z = 0; z < n; ++z)
+            changes.initial_stress[z].x() = zones.initial_stress[z].x();
+    return changes;
+}
+
+void add_forces(const Zones& zones, const ZoneChanges& changes, std::vector<Vector2d>& force)
+{
+    add_forces_of(zones, changes.stress, force);
+}
+
+void add_forces_at_fixed_gridpoints(const Zones& zones, const ZoneChanges& changes,
+                                    const ZonesState& /*start*/, std::span<const Vector2d> displacement,
+                                    std::vector<Vector2d>& force)
+{
+    std::vector<Vector3d> stresses = changes.initial_stress;
+    for (std::size_t z = 0; z < stresses.size(); ++z)
+        add_by_shear_modulus(zones, changes, z, displacement, stresses[z]);
+    add_forces_of(zones, stresses, force);
+}
+
+void take_response(const Zones& zones, const ZonesState& /*start*/, std::span<const Vector2d> displacement,
+                   std::span<const Vector2d> displacement_change, ZoneChanges& changes)
+{
+    for (std::size_t z = 0; z < zones.area.size(); ++z) {
+        changes.stress[z].setZero();
+        if (!zones.is_present[z])
+            continue;
+        changes.stress[z] =
+            changes.initial_stress[z] + stress_by(zones, z, displacement_change, zones.stiffness[z]);
+        add_by_shear_modulus(zones, changes, z, displacement, changes.stress[z]);
+    }
+}
+
+void start_changes_from_here(const Zones& /*zones*/, std::span<const Vector2d> /*displacement_change*/,
+                             ZoneChanges& changes, ZonesState& /*start*/)
 {
     changes.initial_stress = changes.stress;
 }

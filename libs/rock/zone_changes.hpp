@@ -1,8 +1,9 @@
-// Derivatives of zones of elastic rock (rock/zones.hpp) by a parameter. A parameter is a factor. Changes are of the
-// first order, per unit of its logarithm.
+// Derivatives of zones of elastic rock (rock/zones.hpp) by a factor. Changes are of the first order, per unit of its
+// logarithm.
 
 #pragma once
 
+#include "model/scaled.hpp"
 #include "rock/zones.hpp"
 
 namespace jointcreep::rock
@@ -11,27 +12,30 @@ namespace jointcreep::rock
 // Changes of the arrays of Zones: {xx, yy, xy} of stresses, and of the shear modulus in their stiffness; the bulk
 // modulus does not change [Pa].
 struct ZoneChanges {
-    std::vector<Vector3d> initial_stress, stress;
-    std::vector<double> shear_modulus;
+    std::vector<Vector3d> initial_stress{}, stress{};
+    std::vector<double> shear_modulus{};
 };
 
-// Changes of zones before the in-situ equilibrium: by a parameter that zones do not have (all 0), and by the factor on
-// the horizontal in-situ stress.
-ZoneChanges unchanged(const Zones& zones);
-ZoneChanges changed_by_horizontal_stress(const Zones& zones);
+// The functions of a kind of force that sensitivities call (mechanics/forces.hpp).
 
-// Changes of the stresses at fixed displacements of the gridpoints [m].
-std::vector<Vector3d> stresses_at_fixed_gridpoints(const Zones& zones, const ZoneChanges& changes,
-                                                   std::span<const Vector2d> displacement);
+// Elastic rock has them all.
+inline void check_sensitivities(const Zones& /*zones*/) {}
+
+// Changes before the in-situ equilibrium.
+ZoneChanges changed_by(const Zones& zones, Scaled scaled, const Scene& scene, const Mesh& mesh);
+
+// Adds the changes of forces on gridpoints [N/m]: those there are, and those at fixed displacements of the gridpoints
+// [m].
+void add_forces(const Zones& zones, const ZoneChanges& changes, std::vector<Vector2d>& force);
+void add_forces_at_fixed_gridpoints(const Zones& zones, const ZoneChanges& changes, const ZonesState& start,
+                                    std::span<const Vector2d> displacement, std::vector<Vector2d>& force);
 
 // Adds the effect of changed displacements [m] on the stresses.
-void take_response(const Zones& zones, std::span<const Vector2d> displacement,
+void take_response(const Zones& zones, const ZonesState& start, std::span<const Vector2d> displacement,
                    std::span<const Vector2d> displacement_change, ZoneChanges& changes);
 
-// Adds the forces of zones with these stresses [Pa] to the forces on gridpoints [N/m].
-void add_forces(const Zones& zones, const std::vector<Vector3d>& stress, std::vector<Vector2d>& force);
-
 // The derivative of start_from_here(zones).
-void start_from_here(ZoneChanges& changes);
+void start_changes_from_here(const Zones& zones, std::span<const Vector2d> displacement_change,
+                             ZoneChanges& changes, ZonesState& start);
 
 } // namespace jointcreep::rock

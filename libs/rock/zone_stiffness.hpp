@@ -23,6 +23,12 @@ Tangent tangent_at(const Zones& zones, std::size_t z, std::span<const Vector2d> 
 std::vector<Tangent> tangents_of(const Zones& zones, std::span<const Vector2d> displacement,
                                  const ZonesState& start);
 
+// Those of sensitivities: none, rock is elastic there and has its constant stiffness.
+inline std::vector<Tangent> tangents_of_responses(const Zones&, const ZonesState& /*start*/)
+{
+    return {};
+}
+
 // Elastic rock has stiffness everywhere.
 inline std::vector<Tangent> without_zeros(const Zones&, std::vector<Tangent> tangents, double /*soft*/)
 {

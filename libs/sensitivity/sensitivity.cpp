@@ -12,40 +12,6 @@ using mechanics::Assembly;
 namespace
 {
 
-joint::ContactChanges changes_of(const joint::Contacts& contacts, Parameter parameter, const Scene& scene,
-                                 const Mesh& mesh)
-{
-    switch (parameter) {
-    case Parameter::joint_stiffness:
-        return changed_by_stiffness(contacts);
-    case Parameter::horizontal_stress:
-        return changed_by_horizontal_stress(contacts, scene.in_situ_stress, mesh);
-    case Parameter::kelvin_stiffness:
-    case Parameter::kelvin_viscosity:
-        break;
-    }
-    return unchanged(contacts);
-}
-
-rock::ZoneChanges changes_of(const rock::Zones& zones, Parameter parameter)
-{
-    return parameter == Parameter::horizontal_stress ? changed_by_horizontal_stress(zones) : unchanged(zones);
-}
-
-// Of chains of joints.
-std::vector<Chain> changes_of(const std::vector<Chain>& chains, Parameter parameter)
-{
-    const bool all = parameter == Parameter::joint_stiffness;
-    std::vector<Chain> changes;
-    for (const Chain& chain : chains) {
-        Chain& change = changes.emplace_back(Chain{all ? chain.spring : 0.0, {}});
-        for (const KelvinUnit& unit : chain.units)
-            change.units.push_back({all || parameter == Parameter::kelvin_stiffness ? unit.stiffness : 0.0,
-                                    all || parameter == Parameter::kelvin_viscosity ? unit.viscosity : 0.0});
-    }
-    return changes;
-}
-
 void take_ties(const Assembly& assembly, std::vector<Vector2d>& force)
 {
     for (const auto& [follower, leader] : assembly.tied) {
@@ -56,63 +22,71 @@ void take_ties(const Assembly& assembly, std::vector<Vector2d>& force)
 
 } // namespace
 
-void scale(EquivalentJoints& joints, InSituStress& stress, Parameter parameter, double factor)
+void scale(EquivalentJoints& joints, InSituStress& stress, Scaled scaled, double factor)
 {
-    switch (parameter) {
-    case Parameter::joint_stiffness:
+    switch (scaled) {
+    case Scaled::joint_stiffness:
         return joint::multiply_stiffness(joints, factor);
-    case Parameter::kelvin_stiffness:
+    case Scaled::kelvin_stiffness:
         return joint::multiply_kelvin_stiffness(joints, factor);
-    case Parameter::kelvin_viscosity:
+    case Scaled::kelvin_viscosity:
         return joint::multiply_viscosity(joints, factor);
-    case Parameter::horizontal_stress:
+    case Scaled::horizontal_stress:
         return stress.multiply_horizontal(factor);
     }
 }
 
-Sensitivity::Sensitivity(std::vector<Parameter> parameters, const Scene& scene, const Mesh& mesh,
+Sensitivity::Sensitivity(std::vector<Scaled> parameters, const Scene& scene, const Mesh& mesh,
                          const Assembly& assembly)
     : parameters_(std::move(parameters))
 {
-    check_sensitivities(assembly.contacts);
+    for_each_force(
+        [](const auto& force, auto& its_start) {
+            check_sensitivities(force);
+            its_start = state_of(force);
+        },
+        assembly, start_);
     const std::size_t n = assembly.contacts.law.size();
-    start_.assign(n, {});
     const std::vector<Vector2d> no_gridpoints(assembly.position.size(), Vector2d::Zero());
-    for (const Parameter parameter : parameters_)
-        changes_.push_back({.displacement = no_gridpoints,
-                            .released = no_gridpoints,
-                            .contacts = changes_of(assembly.contacts, parameter, scene, mesh),
-                            .zones = changes_of(assembly.zones, parameter),
-                            .creep = {},
-                            .opening_before = {},
-                            .opening = std::vector<double>(n, 0.0),
-                            .rate = std::vector<double>(n, 0.0)});
+    for (const Scaled parameter : parameters_) {
+        Change& change = changes_.emplace_back();
+        change.displacement = change.released = no_gridpoints;
+        for_each_force([&](const auto& force,
+                           auto& its_change) { its_change = changed_by(force, parameter, scene, mesh); },
+                       assembly, change.forces);
+        change.opening.assign(n, 0.0);
+        change.rate.assign(n, 0.0);
+    }
 }
 
 std::vector<Vector2d> Sensitivity::forces(const Assembly& assembly, const Change& change)
 {
-    std::vector<Vector2d> force(assembly.position.size(), Vector2d::Zero());
-    add_forces(assembly.zones, change.zones.stress, force);
-    add_forces(assembly.contacts, change.contacts.traction, force);
-    take_ties(assembly, force);
-    return force;
+    std::vector<Vector2d> all(assembly.position.size(), Vector2d::Zero());
+    for_each_force([&](const auto& force, const auto& its_change) { add_forces(force, its_change, all); },
+                   assembly, change.forces);
+    take_ties(assembly, all);
+    return all;
 }
 
 std::vector<Vector2d> Sensitivity::forces_at_fixed_gridpoints(const Assembly& assembly,
                                                               const Change& change) const
 {
-    std::vector<Vector2d> force(assembly.position.size(), Vector2d::Zero());
-    add_forces(assembly.zones,
-               stresses_at_fixed_gridpoints(assembly.zones, change.zones, assembly.displacement), force);
-    add_forces(assembly.contacts, tractions_at_fixed_gridpoints(assembly.contacts, change.contacts, start_),
-               force);
-    take_ties(assembly, force);
-    return force;
+    std::vector<Vector2d> all(assembly.position.size(), Vector2d::Zero());
+    for_each_force(
+        [&](const auto& force, const auto& its_change, const auto& its_start) {
+            add_forces_at_fixed_gridpoints(force, its_change, its_start, assembly.displacement, all);
+        },
+        assembly, change.forces, start_);
+    take_ties(assembly, all);
+    return all;
 }
 
 void Sensitivity::settle(const Assembly& assembly, implicit::Solver& engine, double time, double held)
 {
-    const mechanics::Tangents tangents{.contacts = tangents_of_responses(assembly.contacts, start_)};
+    mechanics::Tangents tangents;
+    for_each_force([](const auto& force, const auto& its_start,
+                      auto& its_tangents) { its_tangents = tangents_of_responses(force, its_start); },
+                   assembly, start_, tangents);
     for (Change& change : changes_) {
         std::vector<Vector2d> force = forces_at_fixed_gridpoints(assembly, change);
         if (held > 0)
@@ -126,49 +100,64 @@ void Sensitivity::settle(const Assembly& assembly, implicit::Solver& engine, dou
                                     ": some rock is held by slipping joints only");
         change.displacement.assign(force.size(), Vector2d::Zero());
         stiffness.add_to(change.displacement, x, 1);
-        take_response(assembly.contacts, start_, change.displacement, change.contacts);
-        take_response(assembly.zones, assembly.displacement, change.displacement, change.zones);
+        for_each_force(
+            [&](const auto& force_of, const auto& its_start, auto& its_change) {
+                take_response(force_of, its_start, assembly.displacement, change.displacement, its_change);
+            },
+            assembly, start_, change.forces);
     }
-    start_ = assembly.contacts.state;
+    for_each_force([](const auto& force, auto& its_start) { its_start = state_of(force); }, assembly, start_);
 }
 
 void Sensitivity::start_from_here(const Assembly& assembly)
 {
     for (Change& change : changes_) {
-        joint::start_from_here(assembly.contacts, change.displacement, change.contacts);
-        rock::start_from_here(change.zones);
+        for_each_force(
+            [&](const auto& force, auto& its_start, auto& its_change) {
+                start_changes_from_here(force, change.displacement, its_change, its_start);
+            },
+            assembly, start_, change.forces);
         change.displacement.assign(change.displacement.size(), Vector2d::Zero());
     }
-    joint::forget_slip(start_);
 }
 
-void Sensitivity::start_creep(const creep::Creep& creep)
+void Sensitivity::start_creep(const mechanics::Creep& creep)
 {
     for (Change& change : changes_)
-        change.creep = creep::CreepChanges(creep, change.contacts, change.zones);
+        for_each_force(
+            [](const auto& creeping, const auto& its_change, auto& of_creep) {
+                of_creep = {creeping, its_change};
+            },
+            creep.forces(), change.forces, change.creep);
 }
 
-void Sensitivity::creep_step(const creep::Creep& creep, double duration, const Assembly& assembly,
+void Sensitivity::creep_step(const mechanics::Creep& creep, double duration, const Assembly& assembly,
                              implicit::Solver& engine, double time)
 {
-    std::vector<creep::StepChanges> steps;
+    std::vector<mechanics::OfEachForce<creep::StepChanges>> steps(changes_.size());
     for (std::size_t p = 0; p < changes_.size(); ++p) {
         Change& change = changes_[p];
-        steps.push_back(
-            step_changes(creep, changes_of(creep.chains(), parameters_[p]), duration, change.duration));
-        change.creep.begin(creep, steps[p], assembly, change.contacts, change.zones);
+        for_each_force(
+            [&](const auto& creeping, const auto& force, auto& its_steps, auto& of_creep, auto& its_change) {
+                its_steps = creep::step_changes(creeping.chains(), chain_changes(creeping, parameters_[p]),
+                                                creep.scheme(), duration, change.duration);
+                of_creep.begin(creeping, its_steps, force, its_change);
+            },
+            creep.forces(), assembly, steps[p], change.creep, change.forces);
     }
     settle(assembly, engine, time);
     for (std::size_t p = 0; p < changes_.size(); ++p) {
         Change& change = changes_[p];
-        find_openings(assembly, change); // with the stiffnesses of the step, as creep::Closing has them
-        change.creep.end(creep, steps[p], assembly, change.contacts, change.zones);
+        find_openings(assembly, change); // with the stiffnesses of the step, as joint::Closing has them
+        for_each_force([](const auto& creeping, const auto& force, const auto& its_steps, auto& of_creep,
+                          auto& its_change) { of_creep.end(creeping, its_steps, force, its_change); },
+                       creep.forces(), assembly, steps[p], change.creep, change.forces);
     }
 }
 
 double Sensitivity::opening(const Assembly& assembly, const Change& change, std::size_t c)
 {
-    return change_of_opening(assembly.contacts, change.contacts, change.displacement, c);
+    return change_of_opening(assembly.contacts, change.forces.contacts, change.displacement, c);
 }
 
 void Sensitivity::find_openings(const Assembly& assembly, Change& change)
@@ -192,7 +181,7 @@ void Sensitivity::shorten(double share)
         change.duration *= share;
 }
 
-void Sensitivity::cut(const creep::Closing::Cut& cut, const creep::Creep& creep, double duration,
+void Sensitivity::cut(const joint::Closing::Cut& cut, const mechanics::Creep& creep, double duration,
                       const Assembly& assembly, implicit::Solver& engine, double time)
 {
     if (cut.is_by_rate) {
@@ -215,7 +204,7 @@ void Sensitivity::cut(const creep::Closing::Cut& cut, const creep::Creep& creep,
     }
 }
 
-void Sensitivity::finish_step(const creep::Closing& closing, double duration, bool is_whole,
+void Sensitivity::finish_step(const joint::Closing& closing, double duration, bool is_whole,
                               const Assembly& assembly)
 {
     for (Change& change : changes_) {

@@ -1,9 +1,9 @@
-// Sensitivities of an analysis: derivatives of displacements, tractions, slip and creep by a parameter. They are
+// Sensitivities of an analysis: derivatives of displacements, tractions, slip and creep by a parameter, a factor. They are
 // computed along with the analysis by direct differentiation. Each equilibrium r(u, p) = 0 gives
 //     K du/dp = -dr/dp ,     K the tangent stiffness, from the factor that found the equilibrium.
 // The states that contacts and creep continue with are differentiated by the formulas that made them.
 //
-// Derivatives of contacts, zones and creep: joint/contact_changes.hpp, rock/zone_changes.hpp, creep/creep_changes.hpp.
+// Each kind of force has its own derivatives (mechanics/forces.hpp).
 // At the border between two branches of a joint law there are two derivatives; this computes one of them. Where a creep
 // step ends because a contact closes, the derivative of that moment is included. Left out: changes of the lengths of
 // steps chosen by their error, and changes of loads in the cut part of a step.
@@ -12,11 +12,10 @@
 
 #pragma once
 
-#include "creep/closing.hpp"
-#include "creep/creep_changes.hpp"
 #include "implicit/equilibrium.hpp"
-#include "joint/contact_changes.hpp"
-#include "rock/zone_changes.hpp"
+#include "joint/closing.hpp"
+#include "mechanics/creep.hpp"
+#include "model/scaled.hpp"
 
 #include <vector>
 
@@ -25,22 +24,14 @@ namespace jointcreep::sensitivity
 
 using Eigen::Vector2d;
 
-// Factors on properties of all joints, in normal and shear direction alike.
-enum class Parameter {
-    kelvin_stiffness,  // E
-    kelvin_viscosity,  // eta, of Kelvin units and Maxwell dashpots
-    joint_stiffness,   // K, with E / K and eta / E kept
-    horizontal_stress, // in situ: sigma_xx and its gradient
-};
-
 // The scene's joints and in-situ stress times a factor.
-void scale(EquivalentJoints& joints, InSituStress& stress, Parameter parameter, double factor);
+void scale(EquivalentJoints& joints, InSituStress& stress, Scaled scaled, double factor);
 
 class Sensitivity
 {
 public:
     // Start from an assembly before its in-situ equilibrium.
-    Sensitivity(std::vector<Parameter> parameters, const Scene& scene, const Mesh& mesh,
+    Sensitivity(std::vector<Scaled> parameters, const Scene& scene, const Mesh& mesh,
                 const mechanics::Assembly& assembly);
 
     // After an equilibrium; `held` is the share of the last stage's forces that still act, `time` [s] is for messages.
@@ -51,23 +42,23 @@ public:
     // Before mechanics::start_from_here.
     void start_from_here(const mechanics::Assembly& assembly);
     // After it, with what creeps.
-    void start_creep(const creep::Creep& creep);
+    void start_creep(const mechanics::Creep& creep);
 
     // Before a step, with the assembly's own stiffnesses.
     void start_step(const mechanics::Assembly& assembly);
     // The step is shortened: by a share, or to the moment at which a contact closes, after the equilibrium at the end
     // of `duration` [s].
     void shorten(double share);
-    void cut(const creep::Closing::Cut& cut, const creep::Creep& creep, double duration,
+    void cut(const joint::Closing::Cut& cut, const mechanics::Creep& creep, double duration,
              const mechanics::Assembly& assembly, implicit::Solver& engine, double time);
     // The step is accepted; `is_whole`: to the end that it was planned to have.
-    void finish_step(const creep::Closing& closing, double duration, bool is_whole,
+    void finish_step(const joint::Closing& closing, double duration, bool is_whole,
                      const mechanics::Assembly& assembly);
     // After a sudden change of loads.
     void start_afresh();
 
     // Before Creep::end, at the equilibrium of a step of `duration` [s].
-    void creep_step(const creep::Creep& creep, double duration, const mechanics::Assembly& assembly,
+    void creep_step(const mechanics::Creep& creep, double duration, const mechanics::Assembly& assembly,
                     implicit::Solver& engine, double time);
 
     // Before and after a stage's rock is excavated.
@@ -86,10 +77,9 @@ private:
     struct Change {
         std::vector<Vector2d> displacement; // of gridpoints [m]
         std::vector<Vector2d> released;     // forces on them that a stage releases [N/m]
-        joint::ContactChanges contacts;
-        rock::ZoneChanges zones;
-        creep::CreepChanges creep;
-        // For creep::Closing, and times.
+        mechanics::Changes forces;
+        mechanics::CreepChanges creep;
+        // For joint::Closing, and times.
         std::vector<double> opening_before, opening, rate; // contacts
         double now = 0, duration = 0;                      // [s]
     };
@@ -101,9 +91,9 @@ private:
     std::vector<Vector2d> forces_at_fixed_gridpoints(const mechanics::Assembly& assembly,
                                                      const Change& change) const;
 
-    std::vector<Parameter> parameters_;
-    std::vector<Change> changes_;     // of the parameters
-    std::vector<joint::State> start_; // of contacts, at the last equilibrium's start; then at its end
+    std::vector<Scaled> parameters_;
+    std::vector<Change> changes_;  // of the parameters
+    mechanics::ForcesState start_; // at the last equilibrium's start; then at its end
 };
 
 } // namespace jointcreep::sensitivity

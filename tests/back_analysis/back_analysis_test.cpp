@@ -20,7 +20,6 @@ using analysis::Recording;
 using scene::Measurement;
 using namespace jointcreep::test;
 using back_analysis::Found;
-using sensitivity::Parameter;
 
 namespace
 {
@@ -28,7 +27,7 @@ namespace
 constexpr double day = unit::day;
 
 struct Truth {
-    Parameter parameter;
+    Scaled scaled;
     double factor;
 };
 
@@ -40,7 +39,7 @@ std::vector<Measurement> made(const JointedSection& section, const std::vector<T
     Scene scene = section.scene;
     EquivalentJoints joints = section.joints;
     for (const Truth& t : truth)
-        sensitivity::scale(joints, scene.in_situ_stress, t.parameter, t.factor);
+        sensitivity::scale(joints, scene.in_situ_stress, t.scaled, t.factor);
     const Recording recording;
     Analysis analysis(scene, section.network, joints, 1, recording, [](double, const std::string&) {});
     analysis.run();
@@ -76,13 +75,12 @@ back_analysis::Settings settings_for(const std::vector<Truth>& truth)
 {
     back_analysis::Settings settings;
     for (const Truth& t : truth)
-        settings.factors.push_back({t.parameter});
+        settings.factors.push_back({t.scaled});
     return settings;
 }
 
-const std::vector<Truth> three{{Parameter::kelvin_stiffness, 0.8},
-                               {Parameter::kelvin_viscosity, 1.5},
-                               {Parameter::joint_stiffness, 1.25}};
+const std::vector<Truth> three{
+    {Scaled::kelvin_stiffness, 0.8}, {Scaled::kelvin_viscosity, 1.5}, {Scaled::joint_stiffness, 1.25}};
 
 // In how many trials each factor, and all of them at once, lie in their intervals; and the same for intervals
 // half as wide.
@@ -121,7 +119,7 @@ TEST(back_analysis, without_noise_gives_back_what_made_it)
     for (const std::optional<double> friction_angle : {std::optional<double>{}, std::optional<double>{0.5}}) {
         const JointedSection section(friction_angle);
         std::vector<Truth> four = three;
-        four.push_back({Parameter::horizontal_stress, 1.1});
+        four.push_back({Scaled::horizontal_stress, 1.1});
         for (const std::vector<Truth>& truth : {three, four}) {
             const Found found = back_analysis::fit(section.scene, section.network, section.joints,
                                                    made(section, truth), settings_for(truth));
@@ -297,7 +295,7 @@ TEST(back_analysis, rock_that_is_gone_has_no_readings)
 TEST(back_analysis, turns_back_from_where_there_is_no_equilibrium)
 {
     const JointedSection section;
-    const std::vector<Truth> truth{{Parameter::joint_stiffness, 0.08}};
+    const std::vector<Truth> truth{{Scaled::joint_stiffness, 0.08}};
     back_analysis::Settings settings = settings_for(truth);
     settings.factors[0].low = 1e-6;
     const Found found =
@@ -316,7 +314,7 @@ TEST(back_analysis, says_that_it_could_not_go_where_the_readings_want_it)
     JointedSection section;
     section.scene.creep->scheme = CreepScheme::published;
     section.scene.creep->step = 0.25 * day;
-    const std::vector<Truth> truth{{Parameter::kelvin_viscosity, 0.1}};
+    const std::vector<Truth> truth{{Scaled::kelvin_viscosity, 0.1}};
     JointedSection fitted;
     const Found found = back_analysis::fit(section.scene, section.network, section.joints,
                                            made(fitted, truth), settings_for(truth));

@@ -56,7 +56,7 @@ struct Contact {
         start_from_here(rock);
     }
 
-    creep::Creep creep(const EquivalentJoints& joints, CreepScheme scheme) const
+    mechanics::Creep creep(const EquivalentJoints& joints, CreepScheme scheme) const
     {
         return {creeping(scheme), {}, joints, mesh, rock};
     }
@@ -82,7 +82,7 @@ RC_GTEST_PROP(contact, ends_a_step_as_it_was_found, ())
     const EquivalentJoints joints = joint_material();
     const bool open_in_situ = *rc::gen::inRange(0, 4) == 0;
     Contact contact(joints, {between(-2e6, 0), between(-4e5, 4e5)}, open_in_situ ? .01 : 0);
-    creep::Creep creep = contact.creep(joints, scheme);
+    mechanics::Creep creep = contact.creep(joints, scheme);
     for (int i = 0; i < 6; ++i) {
         contact.move(between(-4e-3, 4e-3) - (open_in_situ ? .01 : 0), between(-4e-3, 4e-3)); // a stage
         creep.begin(between(.01, 100), contact.rock);
@@ -105,7 +105,7 @@ RC_GTEST_PROP(contact, may_begin_again_with_another_duration, ())
     const CreepScheme scheme = *rc::gen::elementOf(all_schemes);
     const EquivalentJoints joints = joint_material();
     Contact contact(joints, {-1e6, 0});
-    creep::Creep creep = contact.creep(joints, scheme);
+    mechanics::Creep creep = contact.creep(joints, scheme);
     contact.move(5e-4, 3e-4);
     creep.begin(3, contact.rock);
     contact.move(6e-4, 4e-4);
@@ -113,7 +113,7 @@ RC_GTEST_PROP(contact, may_begin_again_with_another_duration, ())
     find_forces(contact.rock);
 
     Contact straight = contact;
-    creep::Creep other = creep;
+    mechanics::Creep other = creep;
     const mechanics::Assembly before = contact.rock;
     creep.begin(50, contact.rock);
     contact.move(between(-1e-3, 1e-3), between(-1e-3, 1e-3));
@@ -141,7 +141,7 @@ TEST(contact, unchanged_traction_does_not_creep)
     const EquivalentJoints joints = joint_material();
     for (const CreepScheme scheme : all_schemes) {
         Contact contact(joints, {-1e6, 2e5});
-        creep::Creep creep = contact.creep(joints, scheme);
+        mechanics::Creep creep = contact.creep(joints, scheme);
         EXPECT_TRUE(creep.anything_creeps());
         creep.begin(1e6, contact.rock);
         contact.move(0, 0);
@@ -158,7 +158,7 @@ TEST(contact, an_open_joint_goes_on_relaxing)
     joints.normal_maxwell_viscosity = {0};
     for (const CreepScheme scheme : all_schemes) {
         Contact contact(joints, {-2e6, 0});
-        creep::Creep creep = contact.creep(joints, scheme);
+        mechanics::Creep creep = contact.creep(joints, scheme);
         contact.move(.02, 0);
         EXPECT_EQ(contact.status(), ContactStatus::open);
         for (int i = 0; i < 2; ++i) {
@@ -176,7 +176,7 @@ TEST(contact, one_that_is_open_in_situ_creeps_once_it_has_closed)
     const EquivalentJoints joints = joint_material();
     Contact contact(joints, {0, 0}, .01);
     EXPECT_EQ(contact.status(), ContactStatus::open);
-    creep::Creep creep = contact.creep(joints, CreepScheme::fitted);
+    mechanics::Creep creep = contact.creep(joints, CreepScheme::fitted);
     creep.begin(100, contact.rock);
     contact.move(0, 0);
     creep.end(contact.rock);
@@ -194,7 +194,7 @@ TEST(contact, a_smooth_joint_bears_no_shear_and_creeps_along_the_normal_alone)
 {
     const EquivalentJoints joints = joint_material(0);
     Contact contact(joints, {-1e6, 0});
-    creep::Creep creep = contact.creep(joints, CreepScheme::fitted);
+    mechanics::Creep creep = contact.creep(joints, CreepScheme::fitted);
     creep.begin(10, contact.rock);
     EXPECT_EQ(joint::k_s(contact.rock.contacts.law[0]), 0);
     contact.move(-1e-3, 1e-3);
@@ -207,7 +207,7 @@ TEST(contact, a_removed_one_is_left_alone)
 {
     const EquivalentJoints joints = joint_material();
     Contact contact(joints, {-1e6, 0});
-    creep::Creep creep = contact.creep(joints, CreepScheme::fitted);
+    mechanics::Creep creep = contact.creep(joints, CreepScheme::fitted);
     contact.rock.contacts.status[0] = ContactStatus::removed;
     contact.rock.contacts.traction[0] = {-5e6, 0};
     creep.begin(10, contact.rock);
@@ -219,8 +219,8 @@ TEST(contact, nothing_creeps_without_creep_in_the_scene)
 {
     const EquivalentJoints joints = joint_material();
     const Contact contact(joints, {-1e6, 0});
-    EXPECT_FALSE(creep::Creep({}, {}, joints, contact.mesh, contact.rock).anything_creeps());
-    EXPECT_EQ(creep::Creep({}, {}, joints, contact.mesh, contact.rock).fastest_rate(), 0);
+    EXPECT_FALSE(mechanics::Creep({}, {}, joints, contact.mesh, contact.rock).anything_creeps());
+    EXPECT_EQ(mechanics::Creep({}, {}, joints, contact.mesh, contact.rock).fastest_rate(), 0);
     EXPECT_NEAR(contact.creep(joints, CreepScheme::fitted).fastest_rate(),
                 creep::relaxation_rate({K_s, {{1e8, 3e8}}}), 1e-12);
 }

@@ -5,7 +5,7 @@
 
 #pragma once
 
-#include "creep/creep.hpp"
+#include "mechanics/creep.hpp"
 
 #include <Eigen/Dense>
 #include <unsupported/Eigen/MatrixFunctions>
@@ -255,7 +255,7 @@ private:
     double time_ = 0; // [s]
     Mesh mesh_;
     mechanics::Assembly rock_;
-    creep::Creep creep_;
+    mechanics::Creep creep_;
 };
 
 // The largest error of any traction after any of `steps` steps of equal length.

@@ -49,7 +49,7 @@ struct Zone {
         rock.zones.is_present = {1};
     }
 
-    creep::Creep creep() const { return {scene, network, {}, mesh, rock}; }
+    mechanics::Creep creep() const { return {scene, network, {}, mesh, rock}; }
 
     void deform(const Vector3d& to)
     {
@@ -86,7 +86,7 @@ double error_of_axial_strain(CreepScheme scheme, int steps)
 {
     Zone zone(scheme, true, false);
     const Vector3d in_situ = zone.stress(), loaded = in_situ + Vector3d(0, -2e6, 0);
-    creep::Creep creep = zone.creep();
+    mechanics::Creep creep = zone.creep();
     zone.load(loaded);
     EXPECT_NEAR(zone.strain[1], axial_strain(-2e6, 0), 1e-15);
     double largest = 0;
@@ -120,7 +120,7 @@ TEST(rock, held_strain_relaxes_in_shear_alone)
     const Vector3d strain(1e-5, -4e-5, 3e-5);
     Zone zone(CreepScheme::fitted, true, false);
     const Vector3d in_situ = zone.stress();
-    creep::Creep creep = zone.creep();
+    mechanics::Creep creep = zone.creep();
     zone.deform(strain);
     const double volume = strain[0] + strain[1];
     const Vector3d e(strain[0] - volume / 3, strain[1] - volume / 3, strain[2] / 2);
@@ -142,7 +142,7 @@ TEST(rock, a_maxwell_dashpot_relaxes_all_shear)
     const Vector3d strain(0, 0, 3e-5);
     Zone zone(CreepScheme::fitted, false, true);
     const Vector3d in_situ = zone.stress();
-    creep::Creep creep = zone.creep();
+    mechanics::Creep creep = zone.creep();
     zone.deform(strain);
     creep.begin(7, zone.rock);
     zone.deform(strain);
@@ -155,7 +155,7 @@ TEST(rock, ends_a_step_as_it_was_found)
     for (const CreepScheme scheme : all_schemes) {
         Zone zone(scheme, true, true);
         const Vector3d stiffness = zone.rock.zones.stiffness[0];
-        creep::Creep creep = zone.creep();
+        mechanics::Creep creep = zone.creep();
         for (int i = 0; i < 3; ++i) {
             creep.begin(3 + i, zone.rock);
             zone.deform({1e-5 * i, -3e-5, 2e-5});
@@ -171,7 +171,7 @@ TEST(rock, ends_a_step_as_it_was_found)
 TEST(rock, in_situ_stress_does_not_creep_and_removed_rock_neither)
 {
     Zone zone(CreepScheme::fitted, true, true);
-    creep::Creep creep = zone.creep();
+    mechanics::Creep creep = zone.creep();
     EXPECT_TRUE(creep.anything_creeps());
     const Vector3d in_situ = zone.stress();
     creep.begin(1e4, zone.rock);
@@ -189,7 +189,7 @@ TEST(rock, the_error_estimate_is_of_the_size_of_the_error)
 {
     const Vector3d strain(0, 0, 3e-5);
     Zone zone(CreepScheme::backward, true, false);
-    creep::Creep creep = zone.creep();
+    mechanics::Creep creep = zone.creep();
     zone.deform(strain);
     const double step = .01 * eta_k / (G + G_k);
     creep.begin(step, zone.rock);

@@ -128,19 +128,27 @@ TEST(scheme, the_papers_joint_has_a_limit_of_206_days)
 TEST(scheme, the_longest_step_of_a_section_names_what_sets_it)
 {
     const EquivalentJoints joints = joints_of({kelvin(1e9, 2, .1), kelvin(1e9, 20, .1), kelvin(0, 20, 1)});
-    const creep::StepLimit limit = creep::longest_step(joints);
-    EXPECT_EQ(limit.edge, 1);
-    EXPECT_EQ(limit.rock, -1);
-    EXPECT_NEAR(limit.step, -std::log1p(-2 / 21.) / .1, 1e-9);
+    Scene scene;
+    Network network;
+    network.blocks.edge_joint = {0, 1, 2};
+    network.joints.set = {0, 1, 2};
+    network.names.joint_set = {"stiff", "soft", "smooth"};
+    const auto limit = [&](const EquivalentJoints& of) {
+        return mechanics::longest_stable_step(scene, network, of);
+    };
+    EXPECT_EQ(limit(joints).set_by, "joint \"soft\"");
+    EXPECT_NEAR(limit(joints).step, -std::log1p(-2 / 21.) / .1, 1e-9);
 
     Rock hard{"hard", 2700, 3e10, .25, {}}, soft = hard;
+    soft.name = "weak";
     soft.kelvin = ShearKelvin{1e9, 1e10}; // G / E = 12: 1 - exp(-x) = 2 / 13 at the limit
-    const creep::StepLimit of_rock = creep::longest_step(joints, {hard, soft});
-    EXPECT_EQ(of_rock.rock, -1);
-    soft.kelvin = ShearKelvin{1e9, 1e9};
-    EXPECT_EQ(creep::longest_step(joints, {hard, soft}).rock, 1);
-    EXPECT_NEAR(creep::longest_step(joints, {hard, soft}).step, -std::log1p(-2 / 13.), 1e-9);
-    EXPECT_EQ(creep::longest_step(joints_of({kelvin(1e9, .5, .1)})).edge, -1);
+    scene.rocks = {hard, soft};
+    EXPECT_EQ(limit(joints).set_by, "joint \"soft\"");
+    scene.rocks[1].kelvin = ShearKelvin{1e9, 1e9};
+    EXPECT_EQ(limit(joints).set_by, "rock \"weak\"");
+    EXPECT_NEAR(limit(joints).step, -std::log1p(-2 / 13.), 1e-9);
+    scene.rocks = {hard};
+    EXPECT_EQ(limit(joints_of({kelvin(1e9, .5, .1)})).set_by, "");
 }
 
 } // namespace scheme_test

@@ -143,7 +143,7 @@ RC_GTEST_PROP(contacts, action_is_reaction, ())
     part(contacts, by);
     part(other, by); // seen from side b
     std::vector<Vector2d> force(2, Vector2d(1, 2));
-    add_forces(contacts, contacts.traction, force);
+    add_forces(contacts, {.traction = contacts.traction}, force);
     const double rounding = 1e-9 * 2.5e6;
     RC_ASSERT((force[0] - Vector2d(1, 2) - contacts.force[0]).norm() < rounding);
     RC_ASSERT((force[1] - Vector2d(1, 2) + contacts.force[0]).norm() < rounding);

@@ -325,7 +325,7 @@ TEST(zones, slots_give_the_same_sums)
     for (const Vector2d& p : patch.mesh.gridpoint)
         displacement.push_back(1e-3 * Vector2d(std::sin(p.x() + 2 * p.y()), std::cos(3 * p.x() - p.y())));
     const Displacements force = patch.forces(displacement);
-    add_forces(patch.zones, patch.zones.stress, plain);
+    add_forces(patch.zones, {.stress = patch.zones.stress}, plain);
     for (std::size_t g = 0; g < force.size(); ++g)
         EXPECT_LT((force[g] - plain[g]).norm(), 1e-2); // of 1e7
     std::vector<double> magnitudes(patch.mesh.gridpoint.size(), 0.0);

@@ -16,15 +16,14 @@ using analysis::Analysis;
 using analysis::Recording;
 using namespace jointcreep::test;
 using Eigen::Vector2d;
-using sensitivity::Parameter;
 
 namespace
 {
 
 constexpr double day = unit::day;
 
-const std::vector<Parameter> all{Parameter::kelvin_stiffness, Parameter::kelvin_viscosity,
-                                 Parameter::joint_stiffness, Parameter::horizontal_stress};
+const std::vector<Scaled> all{Scaled::kelvin_stiffness, Scaled::kelvin_viscosity, Scaled::joint_stiffness,
+                              Scaled::horizontal_stress};
 
 struct Study : JointedSection {
     using JointedSection::JointedSection;
@@ -34,12 +33,12 @@ struct Study : JointedSection {
         std::vector<std::vector<Vector2d>> sensitivities;
         Index slipping = 0, open = 0, slipping_in_situ = 0;
     };
-    Found run(bool with_sensitivities, Parameter parameter = {}, double logarithm = 0) const
+    Found run(bool with_sensitivities, Scaled parameter = {}, double logarithm = 0) const
     {
         Scene changed = scene;
         EquivalentJoints stiffer = joints;
         sensitivity::scale(stiffer, changed.in_situ_stress, parameter, std::exp(logarithm));
-        const Recording recording{0, 0, with_sensitivities ? all : std::vector<Parameter>{}};
+        const Recording recording{0, 0, with_sensitivities ? all : std::vector<Scaled>{}};
         Analysis analysis(changed, network, stiffer, 1, recording, [](double, const std::string&) {});
         analysis.run();
         Found found{analysis.result().history, analysis.sensitivities()};
@@ -55,7 +54,7 @@ struct Study : JointedSection {
 
     // The largest difference over rows and points between a sensitivity and the central difference of runs,
     // over the largest sensitivity to the parameter, which is to be at least 1e-5 m.
-    double error(Parameter parameter, double h) const
+    double error(Scaled parameter, double h) const
     {
         const Found middle = run(true), below = run(false, parameter, -h), above = run(false, parameter, h);
         if (middle.history.time != below.history.time || middle.history.time != above.history.time)
@@ -73,7 +72,7 @@ struct Study : JointedSection {
     double largest_error(double h) const
     {
         double largest = 0;
-        for (const Parameter parameter : all)
+        for (const Scaled parameter : all)
             largest = std::max(largest, error(parameter, h));
         return largest;
     }
@@ -113,7 +112,7 @@ TEST(sensitivity, of_stress_by_a_profile_is_that_of_whole_runs)
     InSituStress& stress = study.scene.in_situ_stress;
     stress.ground = {{0, 10}, {20, 10}};
     stress.profile = {{0, 5e4, 0, 0}, {4, 3e5, 4 * 2700 * 9.81, 0}, {10, 4e5, 10 * 2700 * 9.81, 0}};
-    EXPECT_LT(study.error(Parameter::horizontal_stress, 3e-4), 1e-7);
+    EXPECT_LT(study.error(Scaled::horizontal_stress, 3e-4), 1e-7);
 }
 
 TEST(sensitivity, of_joints_that_dilate_is_that_of_whole_runs)
@@ -212,8 +211,8 @@ TEST(sensitivity, of_chosen_steps_is_nearly_that_of_whole_runs)
     study.scene.creep->step.reset();
     study.scene.creep->tolerance = 1e-7;
     study.scene.creep->longest_step = 2 * day;
-    const Study::Found middle = study.run(true), below = study.run(false, Parameter::kelvin_stiffness, -0.01),
-                       above = study.run(false, Parameter::kelvin_stiffness, 0.01);
+    const Study::Found middle = study.run(true), below = study.run(false, Scaled::kelvin_stiffness, -0.01),
+                       above = study.run(false, Scaled::kelvin_stiffness, 0.01);
     for (int point = 0; point < 2; ++point) {
         const auto last = [point](const auto& rows) { return *(rows.end() - 3 + point); };
         const Vector2d by_runs = (last(above.history.displacement) - last(below.history.displacement)) / 0.02;

@@ -5,9 +5,9 @@
 
 #pragma once
 
-#include "mechanics/assembly.hpp"
+#include "joint/contacts.hpp"
 
-namespace jointcreep::creep
+namespace jointcreep::joint
 {
 
 class Closing
@@ -17,12 +17,12 @@ public:
     // being cut [m].
     explicit Closing(double tolerance) : tolerance_(tolerance) {}
 
-    // Before a step, with the assembly's own stiffnesses.
-    void start(const mechanics::Assembly& assembly);
+    // Before a step, with the contacts' own stiffnesses.
+    void start(const Contacts& contacts);
 
     // After the equilibrium of a step of `duration` [s], with the stiffnesses it was found with: how long the
     // step may last [s], `duration` itself if no contact closes in it that matters.
-    double longest_step(const mechanics::Assembly& assembly, double duration);
+    double longest_step(const Contacts& contacts, double duration);
 
     // What made the last longest_step shorter than the duration:  share * opening / -rate, or
     // share * duration * opening / (opening - closed), whichever it `is_by_rate`.
@@ -35,7 +35,7 @@ public:
     const Cut& last_cut() const { return cut_; }
 
     // The step is accepted.
-    void finish(const mechanics::Assembly& assembly, double duration);
+    void finish(const Contacts& contacts, double duration);
 
     // Whether a contact was open at the step's start; after finish(), how fast it opens then [m/s].
     bool was_open(std::size_t contact) const { return was_open_[contact] != 0; }
@@ -62,4 +62,4 @@ private:
     std::vector<Eigen::Vector2d> rate_;   // of {opening, shear} in the last step [m/s]
 };
 
-} // namespace jointcreep::creep
+} // namespace jointcreep::joint

@@ -1,14 +1,13 @@
-#include "creep/closing.hpp"
+#include "joint/closing.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-namespace jointcreep::creep
+namespace jointcreep::joint
 {
 
-void Closing::start(const mechanics::Assembly& assembly)
+void Closing::start(const Contacts& contacts)
 {
-    const joint::Contacts& contacts = assembly.contacts;
     const std::size_t n = contacts.status.size();
     cuts_ = 0;
     was_open_.resize(n);
@@ -21,9 +20,8 @@ void Closing::start(const mechanics::Assembly& assembly)
     }
 }
 
-double Closing::longest_step(const mechanics::Assembly& assembly, double duration)
+double Closing::longest_step(const Contacts& contacts, double duration)
 {
-    const joint::Contacts& contacts = assembly.contacts;
     double longest = duration;
     cut_ = {};
     for (std::size_t c = 0; c < was_open_.size(); ++c) {
@@ -60,14 +58,14 @@ double Closing::longest_step(const mechanics::Assembly& assembly, double duratio
     return longest;
 }
 
-void Closing::finish(const mechanics::Assembly& assembly, double duration)
+void Closing::finish(const Contacts& contacts, double duration)
 {
     rate_.assign(was_open_.size(), {0, 0});
     for (std::size_t c = 0; c < was_open_.size(); ++c)
-        if (was_open_[c] && assembly.contacts.status[c] == ContactStatus::open)
-            rate_[c] = Eigen::Vector2d(opening_of(assembly.contacts, c) - opening_[c],
-                                       assembly.contacts.relative_displacement[c].y() - shear_[c]) /
+        if (was_open_[c] && contacts.status[c] == ContactStatus::open)
+            rate_[c] = Eigen::Vector2d(opening_of(contacts, c) - opening_[c],
+                                       contacts.relative_displacement[c].y() - shear_[c]) /
                        duration;
 }
 
-} // namespace jointcreep::creep
+} // namespace jointcreep::joint
