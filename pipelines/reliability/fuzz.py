@@ -14,8 +14,8 @@ from campaign import ROOT, Campaign
 
 LONGEST = 20  # s, that one input may take
 MOST_MEMORY = 4096  # MB; what a reader leaves behind where it cannot throw adds up
-READERS = {  # and the longest input
-    "scene": (["data/**/*.toml", "tests/pipeline/**/*.toml"], 8192),
+READERS = {  # and the longest input: short ones are read some thousand times a second
+    "scene": (["data/**/*.toml", "tests/pipeline/**/*.toml"], 2048),
     "field_data": (["tests/pipeline/kinds/*.csv", "tests/pipeline/kinds/*.geojson", "tests/fuzz/*.csv"], 4096),
     "measurements": (["tests/fuzz/*.csv", "data/**/*.csv"], 4096),
     "store": ([], 65536),
@@ -27,7 +27,7 @@ def begun(campaign, reader, corpus):
     corpus.mkdir(parents=True, exist_ok=True)
     patterns, longest = READERS[reader]
     for path in (path for pattern in patterns for path in ROOT.glob(pattern)):
-        (corpus / path.name).write_bytes(path.read_bytes()[:longest])
+        (corpus / path.name).write_bytes(path.read_bytes()[:longest])  # a part of a scene may be a scene, too
     if reader == "store":
         chain, folder = campaign.chain, campaign.chain.new_folder()
         network = chain.run("jointgen", ROOT / "pipelines/reliability/small.toml", folder / "network.h5")
@@ -65,12 +65,13 @@ def fuzz(campaign, reader, fuzzers, seconds):
 def body(campaign):
     if campaign.options.seconds:
         campaign.about_n = f"{campaign.options.seconds} s each"
-    for reader in READERS:
+    for reader in campaign.options.readers:
         fuzz(campaign, reader, campaign.options.fuzzers.resolve(), campaign.options.seconds)
 
 
 def options(parser):
     parser.add_argument("--fuzzers", type=pathlib.Path, required=True, help="folder of the fuzz targets")
+    parser.add_argument("--readers", nargs="+", choices=READERS, default=list(READERS), help="only these")
     parser.add_argument("--seconds", type=int, help="time for each reader, in place of a number")
 
 
