@@ -113,7 +113,7 @@ std::string KeyInfo::wanted() const
 
 void Place::refuse(std::int64_t line, const std::string& what) const
 {
-    throw input_error(reading.name + ", line " + std::to_string(line) + ": " + what);
+    throw refusal(line, reading.name + ", line " + std::to_string(line) + ": " + what);
 }
 
 void Place::refuse(const KeyInfo& key, const TomlValue& value, const std::string& more) const
@@ -232,6 +232,24 @@ std::vector<Polygon> read_polygons(const KeyInfo& key, const TomlValue& value, c
     return all;
 }
 
+// A key that is not among those known.
+[[noreturn]] void refuse_key(const TomlEntry& entry, const std::vector<const KeyInfo*>& known,
+                             const std::vector<std::string>& names, const Place& place)
+{
+    const std::string key = shown(TomlValue{.content = entry.key});
+    const auto now = std::ranges::find_if(
+        known, [&](const KeyInfo* one) { return !one->formerly.empty() && one->formerly == entry.key; });
+    if (now != known.end())
+        place.refuse(entry.value.line, place.table + " has no key " + key + ": it is now called " +
+                                           (*now)->name + ". Rename it in the " + place.reading.whole);
+    const auto meant = nearest(entry.key, names);
+    const auto advice = meant.empty() ? "" : "; did you mean " + meant + "?";
+    std::string all;
+    for (const auto& name : names)
+        all += (all.empty() ? "" : ", ") + name;
+    place.refuse(entry.value.line, place.table + " has no key " + key + advice + " (its keys: " + all + ")");
+}
+
 void check_keys(const TomlValue& value, const std::vector<const KeyInfo*>& known, const Place& place)
 {
     const auto* const entries = std::get_if<TomlValue::Table>(&value.content);
@@ -240,26 +258,9 @@ void check_keys(const TomlValue& value, const std::vector<const KeyInfo*>& known
     std::vector<std::string> names;
     for (const KeyInfo* const key : known)
         names.push_back(key->name);
-    for (const TomlEntry& entry : *entries) {
-        if (std::find(names.begin(), names.end(), entry.key) != names.end())
-            continue;
-        const auto now = std::ranges::find_if(
-            known, [&](const KeyInfo* key) { return !key->formerly.empty() && key->formerly == entry.key; });
-        if (now != known.end()) {
-            const TomlValue before{.content = entry.key};
-            place.refuse(entry.value.line, place.table + " has no key " + shown(before) +
-                                               ": it is now called " + (*now)->name + ". Rename it in the " +
-                                               place.reading.whole);
-        }
-        const auto meant = nearest(entry.key, names);
-        const auto advice = meant.empty() ? "" : "; did you mean " + meant + "?";
-        std::string all;
-        for (const auto& name : names)
-            all += (all.empty() ? "" : ", ") + name;
-        const TomlValue as_text{.content = entry.key};
-        place.refuse(entry.value.line,
-                     place.table + " has no key " + shown(as_text) + advice + " (its keys: " + all + ")");
-    }
+    for (const TomlEntry& entry : *entries)
+        if (std::find(names.begin(), names.end(), entry.key) == names.end())
+            attempt(place.reading, [&] { refuse_key(entry, known, names, place); });
 }
 
 void check_present(const TomlValue& value, const std::vector<const KeyInfo*>& known, const Place& place)
@@ -268,22 +269,22 @@ void check_present(const TomlValue& value, const std::vector<const KeyInfo*>& kn
     for (const KeyInfo* const key : known)
         if (key->need == Need::together && value.find(key->name))
             given[key->group] = key->name;
-    for (const KeyInfo* const key : known) {
-        const auto* const found = value.find(key->name);
-        if (found && !key->in_place_of.empty() && given.contains(key->in_place_of))
-            place.refuse(found->line, place.table + " " + key->name + " = " + shown(*found) +
-                                          ": wanted either " + key->name + " or the " + key->in_place_of +
-                                          " keys (" + given[key->in_place_of] + ", ...), not both");
-    }
-    for (const KeyInfo* const key : known) {
-        if (value.find(key->name))
-            continue;
-        const auto missing = place.table + " has no " + key->name + ": wanted " + key->wanted();
-        if (key->need == Need::required)
+    const auto check = [&](const KeyInfo& key) {
+        const TomlValue* const found = value.find(key.name);
+        if (found && !key.in_place_of.empty() && given.contains(key.in_place_of))
+            place.refuse(found->line, place.table + " " + key.name + " = " + shown(*found) +
+                                          ": wanted either " + key.name + " or the " + key.in_place_of +
+                                          " keys (" + given[key.in_place_of] + ", ...), not both");
+        if (found)
+            return;
+        const auto missing = place.table + " has no " + key.name + ": wanted " + key.wanted();
+        if (key.need == Need::required)
             place.refuse(value.line, missing);
-        if (key->need == Need::together && given.contains(key->group))
-            place.refuse(value.line, missing + ", as it comes together with " + given[key->group]);
-    }
+        if (key.need == Need::together && given.contains(key.group))
+            place.refuse(value.line, missing + ", as it comes together with " + given[key.group]);
+    };
+    for (const KeyInfo* const key : known)
+        attempt(place.reading, [&] { check(*key); });
 }
 
 const TomlValue::List& list_of(const TableInfo& info, const TomlValue& root, const Reading& reading)

@@ -8,6 +8,7 @@
 #pragma once
 
 #include "keys/bounds.hpp"
+#include "keys/refusals.hpp"
 #include "keys/toml_text.hpp"
 #include "model/polygon.hpp"
 #include "model/quantity.hpp"
@@ -63,7 +64,30 @@ struct Reading {
     std::string whole; // what messages call all that it describes: "scene"
     Calendar calendar{};
     std::map<std::string, std::string> files{}; // texts that it holds, by name
+    Refusals* refusals =
+        nullptr; // where all faults are to be told; without it the first one ends the reading
 };
+
+// A step of reading or checking, after which the next one may be tried.
+template <class Step>
+void attempt(const Reading& reading, Step step)
+{
+    if (reading.refusals)
+        reading.refusals->attempt(step);
+    else
+        step();
+}
+
+// Steps that make one thing: it must not be used if one of them was refused.
+template <class Steps>
+void attempt_all(const Reading& reading, Steps steps)
+{
+    const auto count = [&] { return reading.refusals ? reading.refusals->count() : 0; };
+    const std::size_t before = count();
+    steps();
+    if (count() > before)
+        throw already_refused{};
+}
 
 // Where a value stands: for messages.
 struct Place {
@@ -284,10 +308,10 @@ Key<Record> choice(std::string name, Value Record::*member, Words<Value> words, 
 
 // --- Reading a table --------------------------------------------------------------------------------------
 
-// Throws unless `value` is a table whose keys are all among `known`.
+// Refuses what is no table, and keys that are not among `known`.
 void check_keys(const TomlValue& value, const std::vector<const KeyInfo*>& known, const Place& place);
-// Throws for a required key that is missing, for one missing of those that come together, and for a key
-// beside those that it stands in place of.
+// Refuses a required key that is missing, one missing of those that come together, and a key beside those that it stands
+// in place of.
 void check_present(const TomlValue& value, const std::vector<const KeyInfo*>& known, const Place& place);
 
 template <class Record>
@@ -303,21 +327,24 @@ std::vector<const KeyInfo*> key_infos(const Table<Record>& table)
 template <class Record>
 void fill(const Table<Record>& table, const TomlValue& value, const Place& place, Record& record)
 {
-    for (const Key<Record>& key : table.keys) {
-        if (const TomlValue* const given = value.find(key.info.name))
-            key.read(record, key.info, *given, place);
-        else if (key.fallback)
-            key.read(record, key.info, *key.fallback, place);
-    }
+    for (const Key<Record>& key : table.keys)
+        attempt(place.reading, [&] {
+            if (const TomlValue* const given = value.find(key.info.name))
+                key.read(record, key.info, *given, place);
+            else if (key.fallback)
+                key.read(record, key.info, *key.fallback, place);
+        });
 }
 
 template <class Record>
 void read_table(const Table<Record>& table, const TomlValue& value, const Place& place, Record& record)
 {
     const auto infos = key_infos(table);
-    check_keys(value, infos, place);
-    check_present(value, infos, place);
-    fill(table, value, place, record);
+    attempt_all(place.reading, [&] {
+        check_keys(value, infos, place);
+        check_present(value, infos, place);
+        fill(table, value, place, record);
+    });
 }
 
 // The tables of a list, one a record; none if an optional list is missing.
@@ -327,11 +354,13 @@ template <class Record>
 std::vector<Record> read_list(const Table<Record>& table, const TomlValue& root, const Reading& reading)
 {
     std::vector<Record> records;
-    for (const TomlValue& one : list_of(table.info, root, reading)) {
-        const TomlValue* const name = one.find("name");
-        const Place place{reading, table.info.shown() + (name ? " " + shown(*name) : "")};
-        read_table(table, one, place, records.emplace_back());
-    }
+    attempt_all(reading, [&] {
+        for (const TomlValue& one : list_of(table.info, root, reading)) {
+            const TomlValue* const name = one.find("name");
+            const Place place{reading, table.info.shown() + (name ? " " + shown(*name) : "")};
+            attempt(reading, [&] { read_table(table, one, place, records.emplace_back()); });
+        }
+    });
     return records;
 }
 
@@ -362,8 +391,10 @@ std::vector<Row> read_rows(const Table<Row>& table, std::size_t least, std::size
                          std::to_string(most));
     const Place place{outer.reading, table.info.shown()};
     std::vector<Row> rows(list->size());
-    for (std::size_t i = 0; i < list->size(); ++i)
-        read_table(table, (*list)[i], place, rows[i]);
+    attempt_all(outer.reading, [&] {
+        for (std::size_t i = 0; i < list->size(); ++i)
+            attempt(outer.reading, [&] { read_table(table, (*list)[i], place, rows[i]); });
+    });
     return rows;
 }
 

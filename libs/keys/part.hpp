@@ -102,7 +102,7 @@ Part<Whole> part_if_given(const Table<Record>& table, std::optional<Record> Whol
 
 // --- Reading and checking all of them ---------------------------------------------------------------------
 
-// Fills the whole from all tables, each in its turn. Throws input_error.
+// Fills the whole from all tables, each in its turn. Throws input_error, or keeps all faults (Reading::refusals).
 template <class Whole>
 void read_parts(const std::vector<Part<Whole>>& parts, const TomlValue& root, Reading& reading, Whole& whole)
 {
@@ -121,9 +121,14 @@ void read_parts(const std::vector<Part<Whole>>& parts, const TomlValue& root, Re
         known.push_back(&table);
     check_keys(root, known, {reading, "the " + reading.whole});
     std::ranges::stable_sort(in_turn, {}, &Part<Whole>::turn);
-    for (const Part<Whole>* const part : in_turn)
+    for (const Part<Whole>* const part : in_turn) {
+        const std::size_t before = reading.refusals ? reading.refusals->count() : 0;
         if (part->read)
-            part->read(root, reading, whole);
+            attempt(reading, [&] { part->read(root, reading, whole); });
+        const bool others_need_it = part->turn == Turn::files || part->turn == Turn::calendar;
+        if (others_need_it && reading.refusals && reading.refusals->count() > before)
+            return;
+    }
 }
 
 // The checks of some parts that concern names, or one of Part's checks.
@@ -132,7 +137,7 @@ void check_names(const std::vector<Part<Whole>>& parts, const Source& source)
 {
     for (const Part<Whole>& part : parts)
         if (part.has_names)
-            source.check_unique({part.info.name});
+            attempt(source.reading, [&] { source.check_unique({part.info.name}); });
 }
 template <class Whole>
 void check_parts(const std::vector<Part<Whole>>& parts, typename Part<Whole>::Check Part<Whole>::*check,
@@ -140,7 +145,7 @@ void check_parts(const std::vector<Part<Whole>>& parts, typename Part<Whole>::Ch
 {
     for (const Part<Whole>& part : parts)
         if (part.*check)
-            (part.*check)(whole, source);
+            attempt(source.reading, [&] { (part.*check)(whole, source); });
 }
 
 } // namespace jointcreep::keys

@@ -22,6 +22,11 @@ void Given::refuse(const std::string& key, const std::string& what) const
     place.refuse(table.line, title + " has no " + key + ": " + what);
 }
 
+void Given::report(const std::string& key, const std::string& what) const
+{
+    attempt(reading, [&] { refuse(key, what); });
+}
+
 Given Source::once(const std::string& table) const
 {
     const TomlValue* const value = root.find(table);
@@ -46,7 +51,7 @@ void Source::check_unique(const std::vector<std::string>& tables) const
             const TomlValue& name = *given.find("name");
             const auto [other, is_new] = line_of.try_emplace(std::get<std::string>(name.content), name.line);
             if (!is_new)
-                given.refuse("name", "the name is taken in line " + std::to_string(other->second));
+                given.report("name", "the name is taken in line " + std::to_string(other->second));
         }
     }
 }
@@ -57,7 +62,7 @@ void check_reference(const Given& given, const std::string& key, const std::stri
     if (known.contains(name))
         return;
     if (known.empty())
-        given.refuse(key, "there is no " + what);
+        return given.report(key, "there is no " + what);
     std::string all;
     std::size_t shown_names = 0;
     for (const auto& one : known)
@@ -68,7 +73,7 @@ void check_reference(const Given& given, const std::string& key, const std::stri
     const auto meant = nearest(name, {known.begin(), known.end()});
     const TomlValue* const value = given.find(key);
     const bool is_in_list = value && std::holds_alternative<TomlValue::List>(value->content);
-    given.refuse(key, (is_in_list ? "has \"" + name + "\"; " : "") + "wanted the name of a " + what + ": " +
+    given.report(key, (is_in_list ? "has \"" + name + "\"; " : "") + "wanted the name of a " + what + ": " +
                           all + (meant.empty() ? "" : "; did you mean \"" + meant + "\"?"));
 }
 

@@ -24,6 +24,8 @@ struct Given {
     // "[[joint]] "F1" material = "gouge": what is wrong", at the key's line, or the table's if it is missing.
     // Throws input_error.
     [[noreturn]] void refuse(const std::string& key, const std::string& what) const;
+    // The same where the checks after it do not need this one: where all faults are told, it returns.
+    void report(const std::string& key, const std::string& what) const;
 };
 
 struct Source {

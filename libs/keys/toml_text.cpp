@@ -216,10 +216,35 @@ private:
     }
 };
 
-TomlValue converted(const toml::node& node)
+// Bytes of a text by line and column, both from 1; a column is a character.
+class Positions
+{
+public:
+    explicit Positions(std::string_view text) : text_(text), line_{0}
+    {
+        for (std::size_t i = 0; i < text.size(); ++i)
+            if (text[i] == '\n')
+                line_.push_back(i + 1);
+    }
+    std::size_t of(const toml::source_position& place) const
+    {
+        std::size_t at = place.line >= 1 && place.line <= line_.size() ? line_[place.line - 1] : text_.size();
+        for (auto column = place.column; column > 1 && at < text_.size(); --column)
+            at += utf8_length(text_.substr(at)).value_or(1);
+        return at;
+    }
+
+private:
+    std::string_view text_;
+    std::vector<std::size_t> line_; // where each begins
+};
+
+TomlValue converted(const toml::node& node, const Positions& positions)
 {
     TomlValue value;
     value.line = node.source().begin.line;
+    value.first = positions.of(node.source().begin);
+    value.past = positions.of(node.source().end);
     if (const auto* const flag = node.as_boolean())
         value.content = flag->get();
     else if (const auto* const integer = node.as_integer())
@@ -236,11 +261,11 @@ TomlValue converted(const toml::node& node)
         auto& list = value.content.emplace<TomlValue::List>();
         list.reserve(array->size());
         for (const toml::node& element : *array)
-            list.push_back(converted(element));
+            list.push_back(converted(element, positions));
     } else if (const auto* const entries = node.as_table()) {
         auto& table = value.content.emplace<TomlValue::Table>();
         for (const auto& [key, element] : *entries)
-            table.push_back({std::string(key.str()), converted(element)});
+            table.push_back({std::string(key.str()), converted(element, positions)});
     } else
         value.content = TomlValue::Time{};
     return value;
@@ -291,7 +316,7 @@ TomlValue parse_toml(std::string_view text, const std::string& name)
     TextCheck(text, name).check();
     text_name = name;
     try {
-        return converted(toml::parse(text));
+        return converted(toml::parse(text), Positions(text));
     } catch (const toml::parse_error& error) {
         std::string what = shortened(std::string(error.description()));
         if (what.ends_with("saw ','"))

@@ -25,6 +25,8 @@ struct TomlValue {
 
     std::variant<bool, std::int64_t, double, std::string, Date, Time, List, Table> content;
     std::int64_t line = 1;
+    // Of a value behind a key or in a list: where it stands in the text, the byte past it excluded.
+    std::size_t first = 0, past = 0;
 
     // The value of a key, or null if this is no table or has no such key.
     const TomlValue* find(std::string_view key) const;

@@ -193,6 +193,10 @@ struct InSituStress {
     double compression_xx = 0, compression_yy = 0, shear_xy = 0; // at depth 0 [Pa]; shear_xy is sigma_xy
     double gradient_xx = 0, gradient_yy = 0, gradient_xy = 0;    // per metre of depth [Pa/m]
 
+    // Of the horizontal to the vertical compression, where the scene gives that in place of the gradients: these follow
+    // from it and the weight of the rock.
+    std::optional<double> horizontal_ratio{};
+
     struct Level {
         double depth = 0;                                            // [m]
         double compression_xx = 0, compression_yy = 0, shear_xy = 0; // [Pa]
@@ -251,6 +255,15 @@ struct Stage {
 struct MonitoringPoint {
     std::string name;
     Eigen::Vector2d at;       // [m]
+    double first_reading = 0; // since start [s]
+};
+
+// Monitoring points at equal distances on a line, as on an inclinometer or an extensometer: "NAME 1" at its first end to
+// "NAME n" at its other end. They are among the scene's points, behind those given one by one.
+struct MonitoringLine {
+    std::string name;
+    Eigen::Vector2d from, to; // [m]
+    Index points = 0;         // at least 2
     double first_reading = 0; // since start [s]
 };
 
@@ -353,6 +366,7 @@ struct Scene {
     double end = 0; // since start [s]
     std::vector<Stage> stages;
     std::vector<MonitoringPoint> points;
+    std::vector<MonitoringLine> lines{};
     std::vector<Gauge> gauges;
 
     std::uint64_t seed = 0; // needed by joint sets only

@@ -125,6 +125,13 @@ Table<InSituStress> in_situ_stress(const Table<InSituStress::Level>& profile)
          number("shear_xy_gradient_MPa_per_m", &S::gradient_xy, MPa_per_m, stress_gradient,
                 "Increase per metre of depth.")
              .together("linear"),
+         number(
+             "horizontal_stress_ratio", &S::horizontal_ratio, no_unit, from(0).to(20),
+             "In place of the linear law: the vertical compression is the weight of the rock above, density x gravity "
+             "x depth, with the density of section.rock, and the horizontal compression is this ratio (K0) times "
+             "it.")
+             .optional()
+             .in_place_of("linear"),
          key_of<S>({"profile", "levels", {}, {}, "Stress at some depths, in place of the linear law."},
                    &S::profile, levels)
              .asks_for(
@@ -203,9 +210,11 @@ void check_in_situ_stress(const Scene& scene, const Source& source)
         given.refuse("ground_m", "wanted either it or elevation_m, not both");
     if (!given.find("ground_m") && !given.find("elevation_m"))
         given.refuse("elevation_m", "wanted it, or ground_m");
-    if (!given.find("profile") && !given.find("compression_xx_MPa"))
-        given.refuse("compression_xx_MPa",
-                     "wanted the keys of a linear law (compression_xx_MPa, ...), or a profile");
+    if (!given.find("profile") && !given.find("compression_xx_MPa") && !given.find("horizontal_stress_ratio"))
+        given.refuse("compression_xx_MPa", "wanted the keys of a linear law (compression_xx_MPa, ...), a "
+                                           "horizontal_stress_ratio, or a profile");
+    if (given.find("profile") && given.find("horizontal_stress_ratio"))
+        given.refuse("horizontal_stress_ratio", "wanted either it or profile, not both");
     if (ground.empty())
         return;
     const double tolerance = outline_tolerance(scene.outline);
@@ -229,7 +238,17 @@ ForceKeys<Scene> scene_keys()
     regions.references = check_rocks_of_regions;
     regions.shapes = check_outlines_of_regions;
     const Table<InSituStress::Level> profile = stress_profile();
-    auto stress = part_once<Scene>(in_situ_stress(profile), &Scene::in_situ_stress);
+    const auto read_stress = [table = in_situ_stress(profile)](const TomlValue& root, Reading& reading,
+                                                               Scene& scene) {
+        InSituStress& stress = scene.in_situ_stress;
+        read_once(table, root, reading, stress);
+        for (const Rock& rock : scene.rocks)
+            if (stress.horizontal_ratio && rock.name == scene.rock) {
+                stress.gradient_yy = rock.density * scene.gravity;
+                stress.gradient_xx = *stress.horizontal_ratio * stress.gradient_yy;
+            }
+    };
+    auto stress = part_read_by<Scene>(in_situ_stress(profile), read_stress);
     stress.values = check_in_situ_stress;
     return {.materials = {rocks, regions}, .loads = {stress, part_inside<Scene>(profile)}};
 }

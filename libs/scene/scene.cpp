@@ -4,6 +4,7 @@
 #include "model/utf8.hpp"
 #include "scene/scene_checks.hpp"
 #include "scene/scene_keys.hpp"
+#include "scene/shorthand.hpp"
 #include "scene/trace_file.hpp"
 
 #include <algorithm>
@@ -128,11 +129,13 @@ std::string table_of(const FileBeside& file)
 Scene parsed(std::string_view text, const std::string& name, const Network* network)
 {
     const TomlValue root = parse_toml(text, name);
-    Reading reading{.name = name, .whole = "scene"};
+    Refusals refusals;
+    Reading reading{.name = name, .whole = "scene", .refusals = &refusals};
     Scene scene;
     read_parts(scene_parts(), root, reading, scene);
+    refusals.end();
     const Source source{root, reading};
-    check_scene(scene, source);
+    check_scene(scene, source, refusals);
     if (network)
         check_network(scene, source, *network);
     return scene;
@@ -176,6 +179,7 @@ SceneText read_scene(const std::string& path)
     SceneText scene{read_text_file(path, "a scene file"), {}};
     if (scene.text.empty())
         throw input_error(path + ": is empty; wanted a scene");
+    scene.text = written_out(scene.text, path);
     for (const FileBeside& file : files_beside(path, scene.text)) {
         scene.text += table_of(file);
         scene.files.push_back(file.path);

@@ -23,14 +23,16 @@ Scene parse_scene(std::string_view text, const std::string& name);
 // fit the network of that file, as the text was changed.
 Scene parse_scene_of_file(std::string_view text, const std::string& path, const Network& network);
 
-// The text of a scene file without byte order mark, with the files beside it that it names behind it, each as a
-// table [[file]]: so the text says everything, wherever it goes.
+// The text of a scene file without byte order mark, with numbers in place of names and with the corners of circles and arcs
+// (scene/shorthand.hpp), and with the files beside it that it names behind it, each as a table [[file]]: so the text says
+// everything, wherever it goes, and to every reader.
 struct SceneText {
     std::string text;
     std::vector<std::string> files; // paths of those that it names
 };
 
-// Throws file_error if it cannot be read, input_error if it is empty, UTF-16 or, with those files, larger than 16 MiB.
+// Throws file_error if it cannot be read, input_error if it is empty, UTF-16 or, with those files, larger than 16 MiB, or
+// if what is written in short cannot be read.
 SceneText read_scene(const std::string& path);
 std::string read_scene_text(const std::string& path);
 

@@ -23,27 +23,39 @@ constexpr double least_trace = 0.05;
 class Checker
 {
 public:
-    Checker(const Scene& scene, const Source& source) : scene_(scene), source_(source) {}
+    Checker(const Scene& scene, const Source& source, Refusals& refusals)
+        : scene_(scene), source_(source), refusals_(refusals)
+    {
+    }
 
+    // Names, then shapes, then all else: a step may rely on those before it. Each tells all of its faults.
     void check() const
     {
-        check_names();
-        check_references();
-        check_polygons();
-        check_joints();
-        check_materials(&Part<Scene>::values);
-        check_joint_sets();
-        check_loads(&Part<Scene>::values);
-        check_times();
-        check_places();
-        check_numbers();
-        check_creep();
-        check_large_displacements();
+        using C = Checker;
+        for (const std::vector<void (C::*)() const>& step :
+             {std::vector{&C::check_names, &C::check_references},
+              {&C::check_polygons},
+              {&C::check_joints, &C::check_values_of_materials, &C::check_joint_sets,
+               &C::check_values_of_loads, &C::check_times, &C::check_places, &C::check_cutting,
+               &C::check_zones, &C::check_equilibrium, &C::check_creep, &C::check_large_displacements}}) {
+            for (const auto check : step)
+                refusals_.attempt([&] { (this->*check)(); });
+            refusals_.end();
+        }
     }
 
 private:
     const Scene& scene_;
     const Source& source_;
+    Refusals& refusals_;
+
+    // For every i below n: a fault of one does not hide those of the others.
+    template <class Check>
+    void for_each(std::size_t n, Check check) const
+    {
+        for (std::size_t i = 0; i < n; ++i)
+            refusals_.attempt([&] { check(i); });
+    }
 
     using Check = Part<Scene>::Check Part<Scene>::*;
 
@@ -61,6 +73,8 @@ private:
         for (const ForceKeys<Scene>& force : forces())
             check_parts(force.loads, check, scene_, source_);
     }
+    void check_values_of_materials() const { check_materials(&Part<Scene>::values); }
+    void check_values_of_loads() const { check_loads(&Part<Scene>::values); }
 
     // --- Names and references ------------------------------------------------------------------------------
 
@@ -70,7 +84,7 @@ private:
             keys::check_names(force.materials, source_);
             keys::check_names(force.loads, source_);
         }
-        for (const char* const table : {"stage", "point", "gauge"})
+        for (const char* const table : {"stage", "point", "monitoring_line", "gauge"})
             source_.check_unique({table});
         source_.check_unique({"joint_set", "joint", "mapped"}); // a joint is a set of its own in all files
     }
@@ -95,7 +109,7 @@ private:
                                 "[[joint_material]]");
                 if (!known.insert(in.rock).second)
                     in_list("joint_set", i)
-                        .refuse("material_in",
+                        .report("material_in",
                                 "wanted each rock once, and \"" + in.rock + "\" is there twice");
             }
         }
@@ -123,17 +137,19 @@ private:
     void check_polygons() const
     {
         check_polygon(once("section"), "outline_m", scene_.outline);
-        check_holes();
+        refusals_.attempt([this] { check_holes(); });
         check_materials(&Part<Scene>::shapes);
-        for (std::size_t i = 0; i < scene_.joint_sets.size(); ++i)
+        for_each(scene_.joint_sets.size(), [this](std::size_t i) {
             if (scene_.joint_sets[i].region)
                 check_polygon(in_list("joint_set", i), "region_m", *scene_.joint_sets[i].region);
+        });
         check_loads(&Part<Scene>::shapes);
         if (scene_.fine_zones)
-            check_fine_zones(*scene_.fine_zones);
-        for (std::size_t i = 0; i < scene_.stages.size(); ++i)
+            refusals_.attempt([this] { check_fine_zones(*scene_.fine_zones); });
+        for_each(scene_.stages.size(), [this](std::size_t i) {
             for (const Polygon& polygon : scene_.stages[i].remove)
                 check_polygon(in_list("stage", i), "remove_m", polygon);
+        });
     }
 
     void check_fine_zones(const Polygon& fine) const
@@ -177,27 +193,52 @@ private:
     {
         for (std::size_t i = 0; i < scene_.joints.size(); ++i)
             if (scene_.joints[i].from == scene_.joints[i].to)
-                in_list("joint", i).refuse("to_m", "wanted another point than from_m");
+                in_list("joint", i).report("to_m", "wanted another point than from_m");
+    }
+
+    // Refuses a place that is not in the rock.
+    void check_place(const Given& given, const std::string& key, const Eigen::Vector2d& at,
+                     const std::string& whose) const
+    {
+        const std::string place = whose + "[" + shown(at.x()) + ", " + shown(at.y()) + "] is ";
+        for (const Polygon& hole : scene_.holes)
+            if (covers(hole, at, 0) && distance_to_sides(hole, at) > tolerance())
+                return given.report(key, place + "in a hole of the section; wanted a point in the rock");
+        if (!covers(scene_.outline, at, tolerance()))
+            given.report(key, place + "outside the section's outline; wanted a point inside");
+    }
+
+    // Points that are given one by one, and then those of the lines.
+    template <class OfPoint, class OfLine>
+    void for_each_point(OfPoint of_point, OfLine of_line) const
+    {
+        std::size_t point = 0;
+        const TomlValue* const given = source_.root.find("point");
+        for (; given && point < std::get<TomlValue::List>(given->content).size(); ++point)
+            of_point(in_list("point", point), scene_.points[point]);
+        for (std::size_t line = 0; line < scene_.lines.size(); ++line)
+            for (Index i = 0; i < scene_.lines[line].points; ++i, ++point)
+                of_line(in_list("monitoring_line", line), scene_.points[point]);
     }
 
     void check_places() const
     {
-        const auto check = [this](const std::string& table, const auto& records) {
-            for (std::size_t i = 0; i < records.size(); ++i) {
-                for (const Polygon& hole : scene_.holes)
-                    if (covers(hole, records[i].at, 0) &&
-                        distance_to_sides(hole, records[i].at) > tolerance())
-                        in_list(table, i).refuse(
-                            "at_m", "[" + shown(records[i].at.x()) + ", " + shown(records[i].at.y()) +
-                                        "] is in a hole of the section; wanted a point in the rock");
-                if (!covers(scene_.outline, records[i].at, tolerance()))
-                    in_list(table, i).refuse(
-                        "at_m", "[" + shown(records[i].at.x()) + ", " + shown(records[i].at.y()) +
-                                    "] is outside the section's outline; wanted a point inside");
-            }
-        };
-        check("point", scene_.points);
-        check("gauge", scene_.gauges);
+        std::set<std::string> names;
+        for_each_point(
+            [&](const Given& given, const MonitoringPoint& point) {
+                names.insert(point.name);
+                check_place(given, "at_m", point.at, "");
+            },
+            [&](const Given& given, const MonitoringPoint& point) {
+                if (!names.insert(point.name).second)
+                    given.report("name", "its point \"" + point.name + "\" has the name of another point");
+                check_place(given, "to_m", point.at, "its point \"" + point.name + "\" at ");
+            });
+        for (std::size_t line = 0; line < scene_.lines.size(); ++line)
+            if (!((scene_.lines[line].to - scene_.lines[line].from).norm() > tolerance()))
+                in_list("monitoring_line", line).report("to_m", "wanted another point than from_m");
+        for (std::size_t i = 0; i < scene_.gauges.size(); ++i)
+            check_place(in_list("gauge", i), "at_m", scene_.gauges[i].at, "");
     }
 
     // --- Joint sets ----------------------------------------------------------------------------------------
@@ -305,7 +346,7 @@ private:
 
     void check_joint_sets() const
     {
-        for (std::size_t i = 0; i < scene_.joint_sets.size(); ++i) {
+        for_each(scene_.joint_sets.size(), [this](std::size_t i) {
             const JointSet& set = scene_.joint_sets[i];
             const Given given = in_list("joint_set", i);
             check_orientation(set, given);
@@ -315,7 +356,7 @@ private:
             if (set.region && !set.rocks.empty())
                 given.refuse("rocks", "wanted either it or region_m, not both");
             if (set.kind != SetKind::lines)
-                continue;
+                return;
             if (!set.length && set.persistence > 0 && set.persistence < 1)
                 given.refuse("length", "a persistence of " + shown(set.persistence) + " needs it");
             for (const Rock& rock : scene_.rocks)
@@ -323,7 +364,7 @@ private:
                     given.refuse("persistence", "its rock bridges need cohesion_MPa, friction_angle_deg and "
                                                 "tensile_strength_MPa of [[rock]] \"" +
                                                     rock.name + "\"");
-        }
+        });
         if (!scene_.joint_sets.empty() && !source_.root.find("random"))
             Place{source_.reading, ""}.refuse(in_list("joint_set", 0).table.line,
                                               "the scene has no [random] seed: [[joint_set]] needs it");
@@ -336,27 +377,26 @@ private:
     void check_times() const
     {
         if (!(scene_.end > 0))
-            once("schedule").refuse("end", "it is " + days(scene_.end) + "; wanted an end after the start");
+            once("schedule").report("end", "it is " + days(scene_.end) + "; wanted an end after the start");
         double before = 0;
         for (std::size_t i = 0; i < scene_.stages.size(); ++i) {
             const double time = scene_.stages[i].time;
             if (!(time > before))
                 in_list("stage", i)
-                    .refuse("date", "it is " + days(time) + "; wanted later than " +
+                    .report("date", "it is " + days(time) + "; wanted later than " +
                                         (i == 0 ? "the start" : "the stage before, " + days(before)));
             if (time > scene_.end)
                 in_list("stage", i)
-                    .refuse("date",
+                    .report("date",
                             "it is " + days(time) + "; wanted not after the end, " + days(scene_.end));
             before = time;
         }
-        for (std::size_t i = 0; i < scene_.points.size(); ++i) {
-            const double time = scene_.points[i].first_reading;
-            if (!(time >= 0 && time <= scene_.end))
-                in_list("point", i)
-                    .refuse("first_reading", "it is " + days(time) + "; wanted from the start to the end, " +
-                                                 days(scene_.end));
-        }
+        const auto check_reading = [this](const Given& given, const MonitoringPoint& point) {
+            if (const double time = point.first_reading; !(time >= 0 && time <= scene_.end))
+                given.report("first_reading", "it is " + days(time) + "; wanted from the start to the end, " +
+                                                  days(scene_.end));
+        };
+        for_each_point(check_reading, check_reading);
     }
 
     // What is smaller than the shortest edge is merged: the whole section, where that is.
@@ -379,19 +419,13 @@ private:
                                            ". Set a smaller size_m, or [cutting] shortest_edge_m");
     }
 
-    void check_numbers() const
+    void check_cutting() const
     {
         const Given cutting = once("cutting");
         check_shortest_edge(cutting);
         if (scene_.cutting.shortest_edge > scene_.zone_size)
             cutting.refuse("shortest_edge_m",
                            "wanted at most [zones] size_m, " + shown(scene_.zone_size) + " m");
-
-        if (scene_.zones_are_quadratic() && scene_.large_displacements)
-            once("zones").refuse("kind", "wanted \"constant strain\" with [large_displacements]");
-        if (scene_.zone_size_at_faces.value_or(0) > scene_.zone_size)
-            once("zones").refuse("size_at_faces_m",
-                                 "wanted at most size_m, " + shown(scene_.zone_size) + " m");
 
         if (scene_.cutting.dangling_ends == DanglingEnds::extend)
             for (const Rock& rock : scene_.rocks)
@@ -400,7 +434,19 @@ private:
                                    "the rock bridges it makes need cohesion_MPa, friction_angle_deg and "
                                    "tensile_strength_MPa of [[rock]] \"" +
                                        rock.name + "\"");
+    }
 
+    void check_zones() const
+    {
+        if (scene_.zones_are_quadratic() && scene_.large_displacements)
+            once("zones").report("kind", "wanted \"constant strain\" with [large_displacements]");
+        if (scene_.zone_size_at_faces.value_or(0) > scene_.zone_size)
+            once("zones").report("size_at_faces_m",
+                                 "wanted at most size_m, " + shown(scene_.zone_size) + " m");
+    }
+
+    void check_equilibrium() const
+    {
         const Given equilibrium = once("equilibrium");
         const Damping damping = scene_.equilibrium.damping;
         if (damping == Damping::mass && scene_.equilibrium.masses != Masses::real)
@@ -504,9 +550,9 @@ void check_names(const Source& source, const std::vector<std::string>& tables, c
 
 } // namespace
 
-void check_scene(const Scene& scene, const Source& source)
+void check_scene(const Scene& scene, const Source& source, Refusals& refusals)
 {
-    Checker(scene, source).check();
+    Checker(scene, source, refusals).check();
 }
 
 void check_network(const Scene& scene, const Source& source, const Network& network)

@@ -10,8 +10,8 @@
 namespace jointcreep::scene
 {
 
-// Throws input_error naming the line, key, value and what was wanted.
-void check_scene(const Scene& scene, const keys::Source& source);
+// Throws input_error naming the line, key, value and what was wanted of each fault. `refusals` are those of the source.
+void check_scene(const Scene& scene, const keys::Source& source, keys::Refusals& refusals);
 
 // That the scene is the one that a network was made from: its names, boundaries and area. Throws input_error naming the
 // line and what was wanted.

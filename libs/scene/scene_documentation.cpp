@@ -33,6 +33,10 @@ This page is made from the declarations in the files `scene_keys.cpp` of `libs`:
   a number, all dates are numbers on its axis: with `start = 100`, `date = 130` is 30 days after it.
 * A polygon lists its corners in order, in either direction. It is not closed: the last corner differs from the
   first.
+* In place of a polygon a circle may stand, `{ center_m = [0, 8], radius_m = 4 }`: its corners are on the circle, 32 of
+  them or `sides = n`. In place of a corner of a polygon or line an arc may stand that begins at the corner before it,
+  `{ through_m = [5, 12], to_m = [10, 8] }`, with as many sides as its share of a circle, at least 2, or `sides = n`. 32 sides
+  enclose .64 percent less than the circle.
 * `[table]` occurs once in a scene. `[[table]]` may occur many times: each one describes one joint, one stage, and
   so on.
 * A law is written on one line: `spacing = { law = "lognormal", mean_m = 2.5, deviation_m = 1 }`.
@@ -172,6 +176,8 @@ std::string scene_keys_markdown()
     std::string page = head;
     for (const Part<Scene>& table : scene_parts()) {
         page += "\n### " + heading(table.info) + "\n\n" + table.info.doc + needed(table.info) + "\n\n";
+        if (table.keys.empty())
+            continue;
         page += "| key | kind | range | needed | meaning |\n|---|---|---|---|---|\n";
         for (const KeyInfo& key : table.keys) {
             const auto range = key.range ? shown(*key.range, key.unit) : "";

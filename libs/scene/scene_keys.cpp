@@ -6,6 +6,7 @@
 #include "scene/shared_settings.hpp"
 
 #include <filesystem>
+#include <iterator>
 
 namespace jointcreep::scene
 {
@@ -68,6 +69,17 @@ Table<Scene> top()
 {
     return {{"", once, optional, "Keys before the first table."},
             {text("title", &Scene::title, "What the scene is, in a line.").optional()}};
+}
+
+Table<Scene> variables()
+{
+    return {
+        {"variables", once, optional,
+         "Names for numbers: `H = 40`. A name consists of letters, digits and _. Where a key of the scene wants a number, "
+         "a text may stand, with such names, numbers, + - * / and brackets: `size_m = \"H / 20\"`, "
+         "`outline_m = [[0, 0], [\"2 * H\", 0], ...]`. A variable may be such a text, too. The copy of the scene in "
+         "the programs' files has the numbers."},
+        {}};
 }
 
 Table<Scene> section()
@@ -661,6 +673,32 @@ Table<MonitoringPoint> monitoring_point()
                  .optional("the start")}};
 }
 
+Table<MonitoringLine> monitoring_line()
+{
+    return {
+        {"monitoring_line", in_list, optional,
+         "Points at equal distances on a line, such as an inclinometer or an extensometer. They are points as any "
+         "other, called \"NAME 1\" at from_m to \"NAME n\" at to_m."},
+        {text("name", &MonitoringLine::name, "Name, once among the monitoring lines."),
+         point("from_m", &MonitoringLine::from, "One end, inside the section."),
+         point("to_m", &MonitoringLine::to, "The other end."),
+         integer("points", &MonitoringLine::points, from(2).to(1000),
+                 "Number of points, both ends included."),
+         date("first_reading", &MonitoringLine::first_reading, "When the line's own readings begin.")
+             .optional("the start")}};
+}
+
+std::vector<MonitoringPoint> points_of(const MonitoringLine& line)
+{
+    std::vector<MonitoringPoint> points;
+    for (Index i = 0; i < line.points; ++i) {
+        const double share = static_cast<double>(i) / static_cast<double>(line.points - 1);
+        points.push_back({line.name + " " + std::to_string(i + 1), (1 - share) * line.from + share * line.to,
+                          line.first_reading});
+    }
+    return points;
+}
+
 Table<Gauge> gauge()
 {
     return {{"gauge", in_list, optional,
@@ -922,7 +960,9 @@ Parts general_parts()
     const auto read_top = [table = top()](const TomlValue& root, Reading& reading, Scene& scene) {
         fill(table, root, {reading, ""}, scene);
     };
-    return {part_read_by<Scene>(top(), read_top), of_scene(section())};
+    return {part_read_by<Scene>(top(), read_top),
+            part_read_by<Scene>(variables(), nullptr), // read_scene() reads them
+            of_scene(section())};
 }
 
 Parts joint_parts()
@@ -946,9 +986,16 @@ Parts schedule_parts()
         read_once(table, root, reading, written);
         scene.end = written.end;
     };
+    const auto read_lines = [table = monitoring_line()](const TomlValue& root, Reading& reading,
+                                                        Scene& scene) {
+        scene.lines = read_list(table, root, reading);
+        for (const MonitoringLine& line : scene.lines)
+            std::ranges::copy(points_of(line), std::back_inserter(scene.points));
+    };
     return {in_turn(Turn::calendar, part_read_by<Scene>(schedule(), read_schedule)),
             in_turn(Turn::dated, part_in_list(stage(), &Scene::stages)),
             in_turn(Turn::dated, part_in_list(monitoring_point(), &Scene::points)),
+            in_turn(Turn::dated, part_read_by<Scene>(monitoring_line(), read_lines)),
             in_turn(Turn::dated, part_in_list(gauge(), &Scene::gauges))};
 }
 

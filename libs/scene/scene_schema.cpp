@@ -20,9 +20,10 @@ Json list_of(Json items, int least)
     return {{"type", "array"}, {"items", std::move(items)}, {"minItems", least}};
 }
 
+// A number, or a text with names of [variables].
 Json number_in(const char* type, const std::optional<Range>& range)
 {
-    Json number{{"type", type}};
+    Json number{{"type", {type, "string"}}};
     if (range) {
         number[range->least_open ? "exclusiveMinimum" : "minimum"] = range->least;
         number[range->most_open ? "exclusiveMaximum" : "maximum"] = range->most;
@@ -35,6 +36,36 @@ Json point_in(const std::optional<Range>& range)
     Json point = list_of(number_in("number", range), 2);
     point["maxItems"] = 2;
     return point;
+}
+
+Json closed(Json properties, Json required)
+{
+    return {{"type", "object"},
+            {"properties", std::move(properties)},
+            {"required", std::move(required)},
+            {"additionalProperties", false}};
+}
+
+Json sides()
+{
+    return number_in("integer", from(1).to(1000));
+}
+
+// Corners, and arcs between them.
+Json corners_in(const std::optional<Range>& range, int least)
+{
+    const Json arc = closed({{"through_m", point_in(range)}, {"to_m", point_in(range)}, {"sides", sides()}},
+                            {"through_m", "to_m"});
+    return list_of({{"anyOf", {point_in(range), arc}}}, least);
+}
+
+Json polygon_in(const std::optional<Range>& range)
+{
+    const Json circle = closed({{"center_m", point_in(range)},
+                                {"radius_m", number_in("number", above(0).to(farthest_metre))},
+                                {"sides", sides()}},
+                               {"center_m", "radius_m"});
+    return {{"anyOf", {corners_in(range, 2), circle}}};
 }
 
 // The words of a kind that lists them: "x" | "y".
@@ -64,11 +95,11 @@ Json value_of(const KeyInfo& key, const std::string& inside)
     if (key.kind == "point")
         return point_in(key.range);
     if (key.kind == "polyline")
-        return list_of(point_in(key.range), 2);
+        return corners_in(key.range, 2);
     if (key.kind == "polygon")
-        return list_of(point_in(key.range), 3);
+        return polygon_in(key.range);
     if (key.kind == "polygons")
-        return list_of(list_of(point_in(key.range), 3), 1);
+        return list_of(polygon_in(key.range), 1);
     if (key.kind == "load history" || key.kind == "poles")
         return list_of(point_in(std::nullopt), 1);
     if (key.kind == "law" || key.kind == "density")
@@ -98,6 +129,8 @@ Json object_of(const Part<Scene>& part)
                 {"description", part.info.doc},
                 {"properties", std::move(properties)},
                 {"additionalProperties", false}};
+    if (part.keys.empty()) // names of the scene's own
+        object["additionalProperties"] = number_in("number", std::nullopt);
     if (!required.empty())
         object["required"] = std::move(required);
     return object;

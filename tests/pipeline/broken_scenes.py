@@ -37,6 +37,7 @@ WITH_PROFILE = (LINEAR_STRESS, """elevation_m = 20
 profile = [{ depth_m = 0, compression_xx_MPa = 1, compression_yy_MPa = 0, shear_xy_MPa = 0 }, \
 { depth_m = 20, compression_xx_MPa = 1.3, compression_yy_MPa = 0.5, shear_xy_MPa = 0.1 }]
 """)
+WITH_RATIO = (LINEAR_STRESS, "elevation_m = 20\nhorizontal_stress_ratio = 0.5\n")
 WITH_LARGE_DISPLACEMENTS = ("""[creep]
 step_days = 5
 scheme = "published"
@@ -52,7 +53,7 @@ stop_s = 10
 record_every_s = 0.5
 """)
 OTHERWISE = {"large_displacements": WITH_LARGE_DISPLACEMENTS, "ground_m": WITH_GROUND, "profile": WITH_PROFILE,
-             "in_situ_stress.profile": WITH_PROFILE,
+             "in_situ_stress.profile": WITH_PROFILE, "horizontal_stress_ratio": WITH_RATIO,
              "local_damping": WITH_LOCAL_DAMPING, "tolerance_m": WITH_TOLERANCE, "first_step_days": WITH_TOLERANCE,
              "shortest_step_days": WITH_TOLERANCE, "longest_step_days": WITH_TOLERANCE}  # keys not in every_key.toml
 CHECK_TIME = 60  # s, far more than any check takes
@@ -210,7 +211,7 @@ def main():
                             ("tolerance.toml", text.replace(*WITH_TOLERANCE)),
                             ("ground.toml", text.replace(*WITH_GROUND)),
                             ("large_displacements.toml", at_rest(text).replace(*WITH_LARGE_DISPLACEMENTS)),
-                            ("profile.toml", text.replace(*WITH_PROFILE))):
+                            ("profile.toml", text.replace(*WITH_PROFILE)), ("ratio.toml", text.replace(*WITH_RATIO))):
             scene = pathlib.Path(folder) / name
             scene.write_text(valid)
             command = [jointgen, str(scene), "-o", str(scene) + ".h5", "--check"]

@@ -324,6 +324,55 @@ TEST(checks, times)
     EXPECT_EQ(refusal(replaced(text, "date = 14", "date = 30")), "accepted") << "a stage at the end";
 }
 
+TEST(checks, monitoring_lines)
+{
+    const Scene scene = parse_scene(text, "scene.toml");
+    ASSERT_EQ(scene.points.size(), 5u);
+    EXPECT_EQ(scene.points[0].name, "crest");
+    for (int i = 0; i < 4; ++i) {
+        EXPECT_EQ(scene.points[1 + i].name, "inclinometer " + std::to_string(i + 1));
+        EXPECT_NEAR((scene.points[1 + i].at - Eigen::Vector2d(2, 2 + 4 * i)).norm(), 0, 1e-14);
+    }
+    expect_refused("to_m = [2, 14]", "to_m = [2, 26]",
+                   "[[monitoring_line]] \"inclinometer\" to_m = a list of 2: its point \"inclinometer 4\" at "
+                   "[2, 26] is outside the section's outline");
+    expect_refused("to_m = [2, 14]", "to_m = [2, 2]", "wanted another point than from_m");
+    expect_part(
+        refusal(replaced(text, "name = \"crest\"", "name = \"inclinometer 2\"")),
+        "[[monitoring_line]] \"inclinometer\" name = \"inclinometer\": its point \"inclinometer 2\" has the "
+        "name of another point");
+    expect_refused("first_reading = 7", "first_reading = 31", "wanted from the start to the end, 30 days");
+}
+
+TEST(checks, all_faults_are_told_at_once)
+{
+    const auto lines = [](const std::string& message) {
+        return std::count(message.begin(), message.end(), '\n') + 1;
+    };
+    // Of keys and values; checks that need them are left out.
+    std::string wrong = replaced(text, "poissons_ratio = ", "poissons_ratio = 1");
+    wrong = replaced(wrong, "gravity_m_per_s2 = ", "gravity = ");
+    wrong = replaced(wrong, "[in_situ_stress]\n", "[in_situ_stress]\nstress = 3\n");
+    wrong = replaced(wrong, "seed = 1", "seed = -1");
+    const std::string told = refusal(wrong);
+    EXPECT_EQ(lines(told), 5) << told;
+    for (const char* const part : {"poissons_ratio = 1", "no key \"gravity\"; did you mean gravity_m_per_s2?",
+                                   "[section] has no gravity_m_per_s2", "no key \"stress\"", "seed = -1"})
+        expect_part(told, part);
+    // By line.
+    EXPECT_LT(told.find("gravity"), told.find("poissons_ratio"));
+    EXPECT_LT(told.find("poissons_ratio"), told.find("seed"));
+    // Of references; then of places and times.
+    wrong = replaced(text, "at_m = [24, 19]", "at_m = [24, 21]");
+    wrong = replaced(wrong, "date = 14", "date = 31");
+    const std::string places = refusal(wrong);
+    EXPECT_EQ(lines(places), 2) << places;
+    expect_part(places, "outside the section's outline");
+    expect_part(places, "wanted not after the end");
+    // Dates mean nothing without the start: those of the same table alone are told.
+    EXPECT_EQ(lines(refusal(replaced(text, "start = 1994-06-01", "start = true"))), 2);
+}
+
 TEST(checks, places)
 {
     expect_refused("at_m = [24, 19]", "at_m = [24, 21]", "[24, 21] is outside the section's outline");

@@ -21,6 +21,7 @@ std::string with_numbers(const std::string& start)
     all = replaced(all, "end = 1994-07-01", "end = 130");
     all = replaced(all, "date = 1994-06-06", "date = 105.5");
     all = replaced(all, "date = 14", "date = 114");
+    all = replaced(all, "first_reading = 7", "first_reading = 107");
     return replaced(all, "first_reading = 1994-06-07", "first_reading = 106");
 }
 
@@ -31,6 +32,7 @@ TEST(dates, with_a_date_as_start)
     EXPECT_EQ(scene.stages[0].time, 5 * day);
     EXPECT_EQ(scene.stages[1].time, 14 * day) << "a number of days since the start";
     EXPECT_EQ(scene.points[0].first_reading, 6 * day);
+    EXPECT_EQ(scene.points.back().first_reading, 7 * day) << "of a monitoring line";
 }
 
 TEST(dates, with_a_number_as_start)
@@ -40,6 +42,7 @@ TEST(dates, with_a_number_as_start)
     EXPECT_EQ(scene.stages[0].time, 5.5 * day);
     EXPECT_EQ(scene.stages[1].time, 14 * day);
     EXPECT_EQ(scene.points[0].first_reading, 6 * day);
+    EXPECT_EQ(scene.points.back().first_reading, 7 * day) << "of a monitoring line";
 }
 
 TEST(dates, without_start)

@@ -31,6 +31,24 @@ std::string level(double depth, double xx, double yy, double xy)
            ", compression_yy_MPa = " + shown(yy) + ", shear_xy_MPa = " + shown(xy) + " }";
 }
 
+TEST(in_situ_stress, a_ratio_is_the_linear_law_of_the_rock_s_weight)
+{
+    const Scene scene =
+        parse_scene(replaced(every_key_text(), linear, "elevation_m = 25\nhorizontal_stress_ratio = 0.7\n"),
+                    "scene.toml");
+    const auto rock = std::find_if(scene.rocks.begin(), scene.rocks.end(),
+                                   [&](const Rock& one) { return one.name == scene.rock; });
+    const double weight = rock->density * scene.gravity;
+    for (const double y : {-10.0, 0.0, 25.0}) {
+        const Eigen::Vector3d stress = scene.in_situ_stress.at({3, y});
+        EXPECT_DOUBLE_EQ(stress[0], -0.7 * weight * (25 - y));
+        EXPECT_DOUBLE_EQ(stress[1], -weight * (25 - y));
+        EXPECT_EQ(stress[2], 0);
+    }
+    const auto both = replaced(every_key_text(), linear, linear + "horizontal_stress_ratio = 0.7\n");
+    expect_part(refusal(both), "wanted either horizontal_stress_ratio or the linear keys");
+}
+
 // The linear law from -10 m to 30 m, over ground at 25 m.
 TEST(in_situ_stress, flat_ground_and_two_levels_are_the_linear_law)
 {
