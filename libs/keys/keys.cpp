@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <set>
 
 namespace jointcreep::keys
 {
@@ -266,21 +267,31 @@ void check_keys(const TomlValue& value, const std::vector<const KeyInfo*>& known
 void check_present(const TomlValue& value, const std::vector<const KeyInfo*>& known, const Place& place)
 {
     std::map<std::string, std::string> given; // one key of every group
-    for (const KeyInfo* const key : known)
+    std::set<std::string> elsewhere;          // groups in whose place another key stands
+    std::vector<std::string> names;
+    for (const KeyInfo* const key : known) {
+        names.push_back(key->name);
         if (key->need == Need::together && value.find(key->name))
             given[key->group] = key->name;
+        if (!key->in_place_of.empty() && value.find(key->name))
+            elsewhere.insert(key->in_place_of);
+    }
+    std::set<std::string> misspelt; // check_keys refuses these already
+    for (const TomlEntry& entry : std::get<TomlValue::Table>(value.content))
+        if (std::ranges::find(names, entry.key) == names.end())
+            misspelt.insert(nearest(entry.key, names));
     const auto check = [&](const KeyInfo& key) {
         const TomlValue* const found = value.find(key.name);
         if (found && !key.in_place_of.empty() && given.contains(key.in_place_of))
             place.refuse(found->line, place.table + " " + key.name + " = " + shown(*found) +
                                           ": wanted either " + key.name + " or the " + key.in_place_of +
                                           " keys (" + given[key.in_place_of] + ", ...), not both");
-        if (found)
+        if (found || misspelt.contains(key.name))
             return;
         const auto missing = place.table + " has no " + key.name + ": wanted " + key.wanted();
         if (key.need == Need::required)
             place.refuse(value.line, missing);
-        if (key.need == Need::together && given.contains(key.group))
+        if (key.need == Need::together && given.contains(key.group) && !elsewhere.contains(key.group))
             place.refuse(value.line, missing + ", as it comes together with " + given[key.group]);
     };
     for (const KeyInfo* const key : known)

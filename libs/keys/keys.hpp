@@ -311,7 +311,7 @@ Key<Record> choice(std::string name, Value Record::*member, Words<Value> words, 
 // Refuses what is no table, and keys that are not among `known`.
 void check_keys(const TomlValue& value, const std::vector<const KeyInfo*>& known, const Place& place);
 // Refuses a required key that is missing, one missing of those that come together, and a key beside those that it stands
-// in place of.
+// in place of. `value` is a table. A key that is only misspelt is check_keys' matter.
 void check_present(const TomlValue& value, const std::vector<const KeyInfo*>& known, const Place& place);
 
 template <class Record>
