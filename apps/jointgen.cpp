@@ -206,8 +206,11 @@ void generate(const Arguments& arguments)
     if (arguments.has("report"))
         network.statistics = statistics::statistics_of(scene, network);
 
-    // 5. What its zones will cost. Other sizes may be given to demsolve: a network is refused by --check only.
+    // 5. What looks wrong, and what its zones will cost. Other sizes may be given to demsolve: a network is refused by
+    // --check only.
     Warnings warnings = warnings_of(network);
+    for (const std::string& doubt : scene::doubts_about(scene, text, input))
+        warnings.add(program.name, doubt);
     try {
         if (const std::string cost = zoning::check_cost(scene, network.blocks, input); !cost.empty())
             warnings.add(program.name, cost);

@@ -13,13 +13,21 @@ constexpr std::size_t most_names_shown = 10;
 
 } // namespace
 
-void Given::refuse(const std::string& key, const std::string& what) const
+std::string Given::told(const std::string& key, const std::string& what) const
 {
     const TomlValue* const value = find(key);
-    const Place place{reading, title};
-    if (value)
-        place.refuse(value->line, title + " " + key + " = " + shown(*value) + ": " + what);
-    place.refuse(table.line, title + " has no " + key + ": " + what);
+    return title + (value ? " " + key + " = " + shown(*value) : " has no " + key) + ": " + what;
+}
+
+std::int64_t Given::line_of(const std::string& key) const
+{
+    const TomlValue* const value = find(key);
+    return value ? value->line : table.line;
+}
+
+void Given::refuse(const std::string& key, const std::string& what) const
+{
+    Place{reading, title}.refuse(line_of(key), told(key, what));
 }
 
 void Given::report(const std::string& key, const std::string& what) const

@@ -21,8 +21,10 @@ struct Given {
 
     const TomlValue* find(std::string_view key) const { return table.find(key); }
 
-    // "[[joint]] "F1" material = "gouge": what is wrong", at the key's line, or the table's if it is missing.
-    // Throws input_error.
+    // "[[joint]] "F1" material = "gouge": what is wrong", and its line: the key's, or the table's if it is missing.
+    std::string told(const std::string& key, const std::string& what) const;
+    std::int64_t line_of(const std::string& key) const;
+    // Throws input_error with both.
     [[noreturn]] void refuse(const std::string& key, const std::string& what) const;
     // The same where the checks after it do not need this one: where all faults are told, it returns.
     void report(const std::string& key, const std::string& what) const;

@@ -23,6 +23,11 @@ Scene parse_scene(std::string_view text, const std::string& name);
 // fit the network of that file, as the text was changed.
 Scene parse_scene_of_file(std::string_view text, const std::string& path, const Network& network);
 
+// What the scene may say, and a scene of rock rarely does: numbers that look like those of another unit, a stress that is
+// not the weight of the rock, a point that is excavated. Each with its line, the value and what was expected. `scene` was
+// parsed from the text.
+std::vector<std::string> doubts_about(const Scene& scene, std::string_view text, const std::string& name);
+
 // The text of a scene file without byte order mark, with numbers in place of names and with the corners of circles and arcs
 // (scene/shorthand.hpp), and with the files beside it that it names behind it, each as a table [[file]]: so the text says
 // everything, wherever it goes, and to every reader.

@@ -1,0 +1,162 @@
+// Warnings of a scene: values that are allowed but unusual of rock, most often a slip of unit.
+
+#include "scene/scene.hpp"
+
+#include "keys/polygon.hpp"
+#include "keys/source.hpp"
+#include "model/polygon.hpp"
+#include "model/units.hpp"
+
+#include <algorithm>
+#include <limits>
+
+namespace jointcreep::scene
+{
+namespace
+{
+
+using namespace keys;
+
+// What is usual of rock and its joints.
+constexpr double least_density = 1500, most_density = 4000;          // [kg/m3]: coal to ores
+constexpr double least_modulus = 0.01, most_modulus = 200;           // [GPa]
+constexpr double most_rock_cohesion = 100, most_joint_cohesion = 10; // [MPa]
+constexpr double least_friction = 3;                                 // [deg]
+constexpr double least_ratio = 0.2, most_ratio = 4;                  // of horizontal to vertical stress
+constexpr double least_gravity = 9.5, most_gravity = 10.1;           // [m/s2]
+constexpr double least_of_weight = 0.75, most_of_weight = 1.25;      // vertical stress over the weight above
+
+class Doubts
+{
+public:
+    Doubts(const Scene& scene, const Source& source) : scene_(scene), source_(source) {}
+
+    std::vector<std::string> all()
+    {
+        for (std::size_t i = 0; i < scene_.rocks.size(); ++i)
+            look_at(scene_.rocks[i], source_.in_list("rock", i));
+        for (std::size_t i = 0; i < scene_.joint_materials.size(); ++i)
+            look_at(scene_.joint_materials[i], source_.in_list("joint_material", i));
+        if (scene_.gravity > 0 && !usual(scene_.gravity, least_gravity, most_gravity))
+            add(source_.once("section"), "gravity_m_per_s2", "on Earth it is 9.81 m/s2");
+        look_at_stress();
+        look_at_points();
+        return std::move(found_);
+    }
+
+private:
+    const Scene& scene_;
+    const Source& source_;
+    std::vector<std::string> found_{};
+
+    static bool usual(double value, double least, double most) { return least <= value && value <= most; }
+
+    void add(const Given& given, const std::string& key, const std::string& what)
+    {
+        found_.push_back("scene, line " + std::to_string(given.line_of(key)) + ": " + given.told(key, what));
+    }
+
+    void look_at_friction(double angle, const Given& given, const std::string& key)
+    {
+        if (angle > 0 && angle < least_friction * unit::deg)
+            add(given, key,
+                "the angle is in degrees, and usually above " + shown(least_friction) +
+                    " deg; it looks like radians or a tangent");
+    }
+
+    void look_at(const Rock& rock, const Given& given)
+    {
+        if (!usual(rock.density, least_density, most_density))
+            add(given, "density_kg_per_m3",
+                "rock usually has " + shown(least_density) + " to " + shown(most_density) + " kg/m3");
+        if (!usual(rock.youngs_modulus / unit::GPa, least_modulus, most_modulus))
+            add(given, "youngs_modulus_GPa",
+                "rock usually has " + shown(least_modulus) + " to " + shown(most_modulus) + " GPa");
+        if (!rock.strength)
+            return;
+        look_at_friction(rock.strength->friction_angle, given, "friction_angle_deg");
+        if (rock.strength->cohesion / unit::MPa > most_rock_cohesion)
+            add(given, "cohesion_MPa", "rock usually has at most " + shown(most_rock_cohesion) + " MPa");
+    }
+
+    void look_at(const JointMaterial& joint, const Given& given)
+    {
+        if (given.find("friction_angle_deg"))
+            look_at_friction(joint.friction_angle, given, "friction_angle_deg");
+        if (given.find("cohesion_MPa") && joint.cohesion / unit::MPa > most_joint_cohesion)
+            add(given, "cohesion_MPa", "joints usually have at most " + shown(most_joint_cohesion) + " MPa");
+        if (joint.normal_stiffness > 0 && joint.shear_stiffness > 2 * joint.normal_stiffness)
+            add(given, "shear_stiffness_MPa_per_m",
+                "a joint is usually softer in shear than across, normal_stiffness_MPa_per_m = " +
+                    shown(joint.normal_stiffness / (unit::MPa / unit::m)));
+    }
+
+    // At the lowest corner of the outline, where the weight above is largest.
+    void look_at_stress()
+    {
+        const InSituStress& stress = scene_.in_situ_stress;
+        const auto place = *std::ranges::min_element(scene_.outline, {}, [](const auto& p) { return p.y(); });
+        const double depth = stress.depth_of(place);
+        if (!(depth > 0) || !(scene_.gravity > 0))
+            return;
+        const Eigen::Vector3d at = stress.at(place), top = stress.at({place.x(), place.y() + depth});
+        const Given given = source_.once("in_situ_stress");
+        const std::string key = given.find("profile")                   ? "profile"
+                                : given.find("horizontal_stress_ratio") ? "horizontal_stress_ratio"
+                                                                        : "compression_yy_gradient_MPa_per_m",
+                          where = " at " + shown(depth) + " m of depth";
+        const auto [light, heavy] = std::ranges::minmax_element(scene_.rocks, {}, &Rock::density);
+        const double vertical = top[1] - at[1], least = light->density * scene_.gravity * depth,
+                     most = heavy->density * scene_.gravity * depth;
+        if (!usual(vertical, least_of_weight * least, most_of_weight * most))
+            add(given, key,
+                "the vertical compression grows by " + shown(rounded(vertical / unit::MPa)) + " MPa" + where +
+                    ", and the weight of the rock above is " + shown(rounded(least / unit::MPa)) +
+                    (most > least ? " to " + shown(rounded(most / unit::MPa)) : "") + " MPa");
+        if (at[0] > 0 || at[1] > 0)
+            add(given, key, "the stress" + where + " is tension; compression is positive here");
+        else if (at[1] < 0 && !usual(at[0] / at[1], least_ratio, most_ratio))
+            add(given,
+                given.find("compression_xx_gradient_MPa_per_m") ? "compression_xx_gradient_MPa_per_m" : key,
+                "the horizontal stress" + where + " is " + shown(rounded(at[0] / at[1])) +
+                    " times the vertical one; usual are " + shown(least_ratio) + " to " + shown(most_ratio));
+    }
+
+    // To three digits.
+    static double rounded(double value)
+    {
+        std::array<char, 32> text{};
+        std::snprintf(text.data(), text.size(), "%.3g", value);
+        return std::strtod(text.data(), nullptr);
+    }
+
+    void look_at_points()
+    {
+        const TomlValue* const list = source_.root.find("point");
+        const std::size_t count = list ? std::get<TomlValue::List>(list->content).size() : 0;
+        const double tolerance = outline_tolerance(scene_.outline);
+        for (std::size_t i = 0; i < scene_.points.size(); ++i)
+            for (const Stage& stage : scene_.stages)
+                for (const Polygon& removed : stage.remove)
+                    if (covers(removed, scene_.points[i].at, 0) &&
+                        distance_to_sides(removed, scene_.points[i].at) > tolerance) {
+                        const std::string what = "it is in rock that stage \"" + stage.name +
+                                                 "\" excavates; its history ends there";
+                        if (i < count)
+                            add(source_.in_list("point", i), "at_m", what);
+                        else
+                            found_.push_back("scene: point \"" + scene_.points[i].name + "\": " + what);
+                    }
+    }
+};
+
+} // namespace
+
+std::vector<std::string> doubts_about(const Scene& scene, std::string_view text, const std::string& name)
+{
+    const TomlValue root = parse_toml(text, name);
+    const Reading reading{.name = name, .whole = "scene"};
+    return Doubts(scene, {root, reading}).all();
+}
+
+} // namespace jointcreep::scene

@@ -1,0 +1,134 @@
+// Warnings of values that are allowed but unusual: each slip is told, and a sound scene is not.
+
+#include "text.hpp"
+
+namespace doubts_test
+{
+
+using namespace jointcreep;
+using namespace jointcreep::scene;
+
+namespace
+{
+
+// A slope of granite: nothing to warn of.
+const std::string sound = R"([section]
+outline_m = [[0, 0], [60, 0], [60, 40], [0, 40]]
+rock = "granite"
+gravity_m_per_s2 = 9.81
+[[rock]]
+name = "granite"
+density_kg_per_m3 = 2700
+youngs_modulus_GPa = 30
+poissons_ratio = 0.25
+cohesion_MPa = 1.5
+friction_angle_deg = 45
+tensile_strength_MPa = 1
+[[joint_material]]
+name = "joint"
+normal_stiffness_MPa_per_m = 5000
+shear_stiffness_MPa_per_m = 2000
+cohesion_MPa = 0.1
+friction_angle_deg = 32
+tensile_strength_MPa = 0
+[[joint]]
+name = "F"
+material = "joint"
+from_m = [0, 10]
+to_m = [60, 30]
+[in_situ_stress]
+elevation_m = 40
+compression_xx_MPa = 0
+compression_yy_MPa = 0
+shear_xy_MPa = 0
+compression_xx_gradient_MPa_per_m = 0.02
+compression_yy_gradient_MPa_per_m = 0.026487
+shear_xy_gradient_MPa_per_m = 0
+[[boundary]]
+from_m = [0, 0]
+to_m = [60, 0]
+fix = "xy"
+[schedule]
+end = 10
+[[stage]]
+name = "cut"
+date = 5
+remove_m = [[[40, 30], [60, 30], [60, 40], [40, 40]]]
+[[point]]
+name = "crest"
+at_m = [39, 39]
+[zones]
+size_m = 3
+)";
+
+std::vector<std::string> doubts_of(const std::string& text)
+{
+    return doubts_about(parse_scene(text, "scene.toml"), text, "scene.toml");
+}
+
+// One warning, at the line of `by`, with these words.
+void expect_doubt(const std::string& old, const std::string& by, const std::string& part)
+{
+    const std::string text = replaced(sound, old, by);
+    const std::vector<std::string> doubts = doubts_of(text);
+    ASSERT_EQ(doubts.size(), 1u) << by;
+    expect_part(doubts[0], "scene, " + line_of(text, by.substr(0, by.find('\n'))) + " ");
+    expect_part(doubts[0], part);
+}
+
+TEST(doubts, none_of_a_sound_scene)
+{
+    EXPECT_TRUE(doubts_of(sound).empty());
+}
+
+TEST(doubts, units_of_rock_and_joints)
+{
+    expect_doubt("youngs_modulus_GPa = 30", "youngs_modulus_GPa = 3000", "usually has 0.01 to 200 GPa");
+    expect_doubt("friction_angle_deg = 45", "friction_angle_deg = 0.785",
+                 "it looks like radians or a tangent");
+    expect_doubt("friction_angle_deg = 32", "friction_angle_deg = 0.62",
+                 "it looks like radians or a tangent");
+    expect_doubt("cohesion_MPa = 1.5", "cohesion_MPa = 1500", "at most 100 MPa");
+    expect_doubt("cohesion_MPa = 0.1", "cohesion_MPa = 100", "at most 10 MPa");
+    expect_doubt("shear_stiffness_MPa_per_m = 2000", "shear_stiffness_MPa_per_m = 20000",
+                 "normal_stiffness_MPa_per_m = 5000");
+    const auto doubts = doubts_of(replaced(sound, "density_kg_per_m3 = 2700", "density_kg_per_m3 = 2.7"));
+    ASSERT_EQ(doubts.size(), 2u); // and the stress is not its weight
+    expect_part(doubts[0], "density_kg_per_m3 = 2.7: rock usually has 1500 to 4000 kg/m3");
+    expect_part(doubts[1], "the weight of the rock above is 0.00106 MPa");
+}
+
+TEST(doubts, gravity_and_stress)
+{
+    const std::string yy = "compression_yy_gradient_MPa_per_m = 0.026487";
+    expect_doubt(yy, "compression_yy_gradient_MPa_per_m = 0.036",
+                 "grows by 1.44 MPa at 40 m of depth, and the weight of the rock above is 1.06 MPa");
+    expect_doubt("compression_xx_gradient_MPa_per_m = 0.02", "compression_xx_gradient_MPa_per_m = 0.16",
+                 "is 6.04 times the vertical one; usual are 0.2 to 4");
+    expect_doubt("compression_xx_gradient_MPa_per_m = 0.02", "compression_xx_gradient_MPa_per_m = 0.004",
+                 "is 0.151 times the vertical one");
+    const auto tension = doubts_of(replaced(sound, yy, "compression_yy_gradient_MPa_per_m = -0.026487"));
+    ASSERT_EQ(tension.size(), 2u);
+    expect_part(tension[1], "is tension; compression is positive here");
+    const auto gravity = doubts_of(replaced(sound, "gravity_m_per_s2 = 9.81", "gravity_m_per_s2 = 0.981"));
+    ASSERT_EQ(gravity.size(), 2u);
+    expect_part(gravity[0], "on Earth it is 9.81 m/s2");
+    EXPECT_TRUE(doubts_of(replaced(sound, "gravity_m_per_s2 = 9.81", "gravity_m_per_s2 = 0")).empty())
+        << "a test of loads";
+}
+
+TEST(doubts, points_in_rock_that_is_excavated)
+{
+    expect_doubt("at_m = [39, 39]", "at_m = [41, 39]", "in rock that stage \"cut\" excavates");
+    EXPECT_TRUE(doubts_of(replaced(sound, "at_m = [39, 39]", "at_m = [40, 35]")).empty())
+        << "on the new face";
+    const std::string line =
+        "[[monitoring_line]]\nname = \"L\"\nfrom_m = [30, 35]\nto_m = [50, 35]\npoints = 3\n[zones]";
+    const auto doubts = doubts_of(replaced(sound, "[zones]", line));
+    ASSERT_EQ(doubts.size(), 1u);
+    expect_part(doubts[0], "point \"L 3\": it is in rock that stage \"cut\" excavates");
+}
+
+} // namespace
+
+} // namespace doubts_test
