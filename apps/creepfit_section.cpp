@@ -49,14 +49,16 @@ Measurements read_measurements(const std::string& path, const Scene& scene, std:
 Found search(const Arguments& arguments, const store::JointsFile& file, const Scene& scene,
              const Measurements& measurements, const back_analysis::Settings& settings)
 {
-    Progress progress(arguments.quiet());
+    Progress progress("creepfit", arguments.quiet());
     return of_lines_of_file(*arguments.text("measurements"), [&] {
         return back_analysis::fit(scene, file.network, file.equivalent, measurements, settings,
                                   [&](int run, const std::vector<double>& factors) {
-                                      std::string words = "run " + std::to_string(run + 1) + ":";
-                                      for (const double factor : factors)
-                                          words += ' ' + rounded(factor, 3);
-                                      progress.show(1 - std::pow(0.8, run), words);
+                                      progress.show(0, [&] { // nobody knows how many runs there will be
+                                          std::string words = "run " + std::to_string(run + 1) + ":";
+                                          for (const double factor : factors)
+                                              words += ' ' + rounded(factor, 3);
+                                          return words;
+                                      });
                                   });
     });
 }

@@ -215,7 +215,7 @@ void solve(const Arguments& arguments)
     // 3. The analysis: in-situ equilibrium, excavation in stages, creep.
     const RunWith run_with = [&](const Scene& of, double divisor, double most_displacement, Kept from,
                                  const Safety* runs_before) {
-        Progress progress(arguments.quiet());
+        Progress progress(program.name, arguments.quiet());
         const std::string which = reduction.search ? "strengths / " + shown(divisor) + ", " : "";
         analysis::Recording with_checkpoints = recording;
         if (files.has_checkpoint() && runs_before != nullptr) {
@@ -225,11 +225,11 @@ void solve(const Arguments& arguments)
             };
         }
         auto trial = of_file(input, [&] {
-            return std::make_unique<Trial>(of, file.network, file.equivalent, divisor, most_displacement,
-                                           threads, with_checkpoints,
-                                           [&progress, which](double fraction, const std::string& what) {
-                                               progress.show(fraction, which + what);
-                                           });
+            return std::make_unique<Trial>(
+                of, file.network, file.equivalent, divisor, most_displacement, threads, with_checkpoints,
+                [&progress, which](const analysis::Progress& now) {
+                    progress.show(now.fraction, [&] { return which + demsolve::what_is_done(now); });
+                });
         });
         of_file(from ? files.checkpoint() : input, [&] {
             if (from)

@@ -248,6 +248,17 @@ std::string warning_lines(const analysis::Trial& run)
     return lines;
 }
 
+std::string what_is_done(const analysis::Progress& progress)
+{
+    if (progress.search == nullptr)
+        return progress.what;
+    std::array<char, 96> text{};
+    std::snprintf(text.data(), text.size(), ": %d steps, unbalanced force ratio %.1e (wanted %.0e)",
+                  static_cast<int>(progress.search->steps), progress.search->unbalanced_force_ratio,
+                  progress.tolerance);
+    return progress.what + text.data();
+}
+
 std::string place_of(const Checkpoint& kept, const Scene& scene)
 {
     const std::string within = kept.search.empty() ? "" : ", in the middle of a search for equilibrium";

@@ -34,6 +34,9 @@ std::string mesh_warning(const analysis::Bracket& bracket, const MeshEstimate& e
 std::vector<std::string> warnings_of(const analysis::Trial& run);
 std::string warning_lines(const analysis::Trial& run);
 
+// What a run does at the moment: "bench 2, day 200: 400 steps, unbalanced force ratio 3e-04 (wanted 1e-06)".
+std::string what_is_done(const analysis::Progress& progress);
+
 // Where a checkpoint is in the analysis: stage "A", day 3.
 std::string place_of(const Checkpoint& kept, const Scene& scene);
 

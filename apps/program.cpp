@@ -402,7 +402,11 @@ int run(const Program& program, int argc, char** argv, const std::function<void(
     }
 }
 
-Progress::Progress(bool quiet) : on_terminal_(!quiet && isatty(STDERR_FILENO)) {}
+Progress::Progress(std::string program, bool quiet)
+    : program_(std::move(program)), is_quiet_(quiet), on_terminal_(!quiet && isatty(STDERR_FILENO)),
+      next_(start_ + (on_terminal_ ? Clock::duration(0) : std::chrono::minutes(1)))
+{
+}
 
 Progress::~Progress()
 {
@@ -410,22 +414,42 @@ Progress::~Progress()
         std::cerr << "\r\x1b[K" << std::flush;
 }
 
-void Progress::show(double fraction, std::string_view what)
+std::string Progress::time_left(double fraction) const
 {
-    if (!on_terminal_)
-        return;
-    const auto now = std::chrono::steady_clock::now();
-    if (now < next_)
-        return;
-    next_ = now + std::chrono::milliseconds(100);
-    drawn_ = true;
+    constexpr double shortest = 5; // [s]: earlier the rate is not known
+    const double gone = std::chrono::duration<double>(Clock::now() - start_).count();
+    if (gone < shortest)
+        return "";
+    const double left = gone * (1 - fraction) / fraction;
+    const bool in_minutes = left > 90, in_hours = left > 90 * 60;
+    const double unit = in_hours ? 3600 : in_minutes ? 60 : 1;
+    return ", about " + std::to_string(std::llround(std::ceil(left / unit))) +
+           (in_hours     ? " h"
+            : in_minutes ? " min"
+                         : " s") +
+           " left";
+}
 
-    constexpr std::size_t bar_width = 30, what_width = 40;
+void Progress::show(double fraction, const std::function<std::string()>& what)
+{
+    if (is_quiet_ || Clock::now() < next_)
+        return;
     fraction = std::clamp(fraction, 0.0, 1.0);
+    const std::string share =
+        fraction > 0 ? std::to_string(static_cast<int>(100 * fraction)) + "%" + time_left(fraction) + ": "
+                     : "";
+    if (!on_terminal_) {
+        next_ = Clock::now() + std::chrono::minutes(1);
+        std::cerr << program_ + ": " + share + what() + "\n" << std::flush;
+        return;
+    }
+    next_ = Clock::now() + std::chrono::milliseconds(100);
+    drawn_ = true;
+    constexpr std::size_t bar_width = 20, what_width = 90;
     const auto full = static_cast<std::size_t>(fraction * bar_width);
-    std::cerr << "\r[" << std::string(full, '#') << std::string(bar_width - full, ' ') << "] "
-              << static_cast<int>(100 * fraction) << "% " << shortened(what, what_width) << "\x1b[K"
-              << std::flush;
+    const std::string bar =
+        fraction > 0 ? "[" + std::string(full, '#') + std::string(bar_width - full, ' ') + "] " : "";
+    std::cerr << "\r" << bar << share << shortened(what(), what_width) << "\x1b[K" << std::flush;
 }
 
 void Summary::add(std::string label, std::string value, const std::string& unit)

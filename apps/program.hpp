@@ -140,23 +140,28 @@ private:
 // `body` throws becomes a message on stderr, "jointgen: scene.toml:12: ...", and an exit code.
 int run(const Program& program, int argc, char** argv, const std::function<void(const Arguments&)>& body);
 
-// A progress bar on stderr, if that is a terminal; in a pipe it writes nothing. The destructor clears it.
+// How far a run is, on stderr: on a terminal one line that changes, with a bar; elsewhere a line a minute. The
+// destructor clears the bar.
 class Progress
 {
 public:
-    explicit Progress(bool quiet);
+    Progress(std::string program, bool quiet);
     ~Progress();
     Progress(const Progress&) = delete;
     Progress& operator=(const Progress&) = delete;
 
-    // `fraction` done, from 0 to 1, and what is being done. Cheap to call often: redraws 10 times a second at
-    // most.
-    void show(double fraction, std::string_view what);
+    // `fraction` done, from 0 (not known) to 1, and what is being done. Cheap to call often: asks for it 10 times a second at most.
+    // After some seconds the time left is shown, as if the rest went on at the same rate.
+    void show(double fraction, const std::function<std::string()>& what);
 
 private:
-    bool on_terminal_;
+    using Clock = std::chrono::steady_clock;
+    std::string program_;
+    bool is_quiet_, on_terminal_;
     bool drawn_ = false;
-    std::chrono::steady_clock::time_point next_{};
+    Clock::time_point start_ = Clock::now(), next_{};
+
+    std::string time_left(double fraction) const;
 };
 
 // Says a warning on stderr: "demsolve: warning: ...".

@@ -78,11 +78,11 @@ mechanics::Convergence Engines::relax(double time)
 {
     const Equilibrium& settings = section_.scene.equilibrium;
     if (!step_recorder_.is_wanted())
-        return relaxation::relax(section_.assembly, settings, {}, section_.keeper);
+        return relaxation::relax(section_.assembly, settings, {}, section_.keeper, tell_);
     step_recorder_.begin(time);
     const auto convergence = relaxation::relax(
         section_.assembly, settings, [&](double since_begin) { step_recorder_.step(since_begin); },
-        section_.keeper);
+        section_.keeper, tell_);
     step_recorder_.end();
     return convergence;
 }

@@ -12,7 +12,10 @@ namespace jointcreep::analysis
 class Engines
 {
 public:
-    Engines(Section& section, StepRecorder& step_history) : section_(section), step_recorder_(step_history) {}
+    Engines(Section& section, StepRecorder& step_history) : section_(section), step_recorder_(step_history)
+    {
+        implicit_.tell(tell_);
+    }
 
     // Equilibrium at `time` since start [s]; messages and the step history have that time. What was found is
     // in Section::settled. Throws equilibrium_error where there is none.
@@ -44,6 +47,9 @@ private:
 
     Section& section_;
     StepRecorder& step_recorder_;
+    mechanics::SearchObserver tell_ = [this](const mechanics::Convergence& so_far) {
+        section_.say_search(so_far);
+    };
     implicit::Solver implicit_;
     bool has_learnt_ = false;
 };

@@ -34,8 +34,16 @@ struct Recording {
     bool keep_beginning = false; // also before the in-situ equilibrium
 };
 
-// Called with the progress of an analysis, from 0 to 1, and what is being done.
-using Observer = std::function<void(double fraction, const std::string& what)>;
+// Where an analysis is.
+struct Progress {
+    double fraction = 0;                            // of the scene's time [-]
+    std::string what;                               // the stage, or the day of creep
+    const mechanics::Convergence* search = nullptr; // for equilibrium, if one is going on
+    double tolerance = 0;                           // of its unbalanced force ratio
+};
+
+// Called often.
+using Observer = std::function<void(const Progress&)>;
 
 // What the summary counts.
 struct Findings {
@@ -67,8 +75,18 @@ struct Section {
     Section& operator=(const Section&) = delete;
 
     const Mesh& mesh() const { return result.mesh; }
-    // Tells the observer what is being done.
-    void say(const std::string& what) const { observe(now / scene.end, what); }
+    // Tells the observer what is being done, and how far a search for equilibrium has come.
+    void say(const std::string& what)
+    {
+        progress = {now / scene.end, what, nullptr, scene.equilibrium.tolerance};
+        observe(progress);
+    }
+    void say_search(const mechanics::Convergence& so_far)
+    {
+        progress.search = &so_far;
+        observe(progress);
+        progress.search = nullptr;
+    }
 
     // What a checkpoint keeps of it.
     void transfer(const Transfer& to, Checkpoint& kept);
@@ -77,6 +95,7 @@ struct Section {
     const Network& network;
     const EquivalentJoints& joints;
     Observer observe;
+    Progress progress{};
     EngineChoice engine;
     Result result;
     // Sensitivities of the histories' displacements, [parameter][time, point]: per unit of the parameter's

@@ -264,7 +264,7 @@ private:
         for (std::size_t i = 0; i < factors.size(); ++i)
             sensitivity::scale(stiffer, changed.in_situ_stress, settings_.factors[i].scaled, factors[i]);
         analysis::Analysis analysis(changed, network_, stiffer, settings_.threads, recording_,
-                                    [](double, const std::string&) {});
+                                    [](const analysis::Progress&) {});
         analysis.run();
         return predict(scene_, analysis.result().history, analysis.sensitivities(), measurements_,
                        settings_.since_first_reading);

@@ -229,6 +229,14 @@ bool Solver::get_past(Assembly& assembly, const State& start, const std::vector<
     return true;
 }
 
+void Solver::report(Convergence& convergence, double unbalanced_force_ratio) const
+{
+    convergence.steps = corrections_;
+    convergence.unbalanced_force_ratio = unbalanced_force_ratio;
+    if (observer_)
+        observer_(convergence);
+}
+
 // Looks for equilibrium from the present displacements in at most so many corrections. False if it finds
 // none: reason_.
 bool Solver::converge(Assembly& assembly, const State& start, const Equilibrium& settings,
@@ -239,7 +247,7 @@ bool Solver::converge(Assembly& assembly, const State& start, const Equilibrium&
     course.merit = course.least_merit = evaluate(assembly, start);
     for (;;) {
         const Balance balance = balance_of(assembly, stiffest_, 0, settings.tolerance);
-        convergence.unbalanced_force_ratio = balance.ratio();
+        report(convergence, balance.ratio());
         const bool is_balanced = balance.ratio() <= settings.tolerance;
         if (is_balanced && is_at_rest(assembly, start, balance.mean, settings.tolerance, convergence))
             return true;

@@ -39,6 +39,8 @@ public:
     std::optional<mechanics::Convergence> equilibrate(Assembly& assembly, const Equilibrium& settings,
                                                       const std::vector<Vector2d>& guess = {});
     const std::string& reason() const { return reason_; }
+    // Is told of every correction.
+    void tell(mechanics::SearchObserver observer) { observer_ = std::move(observer); }
     // Set if it has found none because displacements of rock that yields grow without bound. The assembly is then
     // not as it was, but as it moves.
     const std::optional<mechanics::no_equilibrium>& collapse() const { return collapse_; }
@@ -89,9 +91,11 @@ private:
     double force_change(const Assembly& assembly, const State& start, const VectorXd& displacement) const;
     Tangents tangents(const Assembly& assembly, const State& start, double soft) const;
     void take(const Assembly& assembly, const State& start, bool first);
+    void report(mechanics::Convergence& convergence, double unbalanced_force_ratio) const;
     bool break_bonds(const Assembly& assembly, const State& start);
     bool mend_bonds(const Assembly& assembly);
 
+    mechanics::SearchObserver observer_;
     Stiffness stiffness_;
     KrylovSpace space_{24};        // of the stiffness
     Tangents acting_;              // with these tangents

@@ -32,7 +32,7 @@ bool Solver::flow_to_rest(Assembly& assembly, const State& start, const Equilibr
     const double most = std::min(settings.largest_displacement, too_far_);
     for (int step = 0; step < most_steps; ++step) {
         const mechanics::Balance balance = balance_of(assembly, stiffest_, 0, settings.tolerance);
-        convergence.unbalanced_force_ratio = balance.ratio();
+        report(convergence, balance.ratio());
         if (balance.ratio() <= settings.tolerance &&
             is_at_rest(assembly, start, balance.mean, settings.tolerance, convergence))
             return true;

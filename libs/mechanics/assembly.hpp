@@ -10,6 +10,7 @@
 #include "model/scene.hpp"
 
 #include <Eigen/Core>
+#include <functional>
 
 #include <array>
 #include <utility>
@@ -165,5 +166,8 @@ struct Convergence {
     // Energy balance: work of loads = stored in zones and contacts + dissipated by both + taken by damping [J/m].
     double work_of_loads = 0, stored = 0, dissipated = 0, damped = 0;
 };
+
+// Called now and then in a search for equilibrium, with the steps so far and the unbalanced force ratio.
+using SearchObserver = std::function<void(const Convergence& so_far)>;
 
 } // namespace jointcreep::mechanics

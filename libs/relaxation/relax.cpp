@@ -557,7 +557,7 @@ private:
 } // namespace
 
 Convergence relax(Assembly& assembly, const Equilibrium& settings, const StepObserver& observe,
-                  SearchKeeper* keeper)
+                  SearchKeeper* keeper, const mechanics::SearchObserver& tell)
 {
     find_forces(assembly);
     const std::vector<double> row_sums = stiffness_row_sums(assembly);
@@ -588,6 +588,8 @@ Convergence relax(Assembly& assembly, const Equilibrium& settings, const StepObs
             relaxation.finish(report);
             return report;
         }
+        if (tell)
+            tell(report);
     }
     relaxation.give_up(check.reason(relaxation), false, report.steps);
 }

@@ -39,8 +39,10 @@ using StepObserver = std::function<void(double solver_time)>;
 // unbalanced forces do not decrease; when displacements or forces are no longer finite; and after settings.most_steps.
 // Throws input_error for mass damping of scaled masses.
 //
-// With a keeper, it may be kept after every 100 steps, and continued from there: all numbers are then the same.
+// With a keeper, it may be kept after every 100 steps, and continued from there: all numbers are then the same. `tell` is
+// called at every check.
 mechanics::Convergence relax(mechanics::Assembly& assembly, const Equilibrium& settings,
-                             const StepObserver& observe = {}, SearchKeeper* keeper = nullptr);
+                             const StepObserver& observe = {}, SearchKeeper* keeper = nullptr,
+                             const mechanics::SearchObserver& tell = {});
 
 } // namespace jointcreep::relaxation

@@ -77,7 +77,7 @@ struct Study {
     }
     Analysis analysis(int threads = 1) const
     {
-        return {scene, network, joints, threads, recording, [](double, const std::string&) {}};
+        return {scene, network, joints, threads, recording, [](const analysis::Progress&) {}};
     }
     Result run(int threads = 1) const
     {
@@ -276,6 +276,34 @@ TEST(analysis, both_engines_agree)
     EXPECT_EQ(implicit.history.time, relaxation.history.time);
     EXPECT_EQ(sum(relaxation.equilibria.is_implicit), 0);
     EXPECT_LT(largest_difference(implicit, relaxation), 1e-5 * largest_last(relaxation));
+}
+
+TEST(analysis, tells_where_it_is_and_how_searches_go)
+{
+    for (const EngineChoice engine : {EngineChoice::implicit, EngineChoice::relaxation}) {
+        Study study;
+        study.scene.equilibrium.engine = engine;
+        double fraction = 0;
+        Index searches = 0;
+        std::string what;
+        const auto look = [&](const analysis::Progress& now) {
+            EXPECT_GE(now.fraction, fraction);
+            EXPECT_LE(now.fraction, 1);
+            fraction = now.fraction;
+            what = now.what;
+            if (now.search == nullptr)
+                return;
+            ++searches;
+            EXPECT_GE(now.search->steps, 0);
+            EXPECT_TRUE(std::isfinite(now.search->unbalanced_force_ratio));
+            EXPECT_EQ(now.tolerance, study.scene.equilibrium.tolerance);
+        };
+        Analysis analysed(study.scene, study.network, study.joints, 1, {}, look);
+        analysed.run();
+        EXPECT_GT(searches, 2);
+        EXPECT_GT(fraction, 0);
+        EXPECT_TRUE(what.starts_with("day ")) << what;
+    }
 }
 
 TEST(analysis, threads_do_not_change_the_result)

@@ -60,8 +60,8 @@ struct Study {
     std::string run(const Fault& fault)
     {
         Analysis* running = nullptr;
-        Analysis analysed(scene, network, joints, 1, {}, [&](double, const std::string& what) {
-            if (what == "right half" && fault)
+        Analysis analysed(scene, network, joints, 1, {}, [&](const analysis::Progress& now) {
+            if (now.what == "right half" && now.search == nullptr && fault)
                 fault(const_cast<mechanics::Assembly&>(running->assembly()));
         });
         running = &analysed;
@@ -122,7 +122,7 @@ TEST(guards, a_run_with_a_fault_ends_there)
 TEST(guards, contacts_and_equilibria_are_guarded)
 {
     Study study;
-    Analysis analysed(study.scene, study.network, study.joints, 1, {}, [](double, const std::string&) {});
+    Analysis analysed(study.scene, study.network, study.joints, 1, {}, [](const analysis::Progress&) {});
     analysed.run();
     const double size = mechanics::size_of(analysed.assembly());
     analysis::GuardedState state;

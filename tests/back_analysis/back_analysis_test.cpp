@@ -41,7 +41,7 @@ std::vector<Measurement> made(const JointedSection& section, const std::vector<T
     for (const Truth& t : truth)
         sensitivity::scale(joints, scene.in_situ_stress, t.scaled, t.factor);
     const Recording recording;
-    Analysis analysis(scene, section.network, joints, 1, recording, [](double, const std::string&) {});
+    Analysis analysis(scene, section.network, joints, 1, recording, [](const analysis::Progress&) {});
     analysis.run();
     std::vector<Measurement> measurements;
     for (double t = first; t <= 20; t += 1.5)

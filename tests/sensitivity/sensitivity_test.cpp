@@ -39,7 +39,7 @@ struct Study : JointedSection {
         EquivalentJoints stiffer = joints;
         sensitivity::scale(stiffer, changed.in_situ_stress, parameter, std::exp(logarithm));
         const Recording recording{0, 0, with_sensitivities ? all : std::vector<Scaled>{}};
-        Analysis analysis(changed, network, stiffer, 1, recording, [](double, const std::string&) {});
+        Analysis analysis(changed, network, stiffer, 1, recording, [](const analysis::Progress&) {});
         analysis.run();
         Found found{analysis.result().history, analysis.sensitivities()};
         const std::vector<Index>& status = analysis.result().states.contact_status;
