@@ -23,7 +23,8 @@ Json list_of(Json items, int least)
 // A number, or a text with names of [variables].
 Json number_in(const char* type, const std::optional<Range>& range)
 {
-    Json number{{"type", {type, "string"}}};
+    // A text has a letter at least: a number is written without quotes.
+    Json number{{"type", {type, "string"}}, {"pattern", "^[-+*/(). 0-9]*[A-Za-z][-+*/(). 0-9A-Za-z_]*$"}};
     if (range) {
         number[range->least_open ? "exclusiveMinimum" : "minimum"] = range->least;
         number[range->most_open ? "exclusiveMaximum" : "maximum"] = range->most;

@@ -15,8 +15,8 @@ import figure
 
 from .errors import NotWanted
 
-NAMES = ["section", "blocks", "stereonet", "rose", "distributions", "strength", "histories", "state", "step_history", "dynamics", "safety",
-         "ensemble"]
+NAMES = ["section", "blocks", "stereonet", "rose", "distributions", "strength", "histories", "line", "state", "step_history", "dynamics",
+         "safety", "ensemble"]
 
 
 def draw(name, path, **options):

@@ -147,6 +147,8 @@ class Plan:
                 yield self.picture(name, source, name.replace("_", "-"))
         for component in "xy" if "histories" in wanted else "":
             yield self.picture("histories", result, f"histories-{component}", component=component)
+        if "line" in wanted:
+            yield self.picture("line", result, "lines")
         for word, state in self.states(failed):
             for field in state_fields(self.scene):
                 has_moved = "large_displacements" in self.scene and field != "contacts"  # then the rock is drawn where it is
@@ -171,7 +173,7 @@ class Plan:
             steps.append(self.picture("safety", result, "safety"))
         if falls:
             steps.append(self.picture("state", pathlib.Path(FAILED), "failure", state="last", field="displacement"))
-        for name in ["histories.csv"] * ("point" in self.scene) + ["states.xdmf2"]:
+        for name in ["histories.csv"] * ("point" in self.scene or "monitoring_line" in self.scene) + ["states.xdmf2"]:
             steps.append(Step(name, [self.programs / "jointexport", result, "--quiet", "-o", pathlib.Path(name)]))
 
         def write(folder):

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Displacement histories of the monitoring points against days; with --closed-form column beside the exact answer.
 
-A point's history ends when it is removed. Displacements count from the in-situ equilibrium, or with --readings from
+All points, or if there are any those outside monitoring lines (plot_line.py). A point's history ends when it is removed. Displacements count from the in-situ equilibrium, or with --readings from
 each point's own first reading, where its curve begins.
 """
 
@@ -28,7 +28,7 @@ class Histories:
         names = figure.texts(file, "/history/point")
         if not names:
             raise figure.NotWanted("there is no monitoring point in this file")
-        chosen = [figure.name_index(names, name, "point") for name in point] or list(range(len(names)))
+        chosen = [figure.name_index(names, name, "point") for name in point] or of_no_line(file, names)
         self.names = [names[i] for i in chosen]
         first = figure.array(file, "/history/first_reading_row")
         values = component_of(file, figure.array(file, "/history/displacement"), component)
@@ -40,6 +40,13 @@ class Histories:
         self.shown = figure.array(file, "/history/present")[:, chosen] == 1
         if readings:
             self.shown &= np.arange(len(self.time))[:, None] >= first[chosen]
+
+
+def of_no_line(file, names):
+    """The points that are given one by one; all if there are none."""
+    of_lines = {f"{line['name']} {number}" for line in figure.scene_of(file).get("monitoring_line", [])
+                for number in range(1, line["points"] + 1)}
+    return [i for i, name in enumerate(names) if name not in of_lines] or list(range(len(names)))
 
 
 def component_of(file, displacement, component):

@@ -140,6 +140,17 @@ def draw_places(scene, key, label, marker, axes):
     return [matplotlib.lines.Line2D([], [], label=label, **look)] if places else []
 
 
+def draw_lines(scene, axes):
+    lines = scene.get("monitoring_line", [])
+    look = {"color": "k", "linewidth": 0.8, "marker": "|", "markersize": 4}
+    for line in lines:
+        ends = np.array([line["from_m"], line["to_m"]], float)
+        places = ends[0] + np.linspace(0, 1, line["points"])[:, None] * (ends[1] - ends[0])
+        axes.plot(*places.T, zorder=5, **look)
+        axes.annotate(line["name"], ends[0], textcoords="offset points", xytext=(4, 3), fontsize=7, zorder=6, path_effects=figure.HALO)
+    return [matplotlib.lines.Line2D([], [], label="monitoring line", **look)] if lines else []
+
+
 def draw(file, window=None):
     """Figure of the section. window: x0, y0, x1, y1 [m]."""
     scene = figure.scene_of(file)
@@ -155,6 +166,7 @@ def draw(file, window=None):
     others = figure.draw_rocks(scene, axes) if "region" in scene else []
     others += draw_boundaries(scene, outline, axes)
     others += draw_places(scene, "point", "monitoring point", "o", axes)
+    others += draw_lines(scene, axes)
     others += draw_places(scene, "gauge", "gauge on a joint", "D", axes)
     if len(stages) == 1:  # no column of its own
         stages, others = [], stages + others

@@ -47,8 +47,17 @@ class Documentation(ChainTest):
             scene = json.loads(json.dumps(tomllib.loads(path.read_text(encoding="utf-8")), default=str))  # dates as text
             errors = [error.message for error in validator.iter_errors(scene)]
             self.assertEqual(errors, [], path)
+        in_short = tomllib.loads("""
+            variables = { H = 40, B = "2 * H" }
+            section = { outline_m = [[0, 0], ["B", 0], { through_m = [1, 2], to_m = [0, "-H / 4"] }] }
+            region = [{ outline_m = { center_m = ["H", 0], radius_m = 3, sides = 8 } }]""")
+        for table, keys in in_short.items():
+            schema = {**validator.schema["$defs"][table], "required": [], "$defs": validator.schema["$defs"]}
+            for one in keys if isinstance(keys, list) else [keys]:
+                self.assertEqual([e.message for e in jsonschema.Draft7Validator(schema).iter_errors(one)], [], table)
         for table, key, value, says in [("section", "gravity", 9.81, "'gravity' was unexpected"),
-                                        ("rock", "poissons_ratio", 0.5, "0.5"), ("rock", "poissons_ratio", "0.2", "is not of type 'number'"),
+                                        ("rock", "poissons_ratio", 0.5, "0.5"), ("rock", "poissons_ratio", "0.2", "'0.2' does not match"),
+                                        ("rock", "poissons_ratio", [], "is not of type 'number'"),
                                         ("point", "at_m", [1, 2, 3], "too long"), ("stage", "date", [1], "is not of type"),
                                         ("joint_set", "spacing", {"law": "normals"}, "'normals' is not one of"),
                                         ("zones", "kind", "cubic", "'cubic' is not one of")]:

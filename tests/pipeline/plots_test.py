@@ -1,6 +1,7 @@
 """Plots draw what files of the chain hold, and a picture is there whole or not at all."""
 
 import os
+import re
 import runpy
 import signal
 import subprocess
@@ -153,6 +154,51 @@ class Plots(ChainTest):
         scene.write_bytes(b"\xef\xbb\xbf" + scene.read_bytes())
         self.assertEqual(subprocess.run(names, capture_output=True, text=True).stdout, first.stdout)
         self.assertIn("bench-touch-a", first.stdout)
+
+    def test_monitoring_line(self):
+        """The line's displacements are those of its points, turned into the line's directions; the other plots know it."""
+        import figure
+        import plot_histories
+        import plot_line
+        line = ['[[monitoring_line]]', 'name = "L"', 'from_m = [3, 2]', 'to_m = [9, 10]', 'points = 5', '[[stage]]']
+        result = self.chain.result(self.chain.small().replace("[[stage]]", "\n".join(line), 1))
+        with figure.checked(result) as file:
+            names = figure.texts(file, "/history/point")
+            points = [names.index(f"L {i}") for i in range(1, 6)]
+            moved = figure.array(file, "/history/displacement")[:, points]
+            distance, turned = plot_line.displacements(file, plot_line.lines_of(file, [])[0], False)
+            numpy.testing.assert_allclose(distance, [0, 2.5, 5, 7.5, 10], atol=1e-12)
+            numpy.testing.assert_allclose(turned[..., 0], moved @ [0.8, -0.6], atol=1e-15)  # to the right of the way up
+            numpy.testing.assert_allclose(turned[..., 1], moved @ [0.6, 0.8], atol=1e-15)
+            self.assertGreater(abs(turned[-1]).max(), 1e-6)
+            self.assertEqual(plot_line.rows_of(file)[-1][0], len(moved) - 1)
+            others = plot_histories.of_no_line(file, names)
+            self.assertEqual([names[i] for i in others], [name for name in names if not name.startswith("L ")])
+        for name, *options in [("line",), ("line", "--readings", "--line", "L"), ("section",)]:
+            picture = result.with_name("picture.png")
+            done = self.plot(name, result, picture, *options)
+            self.assertEqual((done.returncode, done.stderr), (0, ""))
+            self.assertEqual(picture.read_bytes()[:8], PNG)
+        done = self.plot("line", self.column(), result.with_name("none.png"))
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("its scene has no [[monitoring_line]]", done.stderr)
+
+    def test_help_and_relative_paths_of_makefiles(self):
+        pipelines = self.chain.source / "pipelines"
+        for makefile in sorted(pipelines.glob("*/Makefile")):
+            with self.subTest(makefile.parent.name):
+                done = subprocess.run(["make", "-s", "-C", makefile.parent, "help"], capture_output=True, text=True)
+                top = makefile.read_text().split("\n\n")[0]
+                self.assertEqual((done.returncode, done.stdout), (0, re.sub("^# ?", "", top, flags=re.MULTILINE) + "\n"))
+        folder = self.chain.new_folder()
+        (folder / "scene.toml").write_text(self.chain.text("data/slope/scene.toml"))
+        environment = dict(os.environ, PWD=str(folder))
+        environment.pop("CALLED_FROM", None)
+        for names in (["SCENE=scene.toml", "OUT=results"], [f"SCENE={folder}/scene.toml", f"OUT={folder}/results"]):
+            done = subprocess.run(["make", "-n", "-C", pipelines / "slope", *names, f"BIN={self.chain.programs}"], cwd=folder,
+                                  env=environment, capture_output=True, text=True)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertIn(f"jointgen {folder}/scene.toml -o {folder}/results/network.h5", done.stdout)
 
     def test_picture_of_a_dynamic_analysis(self):
         result = self.chain.result(self.chain.text("data/collapse/toppling.toml"))

@@ -1,0 +1,71 @@
+#!/usr/bin/python3
+"""Displacements along monitoring lines: across the line, as an inclinometer measures, and along it, as an extensometer does.
+
+A curve for each stage, just after its excavation, and one for the end. The distance is from the line's first end. Displacements
+count from the in-situ equilibrium, or with --readings from the line's own first reading. Points that are excavated are left out.
+"""
+
+import numpy as np
+
+import figure
+
+
+def lines_of(file, wanted):
+    """The monitoring lines of the scene, as tomllib reads them: all, or those of these names."""
+    lines = figure.scene_of(file).get("monitoring_line", [])
+    if not lines:
+        raise figure.NotWanted("its scene has no [[monitoring_line]]")
+    names = [line["name"] for line in lines]
+    return [lines[figure.name_index(names, name, "monitoring line")] for name in wanted] or lines
+
+
+def rows_of(file):
+    """Rows of the histories just after each stage, and the last one: (row, label)."""
+    event = figure.texts(file, "/history/event")
+    time = figure.array(file, "/history/time")
+    rows = [(row, f"{name}, day {time[row]:.4g}") for row, name in enumerate(event) if name]
+    if not rows or rows[-1][0] != len(event) - 1:
+        rows.append((len(event) - 1, f"end, day {time[-1]:.4g}"))
+    return rows
+
+
+def displacements(file, line, readings):
+    """Distance of its points from the first end [m], and displacements [row, point, (across, along)] [m]; not finite where a point is
+    excavated. Across is to the right of the way from the first end to the other."""
+    names = figure.texts(file, "/history/point")
+    first = names.index(f"{line['name']} 1")
+    points = slice(first, first + line["points"])
+    place = figure.array(file, "/history/point_position")[points]
+    along = (place[-1] - place[0]) / np.linalg.norm(place[-1] - place[0])
+    moved = figure.array(file, "/history/displacement")[:, points]
+    if readings:
+        moved = moved - moved[figure.array(file, "/history/first_reading_row")[first]]
+    moved = np.where(figure.array(file, "/history/present")[:, points, None] == 1, moved, np.nan)
+    across = np.array([along[1], -along[0]])
+    return (place - place[0]) @ along, np.stack([moved @ across, moved @ along], axis=-1)
+
+
+def draw(file, line=(), readings=False):
+    """Figure of monitoring lines: of all, or those that are named; readings: since the line's first."""
+    lines, rows = lines_of(file, line), rows_of(file)
+    plot, axes = figure.plt.subplots(len(lines), 2, figsize=(figure.TWO_COLUMNS, 2.6 * len(lines) + 0.5), squeeze=False, sharey="row")
+    since = "since the first reading" if readings else "since the in-situ equilibrium"
+    for one, pair in zip(lines, axes):
+        distance, moved = displacements(file, one, readings)
+        for i, ax in enumerate(pair):
+            for number, (row, label) in enumerate(rows):
+                ax.plot(1e3 * moved[row, :, i], distance, color=figure.COLORS[number % 6], marker=figure.MARKERS[number % 6],
+                        markerfacecolor="white", markeredgewidth=0.8, linestyle=figure.LINES[number % 6], label=label)
+            ax.axvline(0, color="0.6", linewidth=0.5, zorder=0)
+            ax.set_xlabel(f"{('across', 'along')[i]} the line (mm), {since}")
+        pair[0].set_ylabel(f"{one['name']}:\ndistance from its first end (m)")
+    axes[0, 1].legend(loc="upper left", bbox_to_anchor=(1.02, 1), borderaxespad=0)
+    return plot
+
+
+if __name__ == "__main__":
+    figure.run(draw, figure.arguments_of(
+        __doc__,
+        (["--line"], {"action": "append", "default": [], "help": "only this line; may be given several times"}),
+        (["--readings"], {"action": "store_true", "help": "displacements since the line's own first reading"}),
+    ))
