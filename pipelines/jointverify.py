@@ -358,6 +358,7 @@ class Section:
         self.side_boundary = index("/mesh/side_boundary", len(scene.boundaries), "side")
         vertex = number("/vertices/position", "vertex", 2)
         edge_vertex = index("/edges/vertex", "vertex", "edge", 2)
+        self.edge_block = index("/edges/block", "block", "edge", 2, least=-1)
         self.contact = index("/mesh/contact_gridpoint", "gridpoint", "contact", 2)
         self.edge = index("/mesh/contact_edge", "edge", "contact")
         self.normal = number("/mesh/contact_normal", "contact", 2)
@@ -619,11 +620,9 @@ class Verification:
             expected = (m.zone_stage < 0) | (m.zone_stage > last)
             see("zones are removed by their stage, and no others", "", st.present[s] != expected, 0.5,
                 self.in_state("/states/zone_present", s, m.zone_centre, "zone"))
-            has_rock = np.zeros(len(m.position), bool)
-            has_rock[m.node[st.present[s]]] = True
-            is_gone = m.has_zones & ~has_rock
-            self_gone = is_gone[m.contact].any(axis=1)
-            see("contacts are removed with the rock of a side", "", (st.status[s] == REMOVED) != self_gone, 0.5,
+            side_stage = np.where(m.edge_block >= 0, m.block_stage[m.edge_block], -1)[m.edge]
+            lost_a_side = ((side_stage >= 0) & (side_stage <= last)).any(axis=1)
+            see("contacts are removed with the rock of a side", "", (st.status[s] == REMOVED) != lost_a_side, 0.5,
                 self.in_state("/states/contact_status", s, m.centre, "contact"))
 
     def leaders(self, s):

@@ -38,6 +38,7 @@ Contacts contacts_of(const Scene& scene, const EquivalentJoints& joints, const M
     Contacts contacts;
     const std::size_t n = mesh.contact_edge.size();
     contacts.gridpoint = mesh.contact_gridpoint;
+    contacts.edge = mesh.contact_edge;
     contacts.normal = mesh.contact_normal;
     contacts.length = mesh.contact_length;
     for (std::size_t c = 0; c < n; ++c) {
@@ -204,11 +205,10 @@ void join(const Contacts& contacts, DisjointSets& gridpoints)
             gridpoints.join(contacts.gridpoint[c][0], contacts.gridpoint[c][1]);
 }
 
-void remove_at(Contacts& contacts, const std::vector<char>& is_gone)
+void remove_at(Contacts& contacts, const std::vector<char>& lost_a_side)
 {
     for (std::size_t c = 0; c < contacts.gridpoint.size(); ++c) {
-        const auto [a, b] = contacts.gridpoint[c];
-        if (contacts.status[c] == ContactStatus::removed || (!is_gone[a] && !is_gone[b]))
+        if (contacts.status[c] == ContactStatus::removed || !lost_a_side[contacts.edge[c]])
             continue;
         contacts.force[c].setZero();
         contacts.traction[c].setZero();

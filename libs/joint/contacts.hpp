@@ -25,6 +25,7 @@ using Eigen::Vector2d;
 // Contacts: springs between two gridpoints split by a joint. Pairs are {normal, shear}.
 struct Contacts {
     std::vector<std::array<Index, 2>> gridpoint; // {on side a, on side b}
+    std::vector<Index> edge;                     // of the network
     std::vector<Vector2d> normal;                // unit, from a to b
     std::vector<double> length;                  // [m]
     std::vector<Law> law;
@@ -135,8 +136,9 @@ double dissipated(const Contacts& contacts, const ContactsState& start);
 // Joins the gridpoints of each contact that is there.
 void join(const Contacts& contacts, DisjointSets& gridpoints);
 
-// Removes the contacts that have a gridpoint for which `is_gone` is set.
-void remove_at(Contacts& contacts, const std::vector<char>& is_gone);
+// Removes the contacts on the edges of the network that have lost a side. At the end of such an edge both gridpoints may
+// stay: rock that stays can have them, too.
+void remove_at(Contacts& contacts, const std::vector<char>& lost_a_side);
 
 // Shear displacement that is not in the shear springs [m]; 0 for a smooth joint.
 double slip_beside_springs(const Contacts& contacts, std::size_t c);

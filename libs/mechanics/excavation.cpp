@@ -1,7 +1,23 @@
 #include "mechanics/excavation.hpp"
 
+#include <algorithm>
+
 namespace jointcreep::mechanics
 {
+namespace
+{
+
+// 1 for an edge beside rock of the stage, else 0.
+std::vector<char> edges_that_lose_a_side(const Blocks& blocks, Index stage)
+{
+    std::vector<char> found;
+    for (const auto& sides : blocks.edge_block)
+        found.push_back(std::ranges::any_of(
+            sides, [&](Index block) { return block >= 0 && blocks.block_stage[block] == stage; }));
+    return found;
+}
+
+} // namespace
 
 std::vector<Vector2d> excavate(Assembly& assembly, const Blocks& blocks, const Mesh& mesh,
                                const Loading& loading, Index stage)
@@ -22,7 +38,8 @@ std::vector<Vector2d> excavate(Assembly& assembly, const Blocks& blocks, const M
             assembly.load[g].setZero();
             assembly.is_free_untied[g].setZero();
         }
-    for_each_force([&](auto& one) { remove_at(one, is_gone); }, assembly);
+    const std::vector<char> lost_a_side = edges_that_lose_a_side(blocks, stage);
+    for_each_force([&](auto& one) { remove_at(one, lost_a_side); }, assembly);
     const std::vector<Vector2d> was_free = assembly.is_free;
     part_ties(assembly, stage);
     loading.leave_removed(assembly);

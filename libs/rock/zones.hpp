@@ -182,7 +182,7 @@ bool is_finite(const Zones& zones);
 void excavate(Zones& zones, const std::vector<char>& is_removed, std::vector<Vector2d>& load);
 
 // Rock goes by blocks, see excavate().
-inline void remove_at(Zones&, const std::vector<char>& /*is_gone*/) {}
+inline void remove_at(Zones&, const std::vector<char>& /*lost_a_side*/) {}
 
 // Joins the gridpoints of each present zone.
 void join(const Zones& zones, DisjointSets& gridpoints);
