@@ -299,6 +299,12 @@ std::string shown(const TomlValue& value)
         std::string operator()(const TomlValue::Time&) const { return "a time"; }
         std::string operator()(const TomlValue::List& list) const
         {
+            const auto is_number = [](const TomlValue& one) {
+                return std::holds_alternative<std::int64_t>(one.content) ||
+                       std::holds_alternative<double>(one.content);
+            };
+            if (list.size() == 2 && std::ranges::all_of(list, is_number))
+                return "[" + keys::shown(list[0]) + ", " + keys::shown(list[1]) + "]";
             return "a list of " + std::to_string(list.size());
         }
         std::string operator()(const TomlValue::Table&) const { return "a table"; }

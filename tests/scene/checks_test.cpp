@@ -334,7 +334,7 @@ TEST(checks, monitoring_lines)
         EXPECT_NEAR((scene.points[1 + i].at - Eigen::Vector2d(2, 2 + 4 * i)).norm(), 0, 1e-14);
     }
     expect_refused("to_m = [2, 14]", "to_m = [2, 26]",
-                   "[[monitoring_line]] \"inclinometer\" to_m = a list of 2: its point \"inclinometer 4\" at "
+                   "[[monitoring_line]] \"inclinometer\" to_m = [2, 26]: its point \"inclinometer 4\" at "
                    "[2, 26] is outside the section's outline");
     expect_refused("to_m = [2, 14]", "to_m = [2, 2]", "wanted another point than from_m");
     expect_part(
