@@ -139,11 +139,13 @@ void Dynamics::start()
     in_zones_ = {};
     zones_.corner_force.assign(3 * zones_.zone.size(), Vector2d::Zero());
     now_.velocity.assign(now_.place.size(), Vector2d::Zero());
+    now_.force.assign(now_.place.size(), Vector2d::Zero());
     any_deforms_ = false;
     for (std::size_t z = 0; z < assembly_.zones.size(); ++z)
         any_deforms_ = any_deforms_ || deforms(z);
     find_faces();
     find_bodies();
+    find_pieces();
     find_time_step();
     find_forces(now_.velocity);
     if (contacts_.stiffest() > now_.stiffest_allowed)
@@ -165,17 +167,10 @@ std::vector<Index> Dynamics::leaders() const
     return leader;
 }
 
-// Sums of the magnitudes of all stiffness blocks in the rows of gridpoints (Gershgorin) [Pa]. Rotation does not change
-// them.
-std::vector<double> Dynamics::stiffness_sums() const
+// Sums of the magnitudes of the stiffness blocks of contacts in the rows of gridpoints (Gershgorin) [Pa].
+std::vector<double> Dynamics::contact_sums() const
 {
     std::vector<double> sums(now_.place.size(), 0.0);
-    for (std::size_t z = 0; z < assembly_.zones.size(); ++z)
-        if (deforms(z))
-            for (int i = 0; i < 3; ++i)
-                for (int j = 0; j < 3; ++j)
-                    sums[assembly_.zones.gridpoints(z)[i]] +=
-                        assembly_.zones.area[z] * stiffness_between(assembly_.zones, z, i, j).norm();
     for (const auto& [from, to] : contacts_.faces().gridpoint)
         for (const Index g : {from, to})
             sums[g] += now_.stiffest_allowed * (now_.place[to] - now_.place[from]).norm();
@@ -184,12 +179,29 @@ std::vector<double> Dynamics::stiffness_sums() const
     return sums;
 }
 
+// The same of all blocks. Rotation does not change them.
+std::vector<double> Dynamics::stiffness_sums(const std::vector<double>& of_contacts) const
+{
+    std::vector<double> sums(now_.place.size(), 0.0);
+    for (std::size_t z = 0; z < assembly_.zones.size(); ++z)
+        if (deforms(z))
+            for (int i = 0; i < 3; ++i)
+                for (int j = 0; j < 3; ++j)
+                    sums[assembly_.zones.gridpoints(z)[i]] +=
+                        assembly_.zones.area[z] * stiffness_between(assembly_.zones, z, i, j).norm();
+    for (const auto& [follower, leader] : assembly_.tied)
+        sums[leader] += sums[follower];
+    for (std::size_t g = 0; g < sums.size(); ++g)
+        sums[g] += of_contacts[g];
+    return sums;
+}
+
 void Dynamics::find_time_step()
 {
     // For joints that grow stiffer as they close, with a margin.
     now_.stiffest_allowed =
         contacts_.stiffens() ? joint::room_to_stiffen * contacts_.stiffest() : contacts_.stiffest();
-    const std::vector<double> sums = stiffness_sums();
+    const std::vector<double> of_contacts = contact_sums(), sums = stiffness_sums(of_contacts);
     const auto stiffest = std::max_element(sums.begin(), sums.end());
     now_.stiffest = *stiffest;
     now_.stiffest_gridpoint = static_cast<Index>(stiffest - sums.begin());
@@ -210,6 +222,8 @@ void Dynamics::find_time_step()
             highest = std::max(highest, sums[g] / mass);
             mass = 1 / mass;
         }
+    const auto [added, own] = turning_frequencies(of_contacts);
+    highest = std::max(highest + added, impacts * impacts * own);
     // Stiffness damping shortens the stable step: (2 / w) (sqrt(1 + xi^2) - xi), xi = beta w / 2.
     const double xi = settings_.stiffness_damping * std::sqrt(highest) / 2;
     now_.dt = highest == 0 ? 1e-3 // all rock is fixed
@@ -235,7 +249,6 @@ void Dynamics::find_forces(const std::vector<Vector2d>& move)
     find_zone_forces();
     contacts_.update(now_.place, move, now_.dt, settings_.stiffness_damping, assembly_.threads);
     const double held = release_factor();
-    now_.force.resize(now_.place.size());
     for_each(static_cast<Index>(now_.place.size()), assembly_.threads, [&](Index g) {
         Vector2d force = assembly_.load[g] + assembly_.applied[g] + held * released_[g];
         if (any_deforms_)
@@ -271,6 +284,7 @@ Dynamics::MovedRock Dynamics::move_rock()
     const double alpha = settings_.mass_damping;
     const auto [keep, gain] = leap(first_half());
     move_.resize(n);
+    const std::vector<Turn> turning = turns();
     MovedRock moved = sum_in_chunks<MovedRock>(
         n, assembly_.threads, [&, keep = keep, gain = gain](Index g, MovedRock& some) {
             if (now_.inverse_mass[g] == 0) {
@@ -280,6 +294,8 @@ Dynamics::MovedRock Dynamics::move_rock()
             Vector2d& v = now_.velocity[g];
             const Vector2d last = v;
             v = keep * v + gain * now_.inverse_mass[g] * now_.force[g].cwiseProduct(assembly_.is_free[g]);
+            if (const Index p = piece_of_[g]; p >= 0)
+                v += gain * turning[p].g * turning[p].moment * rotation(now_.place[g] - turning[p].centre);
             const Vector2d now = now_.starts_from_rest ? last : Vector2d((last + v) / 2);
             some.kinetic += last.dot(v) / (2 * now_.inverse_mass[g]);
             some.damped += alpha * now_.dt * now.squaredNorm() / now_.inverse_mass[g];
@@ -295,6 +311,14 @@ Dynamics::MovedRock Dynamics::move_rock()
                                           for (const Index g : bodies_[b].gridpoint)
                                               some.see(now_.velocity[g], g);
                                       });
+    // What lumped masses have too much, see turning_pieces.cpp.
+    for (std::size_t p = 0; p < turning.size(); ++p) {
+        const auto& [centre, last, moment, b, g] = turning[p];
+        const double next = keep * last + gain * moment / pieces_[p].share,
+                     now = now_.starts_from_rest ? last : (last + next) / 2;
+        moved.kinetic -= (keep * b * last * last + gain * g * moment * last) / 2;
+        moved.damped -= alpha * now_.dt * b * now * now;
+    }
     return moved;
 }
 
@@ -375,6 +399,8 @@ double Dynamics::half_step_energy() const
         });
     for (const Body& body : bodies_)
         sum += (body.mass * body.velocity.squaredNorm() + body.inertia * body.spin * body.spin) / 2;
+    for (const Turn& turn : turns())
+        sum -= turn.b * turn.momentum * turn.momentum / 2;
     return sum;
 }
 
@@ -394,6 +420,8 @@ Energy Dynamics::energy() const
                                                             now_.force[g].cwiseProduct(assembly_.is_free[g]);
                                   some += now_.velocity[g].dot(next) / (2 * now_.inverse_mass[g]);
                               });
+    for (const Turn& turn : turns())
+        energy.kinetic -= keep * turn.b * turn.momentum * turn.momentum / 2;
     for (const Body& body : bodies_)
         if (!body.is_held()) {
             const auto [force, moment] = load_on(body);

@@ -113,6 +113,23 @@ private:
         bool is_held() const { return is_free.maxCoeff() == 0; }
     };
 
+    // Rock that deforms, hangs together and is not fixed: turning_pieces.cpp.
+    struct Piece {
+        std::vector<Index> gridpoint; // leaders of ties
+        double share = 1;             // of the rock's own moment of inertia in that of the lumped masses [-]
+    };
+    // How a piece turns now, about its centre.
+    struct Turn {
+        Vector2d centre{0, 0};           // [m]
+        double momentum = 0, moment = 0; // of lumped masses and their velocities [kg m/s]; of forces [N]
+        double b = 0, g = 0;             // of the mass matrix and of its inverse [1/(kg m)]
+    };
+    static Vector2d rotation(const Vector2d& arm) { return {-arm.y(), arm.x()}; } // by an angle of 1
+    void find_pieces();
+    Turn turn_of(const Piece& piece) const;
+    std::vector<Turn> turns() const;
+    std::pair<double, double> turning_frequencies(const std::vector<double>& sums_of_contacts) const;
+
     // Steps and energy: dynamics.cpp.
     struct MovedRock;
     struct Work;
@@ -120,7 +137,8 @@ private:
     struct Balance;
     void make_contacts(const std::vector<Index>& material, const joint::Law& found);
     std::vector<Index> leaders() const;
-    std::vector<double> stiffness_sums() const;
+    std::vector<double> contact_sums() const;
+    std::vector<double> stiffness_sums(const std::vector<double>& of_contacts) const;
     void find_time_step();
     double first_half() const;
     Leap leap(double first_half_of_step) const;
@@ -193,7 +211,9 @@ private:
     std::vector<char> is_rigid_; // zones
     bool any_deforms_ = false;   // of the present zones
     std::vector<Index> body_of_; // of gridpoints; -1 none
-    rock::MovingZones zones_;    // of the assembly
+    std::vector<Piece> pieces_;
+    std::vector<Index> piece_of_; // of gridpoints; -1 none
+    rock::MovingZones zones_;     // of the assembly
     rock::ZoneSums in_zones_;
     Movement now_;
     std::vector<Vector2d> move_;     // in this step [m]

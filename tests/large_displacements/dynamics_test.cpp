@@ -252,6 +252,40 @@ TEST(dynamics, a_deformable_block_keeps_its_angular_momentum)
     EXPECT_GT(first, 1e2);
 }
 
+// A couple turns a block of a few zones as it turns the rigid block: the moment of inertia is the rock's, not that of masses
+// at corners, which is three times as large with two zones. Energy closes.
+TEST(dynamics, a_block_of_few_zones_has_its_own_moment_of_inertia)
+{
+    for (const double size : {3.0, 1.2, 0.8}) {
+        Scene scene = test::section({{0, 0}, {2, 0}, {2, 1}, {0, 1}}, 0.05);
+        scene.zone_size = size;
+        scene.gravity = 0;
+        Moving turning(assembled(std::move(scene), {}, k_n, k_s), deformable);
+        Dynamics& dynamics = turning.dynamics;
+        const double mass = density * 2, inertia = mass * (4 + 1) / 12.0, moment = 1e5;
+        apply_couple(turning.rock(), moment);
+        constexpr int steps = 400;
+        for (int n = 0; n < steps; ++n)
+            dynamics.step();
+        // Its forces at the beginning of the first step count from the second, as of the rigid body.
+        const double time = steps * dynamics.dt(), angle = moment / inertia * time * time / 2;
+        double turned = 0; // mean over gridpoints, by their arms: the block deforms a little, too
+        const std::vector<Vector2d> places = turning.places();
+        double all = 0;
+        for (std::size_t g = 0; g < places.size(); ++g) {
+            const Vector2d arm = turning.rock().position[g] - Vector2d(1, 0.5);
+            turned += cross(arm, places[g] - turning.rock().position[g]);
+            all += arm.squaredNorm();
+        }
+        std::printf("size %g: %zu zones, angle %.4e of %.4e rad\n", size,
+                    turning.section.mesh.zone_gridpoint.size(), turned / all, angle);
+        EXPECT_NEAR(turned / all, angle, 0.01 * angle) << size;
+        const large_displacements::Energy energy = dynamics.energy();
+        EXPECT_NEAR(energy.work, moment * angle, 0.05 * energy.work);
+        EXPECT_NEAR(energy.error(), 0, 1e-3 * energy.work);
+    }
+}
+
 // m u'' = -k L u - m g from rest: u = -(g / w^2) (1 - cos(n theta)), w^2 = k L / m, and energy closes to the
 // last digits at every step, but for the first one.
 TEST(dynamics, a_block_on_a_joint_swings_at_its_frequency)
