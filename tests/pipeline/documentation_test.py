@@ -259,15 +259,17 @@ class Documentation(ChainTest):
                                            'what = "displacement"\npoint = "crest"\ncomponent = "x"\n')
         subprocess.run([self.chain.programs / "jointcreep", "study", "study.toml", "-o", "out/first", "-q"], check=True, cwd=folder)
         blocks = code_blocks(page, "python")
-        self.assertEqual(len(blocks), 7)
-        if not importlib.util.find_spec("pandas"):
-            blocks = [block for block in blocks if "python3-pandas" not in block]
+        self.assertEqual(len(blocks), 8)
+        for package in "pandas", "xarray":
+            if not importlib.util.find_spec(package):
+                blocks = [block for block in blocks if f"python3-{package}" not in block]
         checks = ("import numpy, h5py, pathlib, sys\n"
                   "assert [path for path in sys.path if path.endswith('/plots')] == [str(pathlib.Path('pipelines/plots').resolve())]\n"
                   "file = h5py.File('out/slope/result.h5')\n"
                   "assert (history.displacement == file['/history/displacement'][()]).all() and table.units['displacement x'] == 'm'\n"
                   "assert abs(network.blocks()['area'].sum() - 120 * 70) < 1e-6\n"
                   "assert 'frame' not in globals() or frame.attrs['units']['length'] == 'm' and len(frame) == contacts.rows()\n"
+                  "assert 'moved' not in globals() or moved.sel(point='toe', component=1).values.tolist() == history.of('toe')[:, 1].tolist()\n"
                   "assert study.runs.units['crest (mm)'] == 'mm' and low < value < high\n")
         done = subprocess.run([sys.executable, "-c", "\n".join([*blocks, checks])], cwd=folder, capture_output=True, text=True,
                               env=dict(os.environ, PYTHONPATH="pipelines"))
