@@ -45,6 +45,7 @@ const Program program{
         "                  or one row per time, as jointexport writes it: time_day, event, and A_x_m, A_y_m,\n"
         "                  A_present of a point A; optional: A_x_sigma_m, A_y_sigma_m\n"
         "  A length may be in _m, _cm or _mm, as its name says.\n",
+    .writes_text = true,
 };
 
 void fit(const Arguments& arguments)

@@ -85,6 +85,7 @@ std::vector<Option> section_options()
 void fit_section(const Arguments& arguments)
 {
     const std::string &input = arguments.input(), &output = arguments.output();
+    const bool keeps_best = !arguments.to_standard_output();
     const std::string measured = *arguments.text("measurements");
     const back_analysis::Settings settings = settings_of(arguments);
     const std::optional<std::string> readings_path = readings_file(arguments, true);
@@ -107,12 +108,13 @@ void fit_section(const Arguments& arguments)
     std::vector<TextFile> files;
     if (readings_path)
         files.push_back({name(*readings_path), readings_table(found, measurements, scene)});
-    files.push_back(
-        {name(output), found_table(found, settings.factors, measurements.front().deviation.has_value())});
+    if (found.minimum.is_converged || keeps_best)
+        files.push_back(
+            {name(output), found_table(found, settings.factors, measurements.front().deviation.has_value())});
     write_texts(files);
     if (!found.minimum.is_converged)
-        throw fit_error(why_not_converged(found, settings.factors) + "\nthe best factors are in " +
-                        name(output));
+        throw fit_error(why_not_converged(found, settings.factors) + "\nthe best factors are " +
+                        (keeps_best ? "in " + name(output) : "kept in a file only: -o FILE"));
     report(arguments, found, measurements, scene, settings);
 }
 

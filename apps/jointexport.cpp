@@ -3,6 +3,7 @@
 //   jointexport result.h5 -o result.xdmf2                     the zones at all states, for ParaView
 //   jointexport result.h5 -o result.vtu                       the zones at the last state
 //   jointexport result.h5 -o histories.csv                    the histories of the monitoring points
+//   jointexport result.h5 --format csv -o - | head            to standard output
 //   jointexport network.h5 -o joints.csv                      the joint traces inside the section
 //   jointexport network.h5 -o blocks.geo                      the blocks, for Gmsh
 //   jointexport networks/*.h5 -o all.gpkg                     many realizations in one GeoPackage
@@ -298,12 +299,16 @@ void export_layers(const Arguments& arguments, const Format& format, std::vector
             const std::string name = name_of(file, outputs[i]);
             if (name != outputs[i])
                 summary.add("  beside it", name);
+            if (name != outputs[i] && arguments.to_standard_output())
+                throw input_error("-o -: the format " + std::string(format.name) +
+                                  " is several files, not for standard output; give the name of a file");
             files.push_back({name, std::move(file.bytes)});
         }
     }
     std::vector<NamedFile> written;
     for (const TextFile& file : files)
-        written.push_back({file.path, "the output " + file.path});
+        if (file.path != standard_output)
+            written.push_back({file.path, "the output " + file.path});
     refuse_overwriting(arguments.files({"input"}), written);
     write_texts(files);
 }
@@ -317,7 +322,8 @@ void export_file(const Arguments& arguments)
     const std::string& input = arguments.input();
     const std::string& output = arguments.output();
     const Format& format = exchange::format_of(output, arguments.text("format"));
-    store::check_writable(output);
+    if (!arguments.to_standard_output())
+        store::check_writable(output);
     const store::FileKind kind = store::kind_of(input);
 
     const std::vector<std::string> what = chosen(arguments, format, kind);
@@ -367,6 +373,7 @@ int main(int argc, char** argv)
                "follows, or last (default)"},
               {"file-format", "", "show the format of the HDF5 files of the chain, and no more"}},
          .example = "jointexport result.h5 -o zones.vtu --state \"block 2 removed\"",
-         .takes_several = true},
+         .takes_several = true,
+         .writes_text = true},
         argc, argv, export_file);
 }

@@ -64,7 +64,9 @@ po::options_description described(const Program& program)
     const auto value = [](const std::string& name) {
         return po::value<std::string>()->value_name(name.empty() ? "FILE" : name);
     };
-    options.add_options()("output,o", value(program.output), "the file to write");
+    options.add_options()("output,o", value(program.output),
+                          program.writes_text ? "the file to write; - is standard output"
+                                              : "the file to write");
     for (const Option& option : program.options) {
         if (option.value.empty())
             options.add_options()(option.name.c_str(), option.text.c_str());
@@ -73,7 +75,7 @@ po::options_description described(const Program& program)
     }
     options.add_options()("quiet,q", "no progress bar and no summary");
     options.add_options()("help,h", "show this text");
-    options.add_options()("version", "show the version, and the commit it was built from");
+    options.add_options()("version,V", "show the version, and the commit it was built from");
     return options;
 }
 
@@ -122,6 +124,8 @@ po::variables_map parsed(const Program& program, int argc, char** argv)
         std::string name = error.get_option_name(); // "--trace", "--trace=20"
         name = name.substr(0, name.find('='));
         refuse_renamed(program, name.substr(std::min<std::size_t>(2, name.size())));
+        if (name == "-v")
+            throw input_error("-v is no option; -V shows the version, -q is without the summary");
         throw input_error(error.what());
     } catch (const po::too_many_positional_options_error&) {
         throw input_error("more than one " + program.input + " is given");
@@ -253,8 +257,12 @@ void write_texts(const std::vector<TextFile>& files)
 {
     std::vector<store::NamedBytes> all;
     for (const auto& [path, text] : files)
-        all.push_back({path, std::as_bytes(std::span(text))});
+        if (path != standard_output)
+            all.push_back({path, std::as_bytes(std::span(text))});
     store::save_together(all);
+    for (const auto& [path, text] : files)
+        if (path == standard_output)
+            std::cout << text; // run() says whether that was possible
 }
 
 std::vector<NamedFile> Arguments::files(const std::vector<std::string>& options) const
@@ -263,7 +271,12 @@ std::vector<NamedFile> Arguments::files(const std::vector<std::string>& options)
     for (const std::string& option : options) {
         if (!has(option))
             continue;
-        wanted(option);
+        if (wanted(option) == standard_output && option != "input") {
+            if (option == "output")
+                continue;
+            throw input_error("--" + option +
+                              " is '-'; only -o can be standard output. Give the name of a file");
+        }
         if (option == "input")
             for (const std::string& input : inputs_)
                 files.push_back({input, "the input " + input});
@@ -366,6 +379,10 @@ int run(const Program& program, int argc, char** argv, const std::function<void(
             const auto* text = boost::any_cast<std::string>(&value.value());
             arguments.given_[name] = text ? *text : "";
         }
+        if (arguments.to_standard_output() && !program.writes_text)
+            throw input_error(
+                "-o -: the output is a binary file (HDF5), not for standard output; give the name of "
+                "a file. A file called \"-\" is -o ./-");
         if (arguments.has("input") && arguments.has("output"))
             refuse_overwriting(arguments.files({"input"}), arguments.files({"output"}));
         if (arguments.has("help"))

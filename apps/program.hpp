@@ -70,7 +70,11 @@ struct Program {
     std::string other_usage{};  // arguments without -o, if some go without it
     std::string columns{};      // of tables that it reads, if any; indented lines
     bool takes_several = false; // inputs
+    bool writes_text = false;   // -o - is possible: standard output
 };
+
+// The value of -o that means standard output. Nothing else is then written there.
+constexpr std::string_view standard_output = "-";
 
 // A file of a run, and what messages call it: "--readings fit.csv".
 struct NamedFile {
@@ -81,7 +85,7 @@ struct NamedFile {
 // whatever links and folders they go through, also where there is no file yet.
 void refuse_overwriting(const std::vector<NamedFile>& read, const std::vector<NamedFile>& written);
 
-// Writes texts as files, which appear once all of them are whole. Throws file_error.
+// Writes texts as files, which appear once all of them are whole, then those for standard output. Throws file_error.
 struct TextFile {
     std::string path, text;
 };
@@ -112,9 +116,10 @@ public:
 
     const std::string& program() const { return program_; } // its name
     bool has(const std::string& option) const { return given_.contains(option); }
-    bool quiet() const { return has("quiet"); }
+    bool quiet() const { return has("quiet") || to_standard_output(); }
+    bool to_standard_output() const { return text("output") == standard_output; }
 
-    // The files of those options that are given; "input" and "output" are options, too.
+    // The files of those options that are given; "input" and "output" are options, too. Standard output is no file.
     std::vector<NamedFile> files(const std::vector<std::string>& options) const;
 
     // The value of an option, or nothing if it is not given.

@@ -20,8 +20,8 @@ What is allowed:
   all others     rounding: 1e-12 of the terms that are added, some thousand times the rounding of one number
 
 Options:
-  -h [ --help ]  show this text
-  --version      show the version
+  -h [ --help ]     show this text
+  -V [ --version ]  show the version
 
 Exit codes:
   0  verified: every check passed
@@ -1208,11 +1208,12 @@ def main(arguments):
     if arguments in (["-h"], ["--help"]):
         print(__doc__, end="")
         return 0
-    if arguments == ["--version"]:
+    if arguments in (["-V"], ["--version"]):
         print("jointverify", VERSION)
         return 0
     if len(arguments) != 1 or arguments[0].startswith("-"):
-        print("jointverify: expected one result file\nusage: jointverify RESULT.h5\nMore: jointverify --help", file=sys.stderr)
+        hint = "-v is no option; -V shows the version\n" if arguments == ["-v"] else ""
+        print(f"jointverify: {hint}expected one result file\nusage: jointverify RESULT.h5\nMore: jointverify --help", file=sys.stderr)
         return 2
     # In a process of its own: a damaged file can end the HDF5 library, and Python with it.
     child = os.fork()

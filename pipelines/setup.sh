@@ -7,6 +7,7 @@
 #   sh pipelines/setup.sh studies  programs and tests, and what studies need and pipelines compare with
 #   sh pipelines/setup.sh exchange programs and tests, GDAL for jointexport, and readers of its files
 #   sh pipelines/setup.sh fuzz     the fuzz targets, into build/fuzz
+#   sh pipelines/setup.sh package  the programs, and a Debian package of them, build/release/*.deb
 #   sh pipelines/setup.sh docs     the site of the pages in docs, into out/docs; no program
 #
 # A list of packages is a file of pipelines/packages, one name a line.
@@ -14,7 +15,7 @@ set -eu
 cd "$(dirname "$0")/.."
 
 if [ $# -gt 1 ]; then
-  echo "setup.sh: unknown \"$2\"; expected nothing, test, develop, studies, exchange, fuzz or docs" >&2
+  echo "setup.sh: unknown \"$2\"; expected nothing, test, develop, studies, exchange, fuzz, package or docs" >&2
   exit 2
 fi
 case "$PWD" in
@@ -29,9 +30,10 @@ run) lists="run" preset="release" ;;
 test) lists="run test" preset="test" ;;
 develop | studies | exchange) lists="run test $purpose" preset="test" ;;
 fuzz) lists="run test fuzz" preset="fuzz" ;;
+package) lists="run package" preset="release" ;;
 docs) lists="docs" preset="" ;;
 *)
-  echo "setup.sh: unknown purpose \"$purpose\"; expected nothing, test, develop, studies, exchange, fuzz or docs" >&2
+  echo "setup.sh: unknown purpose \"$purpose\"; expected nothing, test, develop, studies, exchange, fuzz, package or docs" >&2
   exit 2
   ;;
 esac
@@ -65,3 +67,6 @@ if [ "$purpose" = docs ]; then
 fi
 cmake --preset "$preset"
 cmake --build --preset "$preset"
+if [ "$purpose" = package ]; then
+  cd build/release && cpack -G DEB
+fi

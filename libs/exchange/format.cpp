@@ -59,7 +59,9 @@ const std::vector<Format>& formats()
          false,
          false,
          "VTK XML, binary, appended",
-         write_vtu},
+         write_vtu,
+         false,
+         true},
         {"vtkhdf",
          {".vtkhdf"},
          {"joints", "bridges", "edges", "blocks", "section", "planes", "zones", "contacts"},
@@ -68,7 +70,9 @@ const std::vector<Format>& formats()
          false,
          false,
          "VTKHDF 1.0, unstructured grid",
-         write_vtkhdf},
+         write_vtkhdf,
+         false,
+         true},
         {"xdmf",
          {".xdmf2", ".xdmf"},
          {"zones", "contacts"},
@@ -95,6 +99,7 @@ const std::vector<Format>& formats()
          true,
          "GeoPackage, by GDAL",
          write_geopackage,
+         true,
          true},
         {"shp",
          {".shp"},
@@ -105,6 +110,7 @@ const std::vector<Format>& formats()
          true,
          "Shapefile, by GDAL",
          write_shapefile,
+         true,
          true},
         {"dxf",
          {".dxf"},
@@ -231,10 +237,13 @@ std::string formats_text()
 const Format& format_of(const std::string& output, const std::optional<std::string>& name)
 {
     const std::string extension = std::filesystem::path(output).extension().string();
-    std::vector<std::string_view> names, extensions, shared;
+    const bool to_standard_output = output == "-";
+    std::vector<std::string_view> names, extensions, shared, of_text;
     const Format* found = nullptr;
     for (const Format& format : formats()) {
         names.push_back(format.name);
+        if (!format.is_binary)
+            of_text.push_back(format.name);
         for (const std::string_view known : format.extensions)
             if (std::ranges::find(extensions, known) == extensions.end())
                 extensions.push_back(known);
@@ -246,10 +255,17 @@ const Format& format_of(const std::string& output, const std::optional<std::stri
     }
     if (name && !found)
         throw input_error("--format is '" + *name + "'; the formats are: " + listed(names, ", "));
+    if (to_standard_output && (!found || found->is_binary))
+        throw input_error(
+            (found ? "-o -: a file of the format " + *name +
+                         " is binary, not for standard output; give the name of a file"
+                   : std::string("-o -: standard output has no extension; give the format by --format")) +
+            ". Formats that are text: " + listed(of_text, ", "));
     if (!found)
         throw input_error(output + ": the name must end in " + listed(extensions, ", ") +
                           ", which decides the format");
-    if (name && std::ranges::find(found->extensions, extension) == found->extensions.end())
+    if (name && !to_standard_output &&
+        std::ranges::find(found->extensions, extension) == found->extensions.end())
         throw input_error(output + ": the name of a file of the format " + *name + " must end in " +
                           listed(found->extensions, " or "));
     if (!name && shared.size() > 1 && '.' + std::string(found->name) != extension)

@@ -45,6 +45,7 @@ struct Format {
     // build lacks.
     std::vector<File> (*write)(const Job&) = nullptr;
     bool needs_gdal = false;
+    bool is_binary = false; // not for standard output
 };
 
 const std::vector<Format>& formats();
@@ -55,8 +56,8 @@ bool has_gdal();
 // The table as `jointexport --formats` prints it.
 std::string formats_text();
 
-// The format of an output: by name, or by its extension where only one format has that, or one of its name. Throws
-// input_error that lists what there is.
+// The format of an output: by name, or by its extension where only one format has that, or one of its name. Standard
+// output, "-", needs the name of a text format. Throws input_error that lists what there is.
 const Format& format_of(const std::string& output, const std::optional<std::string>& name);
 
 } // namespace jointcreep::exchange

@@ -1,4 +1,5 @@
-# Writes OUTPUT with the project's version and, in a git checkout, the commit: "0.1.0+1a2b3c4d".
+# Writes OUTPUT with the project's version and the commit: "0.1.0+1a2b3c4d". It is that of the git checkout, or the one that
+# `git archive` wrote into commit.txt.
 execute_process(COMMAND git -C ${SOURCE} rev-parse --short=8 HEAD
                 OUTPUT_VARIABLE commit OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET RESULT_VARIABLE failed)
 execute_process(COMMAND git -C ${SOURCE} rev-parse --show-prefix
@@ -11,5 +12,10 @@ if(NOT failed AND NOT below)
   if(changes)
     string(APPEND text ".modified")
   endif()
+endif()
+file(STRINGS ${CMAKE_CURRENT_LIST_DIR}/commit.txt archived REGEX "^[0-9a-f]+$")
+if(text STREQUAL VERSION AND archived)
+  string(SUBSTRING ${archived} 0 8 commit)
+  string(APPEND text "+${commit}")
 endif()
 file(CONFIGURE OUTPUT ${OUTPUT} CONTENT "#define JOINTCREEP_VERSION \"${text}\"\n")

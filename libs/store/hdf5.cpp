@@ -235,6 +235,25 @@ void write_numbers(hid_t object, const std::string& name, hid_t type, const void
     ok(H5Awrite(attribute, type, values), "write the attribute " + name);
 }
 
+// Names of the dataset's axes, as H5DSset_label() of the high-level library writes them: text of variable length.
+void write_labels(hid_t dataset, const Field& field)
+{
+    std::vector<const char*> labels;
+    for (const std::string& dimension : field.dimensions)
+        labels.push_back(dimension.c_str());
+    if (labels.empty())
+        return;
+    if (fields::components(field.values) > 1)
+        labels.push_back("component");
+    const Object type(H5Tcopy(H5T_C_S1), H5Tclose, "set up HDF5");
+    ok(H5Tset_size(type, H5T_VARIABLE), "set up HDF5");
+    const hsize_t count = labels.size();
+    const Object space(H5Screate_simple(1, &count, nullptr), H5Sclose, "set up HDF5");
+    const Object attribute(H5Acreate2(dataset, "DIMENSION_LABELS", type, space, H5P_DEFAULT, H5P_DEFAULT),
+                           H5Aclose, "create the attribute DIMENSION_LABELS");
+    ok(H5Awrite(attribute, type, labels.data()), "write the attribute DIMENSION_LABELS");
+}
+
 hid_t plain_type_of(std::span<const double>)
 {
     return H5T_IEEE_F64LE;
@@ -466,6 +485,7 @@ void Image::add(const Field& field, const Dimensions& dimensions)
     const Object dataset = add(field.path, values.type, values.data, extents_of(field, dimensions));
     write_text(dataset, "units", field.units);
     write_text(dataset, "description", field.description);
+    write_labels(dataset, field);
 }
 
 void Image::add(const PlainArray& array)

@@ -89,6 +89,8 @@ This is format version )"
 
 - Every dataset has the attributes `units` and `description`. Everything is in SI units, angles in radians,
   except times since the start, which are in days. The unit `1` is that of plain numbers and of text.
+- `DIMENSION_LABELS` names the axes, as HDF5's dimension scales do: `file["/history/displacement"].dims[0].label` is "time" in h5py. The
+  parts of a row, such as {x, y}, are the axis "component". Files of format 2.6 and before have no labels.
 - Tension, extension and opening are positive, angles run counter-clockwise, x points to the right and y up.
 - An edge runs from its first vertex to its second; side b is on its left, side a on its right.
 - Arrays are in C order: in [time, point, 2] the component runs fastest. A single value is an array of one element.

@@ -34,7 +34,12 @@ Joint sets from mapped traces:
     orientation_laws.py  laws of their angle, and of poles
 """
 
-from .errors import NotWanted
-from .reading import read
+import pathlib
+import sys
+
+sys.path.append(str(pathlib.Path(__file__).resolve().parent.parent / "plots"))  # modules of plots.py, beside the package
+
+from .errors import NotWanted  # noqa: E402
+from .reading import read  # noqa: E402
 
 __all__ = ["NotWanted", "read"]

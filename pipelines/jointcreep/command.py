@@ -18,7 +18,7 @@ fit finds the laws of joint sets from traces that a convex window shows (GeoJSON
 censored, and writes them as [[joint_set]]. The laws are those of all joints, not of the traces in the window.
 
 Options:
-  -o [ --output ] OUT       the folder of a run or study, or the report or sets to write
+  -o [ --output ] OUT       the folder of a run or study, or the report or sets to write; - is standard output
   -j [ --jobs ] N           study: runs at a time (default 1)
   --snakemake PROFILE       study: make runs by Snakemake with this profile, a folder with config.yaml, in place of Make
   --makefile                run: write OUT/Makefile with these commands, and make nothing else
@@ -38,7 +38,7 @@ Options:
   --scanline-trend DEG      fit: they were met by a scanline with this bearing: weighs them by Terzaghi
   --scanline-plunge DEG     fit: its inclination below the horizontal
   -h [ --help ]             show this text
-  --version                 show the version
+  -V [ --version ]          show the version
 
 Exit codes:
   0  done
@@ -59,7 +59,7 @@ import signal
 import sys
 import traceback
 
-from . import plan, runs, study_file, table
+from . import files, plan, runs, study_file, table
 from .errors import NotDone, NotWanted
 
 INTERRUPTED = 128 + signal.SIGINT
@@ -74,6 +74,7 @@ class Subcommand:
     """One of SUBCOMMANDS, below."""
     run: object  # run(source, options, beside) makes it, and returns the exit code
     words: dict  # its own options: word on the command line, name in `options`
+    writes_text: bool = False  # -o - is possible: standard output
     passes_on: bool = False  # what follows "--" to demsolve, as options["rest"]
 
 
@@ -82,6 +83,8 @@ def options_of(arguments):
     if not arguments:
         raise NotWanted(usage())
     name, *rest = arguments
+    if name == "-v":
+        raise NotWanted("-v is no option; -V shows the version, -q is without the summary")
     if name not in SUBCOMMANDS:
         raise NotWanted(f'unknown subcommand "{name}"; expected {" or ".join(SUBCOMMANDS)}\n{usage()}')
     known = {**OF_ALL, **SUBCOMMANDS[name].words}
@@ -110,6 +113,8 @@ def options_of(arguments):
             source = word
     if source is None or not found.get("output"):
         raise NotWanted(f"{name} needs an input, and an output with -o\n{usage()}")
+    if found["output"] == files.STANDARD_OUTPUT and not SUBCOMMANDS[name].writes_text:
+        raise NotWanted(f"-o -: {name} makes a folder, not standard output; expected its name")
     jobs = found.get("jobs", "1")
     if not jobs.isdecimal() or not 1 <= int(jobs) <= 10000:
         raise NotWanted(f'--jobs is "{jobs}"; expected a whole number from 1 to 10000')
@@ -175,7 +180,8 @@ def finish(of_study, out, rows, why, scene, quiet):
 def report(source, options, beside):
     """Writes a report."""
     from . import report as page
-    page.write(source, pathlib.Path(options["output"]), programs_in(options.get("programs"), beside))
+    output = options["output"]
+    page.write(source, output if output == files.STANDARD_OUTPUT else pathlib.Path(output), programs_in(options.get("programs"), beside))
     return 0
 
 
@@ -188,8 +194,8 @@ def fit(source, options, beside):
 SUBCOMMANDS = {
     "run": Subcommand(run, {"--makefile": "makefile", "-q": "quiet", "--quiet": "quiet"}, passes_on=True),
     "study": Subcommand(study, {"-j": "jobs", "--jobs": "jobs", "--snakemake": "snakemake", "-q": "quiet", "--quiet": "quiet"}),
-    "report": Subcommand(report, {}),
-    "fit": Subcommand(fit, {"-q": "quiet", "--quiet": "quiet", **{f"--{name}": name for name in FIT_OPTIONS}}),
+    "report": Subcommand(report, {}, writes_text=True),
+    "fit": Subcommand(fit, {"-q": "quiet", "--quiet": "quiet", **{f"--{name}": name for name in FIT_OPTIONS}}, writes_text=True),
 }
 
 
@@ -198,7 +204,7 @@ def main(arguments, version, beside):
     if arguments in (["-h"], ["--help"]):
         print(__doc__, end="")
         return 0
-    if arguments == ["--version"]:
+    if arguments in (["-V"], ["--version"]):
         print("jointcreep", version)
         return 0
     try:

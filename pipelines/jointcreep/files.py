@@ -6,6 +6,7 @@ import glob
 import io
 import os
 import pathlib
+import sys
 
 import h5py
 import numpy as np
@@ -60,6 +61,19 @@ def write_text(path, text):
     """Writes a text file as UTF-8, by replaced()."""
     with replaced(path) as partial:
         partial.write_text(text, encoding="utf-8", newline="")
+
+
+STANDARD_OUTPUT = "-"  # as the value of -o
+
+
+def write_output(output, text):
+    """Writes a text where -o says: a file, by replaced(), or standard output."""
+    if output == STANDARD_OUTPUT:
+        sys.stdout.flush()
+        sys.stdout.buffer.write(text.encode("utf-8"))
+        sys.stdout.buffer.flush()
+    else:
+        write_text(output, text)
 
 
 def write_hdf5(path, fill):

@@ -137,9 +137,9 @@ def poles_of(options):
 
 def run(source, options, programs, version):
     """Fits the sets of a file of traces, and writes them as [[joint_set]]."""
-    output = pathlib.Path(options["output"])
+    output, to_file = pathlib.Path(options["output"]), options["output"] != files.STANDARD_OUTPUT
     inputs = [source, *(pathlib.Path(options[name]) for name in ("poles", "window") if options.get(name))]
-    if any(path.exists() and output.exists() and path.samefile(output) for path in inputs):
+    if to_file and any(path.exists() and output.exists() and path.samefile(output) for path in inputs):
         raise NotWanted(f"-o {output} is the same file as an input; give it another name")
     if not options.get("window"):
         raise NotWanted("fit needs --window: x1,y1,x2,y2 in metres, or a scene file whose outline it is")
@@ -161,7 +161,7 @@ def run(source, options, programs, version):
     head = (f"# Fitted by jointcreep {version} to {source.name}, window {options['window']}"
             f"{f', traces from {shortest:g} m on' if shortest else ''}. Laws are those of all joints, not of those in the window.\n")
     material = options.get("material") or "joint"
-    files.write_text(output, head + "\n" + "\n".join(set_text(one, material, poles) for one in sets))
-    if not options.get("quiet"):
+    files.write_output(options["output"], head + "\n" + "\n".join(set_text(one, material, poles) for one in sets))
+    if to_file and not options.get("quiet"):
         print("\n".join(summary(one) for one in sets))
     return 0

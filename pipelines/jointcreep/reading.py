@@ -134,6 +134,12 @@ class File:
         with self.opened() as file:
             return files.text_of(file[path].attrs["units"])
 
+    def axes(self, path):
+        """Names of the axes of a dataset, such as ["time", "point", "component"]; "" of a single value's."""
+        with self.opened() as file:
+            self.check(path, file)
+            return [axis.label for axis in file[path].dims]
+
     def table(self, group, count):
         """The datasets of a group that have a row for each of `count` things, such as "/blocks"."""
         table = Table()

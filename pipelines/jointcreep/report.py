@@ -200,7 +200,7 @@ def of_study(out, programs, folder):
 
 
 def write(source, output, programs):
-    """Writes the page of a result file or of a study's folder."""
+    """Writes the page of a result file or of a study's folder. output: a Path, or "-": standard output."""
     is_study = source.is_dir()
     if is_study and not all((source / name).exists() for name in ("plan.json", "runs.csv", "summary.txt", "pictures.json")):
         raise NotWanted(f"{source}: is not the folder of a study that has ended; first run: jointcreep study STUDY.toml -o {source}")
@@ -215,8 +215,8 @@ def write(source, output, programs):
                 from None
         if kind not in (b"jointcreep result", "jointcreep result"):
             raise NotWanted(f"{source}: is not a result file of demsolve; expected one, or a study's folder")
-    if output.exists() and (output.is_dir() or not is_study and os.path.samefile(output, source)):
+    if output != files.STANDARD_OUTPUT and output.exists() and (output.is_dir() or not is_study and os.path.samefile(output, source)):
         raise NotWanted(f"{output}: is a folder, or the file that is read; expected the name of a report, such as report.html")
     with tempfile.TemporaryDirectory(prefix="jointcreep-") as folder:
         title, parts = (of_study if is_study else of_run)(source.resolve(), programs, pathlib.Path(folder))
-    files.write_text(output, page(title, parts))
+    files.write_output(output, page(title, parts))

@@ -6,6 +6,7 @@ style, width, marker or shade, so that nothing is lost in grey.
 
 import argparse
 import contextlib
+import datetime
 import os
 import sys
 import tomllib
@@ -17,18 +18,23 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.axis
 import matplotlib.colors
+import matplotlib.dates
 import matplotlib.lines
 import matplotlib.patches
 import matplotlib.patheffects
 import matplotlib.pyplot as plt
 import matplotlib.text
+import matplotlib.ticker
 import numpy as np
+
+LOOK = 1  # one more when pictures look different: those of docs/pictures are stale then (docs/pictures.py)
 
 ONE_COLUMN = 3.35  # [in]
 TWO_COLUMNS = 6.9  # [in]
 
 # Different shades in grey too; where shades are not enough, markers and line styles repeat the distinction.
 COLORS = ["#1b2a5c", "#b5403a", "#2f9e77", "#d9a22b", "#6fb1e0", "#8a8a8a"]
+SET_COLORS = [*COLORS, "#8e4f9f", "#5d3b1e"]
 WIDTHS = [1.2, 0.8, 1.7, 2.3, 0.6, 1.4]  # of lines that have no markers [pt]
 LINES = ["-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)), (0, (1, 3))]
 MARKERS = ["o", "s", "^", "D", "v", "P"]
@@ -53,6 +59,16 @@ plt.rcParams.update({
     "figure.constrained_layout.use": True,
     "savefig.dpi": 300,
 })
+
+
+def set_color(i):
+    """Colour of a joint set, by its number in the file: the same in all pictures."""
+    return SET_COLORS[i % len(SET_COLORS)]
+
+
+def pale(color):
+    """The same colour for an area under black lines."""
+    return tuple(0.45 * part + 0.55 for part in matplotlib.colors.to_rgb(color))
 
 
 class NotWanted(Exception):
@@ -261,7 +277,26 @@ def mark_stages(axes, places, names, with_names=True):
                           va="bottom", rotation_mode="anchor", fontsize=6.5)
 
 
-def time_label(file):
-    """What the axis of days is called: with the date that they count from, if the scene has one."""
+class DateTicks(matplotlib.ticker.Locator):
+    """Ticks of an axis of days since a date, where months or years begin."""
+
+    def __init__(self, start):
+        self.first, self.dates = matplotlib.dates.date2num(start), matplotlib.dates.AutoDateLocator(minticks=3, maxticks=7)
+
+    def tick_values(self, low, high):
+        ends = [matplotlib.dates.num2date(self.first + day) for day in (low, max(high, low + 1))]
+        return np.array([day - self.first for day in self.dates.tick_values(*ends) if low <= day - self.first <= high])
+
+    def __call__(self):
+        return self.tick_values(*sorted(self.axis.get_view_interval()))
+
+
+def label_time(file, axes, more=""):
+    """Names an x axis of days; where the scene has a date of the start, its ticks are dates. more: a line below."""
     start = scene_of(file)["schedule"].get("start", 0)
-    return f"time since {'the start' if isinstance(start, (int, float)) else start} (days)"
+    label = "time since the start (days)"
+    if not isinstance(start, (int, float)):
+        label = f"date (start: {start})"
+        axes.xaxis.set_major_locator(DateTicks(start))
+        axes.xaxis.set_major_formatter(lambda day, _: str(start + datetime.timedelta(days=round(day))))
+    axes.set_xlabel("\n".join(filter(None, (label, more))))

@@ -104,7 +104,7 @@ def draw(file, window=None, by="size"):
         others = {"stage": "stays", "set": "no joint"}.get(by)
         shades = figure.SHADES(np.linspace(0.1, 0.95, max(len(names), 2)))
         for i in np.unique(code):  # -1 comes first
-            shade = "white" if i < 0 else shades[i]
+            shade = "white" if i < 0 else figure.pale(figure.set_color(i)) if by == "set" else shades[i]
             of_code = [path for path, c in zip(paths, code) if c == i]
             axes.add_collection(PathCollection(of_code, facecolor=[shade], zorder=0))
             label = others if i < 0 else f"outline mostly {names[i]}" if by == "set" else names[i]

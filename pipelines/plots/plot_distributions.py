@@ -15,8 +15,8 @@ import numpy as np
 import figure
 import joint_sets
 
-BARS = {"facecolor": "#c9d8ea", "edgecolor": figure.COLORS[0], "linewidth": 0.5}
-LAW = {"color": figure.COLORS[1], "linewidth": 1.2}
+BARS = {"facecolor": "#dddddd", "edgecolor": "0.3", "linewidth": 0.5}
+LAW = {"color": "k", "linewidth": 1.2}
 
 
 def spacings(joints, i):
@@ -56,7 +56,8 @@ def lengths(joints, i):
     return found, weight / weight.sum()
 
 
-def draw_law(axes, law, values, weights, what):
+def draw_law(axes, law, values, weights, what, color):
+    """color: of the set."""
     axes.set_xlabel(f"{what} (m)")
     axes.set_ylabel("density (1/m)")
     if len(values) == 0:
@@ -73,7 +74,8 @@ def draw_law(axes, law, values, weights, what):
         high = max(np.quantile(values, 0.98) * 1.2, law.get("mean_m", 0) * 2)
     low = law["shortest_m"] if law["law"] in ("uniform", "power") else 0
     bins = np.linspace(low, high, min(40, max(6, int(2 * len(values) ** 0.5))) + 1)
-    axes.hist(values, bins, weights=weights / np.diff(bins)[0], **BARS)
+    bars = {**BARS, "facecolor": figure.pale(color), "edgecolor": color}
+    axes.hist(values, bins, weights=weights / np.diff(bins)[0], **bars)
     x = np.linspace(0, 20 * high, 40001)[1:]
     curve = joint_sets.density(law, x)
     if curve is not None:
@@ -112,13 +114,13 @@ def draw(file):
         values = spacings(joints, i)
         if "spacing" in joint_set:
             law = None if "density" in joint_set else joint_set["spacing"]  # else its mean follows from the density
-            draw_law(left, law, values, np.full(len(values), 1 / max(1, len(values))), "spacing")
+            draw_law(left, law, values, np.full(len(values), 1 / max(1, len(values))), "spacing", figure.set_color(i))
         else:
             left.axis("off")
         left.set_title(joint_set["name"], loc="left")
         if "length" in joint_set or "diameter" in joint_set:
             law = None if joint_set.get("terminates_at") else joint_set.get("length")
-            draw_law(right, law, *lengths(joints, i), "trace length")
+            draw_law(right, law, *lengths(joints, i), "trace length", figure.set_color(i))
         else:
             right.axis("off")
         if i == 0:

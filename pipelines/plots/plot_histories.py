@@ -130,7 +130,7 @@ def draw(file, component="y", point=(), readings=False, since_reset=False, witho
         since = "since each point's first reading" if readings else "since the last reset"
     if readings and since_reset:
         raise figure.NotWanted("wanted either --readings or --since-reset, not both")
-    axes.set_xlabel("\n".join(filter(None, (figure.time_label(file), figure.ending_of(file)))))
+    figure.label_time(file, axes, figure.ending_of(file))
     axes.set_ylabel(f"{LABELS[component]},\n{since} (mm)")
     place = {"loc": "best"}
     if len(entries) > 4:  # too many to find room among the curves

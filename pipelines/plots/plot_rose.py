@@ -40,9 +40,9 @@ def draw(file, width=10):
         top = base + share
         for half in (0, 180):
             axes.bar(np.radians(np.arange(bins) * width + half), np.sqrt(top) - np.sqrt(base), np.radians(width),
-                     np.sqrt(base), facecolor=figure.COLORS[i % 6], edgecolor="white", linewidth=0.4, zorder=2)
+                     np.sqrt(base), facecolor=figure.set_color(i), edgecolor="white", linewidth=0.4, zorder=2)
         base = top
-        entries.append(matplotlib.patches.Patch(facecolor=figure.COLORS[i % 6], label=name))
+        entries.append(matplotlib.patches.Patch(facecolor=figure.set_color(i), label=name))
     highest = base.max()
     step = next(step for step in (0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5) if highest / step <= 4)
     ticks = np.arange(step, highest * 1.0001, step)
@@ -54,6 +54,7 @@ def draw(file, width=10):
     axes.set_xticks(np.radians(np.arange(0, 360, 30)))
     axes.grid(linewidth=0.4, color="0.75")
     axes.spines["polar"].set_linewidth(0.6)
+    axes.set_title("traces in the section, weighted by their length in it;\narea of a class in proportion to its share", fontsize=7, pad=14)
     if len(entries) > 8:
         entries = []
     if entries:

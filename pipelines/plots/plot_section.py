@@ -9,7 +9,6 @@ from matplotlib.collections import LineCollection
 
 import figure
 
-SET_COLORS = [*figure.COLORS, "#8e4f9f", "#5d3b1e"]
 STAGE_BORDER = {"edgecolor": "0.25", "linewidth": 0.8, "linestyle": (0, (6, 2, 1, 2))}
 FEW = 8  # entries of one kind in the legend; of more there is one for all
 
@@ -45,7 +44,7 @@ def draw_joints(file, axes, inside):
         of_set = joint_set[trace_joint] == i
         if not np.any(of_set):
             continue
-        style = {"color": SET_COLORS[i % 8], "linewidth": width * figure.WIDTHS[i % 6]}
+        style = {"color": figure.set_color(i), "linewidth": width * figure.WIDTHS[i % 6]}
         collection = LineCollection(traces[of_set], capstyle="butt", zorder=2, **style)
         clip(collection, inside)
         axes.add_collection(collection)

@@ -251,25 +251,27 @@ def draw_contacts(file, state, section, axes):
     stuck = {"color": "0.65", "linewidth": 0.5}
     axes.add_collection(LineCollection(lines[status[of_contact] == STUCK], zorder=2, **stuck))
     entries = [matplotlib.lines.Line2D([], [], label=f"{np.sum(status == STUCK)} contacts closed", **stuck)]
+    thin, thick = 2.2, 4.8  # lines without and with the largest relative displacement of their kind [pt]
     for code, label, amount, color in ((SLIPPING, "slipping", shear, figure.COLORS[0]),
                                      (OPEN, "open", opening, figure.COLORS[1])):
         count = np.sum(status == code)
         largest = amount[status == code].max() if count else 0
         chosen = status[of_contact] == code
-        width = 2.2 + 2.6 * amount[of_contact[chosen]] / (largest or 1)
+        width = thin + (thick - thin) * amount[of_contact[chosen]] / (largest or 1)
         axes.add_collection(LineCollection(lines[chosen], color=color, linewidth=width, capstyle="round",
                                            zorder=code + 1))
-        entry = matplotlib.lines.Line2D([], [], color=color, linewidth=2.5, label=f"{count} {label}")
+        size = thick if largest > 0 else thin
+        entry = matplotlib.lines.Line2D([], [], color=color, linewidth=size, label=f"{count} {label}")
         if count:
-            entry.set_label(f"{count} {label}, up to {largest:.2g} mm")
+            entry.set_label(f"{count} {label}: {'shear' if code == SLIPPING else 'opening'} {largest:.2g} mm at this width")
         if code == OPEN:  # two walls with a gap between them, in grey print too
             axes.add_collection(LineCollection(lines[chosen], color="w", linewidth=0.45 * width, capstyle="round",
                                                zorder=code + 1.5))
-            entry.set(color="w", linewidth=1.1, path_effects=[
-                matplotlib.patheffects.Stroke(linewidth=2.5, foreground=color), matplotlib.patheffects.Normal()])
+            entry.set(color="w", linewidth=0.45 * size, path_effects=[
+                matplotlib.patheffects.Stroke(linewidth=size, foreground=color), matplotlib.patheffects.Normal()])
         entries.append(entry)
     if np.any(status > STUCK):
-        entries.append(matplotlib.lines.Line2D([], [], linestyle="none", label="width: by shear or opening"))
+        entries.append(matplotlib.lines.Line2D([], [], color="0.3", linewidth=thin, label="0 mm at this width"))
     return entries
 
 

@@ -72,7 +72,7 @@ def draw(file):
     chosen &= has_pole
     vectors = downward(joints.pole, azimuth)
 
-    plot, axes = figure.plt.subplots(figsize=(4.4, 4.5))
+    plot, axes = figure.plt.subplots(figsize=(4.4, 4.6))
     axes.set_aspect("equal")
     axes.set_axis_off()
     draw_density(axes, vectors[chosen])
@@ -97,7 +97,7 @@ def draw(file):
         of_set = chosen & (joints.set == i)
         if not np.any(of_set):
             continue
-        look = {"linestyle": "none", "marker": figure.MARKERS[i % 6], "color": figure.COLORS[i % 6],
+        look = {"linestyle": "none", "marker": figure.MARKERS[i % 6], "color": figure.set_color(i),
                 "markeredgewidth": 0}
         axes.plot(*net(vectors[of_set]).T, markersize=size, zorder=3, **look)
         entries.append(matplotlib.lines.Line2D([], [], markersize=4, label=f"{name}, {of_set.sum()} poles", **look))
@@ -113,6 +113,7 @@ def draw(file):
         if label in shown:
             entries.append(matplotlib.lines.Line2D([], [], marker=marker, markerfacecolor="none", label=label,
                                                    linestyle="none", color="k", markersize=6))
+    plot.suptitle("poles, lower hemisphere, equal-area projection;\neach joint counts once (no weights)", fontsize=7)
     axes.legend(handles=entries, loc="upper center", bbox_to_anchor=(0.5, 0), ncol=2)
     return plot
 

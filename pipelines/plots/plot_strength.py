@@ -1,12 +1,16 @@
 #!/usr/bin/python3
-"""Strength of each joint set: the joint's own, that of its rock bridges, and that of the equivalent joints between."""
+"""Strength of each joint set: the joint's own, that of its rock bridges, and that of the equivalent joints between.
+
+The lines are Coulomb's criterion with a tensile strength. A set whose law has another criterion has no line, but the law's name.
+"""
 
 import numpy as np
 
 import figure
 
 CURVES = [("joint_", "joint", "-", 0.8, "0.45"), ("bridge_", "rock bridges", "--", 0.8, "0.45"),
-          ("", "equivalent", "-", 1.6, figure.COLORS[0])]
+          ("", "equivalent", "-", 1.6, None)]  # in the colour of the set
+OTHERS = {2: "Barton-Bandis", 4: "continuously yielding"}  # laws of /equivalent/law without Coulomb's criterion
 
 
 def strength_of(file, prefix, row):
@@ -16,8 +20,22 @@ def strength_of(file, prefix, row):
     return cohesion / 1e6, angle, tension / 1e6
 
 
+def other_laws(file, row):
+    """Names of the laws without Coulomb's criterion that edges of a set have."""
+    joint = figure.array(file, "/edges/joint")
+    of_set = (joint >= 0) & (figure.array(file, "/joints/set")[joint] == row)
+    return [name for law, name in OTHERS.items() if np.any(figure.array(file, "/equivalent/law")[of_set] == law)]
+
+
 def draw_set(file, row, name, axes, most):
     """tau over sigma_n, tension positive, cut off at the tensile strength."""
+    others = other_laws(file, row)
+    if others:
+        axes.set_title(name)
+        axes.annotate(f"{' and '.join(others)}:\nno line of Coulomb's criterion", (0.5, 0.5), xycoords="axes fraction", ha="center",
+                      va="center", color="0.4")
+        axes.set_xlabel(r"normal traction $\sigma_n$, tension positive (MPa)")
+        return []
     persistence = figure.array(file, "/sets/edge_persistence")[row]
     entries = []
     for prefix, label, style, width, color in CURVES:
@@ -27,7 +45,7 @@ def draw_set(file, row, name, axes, most):
         end = min(tension, cohesion / np.tan(angle)) if angle > 0 else tension
         tau_end = max(0.0, cohesion - end * np.tan(angle))
         entries += axes.plot([-most, end, end], [cohesion + most * np.tan(angle), tau_end, 0], linestyle=style,
-                             linewidth=width, color=color, label=label)
+                             linewidth=width, color=color or figure.set_color(row), label=label)
     axes.set_title(f"{name} (persistence {persistence:.3g} on edges)")
     axes.axhline(0, color="0.6", linewidth=0.6, zorder=0)
     axes.axvline(0, color="0.6", linewidth=0.6, zorder=0)
@@ -52,7 +70,10 @@ def draw(file, compression=None):
         axes.set_visible(False)
     entries = [draw_set(file, row, names[row], axes, most) for row, axes in zip(sets, all_axes.flat)]
     fullest = max(range(len(sets)), key=lambda i: len(entries[i]))
-    all_axes.flat[fullest].legend(handles=entries[fullest], loc="upper right")
+    if entries[fullest]:
+        all_axes.flat[fullest].legend(handles=entries[fullest], loc="upper right")
+    for axes in all_axes.flat[:len(sets)]:  # each has its label, so its numbers, too
+        axes.tick_params(labelbottom=True)
     for axes in all_axes[:, 0]:
         axes.set_ylabel(r"shear strength $\tau$ (MPa)")
     return plot

@@ -1,7 +1,10 @@
 """What README and docs say of the programs is so."""
 
+import importlib
 import importlib.util
+import inspect
 import json
+import os
 import re
 import shutil
 import subprocess
@@ -105,6 +108,18 @@ class Documentation(ChainTest):
             shown += [f"docs/{path}" for path in picture.findall(page.read_text())]
         self.assertEqual(set(shown), {f"docs/pictures/{path.name}" for path in
                                       (self.chain.source / "docs" / "pictures").iterdir()})
+
+    def test_stale_pictures(self):
+        """Pictures of scenes are those of the scenes as they are, in the look that plots have (docs/pictures.py)."""
+        sys.path.append(str(self.chain.source / "docs"))
+        import pictures
+        make = {"slope": "-C pipelines/slope docs-picture", "column": "-C pipelines/column docs-picture", "cavern": "-C docs cavern"}
+        found, recorded = 0, pictures.recorded()
+        for name, command in make.items():
+            for path in (self.chain.source / "docs/pictures").glob(f"{name}-*.png"):
+                wanted, found = pictures.made_of(f"data/{name}/scene.toml"), found + 1
+                self.assertEqual(recorded.get(path.name), wanted, f"{path.name} is stale: make {command}")
+        self.assertEqual(found, len(recorded))
 
     def run_commands(self, page, folder):
         """Runs all commands of a page in a folder that has the scenes and the plots, and finds this build's programs."""
@@ -240,6 +255,42 @@ class Documentation(ChainTest):
         rows = re.findall(r"^\| `(\w+)` \| (\.[^|]*) \|", page, flags=re.MULTILINE)
         listed = [line.split("\t")[:2] for line in self.output_of("jointexport", "--formats").splitlines()[1:]]
         self.assertEqual([list(row) for row in rows], listed)
+
+    def test_python_page(self):
+        """The examples of docs/python.md run one after another, on its run and a small study; its table has the plots and options."""
+        from jointcreep import plots
+        page, folder = self.chain.text("docs/python.md"), self.chain.new_folder()
+        (shell,) = code_blocks(page, "sh")
+        self.assertIn('export PYTHONPATH="$PWD/pipelines"\n', shell)
+        self.run_commands(page, folder)
+        (folder / "scene.toml").write_text(self.chain.small())
+        (folder / "study.toml").write_text('scene = "scene.toml"\n[[vary]]\nnetwork = true\n[design]\nruns = 3\n[[collect]]\nname = "crest"\n'
+                                           'what = "displacement"\npoint = "crest"\ncomponent = "x"\n')
+        subprocess.run([self.chain.programs / "jointcreep", "study", "study.toml", "-o", "out/first", "-q"], check=True, cwd=folder)
+        blocks = code_blocks(page, "python")
+        self.assertEqual(len(blocks), 8)
+        for package in "pandas", "xarray":
+            if not importlib.util.find_spec(package):
+                blocks = [block for block in blocks if f"python3-{package}" not in block]
+        checks = ("import numpy, h5py, pathlib, sys\n"
+                  "assert [path for path in sys.path if path.endswith('/plots')] == [str(pathlib.Path('pipelines/plots').resolve())]\n"
+                  "file = h5py.File('out/slope/result.h5')\n"
+                  "assert (history.displacement == file['/history/displacement'][()]).all() and table.units['displacement x'] == 'm'\n"
+                  "assert abs(network.blocks()['area'].sum() - 120 * 70) < 1e-6\n"
+                  "assert 'frame' not in globals() or frame.attrs['units']['length'] == 'm' and len(frame) == contacts.rows()\n"
+                  "assert 'moved' not in globals() or moved.sel(point='toe', component=1).values.tolist() == history.of('toe')[:, 1].tolist()\n"
+                  "assert study.runs.units['crest (mm)'] == 'mm' and low < value < high\n")
+        done = subprocess.run([sys.executable, "-c", "\n".join([*blocks, checks])], cwd=folder, capture_output=True, text=True,
+                              env=dict(os.environ, PYTHONPATH="pipelines"))
+        self.assertEqual((done.returncode, done.stdout), (0, 'there is no stage "bench 9"; there are: bench 1, bench 2, bench 3\n'), done.stderr)
+        self.assertEqual((folder / "stress.png").read_bytes()[:4], b"\x89PNG")
+
+        rows = re.findall(r"^\| `(\w+)` \| .* \| (.*)\|$", page, flags=re.MULTILINE)
+        documented = {name: re.findall(r"`(\w+)`", options) for name, options in rows}
+        self.assertEqual(list(documented), plots.NAMES)
+        for name, options in documented.items():
+            drawn = importlib.import_module(f"plot_{name}").draw
+            self.assertEqual(sorted(options), sorted(list(inspect.signature(drawn).parameters)[1:]), name)
 
     def test_scene_page_example(self):
         for number, scene in enumerate(code_blocks(self.chain.text("docs/scene.md"), "toml")):

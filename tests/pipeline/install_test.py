@@ -1,8 +1,13 @@
-"""What `cmake --install` puts elsewhere: programs that run there, manual pages, completion for bash."""
+"""What `cmake --install` puts elsewhere: programs that run there, the Python package, scenes, pages, manual pages, completion for
+bash. And the Debian package, which has the same files, and archives of the sources."""
 
 import os
 import re
+import shutil
+import stat
 import subprocess
+import sys
+import tarfile
 import unittest
 
 from chain import ChainTest, main
@@ -28,10 +33,62 @@ class Install(ChainTest):
         package = [path.relative_to(pipelines) for folder in ("jointcreep", "plots") for path in (pipelines / folder).glob("*.py")]
         module = "lib/jointcreep/jointcreep_gdal.so"  # where GDAL is
         has_gdal = (self.chain.programs / "jointcreep_gdal.so").exists()
+        source = self.chain.source
+        data = [path.relative_to(source) for path in (source / "data").rglob("*") if path.is_file()]
+        pages = [path.relative_to(source) for end in ("md", "png", "svg") for path in (source / "docs").rglob(f"*.{end}")]
+        of_doc = ["README.md", "CHANGELOG.md", "CITATION.cff", "LICENSE", "copyright", *map(str, pages)]
         self.assertEqual(files, sorted([f"bin/{app}" for app in APPS] + [module] * has_gdal +
                                        [f"share/jointcreep/{path}" for path in package if path.name != "launcher.py"] +
+                                       [f"share/jointcreep/{path}" for path in data] +
+                                       [f"share/doc/jointcreep/{path}" for path in of_doc] +
                                        [f"share/man/man1/{app}.1" for app in APPS] +
                                        [f"share/bash-completion/completions/{app}" for app in APPS]))
+
+    def test_links_of_pages(self):
+        """What the installed README and pages link to is there; what is for developers is in the sources only."""
+        folder = self.prefix / "share/doc/jointcreep"
+        for page in [folder / "README.md", *(folder / "docs").glob("*.md")]:
+            text = re.sub(r"(?ms)^```.*?^```$", "", page.read_text())
+            links = {path for path in re.findall(r"\]\(([^):#\s]+)(?:#[^)]*)?\)", text) if not path.endswith("CONTRIBUTING.md")}
+            self.assertEqual({path for path in links if not (page.parent / path).exists()}, set(), page.name)
+
+    def test_a_scene_runs_from_any_folder(self):
+        """`jointcreep run` makes results, pictures and the report of an installed scene, with what is installed alone."""
+        folder = self.chain.new_folder()
+        done = self.installed("jointcreep", "run", self.prefix / "share/jointcreep/data/column/scene.toml", "-o", "out", cwd=folder)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        for name in "result.h5", "section.png", "histories-y.png", "report.html":
+            self.assertTrue((folder / "out" / name).is_file(), name)
+        self.assertNotIn(str(self.chain.source / "pipelines"), done.stderr)
+        self.assertEqual(list(self.prefix.rglob("__pycache__")), [])
+
+    def test_python_package(self):
+        """With one folder in PYTHONPATH scripts read and draw."""
+        folder = self.chain.new_folder()
+        network = self.chain.network(self.chain.text("data/column/scene.toml"))
+        script = ("import sys, jointcreep; from jointcreep import plots; print(jointcreep.__file__); "
+                  "plots.save('section', sys.argv[1], 'section.png')")
+        done = subprocess.run([sys.executable, "-B", "-c", script, network], cwd=folder, capture_output=True, text=True,
+                              env=dict(os.environ, PYTHONPATH=str(self.prefix / "share/jointcreep")))
+        self.assertEqual((done.returncode, done.stdout), (0, f"{self.prefix}/share/jointcreep/jointcreep/__init__.py\n"), done.stderr)
+        self.assertTrue((folder / "section.png").read_bytes().startswith(b"\x89PNG"))
+
+    def version_of(self, commit):
+        """What version.cmake says in a folder that is no git checkout."""
+        folder = self.chain.new_folder()
+        shutil.copy(self.chain.source / "libs/model/version.cmake", folder)
+        (folder / "commit.txt").write_text(commit)
+        subprocess.run(["cmake", "-D", f"SOURCE={folder}", "-D", "VERSION=1.2.3", "-D", f"OUTPUT={folder}/version.hpp", "-P",
+                        folder / "version.cmake"], check=True)
+        return re.search('"(.*)"', (folder / "version.hpp").read_text()).group(1)
+
+    def test_version_without_git(self):
+        """That of an archive has the commit, if `git archive` made it."""
+        self.assertEqual(self.version_of("0123456789abcdef" * 2 + "01234567\n"), "1.2.3+01234567")
+        kept = self.chain.text("libs/model/commit.txt")
+        self.assertEqual(kept, "$Format:%H$\n")  # which `git archive` replaces
+        self.assertEqual(self.chain.text(".gitattributes"), "libs/model/commit.txt export-subst\n")
+        self.assertEqual(self.version_of(kept), "1.2.3")
 
     def test_the_chain_runs_there(self):
         scene = self.chain.new_folder() / "scene.toml"
@@ -89,6 +146,52 @@ class Install(ChainTest):
             self.assertRegex(done.stdout, rf"^{app} \d+\.\d+\.\d+")
         of_all = {done.stdout.split()[1].split("+")[0] for done in versions.values()}
         self.assertEqual(len(of_all), 1, of_all)
+
+
+@unittest.skipUnless(shutil.which("dpkg-shlibdeps") and shutil.which("file"), "needs: sh pipelines/setup.sh package")
+class DebianPackage(ChainTest):
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        folder = cls.chain.new_folder()
+        subprocess.run(["cpack", "-G", "DEB", "-B", folder, "--config", cls.chain.programs.parent / "CPackConfig.cmake"], check=True,
+                       capture_output=True)
+        (cls.package,) = folder.glob("*.deb")
+        cls.content = folder / "content.tar"
+        with cls.content.open("wb") as file:
+            subprocess.run(["dpkg-deb", "--fsys-tarfile", cls.package], check=True, stdout=file)
+
+    def field(self, name):
+        return subprocess.run(["dpkg-deb", "--field", self.package, name], check=True, capture_output=True, text=True).stdout.strip()
+
+    def test_fields(self):
+        version = re.search(r"VERSION (\S+)", self.chain.text("CMakeLists.txt").split("project(")[1]).group(1)
+        self.assertEqual([self.field(name) for name in ("Package", "Version", "Section")], ["jointcreep", version, "science"])
+        (author,) = re.findall(r'^  - name: "(.*)"$', self.chain.text("CITATION.cff"), flags=re.MULTILINE)
+        self.assertEqual(self.field("Maintainer"), author)
+        self.assertRegex(self.field("Description"), r"^Excavation and creep of jointed rock slopes.*\n jointcreep computes")
+        depends = {word.split()[0] for word in self.field("Depends").split(", ")}
+        self.assertLessEqual({name for name in self.chain.text("pipelines/packages/run.txt").split() if name.startswith("python3")},
+                             depends)
+        self.assertLessEqual({"libc6", "libstdc++6", "libgomp1", "libcholmod3", "make"}, depends)  # also of shared libraries
+        self.assertEqual([name for name in depends if name.endswith("-dev")], [])
+
+    def test_content(self):
+        """Files for all users to read, owned by root, in the folders of packages."""
+        with tarfile.open(self.content) as content:
+            for entry in content:
+                name = entry.name.lstrip("./")
+                self.assertEqual((entry.uid, entry.gid), (0, 0), name)
+                self.assertTrue(name == "" or name == "usr" or name.startswith(("usr/bin", "usr/lib", "usr/share")), name)
+                if entry.issym():
+                    self.assertEqual((name, entry.linkname),
+                                     ("usr/lib/python3/dist-packages/jointcreep", "../../../share/jointcreep/jointcreep"))
+                else:
+                    runs = entry.isdir() or name.startswith("usr/bin/")
+                    self.assertEqual(stat.S_IMODE(entry.mode), 0o755 if runs else 0o644, name)
+            names = {path.lstrip("./") for path in content.getnames()}
+        self.assertLessEqual({f"usr/bin/{app}" for app in APPS} | {"usr/share/jointcreep/data/slope/scene.toml",
+                                                                  "usr/share/doc/jointcreep/copyright"}, names)
 
 
 if __name__ == "__main__":

@@ -226,6 +226,75 @@ class Plots(ChainTest):
         self.assertIn("no joint has a pole", done.stderr)
         self.assertFalse(network.with_name("none.png").exists())
 
+    def test_pictures_say_what_they_show(self):
+        """One colour for a set in all pictures; projection, hemisphere and weights; numbers on all axes of strengths; dates; widths."""
+        import figure
+        import matplotlib.dates
+        from jointcreep import plots
+
+        result = self.chain.result(self.chain.text("data/slope/scene.toml"), "--no-creep")
+        network, joints = (result.with_name(f"{name}.h5") for name in ("network", "joints"))
+        rgb = matplotlib.colors.to_hex
+        wanted = dict(zip(["bedding", "steep", "cross", "fault"], figure.COLORS))
+
+        def in_legends(picture):
+            return {entry.get_text().partition(",")[0]: handle for axes in picture.axes if axes.get_legend()
+                    for entry, handle in zip(axes.get_legend().get_texts(), axes.get_legend().legendHandles)}
+
+        def words(picture):
+            return "\n".join(text.get_text() for text in picture.findobj(matplotlib.text.Text))
+
+        for name, sets in ("section", 4), ("stereonet", 3), ("rose", 4):
+            found = {label: rgb(handle.get_facecolor() if hasattr(handle, "get_facecolor") else handle.get_color())
+                     for label, handle in in_legends(plots.draw(name, network)).items() if label in wanted}
+            self.assertEqual(found, {label: wanted[label] for label in list(wanted)[:sets]}, name)
+        found = {label.removeprefix("outline mostly "): rgb(handle.get_facecolor())
+                 for label, handle in in_legends(plots.draw("blocks", network, by="set")).items() if label.startswith("outline mostly")}
+        self.assertEqual(found, {label: rgb(figure.pale(wanted[label])) for label in found})
+        self.assertGreaterEqual(len(found), 3)
+        bars = {axes.get_title(loc="left"): axes.patches[0].get_edgecolor() for axes in plots.draw("distributions", network).axes[:6:2]}
+        self.assertEqual({name: rgb(color) for name, color in bars.items()}, {name: wanted[name] for name in list(wanted)[:3]})
+
+        strengths = plots.draw("strength", joints).axes
+        found = {axes.get_title().partition(" (")[0]: rgb(line.get_color()) for axes in strengths for line in axes.lines
+                 if line.get_label() == "equivalent"}
+        self.assertEqual(found, wanted)
+        self.assertTrue(all(axes.xaxis.get_major_ticks()[0].label1.get_visible() for axes in strengths))
+
+        self.assertRegex(words(plots.draw("stereonet", network)), "lower hemisphere, equal-area projection;\neach joint counts once")
+        self.assertRegex(words(plots.draw("rose", network)), "weighted by their length")
+
+        (axes,) = plots.draw("histories", result).axes
+        axes.figure.canvas.draw()
+        labels = [label.get_text() for label in axes.get_xticklabels()]
+        self.assertEqual(axes.get_xlabel(), "date (start: 2001-03-01)")
+        self.assertGreaterEqual(len(labels), 3)
+        for day, label in zip(axes.get_xticks(), labels):
+            self.assertRegex(label, r"^200[12]-\d\d-01$")  # where months begin
+            self.assertEqual(matplotlib.dates.datestr2num(label) - matplotlib.dates.datestr2num("2001-03-01"), day)
+
+        picture = plots.draw("state", result, field="contacts")
+        drawn = [width for lines in picture.axes[0].collections for width in numpy.ravel(lines.get_linewidth())]
+        said = {label: handle.get_linewidth() for label, handle in in_legends(picture).items() if label.endswith("at this width")}
+        self.assertIn("0 mm at this width", said)
+        slips = next(width for label, width in said.items() if "slipping: shear" in label)
+        self.assertEqual(slips, max(drawn))  # that of the largest slip
+        self.assertLess(said["0 mm at this width"], slips)
+
+    def test_other_criteria_have_no_line(self):
+        """Barton and Bandis's strength is no line of Coulomb's criterion."""
+        from jointcreep import plots
+
+        law = "joint_roughness_coefficient = 8\njoint_wall_strength_MPa = 50\nlargest_closure_mm = 0.3\n"
+        text = changed(self.chain.text("data/column/scene.toml"), "^(tensile_strength_MPa = 0).*$", rf"\1\n{law}", count=2)
+        text = changed(text, "^(normal|shear)_kelvin.*\n", "", count=8)
+        joints = self.chain.joints(text)
+        shown = [axes for axes in plots.draw("strength", joints).axes if axes.get_visible()]
+        self.assertEqual(len(shown), 3)
+        for axes in shown:
+            self.assertIn("Barton-Bandis", axes.texts[0].get_text())
+            self.assertEqual([line for line in axes.lines if line.get_label() == "equivalent"], [])
+
     def test_stereonet_places_poles(self):
         """A plane that dips steeply to the east has its pole far west, in the lower hemisphere."""
         import plot_stereonet

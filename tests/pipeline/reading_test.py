@@ -4,6 +4,7 @@ import math
 import re
 import subprocess
 
+import h5py
 import jointcreep
 import numpy as np
 from jointcreep import chain as programs_of_the_chain
@@ -72,6 +73,37 @@ class Files(ChainTest):
         ]:
             with self.assertRaisesRegex(jointcreep.NotWanted, expected):
                 call()
+
+    def test_labels_of_axes(self):
+        """Every axis of every dataset has the name of its dimension on the page of the file format, and axes of one name one length."""
+        rows = re.findall(r"^\| `(/[^`]+)` \| \[([^\]]*)\]", self.chain.text("docs/file-format.md"), flags=re.MULTILINE)
+        pages = {path: [name.strip() for name in names.split(",") if not name.strip().isdecimal()] for path, names in rows}
+        lengths, labelled = {}, 0
+        with h5py.File(self.result()) as file:
+            self.assertEqual([axis.label for axis in file["/history/displacement"].dims], ["time", "point", "component"])
+            self.assertEqual([axis.label for axis in file["/states/time"].dims], ["state"])
+            for path in datasets(self.result()):
+                found = [axis.label for axis in file[path].dims]
+                wanted = pages[path] + ["component"] * (len(found) - len(pages[path]) if pages[path] else 0)
+                self.assertEqual(found, wanted or [""] * len(found), path)
+                for name, length in zip(pages[path], file[path].shape):
+                    self.assertEqual(lengths.setdefault(name, length), length, (path, name))
+                    labelled += 1
+        self.assertGreater(labelled, 100)
+        self.assertEqual(jointcreep.read(self.result()).axes("/states/stress"), ["state", "zone", "component"])
+        self.assertEqual(lengths["edge+1"], lengths["edge"] + 1)
+
+    def test_frame(self):
+        """The DataFrame of a table, where pandas is there."""
+        try:
+            import pandas
+        except ImportError:
+            self.skipTest("without python3-pandas")
+        contacts = jointcreep.read(self.result()).contacts()
+        frame = contacts.frame()
+        self.assertIsInstance(frame, pandas.DataFrame)
+        self.assertEqual((list(frame), len(frame), frame.attrs["units"]), (list(contacts), contacts.rows(), contacts.units))
+        self.assertTrue((frame["normal traction"].to_numpy() == contacts["normal traction"]).all())
 
     def test_csv(self):
         path = self.chain.new_folder() / "table.csv"
