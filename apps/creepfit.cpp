@@ -12,6 +12,7 @@
 // One curve: creepfit_curve and libs/estimation. Through the solver: creepfit_section and libs/back_analysis.
 
 #include "creepfit_curve.hpp"
+#include "creepfit_errors.hpp"
 #include "creepfit_files.hpp"
 #include "creepfit_section.hpp"
 #include "program.hpp"
@@ -25,7 +26,8 @@ namespace
 std::vector<Option> options()
 {
     std::vector<Option> all{{"readings", "FILE.csv", "write measured and computed displacements, too"}};
-    for (const auto& of_one_way : {creepfit::curve_options(), creepfit::section_options()})
+    for (const auto& of_one_way :
+         {creepfit::error_options(), creepfit::curve_options(), creepfit::section_options()})
         all.insert(all.end(), of_one_way.begin(), of_one_way.end());
     return all;
 }

@@ -1,5 +1,6 @@
 #include "creepfit_section.hpp"
 
+#include "creepfit_errors.hpp"
 #include "creepfit_factors.hpp"
 #include "creepfit_files.hpp"
 #include "creepfit_found.hpp"
@@ -12,6 +13,7 @@
 #include "store/files.hpp"
 #include "zoning/cost.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <string>
@@ -29,8 +31,15 @@ back_analysis::Settings settings_of(const Arguments& arguments)
 {
     if (!arguments.has("fit"))
         throw input_error("--fit is not given; wanted the factors to find");
+    const estimation::Errors errors = errors_in(arguments);
+    if (arguments.has("since-first-reading") && (errors.offset || errors.robust || errors.correlated))
+        throw input_error(std::string("--since-first-reading does not go with --") +
+                          (errors.offset   ? "offset, which contains it"
+                           : errors.robust ? "robust; wanted --offset in its place"
+                                           : "correlated-noise; wanted --offset in its place"));
     return {.factors = factors_in(*arguments.text("fit")),
             .since_first_reading = arguments.has("since-first-reading"),
+            .errors = errors,
             .threads = arguments.threads(),
             .most_runs = static_cast<int>(arguments.whole_number("runs", 1, 100000).value_or(60))};
 }
@@ -69,7 +78,8 @@ std::vector<Option> section_options()
         {"measurements", "FILE.csv", "through the solver: displacements of the scene's points"},
         {"fit", "NAMES",
          "through the solver: factors to find, of " + all_options(" and ") +
-             ", separated by commas, each with bounds if given: joint-stiffness=0.5:2 (default "
+             "; of joints with normal- or shear- before the name and @MATERIAL behind it for one direction and joint material "
+             "alone, separated by commas, each with bounds if given: joint-stiffness=0.5:2 (default "
              "bounds: 0.05:20); kelvin-viscosity is that of Maxwell dashpots, too; the search starts from 1, or "
              "from the geometric mean of the bounds if 1 is outside them"},
         {"since-first-reading", "",
@@ -93,6 +103,12 @@ void fit_section(const Arguments& arguments)
     if (const std::string cost = zoning::check_cost(scene, file.network.blocks, input + ": /scene");
         !cost.empty())
         print_warning(arguments.program(), cost);
+    for (const back_analysis::Factor& factor : settings.factors)
+        if (!factor.material.empty() &&
+            std::ranges::find(scene.joint_materials, factor.material, &JointMaterial::name) ==
+                scene.joint_materials.end())
+            throw input_error("--fit: " + option_of(factor) + ": the scene has no joint material \"" +
+                              factor.material + '"');
     const Measurements measurements = read_measurements(measured, scene, settings.factors.size());
 
     // 2. The factors that fit the measurements.
