@@ -102,6 +102,10 @@ Fit fit_of(const Arguments& arguments, const Curve& curve, const estimation::Err
     Fit fit{of_file(arguments.input(), [&] { return estimation::fit_curve(readings, errors); }),
             of_file(arguments.input(), [&] { return estimation::closed_estimate(readings, end); }), 0, 0,
             false};
+    for (estimation::FoundError& error : fit.by_curve.errors)
+        error.time += curve.load;
+    for (estimation::Doubt& doubt : fit.by_curve.doubts)
+        doubt.time += curve.load;
     const double tau = fit.by_curve.retardation_time;
     fit.left = std::exp(-end / tau);
     fit.before = readings.elastic_part ? 0.0 : -std::expm1(-readings.time.front() / tau);
@@ -298,8 +302,12 @@ void fit_curve(const Arguments& arguments)
     if (errors.offset && !curve.readings.elastic_part)
         throw input_error(
             "--offset of a curve is the elastic part's; wanted --elastic-mm with it, or no --offset");
-    for (double& step : errors.steps)
+    for (double& step : errors.steps) {
         step -= curve.load;
+        if (!(step > curve.readings.time.front() && step <= curve.readings.time.back()))
+            throw input_error(arguments.input() + ": no readings before and after the step on day " +
+                              shown((step + curve.load) / unit::day) + " and from the load on");
+    }
 
     // 2. E and eta, by least squares and by Eq. 14.
     const Fit fit = fit_of(arguments, curve, errors);
