@@ -3,6 +3,8 @@
 //   creepfit curve.csv --stiffness 690 -o constants.csv                 of one joint, from one curve
 //   creepfit joints.h5 --measurements readings.csv --fit kelvin-stiffness,joint-stiffness -o factors.csv
 //                                                                       of all joints, through the solver
+//   creepfit joints-*.h5 --measurements readings.csv --fit kelvin-stiffness -o factors.csv
+//                                                                       the same, with the scatter of networks
 //
 // Reads   curve.csv, or joints.h5 (from strength-averaging) and readings.csv
 // Writes  a table of what was found, and one of the readings on request   (docs/programs.md)
@@ -47,6 +49,7 @@ const Program program{
         "                  or one row per time, as jointexport writes it: time_day, event, and A_x_m, A_y_m,\n"
         "                  A_present of a point A; optional: A_x_sigma_m, A_y_sigma_m\n"
         "  A length may be in _m, _cm or _mm, as its name says.\n",
+    .takes_several = true,
 };
 
 void fit(const Arguments& arguments)

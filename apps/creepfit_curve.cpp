@@ -75,6 +75,10 @@ Curve curve_from(double load, const std::vector<scene::Measurement>& measurement
 Curve read_curve(const Arguments& arguments)
 {
     const std::string& input = arguments.input();
+    if (arguments.inputs().size() > 1)
+        throw input_error(
+            "several files are given, and --measurements is not; wanted one curve, or networks with "
+            "--measurements");
     const std::string text = text_of(input);
     if (text.starts_with("\x89HDF"))
         throw input_error("--measurements is not given, and " + input + " is no curve");

@@ -386,4 +386,74 @@ void report(const Arguments& arguments, const Found& found, const Measurements& 
         print_for_the_scene(found, scene, factors);
 }
 
+Networks networks_of(std::vector<Found> found, const std::vector<std::string>& files, const Factors& factors,
+                     bool knows_deviations)
+{
+    std::vector<estimation::OfOneModel> models;
+    for (const Found& one : found)
+        models.push_back({one.minimum.parameters, one.confidence});
+    Networks networks{std::move(found), files, estimation::across(models, knows_deviations)};
+    for (std::size_t i = 0; i < factors.size(); ++i)
+        if (const auto& of = networks.across[i]; of && of->interval.high - of->value > std::log(10.0))
+            networks.across[i].reset(); // not resolved
+    return networks;
+}
+
+std::string networks_table(const Networks& networks, const Factors& factors)
+{
+    std::string table = "factor,value,low_95,high_95,low_95_all,high_95_all,standard_error_of_logarithm,"
+                        "scatter_of_logarithm,networks,resolved";
+    for (std::size_t k = 0; k < networks.found.size(); ++k)
+        table += ",value_" + std::to_string(k + 1);
+    table += '\n';
+    for (std::size_t i = 0; i < factors.size(); ++i) {
+        table += exchange::csv_field(option_of(factors[i])) + ',';
+        const auto& of = networks.across[i];
+        if (of)
+            table += shown(std::exp(of->value)) + ',' + shown(std::exp(of->interval.low)) + ',' +
+                     shown(std::exp(of->interval.high)) + ',' + shown(std::exp(of->with_all.low)) + ',' +
+                     shown(std::exp(of->with_all.high)) + ',' + shown(of->standard_error) + ',' +
+                     shown(of->scatter);
+        else
+            table += ",,,,,,";
+        table += ',' + std::to_string(networks.found.size()) + ',' + (of ? "yes" : "no");
+        for (const Found& found : networks.found)
+            table += ',' + shown(found.factors[i]);
+        table += '\n';
+    }
+    return table;
+}
+
+void report_networks(const Arguments& arguments, const Networks& networks, const Factors& factors)
+{
+    Summary summary;
+    summary.add("networks", networks.found.size());
+    for (std::size_t k = 0; k < networks.found.size(); ++k)
+        summary.add(networks.file[k], in_words(factors, networks.found[k].factors));
+    std::string not_resolved;
+    for (std::size_t i = 0; i < factors.size(); ++i) {
+        const auto& of = networks.across[i];
+        if (!of) {
+            not_resolved += (not_resolved.empty() ? "" : ", ") + option_of(factors[i]);
+            continue;
+        }
+        const auto times = [](const Interval& by) {
+            return shown_interval({std::exp(by.low), std::exp(by.high)});
+        };
+        summary.add("factor on " + words_of(factors[i]),
+                    rounded(std::exp(of->value)) + " (95 %: " + times(of->interval) + "; all together: " +
+                        times(of->with_all) + "); between networks x/ " + rounded(std::exp(of->scatter)));
+    }
+    const auto doubted = std::ranges::count_if(networks.found, [](const Found& found) {
+        return !found.doubts.empty() || found.confidence.p_value < 0.01;
+    });
+    summary.add("residuals are no noise",
+                std::to_string(doubted) + " of the networks; no network is that of the site");
+    if (!not_resolved.empty())
+        summary.warn(
+            "not resolved by these readings and networks: " + not_resolved +
+            ", which may be 10 times as large or as small. Fit fewer factors, or give more networks");
+    summary.print(arguments);
+}
+
 } // namespace jointcreep::creepfit

@@ -70,6 +70,57 @@ Found search(const Arguments& arguments, const store::JointsFile& file, const Sc
     });
 }
 
+struct Section {
+    store::JointsFile file;
+    Scene scene;
+};
+
+Section read_section(const Arguments& arguments, const std::string& input, const Factors& factors)
+{
+    Section section{store::read_joints(input), {}};
+    section.scene = scene::parse_scene_of_file(section.file.provenance.scene, input, section.file.network);
+    if (const std::string cost =
+            zoning::check_cost(section.scene, section.file.network.blocks, input + ": /scene");
+        !cost.empty())
+        print_warning(arguments.program(), cost);
+    for (const back_analysis::Factor& factor : factors)
+        if (!factor.material.empty() &&
+            std::ranges::find(section.scene.joint_materials, factor.material, &JointMaterial::name) ==
+                section.scene.joint_materials.end())
+            throw input_error("--fit: " + option_of(factor) + ": the scene has no joint material \"" +
+                              factor.material + '"');
+    return section;
+}
+
+// The same measurements fitted with each network of a scene, none of which is that of the site.
+void fit_networks(const Arguments& arguments, const std::string& measured,
+                  const back_analysis::Settings& settings)
+{
+    if (arguments.has("readings"))
+        throw input_error("--readings is of one network, and several are given");
+    std::string text; // of the scene
+    bool knows_deviations = false;
+    std::vector<Found> found;
+    for (const std::string& input : arguments.inputs()) {
+        const Section section = read_section(arguments, input, settings.factors);
+        const std::string& its = section.file.provenance.scene;
+        if (!found.empty() && its != text)
+            throw input_error(input + ": its scene is not that of " + arguments.inputs().front() +
+                              "; wanted networks of one scene, as jointgen --realization makes them");
+        text = its;
+        const Measurements measurements = read_measurements(measured, section.scene, settings.factors.size());
+        knows_deviations = measurements.front().deviation.has_value() && !settings.errors.robust &&
+                           !settings.errors.correlated;
+        found.push_back(search(arguments, section.file, section.scene, measurements, settings));
+        if (!found.back().minimum.is_converged)
+            throw fit_error(input + ": " + why_not_converged(found.back(), settings.factors));
+    }
+    const Networks networks =
+        networks_of(std::move(found), arguments.inputs(), settings.factors, knows_deviations);
+    write_texts({{arguments.output(), networks_table(networks, settings.factors)}});
+    report_networks(arguments, networks, settings.factors);
+}
+
 } // namespace
 
 std::vector<Option> section_options()
@@ -92,23 +143,17 @@ std::vector<Option> section_options()
 
 void fit_section(const Arguments& arguments)
 {
-    const std::string &input = arguments.input(), &output = arguments.output();
     const std::string measured = *arguments.text("measurements");
     const back_analysis::Settings settings = settings_of(arguments);
     const std::optional<std::string> readings_path = readings_file(arguments, true);
+    if (arguments.inputs().size() > 1) {
+        fit_networks(arguments, measured, settings);
+        return;
+    }
+    const std::string& output = arguments.output();
 
     // 1. The section, and its measurements.
-    const store::JointsFile file = store::read_joints(input);
-    const Scene scene = scene::parse_scene_of_file(file.provenance.scene, input, file.network);
-    if (const std::string cost = zoning::check_cost(scene, file.network.blocks, input + ": /scene");
-        !cost.empty())
-        print_warning(arguments.program(), cost);
-    for (const back_analysis::Factor& factor : settings.factors)
-        if (!factor.material.empty() &&
-            std::ranges::find(scene.joint_materials, factor.material, &JointMaterial::name) ==
-                scene.joint_materials.end())
-            throw input_error("--fit: " + option_of(factor) + ": the scene has no joint material \"" +
-                              factor.material + '"');
+    const auto [file, scene] = read_section(arguments, arguments.input(), settings.factors);
     const Measurements measurements = read_measurements(measured, scene, settings.factors.size());
 
     // 2. The factors that fit the measurements.

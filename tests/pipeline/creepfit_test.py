@@ -133,6 +133,38 @@ class Creepfit(ChainTest):
         self.assertAlmostEqual(float(rows["kelvin-stiffness@base joint"]["value"]), 2 / 3, delta=1e-4)
         self.assertIn('of joint material "base joint" by 1, their Kelvin stiffnesses by 0.6666', said)
 
+    def test_several_networks(self):
+        """Intervals have the scatter of the networks; each network's own fit is in the table. Sameness and mistakes are refused."""
+        text = self.chain.text("pipelines/reliability/small.toml")
+        text = changed(changed(changed(text, "cohesion_MPa = 0.02", "cohesion_MPa = 2"), "tensile_strength_MPa = 0$", "tensile_strength_MPa = 2"),
+                       "end = 10", "end = 20")
+        scene = self.chain.new_folder() / "scene.toml"
+        scene.write_text(text)
+        joints = []
+        for realization in range(5):
+            network = self.chain.run("jointgen", scene, scene.with_name(f"n{realization}.h5"), "--realization", str(realization))
+            joints.append(self.chain.run("strength-averaging", network, scene.with_name(f"j{realization}.h5")))
+        result = self.chain.run("demsolve", joints[0], scene.with_name("r.h5"))
+        history = self.chain.run("jointexport", result, scene.with_name("h.csv"))
+        found = scene.with_name("found.csv")
+        command = ["--measurements", history, "--fit", "joint-stiffness", "-o", found]
+        done = self.chain.answer("creepfit", *joints[1:], *command)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        row, = table(found)
+        each = [math.log(float(row[f"value_{k}"])) for k in range(1, 5)]
+        mean = sum(each) / 4
+        self.assertAlmostEqual(math.log(float(row["value"])), mean, places=9)
+        scatter = math.sqrt(sum((one - mean) ** 2 for one in each) / 3)
+        self.assertAlmostEqual(float(row["scatter_of_logarithm"]), scatter, places=9)
+        self.assertGreaterEqual(float(row["standard_error_of_logarithm"]), scatter * math.sqrt(5 / 4))
+        self.assertEqual((row["networks"], row["resolved"]), ("4", "yes"))
+        self.assertLess(float(row["low_95"]), 1)
+        self.assertGreater(float(row["high_95"]), 1)
+        self.assertIn("between networks x/", done.stdout)
+        self.refused([*joints[1:], *command[:-2], "--readings", scene.with_name("x.csv")], "--readings is of one network")
+        self.refused([joints[1], self.joints, *command[:-2]], "its scene is not that of")
+        self.refused(joints[1:3], "several files are given")
+
     def spoilt(self, spoil):
         """Readings of the column with `spoil(row, number)` mm added."""
         path = self.readings("--seed", "2")
