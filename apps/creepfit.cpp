@@ -3,6 +3,8 @@
 //   creepfit curve.csv --stiffness 690 -o constants.csv                 of one joint, from one curve
 //   creepfit joints.h5 --measurements readings.csv --fit kelvin-stiffness,joint-stiffness -o factors.csv
 //                                                                       of all joints, through the solver
+//   creepfit joints-*.h5 --measurements readings.csv --fit kelvin-stiffness -o factors.csv
+//                                                                       the same, with the scatter of networks
 //
 // Reads   curve.csv, or joints.h5 (from strength-averaging) and readings.csv
 // Writes  a table of what was found, and one of the readings on request   (docs/programs.md)
@@ -12,6 +14,7 @@
 // One curve: creepfit_curve and libs/estimation. Through the solver: creepfit_section and libs/back_analysis.
 
 #include "creepfit_curve.hpp"
+#include "creepfit_errors.hpp"
 #include "creepfit_files.hpp"
 #include "creepfit_section.hpp"
 #include "program.hpp"
@@ -25,7 +28,8 @@ namespace
 std::vector<Option> options()
 {
     std::vector<Option> all{{"readings", "FILE.csv", "write measured and computed displacements, too"}};
-    for (const auto& of_one_way : {creepfit::curve_options(), creepfit::section_options()})
+    for (const auto& of_one_way :
+         {creepfit::error_options(), creepfit::curve_options(), creepfit::section_options()})
         all.insert(all.end(), of_one_way.begin(), of_one_way.end());
     return all;
 }
@@ -45,6 +49,7 @@ const Program program{
         "                  or one row per time, as jointexport writes it: time_day, event, and A_x_m, A_y_m,\n"
         "                  A_present of a point A; optional: A_x_sigma_m, A_y_sigma_m\n"
         "  A length may be in _m, _cm or _mm, as its name says.\n",
+    .takes_several = true,
     .writes_text = true,
 };
 

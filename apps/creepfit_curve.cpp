@@ -1,5 +1,6 @@
 #include "creepfit_curve.hpp"
 
+#include "creepfit_errors.hpp"
 #include "creepfit_files.hpp"
 #include "creepfit_words.hpp"
 
@@ -36,6 +37,8 @@ struct Fit {
     estimation::CurveFit by_curve;
     estimation::ClosedEstimate closed; // by Eq. 14
     double left;                       // share of creep left when Eq. 14 takes it as over [-]
+    double before;            // share of creep before the first reading, which Eq. 14 takes for elastic [-]
+    bool has_closed_interval; // of Eq. 14
 };
 
 // A row of the table of results.
@@ -72,6 +75,10 @@ Curve curve_from(double load, const std::vector<scene::Measurement>& measurement
 Curve read_curve(const Arguments& arguments)
 {
     const std::string& input = arguments.input();
+    if (arguments.inputs().size() > 1)
+        throw input_error(
+            "several files are given, and --measurements is not; wanted one curve, or networks with "
+            "--measurements");
     const std::string text = text_of(input);
     if (text.starts_with("\x89HDF"))
         throw input_error("--measurements is not given, and " + input + " is no curve");
@@ -91,15 +98,27 @@ Curve read_curve(const Arguments& arguments)
     return curve;
 }
 
-Fit fit_of(const Arguments& arguments, const Curve& curve)
+Fit fit_of(const Arguments& arguments, const Curve& curve, const estimation::Errors& errors)
 {
     const estimation::CreepCurve& readings = curve.readings;
     const double last = (curve.load + readings.time.back()) / unit::day;
     const double end = arguments.number("converged-day").value_or(last) * unit::day - curve.load;
-    const estimation::CurveFit by_curve =
-        of_file(arguments.input(), [&] { return estimation::fit_curve(readings); });
-    return {by_curve, of_file(arguments.input(), [&] { return estimation::closed_estimate(readings, end); }),
-            std::exp(-end / by_curve.retardation_time)};
+    Fit fit{of_file(arguments.input(), [&] { return estimation::fit_curve(readings, errors); }),
+            of_file(arguments.input(), [&] { return estimation::closed_estimate(readings, end); }), 0, 0,
+            false};
+    for (estimation::FoundError& error : fit.by_curve.errors)
+        error.time += curve.load;
+    for (estimation::Doubt& doubt : fit.by_curve.doubts)
+        doubt.time += curve.load;
+    const double tau = fit.by_curve.retardation_time;
+    fit.left = std::exp(-end / tau);
+    fit.before = readings.elastic_part ? 0.0 : -std::expm1(-readings.time.front() / tau);
+    // What Eq. 14 leaves out makes ln E wrong by this much. A quarter of a standard error costs one percent of coverage.
+    const double ratio = fit.by_curve.creep_part / fit.by_curve.elastic_part;
+    const double bias = fit.before * (1 + ratio) / (1 - fit.before) + fit.left / (1 - fit.left);
+    fit.has_closed_interval =
+        fit.left <= most_left && bias <= 0.25 * fit.closed.stiffness_error && !errors.any();
+    return fit;
 }
 
 Interval times(const Interval& interval, double by)
@@ -122,18 +141,25 @@ std::vector<Row> rows_of(const Fit& fit, bool knows_elastic_part, std::optional<
     const auto closed_row = [&](const std::string& quantity, const std::string& unit,
                                 const estimation::Estimate& estimate, double by) {
         Row row = row_of(quantity, unit, estimate, by);
-        if (fit.left > most_left)
+        if (!fit.has_closed_interval)
             row.interval.reset();
         return row;
     };
-    return {{"elastic part", "mm", by_curve.elastic_part * 1e3,
-             knows_elastic_part ? std::nullopt : std::optional(times(by_curve.elastic_interval, 1e3))},
-            {"creep part", "mm", by_curve.creep_part * 1e3, times(by_curve.creep_interval, 1e3)},
-            row_of("retardation time", "day", by_curve.time, 1 / unit::day),
-            row_of("Kelvin stiffness E", unit_E, by_curve.stiffness, K),
-            row_of("Kelvin viscosity eta", unit_eta, by_curve.viscosity, per_day),
-            closed_row("E by Eq. 14", unit_E, fit.closed.stiffness, K),
-            closed_row("eta by least squares with that E", unit_eta, fit.closed.viscosity, per_day)};
+    std::vector<Row> rows{
+        {"elastic part", "mm", by_curve.elastic_part * 1e3,
+         knows_elastic_part ? std::nullopt : std::optional(times(by_curve.elastic_interval, 1e3))},
+        {"creep part", "mm", by_curve.creep_part * 1e3, times(by_curve.creep_interval, 1e3)},
+        row_of("retardation time", "day", by_curve.time, 1 / unit::day),
+        row_of("Kelvin stiffness E", unit_E, by_curve.stiffness, K),
+        row_of("Kelvin viscosity eta", unit_eta, by_curve.viscosity, per_day),
+        closed_row("E by Eq. 14", unit_E, fit.closed.stiffness, K),
+        closed_row("eta by least squares with that E", unit_eta, fit.closed.viscosity, per_day)};
+    for (const estimation::FoundError& error : by_curve.errors) {
+        const ErrorWords words = words_of(error, "");
+        rows.push_back(
+            {words.name, words.unit, error.value / words.in_si, times(error.interval, 1 / words.in_si)});
+    }
+    return rows;
 }
 
 std::string table_of(const std::vector<Row>& rows)
@@ -151,29 +177,32 @@ std::string table_of(const std::vector<Row>& rows)
     return table;
 }
 
-std::string readings_table(const Curve& curve, const std::vector<double>& computed)
+std::string readings_table(const Curve& curve, const estimation::CurveFit& fit)
 {
     const auto& [readings, load, zero, before] = curve;
-    std::string table = "time_day,measured_mm,computed_mm,residual_mm\n";
+    std::string table = "time_day,measured_mm,computed_mm,residual_mm,instrument_mm\n";
     for (std::size_t i = 0; i < readings.time.size(); ++i)
         table += shown((load + readings.time[i]) / unit::day) + ',' +
-                 shown((readings.displacement[i] + zero) * 1e3) + ',' + shown((computed[i] + zero) * 1e3) +
-                 ',' + shown((computed[i] - readings.displacement[i]) * 1e3) + '\n';
+                 shown((readings.displacement[i] + zero) * 1e3) + ',' +
+                 shown((fit.computed[i] + zero) * 1e3) + ',' +
+                 shown((fit.computed[i] + fit.instrument[i] - readings.displacement[i]) * 1e3) + ',' +
+                 shown(fit.instrument[i] * 1e3) + '\n';
     return table;
 }
 
-void add_residuals(Summary& summary, const Curve& curve, const estimation::CurveFit& fit)
+void add_residuals(Summary& summary, const Curve& curve, const estimation::CurveFit& fit,
+                   const estimation::Errors& errors)
 {
     std::vector<double> residuals;
     for (std::size_t i = 0; i < fit.computed.size(); ++i)
-        residuals.push_back(fit.computed[i] - curve.readings.displacement[i]);
+        residuals.push_back(fit.computed[i] + fit.instrument[i] - curve.readings.displacement[i]);
     summary.add("residuals, root mean square", mm(root_mean_square(residuals)) + " mm");
     const bool knows = !curve.readings.deviation.empty();
     if (knows)
         summary.add("chi squared", rounded(fit.confidence.sum_of_squares) + " of " +
                                        std::to_string(fit.confidence.readings - fit.confidence.parameters) +
                                        " degrees of freedom");
-    summary.add("noise taken as", noise_in_words(fit.confidence, knows));
+    summary.add("noise taken as", noise_in_words(fit.confidence, knows, errors));
 }
 
 // Warns of what the record is too short, or too coarse, to give.
@@ -206,14 +235,30 @@ void warn_of_closed_estimate(Summary& summary, const Curve& curve, const Fit& fi
                      (fit.left > most_left
                           ? "too much for Eq. 14; its results have no interval"
                           : "its E is too high, by a factor of about " + rounded(1 / (1 - fit.left), 3)));
-    const double first = curve.readings.time.front(), share = first / fit.by_curve.retardation_time;
-    if (!curve.readings.elastic_part && share > 0.1)
-        summary.warn("first reading late: " + rounded(first / unit::day) + " days after the load, with " +
-                     rounded(-100 * std::expm1(-share), 2) +
+    if (fit.before > 0.1)
+        summary.warn("first reading late: " + rounded(curve.readings.time.front() / unit::day) +
+                     " days after the load, with " + rounded(100 * fit.before, 2) +
                      " percent of creep in it, which Eq. 14 takes for elastic");
+    if (!fit.has_closed_interval && fit.left <= most_left)
+        summary.add("intervals of Eq. 14",
+                    "none: it leaves out more than its noise; see those of the fit of all readings");
 }
 
-void report(const Arguments& arguments, const Curve& curve, const Fit& fit, const std::vector<Row>& rows)
+ErrorsFound errors_of(const Curve& curve, const estimation::CurveFit& fit)
+{
+    return {fit.errors,
+            fit.outliers,
+            fit.doubts,
+            fit.correlation_time,
+            fit.confidence,
+            [](std::size_t) { return std::string("the curve"); },
+            [&curve](std::size_t reading) {
+                return "on day " + rounded((curve.load + curve.readings.time[reading]) / unit::day, 6);
+            }};
+}
+
+void report(const Arguments& arguments, const Curve& curve, const Fit& fit, const std::vector<Row>& rows,
+            const estimation::Errors& errors)
 {
     Summary summary;
     summary.add("readings", curve.readings.time.size());
@@ -226,10 +271,12 @@ void report(const Arguments& arguments, const Curve& curve, const Fit& fit, cons
                                       (row.interval ? " (95 %: " + shown_interval(*row.interval) + ")" : "") +
                                       ' ' + row.unit);
     summary.add("correlation of ln E and ln eta", fit.by_curve.correlation);
-    add_residuals(summary, curve, fit.by_curve);
+    add_residuals(summary, curve, fit.by_curve, errors);
+    const ErrorsFound of_instrument = errors_of(curve, fit.by_curve);
+    add_outliers_and_lasting(summary, of_instrument, errors);
     warn_of_record(summary, curve, fit.by_curve);
     warn_of_closed_estimate(summary, curve, fit);
-    warn_of_lag(summary, "", fit.by_curve.lag_one, fit.by_curve.computed.size());
+    warn_of_doubts(summary, of_instrument);
     summary.print(arguments);
 }
 
@@ -255,18 +302,28 @@ void fit_curve(const Arguments& arguments)
 
     // 1. The readings, from the change of load on.
     const Curve curve = read_curve(arguments);
+    estimation::Errors errors = errors_in(arguments);
+    if (errors.offset && !curve.readings.elastic_part)
+        throw input_error(
+            "--offset of a curve is the elastic part's; wanted --elastic-mm with it, or no --offset");
+    for (double& step : errors.steps) {
+        step -= curve.load;
+        if (!(step > curve.readings.time.front() && step <= curve.readings.time.back()))
+            throw input_error(arguments.input() + ": no readings before and after the step on day " +
+                              shown((step + curve.load) / unit::day) + " and from the load on");
+    }
 
     // 2. E and eta, by least squares and by Eq. 14.
-    const Fit fit = fit_of(arguments, curve);
+    const Fit fit = fit_of(arguments, curve, errors);
 
     // 3. What was found.
     const std::vector<Row> rows = rows_of(fit, curve.readings.elastic_part.has_value(), stiffness);
     std::vector<TextFile> files;
     if (readings_path)
-        files.push_back({*readings_path, readings_table(curve, fit.by_curve.computed)});
+        files.push_back({*readings_path, readings_table(curve, fit.by_curve)});
     files.push_back({arguments.output(), table_of(rows)});
     write_texts(files);
-    report(arguments, curve, fit, rows);
+    report(arguments, curve, fit, rows, errors);
 }
 
 } // namespace jointcreep::creepfit

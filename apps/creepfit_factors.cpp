@@ -18,16 +18,17 @@ namespace
 
 struct Name {
     std::string_view option, words;
-    Scaled scaled;
+    Scaled::Quantity scaled;
 };
 constexpr std::array<Name, 4> names{{{"kelvin-stiffness", "Kelvin stiffness E", Scaled::kelvin_stiffness},
                                      {"kelvin-viscosity", "Kelvin viscosity eta", Scaled::kelvin_viscosity},
                                      {"joint-stiffness", "joint stiffness K", Scaled::joint_stiffness},
                                      {"horizontal-stress", "horizontal stress", Scaled::horizontal_stress}}};
 
-const Name& name_of(Scaled scaled)
+const Name& name_of(const Scaled& scaled)
 {
-    return *std::find_if(names.begin(), names.end(), [&](const Name& name) { return name.scaled == scaled; });
+    return *std::find_if(names.begin(), names.end(),
+                         [&](const Name& name) { return name.scaled == scaled.quantity; });
 }
 
 std::string trimmed(const std::string& text)
@@ -36,13 +37,30 @@ std::string trimmed(const std::string& text)
     return begin == std::string::npos ? std::string() : text.substr(begin, end - begin + 1);
 }
 
-Scaled scaled_by(const std::string& option)
+constexpr std::array<std::string_view, 2> directions{"normal-", "shear-"};
+
+// A factor of the name, with its direction and material.
+back_analysis::Factor factor_by(const std::string& option)
 {
-    const auto name =
-        std::find_if(names.begin(), names.end(), [&](const Name& n) { return n.option == option; });
-    if (name == names.end())
-        throw input_error("--fit: \"" + option + "\" is none of " + all_options(", "));
-    return name->scaled;
+    back_analysis::Factor factor;
+    const std::size_t at = option.find('@');
+    std::string_view name = std::string_view(option).substr(0, at);
+    for (int direction = 0; direction < 2; ++direction)
+        if (name.starts_with(directions[static_cast<std::size_t>(direction)])) {
+            factor.scaled.direction = direction;
+            name.remove_prefix(directions[static_cast<std::size_t>(direction)].size());
+            break;
+        }
+    if (at != std::string::npos && (factor.material = option.substr(at + 1)).empty())
+        throw input_error("--fit: \"" + option + "\" has no joint material behind @");
+    const auto found =
+        std::find_if(names.begin(), names.end(), [&](const Name& n) { return n.option == name; });
+    const bool is_of_joints = factor.scaled.direction != Scaled::both || !factor.material.empty();
+    if (found == names.end() || (is_of_joints && found->scaled == Scaled::horizontal_stress))
+        throw input_error("--fit: \"" + option + "\" is none of " + all_options(", ") +
+                          "; those of joints may have normal- or shear- before them and @MATERIAL behind");
+    factor.scaled.quantity = found->scaled;
+    return factor;
 }
 
 // The search starts from 1, or from the geometric mean of the bounds if 1 is outside them.
@@ -62,14 +80,22 @@ void set_bounds(back_analysis::Factor& factor, const std::string& option, const 
 
 } // namespace
 
-std::string option_of(Scaled scaled)
+std::string option_of(const back_analysis::Factor& factor)
 {
-    return std::string(name_of(scaled).option);
+    const int direction = factor.scaled.direction;
+    return std::string(direction == Scaled::both ? "" : directions[static_cast<std::size_t>(direction)]) +
+           std::string(name_of(factor.scaled).option) +
+           (factor.material.empty() ? "" : '@' + factor.material);
 }
 
-std::string words_of(Scaled scaled)
+std::string words_of(const back_analysis::Factor& factor)
 {
-    return std::string(name_of(scaled).words);
+    const int direction = factor.scaled.direction;
+    return std::string(direction == Scaled::both ? ""
+                       : direction == 0          ? "normal "
+                                                 : "shear ") +
+           std::string(name_of(factor.scaled).words) +
+           (factor.material.empty() ? "" : " of " + factor.material);
 }
 
 std::string all_options(const std::string& last)
@@ -93,9 +119,9 @@ Factors factors_in(const std::string& text)
                                   : "--fit: \"" + text + "\" has nothing before or after a comma");
         const std::size_t equals = item.find('=');
         const std::string option = trimmed(item.substr(0, equals));
-        back_analysis::Factor factor{scaled_by(option)};
+        back_analysis::Factor factor = factor_by(option);
         for (const back_analysis::Factor& other : factors)
-            if (other.scaled == factor.scaled)
+            if (other.scaled == factor.scaled && other.material == factor.material)
                 throw input_error("--fit: " + option + " is given twice");
         if (equals != std::string::npos)
             set_bounds(factor, option, item.substr(equals + 1));
@@ -108,7 +134,7 @@ std::string in_words(const Factors& factors, const std::vector<double>& values)
 {
     std::string words;
     for (std::size_t i = 0; i < factors.size(); ++i)
-        words += (i > 0 ? ", " : "") + option_of(factors[i].scaled) + ' ' + rounded(values[i]);
+        words += (i > 0 ? ", " : "") + option_of(factors[i]) + ' ' + rounded(values[i]);
     return words;
 }
 

@@ -1,5 +1,6 @@
 #include "creepfit_found.hpp"
 
+#include "creepfit_errors.hpp"
 #include "creepfit_words.hpp"
 
 #include "exchange/csv.hpp"
@@ -8,8 +9,8 @@
 #include "program.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <functional>
 #include <iostream>
 #include <numeric>
 
@@ -25,6 +26,36 @@ using Measurements = std::vector<scene::Measurement>;
 namespace
 {
 
+// "A, y".
+std::string name_of(const back_analysis::Series& series, const Scene& scene)
+{
+    return scene.points[series.point].name + (series.component == 0 ? ", x" : ", y");
+}
+
+ErrorsFound errors_of(const Found& found, const Measurements& measurements, const Scene& scene)
+{
+    return {found.errors,
+            found.outliers,
+            found.doubts,
+            found.correlation_time,
+            found.confidence,
+            [&](std::size_t series) { return name_of(found.series[series], scene); },
+            [&](std::size_t reading) {
+                const scene::Measurement& m = measurements[reading];
+                return name_of({m.point, m.component}, scene) + " on day " + rounded(m.time / unit::day, 6);
+            }};
+}
+
+// Names of factors that the readings do not resolve, separated by commas.
+std::string unresolved(const Found& found, const Factors& factors)
+{
+    std::string names;
+    for (std::size_t i = 0; i < factors.size(); ++i)
+        if (!found.is_resolved[i])
+            names += (names.empty() ? "" : ", ") + option_of(factors[i]);
+    return names;
+}
+
 // The bound of a factor, from its logarithm; empty where there is none.
 std::string shown_bound(double logarithm)
 {
@@ -34,6 +65,23 @@ std::string shown_bound(double logarithm)
 std::string word_of(AtBound at)
 {
     return at == AtBound::no ? "no" : at == AtBound::low ? "low" : "high";
+}
+
+std::string word_of(estimation::Error kind)
+{
+    switch (kind) {
+    case estimation::Error::offset:
+        return "offset";
+    case estimation::Error::drift:
+        return "drift";
+    case estimation::Error::step:
+        return "step";
+    case estimation::Error::single:
+        return "outlier";
+    case estimation::Error::lasting:
+        break;
+    }
+    return "correlation";
 }
 
 // How many, and where the last one was.
@@ -51,88 +99,61 @@ std::string shown_factor(const Found& found, std::size_t i)
 {
     const std::string value = rounded(found.factors[i]);
     if (const AtBound at = found.minimum.at_bound[i]; at != AtBound::no)
-        return value + ": at its " + (at == AtBound::low ? "lower" : "upper") +
-               " bound; the readings fit better beyond it";
+        return value + (found.is_resolved[i] ? "" : ": not resolved by these readings") + ": at its " +
+               (at == AtBound::low ? "lower" : "upper") + " bound; the readings fit better beyond it";
     if (found.confidence.is_fixed[i])
-        return value + ": it does not change these readings";
+        return value + ": not resolved: it does not change these readings";
     const auto index = static_cast<Eigen::Index>(i);
     const auto shown_range = [&](bool all_together) {
         const Interval of = found.confidence.interval(found.minimum.parameters[index], index, all_together);
         return shown_interval({std::exp(of.low), std::exp(of.high)});
     };
-    return value + " (95 %: " + shown_range(false) + "; all together: " + shown_range(true) + ")";
+    return value + (found.is_resolved[i] ? "" : ": not resolved by these readings") +
+           " (95 %: " + shown_range(false) + "; all together: " + shown_range(true) + ")";
 }
 
 void add_factors(Summary& summary, const Found& found, const Factors& factors)
 {
     for (std::size_t i = 0; i < factors.size(); ++i)
-        summary.add("factor on " + words_of(factors[i].scaled), shown_factor(found, i));
+        summary.add("factor on " + words_of(factors[i]), shown_factor(found, i));
     const Confidence& confidence = found.confidence;
     for (std::size_t i = 0; i < factors.size(); ++i)
         for (std::size_t j = i + 1; j < factors.size(); ++j)
             if (!confidence.is_fixed[i] && !confidence.is_fixed[j])
-                summary.add("correlation of " + option_of(factors[i].scaled) + " and " +
-                                option_of(factors[j].scaled),
+                summary.add("correlation of " + option_of(factors[i]) + " and " + option_of(factors[j]),
                             rounded(confidence.correlation(static_cast<Eigen::Index>(i),
                                                            static_cast<Eigen::Index>(j)),
                                     3));
 }
 
-void add_noise(Summary& summary, const Confidence& confidence, bool knows_deviations)
+void add_noise(Summary& summary, const Confidence& confidence, bool knows_deviations,
+               const estimation::Errors& errors)
 {
-    if (knows_deviations)
+    if (knows_deviations && !errors.robust && !errors.correlated)
         summary.add("chi squared", rounded(confidence.sum_of_squares) + " of " +
                                        std::to_string(confidence.readings - confidence.parameters) +
                                        " degrees of freedom, p " + rounded(confidence.p_value, 2));
+    else if (knows_deviations)
+        summary.add("noise over the readings' sigma", rounded(confidence.noise_factor));
     else
         summary.add("standard deviation of residuals", mm(1e-3 * confidence.noise_factor) + " mm");
-    summary.add("noise taken as", noise_in_words(confidence, knows_deviations));
+    summary.add("noise taken as", noise_in_words(confidence, knows_deviations, errors));
 }
 
-struct Residual {
-    double time;  // of the reading [s]
-    double value; // computed less measured [m]
-};
-
-// Residuals of a point in one direction.
-std::vector<Residual> residuals_of(std::size_t point, int component, const Found& found,
-                                   const Measurements& measurements)
+void add_points(Summary& summary, const Found& found, const Measurements& measurements, const Scene& scene)
 {
-    std::vector<Residual> residuals;
-    for (std::size_t m = 0; m < measurements.size(); ++m)
-        if (measurements[m].point == point && measurements[m].component == component)
-            residuals.push_back(
-                {measurements[m].time, found.computed[m].at_end - measurements[m].displacement});
-    return residuals;
-}
-
-void add_residuals(Summary& summary, const std::string& label, std::vector<Residual> residuals,
-                   bool share_an_error)
-{
-    std::vector<double> values(residuals.size());
-    std::transform(residuals.begin(), residuals.end(), values.begin(), std::mem_fn(&Residual::value));
-    const double mean =
-        std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
-    summary.add("residuals of " + label, "mean " + mm(mean) + " mm, root mean square " +
-                                             mm(root_mean_square(values)) + " mm, " +
-                                             std::to_string(values.size()) + " readings");
-    std::stable_sort(residuals.begin(), residuals.end(),
-                     [](const Residual& a, const Residual& b) { return a.time < b.time; });
-    std::transform(residuals.begin(), residuals.end(), values.begin(), [&](const Residual& residual) {
-        return share_an_error ? residual.value - mean : residual.value;
-    });
-    if (values.size() > 3)
-        warn_of_lag(summary, ", " + label, estimation::lag_one_correlation(values), values.size());
-}
-
-void add_points(Summary& summary, const Found& found, const Measurements& measurements, const Scene& scene,
-                bool share_an_error)
-{
-    for (std::size_t p = 0; p < scene.points.size(); ++p)
-        for (const int component : {0, 1})
-            if (const auto residuals = residuals_of(p, component, found, measurements); !residuals.empty())
-                add_residuals(summary, scene.points[p].name + (component == 0 ? ", x" : ", y"), residuals,
-                              share_an_error);
+    for (const back_analysis::Series& series : found.series) {
+        std::vector<double> residuals;
+        for (std::size_t m = 0; m < measurements.size(); ++m)
+            if (measurements[m].point == series.point && measurements[m].component == series.component)
+                residuals.push_back(found.computed[m].at_end + found.instrument[m] -
+                                    measurements[m].displacement);
+        const double mean =
+            std::accumulate(residuals.begin(), residuals.end(), 0.0) / static_cast<double>(residuals.size());
+        summary.add("residuals of " + name_of(series, scene),
+                    "mean " + mm(mean) + " mm, root mean square " + mm(root_mean_square(residuals)) +
+                        " mm, " + std::to_string(residuals.size()) + " readings");
+    }
 }
 
 // What a combination of factors changes, in words: "kelvin-stiffness x 1.1 with joint-stiffness x 0.95".
@@ -143,7 +164,7 @@ std::string combination_in_words(const Eigen::VectorXd& direction, double by, co
         const double share = direction[static_cast<Eigen::Index>(i)];
         if (std::abs(share) < 0.1)
             continue;
-        words += (words.empty() ? "" : " with ") + option_of(factors[i].scaled) + " x " +
+        words += (words.empty() ? "" : " with ") + option_of(factors[i]) + " x " +
                  rounded(std::exp(share * by), 3);
     }
     return words;
@@ -193,33 +214,53 @@ void print_stress(const InSituStress& stress, double factor)
 // What to write into the scene. Factors that do not change the readings are left out.
 void print_for_the_scene(const Found& found, const Scene& scene, const Factors& factors)
 {
-    double E = 1, eta = 1, K = 1;
+    struct Constants {
+        double E = 1, eta = 1, K = 1;
+        bool operator==(const Constants&) const = default;
+    };
+    // Of each material, normal and shear.
+    std::vector<std::array<Constants, 2>> materials(scene.joint_materials.size());
     for (std::size_t i = 0; i < factors.size(); ++i) {
         if (found.confidence.is_fixed[i] && found.minimum.at_bound[i] == AtBound::no)
             continue;
         const double f = found.factors[i];
-        switch (factors[i].scaled) {
-        case Scaled::kelvin_stiffness:
-            E *= f;
-            break;
-        case Scaled::kelvin_viscosity:
-            eta *= f;
-            break;
-        case Scaled::joint_stiffness:
-            K *= f;
-            E *= f;
-            eta *= f;
-            break;
-        case Scaled::horizontal_stress:
+        const Scaled& scaled = factors[i].scaled;
+        if (scaled.quantity == Scaled::horizontal_stress)
             print_stress(scene.in_situ_stress, f);
-        }
+        for (std::size_t m = 0; m < materials.size(); ++m)
+            for (int direction = 0; direction < 2; ++direction) {
+                if ((!factors[i].material.empty() && factors[i].material != scene.joint_materials[m].name) ||
+                    !scaled.is_of(direction, Scaled::all))
+                    continue;
+                auto& [E, eta, K] = materials[m][static_cast<std::size_t>(direction)];
+                const bool all = scaled.quantity == Scaled::joint_stiffness;
+                if (all)
+                    K *= f;
+                if (all || scaled.quantity == Scaled::kelvin_stiffness)
+                    E *= f;
+                if (all || scaled.quantity == Scaled::kelvin_viscosity)
+                    eta *= f;
+            }
     }
     // Advice for joint materials: only where joints have their constants.
-    if (scene.averaging.stiffness != StiffnessRule::joint || (E == 1 && eta == 1 && K == 1))
+    if (scene.averaging.stiffness != StiffnessRule::joint)
         return;
-    std::cout << "\nIn the scene: multiply all stiffnesses of joint materials by " << rounded(K, 6)
-              << ", their Kelvin stiffnesses by " << rounded(E, 6)
-              << ", and their Kelvin and Maxwell viscosities by " << rounded(eta, 6) << ".\n";
+    const auto say = [](const std::string& of, const std::string& direction, const Constants& by) {
+        if (by != Constants{})
+            std::cout << "\nIn the scene: multiply all " << direction << "stiffnesses of " << of << " by "
+                      << rounded(by.K, 6) << ", their Kelvin stiffnesses by " << rounded(by.E, 6)
+                      << ", and their Kelvin and Maxwell viscosities by " << rounded(by.eta, 6) << ".\n";
+    };
+    const std::array<Constants, 2>& first = materials.empty() ? std::array<Constants, 2>{} : materials[0];
+    if (std::ranges::all_of(materials, [&](const auto& one) { return one == first; }) &&
+        first[0] == first[1]) {
+        say("joint materials", "", first[0]);
+        return;
+    }
+    for (std::size_t m = 0; m < materials.size(); ++m) {
+        say("joint material \"" + scene.joint_materials[m].name + '"', "normal ", materials[m][0]);
+        say("joint material \"" + scene.joint_materials[m].name + '"', "shear ", materials[m][1]);
+    }
 }
 
 } // namespace
@@ -236,22 +277,27 @@ std::string found_table(const Found& found, const Factors& factors, bool knows_d
                                shown(confidence.condition_number);
     std::string table =
         "factor,value,low_95,high_95,low_95_all,high_95_all,standard_error_of_logarithm,at_bound,"
-        "weak_combination_times,converged,runs,chi_squared,degrees_of_freedom,condition_number";
+        "weak_combination_times,converged,runs,chi_squared,degrees_of_freedom,condition_number,resolved,doubt,"
+        "doubt_p_value";
     for (const back_analysis::Factor& factor : factors)
-        table += ",correlation_" + option_of(factor.scaled);
+        table += ',' + exchange::csv_field("correlation_" + option_of(factor));
     table += '\n';
     for (std::size_t i = 0; i < factors.size(); ++i) {
         const auto index = static_cast<Eigen::Index>(i);
         const double logarithm = found.minimum.parameters[index];
         const Interval each = confidence.interval(logarithm, index),
                        all = confidence.interval(logarithm, index, true);
-        table += option_of(factors[i].scaled) + ',' + shown(found.factors[i]) + ',' + shown_bound(each.low) +
-                 ',' + shown_bound(each.high) + ',' + shown_bound(all.low) + ',' + shown_bound(all.high) +
-                 ',' + (confidence.is_fixed[i] ? "" : shown(confidence.standard_error(index))) + ',' +
+        table += exchange::csv_field(option_of(factors[i])) + ',' + shown(found.factors[i]) + ',' +
+                 shown_bound(each.low) + ',' + shown_bound(each.high) + ',' + shown_bound(all.low) + ',' +
+                 shown_bound(all.high) + ',' +
+                 (confidence.is_fixed[i] ? "" : shown(confidence.standard_error(index))) + ',' +
                  word_of(found.minimum.at_bound[i]) + ',' +
                  (weak ? shown(std::exp(weak->direction[index] * confidence.quantile * weak->standard_error))
                        : "") +
-                 ',' + of_fit;
+                 ',' + of_fit + ',' + (found.is_resolved[i] ? "yes" : "no") + ',' +
+                 (found.doubts.empty()
+                      ? ","
+                      : word_of(found.doubts.front().kind) + ',' + shown(found.doubts.front().p_value));
         for (Eigen::Index j = 0; j < confidence.correlation.cols(); ++j)
             table += ',' + shown(confidence.correlation(index, j));
         table += '\n';
@@ -263,7 +309,7 @@ std::string readings_table(const Found& found, const Measurements& measurements,
 {
     const bool knows = measurements.front().deviation.has_value();
     std::string table =
-        "time_day,stages,point,component,measured_mm,computed_mm,residual_mm,computed_at_start_mm";
+        "time_day,stages,point,component,measured_mm,computed_mm,residual_mm,computed_at_start_mm,instrument_mm";
     table += knows ? ",sigma_mm\n" : "\n";
     for (std::size_t m = 0; m < measurements.size(); ++m) {
         const scene::Measurement& measured = measurements[m];
@@ -274,8 +320,9 @@ std::string readings_table(const Found& found, const Measurements& measurements,
         table += shown(measured.time / unit::day) + ',' + std::to_string(stages) + ',' +
                  exchange::csv_field(scene.points[measured.point].name) + ',' +
                  (measured.component == 0 ? "x" : "y") + ',' + shown(measured.displacement * 1e3) + ',' +
-                 shown(at_end * 1e3) + ',' + shown((at_end - measured.displacement) * 1e3) + ',' +
-                 shown(at_start * 1e3);
+                 shown(at_end * 1e3) + ',' +
+                 shown((at_end + found.instrument[m] - measured.displacement) * 1e3) + ',' +
+                 shown(at_start * 1e3) + ',' + shown(found.instrument[m] * 1e3);
         if (knows)
             table += ',' + shown(*measured.deviation * 1e3);
         table += '\n';
@@ -310,18 +357,103 @@ void report(const Arguments& arguments, const Found& found, const Measurements& 
     if (!found.without_answer.empty())
         summary.add("runs without an answer", shown_without_answer(found, factors));
     add_factors(summary, found, factors);
-    add_noise(summary, found.confidence, measurements.front().deviation.has_value());
+    const ErrorsFound of_instruments = errors_of(found, measurements, scene);
+    add_errors(summary, of_instruments);
+    add_outliers_and_lasting(summary, of_instruments, settings.errors);
+    add_noise(summary, found.confidence, measurements.front().deviation.has_value(), settings.errors);
     if (settings.since_first_reading)
         summary.add("first readings", "have the same noise; it is in all readings that count from them");
-    add_points(summary, found, measurements, scene, settings.since_first_reading);
+    add_points(summary, found, measurements, scene);
     if (found.confidence.parameters > 1)
         summary.add("condition number of the scaled sensitivities",
                     rounded(found.confidence.condition_number, 3));
     warn_of_weak_combination(summary, found, factors);
     warn_of_interpolation(summary, found, measurements);
+    const std::string not_resolved = unresolved(found, factors);
+    if (!not_resolved.empty())
+        summary.warn("not resolved by these readings: " + not_resolved +
+                     ", which may be 10 times as large or as small. Fit fewer factors");
+    warn_of_doubts(summary, of_instruments);
+    // One without any effect stays as it is in the scene.
+    bool may_advise = !is_doubtful(of_instruments);
+    for (std::size_t i = 0; i < factors.size(); ++i)
+        may_advise = may_advise && (found.is_resolved[i] || (found.confidence.is_fixed[i] &&
+                                                             found.minimum.at_bound[i] == AtBound::no));
+    if (!may_advise)
+        summary.add("values for the scene", "none, because of the warnings");
     summary.print(arguments);
-    if (!arguments.quiet())
+    if (!arguments.quiet() && may_advise)
         print_for_the_scene(found, scene, factors);
+}
+
+Networks networks_of(std::vector<Found> found, const std::vector<std::string>& files, const Factors& factors,
+                     bool knows_deviations)
+{
+    std::vector<estimation::OfOneModel> models;
+    for (const Found& one : found)
+        models.push_back({one.minimum.parameters, one.confidence});
+    Networks networks{std::move(found), files, estimation::across(models, knows_deviations)};
+    for (std::size_t i = 0; i < factors.size(); ++i)
+        if (const auto& of = networks.across[i]; of && of->interval.high - of->value > std::log(10.0))
+            networks.across[i].reset(); // not resolved
+    return networks;
+}
+
+std::string networks_table(const Networks& networks, const Factors& factors)
+{
+    std::string table = "factor,value,low_95,high_95,low_95_all,high_95_all,standard_error_of_logarithm,"
+                        "scatter_of_logarithm,networks,resolved";
+    for (std::size_t k = 0; k < networks.found.size(); ++k)
+        table += ",value_" + std::to_string(k + 1);
+    table += '\n';
+    for (std::size_t i = 0; i < factors.size(); ++i) {
+        table += exchange::csv_field(option_of(factors[i])) + ',';
+        const auto& of = networks.across[i];
+        if (of)
+            table += shown(std::exp(of->value)) + ',' + shown(std::exp(of->interval.low)) + ',' +
+                     shown(std::exp(of->interval.high)) + ',' + shown(std::exp(of->with_all.low)) + ',' +
+                     shown(std::exp(of->with_all.high)) + ',' + shown(of->standard_error) + ',' +
+                     shown(of->scatter);
+        else
+            table += ",,,,,,";
+        table += ',' + std::to_string(networks.found.size()) + ',' + (of ? "yes" : "no");
+        for (const Found& found : networks.found)
+            table += ',' + shown(found.factors[i]);
+        table += '\n';
+    }
+    return table;
+}
+
+void report_networks(const Arguments& arguments, const Networks& networks, const Factors& factors)
+{
+    Summary summary;
+    summary.add("networks", networks.found.size());
+    for (std::size_t k = 0; k < networks.found.size(); ++k)
+        summary.add(networks.file[k], in_words(factors, networks.found[k].factors));
+    std::string not_resolved;
+    for (std::size_t i = 0; i < factors.size(); ++i) {
+        const auto& of = networks.across[i];
+        if (!of) {
+            not_resolved += (not_resolved.empty() ? "" : ", ") + option_of(factors[i]);
+            continue;
+        }
+        const auto times = [](const Interval& by) {
+            return shown_interval({std::exp(by.low), std::exp(by.high)});
+        };
+        summary.add("factor on " + words_of(factors[i]),
+                    rounded(std::exp(of->value)) + " (95 %: " + times(of->interval) + "; all together: " +
+                        times(of->with_all) + "); between networks x/ " + rounded(std::exp(of->scatter)));
+    }
+    const auto doubted = std::ranges::count_if(networks.found, [](const Found& found) {
+        return !found.doubts.empty() || found.confidence.p_value < 0.01;
+    });
+    summary.add("residuals are no noise",
+                std::to_string(doubted) + " of the networks; no network is that of the site");
+    if (!not_resolved.empty())
+        summary.warn(
+            "not resolved by these readings and networks: " + not_resolved +
+            ", which may be 10 times as large or as small. Fit fewer factors, or give more networks");
+    summary.print(arguments);
 }
 
 } // namespace jointcreep::creepfit

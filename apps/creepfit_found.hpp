@@ -4,6 +4,7 @@
 
 #include "creepfit_factors.hpp"
 
+#include "estimation/across.hpp"
 #include "scene/measurements.hpp"
 
 #include "program.hpp"
@@ -28,5 +29,17 @@ std::string why_not_converged(const back_analysis::Found& found, const Factors& 
 void report(const Arguments& arguments, const back_analysis::Found& found,
             const std::vector<scene::Measurement>& measurements, const Scene& scene,
             const back_analysis::Settings& settings);
+
+// Of several networks (estimation/across.hpp).
+struct Networks {
+    std::vector<back_analysis::Found> found;               // of each
+    std::vector<std::string> file;                         // of each
+    std::vector<std::optional<estimation::Across>> across; // of each factor
+};
+Networks networks_of(std::vector<back_analysis::Found> found, const std::vector<std::string>& files,
+                     const Factors& factors, bool knows_deviations);
+// One row per factor.
+std::string networks_table(const Networks& networks, const Factors& factors);
+void report_networks(const Arguments& arguments, const Networks& networks, const Factors& factors);
 
 } // namespace jointcreep::creepfit

@@ -1,5 +1,6 @@
 #include "creepfit_section.hpp"
 
+#include "creepfit_errors.hpp"
 #include "creepfit_factors.hpp"
 #include "creepfit_files.hpp"
 #include "creepfit_found.hpp"
@@ -12,6 +13,7 @@
 #include "store/files.hpp"
 #include "zoning/cost.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <string>
@@ -29,8 +31,15 @@ back_analysis::Settings settings_of(const Arguments& arguments)
 {
     if (!arguments.has("fit"))
         throw input_error("--fit is not given; wanted the factors to find");
+    const estimation::Errors errors = errors_in(arguments);
+    if (arguments.has("since-first-reading") && (errors.offset || errors.robust || errors.correlated))
+        throw input_error(std::string("--since-first-reading does not go with --") +
+                          (errors.offset   ? "offset, which contains it"
+                           : errors.robust ? "robust; wanted --offset in its place"
+                                           : "correlated-noise; wanted --offset in its place"));
     return {.factors = factors_in(*arguments.text("fit")),
             .since_first_reading = arguments.has("since-first-reading"),
+            .errors = errors,
             .threads = arguments.threads(),
             .most_runs = static_cast<int>(arguments.whole_number("runs", 1, 100000).value_or(60))};
 }
@@ -63,6 +72,57 @@ Found search(const Arguments& arguments, const store::JointsFile& file, const Sc
     });
 }
 
+struct Section {
+    store::JointsFile file;
+    Scene scene;
+};
+
+Section read_section(const Arguments& arguments, const std::string& input, const Factors& factors)
+{
+    Section section{store::read_joints(input), {}};
+    section.scene = scene::parse_scene_of_file(section.file.provenance.scene, input, section.file.network);
+    if (const std::string cost =
+            zoning::check_cost(section.scene, section.file.network.blocks, input + ": /scene");
+        !cost.empty())
+        print_warning(arguments.program(), cost);
+    for (const back_analysis::Factor& factor : factors)
+        if (!factor.material.empty() &&
+            std::ranges::find(section.scene.joint_materials, factor.material, &JointMaterial::name) ==
+                section.scene.joint_materials.end())
+            throw input_error("--fit: " + option_of(factor) + ": the scene has no joint material \"" +
+                              factor.material + '"');
+    return section;
+}
+
+// The same measurements fitted with each network of a scene, none of which is that of the site.
+void fit_networks(const Arguments& arguments, const std::string& measured,
+                  const back_analysis::Settings& settings)
+{
+    if (arguments.has("readings"))
+        throw input_error("--readings is of one network, and several are given");
+    std::string text; // of the scene
+    bool knows_deviations = false;
+    std::vector<Found> found;
+    for (const std::string& input : arguments.inputs()) {
+        const Section section = read_section(arguments, input, settings.factors);
+        const std::string& its = section.file.provenance.scene;
+        if (!found.empty() && its != text)
+            throw input_error(input + ": its scene is not that of " + arguments.inputs().front() +
+                              "; wanted networks of one scene, as jointgen --realization makes them");
+        text = its;
+        const Measurements measurements = read_measurements(measured, section.scene, settings.factors.size());
+        knows_deviations = measurements.front().deviation.has_value() && !settings.errors.robust &&
+                           !settings.errors.correlated;
+        found.push_back(search(arguments, section.file, section.scene, measurements, settings));
+        if (!found.back().minimum.is_converged)
+            throw fit_error(input + ": " + why_not_converged(found.back(), settings.factors));
+    }
+    const Networks networks =
+        networks_of(std::move(found), arguments.inputs(), settings.factors, knows_deviations);
+    write_texts({{arguments.output(), networks_table(networks, settings.factors)}});
+    report_networks(arguments, networks, settings.factors);
+}
+
 } // namespace
 
 std::vector<Option> section_options()
@@ -71,7 +131,8 @@ std::vector<Option> section_options()
         {"measurements", "FILE.csv", "through the solver: displacements of the scene's points"},
         {"fit", "NAMES",
          "through the solver: factors to find, of " + all_options(" and ") +
-             ", separated by commas, each with bounds if given: joint-stiffness=0.5:2 (default "
+             "; of joints with normal- or shear- before the name and @MATERIAL behind it for one direction and joint material "
+             "alone, separated by commas, each with bounds if given: joint-stiffness=0.5:2 (default "
              "bounds: 0.05:20); kelvin-viscosity is that of Maxwell dashpots, too; the search starts from 1, or "
              "from the geometric mean of the bounds if 1 is outside them"},
         {"since-first-reading", "",
@@ -84,18 +145,18 @@ std::vector<Option> section_options()
 
 void fit_section(const Arguments& arguments)
 {
-    const std::string &input = arguments.input(), &output = arguments.output();
     const bool keeps_best = !arguments.to_standard_output();
     const std::string measured = *arguments.text("measurements");
     const back_analysis::Settings settings = settings_of(arguments);
     const std::optional<std::string> readings_path = readings_file(arguments, true);
+    if (arguments.inputs().size() > 1) {
+        fit_networks(arguments, measured, settings);
+        return;
+    }
+    const std::string& output = arguments.output();
 
     // 1. The section, and its measurements.
-    const store::JointsFile file = store::read_joints(input);
-    const Scene scene = scene::parse_scene_of_file(file.provenance.scene, input, file.network);
-    if (const std::string cost = zoning::check_cost(scene, file.network.blocks, input + ": /scene");
-        !cost.empty())
-        print_warning(arguments.program(), cost);
+    const auto [file, scene] = read_section(arguments, arguments.input(), settings.factors);
     const Measurements measurements = read_measurements(measured, scene, settings.factors.size());
 
     // 2. The factors that fit the measurements.

@@ -36,8 +36,13 @@ double root_mean_square(std::span<const double> values)
     return std::sqrt(squares / static_cast<double>(values.size()));
 }
 
-std::string noise_in_words(const Confidence& confidence, bool knows_deviations)
+std::string noise_in_words(const Confidence& confidence, bool knows_deviations,
+                           const estimation::Errors& errors)
 {
+    if (errors.correlated)
+        return "normal, correlated in time within each point and direction, as large as the residuals";
+    if (errors.robust)
+        return "independent, normal but for outliers, as large as the residuals";
     std::string words = "independent and normal, ";
     if (!knows_deviations)
         return words + "equal for all readings, as large as the residuals";
@@ -45,14 +50,6 @@ std::string noise_in_words(const Confidence& confidence, bool knows_deviations)
         return words + "with the readings' sigma";
     return words + "with the readings' sigma times " + rounded(confidence.noise_factor, 3) +
            ": the fit is worse than these allow, so intervals are wider";
-}
-
-void warn_of_lag(Summary& summary, const std::string& label, double lag_one, std::size_t readings)
-{
-    if (lag_one > 2 / std::sqrt(static_cast<double>(readings)))
-        summary.warn(
-            "residuals are correlated" + label + ": correlation of neighbours " + rounded(lag_one, 2) +
-            ": the noise is not independent, or the model is not right, and intervals are too narrow");
 }
 
 } // namespace jointcreep::creepfit

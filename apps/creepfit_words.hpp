@@ -2,11 +2,8 @@
 
 #pragma once
 
-#include "program.hpp"
+#include "estimation/instrument.hpp"
 
-#include "estimation/confidence.hpp"
-
-#include <cstddef>
 #include <span>
 #include <string>
 
@@ -20,10 +17,7 @@ std::string shown_interval(const estimation::Interval& interval);
 std::string mm(double metres);
 double root_mean_square(std::span<const double> values);
 
-std::string noise_in_words(const estimation::Confidence& confidence, bool knows_deviations);
-
-// Warns where residuals are correlated: intervals are then too narrow. `lag_one` is the correlation of neighbours
-// [-].
-void warn_of_lag(Summary& summary, const std::string& label, double lag_one, std::size_t readings);
+std::string noise_in_words(const estimation::Confidence& confidence, bool knows_deviations,
+                           const estimation::Errors& errors);
 
 } // namespace jointcreep::creepfit

@@ -1,5 +1,6 @@
 #include "back_analysis/back_analysis.hpp"
 
+#include "joint/equivalent.hpp"
 #include "model/error.hpp"
 #include "model/units.hpp"
 
@@ -64,85 +65,60 @@ double deviation_of(const scene::Measurement& measurement)
     return measurement.deviation.value_or(usual_deviation);
 }
 
-// Residuals and their derivatives, transformed so that they are independent of each other. Readings
-// that count from a first one share its error, of deviation sigma_0. Over their own deviations their
-// covariance is 1 + v v^T, v_i = sigma_0 / sigma_i, and
-//     (1 + v v^T)^(-1/2) = 1 - (1 - 1 / sqrt(1 + v.v)) v v^T / v.v .
-// The sum of squares is then that with a free offset of each point and direction, the first reading, 0, being
-// among the readings. sigma_0 is that of the first reading where it is listed, or else of the next.
-class Whitening
+bool is_first(const Scene& scene, const scene::Measurement& measurement)
 {
-public:
-    Whitening(const Scene& scene, const std::vector<scene::Measurement>& measurements,
+    constexpr double rounding = 1e-3; // [s]
+    return std::abs(measurement.time - scene.points[measurement.point].first_reading) < rounding &&
+           !measurement.is_before_stage;
+}
+
+// The measurements that count, and their series. Of those that count from a first one, which is 0 by definition and does
+// not count, the others share its error: that of the first reading where it is listed, or else of the next. The sum of
+// squares is then that with a free offset of each point and direction, the first reading, 0, being among the readings.
+struct Chosen {
+    std::vector<std::size_t> measurement;
+    std::vector<Series> series;
+    estimation::Readings readings;
+};
+
+Chosen chosen(const Scene& scene, const std::vector<scene::Measurement>& measurements,
               bool since_first_reading)
-    {
-        std::map<std::pair<std::size_t, int>, std::vector<std::size_t>> places;
-        for (std::size_t m = 0; m < measurements.size(); ++m) {
-            const scene::Measurement& measurement = measurements[m];
-            if (!since_first_reading) {
-                readings_.push_back(m);
-                continue;
-            }
-            places[{measurement.point, measurement.component}].push_back(m);
-            if (!is_first(scene, measurement))
-                readings_.push_back(m);
-            else if (std::abs(measurement.displacement) > 1e-9)
+{
+    Chosen found;
+    std::map<std::pair<std::size_t, int>, std::size_t> places;
+    std::vector<std::size_t> earliest; // of each series
+    for (std::size_t m = 0; m < measurements.size(); ++m) {
+        const scene::Measurement& measurement = measurements[m];
+        const auto [place, is_new] =
+            places.insert({{measurement.point, measurement.component}, found.series.size()});
+        if (is_new) {
+            found.series.push_back({measurement.point, measurement.component});
+            earliest.push_back(m);
+        } else if (std::size_t& first = earliest[place->second];
+                   measurement.time < measurements[first].time) {
+            first = m;
+        }
+        if (since_first_reading && is_first(scene, measurement)) {
+            if (std::abs(measurement.displacement) > 1e-9)
                 refuse(scene, measurement,
                        "it is the first reading, from which measurements count, and " +
                            shown(measurement.displacement) + " m; wanted 0");
+            continue;
         }
-        std::vector<Eigen::Index> row(measurements.size(), -1);
-        for (std::size_t i = 0; i < readings_.size(); ++i)
-            row[readings_[i]] = static_cast<Eigen::Index>(i);
-        for (const auto& [place, of_place] : places) {
-            const std::size_t earliest =
-                *std::min_element(of_place.begin(), of_place.end(), [&](std::size_t a, std::size_t b) {
-                    return measurements[a].time < measurements[b].time;
-                });
-            Group group;
-            for (const std::size_t m : of_place)
-                if (row[m] >= 0)
-                    group.row.push_back(row[m]);
-            group.share.resize(static_cast<Eigen::Index>(group.row.size()));
-            for (std::size_t i = 0; i < group.row.size(); ++i)
-                group.share[static_cast<Eigen::Index>(i)] =
-                    deviation_of(measurements[earliest]) /
-                    deviation_of(measurements[readings_[static_cast<std::size_t>(group.row[i])]]);
-            if (!group.row.empty())
-                groups_.push_back(std::move(group));
-        }
+        found.measurement.push_back(m);
+        found.readings.time.push_back(measurement.time);
+        found.readings.series.push_back(place->second);
+        found.readings.deviation.push_back(deviation_of(measurement));
     }
-
-    // Readings that count: a first reading is 0 by definition.
-    const std::vector<std::size_t>& readings() const { return readings_; }
-
-    void apply(Evaluation& at) const
-    {
-        for (const Group& group : groups_) {
-            const VectorXd& v = group.share;
-            const double q = v.squaredNorm(), part = (1 - 1 / std::sqrt(1 + q)) / q;
-            const VectorXd residual = at.residual(group.row);
-            at.residual(group.row) = residual - part * v.dot(residual) * v;
-            const estimation::MatrixXd jacobian = at.jacobian(group.row, Eigen::all);
-            at.jacobian(group.row, Eigen::all) = jacobian - part * v * (v.transpose() * jacobian);
-        }
-    }
-
-private:
-    static bool is_first(const Scene& scene, const scene::Measurement& measurement)
-    {
-        constexpr double rounding = 1e-3; // [s]
-        return std::abs(measurement.time - scene.points[measurement.point].first_reading) < rounding &&
-               !measurement.is_before_stage;
-    }
-
-    struct Group {
-        std::vector<Eigen::Index> row; // of the readings
-        VectorXd share;                // v
-    };
-    std::vector<std::size_t> readings_;
-    std::vector<Group> groups_;
-};
+    if (since_first_reading)
+        for (const std::size_t m : found.measurement)
+            found.readings.shared.push_back(
+                deviation_of(
+                    measurements[earliest[places.at({measurements[m].point, measurements[m].component})]]) /
+                deviation_of(measurements[m]));
+    found.readings.knows_deviations = !measurements.empty() && measurements.front().deviation.has_value();
+    return found;
+}
 
 } // namespace
 
@@ -208,15 +184,25 @@ public:
          const std::vector<scene::Measurement>& measurements, const Settings& settings,
          const RunObserver& observe)
         : scene_(scene), network_(network), joints_(joints), measurements_(measurements), settings_(settings),
-          observe_(observe), whitening_(scene, measurements, settings.since_first_reading)
+          observe_(observe), chosen_(chosen(scene, measurements, settings.since_first_reading))
     {
-        if (whitening_.readings().empty())
+        if (chosen_.measurement.empty())
             throw input_error("all readings are first readings, from which measurements count");
-        for (const Factor& factor : settings.factors)
-            recording_.parameters.push_back(factor.scaled);
+        for (const Factor& factor : settings.factors) {
+            Scaled scaled = factor.scaled;
+            if (!factor.material.empty()) {
+                const auto material =
+                    std::ranges::find(scene.joint_materials, factor.material, &JointMaterial::name);
+                if (material == scene.joint_materials.end())
+                    throw input_error("the scene has no joint material \"" + factor.material + '"');
+                scaled.material = static_cast<Index>(material - scene.joint_materials.begin());
+                joints_.material = joint::materials_of(scene, network);
+            }
+            recording_.parameters.push_back(scaled);
+        }
     }
 
-    std::size_t readings() const { return whitening_.readings().size(); }
+    const Chosen& readings() const { return chosen_; }
     const Run& first() const { return done_.front(); }
     const Run& at(const VectorXd& logarithms) const
     {
@@ -240,7 +226,6 @@ public:
             if (is_first && at.jacobian.norm() == 0)
                 throw input_error("no factor changes any of the readings; wanted readings from the first "
                                   "stage on that depend on the factors");
-            whitening_.apply(at);
             done_.push_back(
                 {logarithms, std::move(found.displacement), std::move(found.interpolation_error)});
             return at;
@@ -262,7 +247,7 @@ private:
         Scene changed = scene_;
         EquivalentJoints stiffer = joints_;
         for (std::size_t i = 0; i < factors.size(); ++i)
-            sensitivity::scale(stiffer, changed.in_situ_stress, settings_.factors[i].scaled, factors[i]);
+            sensitivity::scale(stiffer, changed.in_situ_stress, recording_.parameters[i], factors[i]);
         analysis::Analysis analysis(changed, network_, stiffer, settings_.threads, recording_,
                                     [](const analysis::Progress&) {});
         analysis.run();
@@ -273,11 +258,11 @@ private:
     // Residuals over the deviations of the readings, and their derivatives.
     Evaluation compared(const Prediction& found) const
     {
-        const auto rows = static_cast<Eigen::Index>(readings());
+        const auto rows = static_cast<Eigen::Index>(chosen_.measurement.size());
         Evaluation at{VectorXd(rows),
                       estimation::MatrixXd(rows, static_cast<Eigen::Index>(settings_.factors.size()))};
         for (Eigen::Index row = 0; row < rows; ++row) {
-            const std::size_t m = whitening_.readings()[static_cast<std::size_t>(row)];
+            const std::size_t m = chosen_.measurement[static_cast<std::size_t>(row)];
             const double deviation = deviation_of(measurements_[m]);
             at.residual[row] = (found.displacement[m] - measurements_[m].displacement) / deviation;
             at.jacobian.row(row) = found.sensitivity.row(static_cast<Eigen::Index>(m)) / deviation;
@@ -287,16 +272,33 @@ private:
 
     const Scene& scene_;
     const Network& network_;
-    const EquivalentJoints& joints_;
+    EquivalentJoints joints_;
     const std::vector<scene::Measurement>& measurements_;
     const Settings& settings_;
     const RunObserver& observe_;
-    Whitening whitening_;
+    Chosen chosen_;
     analysis::Recording recording_;
     int count_ = 0;
     std::vector<Run> done_;
     std::vector<WithoutAnswer> without_answer_;
 };
+
+} // namespace
+
+namespace
+{
+
+// Whether residuals are more than errors of the computation, so that they can be asked whether they are noise.
+bool are_noisy(const Found& found, const std::vector<scene::Measurement>& measurements)
+{
+    double largest = 0, residual = 0;
+    for (std::size_t m = 0; m < measurements.size(); ++m) {
+        largest = std::max(largest, std::abs(measurements[m].displacement));
+        residual = std::max(residual, std::abs(found.computed[m].at_end + found.instrument[m] -
+                                               measurements[m].displacement));
+    }
+    return residual > 1e-4 * largest;
+}
 
 } // namespace
 
@@ -315,18 +317,35 @@ Found fit(const Scene& scene, const Network& network, const EquivalentJoints& jo
     Runs runs(scene, network, joints, measurements, settings, observe);
 
     Found found;
+    const Chosen& readings = runs.readings();
+    estimation::Instruments instruments(readings.readings, settings.errors);
     // A step that would win a hundredth of a standard error is not worth a run.
-    found.minimum =
-        estimation::minimise([&runs](const VectorXd& logarithms) { return runs.evaluate(logarithms); }, start,
-                             low, high, settings.most_runs, 1e-4 / static_cast<double>(runs.readings()));
+    estimation::InstrumentFit fitted = estimation::minimise(
+        [&runs](const VectorXd& logarithms) { return runs.evaluate(logarithms); }, instruments, start, low,
+        high, settings.most_runs, 1e-4 / static_cast<double>(readings.measurement.size()));
+    found.minimum = std::move(fitted.minimum);
     found.without_answer = runs.without_answer();
     found.factors = factors_at(found.minimum.parameters);
-    const bool knows_deviations = !measurements.empty() && measurements.front().deviation.has_value();
-    found.confidence = estimation::confidence_of(found.minimum, knows_deviations);
+    found.confidence = instruments.confidence(fitted.raw, found.minimum);
+    found.is_resolved = estimation::resolved(found.minimum, found.confidence);
+    found.series = readings.series;
     const Runs::Run& best = runs.at(found.minimum.parameters);
     found.interpolation_error = best.interpolation_error;
     for (std::size_t m = 0; m < measurements.size(); ++m)
         found.computed.push_back({runs.first().displacement[m], best.displacement[m]});
+    found.errors = instruments.errors(fitted.raw, found.confidence);
+    found.correlation_time = instruments.correlation_time();
+    found.outliers = instruments.outliers(fitted.raw);
+    for (estimation::Outlier& outlier : found.outliers)
+        outlier.reading = readings.measurement[outlier.reading];
+    found.instrument.assign(measurements.size(), 0.0);
+    const std::vector<double> added = instruments.added(fitted.raw);
+    for (std::size_t i = 0; i < added.size(); ++i)
+        found.instrument[readings.measurement[i]] = added[i];
+    if (are_noisy(found, measurements))
+        found.doubts = instruments.doubts(fitted.raw, found.minimum);
+    for (estimation::Doubt& doubt : found.doubts)
+        doubt.reading = readings.measurement[doubt.reading];
     return found;
 }
 

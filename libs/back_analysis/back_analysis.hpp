@@ -6,7 +6,7 @@
 #pragma once
 
 #include "analysis/analysis.hpp"
-#include "estimation/confidence.hpp"
+#include "estimation/instrument.hpp"
 #include "scene/measurements.hpp"
 
 namespace jointcreep::back_analysis
@@ -15,6 +15,7 @@ namespace jointcreep::back_analysis
 struct Factor {
     Scaled scaled;
     double start = 1, low = 0.05, high = 20; // [-]
+    std::string material{}; // name of the joint material that `scaled` is of; empty: as it says
 };
 
 struct Settings {
@@ -22,12 +23,21 @@ struct Settings {
     // Measurements count from each point's first reading, not from the start. It has been subtracted from all
     // displacements of a point in a direction, so that all of them have its error.
     bool since_first_reading = false;
+    // Of the measurements. Not offsets, robust weights or lasting errors together with since_first_reading, and not
+    // both of the latter two.
+    estimation::Errors errors{};
     int threads = 1;
     int most_runs = 60;
 };
 
 struct Computed {
     double at_start, at_end; // at the factors that the search started from, and at those found [m]
+};
+
+// The readings of a point in a direction.
+struct Series {
+    std::size_t point;
+    int component; // 0 x, 1 y
 };
 
 // A run that had no answer: no equilibrium, or a creep step that is too long for its constants.
@@ -46,6 +56,16 @@ struct Found {
     // Error of linear interpolation between the steps of the analysis, by estimate [m].
     std::vector<double> interpolation_error;
     std::vector<WithoutAnswer> without_answer; // in the search
+
+    // Errors of the measurements. Series are numbered as in `series`, readings are measurements.
+    std::vector<Series> series;
+    std::vector<estimation::FoundError> errors;
+    std::vector<estimation::Outlier> outliers;
+    std::vector<estimation::Doubt> doubts;
+    double correlation_time = 0;    // of lasting errors [s]
+    std::vector<double> instrument; // what errors add to `computed`, of the measurements [m]
+    std::vector<bool>
+        is_resolved; // factors that the measurements know better than by a factor of 10 up and down
 };
 
 // Called before every run, with its factors.

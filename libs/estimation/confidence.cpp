@@ -115,15 +115,33 @@ std::optional<WeakCombination> weak_combination(const Minimum& minimum, const Co
     return weak;
 }
 
-double lag_one_correlation(const std::vector<double>& residuals)
+std::vector<bool> resolved(const Minimum& minimum, const Confidence& confidence)
 {
-    double products = 0, squares = 0;
-    for (std::size_t i = 0; i < residuals.size(); ++i) {
-        squares += residuals[i] * residuals[i];
-        if (i > 0)
-            products += residuals[i] * residuals[i - 1];
+    const MatrixXd& J = minimum.there.jacobian;
+    std::vector<bool> has_effect;
+    for (Eigen::Index i = 0; i < J.cols(); ++i)
+        has_effect.push_back(J.col(i).norm() > 0);
+    std::vector<bool> without_effect = has_effect;
+    without_effect.flip();
+    const std::vector<Eigen::Index> some = free_of(without_effect);
+    std::vector<bool> found(has_effect);
+    if (some.empty())
+        return found;
+    const MatrixXd columns = J(Eigen::all, some);
+    const VectorXd length = columns.colwise().norm();
+    const MatrixXd scaled = columns * length.cwiseInverse().asDiagonal();
+    const Eigen::SelfAdjointEigenSolver<MatrixXd> parts(scaled.transpose() * scaled);
+    const VectorXd variance =
+        parts.eigenvectors().cwiseAbs2() * parts.eigenvalues().cwiseMax(1e-15).cwiseInverse();
+    for (std::size_t k = 0; k < some.size(); ++k) {
+        const auto i = static_cast<Eigen::Index>(k);
+        const double alone = confidence.noise_factor * std::sqrt(variance[i]) / length[i],
+                     error = confidence.is_fixed[static_cast<std::size_t>(some[k])]
+                                 ? alone
+                                 : std::max(alone, confidence.standard_error(some[k]));
+        found[static_cast<std::size_t>(some[k])] = confidence.quantile * error < std::log(10.0);
     }
-    return squares > 0 ? products / squares : 0.0;
+    return found;
 }
 
 } // namespace jointcreep::estimation

@@ -58,8 +58,8 @@ struct WeakCombination {
 };
 std::optional<WeakCombination> weak_combination(const Minimum& minimum, const Confidence& confidence);
 
-// Correlation of each residual with the next, by time: near 0 for independent errors. With n residuals chance
-// makes it up to about 2 / sqrt(n).
-double lag_one_correlation(const std::vector<double>& residuals);
+// Which parameters, being logarithms, the data know: their interval of 95 percent is within a factor of 10 up and down,
+// were all parameters free, those at a bound, too.
+std::vector<bool> resolved(const Minimum& minimum, const Confidence& confidence);
 
 } // namespace jointcreep::estimation

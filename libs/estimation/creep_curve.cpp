@@ -3,6 +3,7 @@
 #include "model/error.hpp"
 #include "model/units.hpp"
 
+#include <Eigen/Cholesky>
 #include <Eigen/QR>
 
 #include <algorithm>
@@ -48,7 +49,8 @@ double deviation_of(const CreepCurve& curve, std::size_t i)
 }
 
 // With tau given, what is left is linear: {d_e, d_c}, or {d_c}.
-VectorXd linear_parts(const CreepCurve& curve, double tau, double& sum_of_squares)
+VectorXd linear_parts(const CreepCurve& curve, const Instruments& instruments, double tau,
+                      double& sum_of_squares)
 {
     const auto n = static_cast<Eigen::Index>(curve.time.size());
     MatrixXd A(n, curve.elastic_part ? 1 : 2);
@@ -61,8 +63,9 @@ VectorXd linear_parts(const CreepCurve& curve, double tau, double& sum_of_square
         A(i, A.cols() - 1) = weight * crept;
         b[i] = weight * (curve.displacement[k] - curve.elastic_part.value_or(0));
     }
-    const VectorXd parts = A.colPivHouseholderQr().solve(b);
-    sum_of_squares = (A * parts - b).squaredNorm();
+    const Evaluation left = instruments.independent({b, A});
+    const VectorXd parts = left.jacobian.colPivHouseholderQr().solve(left.residual);
+    sum_of_squares = (left.jacobian * parts - left.residual).squaredNorm();
     return parts;
 }
 
@@ -94,8 +97,9 @@ public:
     enum Fixed { stiffness, viscosity, time };
 
     // Around the best fit, d_e [m], e = E / K and tau [s].
-    Profiles(const CreepCurve& curve, double elastic_part, double ratio, double tau)
-        : curve_(curve), size_(elastic_part),
+    Profiles(const CreepCurve& curve, const Instruments& instruments, double elastic_part, double ratio,
+             double tau)
+        : curve_(curve), instruments_(instruments), size_(elastic_part),
           best_(curve.elastic_part ? VectorXd(2) : VectorXd(VectorXd::Ones(3)))
     {
         best_[0] = std::log(ratio);
@@ -159,11 +163,12 @@ private:
                 if (p.size() == 3)
                     at.jacobian(i, 2) = weight * size_ * (1 + crept);
             }
-            return at;
+            return instruments_.independent(at);
         };
     }
 
     const CreepCurve& curve_;
+    const Instruments& instruments_;
     double size_;
     VectorXd best_;
 };
@@ -210,26 +215,28 @@ Evaluation evaluate(const CreepCurve& curve, const Unknowns& u, const VectorXd& 
     return at;
 }
 
-Minimum best_fit(const CreepCurve& curve, const Unknowns& u)
+InstrumentFit best_fit(const CreepCurve& curve, const Unknowns& u, Instruments& instruments)
 {
     const double shortest = shortest_share * shortest_interval(curve),
                  longest = longest_share * curve.time.back();
     double sum = 0;
     const double tau = best_on_grid(shortest, longest, [&](double at) {
-        linear_parts(curve, at, sum);
+        linear_parts(curve, instruments, at, sum);
         return sum;
     });
     VectorXd start(u.log_tau + 1);
-    start.head(u.log_tau) = linear_parts(curve, tau, sum) / u.size;
+    start.head(u.log_tau) = linear_parts(curve, instruments, tau, sum) / u.size;
     start[u.log_tau] = std::log(tau);
     VectorXd low = VectorXd::Constant(start.size(), -1e6), high = -low;
     low[u.log_tau] = std::log(shortest);
     high[u.log_tau] = std::log(longest);
-    return minimise([&](const VectorXd& p) { return evaluate(curve, u, p); }, start, low, high, 200, 1e-12);
+    return minimise([&](const VectorXd& p) { return evaluate(curve, u, p); }, instruments, start, low, high,
+                    400, 1e-12);
 }
 
 // Intervals of d_e, d_c, tau, E and eta, and the correlation of the last two.
-void add_intervals(CurveFit& fit, const CreepCurve& curve, const Unknowns& u, const Minimum& minimum)
+void add_intervals(CurveFit& fit, const CreepCurve& curve, const Unknowns& u, const Instruments& instruments,
+                   const Minimum& minimum)
 {
     const VectorXd& p = minimum.parameters;
     const Confidence& confidence = fit.confidence;
@@ -253,30 +260,27 @@ void add_intervals(CurveFit& fit, const CreepCurve& curve, const Unknowns& u, co
     const double stiffness_error = confidence.standard_error(of_stiffness),
                  viscosity_error = confidence.standard_error(of_viscosity);
     const double ratio = fit.elastic_part / fit.creep_part;
-    const Profiles profiles(curve, fit.elastic_part, ratio, fit.retardation_time);
-    const double noise = quantile * confidence.noise_factor, limit = minimum.sum_of_squares() + noise * noise;
-    fit.time = {fit.retardation_time,
-                profiles.interval(Profiles::time, limit, quantile * confidence.standard_error(of_time))};
-    fit.stiffness = {ratio, profiles.interval(Profiles::stiffness, limit, quantile * stiffness_error)};
+    const Profiles profiles(curve, instruments, fit.elastic_part, ratio, fit.retardation_time);
+    // The sum of squares rises by 1 within one standard error of independent readings with unit variance.
+    const MatrixXd& J = minimum.there.jacobian;
+    const auto profile = [&](Profiles::Fixed fixed, const VectorXd& gradient, double error) {
+        const double unit_error =
+            std::sqrt(std::max(0.0, gradient.dot((J.transpose() * J).ldlt().solve(gradient))));
+        const double noise = quantile * (unit_error > 0 && error > 0 && instruments.changes_errors()
+                                             ? error / unit_error
+                                             : confidence.noise_factor);
+        return profiles.interval(fixed, minimum.sum_of_squares() + noise * noise, quantile * error);
+    };
+    fit.time = {fit.retardation_time, profile(Profiles::time, of_time, confidence.standard_error(of_time))};
+    fit.stiffness = {ratio, profile(Profiles::stiffness, of_stiffness, stiffness_error)};
     fit.viscosity = {ratio * fit.retardation_time,
-                     profiles.interval(Profiles::viscosity, limit, quantile * viscosity_error)};
+                     profile(Profiles::viscosity, of_viscosity, viscosity_error)};
     const double product = stiffness_error * viscosity_error;
     fit.correlation = product > 0 ? of_stiffness.dot(confidence.covariance * of_viscosity) / product : 0;
 }
 
-// Computed displacements, and whether what is left of the readings is noise.
-void add_residuals(CurveFit& fit, const CreepCurve& curve, const Minimum& minimum)
-{
-    std::vector<double> residuals;
-    for (std::size_t k = 0; k < curve.time.size(); ++k) {
-        residuals.push_back(minimum.there.residual[static_cast<Eigen::Index>(k)]);
-        fit.computed.push_back(curve.displacement[k] + residuals.back() * deviation_of(curve, k));
-    }
-    fit.lag_one = lag_one_correlation(residuals);
-}
-
 // What the record does not give.
-void add_doubts(CurveFit& fit, const CreepCurve& curve, AtBound of_time)
+void add_limits(CurveFit& fit, const CreepCurve& curve, AtBound of_time)
 {
     fit.record_length = curve.time.back() / fit.retardation_time;
     const auto second = std::find_if(curve.time.begin(), curve.time.end(), [](double t) { return t > 0; });
@@ -321,21 +325,34 @@ Minimum solve_for_time(const CreepCurve& curve, double elastic_part, double cree
 
 } // namespace
 
-CurveFit fit_curve(const CreepCurve& curve)
+CurveFit fit_curve(const CreepCurve& curve, const Errors& errors)
 {
     check(curve);
     const Unknowns u = unknowns_of(curve);
-    const Minimum minimum = best_fit(curve, u);
+    Readings readings{.time = curve.time,
+                      .series = std::vector<std::size_t>(curve.time.size(), 0),
+                      .knows_deviations = !curve.deviation.empty()};
+    for (std::size_t i = 0; i < curve.time.size(); ++i)
+        readings.deviation.push_back(deviation_of(curve, i));
+    Instruments instruments(std::move(readings), errors);
+    const auto [minimum, raw] = best_fit(curve, u, instruments);
     const VectorXd& p = minimum.parameters;
     CurveFit fit;
     fit.elastic_part = elastic_part(curve, u, p);
     fit.creep_part = p[u.creep] * u.size;
     fit.retardation_time = std::exp(p[u.log_tau]);
     check_parts(fit.elastic_part, fit.creep_part);
-    fit.confidence = confidence_of(minimum, !curve.deviation.empty());
-    add_intervals(fit, curve, u, minimum);
-    add_residuals(fit, curve, minimum);
-    add_doubts(fit, curve, minimum.at_bound[static_cast<std::size_t>(u.log_tau)]);
+    fit.confidence = instruments.confidence(raw, minimum);
+    add_intervals(fit, curve, u, instruments, minimum);
+    for (std::size_t k = 0; k < curve.time.size(); ++k)
+        fit.computed.push_back(curve.displacement[k] +
+                               raw.residual[static_cast<Eigen::Index>(k)] * deviation_of(curve, k));
+    fit.errors = instruments.errors(raw, fit.confidence);
+    fit.outliers = instruments.outliers(raw);
+    fit.doubts = instruments.doubts(raw, minimum);
+    fit.correlation_time = instruments.correlation_time();
+    fit.instrument = instruments.added(raw);
+    add_limits(fit, curve, minimum.at_bound[static_cast<std::size_t>(u.log_tau)]);
     return fit;
 }
 
@@ -383,8 +400,8 @@ ClosedEstimate closed_estimate(const CreepCurve& curve, double end)
                  elastic_noise = curve.elastic_part ? 0.0 : confidence.noise_factor * deviation_of(curve, 0);
     const double stiffness_by_end = -end_noise / found.creep_part,
                  stiffness_by_elastic = elastic_noise * (1 / found.elastic_part + 1 / found.creep_part);
-    found.stiffness =
-        estimate(ratio, confidence.quantile * std::hypot(stiffness_by_end, stiffness_by_elastic));
+    found.stiffness_error = std::hypot(stiffness_by_end, stiffness_by_elastic);
+    found.stiffness = estimate(ratio, confidence.quantile * found.stiffness_error);
     found.viscosity = estimate(
         ratio * tau, confidence.quantile *
                          std::hypot(std::hypot(stiffness_by_end + carried(of_end) * end_noise,

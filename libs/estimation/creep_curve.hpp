@@ -6,7 +6,7 @@
 
 #pragma once
 
-#include "estimation/confidence.hpp"
+#include "estimation/instrument.hpp"
 
 namespace jointcreep::estimation
 {
@@ -34,8 +34,14 @@ struct CurveFit {
     Estimate stiffness, viscosity;                     // E / K [-], eta / K [s]
     double correlation;                                // of the logarithms of E and eta [-]
     Confidence confidence;
-    std::vector<double> computed; // [m]
-    double lag_one;               // correlation of neighbouring residuals [-]
+    std::vector<double> computed; // without errors of the instrument [m]
+
+    // Errors of the instrument; readings are numbered as the curve's.
+    std::vector<FoundError> errors;
+    std::vector<Outlier> outliers;
+    std::vector<Doubt> doubts;
+    double correlation_time = 0;    // of lasting errors [s]
+    std::vector<double> instrument; // what errors add to `computed` [m]
 
     // What the record does not give.
     bool is_stiffness_open = false; // E: its interval is wider than a factor of 2 up or down,
@@ -45,16 +51,17 @@ struct CurveFit {
 };
 
 // Throws input_error where the curve is none of creep: fewer readings than parameters, or no creep in the
-// direction of the elastic part.
-CurveFit fit_curve(const CreepCurve& curve);
+// direction of the elastic part. An offset is the elastic part's: it is wanted only where that is known.
+CurveFit fit_curve(const CreepCurve& curve, const Errors& errors = {});
 
 // The paper's estimate: E by Eq. 14 from d(T_c), T_c being when creep is taken to be over; then tau by least
 // squares with E fixed. d_e is the known one, or the first reading. Intervals contain the noise of the readings of
-// d_e and d(T_c), and of all others in tau. They do not contain creep after T_c.
+// d_e and d(T_c), and of all others in tau. They contain neither creep after T_c nor creep before the first reading.
 struct ClosedEstimate {
     double elastic_part, creep_part; // [m]
     double end;                      // T_c [s]
     Estimate stiffness, viscosity;   // E / K [-], eta / K [s]
+    double stiffness_error;          // standard error of the logarithm of E [-]
 };
 ClosedEstimate closed_estimate(const CreepCurve& curve, double end);
 

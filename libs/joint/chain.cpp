@@ -9,6 +9,7 @@ Chain chain_of(const EquivalentJoints& joints, std::size_t edge, int direction)
     const auto& stiffness = normal ? joints.normal_kelvin_stiffness : joints.shear_kelvin_stiffness;
     const auto& viscosity = normal ? joints.normal_kelvin_viscosity : joints.shear_kelvin_viscosity;
     Chain chain{normal ? joints.normal_stiffness[edge] : joints.shear_stiffness[edge], {}};
+    chain.constants = direction + (joints.material.empty() ? 0 : 2 * static_cast<int>(joints.material[edge]));
     const std::size_t units = joints.kelvin_units();
     for (std::size_t unit = edge * units; unit < (edge + 1) * units; ++unit)
         if (stiffness[unit] > 0)

@@ -66,9 +66,11 @@ ContactChanges changed_by(const Contacts& contacts, Scaled scaled, const Scene& 
                            .dilation = std::vector<double>(n, 0.0),
                            .memory = std::vector<std::array<double, 3>>(n)};
     for (std::size_t c = 0; c < n; ++c) {
-        if (scaled == Scaled::joint_stiffness)
-            changes.stiffness[c] = {k_n(contacts.law[c]), k_s(contacts.law[c])};
-        if (scaled == Scaled::horizontal_stress) {
+        const Index material = contacts.material.empty() ? 0 : contacts.material[c];
+        if (scaled.quantity == Scaled::joint_stiffness)
+            changes.stiffness[c] = {scaled.is_of(0, material) ? k_n(contacts.law[c]) : 0.0,
+                                    scaled.is_of(1, material) ? k_s(contacts.law[c]) : 0.0};
+        if (scaled.quantity == Scaled::horizontal_stress) {
             const double sigma_xx = scene.in_situ_stress.at(mesh.contact_centre[c]).x();
             const Vector2d &normal = contacts.normal[c], tangent = along(normal);
             changes.initial_traction[c] = sigma_xx * normal.x() * Vector2d(normal.x(), tangent.x());

@@ -44,6 +44,8 @@ Contacts contacts_of(const Scene& scene, const EquivalentJoints& joints, const M
     for (std::size_t c = 0; c < n; ++c) {
         const Index e = mesh.contact_edge[c];
         contacts.law.push_back(law_of(joints, static_cast<std::size_t>(e)));
+        if (!joints.material.empty())
+            contacts.material.push_back(joints.material[static_cast<std::size_t>(e)]);
         const Eigen::Vector3d stress = scene.in_situ_stress.at(mesh.contact_centre[c]);
         const Vector2d normal = mesh.contact_normal[c], tangent = along(normal);
         const Vector2d pull(stress[0] * normal.x() + stress[2] * normal.y(),

@@ -29,6 +29,7 @@ struct Contacts {
     std::vector<Vector2d> normal;                // unit, from a to b
     std::vector<double> length;                  // [m]
     std::vector<Law> law;
+    std::vector<Index> material; // as EquivalentJoints::material, or empty
     std::vector<State> state;
     // At zero displacement; where open, the normal part is k_n x gap [Pa].
     std::vector<Vector2d> initial_traction;

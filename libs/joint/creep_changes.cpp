@@ -18,13 +18,15 @@ bool is_removed(const Contacts& contacts, const CreepingContacts::Spring& spring
 
 std::vector<Chain> chain_changes(const CreepingContacts& creeping, Scaled scaled)
 {
-    const bool all = scaled == Scaled::joint_stiffness;
     std::vector<Chain> changes;
     for (const Chain& chain : creeping.chains()) {
+        const bool its = scaled.is_of(chain.constants % 2, chain.constants / 2),
+                   all = its && scaled.quantity == Scaled::joint_stiffness,
+                   stiffness = all || (its && scaled.quantity == Scaled::kelvin_stiffness),
+                   viscosity = all || (its && scaled.quantity == Scaled::kelvin_viscosity);
         Chain& change = changes.emplace_back(Chain{all ? chain.spring : 0.0, {}});
         for (const KelvinUnit& unit : chain.units)
-            change.units.push_back({all || scaled == Scaled::kelvin_stiffness ? unit.stiffness : 0.0,
-                                    all || scaled == Scaled::kelvin_viscosity ? unit.viscosity : 0.0});
+            change.units.push_back({stiffness ? unit.stiffness : 0.0, viscosity ? unit.viscosity : 0.0});
     }
     return changes;
 }

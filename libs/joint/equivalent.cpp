@@ -495,6 +495,19 @@ const JointMaterial& material_of(const Scene& scene, const Network& network, std
     return *softest;
 }
 
+std::vector<Index> materials_of(const Scene& scene, const Network& network)
+{
+    std::vector<Index> materials(network.blocks.edge_kind.size(), 0);
+    for (std::size_t edge = 0; edge < materials.size(); ++edge) {
+        const bool is_joint = network.blocks.edge_kind[edge] == static_cast<Index>(EdgeKind::joint);
+        const Index boundary = network.blocks.edge_boundary[edge];
+        if (is_joint || (boundary >= 0 && !scene.boundaries[boundary].joint.empty()))
+            materials[edge] =
+                static_cast<Index>(&material_of(scene, network, edge) - scene.joint_materials.data());
+    }
+    return materials;
+}
+
 Strength average(const Strength& joint, const Strength& rock, double persistence)
 {
     const double k = persistence;

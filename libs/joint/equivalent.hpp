@@ -50,6 +50,9 @@ EquivalentJoints average_strength(const Scene& scene, const Network& network);
 // two rocks the softer one in normal direction; or the one that a boundary rests on.
 const JointMaterial& material_of(const Scene& scene, const Network& network, std::size_t edge);
 
+// That of every edge, into Scene::joint_materials; 0 without joint.
+std::vector<Index> materials_of(const Scene& scene, const Network& network);
+
 // The name of an edge's joint: its set, or the material of the joint that a boundary rests on.
 std::string joint_name(const Scene& scene, const Network& network, Index edge);
 

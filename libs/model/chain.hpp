@@ -18,6 +18,8 @@ struct KelvinUnit {
 struct Chain {
     double spring; // K, above 0 where anything creeps
     std::vector<KelvinUnit> units;
+    // Whose constants these are: of joints 2 material + direction. What changes them changes all chains of the same.
+    int constants = 0;
 
     bool operator==(const Chain&) const = default;
 };

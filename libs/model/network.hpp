@@ -179,6 +179,8 @@ struct EquivalentJoints {
     std::vector<Index> law{}; // into joint::laws() (libs/joint/law.hpp)
     // Parameters of single laws, by their names; 0 on edges of other laws [SI].
     std::map<std::string, std::vector<double>, std::less<>> own{};
+    // Into Scene::joint_materials, where factors on one material are wanted; else empty. In no file.
+    std::vector<Index> material{};
     double strength_divisor = 1; // of all strengths, for a run with strengths divided; in no file [-]
 
     // What was averaged, and with which persistence; 0 without joint [-].

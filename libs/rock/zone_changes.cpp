@@ -44,7 +44,7 @@ ZoneChanges changed_by(const Zones& zones, Scaled scaled, const Scene& /*scene*/
     const std::size_t n = zones.area.size();
     const std::vector<Vector3d> none(n, Vector3d::Zero());
     ZoneChanges changes{.initial_stress = none, .stress = none, .shear_modulus = std::vector<double>(n, 0.0)};
-    if (scaled == Scaled::horizontal_stress)
+    if (scaled.quantity == Scaled::horizontal_stress)
         for (std::size_t z = 0; z < n; ++z)
             changes.initial_stress[z].x() = zones.initial_stress[z].x();
     return changes;

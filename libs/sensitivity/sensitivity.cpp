@@ -24,16 +24,10 @@ void take_ties(const Assembly& assembly, std::vector<Vector2d>& force)
 
 void scale(EquivalentJoints& joints, InSituStress& stress, Scaled scaled, double factor)
 {
-    switch (scaled) {
-    case Scaled::joint_stiffness:
-        return joint::multiply_stiffness(joints, factor);
-    case Scaled::kelvin_stiffness:
-        return joint::multiply_kelvin_stiffness(joints, factor);
-    case Scaled::kelvin_viscosity:
-        return joint::multiply_viscosity(joints, factor);
-    case Scaled::horizontal_stress:
-        return stress.multiply_horizontal(factor);
-    }
+    if (scaled.quantity == Scaled::horizontal_stress)
+        stress.multiply_horizontal(factor);
+    else
+        joint::multiply(joints, scaled, factor);
 }
 
 Sensitivity::Sensitivity(std::vector<Scaled> parameters, const Scene& scene, const Mesh& mesh,

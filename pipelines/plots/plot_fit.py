@@ -2,7 +2,7 @@
 """What creepfit was given and what it found: measured displacements as markers, computed ones as lines.
 
 Reads what `creepfit --readings` writes, of a curve or of a section's points; for these, thin dashed lines are what
-the section did before any factor was fitted. Lines are broken at stages. Residuals are below.
+the section did before any factor was fitted. Errors of instruments that were found are in the lines. Lines are broken at stages. Residuals are below.
 """
 
 import csv
@@ -23,7 +23,7 @@ def rows_of(path):
             name = f"{row['point']}, {row['component']}" if "point" in row else "curve"
             start = row.get("computed_at_start_mm")
             yield (name, float(row["time_day"]), int(row.get("stages") or 0), float(row["measured_mm"]),
-                   float(row["computed_mm"]), None if start is None else float(start))
+                   float(row["computed_mm"]) + float(row.get("instrument_mm") or 0), None if start is None else float(start))
 
 
 def broken(stages, values):

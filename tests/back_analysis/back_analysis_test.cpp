@@ -130,6 +130,66 @@ TEST(back_analysis, without_noise_gives_back_what_made_it)
     }
 }
 
+// The paper's constants of a joint: normal and shear, each by itself; and those of one material.
+TEST(back_analysis, normal_and_shear_constants_are_found_apart)
+{
+    const JointedSection section;
+    const std::vector<Truth> apart{{{Scaled::kelvin_stiffness, 0}, 0.8}, {{Scaled::kelvin_stiffness, 1}, 1.3},
+                                   {{Scaled::kelvin_viscosity, 0}, 1.5}, {{Scaled::kelvin_viscosity, 1}, 0.7},
+                                   {{Scaled::joint_stiffness, 0}, 1.2},  {{Scaled::joint_stiffness, 1}, 0.9}};
+    const Found found = back_analysis::fit(section.scene, section.network, section.joints,
+                                           made(section, apart), settings_for(apart));
+    EXPECT_TRUE(found.minimum.is_converged);
+    for (std::size_t p = 0; p < apart.size(); ++p)
+        EXPECT_NEAR(found.factors[p] / apart[p].factor, 1, 1e-4) << p;
+}
+
+TEST(back_analysis, what_readings_do_not_resolve_is_named)
+{
+    const JointedSection section;
+    const std::vector<Truth> apart{{{Scaled::kelvin_stiffness, 0}, 0.8},
+                                   {{Scaled::kelvin_viscosity, 1}, 1.5}};
+    std::mt19937_64 random(1);
+    const std::vector<Measurement> exact = made(section, apart);
+    const Found clear = back_analysis::fit(section.scene, section.network, section.joints,
+                                           noisy(exact, 1e-7, random, true), settings_for(apart));
+    EXPECT_EQ(clear.is_resolved, (std::vector<bool>{true, true}));
+    const Found blurred = back_analysis::fit(section.scene, section.network, section.joints,
+                                             noisy(exact, 5e-5, random, true), settings_for(apart));
+    EXPECT_EQ(blurred.is_resolved, (std::vector<bool>{true, false}));
+}
+
+TEST(back_analysis, errors_of_instruments_are_found_with_the_factors)
+{
+    const JointedSection section;
+    std::mt19937_64 random(2);
+    std::vector<Measurement> readings = noisy(made(section, three), 2e-6, random, true);
+    for (Measurement& m : readings)
+        if (m.point == 0 && m.component == 1)
+            m.displacement += m.time >= 11 * day ? 1e-4 : 0;
+    back_analysis::Settings settings = settings_for(three);
+    const Found plain =
+        back_analysis::fit(section.scene, section.network, section.joints, readings, settings);
+    ASSERT_FALSE(plain.doubts.empty());
+    EXPECT_EQ(plain.doubts[0].kind, estimation::Error::step);
+    EXPECT_EQ(plain.series[plain.doubts[0].series].point, 0U);
+    EXPECT_EQ(plain.series[plain.doubts[0].series].component, 1);
+    settings.errors.steps = {11 * day};
+    const Found found =
+        back_analysis::fit(section.scene, section.network, section.joints, readings, settings);
+    EXPECT_TRUE(found.doubts.empty());
+    ASSERT_EQ(found.errors.size(), 4U); // one of each point and direction
+    for (const estimation::FoundError& error : found.errors) {
+        const bool is_it = found.series[error.series].point == 0 && found.series[error.series].component == 1;
+        EXPECT_NEAR(error.value, is_it ? 1e-4 : 0, 1e-5);
+    }
+    for (std::size_t p = 0; p < three.size(); ++p) {
+        const auto i = static_cast<Eigen::Index>(p);
+        EXPECT_LT(std::abs(found.minimum.parameters[i] - std::log(three[p].factor)),
+                  4 * found.confidence.standard_error(i));
+    }
+}
+
 // The second section slips, opens and closes.
 TEST(back_analysis, truth_lies_in_its_intervals_in_90_of_100_trials)
 {

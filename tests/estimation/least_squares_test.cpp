@@ -228,15 +228,4 @@ TEST(confidence, needs_more_readings_than_parameters)
     EXPECT_THROW(confidence_of(found, false), input_error);
 }
 
-TEST(confidence, sees_residuals_that_follow_each_other)
-{
-    std::vector<double> wave, turns;
-    for (int i = 0; i < 100; ++i) {
-        wave.push_back(std::sin(0.1 * i));
-        turns.push_back(i % 2 == 0 ? 1 : -1);
-    }
-    EXPECT_GT(lag_one_correlation(wave), 0.95);
-    EXPECT_LT(lag_one_correlation(turns), -0.95);
-}
-
 } // namespace least_squares_test

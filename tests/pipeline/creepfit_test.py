@@ -105,6 +105,141 @@ class Creepfit(ChainTest):
         self.assertEqual(rows["horizontal-stress"]["low_95"], "")
         self.assertIn("does not change these readings", text)
 
+    def test_constants_that_are_not_resolved(self):
+        """The column has no shear: warned of, without values for the scene if it has an effect at all; the exit code is 0."""
+        names = "normal-kelvin-stiffness,normal-kelvin-viscosity,normal-joint-stiffness"
+        rows, text, _ = self.found(self.readings("--sigma-mm", "1e-3"), fit=names)
+        for name, row in rows.items():
+            self.assertEqual(row["resolved"], "yes")
+            self.assertLess(abs(float(row["value"]) / TRUTH[name.removeprefix("normal-")] - 1), 0.05)
+        self.assertIn('joint material "base joint" by', text)
+        self.assertIn("multiply all normal stiffnesses", text)
+        self.assertNotIn("shear stiffnesses", text)
+        folder = self.chain.new_folder()
+        done = self.chain.answer("creepfit", self.joints, "--measurements", self.readings(), "--fit",
+                                 f"{names},shear-kelvin-stiffness", "-o", folder / "f.csv")
+        self.assertEqual(done.returncode, 0)
+        self.assertIn("not resolved by these readings: shear-kelvin-stiffness", done.stderr)
+        self.assertNotIn("In the scene", done.stdout)
+        self.assertEqual([row["resolved"] for row in table(folder / "f.csv")], ["yes", "yes", "yes", "no"])
+
+    def test_constants_of_a_material(self):
+        """The closed form with another E of the base joint."""
+        text = self.chain.text("data/column/scene.toml")
+        base = text.index('name = "base joint"')
+        other = text[:base] + changed(text[base:], "normal_kelvin_stiffness_MPa_per_m = 690", "normal_kelvin_stiffness_MPa_per_m = 460")
+        rows, said, _ = self.found(self.history(other), fit="kelvin-stiffness@joint,kelvin-stiffness@base joint")
+        self.assertAlmostEqual(float(rows["kelvin-stiffness@joint"]["value"]), 1, delta=1e-4)
+        self.assertAlmostEqual(float(rows["kelvin-stiffness@base joint"]["value"]), 2 / 3, delta=1e-4)
+        self.assertIn('of joint material "base joint" by 1, their Kelvin stiffnesses by 0.6666', said)
+
+    def test_several_networks(self):
+        """Intervals have the scatter of the networks; each network's own fit is in the table. Sameness and mistakes are refused."""
+        text = self.chain.text("pipelines/reliability/small.toml")
+        text = changed(changed(changed(text, "cohesion_MPa = 0.02", "cohesion_MPa = 2"), "tensile_strength_MPa = 0$", "tensile_strength_MPa = 2"),
+                       "end = 10", "end = 20")
+        scene = self.chain.new_folder() / "scene.toml"
+        scene.write_text(text)
+        joints = []
+        for realization in range(5):
+            network = self.chain.run("jointgen", scene, scene.with_name(f"n{realization}.h5"), "--realization", str(realization))
+            joints.append(self.chain.run("strength-averaging", network, scene.with_name(f"j{realization}.h5")))
+        result = self.chain.run("demsolve", joints[0], scene.with_name("r.h5"))
+        history = self.chain.run("jointexport", result, scene.with_name("h.csv"))
+        found = scene.with_name("found.csv")
+        command = ["--measurements", history, "--fit", "joint-stiffness", "-o", found]
+        done = self.chain.answer("creepfit", *joints[1:], *command)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        row, = table(found)
+        each = [math.log(float(row[f"value_{k}"])) for k in range(1, 5)]
+        mean = sum(each) / 4
+        self.assertAlmostEqual(math.log(float(row["value"])), mean, places=9)
+        scatter = math.sqrt(sum((one - mean) ** 2 for one in each) / 3)
+        self.assertAlmostEqual(float(row["scatter_of_logarithm"]), scatter, places=9)
+        self.assertGreaterEqual(float(row["standard_error_of_logarithm"]), scatter * math.sqrt(5 / 4))
+        self.assertEqual((row["networks"], row["resolved"]), ("4", "yes"))
+        self.assertLess(float(row["low_95"]), 1)
+        self.assertGreater(float(row["high_95"]), 1)
+        self.assertIn("between networks x/", done.stdout)
+        self.refused([*joints[1:], *command[:-2], "--readings", scene.with_name("x.csv")], "--readings is of one network")
+        self.refused([joints[1], self.joints, *command[:-2]], "its scene is not that of")
+        self.refused(joints[1:3], "several files are given")
+
+    def spoilt(self, spoil):
+        """Readings of the column with `spoil(row, number)` mm added."""
+        path = self.readings("--seed", "2")
+        rows = table(path)
+        for i, row in enumerate(rows):
+            row["displacement_mm"] = float(row["displacement_mm"]) + spoil(row, i)
+        with open(path, "w", newline="") as file:
+            writer = csv.DictWriter(file, rows[0])
+            writer.writeheader()
+            writer.writerows(rows)
+        return path
+
+    def warned(self, path, *options):
+        folder = self.chain.new_folder()
+        done = self.chain.answer("creepfit", self.joints, "--measurements", path, "--fit", ",".join(TRUTH), "-o", folder / "f.csv", *options)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return done.stderr, done.stdout, table(folder / "f.csv")
+
+    def test_faults_of_readings(self):
+        """Each is warned of and named where the fit does not know it; with its option it is found, and nothing is said."""
+        for spoil, word, options, said in [
+            (lambda row, i: 0.3 * (row["point"] == "C" and float(row["time_day"]) >= 31), "step",
+             ["--steps", "31"], r"step on day 31, C, y +0\.(2[5-9]|3[0-5])"),
+            (lambda row, i: 0.02 * (row["point"] == "C") * float(row["time_day"]), "drift", ["--drift"], r"drift, C, y +0\.0(1|2)"),
+            (lambda row, i: 0.4 * (i == 20), "outlier", ["--robust"], r"outlier +C, y on day 11: residual 1?-?[0-9.]+ sigma"),
+            (lambda row, i: 0.3 * (row["point"] == "B"), "offset", ["--offset"], r"offset, B, y +0\.(2[5-9]|3[0-5])"),
+        ]:
+            path = self.spoilt(spoil)
+            with self.subTest(word):
+                err, out, rows = self.warned(path)
+                self.assertIn("residuals are no noise", err)
+                self.assertIn("the fit is worse than the readings' sigma allow", err)
+                self.assertNotIn("In the scene", out)
+                self.assertTrue(all(row["doubt"] and float(row["doubt_p_value"]) < 0.01 for row in rows))
+                err, out, rows = self.warned(path, *options)
+                self.assertEqual(err, "")
+                self.assertRegex(out, said)
+                self.assertIn("In the scene", out)
+                for row in rows:
+                    self.assertLessEqual(float(row["low_95_all"]), TRUTH[row["factor"]])
+                    self.assertGreaterEqual(float(row["high_95_all"]), TRUTH[row["factor"]])
+
+    def test_faults_of_a_curve(self):
+        curve = self.curve(730, noise=0.1)
+        rows = [[float(row["time_day"]), float(row["displacement_mm"])] for row in table(curve)]
+        for i, row in enumerate(rows):
+            row[1] += (2 if row[0] >= 300 else 0) + (5 if i == 20 else 0)
+        curve.write_text("".join(["time_day,displacement_mm\n", *(f"{day},{value}\n" for day, value in rows)]))
+        out = curve.with_name("out.csv")
+        done = self.chain.answer("creepfit", curve, "-o", out)
+        self.assertIn("residuals are no noise", done.stderr)
+        done = self.chain.answer("creepfit", curve, "-o", out, "--steps", "300", "--robust", "--stiffness", "690")
+        self.assertNotIn("no noise", done.stderr)
+        self.assertIn("on day 140: residual", done.stdout)
+        found = {row["quantity"]: row for row in table(out)}
+        for quantity, truth in ("Kelvin stiffness E", 480), ("retardation time", 120), ("step on day 300", 2):
+            self.assertLessEqual(float(found[quantity]["low_95"]), truth)
+            self.assertGreaterEqual(float(found[quantity]["high_95"]), truth)
+        # Eq. 14 knows nothing of steps.
+        self.assertEqual(found["E by Eq. 14"]["low_95"], "")
+
+    def test_late_first_reading_has_no_interval_by_eq_14(self):
+        curve = self.curve(1100, noise=0.1, seed=4)
+        lines = curve.read_text().splitlines(keepends=True)
+        curve.write_text("".join([lines[0], *lines[4:]]))  # from day 21 on
+        out = curve.with_name("out.csv")
+        done = self.chain.answer("creepfit", curve, "-o", out, "--load-day", "0", "--stiffness", "690")
+        self.assertIn("first reading late", done.stderr)
+        self.assertIn("it leaves out more than its noise", done.stdout)
+        rows = {row["quantity"]: row for row in table(out)}
+        for quantity in "E by Eq. 14", "eta by least squares with that E":
+            self.assertEqual((rows[quantity]["low_95"], rows[quantity]["high_95"]), ("", ""))
+        self.assertLess(float(rows["Kelvin stiffness E"]["low_95"]), 480)
+        self.assertGreater(float(rows["Kelvin stiffness E"]["high_95"]), 480)
+
     def test_stress_for_the_scene(self):
         """A bench held at its sides: its horizontal stress is found, and how to write it, be it a law or a profile."""
         law = self.chain.text("tests/pipeline/bonded.toml")
@@ -236,13 +371,21 @@ class Creepfit(ChainTest):
             (["--fit", "joint-stiffness=1"], "LOW:HIGH"),
             (["--fit", "joint-stiffness,"], "before or after a comma"), (["--fit", ",joint-stiffness"], "a comma"), (["--fit", "joint-stiffness=0:2"], "LOW:HIGH"),
             (["--fit", "joint-stiffness", "--stiffness", "3"], "--stiffness goes with"),
+            (["--fit", "joint-stiffness@none"], 'no joint material "none"'), (["--fit", "joint-stiffness@"], "no joint material behind @"),
+            (["--fit", "normal-horizontal-stress"], "is none of"), (["--fit", "joint-stiffness", "--steps", "1,,2"], '--steps is "1,,2"'),
+            (["--fit", "joint-stiffness", "--steps", ""], '--steps is ""'), (["--fit", "joint-stiffness", "--steps", "3,x"], "--steps is"),
+            (["--fit", "joint-stiffness", "--steps", "3,3"], "twice"),
+            (["--fit", "joint-stiffness", "--steps", "39.5"], "no point has readings before and after the step on day 39.5"),
+            (["--fit", "joint-stiffness", "--robust", "--correlated-noise"], "do not go together"),
+            (["--fit", "joint-stiffness", "--since-first-reading", "--robust"], "wanted --offset"),
             (["--fit", "joint-stiffness", "--readings", readings], f"--readings {readings} is the same file as --measurements"),
         ]:
             with self.subTest(options):
                 self.refused([self.joints, "--measurements", readings, *options], wanted)
         for options, wanted in [(["--fit", "joint-stiffness"], "--fit goes with"), (["--stiffness", "-1"], "--stiffness is -1"),
                                 (["--load-day", "200"], "no reading from then on"), (["--elastic-mm", "0"], "must not be 0"),
-                                (["--converged-day", "500"], "taken to be over")]:
+                                (["--converged-day", "500"], "taken to be over"), (["--offset"], "wanted --elastic-mm"),
+                                (["--steps", "500"], "no readings before and after the step on day 500")]:
             with self.subTest(options):
                 self.refused([curve, *options], wanted)
         self.refused([curve.with_name("none.csv")], "none.csv", code=4)
