@@ -197,6 +197,11 @@ void warn_of_interpolation(Summary& summary, const Found& found, const Measureme
 
 void print_stress(const InSituStress& stress, double factor)
 {
+    if (stress.horizontal_ratio) {
+        std::cout << "\nIn the scene:\n[in_situ_stress]\nhorizontal_stress_ratio = "
+                  << rounded(*stress.horizontal_ratio * factor, 6) << '\n';
+        return;
+    }
     if (stress.profile.empty()) {
         std::cout << "\nIn the scene:\n[in_situ_stress]\ncompression_xx_MPa = "
                   << rounded(stress.compression_xx * factor / unit::MPa, 6)

@@ -7,6 +7,7 @@
 #include <boost/program_options.hpp>
 
 #include <malloc.h>
+#include <sys/ioctl.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -434,10 +435,11 @@ Progress::~Progress()
 std::string Progress::time_left(double fraction) const
 {
     constexpr double shortest = 5; // [s]: earlier the rate is not known
-    const double gone = std::chrono::duration<double>(Clock::now() - start_).count();
-    if (gone < shortest)
+    const double gone = std::chrono::duration<double>(Clock::now() - start_).count(),
+                 done = fraction - first_;
+    if (gone < shortest || done <= 0)
         return "";
-    const double left = gone * (1 - fraction) / fraction;
+    const double left = gone * (1 - fraction) / done;
     const bool in_minutes = left > 90, in_hours = left > 90 * 60;
     const double unit = in_hours ? 3600 : in_minutes ? 60 : 1;
     return ", about " + std::to_string(std::llround(std::ceil(left / unit))) +
@@ -449,9 +451,11 @@ std::string Progress::time_left(double fraction) const
 
 void Progress::show(double fraction, const std::function<std::string()>& what)
 {
+    fraction = std::clamp(fraction, 0.0, 1.0);
+    if (fraction > 0)
+        first_ = std::min(first_, fraction); // a run that continues does not begin at 0
     if (is_quiet_ || Clock::now() < next_)
         return;
-    fraction = std::clamp(fraction, 0.0, 1.0);
     const std::string share =
         fraction > 0 ? std::to_string(static_cast<int>(100 * fraction)) + "%" + time_left(fraction) + ": "
                      : "";
@@ -462,11 +466,14 @@ void Progress::show(double fraction, const std::function<std::string()>& what)
     }
     next_ = Clock::now() + std::chrono::milliseconds(100);
     drawn_ = true;
-    constexpr std::size_t bar_width = 20, what_width = 90;
+    constexpr std::size_t bar_width = 20;
     const auto full = static_cast<std::size_t>(fraction * bar_width);
     const std::string bar =
         fraction > 0 ? "[" + std::string(full, '#') + std::string(bar_width - full, ' ') + "] " : "";
-    std::cerr << "\r" << bar << share << shortened(what(), what_width) << "\x1b[K" << std::flush;
+    winsize window{};
+    const bool has_width = ioctl(STDERR_FILENO, TIOCGWINSZ, &window) == 0 && window.ws_col > 0;
+    std::cerr << "\r" << shortened(bar + share + what(), (has_width ? window.ws_col : 80) - 1) << "\x1b[K"
+              << std::flush;
 }
 
 void Summary::add(std::string label, std::string value, const std::string& unit)

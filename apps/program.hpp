@@ -165,6 +165,7 @@ private:
     bool is_quiet_, on_terminal_;
     bool drawn_ = false;
     Clock::time_point start_ = Clock::now(), next_{};
+    double first_ = 1; // the fraction that this run began at
 
     std::string time_left(double fraction) const;
 };

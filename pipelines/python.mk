@@ -4,7 +4,7 @@ export PYTHONPATH := $(ROOT)/pipelines:$(ROOT)/pipelines/plots$(addprefix :,$(PY
 
 # Relative paths on the command line count from the folder in which make was called.
 export CALLED_FROM ?= $(or $(PWD),$(CURDIR))
-$(foreach variable,BIN OUT SCENE,$(if $(filter command,$(firstword $(origin $(variable)))),\
+$(foreach variable,BIN OUT SCENE BENCHMARK PACE_BENCHMARK,$(if $(filter command,$(firstword $(origin $(variable)))),\
     $(if $(filter-out /%,$($(variable))),$(eval override $(variable) := $(abspath $(CALLED_FROM)/$($(variable)))))))
 
 # What the Makefile does: the comment at its top.

@@ -11,6 +11,9 @@
 
 #include "estimation/confidence.hpp"
 
+#include <optional>
+#include <vector>
+
 namespace jointcreep::estimation
 {
 

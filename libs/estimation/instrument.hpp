@@ -19,6 +19,9 @@
 
 #include "estimation/confidence.hpp"
 
+#include <cstddef>
+#include <vector>
+
 namespace jointcreep::estimation
 {
 

@@ -220,23 +220,37 @@ private:
 class Positions
 {
 public:
-    explicit Positions(std::string_view text) : text_(text), line_{0}
+    explicit Positions(std::string_view text) : text_(text), line_{{0, true}}
     {
-        for (std::size_t i = 0; i < text.size(); ++i)
+        for (std::size_t i = 0; i < text.size(); ++i) {
+            if (static_cast<unsigned char>(text[i]) >= 0x80)
+                line_.back().is_ascii = false;
             if (text[i] == '\n')
-                line_.push_back(i + 1);
+                line_.push_back({i + 1, true});
+        }
     }
     std::size_t of(const toml::source_position& place) const
     {
-        std::size_t at = place.line >= 1 && place.line <= line_.size() ? line_[place.line - 1] : text_.size();
-        for (auto column = place.column; column > 1 && at < text_.size(); --column)
-            at += utf8_length(text_.substr(at)).value_or(1);
-        return at;
+        if (place.line < 1 || place.line > line_.size())
+            return text_.size();
+        const Line& line = line_[place.line - 1];
+        const std::size_t column = std::max<std::size_t>(place.column, 1);
+        std::size_t at = line.first;
+        if (line.is_ascii)
+            at += column - 1;
+        else
+            for (std::size_t passed = 1; passed < column && at < text_.size(); ++passed)
+                at += utf8_length(text_.substr(at)).value_or(1);
+        return std::min(at, text_.size());
     }
 
 private:
+    struct Line {
+        std::size_t first; // [byte]
+        bool is_ascii;     // a character is a byte
+    };
     std::string_view text_;
-    std::vector<std::size_t> line_; // where each begins
+    std::vector<Line> line_;
 };
 
 TomlValue converted(const toml::node& node, const Positions& positions)

@@ -146,10 +146,10 @@ void Dynamics::start()
     find_faces();
     find_bodies();
     find_pieces();
-    find_time_step();
+    find_time_step(true);
     find_forces(now_.velocity);
     if (contacts_.stiffest() > now_.stiffest_allowed)
-        find_time_step();
+        find_time_step(true);
     if (settings_.release > 0) // the excavated rock carried the present unbalanced forces
         for (std::size_t g = 0; g < now_.place.size(); ++g)
             released_[g] = -now_.force[g];
@@ -196,7 +196,7 @@ std::vector<double> Dynamics::stiffness_sums(const std::vector<double>& of_conta
     return sums;
 }
 
-void Dynamics::find_time_step()
+void Dynamics::find_time_step(bool begins)
 {
     // For joints that grow stiffer as they close, with a margin.
     now_.stiffest_allowed =
@@ -222,8 +222,11 @@ void Dynamics::find_time_step()
             highest = std::max(highest, sums[g] / mass);
             mass = 1 / mass;
         }
-    const auto [added, own] = turning_frequencies(of_contacts);
-    highest = std::max(highest + added, impacts * impacts * own);
+    if (begins)
+        leave_stiff_pieces(highest, impacts, of_contacts);
+    const double without = highest;
+    for (const Piece& piece : pieces_)
+        highest = std::max(highest, frequency_with(piece, without, impacts, of_contacts));
     // Stiffness damping shortens the stable step: (2 / w) (sqrt(1 + xi^2) - xi), xi = beta w / 2.
     const double xi = settings_.stiffness_damping * std::sqrt(highest) / 2;
     now_.dt = highest == 0 ? 1e-3 // all rock is fixed

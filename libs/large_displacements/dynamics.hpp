@@ -128,7 +128,9 @@ private:
     void find_pieces();
     Turn turn_of(const Piece& piece) const;
     std::vector<Turn> turns() const;
-    std::pair<double, double> turning_frequencies(const std::vector<double>& sums_of_contacts) const;
+    double frequency_with(const Piece& piece, double highest, double impacts,
+                          const std::vector<double>& sums_of_contacts) const;
+    void leave_stiff_pieces(double highest, double impacts, const std::vector<double>& sums_of_contacts);
 
     // Steps and energy: dynamics.cpp.
     struct MovedRock;
@@ -139,7 +141,7 @@ private:
     std::vector<Index> leaders() const;
     std::vector<double> contact_sums() const;
     std::vector<double> stiffness_sums(const std::vector<double>& of_contacts) const;
-    void find_time_step();
+    void find_time_step(bool begins = false);
     double first_half() const;
     Leap leap(double first_half_of_step) const;
     MovedRock move_rock();

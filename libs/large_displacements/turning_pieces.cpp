@@ -13,7 +13,10 @@
 #include "model/disjoint_sets.hpp"
 #include "model/signs.hpp"
 
+#include <algorithm>
 #include <map>
+#include <utility>
+#include <vector>
 
 namespace jointcreep::large_displacements
 {
@@ -113,20 +116,32 @@ std::vector<Dynamics::Turn> Dynamics::turns() const
     return turns;
 }
 
-// Bounds of frequencies squared [1/s2], with the row sums of the stiffness of contacts [Pa]: what the turning of a piece adds to
-// the highest one, at most g s^T K s; and that of a piece that turns on its contacts as a rigid one, s^T K s / (r I).
-std::pair<double, double> Dynamics::turning_frequencies(const std::vector<double>& sums_of_contacts) const
+// The frequency squared that steps must be short enough for, where a piece turns on contacts with these row sums of
+// stiffness [Pa], beside the highest one without it [1/s2]. Turning adds at most g s^T K s to that one; a piece that turns as a
+// rigid one has s^T K s / (r I), and steps are so much shorter as those of rigid bodies.
+double Dynamics::frequency_with(const Piece& piece, double highest, double impacts,
+                                const std::vector<double>& sums_of_contacts) const
 {
-    double added = 0, own = 0;
-    for (const Piece& piece : pieces_) {
-        const Turn turn = turn_of(piece);
-        double stiffness = 0;
-        for (const Index g : piece.gridpoint)
-            stiffness += sums_of_contacts[g] * (now_.place[g] - turn.centre).squaredNorm();
-        added = std::max(added, turn.g * stiffness);
-        own = std::max(own, turn.g * stiffness / (1 - piece.share)); // g = (1 - r) / (r I)
-    }
-    return {added, own};
+    const Turn turn = turn_of(piece);
+    double stiffness = 0;
+    for (const Index g : piece.gridpoint)
+        stiffness += sums_of_contacts[g] * (now_.place[g] - turn.centre).squaredNorm();
+    const double own = turn.g * stiffness / (1 - piece.share); // g = (1 - r) / (r I)
+    return std::max(highest + turn.g * stiffness, impacts * impacts * own);
+}
+
+// Few zones on very stiff joints would need far shorter steps, in which dashpots make too much of rounding errors: such pieces
+// keep the lumped masses.
+void Dynamics::leave_stiff_pieces(double highest, double impacts, const std::vector<double>& sums_of_contacts)
+{
+    constexpr double most = 4; // of the frequency squared: steps are shorter by half at most
+    std::erase_if(pieces_, [&](const Piece& piece) {
+        return frequency_with(piece, highest, impacts, sums_of_contacts) > most * highest;
+    });
+    piece_of_.assign(piece_of_.size(), -1);
+    for (std::size_t p = 0; p < pieces_.size(); ++p)
+        for (const Index g : pieces_[p].gridpoint)
+            piece_of_[g] = static_cast<Index>(p);
 }
 
 } // namespace jointcreep::large_displacements

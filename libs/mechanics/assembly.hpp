@@ -10,9 +10,9 @@
 #include "model/scene.hpp"
 
 #include <Eigen/Core>
-#include <functional>
 
 #include <array>
+#include <functional>
 #include <utility>
 #include <vector>
 

@@ -28,7 +28,8 @@ public:
     {
     }
 
-    // Names, then shapes, then all else: a step may rely on those before it. Each tells all of its faults.
+    // Names, then shapes, then all else: a step may rely on those before it. Faults of one step are told together, the first
+    // of each of its checks.
     void check() const
     {
         using C = Checker;
@@ -391,12 +392,16 @@ private:
                             "it is " + days(time) + "; wanted not after the end, " + days(scene_.end));
             before = time;
         }
-        const auto check_reading = [this](const Given& given, const MonitoringPoint& point) {
-            if (const double time = point.first_reading; !(time >= 0 && time <= scene_.end))
+        const auto check_reading = [this](const Given& given, double time) {
+            if (!(time >= 0 && time <= scene_.end))
                 given.report("first_reading", "it is " + days(time) + "; wanted from the start to the end, " +
                                                   days(scene_.end));
         };
-        for_each_point(check_reading, check_reading);
+        for_each_point([&](const Given& given,
+                           const MonitoringPoint& point) { check_reading(given, point.first_reading); },
+                       [](const Given&, const MonitoringPoint&) {});
+        for (std::size_t line = 0; line < scene_.lines.size(); ++line)
+            check_reading(in_list("monitoring_line", line), scene_.lines[line].first_reading);
     }
 
     // What is smaller than the shortest edge is merged: the whole section, where that is.

@@ -8,7 +8,11 @@
 #include "model/units.hpp"
 
 #include <algorithm>
-#include <limits>
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+#include <vector>
 
 namespace jointcreep::scene
 {
@@ -39,6 +43,7 @@ public:
             look_at(scene_.joint_materials[i], source_.in_list("joint_material", i));
         if (scene_.gravity > 0 && !usual(scene_.gravity, least_gravity, most_gravity))
             add(source_.once("section"), "gravity_m_per_s2", "on Earth it is 9.81 m/s2");
+        look_at_datum();
         look_at_stress();
         look_at_points();
         return std::move(found_);
@@ -89,6 +94,17 @@ private:
             add(given, "shear_stiffness_MPa_per_m",
                 "a joint is usually softer in shear than across, normal_stiffness_MPa_per_m = " +
                     shown(joint.normal_stiffness / (unit::MPa / unit::m)));
+    }
+
+    // Above the datum a stress that grows with depth is tension.
+    void look_at_datum()
+    {
+        const InSituStress& stress = scene_.in_situ_stress;
+        const auto top = *std::ranges::max_element(scene_.outline, {}, [](const auto& p) { return p.y(); });
+        const Eigen::Vector3d at = stress.at(top);
+        if (const double above = -stress.depth_of(top); above > 0 && std::max(at[0], at[1]) > 0)
+            add(source_.once("in_situ_stress"), "elevation_m",
+                "the section reaches " + shown(rounded(above)) + " m above it, where the stress is tension");
     }
 
     // At the lowest corner of the outline, where the weight above is largest.

@@ -6,10 +6,13 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <map>
 #include <numbers>
 #include <optional>
 #include <set>
+#include <string_view>
+#include <variant>
 #include <vector>
 
 namespace jointcreep::scene
@@ -36,8 +39,11 @@ public:
     {
         if (const auto* const whole = std::get_if<std::int64_t>(&written.content))
             return static_cast<double>(*whole);
-        if (const auto* const number = std::get_if<double>(&written.content))
+        if (const auto* const number = std::get_if<double>(&written.content)) {
+            if (!std::isfinite(*number))
+                refuse(written, title, "wanted a finite number");
             return *number;
+        }
         const auto* const text = std::get_if<std::string>(&written.content);
         if (!text)
             refuse(written, title, "wanted a number, or a text with names of [variables]");
@@ -63,9 +69,10 @@ public:
             Place{reading_, ""}.refuse(table_->line,
                                        "variables is " + shown(*table_) + ": wanted a table [variables]");
         for (const TomlEntry& entry : *entries) {
-            const bool is_name = std::ranges::all_of(entry.key, is_of_name) && !is_digit(entry.key.front());
+            const bool is_name = !entry.key.empty() && std::ranges::all_of(entry.key, is_of_name) &&
+                                 !is_digit(entry.key.front()) && entry.key.front() != '_';
             if (!is_name)
-                refuse(entry.value, "[variables] " + entry.key,
+                refuse(entry.value, "[variables] " + shown(TomlValue{.content = entry.key}),
                        "wanted a name of letters, digits and _ that begins with a letter");
             named(entry.key, entry.value, "[variables] " + entry.key);
         }
@@ -101,6 +108,9 @@ private:
         }
         if (std::ranges::find(open_, name) != open_.end())
             refuse(at, title, "the value of " + name + " depends on itself");
+        constexpr std::size_t deepest = 50; // variables whose values are needed for each other
+        if (open_.size() >= deepest)
+            refuse(at, title, "the value of " + name + " is nested too deep in other variables");
         open_.push_back(name);
         const double number = value_of(*value, "[variables] " + name);
         open_.pop_back();
@@ -216,6 +226,15 @@ Point centre_of(const Point& a, const Point& b, const Point& c)
                    twice;
 }
 
+// A whole number has no exponent, which would make it one that is not whole in TOML.
+std::string text_of(double value)
+{
+    constexpr double largest_whole = 9007199254740992; // 2^53
+    return value == std::round(value) && std::abs(value) <= largest_whole
+               ? std::to_string(std::llround(value))
+               : shown(value);
+}
+
 class Writer
 {
 public:
@@ -306,14 +325,21 @@ private:
                     for_each_table(value, [&](const TomlValue& table) { write_table(table, inside); });
     }
 
+    // A text without one is no sum of names: the reader of the key refuses it, as a date in quotes.
+    static bool has_letter(const std::string& text)
+    {
+        return std::ranges::any_of(text,
+                                   [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); });
+    }
+
     // Texts in it, at any depth.
     void write_numbers(const TomlValue& value, const std::string& title)
     {
         if (const auto* const list = std::get_if<TomlValue::List>(&value.content))
             for (const TomlValue& one : *list)
                 write_numbers(one, title);
-        else if (std::holds_alternative<std::string>(value.content))
-            change(value, shown(variables_.value_of(value, title)));
+        else if (const auto* const text = std::get_if<std::string>(&value.content); text && has_letter(*text))
+            change(value, text_of(variables_.value_of(value, title)));
     }
 
     // --- Circles and arcs ----------------------------------------------------------------------------------
@@ -340,8 +366,8 @@ private:
     {
         const TomlValue* const given = shape.find("sides");
         if (!given)
-            return std::max<std::int64_t>(share < 1 ? 2 : 3,
-                                          std::llround(std::ceil(static_cast<double>(usual_sides) * share)));
+            return std::max<std::int64_t>(
+                share < 1 ? 2 : 3, std::llround(std::ceil(static_cast<double>(usual_sides) * share - 1e-6)));
         const double sides = variables_.value_of(*given, title + " sides");
         const double least = share < 1 ? 1 : 3;
         if (!(sides >= least && sides <= most_sides) || sides != std::round(sides))
@@ -441,7 +467,7 @@ private:
 std::string written_out(const std::string& text, const std::string& name)
 {
     const auto has = [&](const char* word) { return text.find(word) != std::string::npos; };
-    if (!has("variables") && !has("center_m") && !has("through_m"))
+    if (!has("variables") && !has("center") && !has("radius") && !has("through"))
         return text;
     return Writer(text, name).written_out();
 }

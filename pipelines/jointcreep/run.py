@@ -25,7 +25,7 @@ from .chain import CANNOT_WRITE, was_stopped
 from .errors import NotDone, NotWanted
 
 PROGRAMS = ["jointgen", "strength-averaging", "demsolve", "jointexport"]
-SET_HERE = ["-o", "--output", "-q", "--quiet", "-h", "--help", "--version", "--checkpoint"]  # of demsolve's options
+SET_HERE = ["-o", "--output", "-q", "--quiet", "-h", "--help", "-V", "--version", "--checkpoint"]  # of demsolve's options
 NO_CHANGE = ["--threads", "--checkpoint-every"]  # they do not change its result
 NO_EQUILIBRIUM = 3  # exit code
 CHECKPOINTS = ["checkpoint.h5", "checkpoint.stands.h5", "checkpoint.falls.h5"]

@@ -96,7 +96,7 @@ def draw(file, point=None, gauge=None, days=(-np.inf, np.inf)):
     labelled = spread(solver_time[first], 0.065 * np.ptp(solver_time))
     between = below.secondary_xaxis("top")
     between.set_xticks(solver_time[first[labelled]], [f"{days[i]:.4g}" for i in labelled])
-    figure.label_time(file, between)
+    between.set_xlabel("time since the start (days)")  # the axis itself is the solver's time
     return plot
 
 

@@ -342,6 +342,9 @@ TEST(checks, monitoring_lines)
         "[[monitoring_line]] \"inclinometer\" name = \"inclinometer\": its point \"inclinometer 2\" has the "
         "name of another point");
     expect_refused("first_reading = 7", "first_reading = 31", "wanted from the start to the end, 30 days");
+    EXPECT_EQ(refusal(replaced(text, "first_reading = 7", "first_reading = 31")).find('\n'),
+              std::string::npos)
+        << "once";
 }
 
 TEST(checks, all_faults_are_told_at_once)

@@ -117,6 +117,12 @@ TEST(doubts, gravity_and_stress)
         << "a test of loads";
 }
 
+TEST(doubts, a_datum_below_the_top)
+{
+    expect_doubt("elevation_m = 40", "elevation_m = 25",
+                 "the section reaches 15 m above it, where the stress is tension");
+}
+
 TEST(doubts, points_in_rock_that_is_excavated)
 {
     expect_doubt("at_m = [39, 39]", "at_m = [41, 39]", "in rock that stage \"cut\" excavates");

@@ -7,8 +7,10 @@
 #include "scene/scene.hpp"
 #include "text.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace shorthand_test
 {
@@ -78,12 +80,55 @@ TEST(shorthand, what_names_and_sums_cannot_be_is_refused)
     expect_part(refused("\"height 2\""), "\"2\" is no part of a sum");
     expect_part(refused("\"(height\""), "a ( without its )");
     expect_part(refused("\"1 / (height - 40)\""), "not a finite number");
-    expect_part(refused("\"2,5\""), "is no part of a sum");
-    expect_part(refused("\"" + std::string(300, '(') + "\""), "nested too deep");
+    expect_part(refused("\"height,5\""), "is no part of a sum");
+    expect_part(refused("\"" + std::string(300, '(') + "height\""), "nested too deep");
     expect_part(error_of("[variables]\na = \"b\"\nb = \"a\"\n"), "depends on itself");
     expect_part(error_of("[variables]\n\"a b\" = 1\n"), "wanted a name of letters");
     expect_part(error_of("[variables]\na = true\n"), "wanted a number, or a text with names");
     expect_part(error_of("variables = 3\n"), "wanted a table [variables]");
+    expect_part(error_of("[variables]\n\"\" = 1\n"), "wanted a name of letters");
+    expect_part(error_of("[variables]\n_a = 1\n"), "begins with a letter");
+    expect_part(error_of("[variables]\na = inf\n"), "wanted a finite number");
+    EXPECT_TRUE(written_out("[variables]\nH = 10\n[random]\nseed = \"H * 1e5\"\n", "scene")
+                    .ends_with("seed = 1000000\n"));
+    std::string chain = "[variables]\n";
+    for (int i = 0; i < 5000; ++i)
+        chain += "a" + std::to_string(i) + " = \"a" + std::to_string(i + 1) + "\"\n";
+    expect_part(error_of(chain + "a5000 = 1\n"), "nested too deep in other variables");
+}
+
+// They are refused by the reader of the key: a date in quotes is no difference, and a number needs no quotes.
+TEST(shorthand, texts_without_a_name_stay)
+{
+    const std::string text =
+        "[variables]\nH = 4\n[schedule]\nend = \"1994-06-15\"\n[zones]\nsize_m = \"3\"\n";
+    EXPECT_EQ(written_out(text, "scene"), text);
+    const std::string plain = every_key_text();
+    const std::string quoted =
+        "[variables]\nH = 4\n" + replaced(plain, "end = 1994-07-01", "end = \"1994-07-01\"");
+    expect_part(refusal(written_out(quoted.substr(quoted.find("[section]")), "scene")),
+                "end = \"1994-07-01\": wanted a date");
+}
+
+TEST(shorthand, quarters_and_halves_of_circles_have_their_share_of_sides)
+{
+    for (const auto& [x, y] : {std::pair(0.1, 0.7), {1e3, 7e2}, {-0.3, 12.9}})
+        for (const int turn : {1, -1}) {
+            const auto at = [&, x = x, y = y](double degrees) {
+                const double a = degrees * std::numbers::pi / 180;
+                return "[" + shown(x + 3.3 * std::cos(a)) + ", " + shown(y + 3.3 * std::sin(a)) + "]";
+            };
+            const auto sides = [&](double end) {
+                const std::string arc = "ground_m = [" + at(10) +
+                                        ", { through_m = " + at(10 + turn * end / 2) +
+                                        ", to_m = " + at(10 + turn * end) + " }]";
+                const std::string out = written_out("[in_situ_stress]\n" + arc + "\n", "scene");
+                return std::count(out.begin(), out.end(), '[') - 3; // the table, the list, the first corner
+            };
+            EXPECT_EQ(sides(90), 8) << x;
+            EXPECT_EQ(sides(180), 16) << x;
+            EXPECT_EQ(sides(270), 24) << x;
+        }
 }
 
 TEST(shorthand, circles_and_arcs_have_their_corners_on_the_circle)
