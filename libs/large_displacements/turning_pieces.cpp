@@ -134,7 +134,7 @@ double Dynamics::frequency_with(const Piece& piece, double highest, double impac
 // keep the lumped masses.
 void Dynamics::leave_stiff_pieces(double highest, double impacts, const std::vector<double>& sums_of_contacts)
 {
-    constexpr double most = 4; // of the frequency squared: steps are shorter by half at most
+    constexpr double most = 8; // of the frequency squared: steps are a third at least
     std::erase_if(pieces_, [&](const Piece& piece) {
         return frequency_with(piece, highest, impacts, sums_of_contacts) > most * highest;
     });
