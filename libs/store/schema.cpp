@@ -330,7 +330,8 @@ std::vector<Field> fields_of(StepHistory& step_history)
 {
     // clang-format off
     std::vector<Field> all = {
-        {"/step_history/time", &step_history.time, {"row"}, "day", ascending(), "Time since the start."},
+        {"/step_history/time", &step_history.time, {"row"}, "day", at_least(0),
+         "Time since the start; it goes back where a step of creep is rejected or cut."},
         {"/step_history/solver_time", &step_history.solver_time, {"row"}, "s", ascending(),
          "Time of the solver, accumulated over all equilibria."},
         {"/step_history/displacement", &step_history.displacement, {"row", "point"}, "m", any(),
