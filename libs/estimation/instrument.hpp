@@ -93,9 +93,10 @@ public:
     double correlation_time() const { return correlation_time_; }
     // Whether confidence() has more than the minimum has.
     bool changes_errors() const { return errors_.robust || errors_.correlated; }
-    // What residuals look like, with p-values below `significance`, the smallest first. By Student's t for each offset,
-    // drift, step and single error that might be added, times how many there are; by the correlation of neighbours
-    // within series with the moments of Durbin and Watson (Biometrika 1950).
+    // Reasons to doubt that residuals are noise: those with a p-value below `significance`, the smallest first.
+    // Each offset, drift, step and single error that the model lacks is tested by Student's t. Its p-value is multiplied by
+    // the number of such tests. Neighbouring residuals of a series are tested for correlation, with the moments of Durbin and
+    // Watson (Biometrika 1950).
     std::vector<Doubt> doubts(const Evaluation& raw, const Minimum& minimum,
                               double significance = 0.01) const;
 
