@@ -64,7 +64,7 @@ VectorXd linear_parts(const CreepCurve& curve, const Instruments& instruments, d
         b[i] = weight * (curve.displacement[k] - curve.elastic_part.value_or(0));
     }
     const Evaluation left = instruments.independent({b, A});
-    const VectorXd parts = left.jacobian.colPivHouseholderQr().solve(left.residual);
+    VectorXd parts = left.jacobian.colPivHouseholderQr().solve(left.residual);
     sum_of_squares = (left.jacobian * parts - left.residual).squaredNorm();
     return parts;
 }

@@ -149,7 +149,7 @@ VectorXd Instruments::column_of(const Unknown& unknown) const
     return column;
 }
 
-MatrixXd Instruments::weighted(MatrixXd columns) const
+MatrixXd Instruments::weighted(const MatrixXd& columns) const
 {
     return weight_.cwiseSqrt().asDiagonal() * columns;
 }

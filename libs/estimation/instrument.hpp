@@ -106,7 +106,7 @@ private:
         std::size_t series;
         double time;
     };
-    MatrixXd weighted(MatrixXd columns) const;
+    MatrixXd weighted(const MatrixXd& columns) const;
     MatrixXd whitened(MatrixXd columns, double correlation_time) const;
     VectorXd column_of(const Unknown& unknown) const;
     bool separates(const std::vector<std::size_t>& series, double time) const;

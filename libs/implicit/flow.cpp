@@ -24,7 +24,7 @@ constexpr double diverged = 20;                      // merit with which steps w
 // that nothing balances stays and displacement grows with the steps: collapse_ has the last one. Where forces have
 // grown with displacement the steps were too long, and nothing is known.
 bool Solver::flow_to_rest(Assembly& assembly, const State& start, const Equilibrium& settings,
-                          Convergence& convergence)
+                          mechanics::Convergence& convergence)
 {
     assembly.displacement = start.displacement;
     double merit = evaluate(assembly, start), least = merit, time = first_step;

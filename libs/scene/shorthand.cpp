@@ -412,8 +412,8 @@ private:
     {
         const std::string wanted = "an arc { through_m = [x, y], to_m = [x, y] }, with sides = n if wanted";
         check_keys_of(arc, title, {"through_m", "to_m", "sides"}, wanted);
-        const Point through = point_of(key_of(arc, "through_m", title, wanted), title + " through_m"),
-                    to = point_of(key_of(arc, "to_m", title, wanted), title + " to_m");
+        const Point through = point_of(key_of(arc, "through_m", title, wanted), title + " through_m");
+        Point to = point_of(key_of(arc, "to_m", title, wanted), title + " to_m");
         const Point center = centre_of(from, through, to);
         const double radius = (from - center).norm();
         if (!(radius < 1e4 * ((through - from).norm() + (to - through).norm())))

@@ -39,7 +39,8 @@ TEST(Schema, CoversEveryMember)
 {
     CheckpointFile file;
     std::size_t covered = sizeof file.provenance.seed + 8; // these two and the realization are attributes
-    covered += sizeof EquivalentJoints::strength_divisor + sizeof EquivalentJoints::material; // in no file
+    covered += sizeof EquivalentJoints::strength_divisor +
+               sizeof(decltype(EquivalentJoints::material)); // in no file
     std::set<const void*> places;
     for (const fields::Field& field : all_fields(file))
         std::visit(
@@ -49,7 +50,7 @@ TEST(Schema, CoversEveryMember)
             },
             field.values);
     // The parameters of single laws are in a map, and not in the record.
-    covered += sizeof file.equivalent.own;
+    covered += sizeof(decltype(file.equivalent.own));
     covered -= file.equivalent.own.size() * sizeof(std::vector<double>);
     std::size_t own = 0;
     for (const joint::Parameter& parameter : joint::all_parameters())
