@@ -51,7 +51,8 @@ bool Scene::zones_are_quadratic() const
         return *asks_for_quadratic_zones;
     const bool is_implicit =
         equilibrium.engine != EngineChoice::relaxation && equilibrium.masses != Masses::real;
-    return is_implicit && !large_displacements && has_rock_that_yields();
+    return is_implicit && !large_displacements &&
+           (has_rock_that_yields() || (joint_sets.empty() && mapped.empty()));
 }
 
 } // namespace jointcreep

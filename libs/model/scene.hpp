@@ -373,8 +373,9 @@ struct Scene {
     std::optional<CreepSettings> creep;
     bool has_rock_that_yields() const;
     std::optional<bool> asks_for_quadratic_zones{};
-    // Six gridpoints a zone; else three, and constant strain. If the scene does not say: where rock yields,
-    // displacements are small, and equilibrium is not by dynamic relaxation alone, which overshoots more with them.
+    // Six gridpoints a zone; else three, and constant strain. If the scene does not say: where rock yields, or where no
+    // joint sets and mapped traces divide it into small blocks. Not with large displacements, and not where equilibrium is
+    // by dynamic relaxation alone, which overshoots more with them.
     bool zones_are_quadratic() const;
     double zone_size = 0;                // longest zone side aimed at [m]
     std::optional<Polygon> fine_zones{}; // where zones have that size, or else everywhere

@@ -748,8 +748,8 @@ Table<Scene> zones()
              "quadratic, with three more gridpoints in the middles of its sides. Zones of constant strain are too "
              "stiff where rock bends, and too strong where it yields; quadratic ones cost about four times as "
              "much at the same size. They are for small displacements.")
-             .optional("quadratic with a rock of law \"Mohr-Coulomb\", by the implicit engine, without "
-                       "[large_displacements]; else constant strain"),
+             .optional("quadratic by the implicit engine, without [large_displacements], if a rock has law "
+                       "\"Mohr-Coulomb\" or there are no [[joint_set]] and [[mapped]]; else constant strain"),
          number("size_m", &Scene::zone_size, metres, zone_sizes, "Longest zone side wanted."),
          polygon("fine_m", &Scene::fine_zones,
                  "Where zones are of that size; outside they are larger. Without it they are of that "

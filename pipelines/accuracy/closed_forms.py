@@ -421,6 +421,23 @@ def cantilever_deflection(length, depth, force, young, nu):
     return bending + 1.2 * force * length / (young / (2 * (1 + nu)) * depth)
 
 
+def two_slabs_deflection(length, depth, force, young, nu, k_s):
+    """Of the tip of two equal cantilevers, one on the other, with a joint between them that shears but does not open (Newmark,
+    Siess and Viest 1951): the joint's shear traction k_s x slip makes them one beam in part. In plane strain, with shear as in
+    cantilever_deflection; force is that on both."""
+    stiff = young / (1 - nu**2)
+    own = 2 * stiff * depth**3 / 12  # of the two by themselves [N m2 / m]
+    alpha = math.sqrt(k_s * (2 / (stiff * depth) + depth**2 / own))
+    beta, x = k_s * depth / own, alpha * length
+    # The axial force N of a slab: N'' = alpha^2 N - beta M, no slip at the clamp, no force at the tip.
+    b = beta * force / alpha**3
+    a = -b * math.tanh(x)
+    moment = beta / alpha**2 * force * length**3 / 3
+    moment += a * (math.cosh(x) - 1) / alpha**2 + b * (math.sinh(x) / alpha**2 - length / alpha)  # of N about the tip
+    shear = 1.2 * force * length / (young / (2 * (1 + nu)) * 2 * depth)
+    return (force * length**3 / 3 - depth * moment) / own + shear
+
+
 def plane_of_weakness(dip, confining, joint, rock):
     """The axial stress at failure, and what fails; joint and rock are {cohesion, friction angle} (Jaeger 1960)."""
     (c, phi), (rock_c, rock_phi) = joint, rock

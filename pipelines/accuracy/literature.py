@@ -60,13 +60,19 @@ class Programs:
     def text(self, name):
         return (self.data / "verification" / name / "scene.toml").read_text()
 
-    def answer(self, text, *options):
+    def joints(self, text):
+        """Path of the joints file of a scene, in a folder of its own."""
+        return chain.joints_of(self.programs, text, Path(tempfile.mkdtemp(dir=self.folder)))
+
+    def solved(self, joints, *options):
         """Path of the result, and of what is left where there is none; exit code and message of demsolve."""
-        folder = Path(tempfile.mkdtemp(dir=self.folder))
-        chain.joints_of(self.programs, text, folder)
         done = subprocess.run([self.programs / "demsolve", "joints.h5", "-q", "-o", "result.h5", "--engine", self.engine,
-                               *map(str, options)], cwd=folder, capture_output=True, text=True)
-        return folder / ("result.h5" if done.returncode == 0 else "result.failed.h5"), done.returncode, done.stderr
+                               *map(str, options)], cwd=joints.parent, capture_output=True, text=True)
+        return joints.with_name("result.h5" if done.returncode == 0 else "result.failed.h5"), done.returncode, done.stderr
+
+    def answer(self, text, *options):
+        """The same of a scene."""
+        return self.solved(self.joints(text), *options)
 
     def result(self, text, *options):
         path, code, message = self.answer(text, *options)
@@ -233,7 +239,8 @@ class Cantilever:
 def cantilevers(programs, kind="constant strain", sizes=tuple(CANTILEVER_SIZES)):
     found = []
     for size in sizes:
-        result = programs.result(changed(programs.text("cantilever"), "^size_m = 0.25", f'kind = "{kind}"\nsize_m = {size}'))
+        result = programs.result(changed(programs.text("cantilever"), '^kind = "constant strain"\nsize_m = 0.25',
+                                         f'kind = "{kind}"\nsize_m = {size}'))
         exact = closed_forms.cantilever_deflection(10, 1, 0.01e6, *elastic_of(result.scene))
         found.append(Cantilever(kind, size, len(result["/mesh/gridpoint_position"]), len(result["/mesh/zone_block"]),
                                 -result.point("tip")[1] / exact))

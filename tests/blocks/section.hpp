@@ -23,6 +23,7 @@ inline Scene section(Polygon outline, double shortest_edge)
     scene.rock = "rock";
     scene.rocks = {{"rock", 2700, 3e10, 0.25, std::nullopt}};
     scene.cutting = {shortest_edge, 1 * std::numbers::pi / 180};
+    scene.asks_for_quadratic_zones = false;
     return scene;
 }
 
