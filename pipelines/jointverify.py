@@ -642,6 +642,18 @@ class Verification:
             leader[g] = root(g)
         return leader
 
+    def fixed_in(self, s):
+        """1 for each gridpoint that is fixed in x, 2 in y, 3 in both: not where all rock on its boundary has been removed."""
+        m, there = self.section, self.states.present[s][self.section.side_zone]
+        by_boundaries, by_present = np.zeros((2, len(m.fixed)), int)
+        ends = m.side if not m.is_quadratic else np.column_stack([m.side, m.side_middle])
+        for number, boundary in enumerate(self.scene.boundaries):
+            bits = sum(1 << axis for axis in (0, 1) if "xy"[axis] in boundary["fix"])
+            on = m.side_boundary == number
+            by_boundaries[ends[on]] |= bits
+            by_present[ends[on & there]] |= bits
+        return m.fixed & ~(by_boundaries & ~by_present)
+
     def check_kinematics(self, s):
         m, st, see = self.section, self.states, self.checks.see
         u = st.displacement[s]
@@ -650,7 +662,7 @@ class Verification:
                 self.in_state("/states/displacement", s, m.position, "gridpoint"))
         # Fixed gridpoints are where the boundaries put them; the last one counts. Where rock has been removed they stay.
         for axis in (0, 1):
-            wanted = np.where(m.fixed & (1 << axis), 0.0, np.nan)
+            wanted = np.where(self.fixed_in(s) & (1 << axis), 0.0, np.nan)
             stays = np.zeros(len(wanted), bool)
             for number, boundary in enumerate(self.scene.boundaries):
                 if boundary["displacement"] is None or "xy"[axis] not in boundary["fix"]:
@@ -1015,7 +1027,8 @@ class Verification:
 
         leader = self.leaders(s)
         follows = np.flatnonzero(leader != np.arange(n))
-        free = np.stack([(m.fixed & 1) == 0, (m.fixed & 2) == 0], axis=1)
+        fixed = self.fixed_in(s)
+        free = np.stack([(fixed & 1) == 0, (fixed & 2) == 0], axis=1)
         has_rock = ~m.has_zones
         has_rock[m.node[there]] = True
         free[~has_rock] = False

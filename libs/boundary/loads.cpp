@@ -50,6 +50,20 @@ void Loads::add_forces(std::vector<Vector2d>& force, const std::vector<char>& is
     }
 }
 
+std::vector<Vector2d> Loads::fixed(std::size_t gridpoints, const std::vector<char>& is_present) const
+{
+    std::vector<Vector2d> fixed(gridpoints, Vector2d::Zero());
+    for (const Side& side : side_)
+        if (is_present[side.stress_point])
+            for (const Index g : side.gridpoint) {
+                if (boundary_[side.boundary].fix_x)
+                    fixed[g].x() = 1;
+                if (boundary_[side.boundary].fix_y)
+                    fixed[g].y() = 1;
+            }
+    return fixed;
+}
+
 bool Loads::changes(double from, double to) const
 {
     for (const Boundary& boundary : boundary_)

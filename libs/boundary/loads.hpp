@@ -28,6 +28,9 @@ public:
     // Adds the tractions at `time` to the forces on gridpoints [N/m].
     void add_forces(std::vector<Vector2d>& force, const std::vector<char>& is_present, double time) const;
 
+    // Directions {x, y} that sides with rock fix, of so many gridpoints: 1 fixed, 0 not.
+    std::vector<Vector2d> fixed(std::size_t gridpoints, const std::vector<char>& is_present) const;
+
     // Whether tractions or prescribed displacements change between two times [s].
     bool changes(double from, double to) const;
 

@@ -29,15 +29,19 @@ std::vector<Vector2d> excavate(Assembly& assembly, const Blocks& blocks, const M
     for (std::size_t z = 0; z < zones.size(); ++z)
         is_removed[z] =
             zones.is_present[z] && blocks.block_stage[mesh.zone_block[zones.zone_of(z)]] == stage ? 1 : 0;
+    const std::size_t gridpoints = assembly.position.size();
+    const std::vector<Vector2d> was_fixed = loading.fixed(gridpoints, zones.is_present);
     rock::excavate(assembly.zones, is_removed, assembly.load);
+    const std::vector<Vector2d> fixed = loading.fixed(gridpoints, zones.is_present);
 
-    std::vector<char> is_gone(assembly.position.size(), 0); // gridpoints; those of the ground never had rock
-    for (std::size_t g = 0; g < is_gone.size(); ++g)
+    std::vector<char> is_gone(gridpoints, 0); // those of the ground never had rock
+    for (std::size_t g = 0; g < gridpoints; ++g)
         if (rock::has_lost_rock(zones, static_cast<Index>(g))) {
             is_gone[g] = 1;
             assembly.load[g].setZero();
             assembly.is_free_untied[g].setZero();
-        }
+        } else
+            assembly.is_free_untied[g] += was_fixed[g] - fixed[g]; // with the last rock on its boundary
     const std::vector<char> lost_a_side = edges_that_lose_a_side(blocks, stage);
     for_each_force([&](auto& one) { remove_at(one, lost_a_side); }, assembly);
     const std::vector<Vector2d> was_free = assembly.is_free;
@@ -49,7 +53,7 @@ std::vector<Vector2d> excavate(Assembly& assembly, const Blocks& blocks, const M
             released[g].setZero();
             continue;
         }
-        // Where the tie to a fixed gridpoint ends, this force was in balance with the boundary.
+        // Where the tie to a fixed gridpoint ends, or a boundary, this force was in balance with the boundary.
         released[g] = (assembly.is_free[g].array() > was_free[g].array()).select(0, released[g]);
         released[g] -= assembly.force[g];
     }

@@ -123,6 +123,16 @@ TEST(loads, a_side_without_rock_has_none)
     EXPECT_EQ(displaced(with_displacements, 10, {1, 0}), (All{{7, 7}, {1, 7}, {1, 7}, {7, 7}}));
 }
 
+TEST(loads, sides_with_rock_fix)
+{
+    const Vector2d none(0, 0);
+    const Loads both = loads(fixed(true, false), fixed(false, true));
+    EXPECT_EQ(both.fixed(4, all_there), (All{none, {1, 0}, {1, 1}, {0, 1}}));
+    EXPECT_EQ(both.fixed(4, {0, 1}), (All{none, none, {0, 1}, {0, 1}}));
+    EXPECT_EQ(both.fixed(4, {1, 0}), (All{none, {1, 0}, {1, 0}, none}));
+    EXPECT_EQ(loads(pushed({1e3, 0})).fixed(4, all_there), All(4, none));
+}
+
 TEST(loads, change_where_a_history_does)
 {
     const LoadHistory history{{{10, 0}, {20, 1}, {40, 1}, {50, 0}}};

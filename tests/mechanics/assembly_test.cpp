@@ -151,4 +151,30 @@ TEST(assembly, what_excavation_releases_keeps_the_rest_in_balance)
     EXPECT_GT(near_the_cut, 5u);
 }
 
+// The right side is fixed above the cut only.
+TEST(assembly, excavated_boundaries_fix_nothing)
+{
+    Scene scene = section({{0, 0}, {10, 0}, {10, 10}, {0, 10}}, 0.05);
+    scene.zone_size = 2;
+    scene.boundaries = {{.from = {0, 0}, .to = {10, 0}, .fix_x = true, .fix_y = true},
+                        {.from = {10, 6}, .to = {10, 10}, .fix_x = true},
+                        {.from = {0, 10}, .to = {0, 6}, .fix_x = true}};
+    scene.stages.push_back({"cut", 1, {{{5, 6}, {11, 6}, {11, 11}, {5, 11}}}});
+    Section s = assembled(std::move(scene), {}, 1, 1);
+    const auto fixed_in = [&](double x, double y) {
+        std::vector<Vector2d> found;
+        for (std::size_t g = 0; g < s.assembly.position.size(); ++g)
+            if ((s.assembly.position[g] - Vector2d(x, y)).norm() < 1e-9)
+                found.push_back(Vector2d(1, 1) - s.assembly.is_free[g]);
+        return found;
+    };
+    using Found = std::vector<Vector2d>;
+    EXPECT_EQ(fixed_in(10, 6), (Found{{1, 0}}));
+    excavate(s.assembly, s.network.blocks, s.mesh, Loading(s.scene, s.mesh), 0);
+    EXPECT_EQ(fixed_in(10, 6), (Found{{0, 0}}));
+    EXPECT_EQ(fixed_in(0, 6), (Found{{1, 0}}));
+    EXPECT_EQ(fixed_in(10, 0), (Found{{1, 1}}));
+    EXPECT_EQ(fixed_in(10, 10), (Found{{1, 1}})); // without rock
+}
+
 } // namespace assembly_test

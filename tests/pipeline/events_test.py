@@ -1,6 +1,8 @@
 """What happens at dates: loads after an early end of creep, removed points, stages that part rock, creep steps."""
 
+import numpy as np
 from chain import ChainTest, changed, datasets, main
+from small_scene import held, scene
 
 COLUMN = "data/column/scene.toml"
 FAST = ('^masses = "real"\ndamping = "mass"\nmass_damping_per_s = 140 .*', 'damping = "adaptive"')
@@ -121,6 +123,20 @@ class Events(ChainTest):
         # Nothing else changes, but the lines that warnings name.
         for name in values.keys() - {"/scene", "/provenance/input_sha256", "/warnings/text"}:
             self.assertEqual(values[name].tolist(), without[name].tolist(), name)
+
+    def test_an_excavated_boundary_holds_nothing(self):
+        """The upper right quarter goes, without stress. Its side is fixed or not: what is left deforms alike."""
+        pushed = {"from_m": [0, 10], "to_m": [0, 5], "traction_MPa": [1, 0], "load_history": [[2, 0], [3, 1]]}
+        side = [held([10, 5], [10, 10], "x")]
+        for kind in "constant strain", "quadratic":
+            with_side, without = (datasets(self.chain.result(scene(
+                [[0, 0], [10, 0], [10, 10], [0, 10]], [], [held([0, 0], [10, 0]), pushed, *more], [], gravity=0,
+                stages=[[[[5, 5], [10, 5], [10, 10], [5, 10]]]], points=[[9.9, 4.9], [1, 9]], end=3,
+                more=f'kind = "{kind}"\n'))) for more in (side, []))
+            moved = without["/history/displacement"][-1]
+            self.assertGreater(abs(moved).min(), 1e-5)
+            np.testing.assert_allclose(with_side["/history/displacement"][-1], moved, atol=1e-9)
+            self.assertEqual(abs(with_side["/states/reaction"][-1][with_side["/mesh/gridpoint_position"][:, 1] > 0]).max(), 0)
 
     def test_too_many_creep_steps_are_refused(self):
         code, message = self.refusal(self.column(), "--creep-step", "1e-12")

@@ -53,11 +53,11 @@ BASE = held([0, 0], [6, 0])
 UPPER_LEFT, UPPER_RIGHT = [[0, 4.4], [2, 4.4], [2, 6], [0, 6]], [[2, 4.4], [6, 4.4], [6, 6], [2, 6]]
 
 
-def four_blocks(bases=(BASE,), stages=((UPPER_LEFT,), (UPPER_RIGHT,))):
-    """Blocks that stages unload: joints open and slip, points leave with the rock."""
+def four_blocks(bases=(BASE,), stages=((UPPER_LEFT,), (UPPER_RIGHT,)), right=0):
+    """Blocks that stages unload: joints open and slip, points leave with the rock. The right side is fixed from y = `right` up."""
     return scene([[0, 0], [6, 0], [6, 6], [0, 6]],
                  [joint("across", [0, 3], [6, 3]), joint("upright", [3, 0], [3, 6])],
-                 [held([0, 0], [0, 6], "x"), held([6, 0], [6, 6], "x"), *bases],
+                 [held([0, 0], [0, 6], "x"), held([6, right], [6, 6], "x"), *bases],
                  [material("joint", 1000, friction=20)], stress=(-0.05, -0.05, 0.02), stages=stages,
                  points=[[1, 5.5], [3, 5.9]])
 
@@ -104,6 +104,8 @@ class Verify(ChainTest):
             return run(text("data/collapse/sliding.toml"))
         if name == "short step":  # of creep, 1e-6 day
             return run(text("data/verification/incline/scene.toml"))
+        if name == "excavated boundary":
+            return run(four_blocks(right=4.4))
         if name == "opening":
             return run(four_blocks())
         if name == "dilation":
@@ -125,8 +127,8 @@ class Verify(ChainTest):
                               ENGINE="auto", INCREMENTS="4"))
         raise KeyError(name)
 
-    RESULTS = ("slope", "weaker slope", "column", "creeping rock", "quadratic zones", "chain", "short step", "kinds", "collapse", "opening", "dilation",
-               "dilation that ends", "wearing", "continuously yielding", "residual", "Barton-Bandis", "yield")
+    RESULTS = ("slope", "weaker slope", "column", "creeping rock", "quadratic zones", "chain", "short step", "kinds",
+               "collapse", "opening", "excavated boundary", "dilation", "dilation that ends", "wearing", "continuously yielding", "residual", "Barton-Bandis", "yield")
 
     def verified(self, path):
         """Exit code, lines of the table by the name of the check, and all that was said."""
