@@ -3,8 +3,8 @@
     CAMPAIGN.py PROGRAMS OUT [--n N] [--seed S]
 
 A campaign makes N trials, chosen by the seed S; one that is interrupted counts those that it has made. It writes
-OUT/CAMPAIGN.csv: a row for each subject, a column for each outcome. A fault is printed with what it takes to see it again, and
-its files are kept in OUT/faults. The exit code is 1 if there was any fault.
+OUT/CAMPAIGN.csv: a row for each subject, a column for each outcome; each minute, and at its end. A fault is printed with what it
+takes to see it again, and its files are kept in OUT/faults. The exit code is 1 if there was any fault.
 """
 
 import argparse
@@ -30,6 +30,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 
 LONGEST = 120  # s of the processor; a run that takes longer hangs
 WAITING = 10  # times as long, for a program that waits
+WRITING = 60  # s, between tables of what has been counted so far
 MEMORY = pathlib.Path("/dev/shm")  # files there cost no disk
 HANGS = "hangs"  # in place of an exit code
 
@@ -48,19 +49,23 @@ class Ended:
         return f"exit code {self.code}: {self.err.strip()[-300:] or 'nothing said'}"
 
 
-def ended(command, longest, limit=lambda: None, **options):
-    """Runs a command for at most this many seconds of the processor; `limit` is called in its process first."""
-    def limits():
-        resource.setrlimit(resource.RLIMIT_CPU, (longest, longest))
-        limit()
-    try:
-        done = subprocess.run([*map(str, command)], capture_output=True, text=True, errors="replace", timeout=WAITING * longest,
-                              preexec_fn=limits, stdin=subprocess.DEVNULL, **options)
-    except subprocess.TimeoutExpired:
-        return Ended(HANGS, err=f"no end within {WAITING * longest} s")
-    if done.returncode in (-signal.SIGXCPU, -signal.SIGKILL):
+def ended(command, longest, limit=None, **options):
+    """Runs a command for at most this many seconds of the processor; `limit`, if any, is called in its process first."""
+    with subprocess.Popen([*map(str, command)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, errors="replace",
+                          preexec_fn=limit, stdin=subprocess.DEVNULL, **options) as process:
+        # From here: with a function to be called in the new process Python could not start it by vfork.
+        resource.prlimit(process.pid, resource.RLIMIT_CPU, (longest, longest))
+        try:
+            out, err = process.communicate(timeout=WAITING * longest)
+        except subprocess.TimeoutExpired:
+            process.kill()
+            return Ended(HANGS, err=f"no end within {WAITING * longest} s")
+        except BaseException:
+            process.kill()
+            raise
+    if process.returncode in (-signal.SIGXCPU, -signal.SIGKILL):
         return Ended(HANGS, err=f"no end within {longest} s of the processor")
-    return Ended(done.returncode, done.stdout, done.stderr)
+    return Ended(process.returncode, out, err)
 
 
 def chance(*trial):
@@ -104,7 +109,7 @@ class Campaign:
         self.chain = Chain(self.programs, ROOT, self.folder)
         self.out.mkdir(parents=True, exist_ok=True)
         self.log = (self.out / f"{self.name}.log").open("w")  # every trial
-        self.begin = time.monotonic()
+        self.begin = self.written = time.monotonic()
 
     def random(self, *case):
         return chance(self.name, self.seed, *case)
@@ -118,9 +123,12 @@ class Campaign:
             if files:
                 shutil.copytree(files, self.out / "faults" / re.sub(r"\W+", "-", f"{self.name}-{subject}-{case}"),
                                 dirs_exist_ok=True, symlinks=True)
+        if time.monotonic() - self.written > WRITING:
+            self.write(f"{self.about_n}, not ended")
 
     def run(self, body):
         """Runs the campaign: calls body(self), writes the table, ends the program."""
+        signal.signal(signal.SIGTERM, signal.default_int_handler)
         try:
             body(self)
         except KeyboardInterrupt:
@@ -128,16 +136,16 @@ class Campaign:
             print(f"{self.name}: interrupted; what follows was counted until then")
         finally:
             shutil.rmtree(self.folder, ignore_errors=True)
-        self.write()
+        self.write(self.about_n)
         found = sum(count[outcome] for count in self.counts.values() for outcome in self.faults)
         for subject, count in self.counts.items():
             print(f"{subject}: " + ", ".join(f"{count[outcome]} {outcome}" for outcome in self.outcomes if count[outcome]))
         print(f"{self.name}: {sum(map(sum, (count.values() for count in self.counts.values())))} counted, {found} faults")
         sys.exit(1 if found or not self.counts else 0)
 
-    def write(self):
+    def write(self, about_n):
         version = ended([self.programs / "jointgen", "--version"], 60).out.split()[-1]
-        about = {"n": self.about_n, "seed": self.seed, "seconds": round(time.monotonic() - self.begin), "version": version,
+        about = {"n": about_n, "seed": self.seed, "seconds": round(time.monotonic() - self.begin), "version": version,
                  "date": datetime.date.today().isoformat(), "machine": machine()}
         partial = self.out / f"{self.name}.csv.partial"
         with partial.open("w", newline="") as file:
@@ -146,6 +154,7 @@ class Campaign:
             for subject, count in self.counts.items():
                 rows.writerow([subject, *(count[outcome] for outcome in self.outcomes), *about.values()])
         partial.rename(self.out / f"{self.name}.csv")
+        self.written = time.monotonic()
 
 
 def machine():

@@ -9,8 +9,10 @@ and so is an internal error (code 5), which is counted apart.
 """
 
 import multiprocessing
+import os
 import pathlib
 import shutil
+import signal
 import tempfile
 
 import h5py
@@ -111,6 +113,12 @@ def readers(chain):
     yield Reader("jointexport, histories", [programs / "jointexport", "FILE", "-o", "out.csv"], result, "out.csv")
 
 
+def as_by_default():
+    """What ends a campaign ends its processes."""
+    signal.signal(signal.SIGTERM, signal.SIG_DFL)
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+
 def judged(batch):
     reader, campaign, out, numbers = batch
     return [(number, reader.name, *reader.verdict(chance(*campaign, number), out / f"{number}.h5")) for number in numbers]
@@ -128,7 +136,7 @@ def body(campaign):
     faults = campaign.out / "faults" / "damaged"
     batches = ((reader, (campaign.name, campaign.seed), faults, range(first + i, min(first + size, campaign.n), len(every)))
                for first in range(0, campaign.n, size) for i, reader in enumerate(every))
-    with multiprocessing.Pool(2) as pool:
+    with multiprocessing.Pool(len(os.sched_getaffinity(0)), as_by_default) as pool:
         for answers in pool.imap(judged, batches):
             for number, name, damage, outcome, what in answers:
                 campaign.count(name, outcome, number, f"{damage}: {what}" if what else damage)

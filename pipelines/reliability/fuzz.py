@@ -1,19 +1,28 @@
 """Fuzzes what reads scenes, field data, measurements and HDF5 files, with sanitizers (libFuzzer, tests/fuzz).
 
-Each reader gets N inputs, or S seconds. The corpus begins with the files of data and tests that it reads, and is kept in
+Each reader gets N inputs, or S seconds of the processor. The corpus begins with the files of data and tests that it reads, and is kept in
 OUT/corpus; inputs that end a reader otherwise than by a refusal are kept in OUT/faults.
 """
 
+import itertools
 import os
 import pathlib
 import re
+import resource
 import shutil
 import subprocess
+import tempfile
 
 from campaign import ROOT, Campaign
 
 LONGEST = 20  # s, that one input may take
 MOST_MEMORY = 4096  # MB; what a reader leaves behind where it cannot throw adds up
+RUN = 600  # s, after which what a target has done is counted, and it is started again
+MOST_FAULTS = 20
+LAST = 100000  # bytes of what a target says
+SECONDS = "s of the processor"
+SANITIZERS = ":".join(("allocator_may_return_null=1", "detect_leaks=0", "malloc_context_size=2", "max_malloc_fill_size=0",
+                       "quarantine_size_mb=8", "allocator_release_to_os_interval_ms=-1"))  # the last four for speed
 READERS = {  # and the longest input: short ones are read some thousand times a second
     "scene": (["data/**/*.toml", "tests/pipeline/**/*.toml"], 2048),
     "field_data": (["tests/pipeline/kinds/*.csv", "tests/pipeline/kinds/*.geojson", "tests/fuzz/*.csv"], 4096),
@@ -27,7 +36,9 @@ def begun(campaign, reader, corpus):
     corpus.mkdir(parents=True, exist_ok=True)
     patterns, longest = READERS[reader]
     for path in (path for pattern in patterns for path in ROOT.glob(pattern)):
-        (corpus / path.name).write_bytes(path.read_bytes()[:longest])  # a part of a scene may be a scene, too
+        content, name = path.read_bytes(), str(path.relative_to(ROOT)).replace("/", "-")
+        for start in range(0, len(content), longest):  # a part of a scene may be a scene, too
+            (corpus / f"{name}-{start}").write_bytes(content[start : start + longest])
     if reader == "store":
         chain, folder = campaign.chain, campaign.chain.new_folder()
         network = chain.run("jointgen", ROOT / "pipelines/reliability/small.toml", folder / "network.h5")
@@ -38,28 +49,35 @@ def begun(campaign, reader, corpus):
 
 
 def fuzz(campaign, reader, fuzzers, seconds):
-    """Runs a target until it has had its number; each fault ends it, and it is started again."""
+    """Runs a target, for RUN seconds at a time, until it has had its number; each fault ends it, and it is started again."""
     corpus, found = campaign.out / "corpus" / reader, campaign.out / "faults" / f"fuzz-{reader}"
     begun(campaign, reader, corpus)
     found.mkdir(parents=True, exist_ok=True)
-    left, faults = campaign.n, 0
-    while left > 0 and faults < 20:
-        amount = f"-max_total_time={seconds}" if seconds else f"-runs={left}"
-        command = [fuzzers / f"{reader}_fuzz", corpus, amount, f"-seed={campaign.seed + faults}", f"-timeout={LONGEST}",
+    done, used, faults = 0, 0, 0
+    for run in itertools.count():
+        if (used >= seconds if seconds else done >= campaign.n) or faults == MOST_FAULTS:
+            return
+        amount = [f"-max_total_time={min(RUN, seconds - used + 1 if seconds else RUN)}"]
+        amount += [] if seconds else [f"-runs={campaign.n - done}"]
+        command = [fuzzers / f"{reader}_fuzz", corpus, *amount, f"-seed={1000 * campaign.seed + run}", f"-timeout={LONGEST}",
                    f"-rss_limit_mb={MOST_MEMORY}", f"-max_len={READERS[reader][1]}", f"-artifact_prefix={found}/",
                    "-detect_leaks=0", "-print_final_stats=1", "-verbosity=0"]
-        environment = dict(os.environ, ASAN_OPTIONS="allocator_may_return_null=1")
-        done = subprocess.run([*map(str, command)], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
-                              errors="replace", env=environment)
-        made = re.search(r"number_of_executed_units: +(\d+)", done.stderr)
+        with tempfile.TemporaryFile() as said:
+            before = resource.getrusage(resource.RUSAGE_CHILDREN)
+            code = subprocess.run([*map(str, command)], stdout=subprocess.DEVNULL, stderr=said,
+                                  env=dict(os.environ, ASAN_OPTIONS=SANITIZERS), check=False).returncode
+            after = resource.getrusage(resource.RUSAGE_CHILDREN)
+            said.seek(-min(said.tell(), LAST), os.SEEK_END)
+            last = said.read().decode(errors="replace")
+        made = re.search(r"number_of_executed_units: +(\d+)", last)
         count = int(made[1]) if made else 0
-        campaign.count(reader, "inputs read or refused", what=f"{count} inputs", times=count)
-        if done.returncode:
+        processor = round(after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime)
+        campaign.count(reader, "inputs read or refused", run, f"{count} inputs", times=count)
+        campaign.count(reader, SECONDS, run, times=processor)
+        done, used = done + max(count, 1), used + max(processor, 1)
+        if code:
             faults += 1
-            campaign.count(reader, "faults", faults, "\n".join(done.stderr.splitlines()[-40:]))
-        left -= max(count, 1)
-        if seconds:
-            break
+            campaign.count(reader, "faults", run, "\n".join(last.splitlines()[-40:]))
 
 
 def body(campaign):
@@ -72,9 +90,9 @@ def body(campaign):
 def options(parser):
     parser.add_argument("--fuzzers", type=pathlib.Path, required=True, help="folder of the fuzz targets")
     parser.add_argument("--readers", nargs="+", choices=READERS, default=list(READERS), help="only these")
-    parser.add_argument("--seconds", type=int, help="time for each reader, in place of a number")
+    parser.add_argument("--seconds", type=int, help="of the processor for each reader, in place of a number")
 
 
 if __name__ == "__main__":
-    OUTCOMES = ["inputs read or refused", "faults"]
-    Campaign("reader of", OUTCOMES, OUTCOMES[1:], 10**7, options).run(body)
+    OUTCOMES = ["inputs read or refused", SECONDS, "faults"]
+    Campaign("reader of", OUTCOMES, OUTCOMES[2:], 10**7, options).run(body)
