@@ -72,8 +72,8 @@ def fuzz(campaign, reader, fuzzers, seconds):
         made = re.search(r"number_of_executed_units: +(\d+)", last)
         count = int(made[1]) if made else 0
         processor = round(after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime)
+        campaign.count(reader, SECONDS, run, f"{processor} s", times=processor)  # first: each count may write the table
         campaign.count(reader, "inputs read or refused", run, f"{count} inputs", times=count)
-        campaign.count(reader, SECONDS, run, times=processor)
         done, used = done + max(count, 1), used + max(processor, 1)
         if code:
             faults += 1
