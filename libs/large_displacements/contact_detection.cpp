@@ -176,7 +176,7 @@ void FaceContacts::list_pairs()
     for (std::size_t p = 0; p < pairs_.size(); ++p)
         for (const Index f : {pairs_[p].a, pairs_[p].b})
             of_face_[f].push_back(static_cast<Index>(p));
-    closes_.assign(pairs_.size(), 0);
+    touch_.assign(pairs_.size(), Touch::settled);
     active_.resize(pairs_.size());
     std::iota(active_.begin(), active_.end(), 0);
 }

@@ -220,18 +220,21 @@ private:
 
 } // namespace
 
-FaceContacts::Touch FaceContacts::find_force(FacePair& pair, const TimeStep& step, bool may_close) const
+FaceContacts::Touch FaceContacts::find_force(FacePair& pair, const TimeStep& step, Decision decision) const
 {
-    ContactForce force(pair, laws_[pair.law], faces_, step);
     const auto found = overlap_of(pair, faces_, shapes_, step.place);
-    if (!found) {
+    const bool is_bonded = pair.is_bonded();
+    if (found && found->is_behind() && pair.is_closed && !is_bonded && decision == Decision::none)
+        return Touch::may_end;
+    ContactForce force(pair, laws_[pair.law], faces_, step);
+    if (!found || decision == Decision::ends) {
         force.slide_off();
         return Touch::settled;
     }
     std::array<double, 2> closing{};
     for (int i = 0; i < 2; ++i)
         closing[i] = at(pair.lead, found->on_a[i]) - found->gap[i];
-    const bool is_too_deep = found->sunk() > deepest * depth_of(pair, faces_), is_bonded = pair.is_bonded();
+    const bool is_too_deep = found->sunk() > deepest * depth_of(pair, faces_);
     // A pair that has not touched yet may inherit a lead.
     const double most = std::max(closing[0], closing[1]) + (pair.is_known ? 0.0 : most_lead_);
     if (!pair.is_closed && !is_bonded &&
@@ -241,10 +244,20 @@ FaceContacts::Touch FaceContacts::find_force(FacePair& pair, const TimeStep& ste
     }
     if (is_too_deep)
         return Touch::too_deep;
-    if (!pair.is_closed && !is_bonded && !may_close)
+    if (!pair.is_closed && !is_bonded && decision == Decision::none)
         return Touch::comes_about;
     force.press(*found, closing);
     return Touch::settled;
+}
+
+// Whether an overlap is of faces behind others that touch. If it continues the contact `before`, it is about as deep:
+// deeper by the length of the overlap at most.
+bool FaceContacts::lies_behind(const Overlap& found, const FacePair* before, const TimeStep& step) const
+{
+    if (!found.is_behind() || before == nullptr)
+        return found.is_behind();
+    const auto other = overlap_of(*before, faces_, shapes_, step.place);
+    return -std::max(found.gap[0], found.gap[1]) > (other ? other->sunk() : 0.0) + found.length;
 }
 
 // Sets the inherited state of an open pair that comes to touch. Returns false if it stays open, because other faces
@@ -259,7 +272,8 @@ bool FaceContacts::comes_to_touch(FacePair& pair, const Overlap& found, const Ti
     if (is_deep(pair, found, faces_, step.move) &&
         (before == nullptr || found.sunk() > sunk_of(*before) + deepest_new * depth_of(pair, faces_)))
         return false; // another face behind
-    if (before == nullptr && (found.is_behind() || (!pair.is_known && -found.sunk() >= pair.lead[0])))
+    if (lies_behind(found, before, step) ||
+        (before == nullptr && !pair.is_known && -found.sunk() >= pair.lead[0]))
         return false;
     if (before != nullptr && !pair.is_known) {
         // A face that slides on to the next one keeps the memory of its joint. The sides of the pair may change places:

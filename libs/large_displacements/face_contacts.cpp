@@ -16,7 +16,7 @@ namespace jointcreep::large_displacements
 struct FaceContacts::Sum {
     PairEnergy energy;
     double stiffest = 0, most_lead = 0;
-    bool comes_about = false;                           // any of them
+    bool is_undecided = false;                          // any of them
     Index too_deep = std::numeric_limits<Index>::max(); // the first one
 
     void take(const FacePair& pair)
@@ -32,7 +32,7 @@ struct FaceContacts::Sum {
         energy += other.energy;
         stiffest = std::max(stiffest, other.stiffest);
         most_lead = std::max(most_lead, other.most_lead);
-        comes_about = comes_about || other.comes_about;
+        is_undecided = is_undecided || other.is_undecided;
         too_deep = std::min(too_deep, other.too_deep);
     }
 };
@@ -114,14 +114,14 @@ void FaceContacts::update(const std::vector<Vector2d>& place, const std::vector<
 
     const TimeStep step{place, move, dt, viscosity};
     Sum sum = find_forces(step, threads);
+    if (sum.is_undecided)
+        find_forces_of_undecided(step, sum);
     if (sum.too_deep < static_cast<Index>(pairs_.size()))
         throw equilibrium_error(
             "two pieces of rock overlap at " +
             shown(Vector2d(origin_ + place[faces_.gridpoint[pairs_[sum.too_deep].a][0]])) +
             " by more than half the depth of a zone; the joint's normal stiffness is too small "
             "for what presses on it");
-    if (sum.comes_about)
-        find_forces_of_new(step, sum);
     energy_ = sum.energy;
     most_lead_ = sum.most_lead;
     stiffest_ = std::max(stiffest_open_, sum.stiffest);
@@ -130,7 +130,7 @@ void FaceContacts::update(const std::vector<Vector2d>& place, const std::vector<
     is_sought_ = false;
 }
 
-// Forces of active pairs; pairs that come to touch are marked only.
+// Forces of active pairs; those that other pairs decide on are marked only.
 FaceContacts::Sum FaceContacts::find_forces(const TimeStep& step, int threads)
 {
     return sum_in_chunks<Sum>(static_cast<Index>(active_.size()), threads, [&](Index i, Sum& some) {
@@ -146,34 +146,40 @@ FaceContacts::Sum FaceContacts::find_forces(const TimeStep& step, int threads)
             return;
         }
         const bool was_closed = pair.is_closed;
-        const Touch touch = find_force(pair, step, false);
+        const Touch touch = find_force(pair, step, Decision::none);
         if (touch == Touch::too_deep)
             some.too_deep = std::min(some.too_deep, p);
-        closes_[p] = touch == Touch::comes_about;
-        some.comes_about = some.comes_about || closes_[p];
+        else if (touch != Touch::settled) {
+            touch_[p] = touch;
+            some.is_undecided = true;
+            return;
+        }
         some.take(pair);
         if (!is_sought_ && (was_closed || pair.is_closed))
             take_forces(i);
     });
 }
 
-// Forces of pairs that come to touch. Pairs that lie behind are last: the pairs they may have slid on from must be
+// Forces of pairs that come to touch, or lie behind. Those that lie behind are last: the pairs they may continue must be
 // closed first.
-void FaceContacts::find_forces_of_new(const TimeStep& step, Sum& sum)
+void FaceContacts::find_forces_of_undecided(const TimeStep& step, Sum& sum)
 {
     for (const bool is_behind : {false, true})
         for (std::size_t i = 0; i < active_.size(); ++i) {
             const Index p = active_[i];
-            if (!closes_[p])
-                continue;
             FacePair& pair = pairs_[p];
+            if (touch_[p] == Touch::settled)
+                continue;
             const auto found = overlap_of(pair, faces_, shapes_, step.place);
             if (found->is_behind() != is_behind)
                 continue;
-            closes_[p] = 0;
-            if (!comes_to_touch(pair, *found, step))
-                continue;
-            find_force(pair, step, true);
+            const bool comes = std::exchange(touch_[p], Touch::settled) == Touch::comes_about;
+            if (comes ? comes_to_touch(pair, *found, step)
+                      : !lies_behind(*found, contact_before(pair, found->normal(), step.place), step)) {
+                if (find_force(pair, step, Decision::touches) == Touch::too_deep)
+                    sum.too_deep = std::min(sum.too_deep, p);
+            } else if (!comes)
+                find_force(pair, step, Decision::ends);
             sum.take(pair);
             if (!is_sought_)
                 take_forces(static_cast<Index>(i));

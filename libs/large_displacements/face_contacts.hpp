@@ -8,6 +8,10 @@
 // The plane of a contact is that of the face into which a corner of the other one sinks. Where two corners meet, within
 // a hundredth of the shorter face, the plane turns smoothly from one face to the other.
 //
+// A pair whose faces are everywhere deeper in each other than they overlap carries no load: the corner between them is
+// in the other block by way of another face, and is pushed back by that one. The exception is a pair that continues
+// another one, about as deep.
+//
 // closing = lead - gap. The lead is the closing of a contact between faces without a gap: that under the in-situ
 // stress, plus dilation since. It belongs to a pair of faces. When a face slides on to the next one, the new pair
 // inherits it. The shear traction is a stress along the contact, so it rotates with the contact.
@@ -153,8 +157,10 @@ public:
 
 private:
     struct Sum;
-    // Result for a pair in a step: done, overlap too deep for a valid force, or about to touch.
-    enum class Touch { settled, too_deep, comes_about };
+    // Result for a pair in a step: done, overlap too deep for a valid force, or, which other pairs decide: whether it comes
+    // to touch, and whether it goes on to touch though its faces lie behind each other.
+    enum class Touch { settled, too_deep, comes_about, may_end };
+    enum class Decision { none, touches, ends };
 
     // Search for pairs that may touch: contact_detection.cpp.
     void find_corners(const std::vector<Vector2d>& place);
@@ -174,14 +180,15 @@ private:
     void dilate(const std::vector<Vector2d>& place, const std::vector<Vector2d>& move);
 
     // The force of a pair: contact_forces.cpp.
-    Touch find_force(FacePair& pair, const TimeStep& step, bool may_close) const;
+    Touch find_force(FacePair& pair, const TimeStep& step, Decision decision) const;
+    bool lies_behind(const Overlap& found, const FacePair* before, const TimeStep& step) const;
     bool comes_to_touch(FacePair& pair, const Overlap& found, const TimeStep& step) const;
 
     // Of all pairs.
     void find_shapes(const std::vector<Vector2d>& place, int threads);
     double farthest_since_search(const std::vector<Vector2d>& place, int threads) const;
     Sum find_forces(const TimeStep& step, int threads);
-    void find_forces_of_new(const TimeStep& step, Sum& sum);
+    void find_forces_of_undecided(const TimeStep& step, Sum& sum);
     void take_forces(Index active);
 
     std::vector<joint::Law> laws_;
@@ -198,7 +205,7 @@ private:
     std::vector<std::vector<Index>> joints_;  // pairs between the same two sides, if any law dilates
     std::vector<Index> active_;               // pairs that may carry a load before the next search
     std::vector<double> clearance_;           // displacement of gridpoints before they can [m]
-    std::vector<char> closes_;                // pairs that may in this update
+    std::vector<Touch> touch_;                // of pairs in this update: settled, or still to be decided
     // The gridpoints of active pairs, and the forces added to each of them [N/m]: by each corner of each pair, its
     // shares of the two forces.
     std::vector<Index> touched_, touched_start_;

@@ -369,6 +369,44 @@ TEST(face_contacts, faces_far_behind_do_not_touch)
         EXPECT_EQ(force.y(), 0);
 }
 
+// A block slides over a joint that crosses its plane and continues below it. It has sunk into the plane before, so its lower
+// corner is a little below the upper edge of the rock beyond the joint. That is no step that would hold it: nothing but
+// friction does, and the block at the start has four corners at one place.
+TEST(face_contacts, a_corner_that_has_sunk_in_passes_a_joint_that_crosses)
+{
+    const double sunk = 1e-5;
+    for (const double step : {1e-7, 1e-6, 1e-4}) {
+        TwoLines lines({{0, -1}, {0, 0}, {-2, 0}},
+                       {{2, 0}, {0, 0}, {0, -1}}); // the rock before the joint, and beyond it
+        const TwoLines block({{-1, 1 - sunk}, {-1, -sunk}, {0, -sunk}, {0, 1 - sunk}}, {});
+        const auto first = static_cast<Index>(lines.place.size());
+        lines.place.insert(lines.place.end(), block.place.begin(), block.place.end());
+        for (const auto& [from, to] : block.faces.gridpoint) {
+            lines.faces.gridpoint.push_back({first + from, first + to});
+            lines.faces.depth.push_back(1);
+        }
+        FaceContacts contacts = contacts_of(lines);
+        std::vector<Vector2d> move(lines.place.size(), Vector2d::Zero());
+        contacts.update(lines.place, move, 1, 0, 1);
+        const double pressed = k_n * sunk * 1;
+        double slid = 0, most = 0;
+        while (slid < 100 * step || slid < 10 * sunk) {
+            for (auto g = static_cast<std::size_t>(first); g < lines.place.size(); ++g)
+                lines.place[g] += move[g] = {step, 0};
+            slid += step;
+            contacts.update(lines.place, move, 1, 0, 1);
+            Vector2d sum(0, 0);
+            const std::vector<Vector2d> force = forces_of(contacts, lines.place.size());
+            for (auto g = static_cast<std::size_t>(first); g < force.size(); ++g)
+                sum += force[g];
+            most = std::max(most, -sum.x());
+            EXPECT_NEAR(sum.y(), pressed, 1e-3 * pressed) << slid;
+        }
+        // Beside friction: what the corner bears until it is as far on as it has sunk in.
+        EXPECT_LT(most, friction * pressed + 1.01 * k_n * sunk * sunk) << step;
+    }
+}
+
 // However soft the joint: what sinks deeper than faces are sought (a quarter of the median face, here 0.2 m)
 // goes on to press, down to half the depth of a zone, where it is refused.
 TEST(face_contacts, what_sinks_deep_goes_on_to_press)

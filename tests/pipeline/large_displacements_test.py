@@ -142,6 +142,35 @@ class Blocks(ChainTest):
             self.assertLessEqual(data["/equilibria/unbalanced_force_ratio"].max(), 1e-6)
             self.assertLess(error_of_energy(data), ACCOUNT, more)
 
+    def test_a_block_slides_over_a_joint_that_crosses_its_plane(self):
+        """The joint at its lower end continues below the plane, so that four corners meet there. They do not catch: the block
+        slides with the acceleration that friction leaves, however little that is, to the wall."""
+        dip, length = 30, 7
+        c, s = math.cos(math.radians(dip)), math.sin(math.radians(dip))
+        for friction, stiffness, lean, more in ((29.5, 2000, 0, RIGID), (29.9, 2000, 0, RIGID), (28, 200, 0.3, RIGID),
+                                                (29.5, 2000, -0.3, RIGID), (29, 2000, 0.2, "stiffness_damping_s = 3e-5")):
+            at, below = 4.0, 6.0  # along the plane, and off it
+
+            def place(down, off):
+                return [round(down * c + off * s, 9), round((length - down) * s + off * c, 9)]
+
+            text = changed(incline(dip, friction, length=length, more=more), rf"^from_m = {re.escape(str(place(at, 0)))}$",
+                           f"from_m = {place(at + lean * below, -below)}")
+            text = changed(text, "^normal_stiffness_MPa_per_m = .*", f"normal_stiffness_MPa_per_m = {stiffness}")
+            text = changed(text, r"^\[schedule\]$", f'[[boundary]]\nfrom_m = [0, -1]\nto_m = {place(0, 0)}\nfix = "xy"\n[schedule]')
+            data = datasets(self.chain.result(text))
+            acceleration = GRAVITY * (s - c * math.tan(math.radians(friction)))
+            time = data["/dynamics/dynamic_time"]
+            moved = data["/states/displacement"][-len(time):]
+            block = np.linalg.norm(moved[-1], axis=1) > 0.5
+            down = (moved[:, block] @ [c, -s]).mean(axis=1)
+            sliding = (time > 0.2) & (down < 1.9) & (np.arange(len(time)) < down.argmax())
+            self.assertGreater(sliding.sum(), 8)
+            found = 2 * np.polyfit(time[sliding], down[sliding], 2)[0]
+            self.assertLess(abs(found / acceleration - 1), 0.01, (friction, stiffness, lean))
+            self.assertAlmostEqual(self.along(data, dip), 2, delta=0.02)
+            self.assertLess(error_of_energy(data), ACCOUNT, (friction, stiffness, lean))
+
     def test_the_last_analysis_ends_when_asked_to(self):
         """While the block still slides: that is no failure."""
         dip, friction, stop = 30, 20, 1.25
