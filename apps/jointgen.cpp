@@ -70,8 +70,8 @@ Warnings warnings_of(const Network& network)
     Warnings warnings;
     for (std::size_t set = 0; set < on_edges.size(); ++set)
         if (on_edges[set] == 0)
-            warnings.add(program.name,
-                         "no block edge lies on joint set \"" + network.names.joint_set[set] + '"');
+            warnings.add(program.name, "no block edge lies on joint set \"" + network.names.joint_set[set] +
+                                           "\": its joints are outside the section, or end inside blocks");
     return warnings;
 }
 

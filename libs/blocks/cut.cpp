@@ -705,6 +705,9 @@ Blocks cut(const Scene& scene, const Joints& joints, Subdivision subdivision)
                            shown(scene.cutting.shortest_edge) +
                            " m; wanted a smaller one (0.02 x [zones] size_m where it is not given)"
                      : "its remove_m contains no rock that earlier stages leave"));
+    if (std::ranges::find(blocks.block_stage, Index{-1}) == blocks.block_stage.end())
+        throw input_error("stage \"" + scene.stages.back().name +
+                          "\" removes the last rock; wanted rock that no remove_m contains");
     return blocks;
 }
 

@@ -341,6 +341,10 @@ TomlValue parse_toml(std::string_view text, const std::string& name)
         std::string what = shortened(std::string(error.description()));
         if (what.ends_with("saw ','"))
             what += ". (A decimal number has a point: 0.2, not 0,2. A list is in brackets: [0, 2])";
+        else if (what.find("parsing date") != std::string::npos || what.ends_with("exponent, saw '.'"))
+            what += ". (A date has year, month, day: 1994-06-15)";
+        else if (what.ends_with("could not determine value type"))
+            what += ". (A text, also a name of [variables], has double quotes: \"granite\")";
         refuse(name, error.source().begin.line, what);
     }
 }

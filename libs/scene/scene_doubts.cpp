@@ -25,10 +25,14 @@ using namespace keys;
 constexpr double least_density = 1500, most_density = 4000;          // [kg/m3]: coal to ores
 constexpr double least_modulus = 0.01, most_modulus = 200;           // [GPa]
 constexpr double most_rock_cohesion = 100, most_joint_cohesion = 10; // [MPa]
+constexpr double most_rock_tension = 50, most_joint_tension = 10;    // [MPa]
 constexpr double least_friction = 3;                                 // [deg]
 constexpr double least_ratio = 0.2, most_ratio = 4;                  // of horizontal to vertical stress
 constexpr double least_gravity = 9.5, most_gravity = 10.1;           // [m/s2]
 constexpr double least_of_weight = 0.75, most_of_weight = 1.25;      // vertical stress over the weight above
+constexpr double much_cover = 5;         // of rock, whose weight on a free surface is too much [m]
+constexpr double most_of_duration = 100; // retardation time over the duration of the scene
+constexpr double most_creep_error = 10;  // of a creep step [mm]
 
 class Doubts
 {
@@ -45,6 +49,9 @@ public:
             add(source_.once("section"), "gravity_m_per_s2", "on Earth it is 9.81 m/s2");
         look_at_datum();
         look_at_stress();
+        look_at_outline();
+        look_at_zones();
+        look_at_creep();
         look_at_points();
         return std::move(found_);
     }
@@ -77,11 +84,17 @@ private:
         if (!usual(rock.youngs_modulus / unit::GPa, least_modulus, most_modulus))
             add(given, "youngs_modulus_GPa",
                 "rock usually has " + shown(least_modulus) + " to " + shown(most_modulus) + " GPa");
+        if (rock.kelvin)
+            look_at_retardation(rock.kelvin->viscosity / rock.kelvin->modulus, given,
+                                "kelvin_shear_viscosity_GPa_day");
         if (!rock.strength)
             return;
         look_at_friction(rock.strength->friction_angle, given, "friction_angle_deg");
         if (rock.strength->cohesion / unit::MPa > most_rock_cohesion)
             add(given, "cohesion_MPa", "rock usually has at most " + shown(most_rock_cohesion) + " MPa");
+        if (rock.strength->tensile_strength / unit::MPa > most_rock_tension)
+            add(given, "tensile_strength_MPa",
+                "rock usually has at most " + shown(most_rock_tension) + " MPa");
     }
 
     void look_at(const JointMaterial& joint, const Given& given)
@@ -90,10 +103,30 @@ private:
             look_at_friction(joint.friction_angle, given, "friction_angle_deg");
         if (given.find("cohesion_MPa") && joint.cohesion / unit::MPa > most_joint_cohesion)
             add(given, "cohesion_MPa", "joints usually have at most " + shown(most_joint_cohesion) + " MPa");
+        if (given.find("tensile_strength_MPa") && joint.tensile_strength / unit::MPa > most_joint_tension)
+            add(given, "tensile_strength_MPa",
+                "joints usually have at most " + shown(most_joint_tension) + " MPa");
+        const bool is_chain = given.find("kelvin_chain") != nullptr;
+        for (const Kelvin& unit : joint.kelvin) {
+            look_at_retardation(unit.normal_viscosity / unit.normal_stiffness, given,
+                                is_chain ? "kelvin_chain" : "normal_kelvin_viscosity_MPa_day_per_m");
+            look_at_retardation(unit.shear_viscosity / unit.shear_stiffness, given,
+                                is_chain ? "kelvin_chain" : "shear_kelvin_viscosity_MPa_day_per_m");
+        }
         if (joint.normal_stiffness > 0 && joint.shear_stiffness > 2 * joint.normal_stiffness)
             add(given, "shear_stiffness_MPa_per_m",
                 "a joint is usually softer in shear than across, normal_stiffness_MPa_per_m = " +
                     shown(joint.normal_stiffness / (unit::MPa / unit::m)));
+    }
+
+    // Of a Kelvin unit [s].
+    void look_at_retardation(double time, const Given& given, const std::string& key)
+    {
+        if (scene_.creep && time > most_of_duration * scene_.end)
+            add(given, key,
+                "the retardation time, viscosity over stiffness, is " + shown(rounded(time / unit::day)) +
+                    " days, and the scene lasts " + shown(rounded(scene_.end / unit::day)) +
+                    ": this unit hardly creeps; is the viscosity in the unit of its key?");
     }
 
     // Above the datum a stress that grows with depth is tension.
@@ -136,6 +169,76 @@ private:
                 given.find("compression_xx_gradient_MPa_per_m") ? "compression_xx_gradient_MPa_per_m" : key,
                 "the horizontal stress" + where + " is " + shown(rounded(at[0] / at[1])) +
                     " times the vertical one; usual are " + shown(least_ratio) + " to " + shown(most_ratio));
+    }
+
+    // Of the in-situ stress on a side of the outline, less what boundaries support [Pa].
+    Eigen::Vector2d unsupported(const Eigen::Vector2d& place, const Eigen::Vector2d& normal) const
+    {
+        const Eigen::Vector3d stress = scene_.in_situ_stress.at(place);
+        Eigen::Vector2d traction(stress[0] * normal.x() + stress[2] * normal.y(),
+                                 stress[2] * normal.x() + stress[1] * normal.y());
+        const double tolerance = outline_tolerance(scene_.outline);
+        for (const Boundary& boundary : scene_.boundaries) {
+            if (distance_to_sides({boundary.from, boundary.to}, place) > tolerance)
+                continue;
+            const bool is_loaded = boundary.traction || !boundary.joint.empty();
+            if (boundary.fix_x || is_loaded)
+                traction.x() = 0;
+            if (boundary.fix_y || is_loaded)
+                traction.y() = 0;
+        }
+        return traction;
+    }
+
+    // Rock that nothing loads has no stress on its surface.
+    void look_at_outline()
+    {
+        double largest = 0;
+        Eigen::Vector2d where;
+        const Polygon& outline = scene_.outline;
+        for (std::size_t i = 0; i < outline.size(); ++i) {
+            const Eigen::Vector2d from = outline[i], along = outline[(i + 1) % outline.size()] - from,
+                                  normal = Eigen::Vector2d(along.y(), -along.x()).normalized();
+            for (const double share : {0.1, 0.3, 0.5, 0.7, 0.9}) {
+                const Eigen::Vector2d place = from + share * along;
+                if (scene_.in_situ_stress.depth_of(place) < 0)
+                    continue; // look_at_datum() tells it
+                if (const double found = unsupported(place, normal).norm(); found > largest) {
+                    largest = found;
+                    where = place;
+                }
+            }
+        }
+        const auto light = std::ranges::min_element(scene_.rocks, {}, &Rock::density);
+        if (scene_.gravity == 0 || largest <= much_cover * light->density * scene_.gravity)
+            return;
+        const Given given = source_.once("in_situ_stress");
+        add(given, given.find("ground_m") ? "ground_m" : "elevation_m",
+            "the stress on the outline at [" + shown(rounded(where.x())) + ", " + shown(rounded(where.y())) +
+                "] m is " + shown(rounded(largest / unit::MPa)) +
+                " MPa, where no [[boundary]] supports or loads it; expected about 0 on a free surface");
+    }
+
+    void look_at_zones()
+    {
+        const auto size_along = [this](const Eigen::Vector2d& axis) {
+            const Interval sides = extent(scene_.outline, axis);
+            return sides.high - sides.low;
+        };
+        const double size =
+            std::min(size_along(Eigen::Vector2d::UnitX()), size_along(Eigen::Vector2d::UnitY()));
+        if (scene_.zone_size > size)
+            add(source_.once("zones"), "size_m",
+                "zones are as large as the section, " + shown(rounded(size)) +
+                    " m; usual is at most a tenth of it");
+    }
+
+    void look_at_creep()
+    {
+        if (scene_.creep && scene_.creep->tolerance.value_or(0) > most_creep_error * unit::mm)
+            add(source_.once("creep"), "tolerance_m",
+                "the allowed error of a step is " + shown(*scene_.creep->tolerance / unit::mm) +
+                    " mm; usual are 0.001 to 0.1 mm");
     }
 
     // To three digits.

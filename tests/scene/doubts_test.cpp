@@ -48,6 +48,14 @@ shear_xy_gradient_MPa_per_m = 0
 from_m = [0, 0]
 to_m = [60, 0]
 fix = "xy"
+[[boundary]]
+from_m = [0, 0]
+to_m = [0, 40]
+fix = "x"
+[[boundary]]
+from_m = [60, 0]
+to_m = [60, 40]
+fix = "x"
 [schedule]
 end = 10
 [[stage]]
@@ -121,6 +129,41 @@ TEST(doubts, a_datum_below_the_top)
 {
     expect_doubt("elevation_m = 40", "elevation_m = 25",
                  "the section reaches 15 m above it, where the stress is tension");
+}
+
+TEST(doubts, stress_on_a_free_surface)
+{
+    expect_doubt(
+        "elevation_m = 40", "elevation_m = 46",
+        "the stress on the outline at [54, 40] m is 0.159 MPa, where no [[boundary]] supports or loads it");
+    EXPECT_TRUE(doubts_of(replaced(sound, "elevation_m = 40", "elevation_m = 44")).empty()) << "little cover";
+    const std::string load =
+        "[[boundary]]\nfrom_m = [60, 40]\nto_m = [0, 40]\ntraction_MPa = [0, -0.158922]\n[schedule]";
+    EXPECT_TRUE(
+        doubts_of(replaced(replaced(sound, "elevation_m = 40", "elevation_m = 46"), "[schedule]", load))
+            .empty());
+}
+
+TEST(doubts, tensile_strength_zones_and_creep)
+{
+    expect_doubt("tensile_strength_MPa = 1\n", "tensile_strength_MPa = 1000\n", "at most 50 MPa");
+    expect_doubt("tensile_strength_MPa = 0\n", "tensile_strength_MPa = 100\n", "at most 10 MPa");
+    expect_doubt("size_m = 3", "size_m = 50", "zones are as large as the section, 40 m");
+    const std::string creep = "size_m = 3\n[creep]\ntolerance_m = ";
+    EXPECT_TRUE(doubts_of(replaced(sound, "size_m = 3", creep + "1e-4")).empty());
+    const auto coarse = doubts_of(replaced(sound, "size_m = 3", creep + "0.1"));
+    ASSERT_EQ(coarse.size(), 1u);
+    expect_part(coarse[0], "the allowed error of a step is 100 mm; usual are 0.001 to 0.1 mm");
+    const std::string unit =
+        "tensile_strength_MPa = 0\nnormal_kelvin_stiffness_MPa_per_m = 2000\n"
+        "normal_kelvin_viscosity_MPa_day_per_m = VISCOSITY\nshear_kelvin_stiffness_MPa_per_m = 2000\n"
+        "shear_kelvin_viscosity_MPa_day_per_m = 2e4";
+    const std::string creeping =
+        replaced(replaced(sound, "tensile_strength_MPa = 0", unit), "size_m = 3", creep + "1e-4");
+    EXPECT_TRUE(doubts_of(replaced(creeping, "VISCOSITY", "1e6")).empty());
+    const auto slow = doubts_of(replaced(creeping, "VISCOSITY", "8.64e10"));
+    ASSERT_EQ(slow.size(), 1u);
+    expect_part(slow[0], "is 43200000 days, and the scene lasts 10: this unit hardly creeps");
 }
 
 TEST(doubts, points_in_rock_that_is_excavated)
