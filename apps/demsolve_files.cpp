@@ -33,8 +33,8 @@ std::string name_of_run(const std::string& checkpoint, bool stands)
 Files::Files(const Arguments& arguments, const std::string& program, const store::JointsFile& file,
              std::string options, std::string end)
     : input_(arguments.input()), output_(arguments.output()), failed_(failed_name(output_)),
-      checkpoint_(arguments.text("checkpoint").value_or("")), file_(file), provenance_(file.provenance),
-      options_(std::move(options)), end_(std::move(end))
+      checkpoint_(arguments.text("checkpoint").value_or("")), is_quiet_(arguments.quiet()), file_(file),
+      provenance_(file.provenance), options_(std::move(options)), end_(std::move(end))
 {
     store::check_writable(output_);
     std::vector<NamedFile> written = arguments.files({"output", "checkpoint"});
@@ -48,6 +48,12 @@ Files::Files(const Arguments& arguments, const std::string& program, const store
     provenance_.program.push_back(program);
     provenance_.version.emplace_back(version());
     provenance_.input_sha256.push_back(store::sha256_of(input_));
+}
+
+void Files::say(const std::string& text) const
+{
+    if (!is_quiet_)
+        print_line(provenance_.program.back(), text);
 }
 
 void Files::warn(const std::string& text)
@@ -93,6 +99,7 @@ void Files::write_checkpoint(const StrengthReduction& reduction, const Result& s
 {
     store::write_checkpoint(checkpoint_, provenance(options_of(reduction)), file_.network, file_.equivalent,
                             so_far, checkpoint, runs_before);
+    stop_if_asked(provenance_.program.back(), "stopped; the same command continues from " + checkpoint_);
 }
 
 void Files::keep_last_checkpoint(bool stands) const

@@ -23,6 +23,8 @@ public:
     Files(const Arguments& arguments, const std::string& program, const store::JointsFile& file,
           std::string options, std::string end);
 
+    // Says a line at once, unless --quiet.
+    void say(const std::string& text) const;
     // Says a warning at once, and writes it into all files from now on.
     void warn(const std::string& text);
 
@@ -62,6 +64,7 @@ private:
 
     std::string input_, output_, failed_;
     std::string checkpoint_; // or ""
+    bool is_quiet_;
     const store::JointsFile& file_;
     Provenance provenance_;
     std::string options_, end_;

@@ -182,6 +182,8 @@ std::vector<Option> options()
         {"safety-width", "W", "width of that bracket, over F (default 0.01)"},
         {"safety-displacement", "R",
          "largest displacement that counts as failure, over that with strengths 64 times as large (default 10)"},
+        {"runs-at-once", "N",
+         "make N runs of that search side by side; they do not change the result (default 1)"},
         {"no-mesh-estimate", "",
          "where rock yields: no second search with zones twice as large, which estimates what the mesh adds to F"},
         {"until", "DAY", "end there instead of at the scene's end, before or after it [day]"},
@@ -283,7 +285,8 @@ StrengthReduction strength_reduction(const Arguments& arguments, const Scene& sc
     const double width = arguments.number("safety-width", from(1e-4).to(1), "(ratio)").value_or(0.01);
     const double runs_away = arguments.number("safety-displacement", from(2).to(1e6), "(ratio)").value_or(10);
     if (!has_bracket) {
-        for (const std::string option : {"safety-width", "safety-displacement", "no-mesh-estimate"})
+        for (const std::string option :
+             {"safety-width", "safety-displacement", "runs-at-once", "no-mesh-estimate"})
             if (arguments.has(option))
                 throw input_error("--" + option + " goes with --factor-of-safety only");
         return {factor, {}};
@@ -298,7 +301,8 @@ StrengthReduction strength_reduction(const Arguments& arguments, const Scene& sc
         throw input_error(
             "--factor-of-safety: the scene has [large_displacements], where rock that fails reaches a new equilibrium; "
             "wanted a scene without");
-    return {factor, demsolve::SafetySearch{width, runs_away, !arguments.has("no-mesh-estimate")}};
+    return {factor, demsolve::SafetySearch{width, runs_away, !arguments.has("no-mesh-estimate"),
+                                           arguments.threads("runs-at-once")}};
 }
 
 analysis::Recording recording(const Arguments& arguments)
@@ -308,6 +312,10 @@ analysis::Recording recording(const Arguments& arguments)
     const double minutes = arguments.number("checkpoint-every", from(0).to(1e6), "min").value_or(10);
     if (!arguments.has("checkpoint") && arguments.has("checkpoint-every"))
         throw input_error("--checkpoint-every goes with --checkpoint only");
+    if (arguments.has("checkpoint")) {
+        stop_where_kept(arguments.program());
+        recording.keep_now = is_asked_to_stop;
+    }
     if (arguments.has("checkpoint") && minutes > 0)
         recording.keep_every = std::chrono::duration<double>(60 * minutes);
     return recording;

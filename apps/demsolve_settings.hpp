@@ -35,6 +35,7 @@ struct SafetySearch {
     double width;     // of the bracket, over the factor [-]
     double runs_away; // displacement that counts as failure, over that with strengths 64 times as large [-]
     bool estimates_mesh; // what the mesh adds to the factor, by zones twice as large
+    int at_once = 1;     // runs side by side
 };
 
 // Strength reduction factor.

@@ -331,9 +331,9 @@ std::optional<double> Arguments::number(const std::string& option, const Range& 
     return value;
 }
 
-int Arguments::threads() const
+int Arguments::threads(const std::string& option) const
 {
-    const auto wanted = static_cast<int>(whole_number("threads", 1, 1024).value_or(1));
+    const auto wanted = static_cast<int>(whole_number(option, 1, 1024).value_or(1));
     // OpenMP ends the program where it cannot start its threads. So the same number is started here first.
     std::latch all(1);
     std::vector<std::jthread> team;
@@ -343,7 +343,7 @@ int Arguments::threads() const
     } catch (const std::system_error& error) {
         const std::string started = std::to_string(team.size() + 1);
         all.count_down();
-        throw input_error("--threads " + std::to_string(wanted) + ": only " + started +
+        throw input_error("--" + option + " " + std::to_string(wanted) + ": only " + started +
                           " could be started here (" + error.code().message() + "); wanted fewer");
     } catch (...) {
         all.count_down();
@@ -418,6 +418,44 @@ int run(const Program& program, int argc, char** argv, const std::function<void(
         complain(program.name, std::string("internal error: ") + error.what());
         leave(exit_internal);
     }
+}
+
+namespace
+{
+
+volatile std::sig_atomic_t asked_by = 0; // a signal
+std::string asked_text;                  // that is said then
+
+void ask_to_stop(int signal)
+{
+    asked_by = signal;
+    std::signal(SIGINT, SIG_DFL);
+    std::signal(SIGTERM, SIG_DFL);
+    [[maybe_unused]] const auto written = write(STDERR_FILENO, asked_text.data(), asked_text.size());
+}
+
+} // namespace
+
+void stop_where_kept(const std::string& program)
+{
+    asked_text =
+        program + ": stops when its state is kept in the checkpoint; a second signal stops it at once\n";
+    for (const int signal : {SIGINT, SIGTERM})
+        if (std::signal(signal, ask_to_stop) == SIG_IGN)
+            std::signal(signal, SIG_IGN); // as in the background of a shell
+}
+
+bool is_asked_to_stop()
+{
+    return asked_by != 0;
+}
+
+void stop_if_asked(const std::string& program, const std::string& text)
+{
+    if (asked_by == 0)
+        return;
+    print_line(program, text);
+    std::raise(asked_by);
 }
 
 Progress::Progress(std::string program, bool quiet)
@@ -504,9 +542,14 @@ void Summary::add(std::string label, std::int32_t value, const std::string& unit
     add(std::move(label), std::to_string(value), unit);
 }
 
+void print_line(const std::string& program, const std::string& text)
+{
+    std::cerr << program + ": " + text + '\n' << std::flush;
+}
+
 void print_warning(const std::string& program, const std::string& text)
 {
-    std::cerr << program << ": warning: " << text << '\n';
+    print_line(program, "warning: " + text);
 }
 
 void Summary::print(const Arguments& arguments) const

@@ -128,8 +128,8 @@ public:
                                               std::uint64_t most) const;
     std::optional<double> number(const std::string& option) const; // finite
     std::optional<double> number(const std::string& option, const Range& range, std::string_view unit) const;
-    // The value of --threads, 1 if it is not given; refuses more threads than the system starts.
-    int threads() const;
+    // The value of --threads or another option, 1 if it is not given; refuses more threads than the system starts.
+    int threads(const std::string& option = "threads") const;
 
 private:
     friend int run(const Program&, int, char**, const std::function<void(const Arguments&)>&);
@@ -170,8 +170,17 @@ private:
     std::string time_left(double fraction) const;
 };
 
+// Says a line on stderr: "demsolve: ...".
+void print_line(const std::string& program, const std::string& text);
 // Says a warning on stderr: "demsolve: warning: ...".
 void print_warning(const std::string& program, const std::string& text);
+
+// Where a program can keep its state: from here on a first SIGINT or SIGTERM only asks it to do that. A second one ends it.
+void stop_where_kept(const std::string& program);
+// Whether it was asked.
+bool is_asked_to_stop();
+// It has kept its state: if it was asked, it ends by that signal, with this line.
+void stop_if_asked(const std::string& program, const std::string& text);
 
 // The summary at the end of a run: lines "label   value unit", their values aligned; and warnings: what a person should
 // look at, although the run came to its end.

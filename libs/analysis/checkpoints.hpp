@@ -1,5 +1,5 @@
 // Keeps the state of an analysis, so that another run can continue from there: before every stage; and, when some time
-// has passed since, at the next moment at which that is possible (model/checkpoint.hpp).
+// has passed since or it is asked for, at the next moment at which that is possible (model/checkpoint.hpp).
 
 #pragma once
 
@@ -20,7 +20,8 @@ public:
     Checkpoints(Section& section, StepRecorder& step_history, const Recording& recording,
                 std::function<Checkpoint()> take)
         : section_(section), step_recorder_(step_history), keep_(recording.keep),
-          every_(recording.keep_every), keeps_next_(recording.keep_beginning), take_(std::move(take))
+          every_(recording.keep_every), now_(recording.keep_now), keeps_next_(recording.keep_beginning),
+          take_(std::move(take))
     {
         section.keeper = this;
     }
@@ -76,13 +77,14 @@ private:
         searches_ = 0;
         if (std::exchange(is_here_, false) || !keep_) // the moment that it continues from
             return;
-        const bool is_wanted = std::exchange(keeps_next_, false) || is_stage;
-        if (every_ || is_wanted)
-            here_ = take_();
-        if (is_wanted || is_due())
+        here_ = take_();
+        if (std::exchange(keeps_next_, false) || is_stage || is_due())
             keep();
     }
-    bool is_due() const { return keep_ && every_ && search_.empty() && Clock::now() - last_ >= *every_; }
+    bool is_due() const
+    {
+        return keep_ && search_.empty() && ((every_ && Clock::now() - last_ >= *every_) || now_());
+    }
     void keep()
     {
         keep_(section_.result, here_);
@@ -93,6 +95,7 @@ private:
     StepRecorder& step_recorder_;
     std::function<void(const Result&, const Checkpoint&)> keep_;
     std::optional<std::chrono::duration<double>> every_;
+    std::function<bool()> now_;
     bool keeps_next_; // whether due or not
     std::function<Checkpoint()> take_;
     Clock::time_point last_ = Clock::now();

@@ -5,7 +5,9 @@
 #include "model/units.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 #include <utility>
 
@@ -96,7 +98,6 @@ void DynamicStage::run(bool is_last)
     due_ = 0;
     bool is_recorded = goes_on(), rests = false;
     while (!rests && dynamics_.time() < stop) {
-        section_.say(section_.stage + ", " + shown(due_) + " s");
         if (!std::exchange(is_recorded, false)) {
             due_ = std::max(due_ + section_.scene.large_displacements->record_every, // once a step at most
                             std::nextafter(dynamics_.time(), never));
@@ -116,6 +117,14 @@ void DynamicStage::run(bool is_last)
     check_energy();
 }
 
+void DynamicStage::say()
+{
+    std::array<char, 64> text{};
+    std::snprintf(text.data(), text.size(), ", %.4g s, largest velocity %.2g m/s", dynamics_.time(),
+                  dynamics_.fastest());
+    section_.say((section_.stage.empty() ? "in situ" : section_.stage) + text.data());
+}
+
 // Steps until rock is at rest, or until a time has come [s].
 bool DynamicStage::comes_to_rest(double until)
 {
@@ -132,6 +141,8 @@ bool DynamicStage::comes_to_rest(double until)
         } catch (const equilibrium_error& error) {
             fail(section_, {.reason = error.what()}, section_.now);
         }
+        if (steps % Dynamics::check_every == 0)
+            say();
         if (dynamics_.time() > longest)
             give_up(dynamics_.moves_on("no rest within " + shown(longest) + " s"));
         if (section_.keeper != nullptr && steps % Dynamics::check_every == 0)

@@ -29,6 +29,7 @@ public:
 
 private:
     bool goes_on();
+    void say();
     bool comes_to_rest(double until);
     void pass(Tape& tape);
     [[noreturn]] void give_up(const mechanics::no_equilibrium& error);

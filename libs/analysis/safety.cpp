@@ -4,8 +4,17 @@
 #include "model/error.hpp"
 #include "rock/strength_factor.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <condition_variable>
+#include <deque>
+#include <exception>
 #include <limits>
+#include <map>
+#include <mutex>
+#include <thread>
 #include <utility>
+#include <vector>
 
 namespace jointcreep::analysis
 {
@@ -61,12 +70,12 @@ Outcome Trial::outcome() const
             rock::largest_plastic_strain(analysis_.assembly().zones)};
 }
 
-Outcome outcome_of(const Safety& trials, std::size_t i)
+Bracket bracket_of(Safety trials)
 {
-    const Ending ending = trials.stands[i] > 0    ? Ending::stands
-                          : trials.stands[i] == 0 ? Ending::falls
-                                                  : Ending::undecided;
-    return {ending, trials.largest_displacement[i], trials.largest_plastic_strain[i]};
+    Bracket bracket{{}, {}, std::move(trials)};
+    for (std::size_t i = 0; i < bracket.trials.factor.size(); ++i)
+        (bracket.trials.stands[i] > 0 ? bracket.stands : bracket.not_above) = bracket.trials.factor[i];
+    return bracket;
 }
 
 namespace
@@ -74,78 +83,200 @@ namespace
 
 constexpr double most_factor = 64; // and its inverse
 
-// Runs with different factors, and the bracket that they give.
-class Search
+void add(Safety& trials, double factor, const Outcome& outcome)
+{
+    trials.factor.push_back(factor);
+    trials.stands.push_back(outcome.ending == Ending::stands ? 1 : outcome.ending == Ending::falls ? 0 : -1);
+    trials.largest_displacement.push_back(outcome.largest_displacement);
+    trials.largest_plastic_strain.push_back(outcome.largest_plastic_strain);
+}
+
+} // namespace
+
+std::optional<double> Search::next_factor(const Safety& so_far) const
+{
+    const auto& stands = so_far.stands;
+    const std::size_t n = stands.size();
+    if (n == 0)
+        return 1 / most_factor;
+    if (stands[0] <= 0)
+        return std::nullopt;
+    if (n == 1)
+        return near.value_or(1);
+    const bool up = stands[1] > 0;
+    if (std::all_of(stands.begin() + 1, stands.end(), [&](Index stood) { return (stood > 0) == up; })) {
+        double factor = so_far.factor.back();
+        if (near)
+            factor += (up ? 1 : -1) * std::ldexp(*near / 20, static_cast<int>(n) - 2);
+        else
+            factor *= up ? 2 : 0.5;
+        if (factor <= most_factor && factor > 1 / most_factor)
+            return factor;
+    }
+    const Bracket bracket = bracket_of(so_far);
+    if (!bracket.not_above || *bracket.not_above - *bracket.stands <= width * *bracket.stands)
+        return std::nullopt;
+    return (*bracket.stands + *bracket.not_above) / 2;
+}
+
+double Search::most_displacement(const Safety& so_far) const
+{
+    const auto& displacement = so_far.largest_displacement;
+    return displacement.empty() || displacement[0] <= 0 ? std::numeric_limits<double>::infinity()
+                                                        : runs_away * displacement[0];
+}
+
+namespace
+{
+
+// Runs in threads of their own.
+class SideBySide
 {
 public:
-    Search(const RunWith& run_with, double runs_away) : run_with_(run_with), runs_away_(runs_away) {}
-
-    // The run whose displacement others are measured by. Whether it stands.
-    bool begin()
+    SideBySide(const Search& search, Runs& runs, int at_once)
+        : search_(search), runs_(runs), at_once_(static_cast<std::size_t>(at_once))
     {
-        if (!stands(1 / most_factor))
-            return false;
-        if (const double firm = found_.trials.largest_displacement[0]; firm > 0)
-            limit_ = runs_away_ * firm;
-        return true;
     }
 
-    bool stands(double factor)
+    Outcome outcome_of_next(double factor, const Safety& before)
     {
-        const Outcome outcome = run_with_(factor, limit_, found_.trials);
-        const bool stood = outcome.ending == Ending::stands;
-        found_.trials.factor.push_back(factor);
-        found_.trials.stands.push_back(stood ? 1 : outcome.ending == Ending::falls ? 0 : -1);
-        found_.trials.largest_displacement.push_back(outcome.largest_displacement);
-        found_.trials.largest_plastic_strain.push_back(outcome.largest_plastic_strain);
-        (stood ? found_.stands : found_.not_above) = factor;
-        return stood;
-    }
-
-    // Halves the bracket.
-    Bracket narrowed(double width)
-    {
-        while (found_.stands && found_.not_above &&
-               *found_.not_above - *found_.stands > width * *found_.stands)
-            stands((*found_.stands + *found_.not_above) / 2);
-        return std::move(found_);
+        keep_only(before);
+        Made& next = made_.at(factor);
+        while (!has_ended(next)) {
+            wait();
+            keep_only(before);
+        }
+        next.thread.join();
+        const Made ended = std::move(next);
+        made_.erase(factor);
+        if (ended.error)
+            std::rethrow_exception(ended.error);
+        return *ended.outcome;
     }
 
 private:
-    const RunWith& run_with_;
-    double runs_away_;
-    double limit_ = std::numeric_limits<double>::infinity(); // of displacement [m]
-    Bracket found_;
+    struct Made {
+        std::optional<Outcome> outcome{};
+        std::exception_ptr error{};
+        std::jthread thread{};
+    };
+
+    // Runs that are wanted: the next one, and beside it what comes after it if it stands or falls. The likelier of both
+    // comes first: until a run has failed, that runs stand; then, that they fail, which takes longer to see.
+    std::vector<double> wanted(const Safety& before)
+    {
+        std::vector<double> factors, reached;
+        std::deque<Safety> ways{before};
+        for (std::size_t ways_left = 64; !ways.empty() && ways_left > 0 && factors.size() < at_once_;
+             --ways_left, ways.pop_front()) {
+            const auto factor = search_.next_factor(ways.front());
+            if (!factor)
+                continue;
+            const auto go = [&](const Outcome& outcome) {
+                ways.push_back(ways.front());
+                add(ways.back(), *factor, outcome);
+            };
+            const auto found = made_.find(*factor);
+            if (found != made_.end() && has_ended(found->second)) {
+                reached.push_back(*factor);
+                if (found->second.outcome)
+                    go(*found->second.outcome);
+                continue;
+            }
+            factors.push_back(*factor);
+            if (before.factor.empty()) // the limit of displacement is that run's
+                break;
+            const bool none_failed = std::count(before.stands.begin(), before.stands.end(), 1) ==
+                                     static_cast<std::ptrdiff_t>(before.stands.size());
+            go({none_failed ? Ending::stands : Ending::falls});
+            go({none_failed ? Ending::falls : Ending::stands});
+        }
+        factors.insert(factors.end(), reached.begin(), reached.end());
+        return factors;
+    }
+
+    // Stops runs that are not wanted, and begins those that are.
+    void keep_only(const Safety& before)
+    {
+        const std::vector<double> factors = wanted(before);
+        const auto is_wanted = [&](double factor) {
+            return std::find(factors.begin(), factors.end(), factor) != factors.end();
+        };
+        for (auto& [factor, made] : made_)
+            if (!is_wanted(factor))
+                made.thread.request_stop();
+        for (auto entry = made_.begin(); entry != made_.end();) {
+            const double factor = entry->first;
+            if (is_wanted(factor)) {
+                ++entry;
+                continue;
+            }
+            entry = made_.erase(entry); // waits until it has ended
+            runs_.is_dropped(factor);
+        }
+        for (const double factor : factors)
+            if (!made_.contains(factor))
+                begin(factor, search_.most_displacement(before));
+    }
+
+    void begin(double factor, double most_displacement)
+    {
+        Made& made = made_[factor];
+        made.thread = std::jthread([this, &made, factor, most_displacement](const std::stop_token& stop) {
+            std::optional<Outcome> outcome;
+            std::exception_ptr error;
+            try {
+                outcome = runs_.run(factor, most_displacement, stop);
+            } catch (...) {
+                error = std::current_exception();
+            }
+            const std::lock_guard lock(mutex_);
+            made.outcome = outcome;
+            made.error = error;
+            ended_.notify_one();
+            ++n_ended_;
+        });
+    }
+
+    bool has_ended(const Made& made)
+    {
+        const std::lock_guard lock(mutex_);
+        return made.outcome || made.error;
+    }
+
+    // Until one more run has ended.
+    void wait()
+    {
+        std::unique_lock lock(mutex_);
+        ended_.wait(lock, [&] { return n_ended_ > n_seen_; });
+        n_seen_ = n_ended_;
+    }
+
+    const Search& search_;
+    Runs& runs_;
+    std::size_t at_once_;
+    std::mutex mutex_;
+    std::condition_variable ended_;
+    std::size_t n_ended_ = 0, n_seen_ = 0;
+    std::map<double, Made> made_; // going on or ended, not yet used
 };
 
 } // namespace
 
-Bracket bracket_of(const RunWith& run_with, double width, double runs_away)
+Bracket bracket_by(const Search& search, Runs& runs, int at_once, Safety made_before)
 {
-    Search search(run_with, runs_away);
-    if (search.begin()) {
-        if (search.stands(1))
-            for (double factor = 2; factor <= most_factor && search.stands(factor);)
-                factor *= 2;
-        else
-            for (double factor = 0.5; factor > 1 / most_factor && !search.stands(factor);)
-                factor /= 2;
+    Safety so_far = std::move(made_before);
+    std::optional<SideBySide> side_by_side;
+    if (at_once > 1)
+        side_by_side.emplace(search, runs, at_once);
+    while (const auto factor = search.next_factor(so_far)) {
+        runs.is_next(*factor, so_far);
+        add(so_far, *factor,
+            side_by_side ? side_by_side->outcome_of_next(*factor, so_far)
+                         : runs.run(*factor, search.most_displacement(so_far), {}));
+        runs.has_ended(so_far);
     }
-    return search.narrowed(width);
-}
-
-Bracket bracket_near(double known, const RunWith& run_with, double width, double runs_away)
-{
-    Search search(run_with, runs_away);
-    if (search.begin()) {
-        const bool up = search.stands(known);
-        double step = known / 20, factor = known;
-        do {
-            factor += up ? step : -step;
-            step *= 2;
-        } while (factor <= most_factor && factor > 1 / most_factor && search.stands(factor) == up);
-    }
-    return search.narrowed(width);
+    return bracket_of(std::move(so_far));
 }
 
 } // namespace jointcreep::analysis

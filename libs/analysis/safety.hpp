@@ -11,8 +11,8 @@
 #include "analysis/analysis.hpp"
 #include "model/result.hpp"
 
-#include <functional>
 #include <optional>
+#include <stop_token>
 #include <string>
 
 namespace jointcreep::analysis
@@ -59,19 +59,41 @@ struct Bracket {
     Safety trials;                   // in the order they were made
 };
 
-// A run with a factor, which fails if its displacement is more than that [m]; after these.
-using RunWith = std::function<Outcome(double factor, double most_displacement, const Safety& so_far)>;
+// The bracket after these runs.
+Bracket bracket_of(Safety trials);
 
-// Run i of those.
-Outcome outcome_of(const Safety& trials, std::size_t i);
+// How a bracket is searched for. First a run with strengths 64 times as large. Then the factor is doubled or halved
+// from 1, to 64 or 1/64 at most. Near a known factor it goes up or down from there, by a twentieth and then by steps
+// twice as large each. Then the bracket is halved. Undecided runs count as without equilibrium.
+struct Search {
+    double width;                 // the bracket is no wider than this, over its lower end [-]
+    double runs_away;             // displacement that counts as failure, over that of the first run [-]
+    std::optional<double> near{}; // the known factor [-]
 
-// First a run with strengths 64 times as large; the displacement of others may be `runs_away` times as large as its
-// own. Then doubles or halves the factor from 1, to 64 or 1/64 at most. Then halves the bracket until it is no wider
-// than `width` times its lower end. Undecided runs count as without equilibrium.
-Bracket bracket_of(const RunWith& run_with, double width, double runs_away);
+    // The factor of the run after these; none: the search has ended.
+    std::optional<double> next_factor(const Safety& so_far) const;
+    // A run after these fails if its displacement is more than that [m].
+    double most_displacement(const Safety& so_far) const;
+};
 
-// The same near a known factor: after the first run it goes up or down from there, by a twentieth and then by steps twice
-// as large each, until it has a bracket.
-Bracket bracket_near(double known, const RunWith& run_with, double width, double runs_away);
+// The runs of a search.
+class Runs
+{
+public:
+    virtual ~Runs() = default;
+    // A run, which fails if its displacement is more than that [m]. Where several are made at once, each has a thread of
+    // its own. Once it is asked to stop, its outcome is of no use: it may throw anything.
+    virtual Outcome run(double factor, double most_displacement, const std::stop_token& stop) = 0;
+    // The search will use its outcome: it is the run after these. It has not begun, or goes on, or has ended.
+    virtual void is_next(double /*factor*/, const Safety& /*before*/) {}
+    // The last of these runs has ended.
+    virtual void has_ended(const Safety& /*so_far*/) {}
+    // The outcome of that run will not be used.
+    virtual void is_dropped(double /*factor*/) {}
+};
+
+// Makes the runs of a search, after those made before. Beside the next run it makes those that may come after it, up to
+// `at_once` in all. Which runs count, and their order, do not depend on that.
+Bracket bracket_by(const Search& search, Runs& runs, int at_once = 1, Safety made_before = {});
 
 } // namespace jointcreep::analysis

@@ -31,6 +31,9 @@ struct Recording {
     // Gets the state before every stage, and the result so far; and whenever that much time has passed, if it is given.
     std::function<void(const Result&, const Checkpoint&)> keep{};
     std::optional<std::chrono::duration<double>> keep_every{};
+    std::function<bool()> keep_now = [] {
+        return false;
+    };                           // and at the next possible moment when this says so
     bool keep_beginning = false; // also before the in-situ equilibrium
 };
 

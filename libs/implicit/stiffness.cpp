@@ -4,6 +4,7 @@
 #include <sys/mman.h>
 
 #include <algorithm>
+#include <mutex>
 #include <new>
 #include <span>
 
@@ -12,6 +13,10 @@ namespace jointcreep::implicit
 
 namespace
 {
+
+// Of analyses in several threads one at a time factorises or solves: OpenBLAS without threads has one buffer for all, and
+// METIS draws from the one rand().
+std::mutex one_at_a_time;
 
 // The unknowns of some gridpoints, x and y in turn.
 std::vector<int> unknowns_of(const std::vector<std::array<int, 2>>& unknown,
@@ -159,6 +164,7 @@ void Stiffness::find_pattern(const Assembly& assembly)
     if (n_ == 0)
         return;
     check_room_for_blas();
+    const std::lock_guard lock(one_at_a_time);
     factor_.analyzePattern(factorised_);
     check_memory(factor_);
 }
@@ -208,6 +214,7 @@ VectorXd Stiffness::solve_yielding(const Assembly& assembly, const Tangents& tan
     for (Eigen::Index i = 0; i < dashpots.size(); ++i)
         matrix.coeffRef(i, i) += dashpots[i];
     check_room_for_blas();
+    const std::lock_guard lock(one_at_a_time);
     if (!has_pattern_of_yielding_)
         yielding_factor_.analyzePattern(matrix);
     has_pattern_of_yielding_ = true;
@@ -321,6 +328,7 @@ bool Stiffness::factorise(const Assembly& assembly, const Tangents& tangents)
         },
         assembly, tangents, parts_);
     // Threads inside of the factorisation cost more than they gain at these sizes.
+    const std::lock_guard lock(one_at_a_time);
     const int levels = omp_get_max_active_levels();
     omp_set_max_active_levels(0);
     if (factorised_.rows() > 0) // CHOLMOD does not survive rock of which nothing can move
@@ -336,6 +344,7 @@ VectorXd Stiffness::solve(const VectorXd& right) const
 {
     if (right.size() == 0)
         return right;
+    const std::lock_guard lock(one_at_a_time);
     VectorXd x = factor_.solve(right);
     if (factor_.info() != Eigen::Success) // there is a factor: memory for the solution was short
         throw std::bad_alloc();

@@ -2,10 +2,12 @@
 
 import json
 import math
+import os
 import pathlib
 import re
 import resource
 import shutil
+import signal
 import subprocess
 import time
 
@@ -206,6 +208,43 @@ class Restart(ChainTest):
         again = self.chain.answer("demsolve", *command)
         self.assertEqual(again.returncode, 0, again.stderr)
         self.assertEqual(datasets(joints.with_name("result.h5"))["/safety/largest_displacement"][1], 7)
+
+    def assert_stopped_goes_on(self, text, *arguments, when):
+        """A run that SIGTERM stops, when `when` says so of its stderr so far and its checkpoint, keeps its state at once and ends by the
+        signal. The same command continues from there to the same bytes. Returns what it says first, and the factors that were kept."""
+        joints = self.chain.joints(text)
+        whole = self.chain.run("demsolve", joints, joints.with_name("whole.h5"), *arguments)
+        kept, result = joints.with_name("kept.h5"), joints.with_name("result.h5")
+        command = [self.chain.programs / "demsolve", joints, "-o", result, "--checkpoint", kept, *map(str, arguments)]
+        with subprocess.Popen([*command, "--checkpoint-every", "0"], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE) as running:
+            os.set_blocking(running.stderr.fileno(), False)
+            said = b""
+            while not when(said, kept) and running.poll() is None:
+                said += running.stderr.read() or b""
+                time.sleep(0.001)
+            running.send_signal(signal.SIGTERM)
+            os.set_blocking(running.stderr.fileno(), True)
+            said = (said + running.stderr.read()).decode()
+        self.assertEqual(running.returncode, -signal.SIGTERM, said)
+        self.assertRegex(said, "demsolve: stops when its state is kept in the checkpoint; a second signal stops it at once\n"
+                         rf"(.*\n)*demsolve: stopped; the same command continues from {re.escape(str(kept))}\n$")
+        self.assertFalse(result.exists())
+        factors = datasets(kept).get("/safety/factor", ())
+        done = subprocess.run(command, capture_output=True, text=True, timeout=300)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertTrue(result.read_bytes() == whole.read_bytes(), said)
+        return done.stdout.split("\n")[0], done.stderr, factors
+
+    def test_stopped_by_a_signal(self):
+        place, *_ = self.assert_stopped_goes_on(sliding_block('rigid_rocks = ["rock"]'), when=lambda said, kept: kept.exists() and time.time() > kept.stat().st_mtime + 0.03)
+        self.assertIn("in the middle of a search", place)
+        for at_once in 1, 2:
+            _, said, factors = self.assert_stopped_goes_on(
+                SCENE, "--factor-of-safety", "--safety-width", 0.02, "--no-creep", "--engine", "relaxation", "--runs-at-once", at_once,
+                when=lambda said, kept: b"run 3, " in said)
+            self.assertGreaterEqual(len(factors), 3)
+            self.assertRegex(said, rf"^demsolve: from .*/kept.h5: run {len(factors)}, strengths / {factors[-1]:.15g}: ")
+            self.assertRegex(said, rf"\ndemsolve: run {len(factors) + 1}, ")
 
     def test_a_checkpoint_stays_if_the_next_cannot_be_written(self):
         joints = self.chain.joints(SCENE)

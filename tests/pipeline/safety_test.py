@@ -165,6 +165,33 @@ class Safety(ChainTest):
                 self.assertAlmostEqual((2 * fine - coarse) / 1.20, 1, delta=0.04)
                 self.assertRegex(data["/warnings/text"][0], "^the factor of safety is too high by about [0-9.]+ percent")
 
+    def test_runs_side_by_side(self):
+        """The same bytes as one by one, with and without checkpoints. Each run is told with the bracket so far."""
+        joints = self.chain.joints(self.incline())
+        cut = self.chain.joints(self.chain.text("data/verification/vertical-cut/scene.toml"))
+        for path, *options in (joints, "--no-creep"), (joints, "--no-creep", "--engine", "relaxation", "--tolerance", 1e-5), (cut,):
+            files = {}
+            for at_once, *more in ("1",), ("2",), ("3", "--checkpoint", path.with_name("kept.h5")):
+                path.with_name("kept.h5").unlink(missing_ok=True)
+                done = self.chain.answer("demsolve", path, "--factor-of-safety", "-o", path.with_name("result.h5"), *options,
+                                         "--safety-width", 0.02, "--runs-at-once", at_once, *more)
+                self.assertEqual(done.returncode, 0, done.stderr)
+                files[at_once] = [path.with_name(name).read_bytes() for name in ("result.h5", "result.failed.h5")]
+                files[at_once] += [done.stdout, done.stderr]
+            for at_once in "2", "3":
+                self.assertTrue(files[at_once] == files["1"], (path, options, at_once))
+            data = datasets(path.with_name("result.h5"))
+            said = re.findall(r"^demsolve: run (\d+), strengths / (\S+): (\w+); factor of safety at least (.*)$", done.stderr, re.MULTILINE)
+            self.assertEqual([[int(number), float(factor), stands] for number, factor, stands, _ in said],
+                             [[number, factor, "stable" if stands else "fails"] for number, (factor, stands) in
+                              enumerate(zip(data["/safety/factor"], data["/safety/stands"]), start=1)])
+            low, high = said[-1][3].split(", below ")
+            self.assertEqual((float(low), float(high)), (data["/safety/factor"][data["/safety/stands"] == 1].max(),
+                                                         data["/safety/factor"][data["/safety/stands"] == 0].min()))
+            self.assertEqual("demsolve: with zones twice as large, run 1, " in done.stderr, path == cut)
+        self.assertEqual(self.chain.answer("demsolve", joints, "-q", "--no-creep", "--factor-of-safety", "-o",
+                                           joints.with_name("quiet.h5")).stderr, "")
+
     def test_warnings_are_said_and_kept(self):
         """Also with --quiet: too large a plastic strain, in the file with the name of the program."""
         text = changed(self.chain.text("data/verification/vertical-cut/scene.toml"), r"^\[zones\]$",
