@@ -284,9 +284,10 @@ private:
             std::string title;
             std::vector<std::string> needs, refuses;
         };
-        const Kind lines{"lines", {"persistence"}, {"diameter", "terminates_at"}},
-            segments{"segments", {"length", "density"}, {"spacing", "persistence", "diameter"}},
-            discs{"discs", {"diameter", "density"}, {"spacing", "persistence", "length"}};
+        const Kind lines{"lines", {}, {"diameter", "terminates_at"}},
+            segments{
+                "segments", {"length", "density"}, {"spacing", "persistence", "bridge_length_m", "diameter"}},
+            discs{"discs", {"diameter", "density"}, {"spacing", "persistence", "bridge_length_m", "length"}};
         const Kind& kind = set.kind == SetKind::lines      ? lines
                            : set.kind == SetKind::segments ? segments
                                                            : discs;
@@ -296,8 +297,16 @@ private:
         for (const std::string& key : kind.refuses)
             if (given.find(key))
                 given.refuse(key, "a set of " + kind.title + " does not take it");
-        if (set.kind == SetKind::lines && !given.find("spacing") && !given.find("density"))
+        if (set.kind != SetKind::lines)
+            return;
+        if (!given.find("spacing") && !given.find("density"))
             given.refuse("spacing", "a set of lines needs it, or a density");
+        if (!given.find("persistence") && !given.find("bridge_length_m"))
+            given.refuse("persistence", "a set of lines needs it, or bridge_length_m");
+        if (given.find("persistence") && given.find("bridge_length_m"))
+            given.refuse("bridge_length_m", "wanted either it or persistence, not both");
+        if (given.find("bridge_length_m") && !set.length)
+            given.refuse("length", "a bridge_length_m needs it");
     }
 
     void check_density(const JointSet& set, const Given& given) const
@@ -362,9 +371,10 @@ private:
                 given.refuse("length", "a persistence of " + shown(set.persistence) + " needs it");
             for (const Rock& rock : scene_.rocks)
                 if (set.persistence < 1 && !rock.strength)
-                    given.refuse("persistence", "its rock bridges need cohesion_MPa, friction_angle_deg and "
-                                                "tensile_strength_MPa of [[rock]] \"" +
-                                                    rock.name + "\"");
+                    given.refuse(given.find("persistence") ? "persistence" : "bridge_length_m",
+                                 "its rock bridges need cohesion_MPa, friction_angle_deg and "
+                                 "tensile_strength_MPa of [[rock]] \"" +
+                                     rock.name + "\"");
         });
         if (!scene_.joint_sets.empty() && !source_.root.find("random"))
             Place{source_.reading, ""}.refuse(in_list("joint_set", 0).table.line,

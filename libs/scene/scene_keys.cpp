@@ -1,6 +1,7 @@
 #include "scene/scene_keys.hpp"
 
 #include "model/error.hpp"
+#include "sampling/laws.hpp"
 #include "scene/field_data.hpp"
 #include "scene/forces.hpp"
 #include "scene/shared_settings.hpp"
@@ -402,6 +403,25 @@ void read_bootstrap(const TomlValue& value, const Place& place, WrittenOrientati
         correct_for_scanline(law.poles, law.scanline, law.blind_zone > 0 ? law.blind_zone : usual_blind_zone);
 }
 
+// The persistence of lines whose traces and rock bridges have these means.
+Key<JointSet> bridge_length()
+{
+    const auto read = [](JointSet& set, const KeyInfo& key, const TomlValue& value, const Place& place) {
+        const double bridge = read_number(key, value, place);
+        if (!set.length) // its key is read before this one
+            return;
+        const double trace = sampling::mean_of_positive(*set.length);
+        set.persistence = trace / (trace + bridge);
+    };
+    Key<JointSet> key{
+        {"bridge_length_m", "number", metres, lengths,
+         "Mean length of the rock bridges of lines, in place of persistence: that is then the mean trace "
+         "length over the sum of both means."},
+        read,
+        {}};
+    return std::move(key).optional();
+}
+
 Key<JointSet> orientation(const Table<WrittenOrientation>& table)
 {
     const auto read = [table](JointSet& set, const KeyInfo&, const TomlValue& value, const Place& outer) {
@@ -574,8 +594,9 @@ Table<JointSet> joint_set(const TablesInJointSet& laws)
              "Diameter of the discs, which need it; of others refused.")
              .optional(),
          number("persistence", &JointSet::persistence, no_unit, from(0).to(1),
-                "Fraction of a line that is joint. Lines need it; of others refused.")
+                "Fraction of a line that is joint. Lines need it, or bridge_length_m; of others refused.")
              .optional(),
+         bridge_length(),
          names("terminates_at", &JointSet::terminates_at,
                "Names of joint sets, joints and mapped sets at whose traces those of this set may end; of "
                "segments and discs.")

@@ -17,7 +17,7 @@ def suited(scene):
         "stereonet": any("dip" in one or "orientation" in one for one in sets),
         "rose": sets != [],
         "distributions": sets != [],
-        "strength": any(one.get("persistence", 1) < 1 for one in sets),
+        "strength": any(one.get("persistence", 1) < 1 or "bridge_length_m" in one for one in sets),
         "histories": "point" in scene or "monitoring_line" in scene,
         "line": "monitoring_line" in scene,
         "state": True,

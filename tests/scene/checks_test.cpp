@@ -468,6 +468,13 @@ TEST(checks, kinds_of_sets)
     const std::string steep = "name = \"steep\"\nmaterial = \"joint\"\n", persistence = "persistence = 0.6\n";
     expect_refused(persistence, "", "has no persistence: a set of lines needs it",
                    "[[joint_set]]\nname = \"steep\"");
+    expect_refused(persistence, persistence + "bridge_length_m = 2\n",
+                   "bridge_length_m = 2: wanted either it or persistence, not both", "bridge_length_m = 2");
+    expect_refused("length = { law = \"uniform\", shortest_m = 1, longest_m = 9 }\n", "",
+                   "has no length: a bridge_length_m needs it", "[[joint_set]]\nname = \"even\"");
+    expect_refused("density = { P20_per_m2 = 0.004 }",
+                   "density = { P20_per_m2 = 0.004 }\nbridge_length_m = 2",
+                   "a set of segments does not take it", "bridge_length_m = 2");
     expect_refused("spacing = { law = \"lognormal\", mean_m = 5, deviation_m = 1 }\n", "",
                    "has no spacing: a set of lines needs it, or a density",
                    "[[joint_set]]\nname = \"steep\"");

@@ -51,6 +51,7 @@ TEST(every_key, uniform_and_fisher_laws)
     const Scene scene = parse_scene(every_key_text(), "scene.toml");
     const JointSet &even = scene.joint_sets.at(2), &in_space = scene.joint_sets.at(3),
                    &about = scene.joint_sets.at(4);
+    EXPECT_EQ(even.persistence, 0.5) << "5 m of 5 m + 5 m";
     const auto expect_uniform = [](const std::optional<ProbabilityLaw>& law, double least, double most) {
         ASSERT_TRUE(law);
         EXPECT_EQ(law->kind, ProbabilityLaw::Kind::uniform);
@@ -238,7 +239,7 @@ TEST(every_key, a_fully_persistent_set_needs_neither_length_nor_strength)
         text = replaced(text, key, "");
     text = replaced(text, "persistence = 0.6", "persistence = 1");
     text = replaced(text, "persistence = 0.8", "persistence = 1");
-    text = replaced(text, "persistence = 0.5", "persistence = 1");
+    text = replaced(text, "bridge_length_m = 5", "persistence = 1");
     text = replaced(text, "persistence = 0.9", "persistence = 1");
     const Scene scene = parse_scene(text, "scene.toml");
     EXPECT_FALSE(scene.rocks[0].strength);
