@@ -11,7 +11,7 @@
     jointcreep.read("out/study").runs["crest (mm)"]
 
 Values are those of the files: SI units (times in days), tension and opening positive. Where pandas is installed, `frame()` makes a
-DataFrame of a table.
+DataFrame of a table; where xarray is, array() makes a DataArray of a dataset.
 """
 
 import csv
@@ -26,6 +26,9 @@ from . import files, histories
 from .errors import NotWanted
 
 AXES = {2: ["x", "y"], 3: ["xx", "yy", "xy"]}  # parts of a dataset's last dimension
+IN_PLANE, ALONG_JOINT = ["x", "y"], ["normal", "shear"]
+COMPONENTS = {"displacement": IN_PLANE, "reaction": IN_PLANE, "point_position": IN_PLANE, "gridpoint_position": IN_PLANE,
+              "stress": AXES[3], "traction": ALONG_JOINT, "relative_displacement": ALONG_JOINT}  # of datasets of these names
 STATUS = ["removed", "stuck", "slipping", "open"]  # of contacts, by number
 
 
@@ -139,6 +142,23 @@ class File:
         with self.opened() as file:
             self.check(path, file)
             return [axis.label for axis in file[path].dims]
+
+    def array(self, path):
+        """A dataset as a DataArray of xarray: its axes have names and coordinates (times, points, stages, {x, y}), `attrs` its unit.
+        The axis of states has the coordinates "time" and "event"."""
+        import xarray
+        group, _, name = path.rpartition("/")
+        values, axes = self[path], self.axes(path)
+        coords = {}
+        with self.opened() as file:
+            for axis, count in zip(axes, np.shape(values)):
+                beside = {axis: f"{group}/{axis}", **({"time": "/states/time", "event": "/states/event"} if axis == "state" else {})}
+                for coordinate, other in beside.items() if axis else ():
+                    if isinstance(found := file.get(other), h5py.Dataset) and found.shape == (count,):
+                        coords[coordinate] = axis, self[other]
+        if axes[-1:] == ["component"] and name in COMPONENTS:
+            coords["component"] = COMPONENTS[name]
+        return xarray.DataArray(values, coords, axes if np.ndim(values) else (), name, {"units": self.unit(path)})
 
     def table(self, group, count):
         """The datasets of a group that have a row for each of `count` things, such as "/blocks"."""

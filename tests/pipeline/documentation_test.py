@@ -278,7 +278,8 @@ class Documentation(ChainTest):
                   "assert (history.displacement == file['/history/displacement'][()]).all() and table.units['displacement x'] == 'm'\n"
                   "assert abs(network.blocks()['area'].sum() - 120 * 70) < 1e-6\n"
                   "assert 'frame' not in globals() or frame.attrs['units']['length'] == 'm' and len(frame) == contacts.rows()\n"
-                  "assert 'moved' not in globals() or moved.sel(point='toe', component=1).values.tolist() == history.of('toe')[:, 1].tolist()\n"
+                  "assert 'moved' not in globals() or moved.sel(point='toe', component='y').values.tolist() == history.of('toe')[:, 1].tolist()\n"
+                  "assert 'stress' not in globals() or stress.sel(state=3, component='yy').values.tolist() == run.zones('bench 3')['stress yy'].tolist()\n"
                   "assert study.runs.units['crest (mm)'] == 'mm' and low < value < high\n")
         done = subprocess.run([sys.executable, "-c", "\n".join([*blocks, checks])], cwd=folder, capture_output=True, text=True,
                               env=dict(os.environ, PYTHONPATH="pipelines"))
