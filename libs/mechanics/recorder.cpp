@@ -1,10 +1,13 @@
 #include "mechanics/recorder.hpp"
 
 #include "model/error.hpp"
+#include "model/polygon.hpp"
 #include "model/units.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <numbers>
 
 namespace jointcreep::mechanics
 {
@@ -15,6 +18,33 @@ namespace
 std::string named_place(const std::string& what, const std::string& name, const Vector2d& at)
 {
     return what + " \"" + name + "\" at " + shown(at);
+}
+
+bool stays_longer(Index stage, Index than)
+{
+    return stage != than && than != -1 && (stage == -1 || stage > than);
+}
+
+// The stage that removes the rock about a place of the scene, -1 if none does; of several the last. Nothing where
+// there is no rock.
+std::optional<Index> stage_about(const Vector2d& place, double radius, const Scene& scene)
+{
+    constexpr int directions = 180; // one in every corner of 2 degrees
+    std::optional<Index> last;
+    for (int i = 0; i < directions; ++i) {
+        const double angle = 2 * std::numbers::pi * (i + 0.5) / directions;
+        const Vector2d at = place + radius * Vector2d(std::cos(angle), std::sin(angle));
+        const auto covers_it = [&](const Polygon& polygon) { return covers(polygon, at); };
+        if (!covers_it(scene.outline) || std::ranges::any_of(scene.holes, covers_it))
+            continue;
+        const auto first = std::ranges::find_if(
+            scene.stages, [&](const Stage& stage) { return std::ranges::any_of(stage.remove, covers_it); });
+        const Index stage =
+            first == scene.stages.end() ? -1 : static_cast<Index>(first - scene.stages.begin());
+        if (!last || stays_longer(stage, *last))
+            last = stage;
+    }
+    return last;
 }
 
 } // namespace
@@ -40,15 +70,16 @@ Recorder::Recorder(const Scene& scene, const Blocks& blocks, const Mesh& mesh)
         low = low.cwiseMin(p);
         high = high.cwiseMax(p);
     }
-    // A point on a slanting face is, in doubles, a little off it; cutting may have moved the face a little,
-    // too.
+    // A point on a slanting face is, in doubles, a little off it. Cutting moves faces, too; by up to 1.3 shortest
+    // edges in the shiplock's networks.
     const double size = (high - low).norm();
-    const double reach = std::max(1e-6 * size, scene.cutting.shortest_edge);
+    const double reach = std::max(1e-6 * size, 2 * scene.cutting.shortest_edge);
 
     for (const MonitoringPoint& point : scene.points) {
-        std::optional<Place> found = find(point.at, 1e-9 * size, blocks, mesh);
+        const std::optional<Index> stage = stage_about(point.at, 1e-6 * size, scene);
+        std::optional<Place> found = stage ? find(point.at, reach, stage, blocks, mesh) : std::nullopt;
         if (!found)
-            found = find(point.at, reach, blocks, mesh);
+            found = find(point.at, reach, {}, blocks, mesh);
         if (!found)
             throw input_error(named_place("point", point.name, point.at) +
                               " is not in the rock; it must lie in the section or on its outline");
@@ -74,15 +105,17 @@ Recorder::Recorder(const Scene& scene, const Blocks& blocks, const Mesh& mesh)
     }
 }
 
-std::optional<Recorder::Place> Recorder::find(const Vector2d& at, double reach, const Blocks& blocks,
-                                              const Mesh& mesh)
+std::optional<Recorder::Place> Recorder::find(const Vector2d& at, double reach, std::optional<Index> wanted,
+                                              const Blocks& blocks, const Mesh& mesh)
 {
     const auto twice = [](const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); };
-    const auto stays_longer = [](Index a, Index b) { return a != b && b != -1 && (a == -1 || a > b); };
     std::optional<Place> best;
     double best_outside = 0;
     Index best_stage = -1;
     for (std::size_t z = 0; z < mesh.zone_gridpoint.size(); ++z) {
+        const Index stage = blocks.block_stage[mesh.zone_block[z]];
+        if (wanted && stage != *wanted)
+            continue;
         const auto& corners = mesh.zone_gridpoint[z];
         std::array<Vector2d, 3> p;
         for (int i = 0; i < 3; ++i)
@@ -97,7 +130,6 @@ std::optional<Recorder::Place> Recorder::find(const Vector2d& at, double reach, 
         }
         if (outside > reach)
             continue;
-        const Index stage = blocks.block_stage[mesh.zone_block[z]];
         if (!best || stays_longer(stage, best_stage) || (stage == best_stage && outside < best_outside)) {
             best = place_in_zone(mesh, z, share);
             best_outside = outside;

@@ -15,9 +15,9 @@ namespace jointcreep::mechanics
 class Recorder
 {
 public:
-    // Finds every monitoring point's zone; on a border between blocks, that of the block removed last. The
-    // nearest contact to every gauge. Throws input_error for a point outside the rock, and a gauge where
-    // there is no joint.
+    // Finds every monitoring point's zone, in the rock that the scene has there: on a border, that which is removed
+    // last. Cutting moves corners, and a point stays on its rock. The nearest contact to every gauge. Throws
+    // input_error for a point outside the rock, and a gauge where there is no joint.
     Recorder(const Scene& scene, const Blocks& blocks, const Mesh& mesh);
 
     // A row of the histories at `time` since start [s]; `event` is the stage it is the first after, or "".
@@ -54,10 +54,10 @@ private:
     // The shares of a zone's corners are those of its area.
     static Place place_in_zone(const Mesh& mesh, std::size_t zone, const std::array<double, 3>& share);
     static bool is_present(const Place& place, const Assembly& assembly);
-    // The zone that holds a place, or that comes within `reach` of it [m]; of several the one that stays
-    // longest.
-    static std::optional<Place> find(const Vector2d& at, double reach, const Blocks& blocks,
-                                     const Mesh& mesh);
+    // The zone that holds a place, or is nearest to it within `reach` [m], of the rock that `stage` removes. Without
+    // a stage, of all rock, the zone that stays longest.
+    static std::optional<Place> find(const Vector2d& at, double reach, std::optional<Index> stage,
+                                     const Blocks& blocks, const Mesh& mesh);
     // A row of values at the points; a removed point keeps what the last row of `before` has.
     void append(std::vector<Vector2d>& rows, const std::vector<Vector2d>& before,
                 const std::vector<Vector2d>& of_gridpoints, const Assembly& assembly) const;

@@ -51,6 +51,24 @@ TEST(recorder, interpolates_within_zones_and_prefers_rock_that_stays)
     EXPECT_EQ(result.history.displacement[5], result.history.displacement[2]); // held
 }
 
+// Cutting moves the corner of the cut into the rock that stays, or out of it: a point that was given for the corner, or
+// on either side of the face, stays on its rock.
+TEST(recorder, a_point_stays_on_its_rock_where_cutting_moves_a_corner)
+{
+    for (const Vector2d& move : {Vector2d(-0.09, -0.09), Vector2d(0.09, 0.09)}) {
+        Section s =
+            benched({{"corner", {12, 4}, 0}, {"below", {12.05, 3.98}, 0}, {"above", {12.05, 4.02}, 0}});
+        for (Vector2d& place : s.mesh.gridpoint)
+            if ((place - Vector2d(12, 4)).norm() < 1e-9)
+                place += move;
+        const Recorder recorder(s.scene, s.network.blocks, s.mesh);
+        excavate(s.assembly, s.network.blocks, s.mesh, Loading(s.scene, s.mesh), 0);
+        Result result;
+        recorder.record_history(result, 0, "cut", s.assembly);
+        EXPECT_EQ(result.history.present, (std::vector<Index>{1, 1, 0})) << move.transpose();
+    }
+}
+
 TEST(recorder, readings_count_from_their_first_row)
 {
     Section s = benched({{"early", {3, 3}, 0}, {"late", {4, 3}, 172800}});
