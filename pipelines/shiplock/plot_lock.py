@@ -1,12 +1,13 @@
 #!/usr/bin/python3
-"""The lock's section with weathering, stages and monitoring points (the paper's Fig. 9), or with --plan the points seen
-from above (Fig. 8). FILE.h5 is any file of the chain.
+"""The lock's section with weathering, stages and monitoring points (the paper's Fig. 9), or with --plan the points of both sections
+seen from above (Fig. 8). FILE.h5 is any file of the chain of section A-A.
 """
 
 import matplotlib.lines
 import matplotlib.patches
 import numpy as np
 
+import variant
 from records import figure
 
 NAMES = {"fresh": "fresh and microweathered", "weak": "weak (minor-weathered)", "cover": "full and strong"}
@@ -53,30 +54,34 @@ def draw_section(scene):
 
 
 def draw_plan(scene):
-    """Edges of benches, walls and pier along the lock, as they are at the end, and the points on the section."""
+    """Edges of benches, walls and pier along the lock, as they are at the end, and the points on both sections. Section B-B has the
+    same benches 20 m lower; how far apart the sections are is not known."""
     edges = {}  # the widest that is dug away at each elevation
     for stage in scene["stage"]:
         for polygon in stage["remove_m"]:
             for x, y in polygon:
                 edges.setdefault(round(x, 3), y)
     walls = [x for x, y in edges.items() if abs(x) <= 140]
-    plot, axes = figure.section_axes(None, (-170, -45, 170, 45))
+    plot, axes = figure.section_axes(None, (-170, -60, 170, 60))
     for x in walls:
         axes.axvline(x, color="0.6", linewidth=0.6)
     for sign in (-1, 1):
         chamber = sorted(x for x in walls if sign * x > 0 and abs(x) < 70)
         axes.axvspan(chamber[0], chamber[-1], color="#dfe9f3", linewidth=0)
-        axes.annotate("chamber", (sum(chamber) / len(chamber), -38), ha="center", fontsize=7)
-    axes.annotate("pier", (0, -38), ha="center", fontsize=7)
-    axes.axhline(0, color="k", linewidth=0.8, linestyle=(0, (8, 3, 2, 3)))
-    axes.annotate("section", (-168, 2), fontsize=7)
-    for i, point in enumerate(sorted(scene["point"], key=lambda one: one["at_m"][0])):
-        x = point["at_m"][0]
-        axes.plot(x, 0, "o", color="k", markersize=3.5, zorder=5)
-        axes.annotate(point["name"], (x, 0), xytext=(0, 6 + 9 * (i % 2)), textcoords="offset points", ha="center",
-                      fontsize=6.5, path_effects=figure.HALO)
+        axes.annotate("chamber", (sum(chamber) / len(chamber), -54), ha="center", fontsize=7)
+    axes.annotate("pier", (0, -54), ha="center", fontsize=7)
+    points = sorted(scene["point"], key=lambda one: one["at_m"][0])
+    for along, title, named in ((22, "A-A, chamber 2", str), (-26, "B-B, chamber 3", variant.named_in_section_b)):
+        axes.axhline(along, color="k", linewidth=0.8, linestyle=(0, (8, 3, 2, 3)))
+        axes.annotate(title, (-168, along - 6), fontsize=7, path_effects=figure.HALO)
+        for i, point in enumerate(points):
+            x = point["at_m"][0]
+            axes.plot(x, along, "o", color="k", markersize=3.5, zorder=5)
+            axes.annotate(named(point["name"]), (x, along), xytext=(0, 6 + 9 * (i % 2)), textcoords="offset points", ha="center",
+                          fontsize=6.5, path_effects=figure.HALO)
     axes.set_xlabel("across the lock, toward the north (m)")
-    axes.set_ylabel("along it (m)")
+    axes.set_ylabel("along the lock, not to scale")
+    axes.set_yticks([])
     return plot
 
 

@@ -247,29 +247,33 @@ def youngs_modulus(which):
     return change
 
 
+def in_section_b(y):
+    """The elevation in section B-B of what is at y in section A-A."""
+    for (y0, new0), (y1, new1) in zip(CHAMBER_3, CHAMBER_3[1:]):
+        if y0 <= y <= y1:
+            return round(new0 + (new1 - new0) * (y - y0) / (y1 - y0), 3)
+    return round(y - CHAMBER_3[0][0] + CHAMBER_3[0][1], 3)
+
+
+def named_in_section_b(name):
+    """The name of a point or stage, which ends with its elevation."""
+    return re.sub(r"\d+$", lambda y: f"{in_section_b(float(y[0])):.0f}", name)
+
+
 def section_b(scene):
     """Chamber 3 in place of chamber 2: the same section with its elevations moved."""
     lowest = min(y for _, y in scene["section"]["outline_m"])
 
-    def elevation(y):
-        if y == lowest:
-            return y
-        for (y0, new0), (y1, new1) in zip(CHAMBER_3, CHAMBER_3[1:]):
-            if y0 <= y <= y1:
-                return round(new0 + (new1 - new0) * (y - y0) / (y1 - y0), 3)
-        return round(y - CHAMBER_3[0][0] + CHAMBER_3[0][1], 3)
-
     def moved(value):
-        return [moved(one) for one in value] if isinstance(value[0], list) else [value[0], elevation(value[1])]
-
-    def renamed(name):
-        return re.sub(r"\d+$", lambda y: f"{elevation(float(y[0])):.0f}", name)
+        if isinstance(value[0], list):
+            return [moved(one) for one in value]
+        return [value[0], value[1] if value[1] == lowest else in_section_b(value[1])]
 
     def change(table, _, key, value):
         if key in PLACES:
             return moved(value)
         if table in ("point", "stage") and key == "name":
-            return renamed(value)
+            return named_in_section_b(value)
         if key == "title":
             return value.replace("section A-A", "section B-B (chamber 3)")
 

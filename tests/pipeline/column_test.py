@@ -44,6 +44,19 @@ class Column(ChainTest):
     def setUp(self):
         self.text = self.chain.text("data/column/scene.toml")
 
+    def test_pulses_of_the_stress(self):
+        """A creep step of a day is a pulse of the stress under B's block, which dies out: nine between the removals on days 1 and 10,
+        ten between those on 10 and 20 (the paper's Fig. 7)."""
+        steps = solved(self.text, "--step-history", 20)
+        day, stress = steps["/step_history/time"], steps["/step_history/traction"][:, 0, 0]
+        level = lambda d: stress[day == d][-1]
+        pulses = [d for d in range(2, 21) if stress[day == d].min() < 1.01 * level(d - 1)]  # compression is negative
+        self.assertEqual([sum(low < d <= high for d in pulses) for low, high in ((1, 10), (10, 20))], [9, 10])
+        for d in pulses:
+            if d not in (10, 20):
+                self.assertAlmostEqual(level(d) / level(d - 1), 1, delta=1e-5)
+        self.assertAlmostEqual(level(10) / level(9), 0.5, delta=1e-4)
+
     def assert_closed_form(self, text, *options, creeps=True):
         """Every point is on the closed form at every recorded time, and there are as many as there should be."""
         column = column_closed_form.column_of(tomllib.loads(text))

@@ -232,6 +232,30 @@ class Verification(ChainTest):
                                closed_forms.platens(found.scene).traction(found.contacts, 200, 0)[0, 0],
                                delta=1e-3 * 1e6)
 
+    def plate_test(self, normal, shear):
+        """Displacement of the plate under its load, down, and by the jack, sideways [m], with these stiffnesses of the seam [MPa/m]."""
+        text = self.scene("plate-test").replace("normal_stiffness_MPa_per_m = 690 ", f"normal_stiffness_MPa_per_m = {normal} ")
+        text = text.replace("shear_stiffness_MPa_per_m = 280 ", f"shear_stiffness_MPa_per_m = {shear} ")
+        moved = datasets(self.chain.result(text))["/history/displacement"][:, 0]
+        return -moved[1, 1], moved[2, 0] - moved[1, 0]
+
+    def test_stiffness_from_a_plate_test(self):
+        """The load over the displacement is too small a stiffness: rock gives way, and the column rocks. Two computations with other
+        stiffnesses find the seam's, as displacements are straight over 1 / K."""
+        rigid, height, width, pressure, shear = 1e5, 0.2, 0.5, 1.0, 0.3
+        down, aside = self.plate_test(690, 280)
+        self.assertAlmostEqual(1e3 * down, 1e3 * pressure / 690 + 0.035, delta=0.003)  # the rock's part [mm]
+        rocking = 6 * shear * height**2 / (690 * width**2)
+        self.assertAlmostEqual(aside, shear / 280 + rocking, delta=0.015 * aside)
+        self.assertAlmostEqual(pressure / down, 674, delta=1)
+        self.assertAlmostEqual(shear / aside, 199, delta=1)
+        (softer, _), (none, _) = self.plate_test(400, 200), self.plate_test(rigid, 200)
+        normal = 1 / ((down - none) / (softer - none) * (1 / 400 - 1 / rigid) + 1 / rigid)
+        self.assertAlmostEqual(normal, 690, delta=0.005 * 690)
+        (_, softer), (_, none) = self.plate_test(normal, 200), self.plate_test(normal, rigid)
+        found = 1 / ((aside - none) / (softer - none) * (1 / 200 - 1 / rigid) + 1 / rigid)
+        self.assertAlmostEqual(found, 280, delta=0.005 * 280)
+
     def test_friction_stack_beside_calculix(self):
         """Partial slip, pushed and let go: another code's figures, which change by 1 percent with its own increments and
         bricks (pipelines/accuracy/calculix_stack.py, and the page accuracy)."""
