@@ -316,6 +316,9 @@ void fit_curve(const Arguments& arguments)
     // 2. E and eta, by least squares and by Eq. 14.
     const Fit fit = fit_of(arguments, curve, errors);
 
+    if (!fit.by_curve.is_settled)
+        throw fit_error("no fit was found: " + std::string(not_settled));
+
     // 3. What was found.
     const std::vector<Row> rows = rows_of(fit, curve.readings.elastic_part.has_value(), stiffness);
     std::vector<TextFile> files;

@@ -18,8 +18,6 @@ using estimation::Error;
 namespace
 {
 
-constexpr double bad_fit = 0.01; // p-value
-
 bool is_worse_than_sigma(const estimation::Confidence& confidence)
 {
     return confidence.p_value < bad_fit;
@@ -59,6 +57,26 @@ std::vector<Option> error_options()
          "errors of neighbouring readings are alike: their correlation is fitted, too"}};
 }
 
+std::vector<double> steps_in(const std::string& text)
+{
+    std::vector<double> steps;
+    std::istringstream days(text);
+    for (std::string item; std::getline(days, item, ',') || item.empty();) {
+        std::istringstream number(item);
+        double day = 0;
+        char rest = 0;
+        if (!(number >> day) || number >> rest || !(std::abs(day) <= 1e7) || text.ends_with(','))
+            throw input_error("--steps is \"" + text + "\"; wanted days separated by commas, as in 12,30.5");
+        steps.push_back(day * unit::day);
+        if (days.eof())
+            break;
+    }
+    std::sort(steps.begin(), steps.end());
+    if (const auto twice = std::adjacent_find(steps.begin(), steps.end()); twice != steps.end())
+        throw input_error("--steps has day " + shown(*twice / unit::day) + " twice; wanted each once");
+    return steps;
+}
+
 estimation::Errors errors_in(const Arguments& arguments)
 {
     estimation::Errors errors{.offset = arguments.has("offset"),
@@ -67,25 +85,8 @@ estimation::Errors errors_in(const Arguments& arguments)
                               .correlated = arguments.has("correlated-noise")};
     if (errors.robust && errors.correlated)
         throw input_error("--robust and --correlated-noise do not go together; wanted one of them");
-    const std::string text = arguments.text("steps").value_or("");
-    if (arguments.has("steps")) {
-        std::istringstream days(text);
-        for (std::string item; std::getline(days, item, ',') || item.empty();) {
-            std::istringstream number(item);
-            double day = 0;
-            char rest = 0;
-            if (!(number >> day) || number >> rest || !(std::abs(day) <= 1e7) || text.ends_with(','))
-                throw input_error("--steps is \"" + text +
-                                  "\"; wanted days separated by commas, as in 12,30.5");
-            errors.steps.push_back(day * unit::day);
-            if (days.eof())
-                break;
-        }
-        std::sort(errors.steps.begin(), errors.steps.end());
-        if (const auto twice = std::adjacent_find(errors.steps.begin(), errors.steps.end());
-            twice != errors.steps.end())
-            throw input_error("--steps has day " + shown(*twice / unit::day) + " twice; wanted each once");
-    }
+    if (const auto steps = arguments.text("steps"))
+        errors.steps = steps_in(*steps);
     return errors;
 }
 

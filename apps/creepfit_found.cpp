@@ -338,6 +338,8 @@ std::string readings_table(const Found& found, const Measurements& measurements,
 std::string why_not_converged(const Found& found, const Factors& factors)
 {
     const estimation::Minimum& minimum = found.minimum;
+    if (!found.is_settled)
+        return "no fit was found: " + std::string(not_settled);
     std::vector<double> wanted;
     for (std::size_t i = 0; i < factors.size(); ++i)
         wanted.push_back(found.factors[i] * std::exp(minimum.left[static_cast<Eigen::Index>(i)]));

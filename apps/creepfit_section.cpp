@@ -94,6 +94,11 @@ Section read_section(const Arguments& arguments, const std::string& input, const
     return section;
 }
 
+bool are_same(const Joints& a, const Joints& b)
+{
+    return a.from == b.from && a.to == b.to && a.trace_from == b.trace_from && a.trace_to == b.trace_to;
+}
+
 // The same measurements fitted with each network of a scene, none of which is that of the site.
 void fit_networks(const Arguments& arguments, const std::string& measured,
                   const back_analysis::Settings& settings)
@@ -103,6 +108,7 @@ void fit_networks(const Arguments& arguments, const std::string& measured,
     std::string text; // of the scene
     bool knows_deviations = false;
     std::vector<Found> found;
+    std::vector<Joints> joints_before;
     for (const std::string& input : arguments.inputs()) {
         const Section section = read_section(arguments, input, settings.factors);
         const std::string& its = section.file.provenance.scene;
@@ -110,6 +116,14 @@ void fit_networks(const Arguments& arguments, const std::string& measured,
             throw input_error(input + ": its scene is not that of " + arguments.inputs().front() +
                               "; wanted networks of one scene, as jointgen --realization makes them");
         text = its;
+        const Joints& joints = section.file.network.joints;
+        if (const auto same = std::ranges::find_if(
+                joints_before, [&](const Joints& before) { return are_same(before, joints); });
+            same != joints_before.end())
+            throw input_error(input + ": the same network as " +
+                              arguments.inputs()[static_cast<std::size_t>(same - joints_before.begin())] +
+                              "; wanted each network once");
+        joints_before.push_back(joints);
         const Measurements measurements = read_measurements(measured, section.scene, settings.factors.size());
         knows_deviations = measurements.front().deviation.has_value() && !settings.errors.robust &&
                            !settings.errors.correlated;

@@ -175,39 +175,26 @@ std::vector<double> factors_at(const VectorXd& logarithms)
 class Runs
 {
 public:
-    struct Run {
+    struct Done {
         VectorXd logarithms;                                   // of the factors
         std::vector<double> displacement, interpolation_error; // of each measurement [m]
     };
 
-    Runs(const Scene& scene, const Network& network, const EquivalentJoints& joints,
-         const std::vector<scene::Measurement>& measurements, const Settings& settings,
-         const RunObserver& observe)
-        : scene_(scene), network_(network), joints_(joints), measurements_(measurements), settings_(settings),
+    Runs(const Scene& scene, const Section& section, const std::vector<scene::Measurement>& measurements,
+         const Settings& settings, const RunObserver& observe)
+        : scene_(scene), section_(section), measurements_(measurements), settings_(settings),
           observe_(observe), chosen_(chosen(scene, measurements, settings.since_first_reading))
     {
         if (chosen_.measurement.empty())
             throw input_error("all readings are first readings, from which measurements count");
-        for (const Factor& factor : settings.factors) {
-            Scaled scaled = factor.scaled;
-            if (!factor.material.empty()) {
-                const auto material =
-                    std::ranges::find(scene.joint_materials, factor.material, &JointMaterial::name);
-                if (material == scene.joint_materials.end())
-                    throw input_error("the scene has no joint material \"" + factor.material + '"');
-                scaled.material = static_cast<Index>(material - scene.joint_materials.begin());
-                joints_.material = joint::materials_of(scene, network);
-            }
-            recording_.parameters.push_back(scaled);
-        }
     }
 
     const Chosen& readings() const { return chosen_; }
-    const Run& first() const { return done_.front(); }
-    const Run& at(const VectorXd& logarithms) const
+    const Done& first() const { return done_.front(); }
+    const Done& at(const VectorXd& logarithms) const
     {
         return *std::find_if(done_.begin(), done_.end(),
-                             [&](const Run& run) { return run.logarithms == logarithms; });
+                             [&](const Done& run) { return run.logarithms == logarithms; });
     }
     const std::vector<WithoutAnswer>& without_answer() const { return without_answer_; }
 
@@ -244,15 +231,8 @@ public:
 private:
     Prediction predicted(const std::vector<double>& factors) const
     {
-        Scene changed = scene_;
-        EquivalentJoints stiffer = joints_;
-        for (std::size_t i = 0; i < factors.size(); ++i)
-            sensitivity::scale(stiffer, changed.in_situ_stress, recording_.parameters[i], factors[i]);
-        analysis::Analysis analysis(changed, network_, stiffer, settings_.threads, recording_,
-                                    [](const analysis::Progress&) {});
-        analysis.run();
-        return predict(scene_, analysis.result().history, analysis.sensitivities(), measurements_,
-                       settings_.since_first_reading);
+        const Run run = section_(factors);
+        return predict(scene_, run.history, run.sensitivities, measurements_, settings_.since_first_reading);
     }
 
     // Residuals over the deviations of the readings, and their derivatives.
@@ -271,15 +251,13 @@ private:
     }
 
     const Scene& scene_;
-    const Network& network_;
-    EquivalentJoints joints_;
+    const Section& section_;
     const std::vector<scene::Measurement>& measurements_;
     const Settings& settings_;
     const RunObserver& observe_;
     Chosen chosen_;
-    analysis::Recording recording_;
     int count_ = 0;
-    std::vector<Run> done_;
+    std::vector<Done> done_;
     std::vector<WithoutAnswer> without_answer_;
 };
 
@@ -302,9 +280,45 @@ bool are_noisy(const Found& found, const std::vector<scene::Measurement>& measur
 
 } // namespace
 
+Section section_of(const Scene& scene, const Network& network, const EquivalentJoints& joints,
+                   const Settings& settings)
+{
+    EquivalentJoints own = joints;
+    analysis::Recording recording;
+    for (const Factor& factor : settings.factors) {
+        Scaled scaled = factor.scaled;
+        if (!factor.material.empty()) {
+            const auto material =
+                std::ranges::find(scene.joint_materials, factor.material, &JointMaterial::name);
+            if (material == scene.joint_materials.end())
+                throw input_error("the scene has no joint material \"" + factor.material + '"');
+            scaled.material = static_cast<Index>(material - scene.joint_materials.begin());
+            own.material = joint::materials_of(scene, network);
+        }
+        recording.parameters.push_back(scaled);
+    }
+    return
+        [&scene, &network, own, recording, threads = settings.threads](const std::vector<double>& factors) {
+            Scene changed = scene;
+            EquivalentJoints stiffer = own;
+            for (std::size_t i = 0; i < factors.size(); ++i)
+                sensitivity::scale(stiffer, changed.in_situ_stress, recording.parameters[i], factors[i]);
+            analysis::Analysis analysis(changed, network, stiffer, threads, recording,
+                                        [](const analysis::Progress&) {});
+            analysis.run();
+            return Run{analysis.result().history, analysis.sensitivities()};
+        };
+}
+
 Found fit(const Scene& scene, const Network& network, const EquivalentJoints& joints,
           const std::vector<scene::Measurement>& measurements, const Settings& settings,
           const RunObserver& observe)
+{
+    return fit(scene, section_of(scene, network, joints, settings), measurements, settings, observe);
+}
+
+Found fit(const Scene& scene, const Section& section, const std::vector<scene::Measurement>& measurements,
+          const Settings& settings, const RunObserver& observe)
 {
     const auto n = static_cast<Eigen::Index>(settings.factors.size());
     VectorXd start(n), low(n), high(n);
@@ -314,22 +328,29 @@ Found fit(const Scene& scene, const Network& network, const EquivalentJoints& jo
         low[i] = std::log(factor.low);
         high[i] = std::log(factor.high);
     }
-    Runs runs(scene, network, joints, measurements, settings, observe);
+    Runs runs(scene, section, measurements, settings, observe);
 
     Found found;
     const Chosen& readings = runs.readings();
     estimation::Instruments instruments(readings.readings, settings.errors);
+    if (const std::size_t wanted = settings.factors.size() + instruments.unknowns();
+        readings.measurement.size() <= wanted)
+        throw input_error(std::to_string(readings.measurement.size()) + " readings for " +
+                          std::to_string(settings.factors.size()) + " factors and " +
+                          std::to_string(instruments.unknowns()) +
+                          " unknown errors of instruments; wanted more readings, or fewer of both");
     // A step that would win a hundredth of a standard error is not worth a run.
     estimation::InstrumentFit fitted = estimation::minimise(
         [&runs](const VectorXd& logarithms) { return runs.evaluate(logarithms); }, instruments, start, low,
         high, settings.most_runs, 1e-4 / static_cast<double>(readings.measurement.size()));
     found.minimum = std::move(fitted.minimum);
+    found.is_settled = fitted.is_settled;
     found.without_answer = runs.without_answer();
     found.factors = factors_at(found.minimum.parameters);
     found.confidence = instruments.confidence(fitted.raw, found.minimum);
     found.is_resolved = estimation::resolved(found.minimum, found.confidence);
     found.series = readings.series;
-    const Runs::Run& best = runs.at(found.minimum.parameters);
+    const Runs::Done& best = runs.at(found.minimum.parameters);
     found.interpolation_error = best.interpolation_error;
     for (std::size_t m = 0; m < measurements.size(); ++m)
         found.computed.push_back({runs.first().displacement[m], best.displacement[m]});

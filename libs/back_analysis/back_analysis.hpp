@@ -63,6 +63,7 @@ struct Found {
     std::vector<estimation::Outlier> outliers;
     std::vector<estimation::Doubt> doubts;
     double correlation_time = 0;    // of lasting errors [s]
+    bool is_settled = true;         // else weights or correlation change with every repetition
     std::vector<double> instrument; // what errors add to `computed`, of the measurements [m]
     std::vector<bool>
         is_resolved; // factors that the measurements know better than by a factor of 10 up and down
@@ -72,12 +73,28 @@ struct Found {
 using RunObserver = std::function<void(int run, const std::vector<double>& factors)>;
 
 // Throws input_error where the measurements are not of what the section has (removed rock, times before a first
-// reading, a first reading that is not 0), and where no factor changes any of them. Throws equilibrium_error where
+// reading, a first reading that is not 0), where they are not more than factors and unknown errors of instruments, and
+// where no factor changes any of them. Throws equilibrium_error where
 // there is no equilibrium at the start. Elsewhere the search avoids factors without equilibrium, and factors with
 // which the scene's creep step is not stable. Anything else that a run refuses ends the search.
 Found fit(const Scene& scene, const Network& network, const EquivalentJoints& joints,
           const std::vector<scene::Measurement>& measurements, const Settings& settings,
           const RunObserver& observe = {});
+
+// A run of a section: its history, and the sensitivities of its displacements, [factor][time, point]: per unit of the
+// factor's logarithm [m].
+struct Run {
+    History history;
+    std::vector<std::vector<Eigen::Vector2d>> sensitivities;
+};
+// What a section does by factors.
+using Section = std::function<Run(const std::vector<double>& factors)>;
+// By an analysis, whose scene and network must outlive it.
+Section section_of(const Scene& scene, const Network& network, const EquivalentJoints& joints,
+                   const Settings& settings);
+// The fit above, of what the section does.
+Found fit(const Scene& scene, const Section& section, const std::vector<scene::Measurement>& measurements,
+          const Settings& settings, const RunObserver& observe = {});
 
 // The measurements as an analysis computes them [m], and their sensitivities, [measurement, parameter].
 struct Prediction {

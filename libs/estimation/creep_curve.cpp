@@ -335,9 +335,15 @@ CurveFit fit_curve(const CreepCurve& curve, const Errors& errors)
     for (std::size_t i = 0; i < curve.time.size(); ++i)
         readings.deviation.push_back(deviation_of(curve, i));
     Instruments instruments(std::move(readings), errors);
-    const auto [minimum, raw] = best_fit(curve, u, instruments);
+    if (const std::size_t wanted = static_cast<std::size_t>(u.log_tau) + 1 + instruments.unknowns();
+        curve.time.size() <= wanted)
+        throw input_error(std::to_string(curve.time.size()) + " readings for " + std::to_string(wanted) +
+                          " unknowns, " + std::to_string(instruments.unknowns()) +
+                          " of them errors of instruments; wanted more readings");
+    const auto [minimum, raw, is_settled] = best_fit(curve, u, instruments);
     const VectorXd& p = minimum.parameters;
     CurveFit fit;
+    fit.is_settled = is_settled;
     fit.elastic_part = elastic_part(curve, u, p);
     fit.creep_part = p[u.creep] * u.size;
     fit.retardation_time = std::exp(p[u.log_tau]);

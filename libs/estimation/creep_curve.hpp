@@ -42,6 +42,7 @@ struct CurveFit {
     std::vector<Doubt> doubts;
     double correlation_time = 0;    // of lasting errors [s]
     std::vector<double> instrument; // what errors add to `computed` [m]
+    bool is_settled = true;         // else weights or correlation change with every repetition: no fit
 
     // What the record does not give.
     bool is_stiffness_open = false; // E: its interval is wider than a factor of 2 up or down,
@@ -50,8 +51,8 @@ struct CurveFit {
     double record_length;           // over tau [-]
 };
 
-// Throws input_error where the curve is none of creep: fewer readings than parameters, or no creep in the
-// direction of the elastic part. An offset is the elastic part's: it is wanted only where that is known.
+// Throws input_error where the curve is none of creep: not more readings than parameters and unknown errors, or no creep
+// in the direction of the elastic part. An offset is the elastic part's: it is wanted only where that is known.
 CurveFit fit_curve(const CreepCurve& curve, const Errors& errors = {});
 
 // The paper's estimate: E by Eq. 14 from d(T_c), T_c being when creep is taken to be over; then tau by least

@@ -566,8 +566,10 @@ InstrumentFit minimise(const Model& raw, Instruments& instruments, const VectorX
         from = fit.minimum.parameters;
         if (!fit.minimum.is_converged || !instruments.update(fit.raw, fit.minimum.at_bound))
             break;
-        if (repetition == most_repetitions)
+        if (repetition == most_repetitions) {
+            fit.minimum.is_converged = fit.is_settled = false;
             break;
+        }
     }
     fit.minimum.there = instruments.independent(fit.raw);
     fit.minimum.evaluations = static_cast<int>(done.size());

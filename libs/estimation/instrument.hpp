@@ -75,6 +75,9 @@ public:
     // Throws input_error where a step has no series with readings before and after it.
     Instruments(Readings readings, Errors errors);
 
+    // How many unknown errors there are. Those that others of their series contain do not count.
+    std::size_t unknowns() const { return unknowns_.size(); }
+
     // From residuals (model less reading, over deviations) to independent ones without the unknown errors.
     Evaluation independent(const Evaluation& raw) const;
 
@@ -130,8 +133,9 @@ private:
 // The minimum by a model of raw residuals, with repetitions for weights and correlation. The model is called once for
 // the same parameters.
 struct InstrumentFit {
-    Minimum minimum; // of independent residuals
-    Evaluation raw;  // at the minimum
+    Minimum minimum;        // of independent residuals
+    Evaluation raw;         // at the minimum
+    bool is_settled = true; // else weights or correlation change with every repetition: not converged
 };
 InstrumentFit minimise(const Model& raw, Instruments& instruments, const VectorXd& start, const VectorXd& low,
                        const VectorXd& high, int most_evaluations, double relative);

@@ -240,6 +240,32 @@ TEST(instrument, a_step_is_named_with_its_day_and_size)
     EXPECT_NEAR(result.doubts[0].value, 4, 0.6);
 }
 
+// Ten readings want p = 0, twenty p = 1, where these hardly depend on p. Made linear near p = 1 all agree, in between the ten
+// are outliers.
+TEST(instrument, weights_without_end_are_no_fit)
+{
+    Readings readings{
+        .time = {}, .series = std::vector<std::size_t>(30, 0), .deviation = std::vector<double>(30, 1.0)};
+    for (int i = 0; i < 30; ++i)
+        readings.time.push_back(i);
+    const Model model = [](const VectorXd& p) -> std::optional<Evaluation> {
+        Evaluation at{VectorXd(30), MatrixXd(30, 1)};
+        for (Eigen::Index i = 0; i < 30; ++i) {
+            const double noise = i % 2 == 0 ? 0.02 : -0.02, left = p[0] - 1;
+            at.residual[i] = noise + (i < 10 ? p[0] : 3 * left * left);
+            at.jacobian(i, 0) = i < 10 ? 1 : 6 * left;
+        }
+        return at;
+    };
+    Instruments instruments(readings, {.robust = true});
+    const InstrumentFit fit = minimise(model, instruments, VectorXd::Constant(1, 0.5),
+                                       VectorXd::Constant(1, -10), VectorXd::Constant(1, 10), 1000, 1e-12);
+    EXPECT_FALSE(fit.is_settled);
+    EXPECT_FALSE(fit.minimum.is_converged);
+    std::mt19937_64 random(6);
+    EXPECT_TRUE(fitted(Line(random), {.robust = true}).fit.is_settled);
+}
+
 TEST(instrument, a_step_needs_readings_on_both_sides)
 {
     std::mt19937_64 random(5);

@@ -163,6 +163,9 @@ class Creepfit(ChainTest):
         self.assertIn("between networks x/", done.stdout)
         self.refused([*joints[1:], *command[:-2], "--readings", scene.with_name("x.csv")], "--readings is of one network")
         self.refused([joints[1], self.joints, *command[:-2]], "its scene is not that of")
+        copy = scene.with_name("copy.h5")
+        copy.write_bytes(joints[1].read_bytes())
+        self.refused([*joints[1:4], copy, *command[:-2]], f"{copy}: the same network as {joints[1]}")
         self.refused(joints[1:3], "several files are given")
 
     def spoilt(self, spoil):
@@ -362,6 +365,18 @@ class Creepfit(ChainTest):
             path.write_text(text)
             with self.subTest(text):
                 self.refused([self.joints, "--measurements", path, "--fit", "joint-stiffness"], str(path), wanted)
+
+    def test_too_few_readings_for_errors_of_instruments(self):
+        """Refused before the search: three factors, and of each of three points an offset, a drift and a step."""
+        path = self.chain.new_folder() / "readings.csv"
+        rows = [f"{day},{point},y,{day},0.1" for point in "ABC" for day in (2, 4, 6, 8)]
+        path.write_text("\n".join(["time_day,point,component,displacement_mm,sigma_mm", *rows, ""]))
+        fit = ["--fit", ",".join(TRUTH), "--offset", "--drift", "--steps", "6"]
+        self.refused([self.joints, "--measurements", path, *fit],
+                     "12 readings for 3 factors and 9 unknown errors of instruments; wanted more readings")
+        curve = self.chain.new_folder() / "curve.csv"
+        curve.write_text("time_day,displacement_mm\n" + "".join(f"{day},{1 + day / 10}\n" for day in range(5)))
+        self.refused([curve, "--drift", "--steps", "3"], f"{curve}: 5 readings for 5 unknowns, 2 of them errors of instruments")
 
     def test_refusals_of_options(self):
         readings, curve = self.readings(), self.curve(100)
