@@ -10,7 +10,8 @@ import sys
 import tarfile
 import unittest
 
-from chain import ChainTest, main
+import numpy as np
+from chain import ChainTest, datasets, main
 
 APPS = ["jointgen", "strength-averaging", "demsolve", "jointexport", "creepfit", "jointverify", "jointcreep"]
 
@@ -37,7 +38,13 @@ class Install(ChainTest):
         data = [path.relative_to(source) for path in (source / "data").rglob("*") if path.is_file()]
         pages = [path.relative_to(source) for end in ("md", "png", "svg") for path in (source / "docs").rglob(f"*.{end}")]
         of_doc = ["README.md", "CHANGELOG.md", "CITATION.cff", "LICENSE", "copyright", *map(str, pages)]
-        self.assertEqual(files, sorted([f"bin/{app}" for app in APPS] + [module] * has_gdal +
+        headers = [path for folder in ("model", "store") for path in (self.prefix / "include/jointcreep" / folder).glob("*.hpp")]
+        libraries = ["store", "fields", "keys", "rock", "joint", "boundary", "creep", "model"]
+        configs = ["config", "config-version", "targets", "targets-release"]
+        self.assertEqual(len(headers), 7)
+        self.assertEqual(files, sorted([f"bin/{app}" for app in APPS] + [str(path.relative_to(self.prefix)) for path in headers] +
+                                       [f"lib/jointcreep/lib{name}.a" for name in libraries] +
+                                       [f"lib/cmake/jointcreep/jointcreep-{name}.cmake" for name in configs] + [module] * has_gdal +
                                        [f"share/jointcreep/{path}" for path in package if path.name != "launcher.py"] +
                                        [f"share/jointcreep/{path}" for path in data] +
                                        [f"share/doc/jointcreep/{path}" for path in of_doc] +
@@ -72,6 +79,30 @@ class Install(ChainTest):
                               env=dict(os.environ, PYTHONPATH=str(self.prefix / "share/jointcreep")))
         self.assertEqual((done.returncode, done.stdout), (0, f"{self.prefix}/share/jointcreep/jointcreep/__init__.py\n"), done.stderr)
         self.assertTrue((folder / "section.png").read_bytes().startswith(b"\x89PNG"))
+
+    def test_a_program_of_others(self):
+        """The example of docs/installation.md, built with the installed library alone, prints the histories of a result."""
+        page = self.chain.text("docs/installation.md")
+        (cmake,) = re.findall(r"(?ms)^```cmake\n(.*?)^```$", page)
+        (program,) = re.findall(r"(?ms)^```cpp\n(.*?)^```$", page)
+        folder = self.chain.new_folder()
+        (folder / "CMakeLists.txt").write_text(cmake)
+        (folder / "histories.cpp").write_text(program)
+        self.installed("cmake", f"-DCMAKE_PREFIX_PATH={self.prefix}", "-B", "build", cwd=folder, check=True)
+        built = self.installed("cmake", "--build", "build", "--verbose", cwd=folder, check=True).stdout
+        self.assertNotRegex(built, "-Werror|-Wall|-ffp-contract|-O3")
+        self.assertNotIn(str(self.chain.source), built)
+        result = self.chain.result(self.chain.text("data/column/scene.toml"), "--no-creep")
+        done = self.installed(folder / "build/histories", result, check=True)
+        history = datasets(result)
+        wanted = [[time, point, *displacement] for time, row in zip(history["/history/time"], history["/history/displacement"])
+                  for point, displacement in zip(history["/history/point"], row)]
+        for line, (time, point, x, y) in zip(done.stdout.splitlines(), wanted, strict=True):
+            day, name, *uv = line.split()
+            self.assertEqual(name, point)
+            np.testing.assert_allclose([float(value) for value in (day, *uv)], [time, x, y], rtol=1e-5, atol=1e-12)
+        refused = self.installed(folder / "build/histories", "none.h5")
+        self.assertEqual((refused.returncode, refused.stderr.startswith("none.h5: ")), (1, True), refused.stderr)
 
     def version_of(self, commit):
         """What version.cmake says in a folder that is no git checkout."""
@@ -182,7 +213,7 @@ class DebianPackage(ChainTest):
             for entry in content:
                 name = entry.name.lstrip("./")
                 self.assertEqual((entry.uid, entry.gid), (0, 0), name)
-                self.assertTrue(name == "" or name == "usr" or name.startswith(("usr/bin", "usr/lib", "usr/share")), name)
+                self.assertTrue(name == "" or name == "usr" or name.startswith(("usr/bin", "usr/include", "usr/lib", "usr/share")), name)
                 if entry.issym():
                     self.assertEqual((name, entry.linkname),
                                      ("usr/lib/python3/dist-packages/jointcreep", "../../../share/jointcreep/jointcreep"))
