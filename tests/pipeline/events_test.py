@@ -132,7 +132,7 @@ class Events(ChainTest):
             with_side, without = (datasets(self.chain.result(scene(
                 [[0, 0], [10, 0], [10, 10], [0, 10]], [], [held([0, 0], [10, 0]), pushed, *more], [], gravity=0,
                 stages=[[[[5, 5], [10, 5], [10, 10], [5, 10]]]], points=[[9.9, 4.9], [1, 9]], end=3,
-                more=f'kind = "{kind}"\n'))) for more in (side, []))
+                kind=kind))) for more in (side, []))
             moved = without["/history/displacement"][-1]
             self.assertGreater(abs(moved).min(), 1e-5)
             np.testing.assert_allclose(with_side["/history/displacement"][-1], moved, atol=1e-9)

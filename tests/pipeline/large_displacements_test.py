@@ -81,6 +81,7 @@ remove_m = [{[place(toe, 0), place(end + 1, 0), place(end + 1, top), place(toe, 
 name = "block"
 at_m = {place(at + width / 2, top / 2)}
 [zones]
+kind = "constant strain"
 size_m = 1
 [large_displacements]
 new_contacts = "plane"
@@ -156,7 +157,7 @@ class Blocks(ChainTest):
 
             text = changed(incline(dip, friction, length=length, more=more), rf"^from_m = {re.escape(str(place(at, 0)))}$",
                            f"from_m = {place(at + lean * below, -below)}")
-            text = changed(text, "^normal_stiffness_MPa_per_m = .*", f"normal_stiffness_MPa_per_m = {stiffness}")
+            text = re.sub("(?m)^normal_stiffness_MPa_per_m = .*", f"normal_stiffness_MPa_per_m = {stiffness}", text)
             text = changed(text, r"^\[schedule\]$", f'[[boundary]]\nfrom_m = [0, -1]\nto_m = {place(0, 0)}\nfix = "xy"\n[schedule]')
             data = datasets(self.chain.result(text))
             acceleration = GRAVITY * (s - c * math.tan(math.radians(friction)))
@@ -559,6 +560,7 @@ remove_m = [[[2, 0], [3, 0], [3, 2], [2, 2]]]
 name = "corner"
 at_m = [2, 2]
 [zones]
+kind = "constant strain"
 size_m = 1
 [large_displacements]
 new_contacts = "smooth"
@@ -700,6 +702,7 @@ remove_m = [[[0, 0], [2, 0], [2, 1], [0, 1]]]
 name = "lower end"
 at_m = [1, 1]
 [zones]
+kind = "constant strain"
 size_m = 0.5
 [large_displacements]
 new_contacts = "bonded"
@@ -748,6 +751,7 @@ end = {len(removed) + 1}
 {stages}
 {points}
 [zones]
+kind = "constant strain"
 size_m = {size}
 [large_displacements]
 new_contacts = "joint"

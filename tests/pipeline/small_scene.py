@@ -41,8 +41,8 @@ def joint(name, start, end, of="joint"):
     return {"name": name, "from_m": start, "to_m": end, "material": of}
 
 
-def scene(outline, joints, boundaries, materials, *, gravity=GRAVITY, stages=(), points=(), zone=1.0, density=2500,
-          modulus=10, poisson=0, stress=(0, 0, 0), end=None, more=""):
+def scene(outline, joints, boundaries, materials, *, gravity=GRAVITY, stages=(), points=(), zone=1.0,
+          kind="constant strain", density=2500, modulus=10, poisson=0, stress=(0, 0, 0), end=None, more=""):
     """A scene. `stages` are lists of polygons, removed on days 1, 2 ...; `points` are places, named by their number;
     `modulus` is in GPa, `stress` the uniform {xx, yy, xy} in MPa, tension positive."""
     xx, yy, xy = stress
@@ -60,7 +60,7 @@ def scene(outline, joints, boundaries, materials, *, gravity=GRAVITY, stages=(),
         *(table("[[stage]]", {"name": f"stage {n}", "date": n, "remove_m": list(polygons)})
           for n, polygons in enumerate(stages, 1)),
         *(table("[[point]]", {"name": str(n), "at_m": place}) for n, place in enumerate(points)),
-        table("[zones]", {"size_m": zone}),
+        table("[zones]", {"kind": kind, "size_m": zone}),
         more]
     return "\n".join(parts)
 
