@@ -147,9 +147,9 @@ def yielding_cases(programs):
         Case("rigid punch: pressure over cohesion", punch, 1, 2 + math.pi, punch_pressure, ((2, 4, 8, 16), (2, 4, 8))),
         Case("punch by pressure: factor of safety", pressed, 1, 2, factor, ((2, 4, 8), (2, 4)), safety),
         Case("vertical cut: factor of safety", cut, 6, 1.199, factor, ((3, 6, 12, 24), (3, 6, 12, 24)), safety),
-        Case("slope, psi = phi: factor of safety", slope, 10, 1.368, factor, ((2.5, 5, 10, 20), (2.5, 5, 10)),
+        Case("slope, psi = phi: factor of safety", slope, 10, 1.368, factor, ((2.5, 5, 10, 20), (2.5, 5, 10, 20)),
              safety),
-        Case("slope, psi = 0: factor of safety", soft, 10, 1.368, factor, ((2.5, 5, 10, 20), (2.5, 5, 10)),
+        Case("slope, psi = 0: factor of safety", soft, 10, 1.368, factor, ((2.5, 5, 10, 20), (2.5, 5, 10, 20)),
              safety)]
 
 
