@@ -356,7 +356,7 @@ int main(int argc, char** argv)
 {
     return run(
         {.name = "jointexport",
-         .summary = "Writes what files of the chain hold in the formats of other tools.",
+         .summary = "Writes the content of files of the chain in the formats of other programs.",
          .input = "FILE.h5...",
          .output = "NAME.EXT",
          .options =

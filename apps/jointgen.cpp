@@ -39,7 +39,7 @@ const Program program{
         {{"seed", "N", "seed of the joint sets (default: the scene's)"},
          {"realization", "R", "which of the seed's networks (default 0)"},
          {"report", "",
-          "test the network against the laws of the scene, print that, and keep it in the file"},
+          "compare the network with the laws of the scene, print the result, and keep it in the file"},
          {"check", "", "read the scene, cut it, report, and write nothing"},
          {"cut-with", "NAME",
           "what divides the lines where they cross: own (default), or cgal: CGAL's Arrangement_2, which takes longer and gives "

@@ -8,14 +8,14 @@ usage: jointcreep fit TRACES -o SETS.toml --window WINDOW [options]
 
 Description:
 run makes network.h5, joints.h5 and result.h5 of a scene, pictures, histories.csv, states.xdmf2 (for ParaView) and report.html. It
-shows each command, and makes only what is missing or whose scene, options or programs have changed. The same command
-continues an interrupted run. A run without equilibrium has pictures of the moving blocks, and a report.
-study makes the runs that a study file asks for, and writes what they have in common: runs.csv and runs.h5 (a row a run),
-answers.csv (means, quantiles and probabilities with confidence), convergence.csv, shares.csv, summary.txt and pictures. An
-interrupted study goes on by the same command. Two studies never work in one folder at once.
+shows each command. Files are made only if they are missing, or if the scene, options or programs have changed. The same
+command continues an interrupted run. A run without equilibrium has pictures of the moving blocks, and a report.
+study makes the runs of a study file, and writes their results and statistics: runs.csv and runs.h5 (a row a run),
+answers.csv (means, quantiles and probabilities with confidence), convergence.csv, shares.csv, summary.txt and pictures. The
+same command continues an interrupted study. Two studies never work in one folder at once.
 report writes one page of HTML, with all pictures in it, for a study or for a result file of demsolve.
-fit finds the laws of joint sets from traces that a convex window shows (GeoJSON, CSV, GeoPackage, Shapefile, DXF), cut ones as
-censored, and writes them as [[joint_set]]. The laws are those of all joints, not of the traces in the window.
+fit finds the laws of joint sets from the traces in a convex window (GeoJSON, CSV, GeoPackage, Shapefile, DXF), and writes them as
+[[joint_set]]. Traces that the window cuts are censored. The laws are those of all joints, not of the traces in the window.
 
 Options:
   -o [ --output ] OUT       the folder of a run or study, or the report or sets to write; - is standard output
@@ -29,13 +29,13 @@ Options:
   --property NAME           fit: a set for each value of this property, in CSV a column
   --name NAME               fit: name of the set (default: the file's)
   --material NAME           fit: joint material of the sets (default: joint)
-  --law NAME                fit: law of lengths (default: the one with the largest likelihood of traces held back)
+  --law NAME                fit: law of lengths (default: the one with the largest likelihood in cross-validation)
   --shortest M              fit: shortest length that was mapped; shorter ones are left out
   --longest M               fit: longest trace, for a power law, which also needs --shortest
-  --edge M                  fit: ends so near to the window's edge count as cut (default: 1e-6 of its size)
+  --edge M                  fit: ends nearer than this to the window's edge count as cut (default: 1e-6 of its size)
   --poles POLES.csv         fit: orientation from measured planes, by Fisher's law
-  --azimuth DEG             fit: they are those of the traces, in a section with this bearing: weighs them by Terzaghi
-  --scanline-trend DEG      fit: they were met by a scanline with this bearing: weighs them by Terzaghi
+  --azimuth DEG             fit: the planes are those of traces in a section with this bearing; Terzaghi's weights
+  --scanline-trend DEG      fit: the planes were met by a scanline with this bearing; Terzaghi's weights
   --scanline-plunge DEG     fit: its inclination below the horizontal
   -h [ --help ]             show this text
   -V [ --version ]          show the version
@@ -44,7 +44,7 @@ Exit codes:
   0  done
   2  the command line, the study, the scene or a file is not as expected
   3  run: no equilibrium was found; study: no run ended with a value, so there are no answers
-  4  a file could not be read or written, or runs were stopped; the same command goes on
+  4  a file could not be read or written, or runs were stopped; the same command continues
   5  internal error, or out of memory
 
 Example:
@@ -227,5 +227,5 @@ def main(arguments, version, beside):
         print("jointcreep: internal error", file=sys.stderr)
         return 5
     except KeyboardInterrupt:
-        print("jointcreep: interrupted; the same command goes on", file=sys.stderr)
+        print("jointcreep: interrupted; the same command continues", file=sys.stderr)
         return INTERRUPTED
