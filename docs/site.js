@@ -7,6 +7,6 @@ document.addEventListener("DOMContentLoaded", () => {
         if (length < 14)
             cell.style.whiteSpace = "nowrap";
         else if (length > 50)
-            cell.style.minWidth = "12em";
+            cell.style.minWidth = "9em";
     }
 });
