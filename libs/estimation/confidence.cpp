@@ -25,6 +25,36 @@ std::vector<Eigen::Index> free_of(const std::vector<bool>& is_fixed)
     return free;
 }
 
+std::vector<bool> without_effect(const MatrixXd& J)
+{
+    std::vector<bool> found;
+    for (const auto& column : J.colwise())
+        found.push_back(column.norm() == 0);
+    return found;
+}
+
+// J^T J of some columns, divided by their lengths so that inverting loses few digits.
+struct Parts {
+    VectorXd length, values;
+    MatrixXd vectors;
+};
+
+Parts parts_of(const MatrixXd& J, const std::vector<Eigen::Index>& of)
+{
+    const MatrixXd columns = J(Eigen::all, of);
+    const VectorXd length = columns.colwise().norm();
+    const MatrixXd scaled = columns * length.cwiseInverse().asDiagonal();
+    const Eigen::SelfAdjointEigenSolver<MatrixXd> parts(scaled.transpose() * scaled);
+    return {length, parts.eigenvalues(), parts.eigenvectors()};
+}
+
+MatrixXd inverse_of(const Parts& parts)
+{
+    const MatrixXd inverse =
+        parts.vectors * parts.values.cwiseMax(1e-15).cwiseInverse().asDiagonal() * parts.vectors.transpose();
+    return parts.length.cwiseInverse().asDiagonal() * inverse * parts.length.cwiseInverse().asDiagonal();
+}
+
 } // namespace
 
 double Confidence::standard_error(Eigen::Index i) const
@@ -76,24 +106,18 @@ Confidence confidence_of(const Minimum& minimum, bool deviations_are_known)
     if (free.empty())
         return found;
 
-    // Columns are divided by their lengths, so that inverting loses few digits.
-    const MatrixXd columns = J(Eigen::all, free);
-    const VectorXd length = columns.colwise().norm();
-    const MatrixXd scaled = columns * length.cwiseInverse().asDiagonal();
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> parts(scaled.transpose() * scaled);
-    found.smallest_eigenvalue = std::max(parts.eigenvalues()[0], 1e-15);
-    found.condition_number =
-        std::sqrt(parts.eigenvalues()[parts.eigenvalues().size() - 1] / found.smallest_eigenvalue);
-    const MatrixXd inverse = parts.eigenvectors() *
-                             parts.eigenvalues().cwiseMax(1e-15).cwiseInverse().asDiagonal() *
-                             parts.eigenvectors().transpose();
-    const MatrixXd covariance =
-        found.noise_factor * found.noise_factor *
-        (length.cwiseInverse().asDiagonal() * inverse * length.cwiseInverse().asDiagonal());
-    found.covariance(free, free) = covariance;
-    const VectorXd error = inverse.diagonal().cwiseSqrt();
-    found.correlation(free, free) =
-        error.cwiseInverse().asDiagonal() * inverse * error.cwiseInverse().asDiagonal();
+    const Parts parts = parts_of(J, free);
+    found.smallest_eigenvalue = std::max(parts.values[0], 1e-15);
+    found.condition_number = std::sqrt(parts.values[parts.values.size() - 1] / found.smallest_eigenvalue);
+    // A parameter at a bound is not known. The others have the covariance that they have when it is free.
+    const std::vector<Eigen::Index> moving = free_of(without_effect(J));
+    const MatrixXd all = found.noise_factor * found.noise_factor * inverse_of(parts_of(J, moving));
+    MatrixXd covariance = MatrixXd::Zero(n, n);
+    covariance(moving, moving) = all;
+    found.covariance(free, free) = MatrixXd(covariance(free, free));
+    const VectorXd error = found.covariance(free, free).diagonal().cwiseSqrt();
+    found.correlation(free, free) = error.cwiseInverse().asDiagonal() * MatrixXd(covariance(free, free)) *
+                                    error.cwiseInverse().asDiagonal();
     return found;
 }
 
@@ -119,24 +143,15 @@ std::optional<WeakCombination> weak_combination(const Minimum& minimum, const Co
 std::vector<bool> resolved(const Minimum& minimum, const Confidence& confidence)
 {
     const MatrixXd& J = minimum.there.jacobian;
-    std::vector<bool> has_effect;
-    for (Eigen::Index i = 0; i < J.cols(); ++i)
-        has_effect.push_back(J.col(i).norm() > 0);
-    std::vector<bool> without_effect = has_effect;
-    without_effect.flip();
-    const std::vector<Eigen::Index> some = free_of(without_effect);
-    std::vector<bool> found(has_effect);
+    std::vector<bool> found = without_effect(J);
+    const std::vector<Eigen::Index> some = free_of(found);
+    found.flip();
     if (some.empty())
         return found;
-    const MatrixXd columns = J(Eigen::all, some);
-    const VectorXd length = columns.colwise().norm();
-    const MatrixXd scaled = columns * length.cwiseInverse().asDiagonal();
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> parts(scaled.transpose() * scaled);
-    const VectorXd variance =
-        parts.eigenvectors().cwiseAbs2() * parts.eigenvalues().cwiseMax(1e-15).cwiseInverse();
+    const VectorXd variance = inverse_of(parts_of(J, some)).diagonal();
     for (std::size_t k = 0; k < some.size(); ++k) {
         const auto i = static_cast<Eigen::Index>(k);
-        const double alone = confidence.noise_factor * std::sqrt(variance[i]) / length[i],
+        const double alone = confidence.noise_factor * std::sqrt(variance[i]),
                      error = confidence.is_fixed[static_cast<std::size_t>(some[k])]
                                  ? alone
                                  : std::max(alone, confidence.standard_error(some[k]));

@@ -244,6 +244,11 @@ def without(name, cases):
     return {case: (faults, cases["even readings"][1]) for case, (faults, _) in cases.items() if case.startswith(name)}
 
 
+def chosen(given, cases):
+    """Those that are wanted: all, or those of --cases."""
+    return {name: case for name, case in cases.items() if not given.cases or name in given.cases}
+
+
 WRONG = "an outlier", "a step", "drift", "unknown zeros", "correlated noise"
 
 
@@ -298,16 +303,19 @@ def column(given, tables, failed):
     three, one = (joints_of(given.programs, its, given.out / name)
                   for name, its in (("three-loads", text), ("one-load", with_one_load(text))))
     site, single = Column(text), Column(with_one_load(text))
-    cases, one_load, no_loads = cases_of(0.1, []), {"one load": ({}, [])}, {"loads that the scene does not have": ({}, [])}
+    all_cases = cases_of(0.1, [])
+    cases, wrong = chosen(given, all_cases), chosen(given, without(WRONG, all_cases))
+    one_load, no_loads = chosen(given, {"one load": ({}, [])}), chosen(given, {"loads that the scene does not have": ({}, [])})
 
     def found(joints, site, cases, n):
-        return fits(given.programs, TRUTH, response_of(given), [joints], trials_of(site, cases, n), given.out)
+        return fits(given.programs, TRUTH, response_of(given), [joints], trials_of(site, cases, n), given.out) if cases else ()
 
     add_coverage(tables["fits"], "column", cases, found(three, site, cases, given.n), given.n, failed)
     add_coverage(tables["fits"], "column", one_load, found(one, single, one_load, given.n), given.n, failed)
-    add_wrong(tables["wrong"], "column", found(three, site, without(WRONG, cases), given.wrong), given.wrong, failed)
+    add_wrong(tables["wrong"], "column", found(three, site, wrong, given.wrong), given.wrong, failed)
     add_wrong(tables["wrong"], "column", found(one, site, no_loads, given.wrong), given.wrong, failed)
-    compare(given, tables["checks"], "column", three, trials_of(site, cases, 5), 5 * len(cases))
+    if cases:
+        compare(given, tables["checks"], "column", three, trials_of(site, cases, 5), 5 * len(cases))
 
 
 def response_of(given):
@@ -336,7 +344,7 @@ def by_solver(given, tables, failed, name, path, components, every, drift, n):
     site = Solved(given.programs, made, components, every)
     cases = cases_of(drift, ["--offset"])
     del cases["unknown zeros of 2 mm"]  # as all fits
-    wrong = without(WRONG, cases)
+    cases, wrong = chosen(given, cases), chosen(given, without(WRONG, cases))
     known = [((one[0], True), *one[1:]) for one in trials_of(site, cases, n)]
     unknown = [((one[0], False), *one[1:]) for one in trials_of(site, wrong, n)]
     found = fits(given.programs, TRUTH, response_of(given), [joints], known + unknown, given.out)
@@ -417,12 +425,12 @@ def apart(given, tables, failed):
         for factor, value in truth.items():
             rows = [group[factor] for group in done]
             resolved = [row for row in rows if row["resolved"] == "yes"]
-            held = sum(holds(row, value) for row in rows) / len(groups)
-            if len(resolved) == len(groups) and not is_95(held, len(groups)):
+            held = sum(holds(row, value) for row in rows) / len(done)
+            if len(resolved) == len(done) and not is_95(held, len(done)):
                 failed.append(f"{factor}, {name}")
             widths = [math.sqrt(float(row["high_95"]) / float(row["low_95"])) for row in resolved if row["low_95"] and row["high_95"]]
             tables["apart"].add(name, sigma, factor, value, len(groups), f"{held:.3f}", f"x/ {statistics.median(widths):.3f}" if widths else "-",
-                                f"{1 - len(resolved) / len(groups):.3f}")
+                                f"{1 - len(resolved) / len(done):.3f}", len(groups) - len(done))
 
 
 def curve(given, tables, failed):
@@ -457,7 +465,7 @@ def curve(given, tables, failed):
 
 
 TABLES = {
-    "apart": ["section", "sigma, mm", "factor", "truth", "fits", "intervals that hold it", "median interval", "named as not resolved"],
+    "apart": ["section", "sigma, mm", "factor", "truth", "fits", "intervals that hold it", "median interval", "named as not resolved", "no fit"],
     "curve": ["drift, mm/day", "distance from the nearest curve without drift, sigma", "no test warns more often than", "fits", "warned of"],
     "networks": ["readings a day", "networks", "sites", *TRUTH, "half of eta within x/", "interval of eta, high over low", "no fit"],
     "fits": ["section", "readings", "options", "fits", *TRUTH, "warned of", "no fit"],
@@ -473,6 +481,7 @@ def main():
     parser.add_argument("data", type=pathlib.Path)
     parser.add_argument("out", type=pathlib.Path)
     parser.add_argument("--only", default=",".join(SECTIONS))
+    parser.add_argument("--cases", type=lambda text: text.split(","), help="of the readings, by name; all by default")
     parser.add_argument("--n", type=int, default=2000)
     parser.add_argument("--n-slope", type=int, default=200)
     parser.add_argument("--n-lock", type=int, default=20)

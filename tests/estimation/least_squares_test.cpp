@@ -83,6 +83,20 @@ TEST(least_squares, turns_along_a_bound)
     EXPECT_NEAR(found.parameters[1], 54. / 55, 1e-6);
 }
 
+// The line above at its bound a = 1. Of b the data know what they know of it in a free line: variance 1 / sum of (x - mean)^2
+// = 1 / 10, and not 1 / sum of x^2 = 1 / 55, as if a were known.
+TEST(confidence, a_parameter_at_a_bound_is_not_known_to_the_others)
+{
+    const VectorXd x = vector({1, 2, 3, 4, 5}), y = vector({2, 3, 5, 4, 6});
+    const Minimum found =
+        minimise(line(x, y), vector({0.99, 1}), vector({-none, -none}), vector({1, none}), 100, 1e-15);
+    const Confidence confidence = confidence_of(found, true);
+    EXPECT_TRUE(confidence.is_fixed[0]);
+    EXPECT_EQ(confidence.covariance(0, 0), 0);
+    EXPECT_EQ(confidence.covariance(0, 1), 0);
+    EXPECT_NEAR(confidence.covariance(1, 1), 0.1, 1e-12);
+}
+
 TEST(least_squares, goes_round_where_there_is_no_answer)
 {
     int refused = 0;
