@@ -43,8 +43,8 @@ Table<Boundary> boundary()
     };
     return {
         {"boundary", in_list, required,
-         "Supports and loads of a straight piece of the outline: fix or joint, traction, or fix and "
-         "displacement. Elsewhere the outline is free."},
+         "Supports and loads of a straight piece of the outline: fix or joint, traction, fix and a traction in the "
+         "free direction, or fix and displacement. Elsewhere the outline is free."},
         {point("from_m", &Boundary::from, "One end, on the outline."),
          point("to_m", &Boundary::to, "The other end, on the same straight piece of the outline."),
          choice<Boundary, Fixed>("fix", fix,
@@ -55,8 +55,8 @@ Table<Boundary> boundary()
              .optional(),
          vector(
              "traction_MPa", &Boundary::traction, MPa, stresses,
-             "Total force on the rock per area {x, y}. It includes the traction of the in-situ stress, which "
-             "nothing else balances in a direction that is not fixed.")
+             "Total force on the rock per area {x, y}, 0 in a direction that is fixed. It includes the traction of "
+             "the in-situ stress, which nothing else balances in a direction that is not fixed.")
              .optional(),
          vector("displacement_mm", &Boundary::displacement, millimetres, within(1e6),
                 "Imposed displacement {x, y}, 0 in a direction that is not fixed; with fix and load_history.")

@@ -413,6 +413,10 @@ TEST(checks, loads)
                    "joint = \"joint\"\ntraction_MPa");
     expect_refused("traction_MPa = [0, -0.01]", "fix = \"x\"\nload_history = [[0, 1]]", "beside it",
                    "load_history = [[0, 1]]");
+    expect_refused("fix = \"x\"\n\n", "fix = \"x\"\ntraction_MPa = [0.1, -1]\n\n",
+                   "wanted 0 in a direction that is fixed", "traction_MPa = [0.1, -1]");
+    const auto fine = replaced(text, "fix = \"x\"\n\n", "fix = \"x\"\ntraction_MPa = [0, -1]\n\n");
+    EXPECT_EQ(refusal(fine), "accepted");
 }
 
 TEST(checks, files)
