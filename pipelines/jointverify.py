@@ -257,7 +257,11 @@ class Scene:
                 raise NotWanted(f"{self.place}: load_history: expected pairs of a date and a number")
             points = np.array([[self.day(pair[0], "load_history"), self.number({"load_history": pair[1]}, "load_history")]
                                for pair in history])
-        return {"fix": str(table.get("fix", "")),
+        normal = None
+        if table.get("fix") == "normal":
+            along = self.pair(table.get("to_m"), "to_m") - self.pair(table.get("from_m"), "from_m")
+            normal = np.array([along[1], -along[0]]) / np.hypot(*along)
+        return {"fix": str(table.get("fix", "")), "normal": normal,
                 "traction": 1e6 * self.pair(table["traction_MPa"], "traction_MPa") if "traction_MPa" in table else None,
                 "displacement": 1e-3 * self.pair(table["displacement_mm"], "displacement_mm")
                 if "displacement_mm" in table else None,
@@ -654,6 +658,14 @@ class Verification:
             by_present[ends[on & there]] |= bits
         return m.fixed & ~(by_boundaries & ~by_present)
 
+    def on_rollers(self, s):
+        """Gridpoints on rollers beside rock, and the normal: of each segment with fix = "normal"."""
+        m = self.section
+        ends = m.side if not m.is_quadratic else np.column_stack([m.side, m.side_middle])
+        for number, boundary in enumerate(self.scene.boundaries):
+            if boundary["normal"] is not None:
+                yield np.unique(ends[(m.side_boundary == number) & self.states.present[s][m.side_zone]]), boundary["normal"]
+
     def check_kinematics(self, s):
         m, st, see = self.section, self.states, self.checks.see
         u = st.displacement[s]
@@ -677,6 +689,9 @@ class Verification:
             see("fixed gridpoints are where supports hold them", "m", np.abs(u[held, axis] - wanted[held]),
                 ROUNDING * np.abs(wanted[held]),
                 self.in_state("/states/displacement", s, m.position, "gridpoint", np.flatnonzero(held)))
+        for at, normal in self.on_rollers(s):
+            see("gridpoints on rollers move along them", "m", np.abs(u[at] @ normal), ROUNDING * norm(u[at]),
+                self.in_state("/states/displacement", s, m.position, "gridpoint", at))
         here = np.flatnonzero(st.status[s] != REMOVED)
         apart = (u[m.contact[:, 1]] - u[m.contact[:, 0]])[here]
         relative = np.stack([(apart * m.normal[here]).sum(axis=1), (apart * m.tangent[here]).sum(axis=1)], axis=1)
@@ -1028,24 +1043,31 @@ class Verification:
         leader = self.leaders(s)
         follows = np.flatnonzero(leader != np.arange(n))
         fixed = self.fixed_in(s)
-        free = np.stack([(fixed & 1) == 0, (fixed & 2) == 0], axis=1)
+        held = np.zeros((n, 2, 2))  # sum of n n' over directions n in which a gridpoint does not move
+        for axis in (0, 1):
+            held[:, axis, axis] = (fixed >> axis) & 1
+        for at, normal in self.on_rollers(s):
+            held[at] += np.outer(normal, normal)
         has_rock = ~m.has_zones
         has_rock[m.node[there]] = True
-        free[~has_rock] = False
+        held[~has_rock] = np.eye(2)
         carried = magnitude.copy()
         for f in follows:
             force[leader[f]] += force[f]
             force[f] = 0
             carried[leader[f]] += magnitude[f]
-            free[leader[f]] &= free[f]
+            held[leader[f]] += held[f]
+        held, direction = np.linalg.eigh(held)
+        free = held < 1e-12  # these directions
+        free_part = lambda of: (direction @ (free * (of[:, None] @ direction)[:, 0])[..., None])[..., 0]
         reaction = st.reaction[s]
         rounding = ROUNDING * carried
         see("reactions hold the forces on fixed gridpoints, and there are no others", "N/m",
-            norm(np.where(free, reaction, reaction + force)), rounding,
+            norm(reaction + force - free_part(force)), rounding,
             self.in_state("/states/reaction", s, m.position, "gridpoint", beside="/states/stress, /states/traction"))
         # What is below the rounding of stiffness times displacement is in balance.
         tolerance = self.scene.tolerance
-        unbalanced = norm(np.where(free, force, 0))
+        unbalanced = norm(free_part(force))
         floor = 1e-15 * self.stiffest_row(s) / tolerance  # times a displacement
         worst = int(np.argmax(np.where(np.isnan(unbalanced), np.inf, unbalanced)))
         base = max(mean, floor * norm(st.displacement[s]).max())

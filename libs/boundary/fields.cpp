@@ -25,7 +25,7 @@ std::vector<Field> fields_of(Mesh& mesh)
     // clang-format off
     return {
         {"/mesh/gridpoint_fixed", &mesh.gridpoint_fixed, {"gridpoint"}, "1", between(0, 3),
-         "0 free, 1 fixed in x, 2 fixed in y, 3 fixed in both."},
+         "0 free, 1 fixed in x, 2 fixed in y, 3 fixed in both. Rollers (fix = \"normal\") do not count."},
         {"/mesh/side_gridpoint", &mesh.side_gridpoint, {"side"}, "1", index_of("gridpoint"),
          "Gridpoints of a zone side that lies on a boundary condition."},
         {"/mesh/side_middle", &mesh.side_middle, {"quadratic_side"}, "1", index_of("gridpoint"), "Gridpoint in its middle."},

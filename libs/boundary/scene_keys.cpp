@@ -35,11 +35,12 @@ LoadHistory read_load_history(const KeyInfo& key, const TomlValue& value, const 
 Table<Boundary> boundary()
 {
     struct Fixed {
-        bool x, y;
+        bool x, y, normal = false;
     };
     const auto fix = [](Boundary& held, Fixed fixed) {
         held.fix_x = fixed.x;
         held.fix_y = fixed.y;
+        held.fix_normal = fixed.normal;
     };
     return {
         {"boundary", in_list, required,
@@ -48,8 +49,12 @@ Table<Boundary> boundary()
         {point("from_m", &Boundary::from, "One end, on the outline."),
          point("to_m", &Boundary::to, "The other end, on the same straight piece of the outline."),
          choice<Boundary, Fixed>("fix", fix,
-                                 {{"x", {true, false}}, {"y", {false, true}}, {"xy", {true, true}}},
-                                 "It does not move in these directions.")
+                                 {{"x", {true, false}},
+                                  {"y", {false, true}},
+                                  {"xy", {true, true}},
+                                  {"normal", {false, false, true}}},
+                                 "It does not move in these directions. normal: rollers, free only along the "
+                                 "segment; where rollers of two directions meet, nothing moves.")
              .optional(),
          text("joint", &Boundary::joint, "It rests on fixed ground through a joint of this joint material.")
              .optional(),
@@ -77,6 +82,27 @@ Table<Boundary> boundary()
 
 // --- Checks ---------------------------------------------------------------------------------------------
 
+bool is_along(const Eigen::Vector2d& vector, const Eigen::Vector2d& direction)
+{
+    const double across = vector.x() * direction.y() - vector.y() * direction.x();
+    return std::abs(across) <= 1e-9 * vector.norm() * direction.norm();
+}
+
+bool is_on_inclined_rollers(const Boundary& boundary)
+{
+    const Eigen::Vector2d along = boundary.to - boundary.from;
+    return boundary.fix_normal && along.x() != 0 && along.y() != 0;
+}
+
+bool have_a_common_end(const Boundary& a, const Boundary& b, double tolerance)
+{
+    for (const auto& p : {a.from, a.to})
+        for (const auto& q : {b.from, b.to})
+            if ((p - q).norm() <= tolerance)
+                return true;
+    return false;
+}
+
 void check_boundaries(const Scene& scene, const Source& source)
 {
     const auto& all = scene.boundaries;
@@ -84,18 +110,23 @@ void check_boundaries(const Scene& scene, const Source& source)
     for (std::size_t i = 0; i < all.size(); ++i) {
         const Given given = source.in_list("boundary", i);
         if (!given.find("fix") && !given.find("joint") && !given.find("traction_MPa"))
-            given.refuse("fix", "wanted fix = \"x\", \"y\" or \"xy\", or joint = a joint material, or "
-                                "traction_MPa");
+            given.refuse("fix",
+                         "wanted fix = \"x\", \"y\", \"xy\" or \"normal\", or joint = a joint material, or "
+                         "traction_MPa");
         if (given.find("joint") && (all[i].traction || all[i].displacement))
             given.refuse("joint", "wanted no traction_MPa or displacement_mm beside joint");
         if (all[i].displacement && (!given.find("fix") || !given.find("load_history")))
             given.refuse("displacement_mm", "wanted fix and load_history beside it");
+        if (all[i].displacement && all[i].fix_normal)
+            given.refuse("displacement_mm", "wanted fix = \"x\", \"y\" or \"xy\" beside it");
         if (all[i].displacement && ((!all[i].fix_x && all[i].displacement->x() != 0) ||
                                     (!all[i].fix_y && all[i].displacement->y() != 0)))
             given.refuse("displacement_mm", "wanted 0 in the direction that is not fixed");
         if (all[i].traction &&
             ((all[i].fix_x && all[i].traction->x() != 0) || (all[i].fix_y && all[i].traction->y() != 0)))
             given.refuse("traction_MPa", "wanted 0 in a direction that is fixed");
+        if (all[i].traction && all[i].fix_normal && !is_along(*all[i].traction, all[i].to - all[i].from))
+            given.refuse("traction_MPa", "wanted a traction along the segment, whose normal is fixed");
         if (given.find("load_history") && !all[i].traction && !all[i].displacement)
             given.refuse("load_history", "wanted traction_MPa or displacement_mm beside it");
         if (given.find("fix") && given.find("joint"))
@@ -108,6 +139,13 @@ void check_boundaries(const Scene& scene, const Source& source)
             on_sides += length_on_sides(hole, all[i].from, all[i].to, tolerance);
         if (on_sides < length - 2 * tolerance)
             given.refuse("to_m", "wanted from_m and to_m on one straight piece of the section's outline");
+        // Their common gridpoint would be moved off the rollers.
+        for (std::size_t j = 0; j < all.size(); ++j)
+            if (all[i].displacement && is_on_inclined_rollers(all[j]) &&
+                have_a_common_end(all[i], all[j], tolerance))
+                given.refuse("displacement_mm",
+                             "wanted no common point with the rollers (fix = \"normal\") of line " +
+                                 std::to_string(source.in_list("boundary", j).table.line));
         for (std::size_t j = 0; j < i; ++j)
             if (common_length(all[i].from, all[i].to, all[j].from, all[j].to, tolerance) > 2 * tolerance)
                 given.refuse("to_m", "it runs over the boundary of line " +

@@ -368,7 +368,7 @@ std::optional<Convergence> Solver::equilibrate(Assembly& assembly, const Equilib
     const double stored_at_start = stored_energy(assembly);
     if (!guess.empty() && !is_balanced) {
         for (std::size_t g = 0; g < guess.size(); ++g)
-            assembly.displacement[g] += guess[g].cwiseProduct(assembly.is_free[g]);
+            assembly.displacement[g] += free_part(assembly, g, guess[g]);
         if (evaluate(assembly, start) > merit) {
             assembly.displacement = start.displacement;
             evaluate(assembly, start);
@@ -412,8 +412,8 @@ void Solver::prepare(const Assembly& assembly)
     stiffest_ = *std::max_element(row_sums.begin(), row_sums.end());
     too_far_ = size_of(assembly) / 10;
     std::vector<Vector2d> scales;
-    for (const double sum : row_sums)
-        scales.emplace_back(sum, sum);
+    for (std::size_t g = 0; g < row_sums.size(); ++g)
+        scales.emplace_back(row_sums[g] * (is_on_rollers(assembly, g) ? assembly.along[g] : Vector2d(1, 1)));
     scale_ = stiffness_.gathered(assembly, scales);
     for_each_force([](const auto& force, auto& active) { active.begin(force); }, assembly, active_);
     collapse_.reset();

@@ -76,7 +76,9 @@ void check_memory(const Factor&)
 void Stiffness::follow(const Assembly& assembly)
 {
     Eigen::setNbThreads(assembly.threads); // of products; Eigen would take all there are
-    bool is_known = is_free_ == assembly.is_free && tied_ == assembly.tied && n_ > 0, is_same = true;
+    bool is_known =
+             is_free_ == assembly.is_free && along_ == assembly.along && tied_ == assembly.tied && n_ > 0,
+         is_same = true;
     for_each_force(
         [&](const auto& force, Part& part) {
             std::vector<Index> there = present(force);
@@ -90,6 +92,7 @@ void Stiffness::follow(const Assembly& assembly)
         assembly, parts_);
     if (!is_known) {
         is_free_ = assembly.is_free;
+        along_ = assembly.along;
         tied_ = assembly.tied;
         number_unknowns(assembly);
         find_pattern(assembly);
@@ -111,11 +114,16 @@ void Stiffness::number_unknowns(const Assembly& assembly)
         leader[follower] = first;
         has_part[first] = static_cast<char>(has_part[first] | has_part[follower]);
     }
+    directions_.clear();
+    for (const Vector2d& along : assembly.along)
+        directions_.push_back(
+            along.isZero(0) ? Eigen::Matrix2d(Eigen::Matrix2d::Identity())
+                            : (Eigen::Matrix2d() << along.x(), -along.y(), along.y(), along.x()).finished());
     unknown_.assign(leader.size(), {-1, -1});
     n_ = 0;
     for (std::size_t g = 0; g < leader.size(); ++g)
         if (leader[g] == static_cast<Index>(g) && has_part[g])
-            for (int i = 0; i < 2; ++i)
+            for (int i = 0; i < (is_on_rollers(assembly, g) ? 1 : 2); ++i)
                 if (assembly.is_free[g][i] > 0)
                     unknown_[g][i] = static_cast<int>(n_++);
     for (std::size_t g = 0; g < leader.size(); ++g)
@@ -176,7 +184,12 @@ void Stiffness::add(Matrix& matrix, const Force& force, const Part& part, const 
         return;
     double* const values = matrix.valuePtr();
     const std::size_t n = coupled_by(force, part.there[0]).size();
-    call([&](Index group, int i, int j, const Eigen::Matrix2d& block) {
+    call([&](Index group, int i, int j, const Eigen::Matrix2d& of_xy) {
+        Eigen::Matrix2d block = of_xy;
+        if (!directions_.empty()) {
+            const auto gridpoints = coupled_by(force, group);
+            block = directions_[gridpoints[i]].transpose() * of_xy * directions_[gridpoints[j]];
+        }
         const int* const entries = part.square(group, n);
         for (int row = 0; row < 2; ++row) {
             const int* const of_row = entries + 2 * n * static_cast<std::size_t>(2 * i + row);
@@ -229,19 +242,24 @@ VectorXd Stiffness::solve_yielding(const Assembly& assembly, const Tangents& tan
 VectorXd Stiffness::gathered(const Assembly& assembly, const std::vector<Vector2d>& over_gridpoints) const
 {
     VectorXd x = VectorXd::Zero(n_);
-    for (std::size_t g = 0; g < over_gridpoints.size(); ++g)
+    for (std::size_t g = 0; g < over_gridpoints.size(); ++g) {
+        const Vector2d components = turned(static_cast<Index>(g), over_gridpoints[g]);
         for (int i = 0; i < 2; ++i)
             if (unknown_[g][i] >= 0 && assembly.is_free[g][i] > 0)
-                x[unknown_[g][i]] += over_gridpoints[g][i];
+                x[unknown_[g][i]] += components[i];
+    }
     return x;
 }
 
 void Stiffness::add_to(std::vector<Vector2d>& over_gridpoints, const VectorXd& unknowns, double factor) const
 {
-    for (std::size_t g = 0; g < over_gridpoints.size(); ++g)
+    for (std::size_t g = 0; g < over_gridpoints.size(); ++g) {
+        Vector2d components(0, 0);
         for (int i = 0; i < 2; ++i)
             if (unknown_[g][i] >= 0)
-                over_gridpoints[g][i] += factor * unknowns[unknown_[g][i]];
+                components[i] = factor * unknowns[unknown_[g][i]];
+        over_gridpoints[g] += turned_back(static_cast<Index>(g), components);
+    }
 }
 
 template <class Force, class Tangent>
@@ -254,9 +272,10 @@ void Stiffness::add_product(const Force& force, Index group, const Tangent& tang
         force, group, tangent,
         [&](int i) {
             const auto& [along_x, along_y] = unknown_[gridpoints[i]];
-            return Vector2d(value(along_x), value(along_y));
+            return turned_back(gridpoints[i], Vector2d(value(along_x), value(along_y)));
         },
-        [&](int i, const Vector2d& change) {
+        [&](int i, const Vector2d& of_xy) {
+            const Vector2d change = turned(gridpoints[i], of_xy);
             for (int k = 0; k < 2; ++k)
                 if (const int unknown = unknown_[gridpoints[i]][k]; unknown >= 0)
                     y[unknown] += change[k];

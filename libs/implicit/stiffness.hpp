@@ -1,6 +1,7 @@
 // The tangent stiffness of an assembly, sparse, and a Cholesky factor of something close to it.
 //
-// Unknowns are the displacements of gridpoints that are free; gridpoints tied to another share its unknowns.
+// Unknowns are the displacements of gridpoints in x and y, where they are free; of a gridpoint on inclined rollers the
+// displacement along them. Gridpoints tied to another share its unknowns.
 // The tangent K is the sum over all kinds of force, in one of two ways. A kind with constants(), as rock, has a
 // constant stiffness; only where it yields it has tangents in its place, and K is factorised for each correction.
 // The others, as contacts, have tangents all the time, by what each does now; products with them are added. A
@@ -99,6 +100,16 @@ private:
         }
     };
 
+    // Of the components of a gridpoint's unknowns, which are along x and y, or along rollers and across them.
+    Vector2d turned(Index gridpoint, const Vector2d& xy) const
+    {
+        return directions_.empty() ? xy : Vector2d(directions_[gridpoint].transpose() * xy);
+    }
+    Vector2d turned_back(Index gridpoint, const Vector2d& components) const
+    {
+        return directions_.empty() ? components : Vector2d(directions_[gridpoint] * components);
+    }
+
     void number_unknowns(const Assembly& assembly);
     void find_pattern(const Assembly& assembly);
     void fill_constant(const Assembly& assembly);
@@ -110,7 +121,10 @@ private:
                      const Eigen::Ref<const VectorXd>& x, Eigen::Ref<VectorXd> y) const;
 
     Eigen::Index n_ = 0;
-    std::vector<std::array<int, 2>> unknown_; // of each gridpoint's {x, y}; -1 fixed
+    std::vector<std::array<int, 2>>
+        unknown_; // of each gridpoint's {x, y}, or {along, across} rollers; -1 fixed
+    std::vector<Eigen::Matrix2d>
+        directions_;  // of each gridpoint's unknowns, as columns; empty: no inclined rollers
     Matrix constant_; // of the kinds with a constant stiffness, with the entries of all in the pattern
     mechanics::OfEachForce<Part> parts_;
     Matrix factorised_;
@@ -121,7 +135,7 @@ private:
     bool has_factor_ = false;
 
     // What the numbering was made for, beside the groups that are there.
-    std::vector<Vector2d> is_free_;
+    std::vector<Vector2d> is_free_, along_;
     std::vector<std::array<Index, 2>> tied_;
 };
 

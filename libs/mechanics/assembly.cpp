@@ -11,6 +11,57 @@ namespace jointcreep::mechanics
 namespace
 {
 
+// Directions that are parallel within this angle are the same [rad].
+constexpr double same_direction = 1e-6;
+
+std::vector<Assembly::Roller> rollers_of(const Scene& scene, const Mesh& mesh)
+{
+    std::vector<Assembly::Roller> rollers;
+    for (std::size_t s = 0; s < mesh.side_zone.size(); ++s) {
+        const Boundary& boundary = scene.boundaries[mesh.side_boundary[s]];
+        if (!boundary.fix_normal)
+            continue;
+        const Vector2d along = (boundary.to - boundary.from).normalized();
+        const auto stress_point = static_cast<std::size_t>(mesh.side_zone[s]) * mesh.stress_points_of_zone();
+        for (const Index g : mesh.side_gridpoint[s])
+            rollers.push_back({g, along, stress_point});
+        if (mesh.is_quadratic())
+            rollers.push_back({mesh.side_middle[s], along, stress_point});
+    }
+    return rollers;
+}
+
+// What rollers under rock leave free. `leader_of`: a gridpoint's leader by ties, or itself.
+template <class Leader>
+void put_on_rollers(Assembly& assembly, const Leader& leader_of)
+{
+    assembly.along.clear();
+    if (assembly.rollers.empty())
+        return;
+    assembly.along.assign(assembly.position.size(), Vector2d::Zero());
+    for (const auto& [gridpoint, along, stress_point] : assembly.rollers) {
+        if (!assembly.zones.is_present[stress_point])
+            continue;
+        const Index g = leader_of(gridpoint);
+        Vector2d &here = assembly.along[g], &is_free = assembly.is_free[g];
+        if (along.x() == 0)
+            is_free.x() = 0;
+        else if (along.y() == 0)
+            is_free.y() = 0;
+        else if (here.isZero(0))
+            here = along;
+        else if (std::abs(here.x() * along.y() - here.y() * along.x()) > same_direction)
+            is_free.setZero();
+    }
+    for (std::size_t g = 0; g < assembly.along.size(); ++g)
+        if (!assembly.along[g].isZero(0) && assembly.is_free[g].minCoeff() == 0) {
+            assembly.is_free[g].setZero();
+            assembly.along[g].setZero();
+        }
+    for (const auto& [follower, leader] : assembly.tied)
+        assembly.along[follower] = assembly.along[leader];
+}
+
 // The order is the same for any number of threads.
 void add_up_forces(Assembly& assembly)
 {
@@ -39,6 +90,7 @@ Assembly assemble(const Scene& scene, const Network& network, const EquivalentJo
     assembly.applied.assign(n, Vector2d::Zero());
     for (const Index fixed : mesh.gridpoint_fixed)
         assembly.is_free_untied.emplace_back((fixed & 1) != 0 ? 0.0 : 1.0, (fixed & 2) != 0 ? 0.0 : 1.0);
+    assembly.rollers = rollers_of(scene, mesh);
     assembly.zones = rock::zones_of(scene, network, mesh);
     assembly.contacts = joint::contacts_of(scene, equivalent, mesh);
     find_incidence(assembly);
@@ -74,6 +126,7 @@ void part_ties(Assembly& assembly, Index stage)
     assembly.is_free = assembly.is_free_untied;
     for (const auto& [follower, first] : assembly.tied)
         assembly.is_free[first] = assembly.is_free[first].cwiseMin(assembly.is_free[follower]);
+    put_on_rollers(assembly, root);
 }
 
 void find_forces(Assembly& assembly)
@@ -129,7 +182,7 @@ Balance balance_of(const Assembly& assembly)
     for (Index k = 0; k < n_chunks; ++k) {
         OfChunk here;
         for (Index g = k * chunk; g < std::min(n, (k + 1) * chunk); ++g) {
-            const double force = assembly.force[g].cwiseProduct(assembly.is_free[g]).norm();
+            const double force = free_part(assembly, g, assembly.force[g]).norm();
             if (!(force <= here.largest)) { // also what is no number, and stays so
                 here.largest = force;
                 here.worst = g;
@@ -270,9 +323,9 @@ void transfer(const Transfer& to, Assembly& assembly, Checkpoint& kept)
     to.values(assembly.is_free_untied, kept.is_free);
     to.values(assembly.load, kept.load);
     to.values(assembly.force, kept.force);
+    for_each_force([&](auto& one) { transfer(to, one, kept); }, assembly);
     if (to.restores())
         part_ties(assembly, kept.unloaded > 0 ? kept.stage : kept.stage - 1);
-    for_each_force([&](auto& one) { transfer(to, one, kept); }, assembly);
 }
 
 void pass(Tape& tape, Assembly& assembly)

@@ -28,9 +28,11 @@ struct Assembly : Forces {
     std::vector<Vector2d> displacement;   // [m]
     std::vector<Vector2d> is_free_untied; // 1 or 0 in {x, y}: not fixed by a boundary, not removed
     std::vector<Vector2d> is_free;        // 1 or 0 in {x, y}: and not tied to a fixed one
-    std::vector<Vector2d> load;           // weight, and forces of excavated rock still applied [N/m]
-    std::vector<Vector2d> applied;        // from tractions on the outline [N/m]
-    std::vector<Vector2d> force;          // unbalanced, also where fixed; filled by find_forces [N/m]
+    std::vector<Vector2d>
+        along; // where rollers leave one direction free, neither x nor y: unit vector, else 0; or empty
+    std::vector<Vector2d> load;    // weight, and forces of excavated rock still applied [N/m]
+    std::vector<Vector2d> applied; // from tractions on the outline [N/m]
+    std::vector<Vector2d> force;   // unbalanced, also where fixed; filled by find_forces [N/m]
 
     // Gridpoints that move as one with another until a stage; force and load of {one, other} act on the
     // other.
@@ -39,6 +41,14 @@ struct Assembly : Forces {
         Index stage;
     };
     std::vector<Tie> ties;
+
+    // A gridpoint of a zone side on rollers, with the side's direction. It is on them while there is rock in the zone.
+    struct Roller {
+        Index gridpoint;
+        Vector2d along; // unit vector
+        std::size_t stress_point;
+    };
+    std::vector<Roller> rollers;
     std::vector<std::array<Index, 2>> tied; // from the ties still there: {follower, leader}
 
     // beta / dt: forces grow by this times their change since the last step [-].
@@ -59,7 +69,20 @@ Assembly assemble(const Scene& scene, const Network& network, const EquivalentJo
 // Finds which zones and contacts are at each gridpoint; part of assemble.
 void find_incidence(Assembly& assembly);
 
-// Ends the ties that a stage separates.
+// Whether rollers leave the gridpoint one direction that is neither x nor y.
+inline bool is_on_rollers(const Assembly& assembly, std::size_t g)
+{
+    return !assembly.along.empty() && !assembly.along[g].isZero(0);
+}
+
+// The part of a force on a gridpoint that no support takes, or of its displacement that none prevents.
+inline Vector2d free_part(const Assembly& assembly, std::size_t g, const Vector2d& of)
+{
+    return is_on_rollers(assembly, g) ? Vector2d(assembly.along[g].dot(of) * assembly.along[g])
+                                      : Vector2d(of.cwiseProduct(assembly.is_free[g]));
+}
+
+// Ends the ties that a stage separates, and finds what supports leave free.
 void part_ties(Assembly& assembly, Index stage);
 
 // Stresses, tractions and forces at the present displacements. Slip and breaking of contacts are taken into

@@ -44,7 +44,7 @@ std::vector<Vector2d> excavate(Assembly& assembly, const Blocks& blocks, const M
             assembly.is_free_untied[g] += was_fixed[g] - fixed[g]; // with the last rock on its boundary
     const std::vector<char> lost_a_side = edges_that_lose_a_side(blocks, stage);
     for_each_force([&](auto& one) { remove_at(one, lost_a_side); }, assembly);
-    const std::vector<Vector2d> was_free = assembly.is_free;
+    const std::vector<Vector2d> was_free = assembly.is_free, was_along = assembly.along;
     part_ties(assembly, stage);
     loading.leave_removed(assembly);
     find_forces(assembly);
@@ -55,6 +55,8 @@ std::vector<Vector2d> excavate(Assembly& assembly, const Blocks& blocks, const M
         }
         // Where the tie to a fixed gridpoint ends, or a boundary, this force was in balance with the boundary.
         released[g] = (assembly.is_free[g].array() > was_free[g].array()).select(0, released[g]);
+        if (!was_along.empty() && was_along[g] != assembly.along[g])
+            released[g] = was_along[g].dot(released[g]) * was_along[g];
         released[g] -= assembly.force[g];
     }
     return released;

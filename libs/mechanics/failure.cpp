@@ -90,6 +90,7 @@ Failure failure_of_unsupported(const Mesh& mesh, const Assembly& assembly)
 
     struct Body {
         Vector2d resultant = Vector2d::Zero(), free = Vector2d::Ones(); // [N/m], 1 or 0
+        Vector2d along = Vector2d::Zero();                              // of rollers it is on, unit vector
         double magnitudes = 0;                                          // [N/m]
     };
     std::vector<Body> bodies(assembly.position.size());
@@ -98,13 +99,21 @@ Failure failure_of_unsupported(const Mesh& mesh, const Assembly& assembly)
         body.resultant += assembly.load[g] + assembly.applied[g];
         body.magnitudes += assembly.load[g].norm() + assembly.applied[g].norm();
         body.free = body.free.cwiseMin(assembly.is_free[g]);
+        if (!is_on_rollers(assembly, g))
+            continue;
+        if (body.along.isZero(0))
+            body.along = assembly.along[g];
+        if (!body.along.isApprox(assembly.along[g], 1e-6) && !body.along.isApprox(-assembly.along[g], 1e-6))
+            body.free.setZero();
     }
 
     const Rock rock = rock_of(mesh, assembly, {});
     std::vector<char> is_unsupported(rock.area.size(), 0);
     for (std::size_t z = 0; z < mesh.zone_gridpoint.size(); ++z) {
         const Body& body = bodies[sets.root(mesh.zone_gridpoint[z][0])];
-        const Vector2d push = body.resultant.cwiseProduct(body.free);
+        Vector2d push = body.resultant.cwiseProduct(body.free);
+        if (!body.along.isZero(0)) // on rollers; fixed in x or y as well, it does not move
+            push = body.free.minCoeff() == 0 ? Vector2d(0, 0) : Vector2d(body.along.dot(push) * body.along);
         if (assembly.zones.is_present[assembly.zones.first_point_of(z)] &&
             push.lpNorm<Eigen::Infinity>() > 1e-9 * body.magnitudes)
             is_unsupported[mesh.zone_block[z]] = 1;

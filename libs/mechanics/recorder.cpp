@@ -200,7 +200,10 @@ void Recorder::record_state(Result& result, double time, const std::string& even
     for (std::size_t g = 0; g < assembly.position.size(); ++g) {
         states.displacement.push_back(assembly.displacement[g]);
         // Also of rock that is gone, which nothing pulls.
-        states.reaction.emplace_back((assembly.is_free[g].array() > 0).select(0, -assembly.force[g]));
+        states.reaction.emplace_back(
+            is_on_rollers(assembly, g)
+                ? Vector2d(free_part(assembly, g, assembly.force[g]) - assembly.force[g])
+                : Vector2d((assembly.is_free[g].array() > 0).select(0, -assembly.force[g])));
     }
     mechanics::record_state(assembly, states);
     states.reset_state.push_back(states.reset_state.empty() ? 0 : states.reset_state.back());

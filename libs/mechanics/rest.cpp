@@ -38,7 +38,7 @@ bool is_plain(const Assembly& assembly, double share, double rounding)
 {
     const double n = static_cast<double>(assembly.force.size());
     for (std::size_t g = 0; g < assembly.force.size(); ++g)
-        if (const double force = assembly.force[g].cwiseProduct(assembly.is_free[g]).norm();
+        if (const double force = free_part(assembly, g, assembly.force[g]).norm();
             n * force > rounding && force > share * (assembly.load[g] + assembly.applied[g]).norm())
             return false;
     return true;
@@ -78,8 +78,8 @@ std::vector<Body> bodies_of(const Assembly& assembly, std::vector<Index>& body_o
     for (std::size_t g = 0; g < n; ++g)
         if (body_of[g] >= 0) {
             Body& body = bodies[body_of[g]];
-            body.unbalanced += body.moves(assembly.position[g]).transpose() *
-                               assembly.force[g].cwiseProduct(assembly.is_free[g]);
+            body.unbalanced +=
+                body.moves(assembly.position[g]).transpose() * free_part(assembly, g, assembly.force[g]);
             body.loads += (assembly.load[g] + assembly.applied[g]).norm();
         }
     return bodies;
@@ -110,10 +110,12 @@ Eigen::SparseMatrix<double> stiffness_of(const Assembly& assembly, const std::ve
         assembly);
     const double firm = stiffest > 0 ? stiffest : 1.0;
     for (std::size_t g = 0; g < body_of.size(); ++g)
-        if (body_of[g] >= 0 && assembly.is_free[g].minCoeff() == 0) {
+        if (body_of[g] >= 0 && (assembly.is_free[g].minCoeff() == 0 || is_on_rollers(assembly, g))) {
             const Eigen::Matrix<double, 2, 3> moves = bodies[body_of[g]].moves(assembly.position[g]);
-            const Vector2d fixed = Vector2d::Ones() - assembly.is_free[g];
-            add(body_of[g], body_of[g], firm * moves.transpose() * fixed.asDiagonal() * moves);
+            Eigen::Matrix<double, 2, 3> fixed = moves; // the part of the moves that supports prevent
+            for (int i = 0; i < 3; ++i)
+                fixed.col(i) -= free_part(assembly, g, moves.col(i));
+            add(body_of[g], body_of[g], firm * moves.transpose() * fixed);
         }
     // A tiny stiffness for all: bodies without support move out of all bounds, and the others as before.
     for (Eigen::Index i = 0; i < 3 * static_cast<Eigen::Index>(bodies.size()); ++i)

@@ -241,6 +241,8 @@ struct Boundary {
     std::optional<Eigen::Vector2d> traction{};     // total force on the rock per area, {x, y} [Pa]
     std::optional<Eigen::Vector2d> displacement{}; // where fixed: prescribed displacement {x, y} [m]
     LoadHistory load_history{};
+
+    bool fix_normal = false; // or, in place of fix_x and fix_y: free only along the segment
 };
 
 // One excavation step.

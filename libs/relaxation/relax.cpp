@@ -209,10 +209,10 @@ public:
     {
         double force = 0, answer = 0, between = 0, gone = 0, whole = 0;
         for (std::size_t g = 0; g < mass_.size(); ++g) {
-            const Vector2d now = a_.force[g].cwiseProduct(a_.is_free[g]);
+            const Vector2d now = free_part(a_, g, a_.force[g]);
             const Vector2d moved = a_.displacement[g] - older_.displacement[g];
             force += inverse_mass_[g] * now.squaredNorm();
-            answer -= moved.dot(now - older_.force[g].cwiseProduct(a_.is_free[g]));
+            answer -= moved.dot(now - free_part(a_, g, older_.force[g]));
             between += mass_[g] * moved.squaredNorm();
             gone += mass_[g] * (a_.displacement[g] - start_[g]).squaredNorm();
             whole += mass_[g] * a_.displacement[g].squaredNorm();
@@ -291,7 +291,7 @@ private:
         double answer = 0;
         for (std::size_t g = 0; g < a_.force.size(); ++g)
             answer -= (a_.displacement[g] - older_.displacement[g])
-                          .dot((a_.force[g] - older_.force[g]).cwiseProduct(a_.is_free[g]));
+                          .dot(free_part(a_, g, a_.force[g] - older_.force[g]));
         return work > 0 && work * moved > answer * too_far_;
     }
 
@@ -341,7 +341,7 @@ private:
         for (std::size_t g = 0; g < before.size(); ++g) {
             if (!(before[g] > 0))
                 continue;
-            const Vector2d last = velocity_[g], force = a_.force[g].cwiseProduct(a_.is_free[g]);
+            const Vector2d last = velocity_[g], force = free_part(a_, g, a_.force[g]);
             velocity_[g] *= std::sqrt(before[g] / mass_[g]);
             // The next step takes half of the last one's work to be that of this velocity.
             work_of_changes_ += force.dot(last_dt * last - dt_ * velocity_[g]) / 2;
@@ -380,7 +380,7 @@ private:
         for (Index k = 0; k < n_chunks; ++k) {
             Vector2d energy(0, 0), answer(0, 0), work(0, 0); // in x and y apart: one sum a number is slower
             for (Index g = k * chunk; g < std::min(n, (k + 1) * chunk); ++g) {
-                const Vector2d free_force = a_.force[g].cwiseProduct(a_.is_free[g]), last = velocity_[g];
+                const Vector2d free_force = free_part(a_, g, a_.force[g]), last = velocity_[g];
                 Vector2d force = free_force, change = Vector2d::Zero(); // in the last step
                 if (adaptive || combined) {
                     change = force - last_force_[g];
@@ -395,7 +395,8 @@ private:
                     force += local / 2 * force.cwiseAbs().cwiseProduct(signs_of(change) - signs_of(before));
                 else if (local > 0)
                     force -= local * force.cwiseAbs().cwiseProduct(signs_of(before));
-                const Vector2d v = keep * before + gain * inverse_mass_[g] * force;
+                // Damping by components, and rounding, lead off inclined rollers.
+                const Vector2d v = free_part(a_, g, keep * before + gain * inverse_mass_[g] * force);
                 if (kinetic)
                     energy += mass_[g] * v.cwiseAbs2();
                 work += free_force.cwiseProduct(v + last);

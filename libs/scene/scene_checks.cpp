@@ -502,6 +502,10 @@ private:
     {
         if (!scene_.large_displacements)
             return;
+        for (std::size_t i = 0; i < scene_.boundaries.size(); ++i)
+            if (scene_.boundaries[i].fix_normal)
+                in_list("boundary", i)
+                    .refuse("fix", "wanted \"x\", \"y\" or \"xy\" with [large_displacements]");
         if (scene_.creep)
             once("large_displacements")
                 .refuse("new_contacts", "a scene with [large_displacements] has no [creep]");

@@ -186,6 +186,8 @@ private:
                 traction.x() = 0;
             if (boundary.fix_y || is_loaded)
                 traction.y() = 0;
+            if (boundary.fix_normal)
+                traction -= normal.dot(traction) * normal;
         }
         return traction;
     }

@@ -125,10 +125,16 @@ class Verify(ChainTest):
         if name == "yield":
             return run(filled(yield_test.SCENE, CONFINED="1", MOVED="-20", HISTORY="[[0, 0], [10, 0.5], [20, 1]]",
                               ENGINE="auto", INCREMENTS="4"))
+        if name == "rollers":
+            return run(scene([[0, 0], [6, 3], [3, 9], [-3, 6]], [],
+                             [held([0, 0], [6, 3], "normal"), held([-3, 6], [0, 0], "normal"),
+                              {"from_m": [3, 9], "to_m": [-3, 6], "traction_MPa": [0, -1], "load_history": [[0, 0], [1, 1]]}],
+                             [], points=[[0, 3]]))
         raise KeyError(name)
 
     RESULTS = ("slope", "weaker slope", "column", "creeping rock", "quadratic zones", "chain", "short step", "kinds",
-               "collapse", "opening", "excavated boundary", "dilation", "dilation that ends", "wearing", "continuously yielding", "residual", "Barton-Bandis", "yield")
+               "collapse", "opening", "excavated boundary", "dilation", "dilation that ends", "wearing", "continuously yielding", "residual", "Barton-Bandis", "yield",
+               "rollers")
 
     def verified(self, path):
         """Exit code, lines of the table by the name of the check, and all that was said."""
@@ -191,6 +197,7 @@ class Verify(ChainTest):
         crept = lambda file: (3, int(np.argmax(np.abs(file["/states/crept"][3, :, 0]))), 0)
         yields = lambda file: (len(file["/states/time"]) - 1, int(np.argmax(np.abs(file["/states/plastic_strain"][-1, :, 0]))), 0)
         held = lambda file: (len(file["/states/time"]) - 1, int(np.argmax(np.abs(file["/states/reaction"][-1, :, 1]))), 1)
+        rolls = lambda file: (len(file["/states/time"]) - 1, 1 + int(np.argmax(np.abs(file["/states/reaction"][-1, 1:, 0]))), 1)
         away = lambda file: tuple(int(i) for i in np.argwhere(file["/history/present"][:] == 0)[0])
         s = "/states/"
         return [
@@ -204,6 +211,7 @@ class Verify(ChainTest):
             ("contacts are removed with the rock of a side", "slope", s + "contact_status", last(s, stuck), put(REMOVED)),
             ("displacements count from the in-situ equilibrium", "slope", s + "displacement", at(0, 3, 1), put(1e-6)),
             ("fixed gridpoints are where supports hold them", "slope", s + "displacement", y(last(s, fixed)), put(1e-6)),
+            ("gridpoints on rollers move along them", "rollers", s + "displacement", rolls, more(1e-6)),
             ("relative displacements are those of the gridpoints", "slope", s + "relative_displacement",
              x(last(s, touching)), times(1.0001)),
             ("removed zones have no stress", "slope", s + "stress", x(last(s, gone)), put(1.0)),
@@ -245,6 +253,8 @@ class Verify(ChainTest):
             ("crept displacement of a step is that of the Kelvin units and dashpots", "column", s + "crept", crept, times(1.0001)),
             ("crept displacement of a step is that of the Kelvin units and dashpots", "chain", s + "crept", crept, times(1.0001)),
             ("reactions hold the forces on fixed gridpoints, and there are no others", "slope", s + "reaction", held,
+             times(1.0001)),
+            ("reactions hold the forces on fixed gridpoints, and there are no others", "rollers", s + "reaction", rolls,
              times(1.0001)),
             ("forces are in equilibrium: unbalanced force ratio", "slope", "/mesh/contact_length",
              lambda file: int(np.argmin(file["/states/traction"][-1, :, 0])), times(1.01)),

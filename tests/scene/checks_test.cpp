@@ -419,6 +419,27 @@ TEST(checks, loads)
     EXPECT_EQ(refusal(fine), "accepted");
 }
 
+TEST(checks, rollers)
+{
+    const std::string left = "fix = \"x\"\n\n";
+    EXPECT_EQ(refusal(replaced(text, left, "fix = \"normal\"\n\n")), "accepted");
+    EXPECT_EQ(refusal(replaced(text, left, "fix = \"normal\"\ntraction_MPa = [0, -1]\n\n")), "accepted");
+    expect_refused(left, "fix = \"normal\"\ntraction_MPa = [0.1, -1]\n\n",
+                   "wanted a traction along the segment", "traction_MPa = [0.1, -1]");
+    expect_refused("fix = \"x\"\ndisplacement_mm", "fix = \"normal\"\ndisplacement_mm",
+                   "wanted fix = \"x\", \"y\" or \"xy\" beside it", "displacement_mm");
+    expect_refused(left, "fix = \"normal\"\n\n[large_displacements]\nnew_contacts = \"joint\"\n\n",
+                   "with [large_displacements]", "fix = \"normal\"");
+    // Upright and level rollers may meet a support that moves, others not.
+    const std::string top = "to_m = [20, 20]\ntraction_MPa = [0, -0.01]",
+                      roof = "to_m = [40, 20]\nfix = \"normal\"";
+    EXPECT_EQ(refusal(replaced(text, top, roof)), "accepted");
+    const auto sloping = replaced(
+        replaced(replaced(text, top, roof), "[40, 20], [0, 20]]\nholes", "[40, 20], [0, 21]]\nholes"),
+        "from_m = [0, 20]\nto_m = [40, 20]", "from_m = [0, 21]\nto_m = [40, 20]");
+    expect_part(refusal(sloping), "wanted no common point with the rollers");
+}
+
 TEST(checks, files)
 {
     const auto folder = std::filesystem::temp_directory_path() / "jointcreep_scene_files";
