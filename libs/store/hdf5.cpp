@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cstddef>
 #include <cstring>
 #include <new>
 
@@ -23,8 +24,9 @@ namespace
 
 constexpr hsize_t chunk_bytes = 1 << 20;
 constexpr hsize_t most_elements = hsize_t(1) << 31;
-constexpr unsigned deflation = 1;          // level
-constexpr hsize_t best_compression = 1100; // deflate cannot do better than about 1030 to 1
+constexpr unsigned deflation = 1;            // level
+const std::string with_scales = "/history/"; // the group whose axes have coordinates in it
+constexpr hsize_t best_compression = 1100;   // deflate cannot do better than about 1030 to 1
 
 extern "C" herr_t take_description(unsigned, const H5E_error2_t* error, void* text)
 {
@@ -235,23 +237,48 @@ void write_numbers(hid_t object, const std::string& name, hid_t type, const void
     ok(H5Awrite(attribute, type, values), "write the attribute " + name);
 }
 
+void write_list(hid_t object, const std::string& name, hid_t type, const void* values, hsize_t count)
+{
+    const Object space(H5Screate_simple(1, &count, nullptr), H5Sclose, "set up HDF5");
+    const Object attribute(H5Acreate2(object, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose,
+                           "create the attribute " + name);
+    ok(H5Awrite(attribute, type, values), "write the attribute " + name);
+}
+
 // Names of the dataset's axes, as H5DSset_label() of the high-level library writes them: text of variable length.
-void write_labels(hid_t dataset, const Field& field)
+void write_labels(hid_t dataset, const std::vector<std::string>& axes)
 {
     std::vector<const char*> labels;
-    for (const std::string& dimension : field.dimensions)
-        labels.push_back(dimension.c_str());
+    for (const std::string& axis : axes)
+        labels.push_back(axis.c_str());
     if (labels.empty())
         return;
-    if (fields::components(field.values) > 1)
-        labels.push_back("component");
     const Object type(H5Tcopy(H5T_C_S1), H5Tclose, "set up HDF5");
     ok(H5Tset_size(type, H5T_VARIABLE), "set up HDF5");
-    const hsize_t count = labels.size();
-    const Object space(H5Screate_simple(1, &count, nullptr), H5Sclose, "set up HDF5");
-    const Object attribute(H5Acreate2(dataset, "DIMENSION_LABELS", type, space, H5P_DEFAULT, H5P_DEFAULT),
-                           H5Aclose, "create the attribute DIMENSION_LABELS");
-    ok(H5Awrite(attribute, type, labels.data()), "write the attribute DIMENSION_LABELS");
+    write_list(dataset, "DIMENSION_LABELS", type, labels.data(), labels.size());
+}
+
+std::vector<std::string> axes_of(const Field& field)
+{
+    std::vector<std::string> axes = field.dimensions;
+    if (!axes.empty() && fields::components(field.values) > 1)
+        axes.emplace_back("component");
+    return axes;
+}
+
+// Text as the high-level library of HDF5 writes it into attributes of dimension scales.
+void write_terminated_text(hid_t dataset, const std::string& name, const std::string& value)
+{
+    const Object type(H5Tcopy(H5T_C_S1), H5Tclose, "set up HDF5");
+    ok(H5Tset_size(type, value.size() + 1), "set up HDF5");
+    write_numbers(dataset, name, type, value.c_str(), 1);
+}
+
+hobj_ref_t reference_to(hid_t file, const std::string& path)
+{
+    hobj_ref_t reference{};
+    ok(H5Rcreate(&reference, file, path.c_str(), H5R_OBJECT, -1), "refer to " + path);
+    return reference;
 }
 
 hid_t plain_type_of(std::span<const double>)
@@ -485,7 +512,52 @@ void Image::add(const Field& field, const Dimensions& dimensions)
     const Object dataset = add(field.path, values.type, values.data, extents_of(field, dimensions));
     write_text(dataset, "units", field.units);
     write_text(dataset, "description", field.description);
-    write_labels(dataset, field);
+    const std::vector<std::string> axes = axes_of(field);
+    write_labels(dataset, axes);
+    if (field.path.starts_with(with_scales) && !axes.empty())
+        axes_[field.path] = axes;
+}
+
+// Attributes as H5DSset_scale() and H5DSattach_scale() of the high-level library write them: the datasets named as the
+// axes are dimension scales of the others. Readers such as xarray take all axes of a dataset or none from them.
+void Image::attach_scales()
+{
+    if (axes_.empty())
+        return;
+    std::vector<std::string> components;
+    add(schema::component_of_history(components), {});
+    const auto has_scale = [&](const std::string& axis) { return axes_.contains(with_scales + axis); };
+
+    struct Use {
+        hobj_ref_t dataset;
+        std::int64_t axis;
+    };
+    std::map<std::string, std::vector<Use>> uses; // of each scale
+    const Object list_type(H5Tvlen_create(H5T_STD_REF_OBJ), H5Tclose, "set up HDF5");
+    for (const auto& [path, axes] : axes_) {
+        if (path == with_scales + axes[0] || !std::ranges::all_of(axes, has_scale))
+            continue; // itself a scale, or without some
+        std::vector<hobj_ref_t> scales;
+        for (std::size_t axis = 0; axis < axes.size(); ++axis) {
+            scales.push_back(reference_to(file_, with_scales + axes[axis]));
+            uses[with_scales + axes[axis]].push_back(
+                {reference_to(file_, path), static_cast<std::int64_t>(axis)});
+        }
+        std::vector<hvl_t> lists;
+        for (hobj_ref_t& scale : scales)
+            lists.push_back({1, &scale});
+        const Object dataset(H5Dopen2(file_, path.c_str(), H5P_DEFAULT), H5Dclose, "open " + path);
+        write_list(dataset, "DIMENSION_LIST", list_type, lists.data(), lists.size());
+    }
+    const Object in_memory(H5Tcreate(H5T_COMPOUND, sizeof(Use)), H5Tclose, "set up HDF5");
+    ok(H5Tinsert(in_memory, "dataset", offsetof(Use, dataset), H5T_STD_REF_OBJ), "set up HDF5");
+    ok(H5Tinsert(in_memory, "dimension", offsetof(Use, axis), H5T_STD_I64LE), "set up HDF5");
+    for (const auto& [path, its_uses] : uses) {
+        const Object scale(H5Dopen2(file_, path.c_str(), H5P_DEFAULT), H5Dclose, "open " + path);
+        write_terminated_text(scale, "CLASS", "DIMENSION_SCALE");
+        write_terminated_text(scale, "NAME", path.substr(with_scales.size()));
+        write_list(scale, "REFERENCE_LIST", in_memory, its_uses.data(), its_uses.size());
+    }
 }
 
 void Image::add(const PlainArray& array)
@@ -530,6 +602,7 @@ void Image::set_natural(const std::string& attribute, std::uint64_t value)
 
 std::span<const std::byte> Image::close()
 {
+    attach_scales();
     file_.close("finish the file in memory");
     return std::span(memory_).first(length_of(memory_));
 }

@@ -9,8 +9,11 @@
 #include <hdf5.h>
 
 #include <cstddef>
+#include <map>
 #include <set>
+#include <string>
 #include <utility>
+#include <vector>
 
 namespace jointcreep::store::hdf5
 {
@@ -59,11 +62,13 @@ public:
 
 private:
     void make_group_of(const std::string& path);
+    void attach_scales();
     Object add(const std::string& path, hid_t type, const void* data, const std::vector<hsize_t>& extents);
 
     std::vector<std::byte> memory_;
     Object file_;
     std::set<std::string> groups_;
+    std::map<std::string, std::vector<std::string>> axes_; // of the datasets that get dimension scales
 };
 
 class Source

@@ -91,6 +91,8 @@ This is format version )"
   except times since the start, which are in days. The unit `1` is that of plain numbers and of text.
 - `DIMENSION_LABELS` names the axes, as HDF5's dimension scales do: `file["/history/displacement"].dims[0].label` is "time" in h5py. The
   parts of a row, such as {x, y}, are the axis "component". Files of format 2.6 and before have no labels.
+- In `/history` the datasets `time`, `point` and `component` are dimension scales of the others. So `xarray.open_dataset()` finds names and
+  coordinates of their axes. Files of format 2.7 and before have no scales; no program needs them.
 - Tension, extension and opening are positive, angles run counter-clockwise, x points to the right and y up.
 - An edge runs from its first vertex to its second; side b is on its left, side a on its right.
 - Arrays are in C order: in [time, point, 2] the component runs fastest. A single value is an array of one element.
@@ -127,7 +129,10 @@ with h5py.File("result.h5") as file:
     list(page, "Network", schema::fields_of(network), schema::invariants_of(network));
     list(page, "Equivalent joints", schema::fields_of(equivalent), schema::invariants_of(equivalent));
     page << "\nRows of edges that are neither a joint nor rest on one are 0.\n";
-    list(page, "Result", schema::fields_of(result), schema::invariants_of(result.mesh));
+    std::vector<Field> of_result = schema::fields_of(result);
+    std::vector<std::string> components;
+    of_result.push_back(schema::component_of_history(components));
+    list(page, "Result", of_result, schema::invariants_of(result.mesh));
     list(page, "Step history", schema::fields_of(result.step_history));
     page << "\nThe group `/step_history` is there only if a step history was asked for.\n";
     list(page, "Dynamics", schema::fields_of(result.dynamics));

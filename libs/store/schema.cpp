@@ -549,6 +549,17 @@ std::vector<Invariant> invariants_of(const Mesh& mesh)
     return of_forces(&ForceFields::invariants_of_mesh, mesh);
 }
 
+Field component_of_history(std::vector<std::string>& names)
+{
+    names = {"x", "y"};
+    return {"/history/component",
+            &names,
+            {"component"},
+            "1",
+            any(),
+            "Names of the components {x, y} of the datasets beside it."};
+}
+
 const std::vector<Described>& dimensions()
 {
     static const std::vector<Described> own = {

@@ -13,7 +13,7 @@
 namespace jointcreep::store::schema
 {
 
-inline constexpr Index major_version = 2, minor_version = 7;
+inline constexpr Index major_version = 2, minor_version = 8;
 
 // The fields point into the record. A record that is only read may be given too, as `fields::reading(record)`.
 // Own rows and those of the forces that have a part in the record (store/forces.hpp).
@@ -30,6 +30,9 @@ std::vector<fields::Field> fields_of(Failure& failure);
 std::vector<fields::Field> fields_of(Safety& safety);
 std::vector<fields::Field> fields_of(Checkpoint& checkpoint); // without the state of a dynamic analysis
 std::vector<fields::Field> fields_of(DynamicsState& state);
+
+// The dimension scale of the axis component of the history; only written. Fills the names.
+fields::Field component_of_history(std::vector<std::string>& names);
 
 // To be checked only when the fields are within their limits. They refer to the record.
 std::vector<fields::Invariant> invariants_of(const Network& network);

@@ -93,6 +93,21 @@ class Files(ChainTest):
         self.assertEqual(jointcreep.read(self.result()).axes("/states/stress"), ["state", "zone", "component"])
         self.assertEqual(lengths["edge+1"], lengths["edge"] + 1)
 
+    def test_scales_of_the_history(self):
+        """The library of HDF5 finds the dimension scales, all of a dataset: else readers of netCDF refuse it."""
+        with h5py.File(self.result()) as file:
+            history = file["history"]
+            for name, dataset in history.items():
+                is_scale = name in ("time", "point", "component")
+                self.assertEqual(h5py.h5ds.is_scale(dataset.id), is_scale, name)
+                found = [[scale.name for scale in axis.values()] for axis in dataset.dims]
+                self.assertEqual(found, [[] if is_scale else ["/history/" + axis.label] for axis in dataset.dims], name)
+                if is_scale:
+                    self.assertEqual(h5py.h5ds.get_scale_name(dataset.id), name.encode())
+            self.assertEqual(list(history["component"].asstr()), ["x", "y"])
+            users = sum(len(dataset.dims) for name, dataset in history.items() if not h5py.h5ds.is_scale(dataset.id))
+            self.assertEqual(sum(len(history[name].attrs["REFERENCE_LIST"]) for name in ("time", "point", "component")), users)
+
     def test_frame(self):
         """The DataFrame of a table, where pandas is there."""
         try:
