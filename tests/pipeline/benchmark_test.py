@@ -1,6 +1,5 @@
 """The benchmark of the shiplock: frozen networks, and its linear variants by two programs that share no code."""
 
-import csv
 import json
 import sys
 
@@ -79,10 +78,9 @@ class Benchmark(ChainTest):
         self.chain.run("strength-averaging", folder / "network.h5", folder / "joints.h5")
         return self.chain.run("demsolve", folder / "joints.h5", folder / "result.h5")
 
-    def reference(self, **wanted):
-        """Rows of reference.csv with these values."""
-        with open(self.folder / "reference.csv", encoding="utf-8") as file:
-            return [row for row in csv.DictReader(file) if all(row[key] == value for key, value in wanted.items())]
+    def reference(self):
+        """Rows of reference.csv."""
+        return self.benchmark.rows_in(self.folder / "reference.csv")
 
 
 class Frozen(Benchmark):
@@ -181,7 +179,7 @@ class FiniteElements(Benchmark):
         result = self.result(0, "elastic", zone_size=8)
         data = datasets(result)
         rows = self.benchmark.rows_of(self.section, {}, data["/history/time"], data["/history/event"], data["/history/displacement"])
-        wanted = self.reference(network="0", variant="elastic", zone_size_m="8")
+        wanted = self.benchmark.reference_of(self.folder, 0, "elastic")
         self.assertEqual([row["event"] for row in wanted], [*(stage["name"] for stage in self.section["stages"]), "end"])
         self.assertEqual([(row["day"], row["event"]) for row in rows], [(row["day"], row["event"]) for row in wanted])
         largest = np.abs(values_of(wanted)).max()
@@ -215,11 +213,55 @@ class FiniteElements(Benchmark):
     def test_tables(self):
         """What both programs computed of network 0 with all stages agrees."""
         for variant in ("elastic", "creep"):
-            with open(self.folder / f"finite-elements-{variant}.csv", encoding="utf-8") as file:
-                found = list(csv.DictReader(file))
-            wanted = self.reference(network="0", variant=variant, zone_size_m="8")
+            found = self.benchmark.rows_in(self.folder / f"finite-elements-{variant}.csv")
+            wanted = self.benchmark.reference_of(self.folder, 0, variant)
             self.assertEqual([row["event"] for row in found], [row["event"] for row in wanted])
             np.testing.assert_allclose(values_of(found), values_of(wanted), rtol=0, atol=AGREED * np.abs(values_of(wanted)).max())
+
+
+class Page(Benchmark):
+    def test_numbers(self):
+        page = self.chain.text("docs/benchmark.md")
+        rows = []
+        for number in range(self.benchmark.NETWORKS):
+            joints = [one["corners_m"] for one in self.network(number)["joints"]]
+            length = sum(np.linalg.norm(np.diff(line, axis=0), axis=1).sum() for line in joints)
+            rows.append(f"| {number} | {len(joints)} | {sum(map(len, joints)) - len(joints)} | {length:.0f} | "
+                        f"{len(corners_of(self.network(number)))} |")
+        self.assertIn("\n".join(rows), page)
+        for variant in self.benchmark.VARIANTS:
+            self.assertIn("\n" + self.benchmark.table_of(self.folder, variant) + "\n", page)
+            self.assertRegex(page, rf"\| `{variant}` \| [^|]* \| {self.benchmark.TOLERANCE[variant]:g} \|")
+
+    def test_reference_has_the_runs(self):
+        """Each run with each stage; and refinement changes less than the tolerance."""
+        for run in self.benchmark.RUNS:
+            rows = self.benchmark.reference_of(self.folder, *run)
+            self.assertEqual([row["event"] for row in rows], [*(one["name"] for one in self.section["stages"]), "end"], run)
+            number, variant, *_ = run
+            wanted = values_of(self.benchmark.reference_of(self.folder, number, variant))
+            difference = np.abs(values_of(rows) - wanted).max() / np.abs(wanted).max()
+            self.assertLess(difference, self.benchmark.TOLERANCE[variant], run)
+        self.assertEqual(len(self.reference()), 18 * len(self.benchmark.RUNS))
+
+    def test_compare(self):
+        """A table with one displacement changed: where and by how much is said, and whether it is within the tolerance."""
+        text = (self.folder / "finite-elements-elastic.csv").read_text()
+        path = self.chain.new_folder() / "history.csv"
+        value = float(text.strip().split("\n")[-1].split(",")[2])
+        for change, verdict in ((0.2, "within 0.005"), (2, "beyond 0.005")):
+            lines = text.strip().split("\n")
+            cells = lines[-1].split(",")
+            lines[-1] = ",".join([*cells[:2], f"{value + change}", *cells[3:]])
+            path.write_text("\n".join(lines))
+            said = self.benchmark.comparison(path, self.folder, 0, "elastic")
+            self.assertIn(f"N232: {change:.4f} mm\nN215: 0.0000 mm", said)
+            self.assertIn(verdict, said)
+        path.write_text("\n".join(lines[:-1]))
+        with self.assertRaisesRegex(ValueError, 'expected a row "end"'):
+            self.benchmark.comparison(path, self.folder, 0, "elastic")
+        with self.assertRaisesRegex(ValueError, "no network 3 of the variant slip"):
+            self.benchmark.comparison(path, self.folder, 3, "slip")
 
 
 if __name__ == "__main__":
