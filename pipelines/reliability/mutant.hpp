@@ -38,25 +38,26 @@ auto value(const A& a)
         return a;
 }
 
-#define JOINTCREEP_MUTANT(name, kind, op, changed)                                                           \
-    template <int number>                                                                                    \
-    inline constexpr Mark<number, kind> name{};                                                              \
-    template <class A, int number>                                                                           \
-    Left<number, kind, A> operator op(const A& a, Mark<number, kind>)                                        \
-    {                                                                                                        \
-        return {a};                                                                                          \
-    }                                                                                                        \
-    template <class A, int number, class B>                                                                  \
-    auto operator op(Left<number, kind, A> left, const B& b)                                                 \
-    {                                                                                                        \
-        const A& a = left.a;                                                                                 \
-        using Value = decltype(value(a op b));                                                               \
-        return chosen == number ? Value(changed) : Value(a op b);                                            \
+// clang-format off
+#define JOINTCREEP_MUTANT(name, kind, op, changed)                                                                     \
+    template <int number>                                                                                              \
+    inline constexpr Mark<number, kind> name{};                                                                        \
+    template <class A, int number>                                                                                     \
+    Left<number, kind, A> operator op(const A& a, Mark<number, kind>)                                                  \
+    {                                                                                                                  \
+        return {a};                                                                                                    \
+    }                                                                                                                  \
+    template <class A, int number, class B>                                                                            \
+    auto operator op(Left<number, kind, A> left, const B& b)                                                           \
+    {                                                                                                                  \
+        const A& a = left.a;                                                                                           \
+        using Value = decltype(value(a op b));                                                                         \
+        return chosen == number ? Value(changed) : Value(a op b);                                                      \
     }
 
 // Whole numbers change at the bound, others turn round.
 template <class A, class B>
-constexpr bool whole = std::integral<A>&& std::integral<B>;
+constexpr bool whole = std::integral<A> && std::integral<B>;
 template <class A, class B>
 auto divided(const A& a, const B& b)
 {
@@ -69,13 +70,14 @@ auto divided(const A& a, const B& b)
 JOINTCREEP_MUTANT(plus, '+', +, a - b)
 JOINTCREEP_MUTANT(minus, '-', -, a + b)
 JOINTCREEP_MUTANT(times, '*', *, divided(a, b))
-JOINTCREEP_MUTANT(over, '/', /, a* b)
+JOINTCREEP_MUTANT(over, '/', /, a * b)
 JOINTCREEP_MUTANT(less, '<', <, (whole<A, B> ? a <= b : !(a < b)))
 JOINTCREEP_MUTANT(more, '>', >, (whole<A, B> ? a >= b : !(a > b)))
 JOINTCREEP_MUTANT(at_most, 'm', <=, (whole<A, B> ? a < b : !(a <= b)))
 JOINTCREEP_MUTANT(at_least, 'l', >=, (whole<A, B> ? a > b : !(a >= b)))
 JOINTCREEP_MUTANT(same, '=', ==, !(a == b))
 JOINTCREEP_MUTANT(other, '!', !=, !(a != b))
+// clang-format on
 #undef JOINTCREEP_MUTANT
 
 template <int number, class... A>
