@@ -37,11 +37,10 @@ std::vector<char> rigid_zones(const Section& section)
 // What the joint of each contact is made of, by its number in the scene.
 std::vector<Index> material_of_contacts(const Section& section)
 {
+    const std::vector<Index> of_edge = joint::materials_of(section.scene, section.network);
     std::vector<Index> number;
     for (const Index edge : section.mesh().contact_edge)
-        number.push_back(static_cast<Index>(
-            &joint::material_of(section.scene, section.network, static_cast<std::size_t>(edge)) -
-            section.scene.joint_materials.data()));
+        number.push_back(of_edge[edge]);
     return number;
 }
 

@@ -64,7 +64,7 @@ void Trial::go_on(Result so_far, Checkpoint kept)
 Outcome Trial::outcome() const
 {
     const Ending ending = message_.empty()                           ? Ending::stands
-                          : analysis_.result().failure.moves_on != 0 ? Ending::falls
+                          : analysis_.result().failure.moves_on != 0 ? Ending::moves
                                                                      : Ending::undecided;
     return {ending, analysis_.largest_displacement(),
             rock::largest_plastic_strain(analysis_.assembly().zones)};
@@ -86,7 +86,7 @@ constexpr double most_factor = 64; // and its inverse
 void add(Safety& trials, double factor, const Outcome& outcome)
 {
     trials.factor.push_back(factor);
-    trials.stands.push_back(outcome.ending == Ending::stands ? 1 : outcome.ending == Ending::falls ? 0 : -1);
+    trials.stands.push_back(outcome.ending == Ending::stands ? 1 : outcome.ending == Ending::moves ? 0 : -1);
     trials.largest_displacement.push_back(outcome.largest_displacement);
     trials.largest_plastic_strain.push_back(outcome.largest_plastic_strain);
 }
@@ -188,8 +188,8 @@ private:
                 break;
             const bool none_failed = std::count(before.stands.begin(), before.stands.end(), 1) ==
                                      static_cast<std::ptrdiff_t>(before.stands.size());
-            go({none_failed ? Ending::stands : Ending::falls});
-            go({none_failed ? Ending::falls : Ending::stands});
+            go({none_failed ? Ending::stands : Ending::moves});
+            go({none_failed ? Ending::moves : Ending::stands});
         }
         factors.insert(factors.end(), reached.begin(), reached.end());
         return factors;

@@ -19,7 +19,7 @@ namespace jointcreep::analysis
 {
 
 // How a run ends: every equilibrium found; rock seen to slide or fall; or undecided within the limits of the search.
-enum class Ending { stands, falls, undecided };
+enum class Ending { stands, moves, undecided };
 
 struct Outcome {
     Ending ending;

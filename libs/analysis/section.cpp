@@ -17,17 +17,12 @@ namespace
 // A thread with fewer zones than this spends its time waiting for the others.
 constexpr int zones_per_thread = 2000;
 
-// Sensitivities are found by the implicit engine alone, and at small displacements of elastic rock.
+// Sensitivities are found by the implicit engine alone, and at small displacements. Forces have checks of their own.
 void check_sensitivities(const Scene& scene, const Recording& recording)
 {
     if (scene.large_displacements)
         throw input_error(
             "sensitivities are of small displacements; wanted a scene without [large_displacements]");
-    for (const Rock& rock : scene.rocks)
-        if (rock.law != RockLaw::elastic)
-            throw input_error(
-                "sensitivities are those of elastic rock; wanted law = \"elastic\" of [[rock]] \"" +
-                rock.name + "\"");
     if (scene.equilibrium.engine == EngineChoice::relaxation || recording.step_history_every > 0)
         throw input_error(
             "sensitivities are found by the implicit engine; wanted an equilibrium.engine other "

@@ -71,6 +71,38 @@ MatrixXd basis_of(const MatrixXd& columns)
     return qr.householderQ() * MatrixXd::Identity(columns.rows(), qr.rank());
 }
 
+// Product of the matrix A, with a half at each pair of neighbours of a series, and columns.
+MatrixXd times_neighbours(const MatrixXd& columns, const std::vector<std::vector<Eigen::Index>>& series)
+{
+    MatrixXd product = MatrixXd::Zero(columns.rows(), columns.cols());
+    for (const std::vector<Eigen::Index>& of : series)
+        for (std::size_t i = 1; i < of.size(); ++i) {
+            product.row(of[i]) += columns.row(of[i - 1]) / 2;
+            product.row(of[i - 1]) += columns.row(of[i]) / 2;
+        }
+    return product;
+}
+
+// Errors that last from a reading to the next: the p value of q = e^T A e / e^T e of residuals e, which are normal to the
+// basis Q. Its mean and variance are those of equal, independent errors.
+Doubt lasting_errors(const MatrixXd& Q, const VectorXd& e,
+                     const std::vector<std::vector<Eigen::Index>>& series)
+{
+    double pairs = 0;
+    for (const std::vector<Eigen::Index>& of : series)
+        pairs += of.size() > 1 ? static_cast<double>(of.size() - 1) : 0.0;
+    const auto degrees = static_cast<double>(Q.rows() - Q.cols());
+    const MatrixXd AQ = times_neighbours(Q, series), QAQ = Q.transpose() * AQ;
+    const double trace = -QAQ.trace(), of_square = pairs / 2 - 2 * AQ.squaredNorm() + QAQ.squaredNorm();
+    const double mean = trace / degrees,
+                 variance = 2 * (of_square * degrees - trace * trace) / (degrees * degrees * (degrees + 2));
+    const double q = e.dot(times_neighbours(e, series).col(0)) / e.squaredNorm();
+    Doubt lasting{.kind = Error::lasting, .value = q};
+    if (variance > 0 && q > mean)
+        lasting.p_value = std::min(1.0, kinds * statistics::normal_p((q - mean) / std::sqrt(variance)) / 2);
+    return lasting;
+}
+
 } // namespace
 
 Instruments::Instruments(Readings readings, Errors errors)
@@ -498,42 +530,16 @@ std::vector<Doubt> Instruments::doubts(const Evaluation& raw, const Minimum& min
         best.back().reading = static_cast<std::size_t>(best.back().time);
         best.back().time = readings_.time[best.back().reading];
     }
-    // Neighbours: e^T A e / e^T e, A half at each pair of neighbours of a series.
-    std::vector<Eigen::Index> place(readings_.time.size(), -1);
-    for (std::size_t k = 0; k < rows.size(); ++k)
-        place[rows[k]] = static_cast<Eigen::Index>(k);
-    const auto times_neighbours = [&](const MatrixXd& columns) {
-        MatrixXd product = MatrixXd::Zero(columns.rows(), columns.cols());
-        for (const std::vector<std::size_t>& of : series_) {
-            Eigen::Index last = -1;
-            for (const std::size_t i : of)
-                if (const Eigen::Index here = place[i]; here >= 0) {
-                    if (last >= 0) {
-                        product.row(here) += columns.row(last) / 2;
-                        product.row(last) += columns.row(here) / 2;
-                    }
-                    last = here;
-                }
-        }
-        return product;
-    };
-    double pairs = 0;
+    std::vector<std::vector<Eigen::Index>> kept_series; // places in `e`
     for (const std::vector<std::size_t>& of : series_) {
-        const auto n = std::count_if(of.begin(), of.end(), [&](std::size_t i) { return place[i] >= 0; });
-        pairs += n > 1 ? static_cast<double>(n - 1) : 0.0;
+        std::vector<Eigen::Index>& places = kept_series.emplace_back();
+        for (const std::size_t i : of)
+            if (const auto found = std::ranges::lower_bound(rows, i); found != rows.end() && *found == i)
+                places.push_back(found - rows.begin());
     }
-    const MatrixXd AQ = times_neighbours(Q);
-    const MatrixXd QAQ = Q.transpose() * AQ;
-    const double trace = -QAQ.trace(), of_square = pairs / 2 - 2 * AQ.squaredNorm() + QAQ.squaredNorm();
-    const double mean = trace / degrees,
-                 variance = 2 * (of_square * degrees - trace * trace) / (degrees * degrees * (degrees + 2));
-    const double q = e.dot(times_neighbours(e).col(0)) / squares;
-    if (variance > 0 && q > mean) {
-        Doubt lasting{.kind = Error::lasting, .value = q};
-        lasting.p_value = std::min(1.0, kinds * statistics::normal_p((q - mean) / std::sqrt(variance)) / 2);
-        if (lasting.p_value < significance)
-            best.push_back(lasting);
-    }
+    const Doubt lasting = lasting_errors(Q, e, kept_series);
+    if (lasting.p_value < significance)
+        best.push_back(lasting);
     std::stable_sort(best.begin(), best.end(),
                      [](const Doubt& a, const Doubt& b) { return a.p_value < b.p_value; });
     return best;

@@ -168,7 +168,7 @@ ResponseOf<T> respond(const BartonBandisOf<T>& law, StateOf<T>& state, const Val
     const T p = law.pressure(law.closure(-sigma_0) - u_n);
     const T tau_trial = tau_0 + law.k_s * (u_s - state.slip);
     const T give = law.k_s > 0 ? 1 / law.k_s : T(0);
-    if (p < 0) {
+    if (!(p > 0)) {
         state.slip += tau_trial * give; // the joint closes again without shear
         return {0, 0, ContactStatus::open};
     }

@@ -44,7 +44,7 @@ void add_forces_of(const Contacts& contacts, const std::vector<Vector2d>& tracti
 
 } // namespace
 
-void check_sensitivities(const Contacts& contacts)
+void check_sensitivities(const Contacts& contacts, const Scene& /*scene*/)
 {
     for (const Law& law : contacts.law)
         if (const LawInfo& info = laws()[law.index()]; !info.no_sensitivities.empty()) {

@@ -23,7 +23,7 @@ struct ContactChanges {
 // The functions of a kind of force that sensitivities call (mechanics/forces.hpp).
 
 // Throws input_error where springs are not constant: the derivative by their stiffness is not defined then.
-void check_sensitivities(const Contacts& contacts);
+void check_sensitivities(const Contacts& contacts, const Scene& scene);
 
 // Changes before the in-situ equilibrium.
 ContactChanges changed_by(const Contacts& contacts, Scaled scaled, const Scene& scene, const Mesh& mesh);

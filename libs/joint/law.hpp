@@ -141,6 +141,11 @@ inline double shear(const AnyLaw auto& law, State& state, double last, double sl
         },
         law);
 }
+// Whether its bonds break by slip, with this shear load and strength without slip (both tractions or both forces).
+inline bool breaks_by_slip(const AnyLaw auto& law, bool is_broken, double trial, double strength)
+{
+    return !is_broken && weakens_by_slip(law) && std::abs(trial) > std::max(0.0, strength);
+}
 // The law without bonds: for contacts that form between moving blocks.
 inline Law unbonded(const AnyLaw auto& law)
 {

@@ -19,10 +19,10 @@ namespace jointcreep::joint
 
 // The parameter's value on an edge with rock bridges, of which the share k is joint (joint/equivalent.hpp).
 enum class WithBridges {
-    spring,  // a stiffness: by the scene's stiffness rule
-    mean,    // k times the joint's and 1 - k times the rock's; for an angle, of its tangent
+    spring,  // a stiffness: by the scene's stiffness rule; of parameters of all joints only
+    mean,    // k times the joint's and 1 - k times the rock's, for an angle of its tangent; of parameters of all joints only
     share,   // k times the joint's: bridges count as 0
-    weaker,  // the joint's own angle, or the mean friction angle if that is less
+    weaker,  // of a friction angle: the joint's own, or the mean friction angle if that is less
     own,     // the joint's own
     refused, // no average with rock: such joints must have no bridges
 };

@@ -101,7 +101,7 @@ private:
             return now.cohesion * part.length + presses * now.tan_phi;
         };
         Slopes now = before;
-        if (!part.state.is_broken && weakens_by_slip(*part.law) && trial > std::max(0.0, strength(before))) {
+        if (breaks_by_slip(*part.law, part.state.is_broken, trial, strength(before))) {
             State broken = part.state;
             broken.is_broken = true;
             now = slopes(*part.law, broken, part.sigma);

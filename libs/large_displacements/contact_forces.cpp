@@ -96,8 +96,7 @@ public:
         const joint::AlongOverlap closed = along_overlap(law_, pair_.state(), part.closing, pair_.length);
         const joint::ShearMove shear = shear_move(at(found.gap, (part.ends[0] + part.ends[1]) / 2));
         const bool was_broken = pair_.is_broken;
-        const bool weakens =
-            !was_broken && joint::weakens_by_slip(law_) && std::abs(shear.trial) > closed.strength[0];
+        const bool weakens = joint::breaks_by_slip(law_, was_broken, shear.trial, closed.strength[0]);
         if (weakens)
             in_bonds = break_bonds(part.closing, found.length);
         find_normal_force(closed, part, was_broken);

@@ -375,7 +375,7 @@ void Dynamics::step()
 }
 
 // Rock near rest oscillates about it. If it is stopped where its kinetic energy is largest, it stops near rest. Rock
-// that slides or falls has no such peak until it is slow.
+// that moves on has no such peak until it is slow.
 void Dynamics::stop_at_peak(double kinetic)
 {
     if (now_.fastest >= slow || kinetic >= now_.last_kinetic) {

@@ -96,7 +96,7 @@ struct Equilibria {
     // Over the last 100 steps or by one more correction, over the mean force [-].
     std::vector<double> contact_force_change;
     std::vector<double> remaining_displacement; // largest, by estimate [m]
-    // Energy balance: work_of_loads = stored + dissipated (by contacts) + damped [J/m].
+    // Energy balance: work_of_loads = stored + dissipated + damped [J/m].
     std::vector<double> work_of_loads, stored_energy, dissipated_energy, damped_energy;
 };
 
@@ -152,7 +152,7 @@ struct Failure {
 // Runs by which a factor of safety was found, beside the result of the run with the largest factor in equilibrium.
 struct Safety {
     std::vector<double> factor{}; // that strengths were divided by [-]
-    std::vector<Index> stands{};  // 1 every equilibrium was found, 0 rock slides or falls, -1 undecided
+    std::vector<Index> stands{};  // 1 every equilibrium was found, 0 blocks are moving, -1 undecided
     std::vector<double> largest_displacement{};   // since the in-situ equilibrium, at the end [m]
     std::vector<double> largest_plastic_strain{}; // shear strain of a zone, at the end [-]
 

@@ -25,7 +25,7 @@ namespace
 {
 
 constexpr Index check_every = 20, window = 100; // [steps]
-constexpr Index patience = 5000;                // between checks whether rock slides or falls [steps]
+constexpr Index patience = 5000;                // between checks whether blocks are moving [steps]
 constexpr Index looks_enough = 3;               // checks in a row that find it sliding or falling
 constexpr double safety = 0.9;                  // of the largest stable step
 constexpr double rounding = 1e-11;              // of the unbalanced force ratio: nothing is nearer to balance
@@ -189,9 +189,9 @@ public:
         if (steps % patience != 0)
             return;
         const auto [lately, k] = mechanics::largest_move(patience_ago_, a_.displacement);
-        checks_in_movement_ = slides_or_falls() ? checks_in_movement_ + 1 : 0;
+        checks_in_movement_ = blocks_are_moving() ? checks_in_movement_ + 1 : 0;
         if (checks_in_movement_ == looks_enough)
-            give_up("the rock at " + shown(a_.position[k]) + " slides or falls: " + shown_length(lately) +
+            give_up("the rock at " + shown(a_.position[k]) + " is moving: " + shown_length(lately) +
                         " in the last " + std::to_string(patience) +
                         " steps, and the unbalanced forces do not decrease enough "
                         "to stop it",
@@ -241,7 +241,7 @@ public:
                         largest_displacement(a_).first / 10);
     }
 
-    // Throws, with the displacements since the last check whether rock slides or falls.
+    // Throws, with the displacements since the last check whether blocks are moving.
     [[noreturn]] void give_up(const std::string& why, bool moves_on, Index steps) const
     {
         no_equilibrium error(why);
@@ -279,12 +279,12 @@ public:
     }
 
 private:
-    // Rock stops where springs take up the force that drives it. Rock that slides or falls finds no such springs.
+    // Rock stops where springs take up the force that drives it. Moving blocks find no such springs.
     // Since the older moment the unbalanced forces have done `work`, and over the same displacement they have
-    // decreased by `answer`. If at this rate they do not vanish within a tenth of the section, rock slides or falls.
+    // decreased by `answer`. If at this rate they do not vanish within a tenth of the section, blocks are moving.
     // With springs `answer` is twice the energy that the displacement would store in them; vibration does not make
     // it less.
-    bool slides_or_falls() const
+    bool blocks_are_moving() const
     {
         const double work = work_ - older_.work;
         const double moved = mechanics::largest_move(older_.displacement, a_.displacement).first;

@@ -18,8 +18,8 @@ struct ZoneChanges {
 
 // The functions of a kind of force that sensitivities call (mechanics/forces.hpp).
 
-// Elastic rock has them all.
-inline void check_sensitivities(const Zones& /*zones*/) {}
+// Throws input_error where rock is not elastic.
+void check_sensitivities(const Zones& zones, const Scene& scene);
 
 // Changes before the in-situ equilibrium.
 ZoneChanges changed_by(const Zones& zones, Scaled scaled, const Scene& scene, const Mesh& mesh);

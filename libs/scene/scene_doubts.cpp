@@ -2,6 +2,7 @@
 
 #include "scene/scene.hpp"
 
+#include "joint/law.hpp"
 #include "keys/polygon.hpp"
 #include "keys/source.hpp"
 #include "model/polygon.hpp"
@@ -97,26 +98,27 @@ private:
                 "rock usually has at most " + shown(most_rock_tension) + " MPa");
     }
 
-    void look_at(const JointMaterial& joint, const Given& given)
+    void look_at(const JointMaterial& material, const Given& given)
     {
-        if (given.find("friction_angle_deg"))
-            look_at_friction(joint.friction_angle, given, "friction_angle_deg");
-        if (given.find("cohesion_MPa") && joint.cohesion / unit::MPa > most_joint_cohesion)
+        for (const joint::Parameter& parameter : joint::all_parameters())
+            if (const std::string key(parameter.key); key.ends_with("friction_angle_deg") && given.find(key))
+                look_at_friction(parameter.of(material), given, key);
+        if (given.find("cohesion_MPa") && material.cohesion / unit::MPa > most_joint_cohesion)
             add(given, "cohesion_MPa", "joints usually have at most " + shown(most_joint_cohesion) + " MPa");
-        if (given.find("tensile_strength_MPa") && joint.tensile_strength / unit::MPa > most_joint_tension)
+        if (given.find("tensile_strength_MPa") && material.tensile_strength / unit::MPa > most_joint_tension)
             add(given, "tensile_strength_MPa",
                 "joints usually have at most " + shown(most_joint_tension) + " MPa");
         const bool is_chain = given.find("kelvin_chain") != nullptr;
-        for (const Kelvin& unit : joint.kelvin) {
+        for (const Kelvin& unit : material.kelvin) {
             look_at_retardation(unit.normal_viscosity / unit.normal_stiffness, given,
                                 is_chain ? "kelvin_chain" : "normal_kelvin_viscosity_MPa_day_per_m");
             look_at_retardation(unit.shear_viscosity / unit.shear_stiffness, given,
                                 is_chain ? "kelvin_chain" : "shear_kelvin_viscosity_MPa_day_per_m");
         }
-        if (joint.normal_stiffness > 0 && joint.shear_stiffness > 2 * joint.normal_stiffness)
+        if (material.normal_stiffness > 0 && material.shear_stiffness > 2 * material.normal_stiffness)
             add(given, "shear_stiffness_MPa_per_m",
                 "a joint is usually softer in shear than across, normal_stiffness_MPa_per_m = " +
-                    shown(joint.normal_stiffness / (unit::MPa / unit::m)));
+                    shown(material.normal_stiffness / (unit::MPa / unit::m)));
     }
 
     // Of a Kelvin unit [s].

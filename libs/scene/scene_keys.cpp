@@ -880,7 +880,7 @@ Table<LargeDisplacements> large_displacements()
              "vibration; shortens the time step.")
              .or_else(1e-4),
          number("mass_damping_per_s", &LargeDisplacements::mass_damping, per_s, from(0).to(1e6),
-                "Force over mass and velocity. It also slows down rock that slides or falls.")
+                "Force over mass and velocity. It also slows down moving blocks.")
              .or_else(0.0),
          number("release_s", &LargeDisplacements::release, seconds, from(0).to(1e6),
                 "Time in which the forces of a stage's rock go to 0.")

@@ -35,8 +35,8 @@ Sensitivity::Sensitivity(std::vector<Scaled> parameters, const Scene& scene, con
     : parameters_(std::move(parameters))
 {
     for_each_force(
-        [](const auto& force, auto& its_start) {
-            check_sensitivities(force);
+        [&](const auto& force, auto& its_start) {
+            check_sensitivities(force, scene);
             its_start = state_of(force);
         },
         assembly, start_);

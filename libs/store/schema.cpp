@@ -265,7 +265,7 @@ std::vector<Field> fields_of(Equilibria& equilibria)
         {"/equilibria/stored_energy", &equilibria.stored_energy, {"equilibrium"}, "J/m", any(),
          "Increase of the energy stored in zones and contacts."},
         {"/equilibria/dissipated_energy", &equilibria.dissipated_energy, {"equilibrium"}, "J/m", any(),
-         "Energy lost in contacts by slip and opening."},
+         "Energy lost by slip and opening of contacts, and by yield of rock."},
         {"/equilibria/damped_energy", &equilibria.damped_energy, {"equilibrium"}, "J/m", any(),
          "Energy taken by damping; by the implicit engine, the energy that a sudden change of loads would "
          "release."},
@@ -412,9 +412,9 @@ std::vector<Field> fields_of(Safety& safety)
     // clang-format off
     return {
         {"/safety/factor", &safety.factor, {"trial"}, "1", positive(),
-         "Factor that all strengths of joints were divided by."},
+         "Factor that all strengths of joints and of rock that yields were divided by."},
         {"/safety/stands", &safety.stands, {"trial"}, "1", between(-1, 1),
-         "1 every equilibrium was found, 0 rock slides or falls, or its displacement grows without bound, -1 "
+         "1 every equilibrium was found, 0 blocks are moving, or displacement grows without bound, -1 "
          "undecided."},
         {"/safety/largest_displacement", &safety.largest_displacement, {"trial"}, "m", at_least(0),
          "Largest displacement since the in-situ equilibrium, at the end of the run."},

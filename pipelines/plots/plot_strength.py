@@ -1,7 +1,8 @@
 #!/usr/bin/python3
 """Strength of each joint set: the joint's own, that of its rock bridges, and that of the equivalent joints between.
 
-The lines are Coulomb's criterion with a tensile strength. A set whose law has another criterion has no line, but the law's name.
+The lines are Coulomb's criterion with a tensile strength; of a joint with residual strength, before its bonds break. A set whose
+law has another criterion has no line, but the law's name.
 """
 
 import numpy as np
@@ -10,7 +11,8 @@ import figure
 
 CURVES = [("joint_", "joint", "-", 0.8, "0.45"), ("bridge_", "rock bridges", "--", 0.8, "0.45"),
           ("", "equivalent", "-", 1.6, None)]  # in the colour of the set
-OTHERS = {2: "Barton-Bandis", 4: "continuously yielding"}  # laws of /equivalent/law without Coulomb's criterion
+# Numbers of /equivalent/law: with Coulomb's criterion, and the names of others.
+COULOMB, OTHERS = {0, 1, 3}, {2: "Barton-Bandis", 4: "continuously yielding"}
 
 
 def strength_of(file, prefix, row):
@@ -24,7 +26,8 @@ def other_laws(file, row):
     """Names of the laws without Coulomb's criterion that edges of a set have."""
     joint = figure.array(file, "/edges/joint")
     of_set = (joint >= 0) & (figure.array(file, "/joints/set")[joint] == row)
-    return [name for law, name in OTHERS.items() if np.any(figure.array(file, "/equivalent/law")[of_set] == law)]
+    laws = np.unique(figure.array(file, "/equivalent/law")[of_set]).tolist()
+    return [OTHERS.get(law, f"law {law}") for law in laws if law not in COULOMB]
 
 
 def draw_set(file, row, name, axes, most):

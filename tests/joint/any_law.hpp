@@ -29,6 +29,12 @@ inline joint::Law some_law(Index place)
         1);
 }
 
+// Such a joint is not elastic below its strength.
+inline bool yields_from_the_first_shear(const joint::Law& law)
+{
+    return std::holds_alternative<joint::ContinuouslyYielding>(law);
+}
+
 inline Index places()
 {
     return static_cast<Index>(joint::laws().size());

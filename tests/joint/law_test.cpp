@@ -151,7 +151,7 @@ RC_GTEST_PROP(law, its_first_slip_is_at_the_strength_of_its_slopes, ())
     const Response sticks = respond(law, below, -p, 0, 0, 0.999 * strength / slopes.k_s),
                    slips = respond(law, above, -p, 0, 0, 1.001 * strength / slopes.k_s);
     RC_ASSERT(sticks.status == ContactStatus::stuck);
-    if (remembers(law) && !dilates(law)) { // it slips below its strength
+    if (yields_from_the_first_shear(law)) { // it slips below its strength
         RC_ASSERT(slips.tau < strength);
         return;
     }
@@ -278,8 +278,10 @@ RC_GTEST_PROP(law, its_shear_along_an_overlap_is_that_of_its_response, ())
 // A row of a table for each parameter; what is a law's own is in its table, and in no other's.
 TEST(laws, have_tables_that_agree)
 {
-    std::set<std::string_view> own;
+    std::set<std::string_view> own, law_names;
     for (const LawInfo& law : laws()) {
+        EXPECT_TRUE(law_names.insert(law.name).second) << law.name << ": has the law an info() of its own?";
+        EXPECT_TRUE(law.check) << law.name;
         std::set<std::string_view> names, keys;
         for (const Parameter& parameter : law.parameters) {
             EXPECT_TRUE(names.insert(parameter.name).second) << law.name << " " << parameter.name;
@@ -290,6 +292,12 @@ TEST(laws, have_tables_that_agree)
         for (const std::string_view name : law.own) {
             EXPECT_TRUE(names.contains(name)) << law.name << " " << name;
             EXPECT_TRUE(own.insert(name).second) << law.name << " " << name;
+            const auto found = std::ranges::find(law.parameters, name, &Parameter::name);
+            ASSERT_NE(found, law.parameters.end());
+            const WithBridges rule = found->with_bridges;
+            EXPECT_TRUE(rule != WithBridges::mean && rule != WithBridges::spring)
+                << law.name << " " << name << ": joint/equivalent.cpp has no mean of a law's own parameter";
+            EXPECT_TRUE(rule != WithBridges::weaker || found->is_angle()) << law.name << " " << name;
         }
     }
     EXPECT_TRUE(laws()[0].own.empty()); // a material without any has the first law

@@ -50,6 +50,24 @@ class Links(ChainTest):
         for library in self.links:
             self.assertNotIn(library, self.reached(self.links[library]))
 
+    def test_picture(self):
+        """The arrows in README.md are links, and lead to whatever a library links."""
+        readme = (self.chain.source / "README.md").read_text()
+        picture = re.search(r"may use only what its own.*?```\n(.*?)```", readme, re.DOTALL).group(1)
+        arrows = {library: set() for library in self.links}
+        for chain in re.findall(r"\w+(?:, \w+)*(?: --> \w+(?:, \w+)*)+", picture):
+            groups = [group.split(", ") for group in chain.split(" --> ")]
+            for left, right in zip(groups, groups[1:]):
+                for library in left:
+                    arrows[library] |= set(right) & self.links.keys()
+        for library, to in arrows.items():
+            self.assertLessEqual(to, set(self.links[library]), library)
+            drawn, new = set(), to
+            while new:
+                drawn |= new
+                new = set().union(*(arrows[one] for one in new)) - drawn
+            self.assertLessEqual(set(self.links[library]), drawn, library)
+
     def test_scenes_files_and_exports_bring_no_force(self):
         """Who links them names the kinds of force that it uses itself."""
         for library in ("scene", "store", "exchange"):
