@@ -44,11 +44,11 @@ std::vector<Field> fields_of(SetAverages& sets)
     // clang-format off
     return {
         {"/sets/target_persistence", &sets.target_persistence, set, "1", fraction,
-         "Persistence that the scene asks for; 1 for all but sets of lines."},
+         "Persistence in the scene; 1 for all but sets of lines."},
         {"/sets/line_persistence", &sets.line_persistence, set, "1", fraction,
          "Fraction of the set's lines inside the section that is joint."},
         {"/sets/persistence_error", &sets.persistence_error, set, "1", natural,
-         "Standard error that it is expected to have, by the laws of traces and bridges."},
+         "Expected standard error of line_persistence, by the laws of traces and bridges."},
         {"/sets/edge_persistence", &sets.edge_persistence, set, "1", fraction,
          "Fraction of the set's edges that is joint."},
         {"/sets/line_length", &sets.line_length, set, "m", natural,
@@ -167,8 +167,8 @@ std::vector<Field> fields_of(States& states)
         {"/states/crept", &states.crept, {"state", "contact"}, "m", any(),
          "Creep part of the relative displacement {normal, shear}."},
         {"/states/initial_gap", &states.initial_gap, {"contact"}, "m", at_least(0),
-         "Gap at the in-situ equilibrium, 0 where the contact is closed. The gap of a contact that is open later is this, "
-         "or minus the closure of its spring then, plus relative_displacement - crept - dilation."},
+         "Gap at the in-situ equilibrium, 0 where the contact is closed. The gap of a contact that opens later is this gap "
+         "(or minus the closure of its spring at that time) plus relative_displacement - crept - dilation."},
     };
     // clang-format on
 }

@@ -32,7 +32,7 @@ Table<Kelvin> kelvin_chain()
 {
     return {{"joint_material.kelvin_chain", Written::inside, Need::optional, "One Kelvin unit of a chain."},
             {number("normal_stiffness_MPa_per_m", &Kelvin::normal_stiffness, MPa_per_m, stiffness(),
-                    "Its spring, normal."),
+                    "Stiffness of its spring, normal."),
              number("normal_viscosity_MPa_day_per_m", &Kelvin::normal_viscosity, MPa_day_per_m, viscosity,
                     "Its dashpot, normal."),
              number("shear_stiffness_MPa_per_m", &Kelvin::shear_stiffness, MPa_per_m, stiffness(),
@@ -147,10 +147,11 @@ Table<Averaging> averaging()
     return {
         {"averaging", Written::once, Need::optional,
          "How joints and their rock bridges become equivalent joints."},
-        {choice("over", &Averaging::over,
-                {{"edge", AverageOver::edge}, {"line", AverageOver::line}, {"set", AverageOver::set}},
-                "Over what joint and bridges are averaged: each edge between two blocks, each joint's whole "
-                "line, or all lines of a set.")
+        {choice(
+             "over", &Averaging::over,
+             {{"edge", AverageOver::edge}, {"line", AverageOver::line}, {"set", AverageOver::set}},
+             "Joint and bridges are averaged over each edge between two blocks, each joint's whole line, or "
+             "all lines of a set.")
              .or_else(std::string("edge")),
          choice("stiffness", &Averaging::stiffness,
                 {{"joint", StiffnessRule::joint},
@@ -158,8 +159,8 @@ Table<Averaging> averaging()
                  {"upper bound", StiffnessRule::upper_bound},
                  {"staggered", StiffnessRule::staggered}},
                 "Stiffnesses and Kelvin constants of a joint with rock bridges: the joint's own; bounds for "
-                "joint traces connected by rock bridges; or those of many such lines, with "
-                "staggered traces.")
+                "joint traces connected by rock bridges; or those of many lines with staggered "
+                "traces and bridges.")
              .or_else(std::string("joint"))}};
 }
 

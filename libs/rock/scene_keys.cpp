@@ -48,7 +48,7 @@ Table<Rock> rock()
              .or_else(std::int64_t{0}),
          choice("law", &Rock::law, {{"elastic", RockLaw::elastic}, {"Mohr-Coulomb", RockLaw::mohr_coulomb}},
                 "elastic; or Mohr-Coulomb: it yields where its strength is reached, in shear and in "
-                "tension, without softening. That needs the strength, and does not go with creep of the "
+                "tension, without softening. That needs the strength, and excludes creep of the "
                 "rock.")
              .or_else(std::string("elastic")),
          number<Rock>("kelvin_shear_modulus_GPa", in_optional<&Rock::kelvin, &ShearKelvin::modulus>, GPa,

@@ -44,8 +44,8 @@ void check_sensitivities(const Zones& /*zones*/, const Scene& scene)
     for (const Rock& rock : scene.rocks)
         if (rock.law != RockLaw::elastic)
             throw input_error(
-                "sensitivities are those of elastic rock; wanted law = \"elastic\" of [[rock]] \"" + rock.name +
-                "\"");
+                "sensitivities are those of elastic rock; wanted law = \"elastic\" of [[rock]] \"" +
+                rock.name + "\"");
 }
 
 ZoneChanges changed_by(const Zones& zones, Scaled scaled, const Scene& /*scene*/, const Mesh& /*mesh*/)

@@ -30,13 +30,13 @@ This page is made from the declarations in the files `scene_keys.cpp` of `libs`:
 * **Signs.** Tension, extension and opening are positive in all programs and files. Keys with compression
   in their name are positive in compression. Strengths are positive numbers.
 * A date is a TOML date such as `1994-06-15`, if `start` is one, or a number of days since the start. If `start` is
-  a number, all dates are numbers on its axis: with `start = 100`, `date = 130` is 30 days after it.
+  a number, all dates are days counted as it is: with `start = 100`, `date = 130` is 30 days after it.
 * A polygon lists its corners in order, in either direction. It is not closed: the last corner differs from the
   first.
-* In place of a polygon a circle may stand, `{ center_m = [0, 8], radius_m = 4 }`: its corners are on the circle, 32 of
-  them or `sides = n`. In place of a corner of a polygon or line an arc may stand that begins at the corner before it,
-  `{ through_m = [5, 12], to_m = [10, 8] }`, with as many sides as its share of a circle, at least 2, or `sides = n`. 32 sides
-  enclose .64 percent less than the circle.
+* A circle can replace a polygon: `{ center_m = [0, 8], radius_m = 4 }`. It has 32 corners on the circle, or `sides = n`.
+  A polygon of 32 sides encloses 0.64 percent less than the circle.
+* An arc can replace a corner of a polygon or line: `{ through_m = [5, 12], to_m = [10, 8] }`. It begins at the corner
+  before it. Its number of sides is its share of 32, at least 2, or `sides = n`.
 * `[table]` occurs once in a scene. `[[table]]` may occur many times: each one describes one joint, one stage, and
   so on.
 * A law is written on one line: `spacing = { law = "lognormal", mean_m = 2.5, deviation_m = 1 }`.

@@ -76,8 +76,8 @@ Table<Scene> variables()
 {
     return {
         {"variables", once, optional,
-         "Names for numbers: `H = 40`. A name consists of letters, digits and _. Where a key of the scene wants a number, "
-         "a text may stand, with such names, numbers, + - * / and brackets: `size_m = \"H / 20\"`, "
+         "Names for numbers: `H = 40`. A name consists of letters, digits and _. A key of the scene that wants a number "
+         "can have a text with such names, numbers, + - * / and brackets: `size_m = \"H / 20\"`, "
          "`outline_m = [[0, 0], [\"2 * H\", 0], ...]`. A variable may be such a text, too. The copy of the scene in "
          "the programs' files has the numbers."},
         {}};
@@ -104,7 +104,7 @@ Table<SingleJoint> joint()
 {
     return {
         {"joint", in_list, optional,
-         "One joint or fault given by its ends: all of it joint, no rock bridges. Where a joint lies "
+         "One joint or fault given by its ends, without rock bridges. Where a joint lies "
          "on an earlier one, the later joint replaces it. So a part of a joint can have its own material."},
         {text("name", &SingleJoint::name, "Name, once among the joints, joint sets and mapped sets."),
          text("material", &SingleJoint::material, "Name of its joint material."),
@@ -415,8 +415,8 @@ Key<JointSet> bridge_length()
     };
     Key<JointSet> key{
         {"bridge_length_m", "number", metres, lengths,
-         "Mean length of the rock bridges of lines, in place of persistence: that is then the mean trace "
-         "length over the sum of both means."},
+         "Mean length of the rock bridges of lines, in place of persistence. Persistence is then the mean "
+         "trace length over the sum of both means."},
         read,
         {}};
     return std::move(key).optional();
@@ -557,8 +557,8 @@ Table<JointSet> joint_set(const TablesInJointSet& laws)
               "rocks and materials",
               {},
               {},
-              "Joint materials in some of the rocks, in place of that one, so that joints may run from "
-              "one rock into another. Along a border between two rocks the material with the smaller "
+              "Other joint materials in some of the rocks, for joints that run from one rock into "
+              "another. Along a border between two rocks the material with the smaller "
               "normal stiffness is used."},
              &JointSet::material_in, read_materials)
              .optional(),
@@ -579,7 +579,7 @@ Table<JointSet> joint_set(const TablesInJointSet& laws)
          orientation(laws.orientation),
          law("spacing", &JointSet::spacing, laws.spacing, laws_of_lengths(),
              "Of lines: distance between neighbouring joint planes. Lines need it or a density. With both "
-             "the density sets the mean, and all of the law is stretched to it; with a density alone the "
+             "the density sets the mean, and the law is stretched to this mean; with a density alone the "
              "law is negative exponential.")
              .optional(),
          key_of<JointSet>(
@@ -602,7 +602,7 @@ Table<JointSet> joint_set(const TablesInJointSet& laws)
                "segments and discs.")
              .optional(),
          number("termination_probability", &JointSet::termination_probability, no_unit, above(0).to(1),
-                "With which a trace, grown from its midpoint, ends at each crossing with one of them.")
+                "Probability that a trace, grown from its midpoint, ends at a crossing with one of them.")
              .or_else(1.0),
          polygon("region_m", &JointSet::region, "Where the set exists.").optional("the whole section"),
          names("rocks", &JointSet::rocks, "Names of the rocks in which the set exists, instead of a region.")
@@ -614,16 +614,15 @@ Table<WrittenMapped> mapped()
     using W = WrittenMapped;
     return {
         {"mapped", in_list, optional,
-         "Joint traces from a map of the section: every straight piece is a joint, all of it joint, no rock "
-         "bridges."},
+         "Joint traces from a map of the section: every straight piece is a joint without rock bridges."},
         {text("name", &W::name, "Name, once among the joints, joint sets and mapped sets."),
          text("material", &W::material, "Name of the joint material."),
          text(
              "file", &W::file,
              "File beside the scene, in its folder or a folder there, with coordinates in metres of the "
              "section. GeoJSON of LineString and MultiLineString; or CSV with the columns x1_m, y1_m, x2_m, "
-             "y2_m and, if wanted, id; or CSV with the columns id, x_m, y_m, a row a place, those of a trace "
-             "together; or a GeoPackage, a Shapefile or a DXF file, if the programs were built with GDAL. Where every "
+             "y2_m and, if wanted, id; or CSV with the columns id, x_m, y_m, a row for each point of a trace, the "
+             "rows of a trace one after another; or a GeoPackage, a Shapefile or a DXF file, if the programs were built with GDAL. Where every "
              "id is a whole number from 0 to 2097151 it becomes the joint's number; elsewhere the place in the file "
              "does."),
          text(
@@ -664,7 +663,7 @@ Table<Schedule> schedule()
     const KeyInfo start{
         "start", "date", days, within(farthest_day),
         "Start of time. With a date here all others may be dates, or numbers of days since it; with "
-        "a number all are numbers on its axis."};
+        "a number all are days counted as it is."};
     const auto calendar = [](Schedule& all) -> Calendar& { return all.calendar; };
     return {{"schedule", once, required, "Start and end."},
             {key_of<Schedule>(start, calendar, read_start).or_else(std::int64_t{0}),
@@ -680,8 +679,8 @@ Table<Stage> stage()
          polygons("remove_m", &Stage::remove, "The rock inside these polygons is excavated."),
          choice(
              "displacements", &Stage::reset_displacements, {{"go on", false}, {"reset", true}},
-             "Reset: displacements are also counted from the equilibrium after this stage, until another one "
-             "resets them.")
+             "Reset: displacements are also counted from the equilibrium after this stage, until the next stage "
+             "that resets them.")
              .or_else(std::string("go on"))}};
 }
 
@@ -735,11 +734,10 @@ Table<CreepSettings> creep()
         {"creep", once, optional,
          "Creep of joints and rock. Without this table nothing creeps. Either step_days or tolerance_m is "
          "given."},
-        {choice(
-             "scheme", &CreepSettings::scheme, creep_scheme_words(),
-             "Time scheme: what the force on a joint is taken to be during a step. \"auto\" is fitted, and "
-             "linear force in steps during which loads change; the published one is stable only below a "
-             "limit.")
+        {choice("scheme", &CreepSettings::scheme, creep_scheme_words(),
+                "Time scheme: the assumed force on a joint during a step. \"auto\" is fitted, and "
+                "linear force in steps during which loads change; the published one is stable only below a "
+                "limit.")
              .or_else(std::string("auto")),
          number("step_days", &CreepSettings::step, days, step, "Time step.").optional(),
          number("tolerance_m", &CreepSettings::tolerance, metres, creep_tolerances,
@@ -768,12 +766,12 @@ Table<Scene> zones()
              "Displacements in a zone: linear between its three corners, so that its strain is constant, or "
              "quadratic, with three more gridpoints in the middles of its sides. Zones of constant strain are too "
              "stiff where rock bends, and too strong where it yields; quadratic ones cost about four times as "
-             "much at the same size. They are for small displacements.")
+             "much at the same size. Quadratic zones are for small displacements.")
              .optional("quadratic by the implicit engine, without [large_displacements], if a rock has law "
                        "\"Mohr-Coulomb\" or there are no [[joint_set]] and [[mapped]]; else constant strain"),
          number("size_m", &Scene::zone_size, metres, zone_sizes, "Longest zone side wanted."),
          polygon("fine_m", &Scene::fine_zones,
-                 "Where zones are of that size; outside they are larger. Without it they are of that "
+                 "Where zones have the size size_m; outside they are larger. Without it they have this "
                  "size everywhere.")
              .together("coarsening"),
          number("coarsening_m", &Scene::zone_coarsening, metres, lengths,
@@ -802,8 +800,8 @@ Table<Cutting> cutting()
              .or_else(std::int64_t{1}),
          choice("dangling_ends", &Cutting::dangling_ends,
                 {{"prune", DanglingEnds::prune}, {"extend", DanglingEnds::extend}},
-                "What becomes of a joint that ends inside a block: it is cut back to the last block edge it "
-                "met, or extended in its own direction to the next line, as rock bridge, which "
+                "A joint that ends inside a block is cut back to the last block edge it "
+                "met (prune), or extended in its own direction to the next line, as rock bridge, which "
                 "needs the strength of every rock.")
              .formerly("dead_ends")
              .or_else("prune")}};
@@ -820,8 +818,8 @@ Table<Equilibrium> equilibrium()
              .former_word(std::string(former_engine_word), std::string(engine_word_for_it))
              .or_else(std::string("auto")),
          number("tolerance", &E::tolerance, no_unit, equilibrium_tolerances,
-                "Of the unbalanced force ratio. Dynamic relaxation also needs a remaining displacement below "
-                "1000 times it, as a share of the displacement.")
+                "Largest unbalanced force ratio of an equilibrium. Dynamic relaxation also needs a remaining "
+                "displacement below 1000 times this share of the displacement.")
              .or_else(1e-6),
          choice("masses", &E::masses, {{"scaled", Masses::scaled}, {"real", Masses::real}},
                 "Nodal masses: scaled, which finds the same equilibrium sooner, or the real ones.")
@@ -887,8 +885,8 @@ Table<LargeDisplacements> large_displacements()
              .or_else(0.0),
          number(
              "longest_s", &LargeDisplacements::longest, seconds, above(0).to(1e6),
-             "Longest time of a dynamic analysis, the first of which begins at the equilibrium in situ. If rock "
-             "still moves then, the exit code is 3.")
+             "Longest time of a dynamic analysis. The first analysis begins at the equilibrium in situ. If rock "
+             "still moves at the end, the exit code is 3.")
              .or_else(60.0),
          number(
              "stop_s", &LargeDisplacements::stop, seconds, above(0).to(1e6),

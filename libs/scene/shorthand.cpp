@@ -311,7 +311,7 @@ private:
         static const std::set<std::string> of_numbers{"number", "integer", "date",
                                                       "point",  "poles",   "load history"};
         if (of_numbers.contains(key.kind))
-            write_numbers(value, title);
+            write_numbers(value, title, key.kind == "date");
         else if (key.kind == "polygon" || key.kind == "polyline")
             write_corners(value, title, key.kind == "polygon");
         else if (key.kind == "polygons") {
@@ -325,20 +325,22 @@ private:
                     for_each_table(value, [&](const TomlValue& table) { write_table(table, inside); });
     }
 
-    // A text without one is no sum of names: the reader of the key refuses it, as a date in quotes.
-    static bool has_letter(const std::string& text)
+    // With a name, or a sum of numbers. The reader of the key refuses other texts, as a number or a date in quotes.
+    static bool is_sum(const std::string& text, bool is_date)
     {
         return std::ranges::any_of(text,
-                                   [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); });
+                                   [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }) ||
+               (!is_date && (text.find_first_of("+*/(") != text.npos || text.find(" - ") != text.npos));
     }
 
     // Texts in it, at any depth.
-    void write_numbers(const TomlValue& value, const std::string& title)
+    void write_numbers(const TomlValue& value, const std::string& title, bool is_date)
     {
         if (const auto* const list = std::get_if<TomlValue::List>(&value.content))
             for (const TomlValue& one : *list)
-                write_numbers(one, title);
-        else if (const auto* const text = std::get_if<std::string>(&value.content); text && has_letter(*text))
+                write_numbers(one, title, is_date);
+        else if (const auto* const text = std::get_if<std::string>(&value.content);
+                 text && is_sum(*text, is_date))
             change(value, text_of(variables_.value_of(value, title)));
     }
 
@@ -447,7 +449,7 @@ private:
         std::optional<Point> first, before;
         for (const TomlValue& corner : *list) {
             if (!std::holds_alternative<TomlValue::Table>(corner.content)) {
-                write_numbers(corner, title);
+                write_numbers(corner, title, false);
                 const auto* const pair = std::get_if<TomlValue::List>(&corner.content);
                 if (pair && pair->size() == 2)
                     before = point_of(corner, title);

@@ -77,12 +77,12 @@ std::string schema_markdown()
 
 The programs exchange HDF5 files. A file has all data that later programs need:
 
-| `filetype` | made by | holds |
+| `filetype` | made by | contents |
 |---|---|---|
 | `jointcreep network` | jointgen | provenance, network |
 | `jointcreep joints` | strength-averaging | the same, and equivalent joints |
 | `jointcreep result` | demsolve | the same, and mesh, history, states, equilibria; the step history if asked for; dynamics of scenes with [large_displacements] |
-| `jointcreep checkpoint` | demsolve | the same up to a moment, and the state then |
+| `jointcreep checkpoint` | demsolve | the same up to a time, and the state at this time |
 
 This is format version )"
          << schema::major_version << "." << schema::minor_version << R"(.
@@ -98,8 +98,8 @@ This is format version )"
 - Arrays are in C order: in [time, point, 2] the component runs fastest. A single value is an array of one element.
 - Indices count from 0. An index of -1 means none. No number is ever NaN or infinite.
 - Text is UTF-8 of fixed length, padded with zero bytes.
-- Equal input gives equal bytes: a file holds no dates, paths or user names.
-- Datasets have checksums. They are compressed, except where that saves very little. A damaged file is refused; a file that was changed on purpose may not be.
+- Equal input gives equal bytes: a file contains no dates, paths or user names.
+- Datasets have checksums. They are compressed, except where that saves very little. A damaged file is refused; a file that was changed on purpose can pass.
 - An addition to the format raises the minor version. Any other change raises the major version: another name, meaning, unit or shape, or a removal.
 - A program reads files of its own major version. It ignores datasets that it does not know, for example those that a higher minor version adds. It refuses a file that lacks a dataset that it needs, and names the dataset.
 - A program refuses a file of another major version, and says which version it reads. It refuses a file that is not complete.

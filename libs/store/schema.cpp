@@ -121,7 +121,7 @@ std::vector<Field> fields_of(Blocks& blocks)
         {"/cutting/merged_edge_length", &report.merged_edge_length, {}, "m", at_least(0),
          "Total length of the edges that vanished."},
         {"/cutting/merged_block_area", &report.merged_block_area, {}, "m2", at_least(0),
-         "Total area of the blocks that vanished into their neighbours."},
+         "Total area of the blocks that were merged into their neighbours."},
         {"/cutting/largest_move", &report.largest_move, {}, "m", at_least(0),
          "Largest distance by which a vertex was moved."},
         {"/cutting/pruned_length", &report.pruned_length, {}, "m", at_least(0),
@@ -129,7 +129,7 @@ std::vector<Field> fields_of(Blocks& blocks)
         {"/cutting/shortest_edge", &report.shortest_edge, {}, "m", at_least(0),
          "Shortest edge that is left."},
         {"/cutting/smallest_angle", &report.smallest_angle, {}, "rad", at_least(0),
-         "Smallest angle between neighbouring edges that is left."},
+         "Smallest angle between neighbouring edges after cutting."},
     };
     // clang-format on
 }
@@ -160,7 +160,7 @@ std::vector<Field> fields_of(Statistics& rows)
         {"/statistics/is_tested", &rows.is_tested, statistic, "1", between(0, 1),
          "1 if the verdict follows from the p-value."},
         {"/statistics/p_value", &rows.p_value, statistic, "1", between(0, 1),
-         "Probability that chance takes a network by the scene's laws so far from the target; 1 where not tested."},
+         "Probability that a network by the scene's laws is at least as far from the target; 1 where not tested."},
         {"/statistics/verdict", &rows.verdict, statistic, "1", between(0, 3),
          "0 not judged, 1 sample too small for a verdict, 2 pass, 3 fail."},
         {"/statistics/confidence", &rows.confidence, {}, "1", between(0, 1), "Of the confidence intervals."},
@@ -192,7 +192,7 @@ std::vector<Field> fields_of(History& history)
         {"/history/time", &history.time, {"time"}, "day", ascending(),
          "Time since the start; two rows at a stage's time, before and after it."},
         {"/history/event", &history.event, {"time"}, "1", any(),
-         "Stage that this row is the first after, or an empty text."},
+         "Name of the stage before, in the first row after a stage; else an empty text."},
         {"/history/point", &history.point, {"point"}, "1", any(), "Names of the monitoring points."},
         {"/history/point_position", &history.point_position, {"point"}, "m", any(),
          "Position of the monitoring point {x, y}."},
@@ -215,7 +215,7 @@ std::vector<Field> fields_of(States& states)
     std::vector<Field> all = {
         {"/states/time", &states.time, {"state"}, "day", ascending(), "Time since the start."},
         {"/states/event", &states.event, {"state"}, "1", any(),
-         "Stage that this state is the first after, or an empty text."},
+         "Name of the stage before, in the first state after a stage; else an empty text."},
         {"/states/displacement", &states.displacement, {"state", "gridpoint"}, "m", any(),
          "Displacement {x, y} since the in-situ equilibrium."},
         {"/states/reaction", &states.reaction, {"state", "gridpoint"}, "N/m", any(),
@@ -350,8 +350,8 @@ std::vector<Field> fields_of(DynamicsHistory& dynamics)
         {"/dynamics/dynamic_time", &dynamics.dynamic_time, {"moment"}, "s", at_least(0), "Time since the dynamic analysis began."},
         {"/dynamics/state", &dynamics.state, {"moment"}, "1", index_of("state"), "The section's state then."},
         {"/dynamics/work_of_loads", &dynamics.work_of_loads, {"moment"}, "J/m", any(),
-         "Work of weight, of forces of excavated rock and of tractions since then; but for the error of time steps "
-         "the sum of the next four."},
+         "Work of weight, of forces of excavated rock and of tractions since then; except for the error of time "
+         "steps the sum of the next four."},
         {"/dynamics/kinetic_energy", &dynamics.kinetic_energy, {"moment"}, "J/m", any(),
          "Kinetic energy; a little below 0 where all velocities change sign at once."},
         {"/dynamics/stored_energy", &dynamics.stored_energy, {"moment"}, "J/m", any(),
@@ -394,7 +394,7 @@ std::vector<Field> fields_of(Failure& failure)
         {"/failure/time", &failure.time, {}, "day", at_least(0), "Time since the start."},
         {"/failure/moves_on", &failure.moves_on, {}, "1", between(0, 1),
          "1 blocks slide or fall, 0 undecided: the search for equilibrium ended without an answer."},
-        {"/failure/steps", &failure.steps, {}, "1", at_least(0), "Steps of the engine, the last ones."},
+        {"/failure/steps", &failure.steps, {}, "1", at_least(0), "Number of the last steps of the engine."},
         {"/failure/seconds", &failure.seconds, {}, "s", at_least(0),
          "Duration of these steps with real masses; otherwise 0."},
         {"/failure/block", &failure.block, {"moving_block"}, "1", index_of("block"),
@@ -421,7 +421,7 @@ std::vector<Field> fields_of(Safety& safety)
         {"/safety/largest_plastic_strain", &safety.largest_plastic_strain, {"trial"}, "1", at_least(0),
          "Largest plastic shear strain of a zone, at the end of the run."},
         {"/safety/coarse_factor", &safety.coarse_factor, {"coarse_trial"}, "1", positive(),
-         "The same for runs with zones twice as large, which tell what the mesh adds to the factor: the factor."},
+         "Factor of runs with zones twice as large, for the estimate of the influence of the mesh."},
         {"/safety/coarse_stands", &safety.coarse_stands, {"coarse_trial"}, "1", between(-1, 1),
          "How they ended, as stands."},
         {"/safety/coarse_largest_displacement", &safety.coarse_largest_displacement, {"coarse_trial"}, "m", at_least(0),
@@ -450,7 +450,7 @@ std::vector<Field> fields_of(Checkpoint& checkpoint)
         {"/checkpoint/load", &checkpoint.load, gridpoint, "N/m", any(), "Weight {x, y} that the gridpoint has."},
         {"/checkpoint/force", &checkpoint.force, gridpoint, "N/m", any(), "Unbalanced force {x, y}, also where it is fixed."},
         {"/checkpoint/released", &checkpoint.released, {"released_gridpoint"}, "N/m", any(),
-         "Within a stage: force {x, y} that the rock it excavates had on the gridpoint."},
+         "Within a stage: force {x, y} of the excavated rock on the gridpoint before."},
         {"/checkpoint/unloaded", &checkpoint.unloaded, {}, "1", at_least(0),
          "Number of finest increments unloaded so far; 0 outside of a stage. A finest increment is 1/32 of "
          "an increment of the scene, or with dynamic relaxation alone the whole."},
@@ -462,7 +462,7 @@ std::vector<Field> fields_of(Checkpoint& checkpoint)
     // clang-format off
     append(all, {
         {"/checkpoint/creep_step", &checkpoint.creep_step, {}, "s", at_least(0),
-         "Creep step to be tried next; 0 where nothing creeps."},
+         "Next trial creep step; 0 where nothing creeps."},
         {"/checkpoint/solver_time", &checkpoint.solver_time, {}, "s", at_least(0),
          "Time of the solver, accumulated over all equilibria."},
         {"/checkpoint/steps_since_record", &checkpoint.steps_since_record, {}, "1", at_least(0),
@@ -514,7 +514,7 @@ std::vector<Invariant> invariants_of(const Network& network)
         return blocks.edge_kind[edge] == static_cast<Index>(kind);
     };
     const auto differ = [](const std::string& dimension, const std::vector<std::string>& names) {
-        return Invariant{"/names/" + dimension, "no name is there twice", dimension,
+        return Invariant{"/names/" + dimension, "all names differ", dimension,
                          [&names](std::size_t row) {
                              const auto here = names.begin() + static_cast<std::ptrdiff_t>(row);
                              return std::find(names.begin(), here, *here) == here;
@@ -589,7 +589,7 @@ const std::vector<Described>& dimensions()
         {"moving_block", "a block that had no equilibrium"},
         {"trial", "a run by which a factor of safety was found"},
         {"coarse_trial",
-         "a run with zones twice as large, by which the mesh's share of a factor of safety was estimated"},
+         "a run with zones twice as large, for the estimate of the influence of the mesh on the factor of safety"},
         {"remark", "a line of the summary so far"},
         {"search_value", "a number of the state of a search for equilibrium"},
         {"warning", "a warning of a program"},

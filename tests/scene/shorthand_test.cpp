@@ -98,6 +98,15 @@ TEST(shorthand, what_names_and_sums_cannot_be_is_refused)
 }
 
 // They are refused by the reader of the key: a date in quotes is no difference, and a number needs no quotes.
+TEST(shorthand, sums_of_numbers_need_no_names)
+{
+    EXPECT_EQ(
+        written_out("[zones]\nsize_m = \"3 / 2\"\n[section]\noutline_m = [[\"9 - 1\", \"(2)\"]]\n", "scene"),
+        "[zones]\nsize_m = 1.5\n[section]\noutline_m = [[8, 2]]\n");
+    const std::string dates = "[[stage]]\ndate = \"1994/06/15\"\n[schedule]\nstart = \"1994 - 6\"\n";
+    EXPECT_EQ(written_out(dates, "scene"), dates);
+}
+
 TEST(shorthand, texts_without_a_name_stay)
 {
     const std::string text =

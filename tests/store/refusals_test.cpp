@@ -229,7 +229,7 @@ TEST_F(Refusal, OfValuesThatContradictEachOther)
         FAIL() << "it is written";
     } catch (const file_error& error) {
         EXPECT_SAYS(error.what(), "/names/rock, row " + std::to_string(twice.network.names.rock.size() - 1) +
-                                      ": it must hold that no name is there twice");
+                                      ": it must hold that all names differ");
     }
     EXPECT_SAYS(with_first<Index>("/mesh/contact_gridpoint", H5T_NATIVE_INT32, mesh.contact_gridpoint[0][1]),
                 "/mesh/contact_gridpoint, row 0");
