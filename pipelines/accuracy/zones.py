@@ -149,7 +149,7 @@ def yielding_cases(programs):
         Case("vertical cut: factor of safety", cut, 6, 1.199, factor, ((3, 6, 12, 24), (3, 6, 12, 24)), safety),
         Case("slope, psi = phi: factor of safety", slope, 10, 1.368, factor, ((2.5, 5, 10, 20), (2.5, 5, 10, 20)),
              safety),
-        Case("slope, psi = 0: factor of safety", soft, 10, 1.368, factor, ((2.5, 5, 10, 20), (2.5, 5, 10, 20)),
+        Case("slope, psi = 0: factor of safety", soft, 10, 1.368, factor, ((2.5, 5, 10, 20), (2.5, 5, 10)),
              safety)]
 
 
