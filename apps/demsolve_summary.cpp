@@ -227,6 +227,8 @@ std::vector<std::string> warnings_of(const analysis::Trial& trial)
     for (const auto& [rock, n] : findings.yielded_in_situ)
         warnings.push_back("at yield in the initial stress state: " + std::to_string(n) +
                            " zones of rock \"" + rock + '"');
+    for (const auto& [slide, n] : findings.slid)
+        warnings.push_back("rock slid in creep, " + slide);
     for (const auto& [stage, percent] : findings.energy_off)
         warnings.push_back("energy balance " + off_by(percent, stage));
     if (const double strain = rock::largest_plastic_strain(run.assembly().zones);

@@ -72,7 +72,7 @@ void Analysis::run()
     settle_in_situ();
     if (section_.scene.large_displacements)
         dynamics_.emplace(section_, watchers_).settle_in_situ();
-    creep_.begin();
+    creep_.begin(dynamics_ ? &*dynamics_ : nullptr);
     follow_schedule(-std::numeric_limits<double>::infinity());
 }
 
@@ -93,7 +93,7 @@ void Analysis::go_on(Result so_far, Checkpoint kept)
     }
     if (section_.scene.large_displacements)
         dynamics_.emplace(section_, watchers_);
-    creep_.begin();
+    creep_.begin(dynamics_ ? &*dynamics_ : nullptr);
     transfer(Transfer(Transfer::Way::restore), kept);
     const bool is_at_stage = next_stage_ < stages.size() && stages[next_stage_].time == section_.now;
     if (unloaded_ > 0) {
@@ -147,10 +147,10 @@ void Analysis::follow_schedule(double after)
             section_.recorder.start_readings(section_.result, point.first_reading);
 }
 
-// 3. Creep and changes of load, from the last date to the next. With large displacements nothing moves between stages.
+// 3. Creep and changes of load, from the last date to the next. With large displacements no loads change.
 void Analysis::go_to(double last, double date)
 {
-    if (!dynamics_)
+    if (!dynamics_ || creep_.creeps())
         creep_.go_to(last, date, section_.now >= last_event_of(section_));
     else if (date != section_.now) {
         section_.now = date;
@@ -184,9 +184,10 @@ void Analysis::complete(const Stage& stage)
 {
     section_.say(stage.name);
     section_.stage = stage.name;
-    if (dynamics_)
+    if (dynamics_) {
         dynamics_->run(&stage == &section_.scene.stages.back());
-    else {
+        creep_.start_afresh();
+    } else {
         unload();
         creep_.start_afresh();
         watchers_.row_and_state_are_due(stage.name);

@@ -60,8 +60,9 @@ CreepSteps::CreepSteps(Section& section, Engines& engines, const Watchers& watch
 {
 }
 
-void CreepSteps::begin()
+void CreepSteps::begin(DynamicStage* dynamics)
 {
+    dynamics_ = dynamics;
     const std::optional<CreepSettings>& settings = section_.scene.creep;
     if (!settings)
         return;
@@ -71,7 +72,7 @@ void CreepSteps::begin()
         return;
     length_.emplace(*settings, creep_->fastest_rate(),
                     stable_limit_ ? stable_limit_->step : std::numeric_limits<double>::infinity());
-    if (creep::is_second_order(settings->scheme))
+    if (creep::is_second_order(settings->scheme) && dynamics_ == nullptr)
         closing_.emplace(length_->closing_tolerance()); // the others are of first order anyway
 }
 
@@ -105,7 +106,7 @@ void CreepSteps::forget_now_and_then()
 {
     if (steps_since_forgetting_ >= steps_to_forgetting)
         engines_.forget();
-    if (engines_.has_learnt())
+    if (engines_.has_learnt() || section_.settled.effort.steps > 0) // of a step that was rejected
         return;
     steps_since_forgetting_ = 0;
     last_move_.clear();
@@ -126,7 +127,7 @@ bool CreepSteps::reaches(double target, bool may_stop)
 {
     int cuts_left = most_cuts;
     while (section_.now < target && !end_) {
-        if (!step_to(target, cuts_left))
+        if (!(dynamics_ != nullptr ? step_by_dynamics(target) : step_to(target, cuts_left)))
             return false;
         const std::optional<double> stop_rate =
             may_stop && creeps() ? section_.scene.creep->stop_rate : std::nullopt;
@@ -157,14 +158,45 @@ bool CreepSteps::step_to(double target, int& cuts_left)
     }
     if (closing_)
         closing_->finish(assembly.contacts, step.duration);
+    end_step(step, start.displacement);
+    return true;
+}
+
+void CreepSteps::end_step(const Step& step, const std::vector<Vector2d>& displacement_before)
+{
     last_duration_ = step.duration;
-    last_move_ = assembly.displacement;
+    last_move_ = section_.assembly.displacement;
     for (std::size_t g = 0; g < last_move_.size(); ++g)
-        last_move_[g] -= start.displacement[g];
+        last_move_[g] -= displacement_before[g];
     section_.now = step.end;
     watchers_.tell(&Watcher::step_ends, step);
     if (!step.is_whole && length_)
         length_->start_afresh();
+}
+
+// The same with large displacements. A step in which rock slides is halved; what slides in the shortest one is followed
+// until it rests.
+bool CreepSteps::step_by_dynamics(double target)
+{
+    const CreepScheme scheme = creep::scheme_of_step(section_.scene.creep->scheme, false);
+    const std::vector<Vector2d> before = section_.assembly.displacement;
+    const double start = section_.now;
+    double end = target;
+    bool slides = false;
+    for (int halvings = 0; !slides && !dynamics_->creeps_to_rest(scheme, end - start); ++halvings) {
+        slides = halvings == most_halvings_of_a_step;
+        if (!slides)
+            end = start + (end - start) / 2;
+    }
+    if (slides)
+        dynamics_->creep_and_slide(scheme, end);
+    else if (length_->stands(end - start, dynamics_->end_creep()))
+        dynamics_->accept_creep();
+    else {
+        dynamics_->undo_creep();
+        return false;
+    }
+    end_step({end, end - start, end == target && !slides, nullptr, nullptr}, before);
     return true;
 }
 

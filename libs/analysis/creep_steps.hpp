@@ -2,6 +2,7 @@
 
 #pragma once
 
+#include "analysis/dynamic_stage.hpp"
 #include "analysis/engines.hpp"
 #include "analysis/section.hpp"
 #include "analysis/watcher.hpp"
@@ -33,8 +34,9 @@ public:
     // Every `state_every` creep steps a state is due; 0: at dates only. Throws unstable_step.
     CreepSteps(Section& section, Engines& engines, const Watchers& watchers, std::uint64_t state_every);
 
-    // To be called after the in-situ equilibrium: creep under the in-situ stress has long ended.
-    void begin();
+    // To be called after the in-situ equilibrium: creep under the in-situ stress has long ended. At large displacements
+    // `dynamics` makes the steps.
+    void begin(DynamicStage* dynamics);
 
     // Steps to a date from the last one [s], or from now between them. If it `may_stop` creep ends where the scene's
     // stop rate is reached.
@@ -57,6 +59,8 @@ private:
     double next_target(double date, double longest) const;
     bool reaches(double target, bool may_stop);
     bool step_to(double target, int& cuts_left);
+    bool step_by_dynamics(double target);
+    void end_step(const Step& step, const std::vector<Vector2d>& displacement_before);
     Step settle(double target, const mechanics::State& start, int& cuts_left);
     bool settles_at(double end, bool by_relaxation, const mechanics::State& start);
     std::vector<Vector2d> guess(double duration) const;
@@ -65,6 +69,7 @@ private:
     Section& section_;
     Engines& engines_;
     const Watchers& watchers_;
+    DynamicStage* dynamics_ = nullptr; // with large displacements
     std::uint64_t state_every_;
     std::optional<StableLimit> stable_limit_;
     std::optional<mechanics::Creep> creep_;

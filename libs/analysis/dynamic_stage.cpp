@@ -1,5 +1,6 @@
 #include "analysis/dynamic_stage.hpp"
 
+#include "joint/chain.hpp"
 #include "joint/equivalent.hpp"
 #include "model/error.hpp"
 #include "model/units.hpp"
@@ -19,6 +20,12 @@ using large_displacements::Energy;
 
 namespace
 {
+
+// In words, to a ten-thousandth.
+std::string day_of(double time)
+{
+    return "day " + shown(std::round(1e4 * time / unit::day) / 1e4);
+}
 
 // Largest error of the energy balance of a dynamic analysis, relative to its largest term [-].
 constexpr double energy_closes = 0.01;
@@ -44,13 +51,19 @@ std::vector<Index> material_of_contacts(const Section& section)
     return number;
 }
 
-// The law of contacts that form in a dynamic analysis: friction only, the residual one where there is one.
-joint::Law law_of_new_contacts(const Scene& scene)
+// The material of contacts that form in a dynamic analysis.
+Index material_of_new_contacts(const Scene& scene)
 {
     const auto material =
         std::find_if(scene.joint_materials.begin(), scene.joint_materials.end(),
                      [&](const auto& m) { return m.name == scene.large_displacements->new_contacts; });
-    return joint::unbonded(joint::law_of(*material));
+    return static_cast<Index>(material - scene.joint_materials.begin());
+}
+
+// Their law: friction only, the residual one where there is one.
+joint::Law law_of_new_contacts(const Scene& scene)
+{
+    return joint::unbonded(joint::law_of(scene.joint_materials[material_of_new_contacts(scene)]));
 }
 
 large_displacements::Settings settings_of(const Scene& scene)
@@ -66,6 +79,12 @@ DynamicStage::DynamicStage(Section& section, const Watchers& watchers)
       dynamics_(section.assembly, section.mesh(), material_of_contacts(section), rigid_zones(section),
                 law_of_new_contacts(section.scene), settings_of(section.scene))
 {
+    if (!section.scene.creep)
+        return;
+    const Index number = material_of_new_contacts(section.scene);
+    const JointMaterial& material = section.scene.joint_materials[number];
+    dynamics_.creep_by(section.joints,
+                       {joint::chain_of(material, number, 0), joint::chain_of(material, number, 1)});
 }
 
 // Whether this analysis goes on from where an earlier run was.
@@ -93,19 +112,8 @@ void DynamicStage::run(bool is_last)
     constexpr double never = std::numeric_limits<double>::infinity();
     const double stop = is_last ? section_.scene.large_displacements->stop.value_or(never) : never;
     dynamics_.start();
-    largest_energy_ = largest_error_ = 0;
-    due_ = 0;
-    bool is_recorded = goes_on(), rests = false;
-    while (!rests && dynamics_.time() < stop) {
-        if (!std::exchange(is_recorded, false)) {
-            due_ = std::max(due_ + section_.scene.large_displacements->record_every, // once a step at most
-                            std::nextafter(dynamics_.time(), never));
-            dynamics_.put_back();
-            watchers_.tell(&Watcher::state_is_due, "");
-            record();
-        }
-        rests = comes_to_rest(std::min(due_, stop));
-    }
+    begin_records();
+    const bool rests = moves_to_rest(stop, goes_on());
     dynamics_.put_back();
     if (rests) {
         note_rest();
@@ -116,12 +124,38 @@ void DynamicStage::run(bool is_last)
     check_energy();
 }
 
+void DynamicStage::begin_records()
+{
+    largest_energy_ = largest_error_ = 0;
+    due_ = 0;
+}
+
+// Moves until rest, or until a time [s], with records of it; whether it rests. `is_recorded`: the present state is.
+bool DynamicStage::moves_to_rest(double stop, bool is_recorded)
+{
+    bool rests = false;
+    while (!rests && dynamics_.time() < stop) {
+        if (!std::exchange(is_recorded, false)) {
+            due_ = std::max(due_ + section_.scene.large_displacements->record_every, // once a step at most
+                            std::nextafter(dynamics_.time(), std::numeric_limits<double>::infinity()));
+            dynamics_.put_back();
+            watchers_.tell(&Watcher::state_is_due, "");
+            record();
+        }
+        rests = comes_to_rest(std::min(due_, stop));
+    }
+    return rests;
+}
+
 void DynamicStage::say()
 {
     std::array<char, 64> text{};
     std::snprintf(text.data(), text.size(), ", %.4g s, largest velocity %.2g m/s", dynamics_.time(),
                   dynamics_.fastest());
-    section_.say((section_.stage.empty() ? "in situ" : section_.stage) + text.data());
+    const std::string what = !section_.stage.empty() ? section_.stage
+                             : section_.now > 0      ? "creep"
+                                                     : "in situ";
+    section_.say(what + text.data());
 }
 
 // Steps until rock is at rest, or until a time has come [s].
@@ -144,10 +178,80 @@ bool DynamicStage::comes_to_rest(double until)
             say();
         if (dynamics_.time() > longest)
             give_up(dynamics_.moves_on("no rest within " + shown(longest) + " s"));
-        if (section_.keeper != nullptr && steps % Dynamics::check_every == 0)
+        if (section_.keeper != nullptr && !is_creeping_ && steps % Dynamics::check_every == 0)
             section_.keeper->search_goes_on([this](Tape& tape) { pass(tape); });
     }
     return false;
+}
+
+void DynamicStage::begin_creep(CreepScheme scheme, double duration)
+{
+    dynamics_.transfer(Transfer(Transfer::Way::keep), before_creep_);
+    dynamics_.begin_creep(scheme, duration);
+    is_creeping_ = true;
+    ++section_.settled.effort.searches;
+}
+
+bool DynamicStage::creeps_to_rest(CreepScheme scheme, double duration)
+{
+    begin_creep(scheme, duration);
+    Index& steps = section_.settled.effort.steps;
+    try {
+        while (!dynamics_.slides() && dynamics_.time() <= section_.scene.large_displacements->longest) {
+            for (Index i = 0; i < Dynamics::check_every; ++i, ++steps)
+                dynamics_.step();
+            if (dynamics_.is_at_rest())
+                return true;
+        }
+    } catch (const equilibrium_error&) {
+        // undone, as what slides
+    }
+    undo_creep();
+    return false;
+}
+
+double DynamicStage::end_creep()
+{
+    is_creeping_ = false;
+    return dynamics_.end_creep();
+}
+
+void DynamicStage::accept_creep()
+{
+    dynamics_.put_back();
+    const Index searches = section_.settled.effort.searches;
+    note_rest();
+    section_.settled.effort.searches = searches;
+}
+
+void DynamicStage::undo_creep()
+{
+    if (is_creeping_)
+        dynamics_.leave_creep();
+    is_creeping_ = false;
+    dynamics_.transfer(Transfer(Transfer::Way::restore), before_creep_);
+}
+
+void DynamicStage::creep_and_slide(CreepScheme scheme, double end)
+{
+    const std::vector<Vector2d> before = section_.assembly.displacement;
+    begin_creep(scheme, end - section_.now);
+    section_.now = end;
+    begin_records();
+    moves_to_rest(std::numeric_limits<double>::infinity(), false);
+    end_creep();
+    accept_creep();
+    watchers_.tell(&Watcher::state_is_due, "");
+    record();
+    check_energy();
+    if (!dynamics_.has_moved())
+        return;
+    mechanics::no_equilibrium slide("");
+    slide.motion = section_.assembly.displacement;
+    for (std::size_t g = 0; g < before.size(); ++g)
+        slide.motion[g] -= before[g];
+    ++section_.findings.slid[day_of(end) + ": " +
+                             mechanics::shown_blocks(failure_of(slide, section_.mesh(), section_.assembly))];
 }
 
 // Records the present state, and ends the analysis with the blocks that move.
@@ -219,9 +323,11 @@ void DynamicStage::record_energy()
 void DynamicStage::check_energy()
 {
     const double off = largest_error_ / largest_energy_;
-    if (dynamics_.has_moved() && off > energy_closes)
-        section_.findings.energy_off[section_.stage] =
-            static_cast<Index>(std::lround(100 * std::min(off, 1e6)));
+    if (!dynamics_.has_moved() || off <= energy_closes)
+        return;
+    const bool is_creep = section_.stage.empty() && section_.now > 0;
+    section_.findings.energy_off[is_creep ? "creep to " + day_of(section_.now) : section_.stage] =
+        static_cast<Index>(std::lround(100 * std::min(off, 1e6)));
 }
 
 } // namespace jointcreep::analysis

@@ -1,4 +1,4 @@
-// A stage with large displacements: a dynamic analysis until rest.
+// A stage or a creep step with large displacements: a dynamic analysis until rest.
 
 #pragma once
 
@@ -24,6 +24,16 @@ public:
     // equilibrium_error where there is no equilibrium; the result has the last state.
     void run(bool is_last);
 
+    // A creep step from now: what creeps is added, and rock comes to rest. False if it slides, or finds no rest; then
+    // everything is as before. After it, end_creep() returns an estimate of the error [m]; then accept_creep() keeps the
+    // step, or undo_creep() goes back.
+    bool creeps_to_rest(CreepScheme scheme, double duration);
+    double end_creep();
+    void accept_creep();
+    void undo_creep();
+    // The same to `end` [s], whatever moves, recorded as a stage is. Throws equilibrium_error where there is no rest.
+    void creep_and_slide(CreepScheme scheme, double end);
+
     // What a checkpoint keeps of it.
     void transfer(const Transfer& to, Checkpoint& kept) { dynamics_.transfer(to, kept.dynamics); }
 
@@ -34,6 +44,9 @@ private:
     void pass(Tape& tape);
     [[noreturn]] void give_up(const mechanics::no_equilibrium& error);
     void note_rest();
+    void begin_records();
+    bool moves_to_rest(double stop, bool is_recorded);
+    void begin_creep(CreepScheme scheme, double duration);
     void record();
     void record_energy();
     void check_energy();
@@ -42,6 +55,8 @@ private:
     const Watchers& watchers_;
     large_displacements::Dynamics dynamics_;
     double due_ = 0; // time of the next record [s]
+    bool is_creeping_ = false;
+    DynamicsState before_creep_; // at the beginning of a creep step
     // The energy balance of this dynamic analysis, at recorded moments [J/m].
     double largest_error_ = 0;
     double largest_energy_ = 0; // of its parts

@@ -103,7 +103,8 @@ std::string broken_guard(double unbalanced_force_ratio, double energy_error, dou
 void Guards::check_equilibrium()
 {
     const mechanics::Convergence& found = section_.settled.convergence;
-    const bool is_relaxation = !found.is_implicit && section_.result.dynamics.time.empty();
+    const bool is_relaxation = !found.is_implicit && section_.result.dynamics.time.empty() &&
+                               section_.assembly.contacts.state_by_faces.empty();
     const double error = is_relaxation ? energy_error(found, stored_energy(section_.assembly)) : 0.0;
     end_if(broken_guard(found.unbalanced_force_ratio, error, section_.scene.equilibrium.tolerance));
 }

@@ -55,10 +55,12 @@ struct Findings {
     Counts yielded_in_situ;  // zones by rock, yielded in the initial stress state
     Counts given_up;         // equilibria by the reason for which the implicit engine found none
     Counts energy_off;       // error of the energy balance of dynamic analyses, by stage [percent]
+    Counts slid;             // creep steps, by the day and the blocks that slid
 
     // The order is that of checkpoints.
-    static constexpr std::array<Counts Findings::*, 4> all{
-        &Findings::at_yield_in_situ, &Findings::yielded_in_situ, &Findings::given_up, &Findings::energy_off};
+    static constexpr std::array<Counts Findings::*, 5> all{&Findings::at_yield_in_situ,
+                                                           &Findings::yielded_in_situ, &Findings::given_up,
+                                                           &Findings::energy_off, &Findings::slid};
     void transfer(const Transfer& to, Checkpoint& kept);
 };
 static_assert(sizeof(Findings) == Findings::all.size() * sizeof(Findings::Counts));

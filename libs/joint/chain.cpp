@@ -21,4 +21,18 @@ Chain chain_of(const EquivalentJoints& joints, std::size_t edge, int direction)
     return chain;
 }
 
+Chain chain_of(const JointMaterial& material, Index number, int direction)
+{
+    const bool normal = direction == 0;
+    Chain chain{normal ? material.normal_stiffness : material.shear_stiffness, {}};
+    chain.constants = direction + 2 * static_cast<int>(number);
+    for (const Kelvin& unit : material.kelvin)
+        chain.units.push_back({normal ? unit.normal_stiffness : unit.shear_stiffness,
+                               normal ? unit.normal_viscosity : unit.shear_viscosity});
+    if (material.maxwell)
+        chain.units.push_back(
+            {0, normal ? material.maxwell->normal_viscosity : material.maxwell->shear_viscosity});
+    return chain;
+}
+
 } // namespace jointcreep::joint

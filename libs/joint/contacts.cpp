@@ -221,7 +221,7 @@ void remove_at(Contacts& contacts, const std::vector<char>& lost_a_side)
 double slip_beside_springs(const Contacts& contacts, std::size_t c)
 {
     const double stiffness = k_s(contacts.law[c]);
-    return stiffness > 0 ? contacts.relative_displacement[c].y() -
+    return stiffness > 0 ? contacts.relative_displacement[c].y() - contacts.offset[c].y() -
                                (contacts.traction[c].y() - contacts.initial_traction[c].y()) / stiffness
                          : 0.0;
 }

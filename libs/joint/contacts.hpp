@@ -141,7 +141,7 @@ void join(const Contacts& contacts, DisjointSets& gridpoints);
 // stay: rock that stays can have them, too.
 void remove_at(Contacts& contacts, const std::vector<char>& lost_a_side);
 
-// Shear displacement that is not in the shear springs [m]; 0 for a smooth joint.
+// Shear displacement that is neither in the shear springs nor creep [m]; 0 for a smooth joint.
 double slip_beside_springs(const Contacts& contacts, std::size_t c);
 
 // The deepest that a contact is closed beyond its normal traction over its stiffness [m].

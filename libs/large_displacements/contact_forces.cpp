@@ -101,7 +101,7 @@ public:
             in_bonds = break_bonds(part.closing, found.length);
         find_normal_force(closed, part, was_broken);
         const double sheared = find_shear_force(shear, closed.strength[pair_.is_broken ? 1 : 0]);
-        pair_.friction -= work_of_dilation_ + work_of_dilation();
+        pair_.friction -= work_of_dilation_ + work_of_dilation() + work_of_creep();
         if (weakens)
             part.leave_bonds();
         pair_.pressed_in = weakens ? along_overlap(law_, pair_.state(), part.closing,
@@ -130,6 +130,16 @@ private:
                    : 0.0;
     }
 
+    // What the springs gain by creep in this step; it is mostly below 0 [J/m].
+    double work_of_creep() const
+    {
+        double work = pair_.tau * pair_.length * pair_.creeps[2];
+        for (int i = 0; i < 2; ++i)
+            work += (pair_.held[i] - pair_.force[i]).dot(pair_.normal) *
+                    at(std::array{pair_.creeps[0], pair_.creeps[1]}, pair_.on_a[i]);
+        return work;
+    }
+
     void open(double lost)
     {
         pair_.friction = last_.sheared_in - work_of_dilation_;
@@ -155,6 +165,7 @@ private:
             pair_.on_a[i] = at(found.on_a, part.ends[i]);
             pair_.on_b[i] = at(found.on_b, part.ends[i]);
         }
+        pair_.closing = part.closing;
     }
 
     // `gap`: in the middle of the closed part [m].
@@ -164,7 +175,7 @@ private:
         const Vector2d tangent = along(pair_.normal);
         const double turned =
             pair_.is_new || last_.length == 0 ? 0.0 : gap * (pair_.normal - last_.normal).dot(tangent);
-        const double slid = (parted_at(0) + parted_at(1)).dot(tangent) / 2 - turned;
+        const double slid = (parted_at(0) + parted_at(1)).dot(tangent) / 2 - turned + pair_.creeps[2];
         return pair_.is_new ? joint::first_shear_move(law_, last_.tau, pair_.length, slid)
                             : joint::shear_move(law_, last_.tau, last_.length, pair_.length, slid);
     }
@@ -287,6 +298,7 @@ bool FaceContacts::comes_to_touch(FacePair& pair, const Overlap& found, const Ti
         pair.law = law_slid_on_to(pair, *before);
         pair.tau = before->tau;
         pair.memory = before->memory;
+        pair.creep = creep_slid_on_to(pair, *before);
         pair.lead = {unraised + pair.dilation, unraised + pair.dilation};
     }
     pair.is_known = true;

@@ -157,6 +157,44 @@ void Dynamics::start()
     stored_at_start_ = stored();
 }
 
+void Dynamics::creep_by(const EquivalentJoints& joints, const std::array<Chain, 2>& of_new_contacts)
+{
+    std::vector<std::array<Chain, 2>> chains(contacts_.laws().size());
+    for (const Index e : mesh_.contact_edge)
+        for (int direction = 0; direction < 2; ++direction)
+            chains[law_of_edge_[e]][direction] =
+                joint::chain_of(joints, static_cast<std::size_t>(e), direction);
+    chains.back() = of_new_contacts;
+    contacts_.creep_by(std::move(chains));
+}
+
+void Dynamics::begin_creep(CreepScheme scheme, double duration)
+{
+    start();
+    contacts_.begin_creep(scheme, duration);
+    is_creeping_ = true;
+    released_.assign(now_.place.size(), Vector2d::Zero());
+    find_forces(now_.velocity);
+    stored_at_start_ = stored();
+}
+
+double Dynamics::end_creep()
+{
+    is_creeping_ = false;
+    return contacts_.end_creep();
+}
+
+void Dynamics::leave_creep()
+{
+    is_creeping_ = false;
+    contacts_.leave_creep();
+}
+
+bool Dynamics::slides() const
+{
+    return now_.time > 2 * settings_.release && now_.fastest > slow;
+}
+
 // The leader of each gridpoint: the gridpoint itself, or the one it is tied to.
 std::vector<Index> Dynamics::leaders() const
 {
@@ -363,6 +401,8 @@ void Dynamics::step()
         throw moves_on("rock has left the section, and is as far from it as the section is large");
     add(now_.dt, now_.time, now_.time_lost);
     now_.last_dt = now_.dt;
+    if (is_creeping_)
+        contacts_.creep_to(std::min(1.0, now_.time / settings_.release));
     find_forces(move_);
     check_strain();
     now_.energy.stored = stored() - stored_at_start_;

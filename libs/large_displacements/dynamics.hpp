@@ -6,6 +6,7 @@
 
 #pragma once
 
+#include "joint/chain.hpp"
 #include "large_displacements/face_contacts.hpp"
 #include "mechanics/failure.hpp"
 #include "model/network.hpp"
@@ -26,7 +27,7 @@ struct Energy {
     double work = 0; // of weight, tractions on the outline and forces of excavated rock
     double kinetic = 0;
     double stored = 0;   // by zones and contacts, since the start
-    double friction = 0; // lost to slip and yield
+    double friction = 0; // lost to slip, yield and creep
     double damped = 0;   // by dashpots, and by stops at peaks of kinetic energy
 
     double error() const { return work - kinetic - stored - friction - damped; }
@@ -62,6 +63,20 @@ public:
     // Starts again after an excavation, or with new loads. The unbalanced forces then go to 0 within the time of
     // release.
     void start();
+
+    // Joints creep: those of the mesh by their own constants, new contacts by these {normal, shear}. Under the present
+    // tractions they have long crept once count_from_here() is called.
+    void creep_by(const EquivalentJoints& joints, const std::array<Chain, 2>& of_new_contacts);
+
+    // Starts a creep step of a duration [s]. What creeps is added within the time of release, which must be above 0. At
+    // rest the step ends; returned is an estimate of its error [m].
+    void begin_creep(CreepScheme scheme, double duration);
+    double end_creep();
+    // Gives joints their own stiffnesses back without that; the state is then of no use but to be replaced.
+    void leave_creep();
+
+    // Whether rock moves fast, after what creeps has been added.
+    bool slides() const;
 
     // State that a new analysis of the same section does not have; call it between analyses. start() sets the rest.
     void transfer(const Transfer& to, DynamicsState& kept);
@@ -222,6 +237,7 @@ private:
     std::vector<Vector2d> released_; // forces of excavated rock, which fade [N/m]
     std::vector<Vector2d> origin_;   // reference of displacements [m]
     double stored_at_start_ = 0;     // [J/m]
+    bool is_creeping_ = false;       // in a creep step
     Vector2d middle_;                // of the section, where it is [m]
     Vector2d low_, high_;            // of the section and its diagonal all round [m]
     std::vector<std::size_t> law_of_edge_;

@@ -15,6 +15,7 @@ struct Dynamics::Carried {
     double length = 0, slipping = 0; // of all faces, and of those that slip [m]
     double broken = 0;               // of those without bonds [m]
     double dilation = 0;             // times length [m2]
+    Vector2d crept{0, 0};            // {opening, shear}, times length [m2]
 };
 
 void Dynamics::transfer(const Transfer& to, DynamicsState& kept)
@@ -58,6 +59,7 @@ void Dynamics::pass(Tape& tape)
 void Dynamics::count_from_here()
 {
     origin_ = now_.place;
+    contacts_.count_creep_from_here();
     for (std::size_t g = 0; g < now_.place.size(); ++g)
         assembly_.position[g] = middle_ + now_.place[g];
     put_back();
@@ -115,6 +117,7 @@ std::map<std::array<Index, 2>, Dynamics::Carried> Dynamics::carried_by_pairs() c
                     there.slipping += pair.is_slipping ? pair.length : 0.0;
                     there.broken += pair.is_broken ? pair.length : 0.0;
                     there.dilation += pair.length * pair.dilation;
+                    there.crept += pair.length * contacts_.crept(pair);
                 }
     return carried;
 }
@@ -142,6 +145,7 @@ void Dynamics::put_back_contacts()
             continue;
         }
         contacts.traction[c] = found->second.force / found->second.length;
+        contacts.offset[c] = found->second.crept / found->second.length;
         contacts.state_by_faces[c] = {.slip = slip_beside_springs(contacts, c),
                                       .dilation = found->second.dilation / found->second.length,
                                       .is_broken = 2 * found->second.broken > found->second.length};

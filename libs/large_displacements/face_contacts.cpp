@@ -189,6 +189,8 @@ void FaceContacts::find_forces_of_undecided(const TimeStep& step, Sum& sum)
 // The other members of pairs are of one update alone.
 void FaceContacts::transfer(const Transfer& to, DynamicsState& kept)
 {
+    if (to.restores())
+        pairs_.clear();
     to.size(pairs_, kept.pair);
     std::vector<std::array<Index, 2>> faces;
     for (const FacePair& pair : pairs_)
@@ -199,6 +201,9 @@ void FaceContacts::transfer(const Transfer& to, DynamicsState& kept)
         pairs_[p].b = faces[p][1];
     }
     to.values(pairs_, kept.law, &FacePair::law);
+    for (const FacePair& pair : pairs_)
+        if (pair.law >= laws_.size())
+            throw input_error("the state kept is that of another section");
     to.values(pairs_, kept.first_lead, [](FacePair& pair) -> double& { return pair.lead[0]; });
     to.values(pairs_, kept.second_lead, [](FacePair& pair) -> double& { return pair.lead[1]; });
     to.values(pairs_, kept.dilation, &FacePair::dilation);
@@ -212,6 +217,22 @@ void FaceContacts::transfer(const Transfer& to, DynamicsState& kept)
     to.values(pairs_, kept.second_memory, [](FacePair& pair) -> double& { return pair.memory[1]; });
     to.values(pairs_, kept.third_memory, [](FacePair& pair) -> double& { return pair.memory[2]; });
     to.values(pairs_, kept.length, &FacePair::length);
+    to.values(pairs_, kept.first_reference,
+              [](FacePair& pair) -> double& { return pair.creep.reference[0]; });
+    to.values(pairs_, kept.second_reference,
+              [](FacePair& pair) -> double& { return pair.creep.reference[1]; });
+    to.values(pairs_, kept.shear_reference,
+              [](FacePair& pair) -> double& { return pair.creep.reference[2]; });
+    std::vector<double> crept;
+    for (FacePair& pair : pairs_) {
+        pair.creep.crept.resize(creep_units(pair.law), 0.0);
+        crept.insert(crept.end(), pair.creep.crept.begin(), pair.creep.crept.end());
+    }
+    to.values(crept, kept.pair_crept);
+    auto from = crept.begin();
+    for (FacePair& pair : pairs_)
+        for (double& one : pair.creep.crept)
+            one = *from++;
     to.values(pairs_, kept.pressed_in, &FacePair::pressed_in);
     to.values(pairs_, kept.sheared_in, &FacePair::sheared_in);
 }
@@ -232,7 +253,8 @@ void FaceContacts::pass(Tape& tape)
         tape(pair.lead, pair.dilation, pair.tau, pair.is_known, pair.is_new, pair.is_closed, pair.is_broken,
              pair.memory, pair.is_slipping, pair.on_a, pair.on_b, pair.force, pair.normal, pair.raised,
              pair.opened, pair.length, pair.sigma, pair.stiffest, pair.held, pair.pressed_in, pair.sheared_in,
-             pair.friction, pair.damped);
+             pair.friction, pair.damped, pair.closing, pair.creep.reference);
+        tape.list_of(creep_units(pair.law), pair.creep.crept);
     }
     tape.list_of(n_faces, reach_);
     if (tape.reads())

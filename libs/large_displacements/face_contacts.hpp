@@ -27,6 +27,7 @@
 
 #pragma once
 
+#include "creep/scheme.hpp"
 #include "mechanics/assembly.hpp"
 
 #include <array>
@@ -45,6 +46,15 @@ struct Faces {
     std::vector<std::size_t> law{}; // of the joint whose wall it was; else that of new contacts
 };
 
+// Creep of a pair: along the normal at the first and at the second end of a, and in shear. Pressure and closure are
+// positive.
+struct PairCreep {
+    std::array<double, 3> reference{}; // traction from which creep counts [Pa]
+    std::vector<double> crept{}; // of each unit: of the first end, the second, shear; empty if all are 0 [m]
+    // In a creep step: the traction at its beginning [Pa], and what is added to the leads and to the slide in all [m].
+    std::array<double, 3> before{}, to_come{};
+};
+
 // The state of a pair of faces that may touch.
 struct FacePair {
     Index a, b; // faces, a < b
@@ -58,12 +68,15 @@ struct FacePair {
     bool is_broken = true;            // has no cohesion and no tensile strength (any more)
     std::array<double, 3> memory{};   // of the law, as in joint::State
     bool is_slipping = false;
+    PairCreep creep{};
 
     // At present, if closed: the ends of the closed part, as fractions of a and of b, the force on a there, and the
     // mean normal traction.
     std::array<double, 2> on_a{}, on_b{};
     std::array<Vector2d, 2> force{};
     Vector2d normal{0, 0};                 // from a to b
+    std::array<double, 2> closing{};       // at the ends of the closed part [m]
+    std::array<double, 3> creeps{};        // of creep.to_come, in this step [m]
     double raised = 0;                     // of the dilation, in the last step [m]
     double opened = 0;                     // in the last step, without dilation [m]
     double length = 0, sigma = 0;          // [m], [Pa]
@@ -140,6 +153,22 @@ public:
     // Energies of all pairs, at the last update.
     const PairEnergy& energy() const { return energy_; }
 
+    // Creep. `chains`: what creeps along the normal and in shear, of each law.
+    void creep_by(std::vector<std::array<Chain, 2>> chains);
+    // Pairs have long crept under their present tractions: creep counts from there.
+    void count_creep_from_here();
+    // Begins a creep step of a duration [s] after an update; no traction changes. Then the next updates add a `share`
+    // of what creeps, up to 1, and at equilibrium the step ends. end_creep() returns an estimate of the error, as
+    // mechanics::Creep::end() does. leave_creep() only gives the laws their own stiffnesses back.
+    void begin_creep(CreepScheme scheme, double duration);
+    void creep_to(double share);
+    double end_creep();
+    void leave_creep();
+    // For a pair whose two faces change places.
+    void swap_ends(PairCreep& creep, std::size_t law) const;
+    // Mean {opening, shear} of a pair by creep [m].
+    Vector2d crept(const FacePair& pair) const;
+
     // State for checkpoints, beside set_faces() with the known pairs, and update().
     void transfer(const Transfer& to, DynamicsState& kept);
 
@@ -179,6 +208,11 @@ private:
     // Dilation of joints: joint_dilation.cpp.
     void dilate(const std::vector<Vector2d>& place, const std::vector<Vector2d>& move);
 
+    // Creep: pair_creep.cpp.
+    bool law_creeps(std::size_t law) const;
+    std::size_t creep_units(std::size_t law) const; // of both ends and shear
+    PairCreep creep_slid_on_to(const FacePair& pair, const FacePair& before) const;
+
     // The force of a pair: contact_forces.cpp.
     Touch find_force(FacePair& pair, const TimeStep& step, Decision decision) const;
     bool lies_behind(const Overlap& found, const FacePair* before, const TimeStep& step) const;
@@ -194,9 +228,13 @@ private:
     std::vector<joint::Law> laws_;
     std::vector<Index> material_; // of laws; -1 of new contacts
     Vector2d origin_;
-    bool stiffens_ = false;                   // whether any law stiffens as it closes
-    bool dilates_ = false;                    // whether any law dilates
-    double stiffest_open_ = 0, stiffest_ = 0; // [Pa/m]
+    std::vector<std::array<Chain, 2>> chains_;             // of laws; without units if nothing creeps
+    std::vector<std::array<creep::StepWeights, 2>> steps_; // of these
+    std::vector<joint::Law> own_laws_;                     // in a creep step: with their own springs
+    double crept_share_ = 0;                               // of the creep step, so far [-]
+    bool stiffens_ = false;                                // whether any law stiffens as it closes
+    bool dilates_ = false;                                 // whether any law dilates
+    double stiffest_open_ = 0, stiffest_ = 0;              // [Pa/m]
     Faces faces_;
     std::vector<FaceShape> shapes_;
     std::vector<FacePair> pairs_;             // in order of {a, b}

@@ -169,6 +169,7 @@ std::vector<FacePair> Dynamics::known_pairs(const std::vector<std::array<Index, 
         if (kept.a > kept.b) {
             std::swap(kept.a, kept.b);
             std::swap(kept.lead[0], kept.lead[1]);
+            contacts_.swap_ends(kept.creep, kept.law);
         }
         known.push_back(kept);
     }
@@ -221,8 +222,9 @@ std::optional<FacePair> Dynamics::pair_on_joint(Index f, Index g,
                 return std::abs(contacts.normal[i].dot(normal)) < std::abs(contacts.normal[j].dot(normal));
             });
         pair.law = law_of_edge_[mesh_.contact_edge[c]];
-        pair.lead[end] = contacts.offset[c].x() + contacts.state[c].dilation -
-                         joint::opening(contacts.law[c], contacts.initial_traction[c].x());
+        pair.lead[end] =
+            contacts.state[c].dilation - joint::opening(contacts.law[c], contacts.initial_traction[c].x());
+        pair.creep.reference[end] = -contacts.traction[c].x();
         has_lead[end] = true;
         pair.tau += contacts.traction[c].y();
         pair.is_broken = n == 0 ? contacts.state[c].is_broken : pair.is_broken || contacts.state[c].is_broken;
@@ -235,9 +237,12 @@ std::optional<FacePair> Dynamics::pair_on_joint(Index f, Index g,
     if (joint::has_friction_only(contacts_.laws()[pair.law]))
         pair.is_broken = true; // it never had bonds
     pair.tau /= n;
+    pair.creep.reference[2] = pair.tau;
     for (int end = 0; end < 2; ++end)
-        if (!has_lead[end])
+        if (!has_lead[end]) {
             pair.lead[end] = pair.lead[1 - end];
+            pair.creep.reference[end] = pair.creep.reference[1 - end];
+        }
     return pair;
 }
 

@@ -31,7 +31,8 @@ joint::Moved moved_in_middle(const FacePair& pair, const Faces& faces, const std
     };
     // Common rotation is no slip, as for the shear force; there the normal rotates by this.
     const double turned = -apart.dot(pair.normal) * (turn(a, move_a) + turn(b, move_b)) / 2;
-    return {parted.dot(pair.normal), parted.dot(along(pair.normal)) - turned};
+    const double lead = at(std::array{pair.creeps[0], pair.creeps[1]}, (pair.on_a[0] + pair.on_a[1]) / 2);
+    return {parted.dot(pair.normal) - lead, parted.dot(along(pair.normal)) - turned + pair.creeps[2]};
 }
 
 } // namespace

@@ -35,17 +35,19 @@ struct DynamicsState {
     std::vector<std::array<Index, 2>> face;    // gridpoints
     std::vector<std::array<Index, 2>> pair;    // faces
     std::vector<Index> law;                    // of the pair
-    std::vector<double> first_lead, second_lead;                   // closure without gap [m]
-    std::vector<double> dilation;                                  // part of the leads [m]
-    std::vector<double> tau;                                       // [Pa]
-    std::vector<Index> is_known, is_new, is_closed, is_broken;     // 0 or 1
-    std::vector<double> first_memory, second_memory, third_memory; // of the law [SI]
-    std::vector<Eigen::Vector2d> normal;                           // [-]
-    std::vector<double> length;                                    // [m]
-    std::vector<double> pressed_in, sheared_in;                    // by springs [J/m]
-    double fastest = 0;                                            // in the last dynamic analysis [m/s]
-    double unbalanced_force_ratio = 0;                             // at its end [-]
-    double largest_mean_force = 0;                                 // on a gridpoint, so far [N/m]
+    std::vector<double> first_lead, second_lead;                            // closure without gap [m]
+    std::vector<double> dilation;                                           // part of the leads [m]
+    std::vector<double> tau;                                                // [Pa]
+    std::vector<Index> is_known, is_new, is_closed, is_broken;              // 0 or 1
+    std::vector<double> first_memory, second_memory, third_memory;          // of the law [SI]
+    std::vector<Eigen::Vector2d> normal;                                    // [-]
+    std::vector<double> length;                                             // [m]
+    std::vector<double> first_reference, second_reference, shear_reference; // of creep [Pa]
+    std::vector<double> pair_crept;             // of each unit: at both ends along the normal, in shear [m]
+    std::vector<double> pressed_in, sheared_in; // by springs [J/m]
+    double fastest = 0;                         // in the last dynamic analysis [m/s]
+    double unbalanced_force_ratio = 0;          // at its end [-]
+    double largest_mean_force = 0;              // on a gridpoint, so far [N/m]
 };
 
 struct Checkpoint {

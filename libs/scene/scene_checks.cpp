@@ -1,5 +1,6 @@
 #include "scene/scene_checks.hpp"
 
+#include "joint/law.hpp"
 #include "keys/polygon.hpp"
 #include "model/error.hpp"
 #include "model/polygon.hpp"
@@ -507,8 +508,7 @@ private:
                 in_list("boundary", i)
                     .refuse("fix", "wanted \"x\", \"y\" or \"xy\" with [large_displacements]");
         if (scene_.creep)
-            once("large_displacements")
-                .refuse("new_contacts", "a scene with [large_displacements] has no [creep]");
+            check_creep_at_large_displacements();
         if (scene_.large_displacements->release >= scene_.large_displacements->longest)
             once("large_displacements")
                 .refuse("release_s", "wanted less than longest_s, " +
@@ -541,6 +541,31 @@ private:
                     boundary.refuse(
                         key,
                         "with [large_displacements], boundaries must neither move nor change their traction");
+    }
+
+    // Joints creep there, by contacts whose springs have no memory of their path.
+    void check_creep_at_large_displacements() const
+    {
+        const LargeDisplacements& large = *scene_.large_displacements;
+        const Given given = once("large_displacements");
+        if (!(large.release > 0))
+            given.refuse(
+                "release_s",
+                "with [creep] wanted more than 0: what joints creep in a step is added in that time");
+        if (large.stop)
+            given.refuse("stop_s", "a scene with [creep] has none: rock rests before it creeps");
+        for (std::size_t i = 0; i < scene_.rocks.size(); ++i)
+            if (scene_.rocks[i].kelvin || scene_.rocks[i].maxwell_viscosity)
+                in_list("rock", i).refuse("name",
+                                          "with [large_displacements] joints creep, and rock does not: "
+                                          "wanted no creep of rock");
+        for (std::size_t i = 0; i < scene_.joint_materials.size(); ++i) {
+            const JointMaterial& material = scene_.joint_materials[i];
+            if ((!material.kelvin.empty() || material.maxwell) && joint::remembers(joint::law_of(material)))
+                in_list("joint_material", i)
+                    .refuse("name",
+                            "with [large_displacements] a joint that yields continuously does not creep");
+        }
     }
 };
 

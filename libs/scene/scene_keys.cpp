@@ -863,7 +863,7 @@ Table<LargeDisplacements> large_displacements()
     return {
         {"large_displacements", once, optional,
          "Dynamic analysis with large displacements after each stage: real masses, contacts found anew, "
-         "until the rock is at rest. Without this table displacements are small. Not with [creep].",
+         "until the rock is at rest. Between creep steps of joints, too. Without this table displacements are small.",
          in_list, "motion"},
         {text("new_contacts", &LargeDisplacements::new_contacts,
               "Joint material of new contacts, and of rock that slides off its joint: its stiffnesses and "
@@ -880,8 +880,10 @@ Table<LargeDisplacements> large_displacements()
          number("mass_damping_per_s", &LargeDisplacements::mass_damping, per_s, from(0).to(1e6),
                 "Force over mass and velocity. It also slows down moving blocks.")
              .or_else(0.0),
-         number("release_s", &LargeDisplacements::release, seconds, from(0).to(1e6),
-                "Time in which the forces of a stage's rock go to 0.")
+         number(
+             "release_s", &LargeDisplacements::release, seconds, from(0).to(1e6),
+             "Time in which the forces of a stage's rock go to 0, and in which a creep step is added. Above 0 with "
+             "[creep].")
              .or_else(0.0),
          number(
              "longest_s", &LargeDisplacements::longest, seconds, above(0).to(1e6),

@@ -470,9 +470,9 @@ std::vector<Field> fields_of(Checkpoint& checkpoint)
         {"/checkpoint/steps_since_state", &checkpoint.steps_since_state, {}, "1", at_least(0),
          "Creep steps since a state by their number."},
         {"/checkpoint/remark", &checkpoint.remark, remark, "1", any(), "A joint, a rock, a reason or a stage, by name."},
-        {"/checkpoint/remark_kind", &checkpoint.remark_kind, remark, "1", between(0, 3),
+        {"/checkpoint/remark_kind", &checkpoint.remark_kind, remark, "1", between(0, 4),
          "0 contacts of the joint at yield in the initial stress state, 1 zones of the rock, 2 why the implicit engine found no equilibrium, 3 the stage's "
-         "energy balance is off."},
+         "energy balance is off, 4 rock slid in a creep step."},
         {"/checkpoint/remark_count", &checkpoint.remark_count, remark, "1", at_least(0), "How often, or by how many percent."},
         {"/checkpoint/search_number", &checkpoint.search_number, {}, "1", at_least(0),
          "Number of dynamic relaxations or dynamic analyses between this moment and the unfinished search "

@@ -13,7 +13,7 @@
 namespace jointcreep::store::schema
 {
 
-inline constexpr Index major_version = 2, minor_version = 8;
+inline constexpr Index major_version = 2, minor_version = 9;
 
 // The fields point into the record. A record that is only read may be given too, as `fields::reading(record)`.
 // Own rows and those of the forces that have a part in the record (store/forces.hpp).

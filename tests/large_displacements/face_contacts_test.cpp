@@ -730,4 +730,64 @@ TEST(face_contacts, what_lands_beside_is_raised_as_its_joint_is)
     EXPECT_NEAR(slider.work + slider.stored() + slider.friction, 0, 0.02 * slider.stored());
 }
 
+// Between walls that do not move, a joint of one Kelvin unit relaxes by the closed form, along the normal and in shear, whatever
+// the step. When its upper wall slides on, so that its faces come to touch other ones, what has crept goes with it: the pressure
+// stays, and creep goes on as if nothing had slid. What touches first has not crept.
+TEST(face_contacts, creep_goes_with_a_contact_that_slides_on)
+{
+    const double E = 1e9, tau = 100, sunk = 1e-4, T = 30;
+    const auto left = [&](double t) { // of the traction
+        return (1 + k_n / E * std::exp(-(1 + k_n / E) * t / tau)) / (1 + k_n / E);
+    };
+    const Chain normal{k_n, {{E, E * tau}}}, shear{k_s, {}};
+    for (const int steps : {1, 3}) {
+        TwoLines lines({{4, 0}, {2.7, 0}, {1.9, 0}, {0.4, 0}, {-1, 0}},
+                       {{0.25, 0}, {1, 0}, {2.2, 0}, {3.5, 0}});
+        FaceContacts contacts({joint::Coulomb{k_n, k_s, 0, friction, 0}});
+        contacts.creep_by({{normal, shear}});
+        contacts.set_faces(lines.faces, {}, lines.place);
+        std::vector<Vector2d> move(lines.place.size(), Vector2d::Zero());
+        const auto go = [&](const Vector2d& way) {
+            for (std::size_t g = 5; g < lines.place.size(); ++g)
+                lines.place[g] += move[g] = way;
+            contacts.update(lines.place, move, 1, 0, 1);
+        };
+        const auto pressure = [&] { // of all the upper row, 3.25 m long
+            double sum = 0;
+            for (std::size_t g = 5; g < lines.place.size(); ++g)
+                sum += forces_of(contacts, lines.place.size())[g].y();
+            return sum / 3.25;
+        };
+        const auto creep = [&](double duration) {
+            for (int i = 0; i < steps; ++i) {
+                contacts.begin_creep(CreepScheme::fitted, duration / steps);
+                for (const double share : {0.3, 1.0}) {
+                    contacts.creep_to(share);
+                    go({0, 0});
+                }
+                contacts.end_creep();
+                go({0, 0});
+            }
+        };
+        go({0, 0});
+        go({0, -sunk});
+        contacts.count_creep_from_here();
+        go({0, -sunk}); // creep counts from the pressure before
+        const double own = k_n * sunk;
+        EXPECT_NEAR(pressure(), 2 * own, 1e-9 * own);
+        creep(T);
+        EXPECT_NEAR(pressure(), own * (1 + left(T)), 1e-6 * own) << steps;
+        for (int i = 0; i < 40; ++i)
+            go({-0.01, 0}); // on to the next faces
+        EXPECT_NEAR(pressure(), own * (1 + left(T)), 1e-6 * own) << steps;
+        creep(T);
+        EXPECT_NEAR(pressure(), own * (1 + left(2 * T)), 1e-6 * own) << steps;
+        for (const double away : {1.0, -1.0}) // lost, and met anew
+            for (int i = 0; i < 100; ++i)
+                go({0, 0.05 * away});
+        go({0, 0}); // it was closed for a part of the last step only
+        EXPECT_NEAR(pressure(), 2 * own, 1e-6 * own) << steps;
+    }
+}
+
 } // namespace face_contacts_test

@@ -15,6 +15,7 @@ import h5py
 import numpy as np
 
 from chain import ChainTest, changed, datasets, main
+from large_creep_test import stack
 from large_displacements_test import incline
 from small_scene import held, joint, material, scene
 
@@ -185,6 +186,11 @@ class Restart(ChainTest):
 
     def test_between_creep_steps(self):
         went_on = self.assert_killed_goes_on(SCENE, "--creep-step", 0.05, kills=(3, 6, 9))
+        self.assertTrue(any("stage" not in place for place in went_on), went_on)
+
+    def test_between_creep_steps_at_large_displacements(self):
+        """Some steps are rejected, a block slides in one, and contacts form after it."""
+        went_on = self.assert_killed_goes_on(stack(), kills=(3, 12, 25))
         self.assertTrue(any("stage" not in place for place in went_on), went_on)
 
     def test_in_the_middle_of_a_dynamic_analysis(self):
