@@ -580,7 +580,8 @@ Table<JointSet> joint_set(const TablesInJointSet& laws)
          law("spacing", &JointSet::spacing, laws.spacing, laws_of_lengths(),
              "Of lines: distance between neighbouring joint planes. Lines need it or a density. With both "
              "the density sets the mean, and the law is stretched to this mean; with a density alone the "
-             "law is negative exponential.")
+             "law is negative exponential. The position of the first line is random, also with a constant spacing; "
+             "[[joint]] is a joint at a given place.")
              .optional(),
          key_of<JointSet>(
              {"density", "density", {}, {}, "Density of the joints. Segments and discs need it."},
@@ -686,11 +687,13 @@ Table<Stage> stage()
 
 Table<MonitoringPoint> monitoring_point()
 {
-    return {{"point", in_list, optional, "A place whose displacement is recorded."},
-            {text("name", &MonitoringPoint::name, "Name, once among the points."),
-             point("at_m", &MonitoringPoint::at, "Where, inside the section."),
-             date("first_reading", &MonitoringPoint::first_reading, "When its own readings begin.")
-                 .optional("the start")}};
+    return {
+        {"point", in_list, optional, "A place whose displacement is recorded."},
+        {text("name", &MonitoringPoint::name, "Name, once among the points."),
+         point("at_m", &MonitoringPoint::at,
+               "Where, inside the section. On the face of an excavation it belongs to the rock that stays."),
+         date("first_reading", &MonitoringPoint::first_reading, "When its own readings begin.")
+             .optional("the start")}};
 }
 
 Table<MonitoringLine> monitoring_line()
