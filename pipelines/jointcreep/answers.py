@@ -7,6 +7,7 @@ The probability to fail counts all runs that either have an equilibrium or were 
 import math
 
 import numpy as np
+import scipy.stats
 
 from . import failure, files, intervals
 from .design import openturns
@@ -162,7 +163,6 @@ def enough(study, rows):
 def rank_correlations(study, rows, given, at):
     """Spearman's correlation of each parameter with the quantity; the interval is of Fisher's transformation with the variance
     of Bonett and Wright (2000). Of networks x parameters with the means over networks, because runs are not independent."""
-    ot = openturns()
     values, run = values_of(study, rows, at)
     table = crossed_table(study, values, run)
     if study.design.kind == "networks x parameters":
@@ -171,9 +171,12 @@ def rank_correlations(study, rows, given, at):
     if len(values) < FEWEST or not numeric or np.ptp(values) == 0:
         return []
     inputs = np.array([[given[number]["given"][column] for column in numeric] for number in run], float)
-    found = ot.CorrelationAnalysis(inputs.tolist(), values[:, None].tolist()).computeSpearmanCorrelation()
+    ranks = scipy.stats.rankdata(values)
     rows = []
-    for column, r in zip(numeric, found):
+    for column, of_parameter in zip(numeric, inputs.T):
+        r = correlation(ranks, scipy.stats.rankdata(of_parameter))
+        if r is None:
+            continue
         half = 1.96 * np.sqrt((1 + r * r / 2) / (len(values) - 3))
         low, high = np.tanh(np.arctanh(np.clip(r, -1 + 1e-12, 1 - 1e-12)) + np.array([-half, half]))
         rows.append((study.parameters[column].name, "rank correlation", float(r), float(low), float(high)))
@@ -291,6 +294,11 @@ def missing_words(study, rows):
     return lines
 
 
+def with_unit(name, quantity):
+    """The name of a statistic, where it has a limit with the unit of this."""
+    return f"{name} {quantity.unit}" if name.startswith("probability ") and quantity.unit != "1" and name[-1].isdecimal() else name
+
+
 def summary(study, rows, why, of_each, of_histories):
     """What a person reads first."""
     without = sum(row["exit_code"] == NO_EQUILIBRIUM for row in rows)
@@ -303,7 +311,7 @@ def summary(study, rows, why, of_each, of_histories):
     for quantity, found, of_shares in of_each:
         lines += ["", quantity.title() + f", {found['runs']} {study.design.counted()}"]
         lines += in_columns([["", "value", "from", "to"],
-                             *([name, *map(number_text, numbers)] for name, *numbers in found["statistics"])])
+                             *([with_unit(name, quantity), *map(number_text, numbers)] for name, *numbers in found["statistics"])])
         if of_shares:
             lines += in_columns([["", "value", "from", "to"],
                                  *([f"{measure}, {name}", *map(number_text, numbers)] for name, measure, *numbers in of_shares)])

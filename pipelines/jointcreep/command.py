@@ -53,6 +53,7 @@ Example:
 """
 
 import dataclasses
+import itertools
 import pathlib
 import shutil
 import signal
@@ -208,6 +209,9 @@ def main(arguments, version, beside):
         print("jointcreep", version)
         return 0
     try:
+        if arguments[:1] and arguments[0] in SUBCOMMANDS and {"-h", "--help"} & set(itertools.takewhile(lambda word: word != "--", arguments)):
+            print(__doc__, end="")
+            return 0
         subcommand, source, options = options_of(arguments)
         return subcommand.run(source, {**options, "version": version}, beside)
     except NotWanted as error:

@@ -1,6 +1,7 @@
 """What each run is given: the number of its network, and a value for each parameter.
 
-Points are drawn in the unit cube and then mapped to the laws, so that all designs have the same laws. OpenTURNS draws and maps.
+Points are drawn in the unit cube and then mapped to the laws, so that all designs have the same laws. OpenTURNS draws and maps; where all
+parameters have lists of values, numpy draws, except for designs with Sobol sequences or indices.
 A plain design of more runs begins with the runs of a smaller one.
 """
 
@@ -16,13 +17,29 @@ FLAT = 1e-12  # how near to 0 and 1 a point of the unit cube may be
 
 @functools.cache
 def openturns():
-    """The library, which a study of networks alone does without."""
+    """The library, which a study without laws does without."""
     try:
         import openturns
     except ImportError:
         raise NotWanted("Python's module openturns is not installed; first run: sh pipelines/setup.sh studies") from None
     openturns.Log.Show(openturns.Log.NONE)
     return openturns
+
+
+def draws_with_numpy(study):
+    """Whether points are drawn without OpenTURNS: no parameter has a law."""
+    return not any(one.law for one in study.parameters) and study.design.kind not in ("sobol sequence", "sobol indices")
+
+
+def numpy_points(design, dimension):
+    """Points in the unit cube [run, dimension] of a design without Sobol sequences, by numpy."""
+    random = np.random.Generator(np.random.Philox(design.seed))
+    if design.kind == "latin hypercube":
+        size = design.runs // design.replicates
+        return np.concatenate([np.column_stack([(random.permutation(size) + random.random(size)) / size for _ in range(dimension)])
+                               for _ in range(design.replicates)])
+    size = design.parameters if design.kind == "networks x parameters" else design.networks_drawn()
+    return random.random((size, dimension))
 
 
 def cube_points(design, dimension):
@@ -103,7 +120,8 @@ def draw(study):
     in_cube = design.kind == "sobol indices" and study.varies_network  # the network is its last dimension
     if not study.parameters:
         return by_run(study, np.arange(size), [[] for _ in range(size)])
-    points = np.clip(cube_points(design, len(study.parameters) + in_cube), FLAT, 1 - FLAT)
+    drawn = numpy_points if draws_with_numpy(study) else cube_points
+    points = np.clip(drawn(design, len(study.parameters) + in_cube), FLAT, 1 - FLAT)
     with_law = [row for row, one in enumerate(study.parameters) if one.law]
     columns = [None] * len(study.parameters)
     if with_law:

@@ -13,6 +13,7 @@ import subprocess
 import tomllib
 
 from . import design, files, quantities, scene_keys, study_file
+from .design import draws_with_numpy
 from .errors import NotDone, NotWanted
 
 BATCH = 50  # runs from one look at the stop rule to the next
@@ -93,13 +94,14 @@ def identity(study, scene, programs):
     sizes = [] if design.kind in study_file.EXTENSIBLE else [design.runs, design.networks, design.parameters, design.points,
                                                              design.replicates, design.directions, design.failure]
     levels = [design.coarse_per_fine, design.fine_options, design.coarse_options] if design.fine_runs else []
+    by_numpy = ["by numpy"] * (bool(study.parameters) and draws_with_numpy(study))
     versions = {name: answer_of(programs / name, "--version") for name in PROGRAMS}
     return {
         "the scene": scene,
         "[[vary]]": [study.varies_network, [[one.name, one.keys, one.multiplies, one.law, one.constants, str(one.lowest),
                                              str(one.highest), one.values] for one in study.parameters]],
         "[[correlation]]": study.correlations,
-        "[design]": [design.kind, design.seed, *sizes, *levels],
+        "[design]": [design.kind, design.seed, *sizes, *levels, *by_numpy],
         "[[collect]]": [[one.name, one.what, one.point, one.component, one.since, one.stage, str(one.date), one.statistic]
                         for one in study.quantities],
         "demsolve_options": study.demsolve_options,

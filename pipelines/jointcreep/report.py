@@ -10,6 +10,7 @@ import tempfile
 import tomllib
 
 import h5py
+import numpy as np
 
 from . import files, intervals, plan, study_file
 from .errors import NotWanted
@@ -25,10 +26,11 @@ pre { background: #f4f5f8; padding: .8em; overflow-x: auto; font-size: 85%; whit
 @media print { body { max-width: none; } figure, tr { break-inside: avoid; } }
 """
 MOST_ROWS = 50  # of a table of runs that have no value
+MOST_BLOCKS = 10  # of the table of moving blocks
 CAPTIONS = {
-    "distribution": "Share of runs up to a value; dashed: limits that the study asks for.",
-    "convergence": "Statistics over the number of runs; dashed: the wanted half-width.",
-    "parameters": "The values of the runs over each parameter, and what the variance comes from.",
+    "distribution": "Share of runs up to a value.",
+    "convergence": "Statistics over the number of runs.",
+    "parameters": "The values of the runs over each parameter, and {what}.",
 }
 
 
@@ -90,14 +92,51 @@ def settings(scene):
     return "<p>Keys of the scene; all others have their defaults.</p>" + table(["table", "key", "value"], rows)
 
 
+def failed_run(source):
+    """The result of the run without equilibrium that demsolve --factor-of-safety writes beside a result; None if there is none."""
+    path = source.with_name(f"{source.stem}.failed{source.suffix}")
+    if not path.exists():
+        return None
+    with h5py.File(source) as file, h5py.File(path) as other:
+        of_same = "/safety" in other and np.array_equal(file["/safety/factor"], other["/safety/factor"])
+        return path if of_same and "/failure" in other else None
+
+
+def factor_of_safety(source, folder):
+    """Parts of the page about a factor of safety, if the result has one."""
+    from plot_safety import bracket
+    with h5py.File(source) as file:
+        if "/safety" not in file:
+            return []
+        low, high = bracket(file["/safety/factor"][()], file["/safety/stands"][()])
+    between = f"from {low:.4g} to {high:.4g}" if low and high else f"at least {low:.4g}" if low else f"below {high:.4g}"
+    parts = ["<h2>Factor of safety</h2>", f"<p>The factor of safety is <b>{between}</b>.</p>"]
+    if low:
+        parts.append(f"<p>All other sections are of the run with strengths / {low:.4g}. Displacements with the strengths of the scene come "
+                     "from a run without --factor-of-safety.</p>")
+    parts.append(drawn("safety", source, folder, "The largest displacement over the strength reduction factor."))
+    failed = failed_run(source)
+    if failed:
+        parts.append(drawn("state", failed, folder, "The run with the smallest factor without equilibrium: moving blocks.", state="last"))
+        with h5py.File(failed) as file:
+            rows = list(zip(file["/failure/block"][()], file["/failure/place"][()], 1e3 * file["/failure/motion"][()]))
+        rows = sorted(rows, key=lambda row: -np.linalg.norm(row[2]))
+        parts.append(table(["moving block", "x (m)", "y (m)", "motion x (mm)", "motion y (mm)"],
+                           [(int(block), *place, *motion) for block, place, motion in rows[:MOST_BLOCKS]]))
+        parts += [f"<p>The fastest {MOST_BLOCKS} of {len(rows)} moving blocks.</p>"] * (len(rows) > MOST_BLOCKS)
+    return parts
+
+
 def of_run(source, programs, folder):
     """Title and parts of the page of a result file."""
+    import figure  # matplotlib takes long to load
     with h5py.File(source) as file:
         scene_text = file["/scene"][0].decode()
         scene = tomllib.loads(scene_text)
         chain = list(zip(texts(file, "/provenance/program"), texts(file, "/provenance/version"), texts(file, "/provenance/options")))
         warnings = list(zip(texts(file, "/warnings/program"), texts(file, "/warnings/text")))
         failure = texts(file, "/failure/reason")
+        factor = figure.strength_factor_of(file)
         points, time = texts(file, "/history/point"), file["/history/time"][()]
         last, present = file["/history/displacement"][-1], file["/history/present"][-1]
         numbers = [("blocks", len(file["/blocks/area"])), ("zones", len(file["/mesh/zone_block"])),
@@ -105,6 +144,8 @@ def of_run(source, programs, folder):
                    ("largest unbalanced force ratio", file["/equilibria/unbalanced_force_ratio"][()].max(initial=0)),
                    ("seed", int(file.attrs["seed"])), ("realization", int(file.attrs["realization"]))]
     parts = [f'<p class="bad">The run ended early: {escaped(failure[0])}</p>'] if failure else []
+    parts += [f'<p class="bad">All strengths of this run are divided by {factor:.4g}.</p>'] if factor != 1 else []
+    parts += factor_of_safety(source, folder)
     parts += ["<h2>Section and network</h2>", drawn("section", source, folder, "The section, its joints, stages and points."),
               drawn("blocks", source, folder, "Blocks by size."),
               "<h2>Histories</h2>"]
@@ -139,6 +180,17 @@ def checks(source, programs):
 def csv_rows(path):
     with open(path, encoding="utf-8", newline="") as file:
         return list(csv.DictReader(file))
+
+
+def caption_of(kind, quantity, study):
+    """The caption of a picture of a quantity."""
+    has_shares = study.design.kind in ("networks x parameters", "sobol indices")
+    caption = CAPTIONS[kind].format(what="what the variance comes from" if has_shares else "its rank correlation with each")
+    if kind == "distribution" and quantity.above + quantity.below:
+        caption += " Dashed: limits that the study asks for."
+    if kind == "convergence" and study.stop.of == quantity.name and (study.stop.half_width or study.stop.relative_half_width):
+        caption += " Dashed: the wanted half-width."
+    return caption
 
 
 def histories_of(out):
@@ -185,7 +237,7 @@ def of_study(out, programs, folder):
             parts.append(table(["what it depends on", "", "value", "from", "to"], of_shares))
         for name in pictures.get(quantity.name, []):
             kind = name.removesuffix(".png").rpartition("-")[2]
-            parts.append(picture(out / name, CAPTIONS[kind]))
+            parts.append(picture(out / name, caption_of(kind, quantity, study)))
     parts += histories_of(out)
     parts.append("<h2>Runs without a value</h2>")
     missing = (out / "summary.txt").read_text("utf-8").partition("the design has none\n")[2].strip().splitlines()

@@ -160,7 +160,7 @@ class Plan:
             plots.save(name, folder / source, folder / output, **options)
 
         output = pathlib.Path(f"{picture}.png")
-        words = [word for option, value in options.items() for word in (f"--{option}", str(value))]
+        words = [word for option, value in options.items() for word in (f"--{option.replace('_', '-')}", str(value))]
         script = PLOTS / f"plot_{name}.py"
         return Step(str(output), [PYTHON, script, source, *words, "-o", output], draw=draw)
 
@@ -170,7 +170,8 @@ class Plan:
         result = pathlib.Path(RESULT if failed is None else FAILED)
         steps = list(self.pictures(failed))
         if failed is None and "--factor-of-safety" in self.options:
-            steps.append(self.picture("safety", result, "safety"))
+            times = value_of(self.options, "--safety-displacement")
+            steps.append(self.picture("safety", result, "safety", **({"safety_displacement": float(times)} if times else {})))
         if falls:
             steps.append(self.picture("state", pathlib.Path(FAILED), "failure", state="last", field="displacement"))
         for name in ["histories.csv"] * ("point" in self.scene or "monitoring_line" in self.scene) + ["states.xdmf2"]:
@@ -182,7 +183,8 @@ class Plan:
 
         page = [self.launcher, "report", result, "-o", pathlib.Path("report.html")]
         page += ["--programs", self.programs] if self.programs != self.launcher.parent else []
-        return [*steps, Step("report.html", page, [self.programs / "jointverify"], draw=write)]
+        needs = [self.programs / "jointverify", *[pathlib.Path(FAILED)] * falls]
+        return [*steps, Step("report.html", page, needs, draw=write)]
 
 
 class Folder:

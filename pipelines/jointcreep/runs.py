@@ -160,7 +160,10 @@ def make_groups(out, programs, names, jobs, profile, lock, deadline, tell):
         while running.poll() is None:
             tell()
             if time.monotonic() > deadline:
-                running.send_signal(signal.SIGTERM)  # make ends its recipes
+                if profile:
+                    running.send_signal(signal.SIGTERM)
+                else:  # its recipes end with it (setpriv); after another signal it would say that they were terminated
+                    running.kill()
                 running.wait()
                 return TIMED_OUT
             with contextlib.suppress(subprocess.TimeoutExpired):

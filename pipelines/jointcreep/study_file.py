@@ -394,6 +394,8 @@ def stop_of(table, quantities, design):
     wanted = {name: table.number(name, 0.0, above=0) for name in
               ("half_width", "relative_half_width", "probability_half_width")}
     of = ""
+    if "of" in table.left and not any(wanted.values()):
+        raise NotWanted(f'{table.place("of")}of needs half_width, relative_half_width or probability_half_width')
     if any(wanted.values()):
         of = table.text("of", None, [one.name for one in quantities])
         if design.kind not in EXTENSIBLE:

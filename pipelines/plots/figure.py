@@ -8,6 +8,7 @@ import argparse
 import contextlib
 import datetime
 import os
+import re
 import sys
 import tomllib
 from pathlib import Path
@@ -118,6 +119,7 @@ def drawn(draw, path, **options):
     """The figure that draw(file, **options) makes of a file. Raises Named."""
     with checked(path) as file:
         figure = draw(file, **options)
+        add_strengths(file, figure)
     draw_names_as_they_are(figure)
     return figure
 
@@ -183,11 +185,46 @@ def scene_of(file):
     return tomllib.loads(texts(file, "/scene")[0])
 
 
+def day_of(file, time):
+    """ "16 July 1994", or "day 548" of a scene that counts days."""
+    start = scene_of(file)["schedule"].get("start", 0)
+    if isinstance(start, datetime.date):
+        date = start + datetime.timedelta(float(time))
+        return f"{date.day} {date:%B %Y}"
+    return f"day {time:.5g}"
+
+
 def ending_of(file):
     """What a title says of a run that found no equilibrium; nothing of others."""
     if "/failure" not in file:
         return ""
-    return f"no equilibrium on day {array(file, '/failure/time')[0]:.5g}"
+    stage, day = texts(file, "/failure/stage")[0], day_of(file, array(file, "/failure/time")[0])
+    return f'no equilibrium after stage "{stage}", {day}' if stage else f"no equilibrium on {day}"
+
+
+def strength_factor_of(file):
+    """The factor that the strengths of a run were divided by; 1 if none was."""
+    options = texts(file, "/provenance/options") if "/provenance/options" in file else []
+    found = re.search(r"--strength-factor (\S+)", options[-1] if options else "")
+    return float(found[1]) if found else 1.0
+
+
+def add_strengths(file, figure):
+    """A title of each picture of a run with reduced strengths, unless the picture says it already (says_factor)."""
+    factor = strength_factor_of(file)
+    if factor == 1 or getattr(figure, "says_factor", False):
+        return
+    above = figure._suptitle.get_text() + "; " if figure._suptitle else ""
+    figure.suptitle(f"{above}strengths / {factor:.4g}", fontsize=8)
+
+
+def label_short_log(axis):
+    """Labels at 1, 2 and 5 times powers of ten on a logarithmic axis that is shorter than 1.5 decades."""
+    low, high = axis.get_view_interval()
+    if high < low * 10**1.5:
+        axis.set_major_locator(matplotlib.ticker.LogLocator(subs=(1, 2, 5)))
+        axis.set_major_formatter(matplotlib.ticker.StrMethodFormatter("{x:g}"))
+        axis.set_minor_formatter(matplotlib.ticker.NullFormatter())
 
 
 def name_index(names, wanted, what):

@@ -2,7 +2,7 @@
 """Displacements along monitoring lines: across the line, as an inclinometer measures, and along it, as an extensometer does.
 
 A curve for each stage, just after its excavation, and one for the end. The distance is from the line's first end. Displacements
-count from the in-situ equilibrium, or with --readings from the line's own first reading. Points that are excavated are left out.
+count from the in-situ equilibrium, or with --readings from the line's own first reading: earlier stages have no curve. Points that are excavated are left out.
 """
 
 import numpy as np
@@ -29,6 +29,12 @@ def rows_of(file):
     return rows
 
 
+def first_reading(file, line):
+    """Row of the histories that is the line's first reading."""
+    point = figure.texts(file, "/history/point").index(f"{line['name']} 1")
+    return figure.array(file, "/history/first_reading_row")[point]
+
+
 def displacements(file, line, readings):
     """Distance of its points from the first end [m], and displacements [row, point, (across, along)] [m]; not finite where a point is
     excavated. Across is to the right of the way from the first end to the other."""
@@ -52,14 +58,20 @@ def draw(file, line=(), readings=False):
     since = "since the first reading" if readings else "since the in-situ equilibrium"
     for one, pair in zip(lines, axes):
         distance, moved = displacements(file, one, readings)
+        begin = first_reading(file, one) if readings else 0
         for i, ax in enumerate(pair):
             for number, (row, label) in enumerate(rows):
+                if row < begin:
+                    continue
                 ax.plot(1e3 * moved[row, :, i], distance, color=figure.COLORS[number % 6], marker=figure.MARKERS[number % 6],
                         markerfacecolor="white", markeredgewidth=0.8, linestyle=figure.LINES[number % 6], label=label)
             ax.axvline(0, color="0.6", linewidth=0.5, zorder=0)
-            ax.set_xlabel(f"{('across', 'along')[i]} the line (mm), {since}")
+            ax.set_xlabel(f"{('across', 'along')[i]} the line (mm)")
         pair[0].set_ylabel(f"{one['name']}:\ndistance from its first end (m)")
-    axes[0, 1].legend(loc="upper left", bbox_to_anchor=(1.02, 1), borderaxespad=0)
+    plot.suptitle(f"displacements {since}", fontsize=8)
+    shown = dict(reversed([(label, line) for pair in axes for line, label in zip(*pair[1].get_legend_handles_labels())]))  # of all lines
+    labels = [label for _, label in rows if label in shown]
+    axes[0, 1].legend([shown[label] for label in labels], labels, loc="upper left", bbox_to_anchor=(1.02, 1), borderaxespad=0)
     return plot
 
 

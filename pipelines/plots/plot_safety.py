@@ -2,7 +2,8 @@
 """The largest displacement over the strength reduction factor: runs that stand, that fail, and the bracket of the factor of safety.
 
 Needs a result of demsolve --factor-of-safety. Where rock yields, the runs with zones twice as large are drawn beside it. The displacement
-of a run that fails is that at which it was ended.
+of a run that fails is that at which it was ended. Dashed: the limit, from which a run fails whatever its equilibrium; times the displacement
+of the run with hardly any slip.
 """
 
 import numpy as np
@@ -32,17 +33,21 @@ def draw_runs(axes, factor, stands, displacement, color, label):
         axes.plot(factor[some], displacement[some], color=color, linestyle="none", marker=marker, markersize=4)
 
 
-def draw(file):
-    """Figure of the displacement over the strength reduction factor."""
+def draw(file, safety_displacement=10):
+    """Figure of the displacement over the strength reduction factor. safety_displacement: the same option of demsolve."""
     if "/safety" not in file:
         raise figure.NotWanted("this file has no runs of a factor of safety; demsolve --factor-of-safety writes them")
     plot, axes = figure.plt.subplots(figsize=(figure.ONE_COLUMN * 1.2, 2.8))
-    seen = set()
+    plot.says_factor = True
+    seen, has_coarse = set(), len(figure.array(file, "/safety/coarse_factor")) > 1
     for prefix, color, label in ("", "k", "zones of the scene"), ("coarse_", figure.COLORS[1], "zones twice as large"):
         if f"/safety/{prefix}factor" in file and len(factor := figure.array(file, f"/safety/{prefix}factor")) > 1:
             stands = figure.array(file, f"/safety/{prefix}stands")
             seen |= set(stands)
-            draw_runs(axes, factor, stands, figure.array(file, f"/safety/{prefix}largest_displacement"), color, label)
+            displacement = figure.array(file, f"/safety/{prefix}largest_displacement")
+            draw_runs(axes, factor, stands, displacement, color, label if has_coarse else None)
+            axes.axhline(1e3 * safety_displacement * displacement[np.argmin(factor)], color=color, linewidth=0.6, linestyle="--",
+                         label=None if prefix else "limit")
             low, high = bracket(factor, stands)
             if low is not None and high is not None:
                 axes.axvspan(low, high, color=color, alpha=0.15, linewidth=0)
@@ -50,6 +55,7 @@ def draw(file):
         if kind in seen:
             axes.plot([], [], color="0.4", linestyle="none", marker=marker, markersize=4, label=label)
     axes.set_yscale("log")
+    figure.label_short_log(axes.yaxis)
     axes.set_xlabel("strength reduction factor")
     axes.set_ylabel("largest displacement (mm)")
     axes.legend(fontsize=6)
@@ -57,4 +63,5 @@ def draw(file):
 
 
 if __name__ == "__main__":
-    figure.run(draw, figure.arguments_of(__doc__))
+    figure.run(draw, figure.arguments_of(
+        __doc__, (["--safety-displacement"], {"type": float, "default": 10, "help": "the same option of demsolve; default: 10"})))

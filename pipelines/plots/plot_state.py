@@ -9,7 +9,6 @@ Of a run that found no equilibrium, the last state also shows what happened afte
 blocks, with arrows along their motion. The title says why the run ended.
 """
 
-import datetime
 import textwrap
 
 import matplotlib.colors
@@ -37,12 +36,7 @@ COMPONENTS = {
 def name_of(file, state):
     """ "16 July 1994, after bench 1", "16 July 1994, before bench 1" or "day 548" of a scene that counts days."""
     time, event = figure.array(file, "/states/time"), figure.texts(file, "/states/event")
-    start = figure.scene_of(file)["schedule"].get("start", 0)
-    if isinstance(start, datetime.date):
-        date = start + datetime.timedelta(float(time[state]))
-        name = f"{date.day} {date:%B %Y}"
-    else:
-        name = f"day {time[state]:.5g}"
+    name = figure.day_of(file, time[state])
     if event[state]:
         return f"{name}, after {event[state]}"
     if state + 1 < len(time) and event[state + 1] and time[state + 1] == time[state]:
@@ -337,12 +331,19 @@ def draw(file, state="last", field="displacement", component="major", since_rese
         entries = draw_stress(file, state, section, axes, component, limits)
     else:
         entries = draw_contacts(file, state, section, axes)
+    time, ending = figure.array(file, "/states/time"), figure.ending_of(file)
+    is_end = bool(ending) and state == len(time) - 1
     title = name_of(file, state)
+    if is_end and time[state] == figure.array(file, "/failure/time")[0]:
+        title = ending
+    elif ending:
+        title += f"; {ending}"
     if magnify:
         title += "; positions displaced" + (f" {magnify:g} times" if magnify != 1 else "")
-    if figure.ending_of(file):
-        title += f"; {figure.ending_of(file)}"
-    if "/failure" in file and state == len(figure.array(file, "/states/time")) - 1:
+    factor = figure.strength_factor_of(file)
+    title = f"Strengths / {factor:.4g}: {title}" if factor != 1 else title
+    plot.says_factor = True
+    if is_end:
         entries += draw_failure(file, section, axes)
         reason = figure.texts(file, "/failure/reason")[0].removeprefix("no equilibrium: ")
         why = textwrap.wrap(reason, int(15 * plot.get_figwidth()))

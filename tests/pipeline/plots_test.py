@@ -8,8 +8,10 @@ import subprocess
 import sys
 import tempfile
 import traceback
+import unittest.mock
 import xml.etree.ElementTree
 
+import h5py
 import numpy
 
 from chain import ChainTest, changed, datasets, main
@@ -74,6 +76,10 @@ class Plots(ChainTest):
         subprocess.run([sys.executable, self.plots / "plot_safety.py", safety, "-o", folder / "script.png"], check=True)
         plots.save("safety", safety, folder / "function.png")
         self.assertEqual((folder / "script.png").read_bytes(), (folder / "function.png").read_bytes())
+        axes = plots.draw("safety", safety).axes[0]
+        limit = next(line for line in axes.lines if line.get_label() == "limit").get_ydata()[0]
+        with h5py.File(safety) as file:
+            self.assertAlmostEqual(limit, 1e4 * file["/safety/largest_displacement"][()][numpy.argmin(file["/safety/factor"][()])])
         self.assertEqual({f"plot_{name}.py" for name in plots.NAMES} | {"plot_fit.py"}, {path.name for path in self.plots.glob("plot_*.py")})
         network = result.with_name("network.h5")
         for call, expected in [(lambda: plots.draw("state", network), "network.h5: there are no states in this file"),
@@ -179,6 +185,16 @@ class Plots(ChainTest):
             done = self.plot(name, result, picture, *options)
             self.assertEqual((done.returncode, done.stderr), (0, ""))
             self.assertEqual(picture.read_bytes()[:8], PNG)
+        import matplotlib
+        from jointcreep import plots
+        drawn = plots.draw("line", result)
+        self.assertEqual(drawn.axes[0].get_xlabel(), "across the line (mm)")
+        self.assertEqual(drawn._suptitle.get_text(), "displacements since the in-situ equilibrium")
+        drawn.canvas.draw()
+        self.assertFalse(matplotlib.transforms.Bbox.intersection(*(axes.xaxis.label.get_window_extent() for axes in drawn.axes)))
+        with unittest.mock.patch.object(plot_line, "first_reading", return_value=len(moved) - 1):
+            self.assertEqual(len(plots.draw("line", result, readings=True).axes[0].lines), 2)  # the last row, and the line at 0
+        figure.plt.close("all")
         done = self.plot("line", self.column(), result.with_name("none.png"))
         self.assertEqual(done.returncode, 2)
         self.assertIn("its scene has no [[monitoring_line]]", done.stderr)

@@ -187,6 +187,16 @@ class Run(ChainTest):
         # A factor of safety below 1: the result is that of the largest factor with equilibrium, and the other run has a picture.
         self.assertEqual(self.made("--", "--factor-of-safety", "--no-creep"), OF_SMALL - OF_NETWORK | {"failure.png", "safety.png"})
         self.assertEqual(self.names(), OF_SMALL | OF_RUN | {"failure.png", "result.failed.h5", "safety.png"})
+        safety = datasets(self.out / "result.h5")
+        low = safety["/safety/factor"][safety["/safety/stands"] == 1].max()
+        page = (self.out / "report.html").read_text()
+        self.assertIn("<h2>Factor of safety</h2>", page)
+        self.assertIn(f"All strengths of this run are divided by {low:.4g}.", page)
+        self.assertIn('alt="The run with the smallest factor without equilibrium: moving blocks."', page)
+        self.assertEqual(plots.draw("histories", self.out / "result.h5")._suptitle.get_text(), f"strengths / {low:.4g}")
+        title = plots.draw("state", self.out / "result.failed.h5").axes[0].get_title(loc="left")
+        self.assertRegex(title, r'^Strengths / 0\.\d+: no equilibrium after stage "bench", day \S+\n')
+        plots.figure.plt.close("all")
 
     def fakes(self, script):
         """A folder of programs in which demsolve is this script."""

@@ -16,13 +16,14 @@ import signal
 import subprocess
 import time
 import unittest
+import unittest.mock
 
 import h5py
 import numpy as np
 
 from chain import LONGEST_RUN, ChainTest, alive, datasets, main
 
-from jointcreep import answers, failure, intervals, scene_keys, study_file
+from jointcreep import answers, failure, intervals, plan, scene_keys, study_file
 from jointcreep import design as draw_design
 from jointcreep.errors import NotWanted
 
@@ -461,6 +462,29 @@ values = [1, 2, 6]
                 self.assertAlmostEqual(value, share, delta=0.03)
                 self.assertTrue(low <= share <= high)
 
+    def test_lists_of_values_need_no_openturns(self):
+        lists = "\n[[vary]]\nname = 'angle'\nkey = 'joint_material.joint.friction_angle_deg'\nvalues = [30, 35, 40, 45]\n"
+        missing = unittest.mock.Mock(side_effect=NotWanted("no openturns"))
+        for of_design in ("runs = 40", 'kind = "latin hypercube"\nruns = 40', 'kind = "networks x parameters"\nnetworks = 3\nparameters = 12'):
+            with self.subTest(of_design), unittest.mock.patch.object(draw_design, "openturns", missing), \
+                    unittest.mock.patch.object(answers, "openturns", missing):
+                text = NETWORKS.replace("runs = {runs}", of_design) + lists
+                study = study_file.read(self.written(text))
+                networks, given = draw_design.draw(study)
+                self.assertEqual(len(networks), study.design.runs)
+                self.assertEqual(len({value for value, in given}), 4)
+                if "latin" in of_design:
+                    self.assertEqual([[value for value, in given].count(angle) for angle in (30, 35, 40, 45)], [10, 10, 10, 10])
+                rows = [{"run": run, "values": [float(value)] * 5} for run, (value,) in enumerate(given)]
+                found = answers.rank_correlations(study, rows, [{"given": one} for one in given], 0)
+                self.assertEqual([(one[0], round(one[2], 9)) for one in found], [("angle", 1)])
+                if of_design == "runs = 40":  # a longer design begins with the shorter one
+                    longer = study_file.read(self.written(text.replace("40", "60", 1)))
+                    self.assertEqual(draw_design.draw(longer)[1][:40], given)
+                    self.assertIn("by numpy", plan.identity(study, "", self.chain.programs)["[design]"])
+                    self.assertIn("probability above 0.1 mm ", answers.summary(study, [], "", [
+                        (study.quantities[0], {"runs": 2, "statistics": [("probability above 0.1", 0.5, 0.1, 0.9)]}, [])], []))
+
     @needs_openturns
     def test_a_study_with_parameters(self):
         """A key of the scene is changed in each run, as by hand; the scene with dates and laws is kept otherwise."""
@@ -530,6 +554,12 @@ values = [1, 2, 6]
         self.assertEqual(len(rows_of(out)), 200)
         self.made(self.written(text + stop.format(1.0)), out)
         self.assertEqual(len(rows_of(out)), 100)
+
+        # The budget of time: the end says nothing of make.
+        slow = self.programs('case "$PWD" in */timed/work/*) exec sleep 20 ;; esac', "jointgen")
+        done = self.study(self.written(text + "[stop]\nhours = 2e-4\n"), self.folder / "timed", programs=slow)
+        self.assertEqual(done.returncode, 3, done.stderr)
+        self.assertEqual(done.stderr, "")
 
 
 LEVELS = """
@@ -787,6 +817,7 @@ class StudyFile(Studies):
             (good.replace("[[vary]]", "[vary]"), r"vary is not a table; expected \[\[vary\]\]"),
             (good + "[stop]\nhalf_width = 0.1\n", r'of is missing; expected one of "floor y"'),
             (good + '[stop]\nof = "floor y"\nhalf_width = -1\n', "half_width is -1; expected a number above 0"),
+            (good + '[stop]\nhours = 1\nof = "floor y"\n', "of needs half_width, relative_half_width or probability_half_width"),
             (good + '[stop]\nhours = 1\nminutes = 1\n', "minutes is unknown here"),
             (good.split("[[collect]]")[0], "nothing is collected"),
             (good.replace("network = true", ""), r"\[\[vary\]\]: key is missing; expected a key of the scene"),
@@ -819,6 +850,10 @@ class StudyFile(Studies):
         self.assertFalse((self.folder / "refused").exists())
 
     def test_command_line(self):
+        for name in ("run", "study", "report", "fit"):
+            done = subprocess.run([self.chain.programs / "jointcreep", name, "--help"], capture_output=True, text=True)
+            self.assertEqual((done.returncode, done.stderr), (0, ""))
+            self.assertIn(f"usage: jointcreep {name} ", done.stdout)
         for arguments, expected in [([], "usage: "), (["studdy"], "unknown subcommand"), (["study"], "needs an input"),
                                     (["study", "a.toml", "-o", "o", "-j", "0"], "--jobs is \"0\""),
                                     (["study", "a.toml", "-o"], "has no value"), (["study", "a", "b", "-o", "o"], "second input"),
