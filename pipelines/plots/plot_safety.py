@@ -2,8 +2,8 @@
 """The largest displacement over the strength reduction factor: runs that stand, that fail, and the bracket of the factor of safety.
 
 Needs a result of demsolve --factor-of-safety. Where rock yields, the runs with zones twice as large are drawn beside it. The displacement
-of a run that fails is that at which it was ended. Dashed: the limit, from which a run fails whatever its equilibrium; times the displacement
-of the run with hardly any slip.
+of a run that fails is that at which it was ended. Dashed: the limit at which runs were ended, a multiple of the
+displacement of the run with hardly any slip.
 """
 
 import numpy as np
@@ -46,8 +46,9 @@ def draw(file, safety_displacement=10):
             seen |= set(stands)
             displacement = figure.array(file, f"/safety/{prefix}largest_displacement")
             draw_runs(axes, factor, stands, displacement, color, label if has_coarse else None)
-            axes.axhline(1e3 * safety_displacement * displacement[np.argmin(factor)], color=color, linewidth=0.6, linestyle="--",
-                         label=None if prefix else "limit")
+            limit = safety_displacement * displacement[np.argmin(factor)]
+            if np.any((displacement >= limit) & (displacement < 1.5 * limit)):  # a run was ended there; else the option was another
+                axes.axhline(1e3 * limit, color=color, linewidth=0.6, linestyle="--", label=None if prefix else "limit")
             low, high = bracket(factor, stands)
             if low is not None and high is not None:
                 axes.axvspan(low, high, color=color, alpha=0.15, linewidth=0)
