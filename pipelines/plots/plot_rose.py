@@ -13,6 +13,14 @@ import figure
 import joint_sets
 
 
+ROUNDING = 1e-6  # of a class: equal angles at its border are all in the same one
+
+
+def class_of(angle, width):
+    """Classes of angles [degrees]; they are centred on 0, width, 2 width ..."""
+    return np.floor((angle + width / 2) / width + ROUNDING).astype(int) % round(180 / width)
+
+
 def draw(file, width=10):
     """Figure of the directions of joint traces, in classes of `width` degrees."""
     joints = joint_sets.Joints(file)
@@ -25,8 +33,7 @@ def draw(file, width=10):
         raise figure.NotWanted("there is no joint trace in the section")
     along = joints.traces[:, 1] - joints.traces[:, 0]
     angle = np.degrees(np.arctan2(along[:, 1], along[:, 0])) % 180
-    # Classes are centred on 0, width, 2 width ...
-    of_class = np.floor((angle + width / 2) / width).astype(int) % bins
+    of_class = class_of(angle, width)
     of_set = joints.set[joints.trace_joint]
 
     plot = figure.plt.figure(figsize=(figure.ONE_COLUMN, figure.ONE_COLUMN))
@@ -50,7 +57,10 @@ def draw(file, width=10):
     axes.set_yticks(np.sqrt(ticks), [f"{100 * tick:g} %" for tick in ticks], fontsize=6, path_effects=figure.HALO,
                     zorder=4)
     emptiest = np.argmin(base + 0.5 * np.roll(base, 1) + 0.5 * np.roll(base, -1))
-    axes.set_rlabel_position(emptiest * width)
+    place = emptiest * width
+    if place % 30 == 0:  # where the angles have their labels
+        place = min((45, 75, 105, 135), key=lambda one: base[round(one / width) % bins])
+    axes.set_rlabel_position(place)
     axes.set_xticks(np.radians(np.arange(0, 360, 30)))
     axes.grid(linewidth=0.4, color="0.75")
     axes.spines["polar"].set_linewidth(0.6)

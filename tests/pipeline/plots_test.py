@@ -227,6 +227,10 @@ class Plots(ChainTest):
         self.assertIn("its scene has no [large_displacements]", done.stderr)
 
     def test_pictures_of_joint_sets(self):
+        import plot_rose
+        border = 55 * (1 + numpy.array([-1e-15, 0, 1e-15]))  # equal angles but for rounding
+        self.assertEqual(plot_rose.class_of(border, 10).tolist(), [6, 6, 6])
+        self.assertEqual(plot_rose.class_of(numpy.array([0.0, 54.9, 174.9, 175]), 10).tolist(), [0, 5, 17, 0])
         scenes = {"data/slope/scene.toml": ["stereonet", "rose", "distributions"],
                   "tests/pipeline/random_slope.toml": ["rose", "distributions"]}
         for scene, names in scenes.items():
