@@ -10,6 +10,9 @@ from matplotlib.collections import LineCollection
 import figure
 
 STAGE_BORDER = {"edgecolor": "0.25", "linewidth": 0.8, "linestyle": (0, (6, 2, 1, 2))}
+# Of a point, where its name can be [pt].
+SIDES = [(4, 3, "left", "bottom"), (-4, 3, "right", "bottom"), (4, -3, "left", "top"), (-4, -3, "right", "top")]
+LETTER, LINE = 4.4, 9  # width of a letter and height of a line [pt]
 FEW = 8  # entries of one kind in the legend; of more there is one for all
 
 
@@ -127,15 +130,32 @@ def draw_boundaries(scene, outline, axes):
     return list(entries.values())
 
 
-def draw_places(scene, key, label, marker, axes):
-    """Monitoring points, or gauges, with their names."""
+def side_of(place, name, taken):
+    """The side of a place [pt] on which its name overlaps no other; the first if there is none. taken: corners of the boxes [pt] of the
+    names so far, to which this one is added."""
+    boxes = []
+    for dx, dy, across, _ in SIDES:
+        width = LETTER * len(name)
+        low = np.array([place[0] + dx - (width if across == "right" else 0), place[1] + dy - (LINE if dy < 0 else 0)])
+        boxes.append((low, low + [width, LINE]))
+    free = [i for i, (low, high) in enumerate(boxes) if not any(np.all(low < other[1]) and np.all(other[0] < high) for other in taken)]
+    chosen = free[0] if free else 0
+    taken.append(boxes[chosen])
+    return SIDES[chosen]
+
+
+def draw_places(scene, key, label, marker, axes, taken):
+    """Monitoring points, or gauges, with their names; taken as in side_of()."""
+    scale = 72 * (axes.figure.get_figwidth() - 0.8) / np.ptp(axes.get_xlim())  # [pt/m]
     places = {place["name"]: place["at_m"] for place in scene.get(key, [])}
     look = {"linestyle": "none", "marker": marker, "color": "k", "markersize": 3.5}
     for name, place in places.items():
         if not figure.is_in(axes, place):
             continue
         axes.plot(*place, zorder=5, path_effects=figure.HALO, **look)
-        axes.annotate(name, place, xytext=(4, 3), textcoords="offset points", zorder=5, path_effects=figure.HALO)
+        dx, dy, across, up = side_of(scale * np.array(place, float), name, taken)
+        axes.annotate(name, place, xytext=(dx, dy), textcoords="offset points", zorder=5, path_effects=figure.HALO, ha=across,
+                      va="baseline" if dy > 0 else up)
     return [matplotlib.lines.Line2D([], [], label=label, **look)] if places else []
 
 
@@ -164,9 +184,10 @@ def draw(file, window=None):
     stages = draw_stages(scene, axes, inside)
     others = figure.draw_rocks(scene, axes) if "region" in scene else []
     others += draw_boundaries(scene, outline, axes)
-    others += draw_places(scene, "point", "monitoring point", "o", axes)
+    taken = []
+    others += draw_places(scene, "point", "monitoring point", "o", axes, taken)
     others += draw_lines(scene, axes)
-    others += draw_places(scene, "gauge", "gauge on a joint", "D", axes)
+    others += draw_places(scene, "gauge", "gauge on a joint", "D", axes, taken)
     if len(stages) == 1:  # no column of its own
         stages, others = [], stages + others
     figure.legend_below(axes, joints, stages, others)

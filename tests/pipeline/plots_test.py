@@ -226,6 +226,12 @@ class Plots(ChainTest):
         self.assertEqual(done.returncode, 2)
         self.assertIn("its scene has no [large_displacements]", done.stderr)
 
+    def test_names_of_points_do_not_overlap(self):
+        import plot_section
+        taken = []
+        sides = [plot_section.side_of(numpy.array(place, float), "crest", taken) for place in ((100, 0), (90, 0), (300, 0))]
+        self.assertEqual([side[2] for side in sides], ["left", "right", "left"])
+
     def test_pictures_of_joint_sets(self):
         import plot_rose
         border = 55 * (1 + numpy.array([-1e-15, 0, 1e-15]))  # equal angles but for rounding
