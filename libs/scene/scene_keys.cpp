@@ -77,9 +77,10 @@ Table<Scene> variables()
     return {
         {"variables", once, optional,
          "Names for numbers: `H = 40`. A name consists of letters, digits and _. A key of the scene that wants a number "
-         "can have a text with such names, numbers, + - * / and brackets: `size_m = \"H / 20\"`, "
-         "`outline_m = [[0, 0], [\"2 * H\", 0], ...]`. A variable may be such a text, too. The copy of the scene in "
-         "the programs' files has the numbers."},
+         "can have a text with such names, numbers, + - * / and ( ): `size_m = \"H / 20\"`, "
+         "`outline_m = [[0, 0], [\"2 * H\", 0], ...]`. A variable may be such a text, too. Sums of numbers alone, "
+         "`size_m = \"3 / 2\"`, need no [variables]; a single number has no quotes. The copy of the scene in the "
+         "programs' files has the numbers."},
         {}};
 }
 
@@ -580,8 +581,8 @@ Table<JointSet> joint_set(const TablesInJointSet& laws)
          law("spacing", &JointSet::spacing, laws.spacing, laws_of_lengths(),
              "Of lines: distance between neighbouring joint planes. Lines need it or a density. With both "
              "the density sets the mean, and the law is stretched to this mean; with a density alone the "
-             "law is negative exponential. The position of the first line is random, also with a constant spacing; "
-             "[[joint]] is a joint at a given place.")
+             "law is negative exponential. The position of the first line is random, also with a constant spacing. "
+             "For a joint at a given place use [[joint]].")
              .optional(),
          key_of<JointSet>(
              {"density", "density", {}, {}, "Density of the joints. Segments and discs need it."},
@@ -690,8 +691,10 @@ Table<MonitoringPoint> monitoring_point()
     return {
         {"point", in_list, optional, "A place whose displacement is recorded."},
         {text("name", &MonitoringPoint::name, "Name, once among the points."),
-         point("at_m", &MonitoringPoint::at,
-               "Where, inside the section. On the face of an excavation it belongs to the rock that stays."),
+         point(
+             "at_m", &MonitoringPoint::at,
+             "Where, inside the section or on its outline. On the face of an excavation it belongs to the rock "
+             "that stays, between two stages to the rock that stays longer."),
          date("first_reading", &MonitoringPoint::first_reading, "When its own readings begin.")
              .optional("the start")}};
 }
@@ -949,18 +952,22 @@ std::vector<MappedSet> read_mapped(const Table<WrittenMapped>& table, const Toml
 
 TablesInJointSet tables_in_joint_set()
 {
-    return {.material_in = material_in(),
-            .trace_angle =
-                angle_law("trace_angle", within(180), "Angle of a trace, counter-clockwise from the x axis."),
-            .dip = angle_law("dip", from(0).to(90),
-                             "Dip below the horizontal, with dip_direction and section.azimuth_deg."),
-            .dip_direction =
-                angle_law("dip_direction", from(0).to(360), "Bearing of the dip, clockwise from north."),
-            .spacing = length_law("spacing", optional, "Spacing along the set's mean normal in space."),
-            .length = length_law("length", optional, "Length of the joint traces."),
-            .diameter = length_law("diameter", optional, "Diameter of the discs."),
-            .orientation = orientation_law(),
-            .density = density_table()};
+    return {
+        .material_in = material_in(),
+        .trace_angle = angle_law(
+            "trace_angle", within(180),
+            "Angle of a trace, counter-clockwise from the x axis: a trace at 35 deg rises to the right, one "
+            "at -35 deg descends to the right. Joints that dip 35 deg out of a slope whose face looks to "
+            "the right have -35."),
+        .dip = angle_law("dip", from(0).to(90),
+                         "Dip below the horizontal, with dip_direction and section.azimuth_deg."),
+        .dip_direction =
+            angle_law("dip_direction", from(0).to(360), "Bearing of the dip, clockwise from north."),
+        .spacing = length_law("spacing", optional, "Spacing along the set's mean normal in space."),
+        .length = length_law("length", optional, "Length of the joint traces."),
+        .diameter = length_law("diameter", optional, "Diameter of the discs."),
+        .orientation = orientation_law(),
+        .density = density_table()};
 }
 
 // --- The list -------------------------------------------------------------------------------------------

@@ -60,10 +60,10 @@ private:
     std::atomic<int> going_on_ = 0;
 };
 
-auto falls_above(double threshold)
+auto moves_above(double threshold)
 {
     return [=](double factor, double /*most_displacement*/) {
-        return Outcome{factor <= threshold ? Ending::stands : Ending::falls, 0.001 * factor};
+        return Outcome{factor <= threshold ? Ending::stands : Ending::moves, 0.001 * factor};
     };
 }
 
@@ -79,7 +79,7 @@ RC_GTEST_PROP(bracket_by, holds_the_threshold_and_is_as_narrow_as_wanted, ())
 {
     const double threshold = std::exp(*rc::gen::inRange(-3000, 3000) / 1000.0);
     const double width = std::pow(10, -*rc::gen::inRange(0, 5));
-    const Bracket bracket = found(falls_above(threshold), width);
+    const Bracket bracket = found(moves_above(threshold), width);
     RC_ASSERT(bracket.stands.has_value() && bracket.not_above.has_value());
     RC_ASSERT(*bracket.stands <= threshold && threshold < *bracket.not_above);
     RC_ASSERT(*bracket.not_above - *bracket.stands <= width * *bracket.stands);
@@ -95,7 +95,7 @@ RC_GTEST_PROP(bracket_by, has_the_same_runs_side_by_side_and_after_an_interrupti
     Search search{width, runs_away};
     if (*rc::gen::arbitrary<bool>())
         search.near = threshold * std::exp(*rc::gen::inRange(-300, 300) / 1000.0);
-    RunsOf alone(falls_above(threshold)), beside(falls_above(threshold)), continued(falls_above(threshold));
+    RunsOf alone(moves_above(threshold)), beside(moves_above(threshold)), continued(moves_above(threshold));
     if (*rc::gen::arbitrary<bool>())
         beside.slow = threshold;
     const Safety all = bracket_by(search, alone).trials;
@@ -116,7 +116,7 @@ RC_GTEST_PROP(bracket_by, has_the_same_runs_side_by_side_and_after_an_interrupti
 
 TEST(bracket_by, makes_runs_side_by_side)
 {
-    RunsOf runs(falls_above(1.7));
+    RunsOf runs(moves_above(1.7));
     runs.slow = 1.7;
     bracket_by({0.01, runs_away}, runs, 2);
     EXPECT_EQ(runs.most_at_once, 2);
@@ -127,7 +127,7 @@ TEST(bracket_by, passes_on_what_the_next_run_throws)
     const auto refuses = [](double factor, double /*most_displacement*/) -> Outcome {
         if (factor == 1.5)
             throw std::invalid_argument("one and a half");
-        return {factor > 1.7 ? Ending::falls : Ending::stands};
+        return {factor > 1.7 ? Ending::moves : Ending::stands};
     };
     RunsOf alone(refuses), beside(refuses);
     EXPECT_THROW(bracket_by({0.01, runs_away}, alone), std::invalid_argument);
@@ -136,14 +136,14 @@ TEST(bracket_by, passes_on_what_the_next_run_throws)
     RunsOf unused([](double factor, double /*most_displacement*/) -> Outcome {
         if (factor == 0.5)
             throw std::invalid_argument("a half");
-        return {factor > 1.7 ? Ending::falls : Ending::stands};
+        return {factor > 1.7 ? Ending::moves : Ending::stands};
     });
     EXPECT_EQ(bracket_by({0.5, runs_away}, unused, 4).stands, 1.5);
 }
 
 TEST(bracket_by, says_where_everything_or_nothing_stands)
 {
-    const Bracket strong = found(falls_above(1e6)), weak = found(falls_above(1e-6));
+    const Bracket strong = found(moves_above(1e6)), weak = found(moves_above(1e-6));
     EXPECT_EQ(strong.stands, 64);
     EXPECT_FALSE(strong.not_above);
     EXPECT_EQ(weak.not_above, 1.0 / 64);
@@ -152,7 +152,7 @@ TEST(bracket_by, says_where_everything_or_nothing_stands)
 
 TEST(bracket_by, goes_up_or_down_from_a_known_factor)
 {
-    RunsOf up(falls_above(1.2)), down(falls_above(0.8));
+    RunsOf up(moves_above(1.2)), down(moves_above(0.8));
     EXPECT_EQ(bracket_by({0.5, runs_away, 1.0}, up).trials.factor,
               (std::vector<double>{1. / 64, 1, 1 + 0.05, 1 + 0.05 + 0.1, 1 + 0.05 + 0.1 + 0.2}));
     EXPECT_EQ(bracket_by({0.5, runs_away, 1.0}, down).trials.factor,
@@ -163,7 +163,7 @@ TEST(bracket_by, takes_what_is_undecided_as_not_standing_and_says_so)
 {
     const Bracket bracket = found(
         [](double factor, double /*most_displacement*/) {
-            return Outcome{factor < 1.2 ? Ending::stands : factor < 1.7 ? Ending::undecided : Ending::falls};
+            return Outcome{factor < 1.2 ? Ending::stands : factor < 1.7 ? Ending::undecided : Ending::moves};
         },
         0.1);
     EXPECT_EQ(bracket.trials.factor, (std::vector<double>{1. / 64, 1, 2, 1.5, 1.25, 1.125, 1.1875}));
@@ -178,7 +178,7 @@ TEST(bracket_by, ends_where_displacement_runs_away)
         return 0.01 * std::exp(factor);
     }; // [m], no failure of its own
     const Bracket bracket = found([&](double factor, double most) {
-        return Outcome{displacement(factor) <= most ? Ending::stands : Ending::falls, displacement(factor),
+        return Outcome{displacement(factor) <= most ? Ending::stands : Ending::moves, displacement(factor),
                        factor};
     });
     const double threshold = std::log(runs_away * std::exp(1. / 64));
