@@ -63,7 +63,7 @@ class Literature(ChainTest):
         self.assertLess(high, 0.7704)
         self.assertLess(low, 0.6605)
         self.assertGreater(high, 0.6605)
-        self.assertIn(r"stand down to $\tan\varphi$ = 0.771 ", self.page)
+        self.assertIn(r"stand down to $\tan\varphi$ = 0.771.", self.page)
         self.assertIn("down to 0.6605 ", self.page)
 
     def test_slipping_crack(self):
