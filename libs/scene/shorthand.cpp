@@ -469,7 +469,11 @@ private:
 std::string written_out(const std::string& text, const std::string& name)
 {
     const auto has = [&](const char* word) { return text.find(word) != std::string::npos; };
-    if (!has("variables") && !has("center") && !has("radius") && !has("through"))
+    bool has_sum = false; // perhaps: a text that begins as one without names
+    for (std::size_t at = text.find('"'); at != std::string::npos && !has_sum; at = text.find('"', at + 1))
+        has_sum = at + 1 < text.size() &&
+                  std::string_view("0123456789.(-").find(text[at + 1]) != std::string_view::npos;
+    if (!has_sum && !has("variables") && !has("center") && !has("radius") && !has("through"))
         return text;
     return Writer(text, name).written_out();
 }
