@@ -376,11 +376,14 @@ private:
         const bool adaptive = settings_.damping == Damping::adaptive;
         const bool combined = settings_.damping == Damping::combined;
         const bool kinetic = settings_.damping == Damping::kinetic;
+        const bool has_rollers = !a_.along.empty(); // inclined ones; asked once, not at each gridpoint
 #pragma omp for schedule(static)
         for (Index k = 0; k < n_chunks; ++k) {
             Vector2d energy(0, 0), answer(0, 0), work(0, 0); // in x and y apart: one sum a number is slower
             for (Index g = k * chunk; g < std::min(n, (k + 1) * chunk); ++g) {
-                const Vector2d free_force = free_part(a_, g, a_.force[g]), last = velocity_[g];
+                const Vector2d free_force = has_rollers ? free_part(a_, g, a_.force[g])
+                                                        : Vector2d(a_.force[g].cwiseProduct(a_.is_free[g])),
+                               last = velocity_[g];
                 Vector2d force = free_force, change = Vector2d::Zero(); // in the last step
                 if (adaptive || combined) {
                     change = force - last_force_[g];
@@ -395,8 +398,9 @@ private:
                     force += local / 2 * force.cwiseAbs().cwiseProduct(signs_of(change) - signs_of(before));
                 else if (local > 0)
                     force -= local * force.cwiseAbs().cwiseProduct(signs_of(before));
-                // Damping by components, and rounding, lead off inclined rollers.
-                const Vector2d v = free_part(a_, g, keep * before + gain * inverse_mass_[g] * force);
+                Vector2d v = keep * before + gain * inverse_mass_[g] * force;
+                if (has_rollers) // damping by components, and rounding, lead off them
+                    v = free_part(a_, g, v);
                 if (kinetic)
                     energy += mass_[g] * v.cwiseAbs2();
                 work += free_force.cwiseProduct(v + last);
