@@ -128,6 +128,19 @@ Bridging bridging(StiffnessRule rule, const BridgedLine& line, double stiffness,
     return {};
 }
 
+JointChain joint_chain_of(const JointMaterial& material, Direction direction)
+{
+    const bool normal = direction == Direction::normal;
+    JointChain chain{normal ? material.normal_stiffness : material.shear_stiffness, {}, 0};
+    for (const Kelvin& unit : material.kelvin)
+        chain.units.push_back({normal ? unit.normal_stiffness : unit.shear_stiffness,
+                               normal ? unit.normal_viscosity : unit.shear_viscosity});
+    if (material.maxwell)
+        chain.maxwell_viscosity =
+            normal ? material.maxwell->normal_viscosity : material.maxwell->shear_viscosity;
+    return chain;
+}
+
 JointChain bridged(const JointChain& joint, const Bridging& bridging)
 {
     const double bridges = bridging.bridges, share = bridging.share;

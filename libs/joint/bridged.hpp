@@ -57,6 +57,9 @@ struct JointChain {
     double maxwell_viscosity; // [Pa s/m]
 };
 
+// That of a joint without rock bridges.
+JointChain joint_chain_of(const JointMaterial& material, Direction direction);
+
 // The chain with the same creep as the spring `bridges` beside `share` times the joint. The compliance of both is a sum
 // of the same kind (its poles are between those of the joint), so this is exact. It has a Kelvin unit for each one of
 // the joint, and one for its Maxwell dashpot, whose flow the bridges stop.

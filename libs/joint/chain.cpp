@@ -1,5 +1,7 @@
 #include "joint/chain.hpp"
 
+#include "joint/bridged.hpp"
+
 namespace jointcreep::joint
 {
 
@@ -23,15 +25,10 @@ Chain chain_of(const EquivalentJoints& joints, std::size_t edge, int direction)
 
 Chain chain_of(const JointMaterial& material, Index number, int direction)
 {
-    const bool normal = direction == 0;
-    Chain chain{normal ? material.normal_stiffness : material.shear_stiffness, {}};
-    chain.constants = direction + 2 * static_cast<int>(number);
-    for (const Kelvin& unit : material.kelvin)
-        chain.units.push_back({normal ? unit.normal_stiffness : unit.shear_stiffness,
-                               normal ? unit.normal_viscosity : unit.shear_viscosity});
-    if (material.maxwell)
-        chain.units.push_back(
-            {0, normal ? material.maxwell->normal_viscosity : material.maxwell->shear_viscosity});
+    const JointChain joint = joint_chain_of(material, direction == 0 ? Direction::normal : Direction::shear);
+    Chain chain{joint.spring, joint.units, direction + 2 * static_cast<int>(number)};
+    if (joint.maxwell_viscosity > 0)
+        chain.units.push_back({0, joint.maxwell_viscosity});
     return chain;
 }
 

@@ -235,7 +235,8 @@ public:
 
     Found of(std::size_t edge, const JointMaterial& material, const Share& share)
     {
-        Found found{{chain_of(material, Direction::normal), chain_of(material, Direction::shear)}};
+        Found found{
+            {joint_chain_of(material, Direction::normal), joint_chain_of(material, Direction::shear)}};
         const StiffnessRule rule = scene_.averaging.stiffness;
         if (rule == StiffnessRule::joint || share.persistence >= 1 - rounding)
             return found;
@@ -265,19 +266,6 @@ public:
     }
 
 private:
-    static JointChain chain_of(const JointMaterial& material, Direction direction)
-    {
-        const bool normal = direction == Direction::normal;
-        JointChain chain{normal ? material.normal_stiffness : material.shear_stiffness, {}, 0};
-        for (const Kelvin& unit : material.kelvin)
-            chain.units.push_back({normal ? unit.normal_stiffness : unit.shear_stiffness,
-                                   normal ? unit.normal_viscosity : unit.shear_viscosity});
-        if (material.maxwell)
-            chain.maxwell_viscosity =
-                normal ? material.maxwell->normal_viscosity : material.maxwell->shear_viscosity;
-        return chain;
-    }
-
     Bridging bridging_of(const BridgedLine& line, double stiffness, Direction direction)
     {
         const auto [known, is_new] = known_.try_emplace(
