@@ -200,18 +200,21 @@ SUBCOMMANDS = {
 }
 
 
+def asks_for_help(arguments):
+    """Whether this is a call for help, of a subcommand or of all. What follows -- is for demsolve."""
+    own = list(itertools.takewhile(lambda word: word != "--", arguments))
+    return own in (["-h"], ["--help"]) or own[:1] and own[0] in SUBCOMMANDS and ("-h" in own or "--help" in own)
+
+
 def main(arguments, version, beside):
     """The exit code of the command line."""
-    if arguments in (["-h"], ["--help"]):
+    if asks_for_help(arguments):
         print(__doc__, end="")
         return 0
     if arguments in (["-V"], ["--version"]):
         print("jointcreep", version)
         return 0
     try:
-        if arguments[:1] and arguments[0] in SUBCOMMANDS and {"-h", "--help"} & set(itertools.takewhile(lambda word: word != "--", arguments)):
-            print(__doc__, end="")
-            return 0
         subcommand, source, options = options_of(arguments)
         return subcommand.run(source, {**options, "version": version}, beside)
     except NotWanted as error:
