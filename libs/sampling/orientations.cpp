@@ -216,8 +216,8 @@ Orientations::Drawn Orientations::draw_joint(Stream& stream) const
         const auto i = std::min<std::ptrdiff_t>(after - sum_.begin(), std::ssize(sum_) - 1);
         return {trace_of(pole_[i].head<2>()).normalized(), upward(pole_[i])};
     }
-    const int most_tries = 10000;
-    for (int i = 0; i < most_tries; ++i) {
+    const int most_poles = 10000;
+    for (int i = 0; i < most_poles; ++i) {
         const Vector3d pole = draw_pole(stream);
         const Vector2d trace = trace_of(pole.head<2>());
         const bool met = set_.kind == SetKind::lines || uniform(stream) < trace.norm();
