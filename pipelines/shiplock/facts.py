@@ -81,15 +81,14 @@ def markdown(facts, targets):
         room = np.minimum(median - low, high - median)
         room[[targets["point"].get(name, {}).get("crest", False) for name in names]] = np.inf
         i = int(np.argmin(room))
-        lines.append(f"- {key}: nearest to an end of {low}-{high} mm is the median of {names[i]}, {median[i]:.1f} mm, "
-                     f"with a standard error of {error[i]:.1f} mm by drawing networks with replacement;")
+        lines.append(f"- {key}: the median nearest to an end of {low}-{high} mm is that of {names[i]}, {median[i]:.1f} mm, "
+                     f"with a standard error of {error[i]:.1f} mm (by bootstrap over networks);")
     total = dict(zip(names, np.median(values["total"], axis=0)))
     wall = max(value for name, value in total.items() if name in WALL_TOPS)
     slope = max(value for name, value in total.items() if name not in WALL_TOPS)
-    for words, value, key in (("wall tops", wall, "wall_top_limit_mm"), ("all others", slope, "slope_top_limit_mm")):
-        lines.append(f"- the largest total of {words} is {value:.0f} mm; {targets[key]} mm was published as a limit, computed by "
-                     "another model;")
-    lines.append(f"- after 1999 no point's median moves by more than {np.median(values['after'], axis=0).max():.1f} mm (range: at "
+    for words, value, key in (("wall tops", wall, "wall_top_limit_mm"), ("all other points", slope, "slope_top_limit_mm")):
+        lines.append(f"- the largest total of {words} is {value:.0f} mm; the published limit, by another model, is {targets[key]} mm;")
+    lines.append(f"- after 1999 the median of no point moves by more than {np.median(values['after'], axis=0).max():.1f} mm (range: at "
                  f"most {targets['after_1999_mm']} mm);")
     before = np.median(values["before"], axis=0)
     lines.append(f"- just before its bench is excavated a point has moved by {before.min():.0f} to {before.max():.0f} mm (medians; at "
@@ -103,11 +102,11 @@ def markdown(facts, targets):
     mean = (to_north + to_south) / 2
     widening = to_north - to_south
     lines.append(f"- the pier widens at {PIER_LEVEL:.0f} m by {spread(widening)} mm, in {np.sum(widening > 0)} of {number} networks; "
-                 f"the mean of its walls moves {abs(mean.mean()):.0f} mm to the {'north' if mean.mean() > 0 else 'south'} in the mean, "
+                 f"its middle moves by {abs(mean.mean()):.0f} mm to the {'north' if mean.mean() > 0 else 'south'} on average, "
                  f"with a standard deviation of {mean.std(ddof=1):.0f} mm;")
     any_tension, beyond, largest = np.median(values["tension"], axis=0)
-    lines.append(f"- in tension in the end are {100 * any_tension:.0f} percent of the rock in the jointed box, "
-                 f"{100 * beyond:.1f} percent beyond {TENSILE_STRENGTH / 1e6:g} MPa, up to {largest / 1e6:.0f} MPa (medians).")
+    lines.append(f"- at the end {100 * any_tension:.0f} percent of the rock in the jointed box is in tension, "
+                 f"{100 * beyond:.1f} percent above {TENSILE_STRENGTH / 1e6:g} MPa, up to {largest / 1e6:.0f} MPa (medians).")
     return "\n".join(lines) + "\n"
 
 

@@ -96,10 +96,9 @@ def markdown(rows, targets, number, failed=None, without=None):
 
     lines += ["", f"Horizontal, toward the lock, in mm, at the end of 1999; {number} network{'s' if number > 1 else ''}."]
     for words, values in (
-            (f"Medians of {words_for(below, rows)}, mean and extremes: total", [row["total"][1] for row in below]),
+            (f"Medians of {words_for(below, rows)}, mean, and in brackets smallest and largest: total", [row["total"][1] for row in below]),
             ("recorded", [row["recorded"][1] for row in below]),
-            ("short of that without creep, in the record", [row["recorded"][1] - row["recorded_without"][1]
-                                                            for row in below])):
+            ("recorded with creep minus recorded without creep", [row["recorded"][1] - row["recorded_without"][1] for row in below])):
         lines.append(f"{words} {spread(values)};")
     found = misfit(rows, targets)
     lines.append("no misfit: these points have no ranges." if found is None else f"misfit {found:.2f}.")
