@@ -2,8 +2,8 @@
 """The blocks, filled by their size, the joint set that makes most of their outline, their rock or the stage that
 removes them, and the edges between them.
 
-The scale of sizes begins where smaller blocks together are 1 percent of all: slivers would take most of it. With a
-window it is of the blocks wholly inside, and larger ones, such as rock without joints around them, are grey.
+The smallest 1 percent of the area has the first colour of the scale, because slivers would take most of it. With a window
+the scale is for the blocks that are completely inside; larger blocks, such as rock without joints around them, are grey.
 """
 
 import matplotlib.colors

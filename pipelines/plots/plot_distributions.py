@@ -1,10 +1,10 @@
 #!/usr/bin/python3
 """Histograms of spacing and trace length, set by set, with the law they were drawn from, and of block areas.
 
-Spacing is that of neighbouring lines in space. Lengths are those of traces that begin and end inside the section; the
-longer a trace, the less often it does, and by that it is weighed, so that the histogram estimates the law itself. Of
-segments and discs they are those of traces with their midpoint inside. No law is drawn for the traces of discs, for those
-that end at other sets, and for a spacing that follows from a density.
+Spacing is that of neighbouring lines in space. Lengths are those of traces that begin and end inside the section. Long
+traces are less often inside, so each trace has a weight, and the histogram estimates the law itself. Lengths of segments
+and discs are those of traces with their midpoint inside. No law is drawn for the traces of discs, for traces that end at
+other sets, and for a spacing that follows from a density.
 """
 
 import matplotlib.lines

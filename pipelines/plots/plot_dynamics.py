@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """A dynamic analysis: the blocks at moments spread over it, with dots where they touch, in colour where they slip, and
-its energies over time. For results of scenes with [large_displacements]; of several stages, the last one that moved."""
+its energies over time. For results of scenes with [large_displacements]; with several stages, of the last stage
+in which blocks moved."""
 
 import matplotlib.tri
 import numpy as np

@@ -1,8 +1,9 @@
 #!/usr/bin/python3
 """What creepfit was given and what it found: measured displacements as markers, computed ones as lines.
 
-Reads what `creepfit --readings` writes, of a curve or of a section's points; for these, thin dashed lines are what
-the section did before any factor was fitted. Errors of instruments that were found are in the lines. Lines are broken at stages. Residuals are below.
+Reads what `creepfit --readings` writes, of a curve or of a section's points; with points, thin dashed lines are the displacements with the
+constants of the scene, before the fit. The lines include the errors of instruments that were found. Lines are broken at stages.
+Residuals are below.
 """
 
 import csv

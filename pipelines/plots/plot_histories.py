@@ -1,7 +1,8 @@
 #!/usr/bin/python3
 """Displacement histories of the monitoring points against days; with --closed-form column beside the exact answer.
 
-All points, or if there are any those outside monitoring lines (plot_line.py). A point's history ends when it is removed. Displacements count from the in-situ equilibrium, or with --readings from
+All points that are not on monitoring lines are drawn; if all are on lines,
+these (plot_line.py). A point's history ends when it is removed. Displacements count from the in-situ equilibrium, or with --readings from
 each point's own first reading, where its curve begins.
 """
 

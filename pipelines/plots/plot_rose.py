@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""Rose of the joint traces in the section: how much trace length lies in each direction, set by set on top of each
-other, as a share of all.
+"""Rose of the joint traces in the section: the share of the trace length in each direction. Sets are
+stacked.
 
 Areas are to scale: the radius is the square root of the share. Angles count counter-clockwise from the section's x
 axis. Traces count with their length inside the section.

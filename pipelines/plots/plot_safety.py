@@ -1,9 +1,10 @@
 #!/usr/bin/python3
-"""The largest displacement over the strength reduction factor: runs that stand, that fail, and the bracket of the factor of safety.
+"""The largest displacement over the strength reduction factor: stable runs, runs that fail, and the bracket
+of the factor of safety.
 
-Needs a result of demsolve --factor-of-safety. Where rock yields, the runs with zones twice as large are drawn beside it. The displacement
-of a run that fails is that at which it was ended. Dashed: the limit at which runs were ended, a multiple of the
-displacement of the run with hardly any slip.
+Needs a result of demsolve --factor-of-safety. Where rock yields, the runs with zones twice as large are drawn, too. A run that
+fails has the displacement at its end. The dashed line is the limit at which runs end: a multiple of the displacement of the
+run with nearly no slip.
 """
 
 import numpy as np

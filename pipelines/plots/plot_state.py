@@ -265,7 +265,7 @@ def draw_contacts(file, state, section, axes):
                 matplotlib.patheffects.Stroke(linewidth=size, foreground=color), matplotlib.patheffects.Normal()])
         entries.append(entry)
     if np.any(status > STUCK):
-        entries.append(matplotlib.lines.Line2D([], [], color="0.3", linewidth=thin, label="0 mm at this width"))
+        entries.append(matplotlib.lines.Line2D([], [], color="0.3", linewidth=thin, label="thinnest line: shear or opening 0 mm"))
     return entries
 
 

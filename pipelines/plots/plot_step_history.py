@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """The history of the solver's steps: displacement of a point and normal stress at a gauge against accumulated solver time.
 
-Needs a result file whose solver was asked for the step history (demsolve --step-history). Every equilibrium (in situ, stage, creep step) is one piece
+Needs a result of demsolve --step-history. Every equilibrium (in situ, stage, creep step) is one piece
 of solver time; the axis between the curves says which day it belongs to, and dark lines are where stages begin. A curve
 ends when its point or joint is removed.
 """

@@ -174,6 +174,23 @@ class Documentation(ChainTest):
                     self.assertIn("28 pass, 0 fail, 14 without verdict", done.stdout)
                 else:
                     self.assertNotIn("warning", done.stderr)
+                    self.check_cavern(page, folder)
+
+    def check_cavern(self, page, folder):
+        """The counts of the page, and the closure of the walls that its Python prints, are those of the result."""
+        (example,) = code_blocks(page, "python")
+        done = subprocess.run([sys.executable, "-c", example], cwd=folder, capture_output=True, text=True)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        with h5py.File(folder / "result.h5") as file:
+            slipping = (file["/states/contact_status"][-1] == 2).sum()
+            self.assertIn(f"{len(file['/mesh/zone_block'])} zones, {len(file['/equilibria/time'])} equilibria", page)
+            self.assertIn(f"At the end {slipping} contacts slip and one is open.", page)
+            names = file["/history/point"].asstr()[:].tolist()
+            last = file["/history/displacement"][-1] * 1e3
+        x, y = map(float, done.stdout.strip(" []\n").split())
+        self.assertAlmostEqual(x, last[names.index("south wall"), 0] - last[names.index("north wall"), 0], places=3)
+        self.assertAlmostEqual(y, last[names.index("south wall"), 1] - last[names.index("north wall"), 1], places=3)
+        self.assertRegex(page, rf"approach, by {x:.0f} mm")
 
     def test_links(self):
         """Files that pages name in links exist. (Sphinx looks at headings, too, of pages in docs.)"""
@@ -268,7 +285,7 @@ class Documentation(ChainTest):
                                            'what = "displacement"\npoint = "crest"\ncomponent = "x"\n')
         subprocess.run([self.chain.programs / "jointcreep", "study", "study.toml", "-o", "out/first", "-q"], check=True, cwd=folder)
         blocks = code_blocks(page, "python")
-        self.assertEqual(len(blocks), 8)
+        self.assertEqual(len(blocks), 9)
         for package in "pandas", "xarray":
             if not importlib.util.find_spec(package):
                 blocks = [block for block in blocks if f"python3-{package}" not in block]
@@ -276,6 +293,7 @@ class Documentation(ChainTest):
                   "assert [path for path in sys.path if path.endswith('/plots')] == [str(pathlib.Path('pipelines/plots').resolve())]\n"
                   "file = h5py.File('out/slope/result.h5')\n"
                   "assert (history.displacement == file['/history/displacement'][()]).all() and table.units['displacement x'] == 'm'\n"
+                  "assert closure[0] == 0 and abs(closure[-1] + relative[-1] @ apart / numpy.linalg.norm(apart)) < 1e-6 < abs(closure[-1])\n"
                   "assert abs(network.blocks()['area'].sum() - 120 * 70) < 1e-6\n"
                   "assert 'frame' not in globals() or frame.attrs['units']['length'] == 'm' and len(frame) == contacts.rows()\n"
                   "assert 'moved' not in globals() or moved.sel(point='toe', component='y').values.tolist() == history.of('toe')[:, 1].tolist()\n"
