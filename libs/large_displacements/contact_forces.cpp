@@ -18,6 +18,8 @@ namespace
 constexpr double deepest = 0.5; // overlap over the depth of the thinner zone, at most
 // The same where two faces come to touch; farther in, one lies behind the other, or has slid on.
 constexpr double deepest_new = 0.1;
+// Overlap over the length of the shorter face, at most, of faces of which one just slides on to the other.
+constexpr double touching = 0.01;
 
 double depth_of(const FacePair& pair, const Faces& faces)
 {
@@ -289,17 +291,21 @@ bool FaceContacts::comes_to_touch(FacePair& pair, const Overlap& found, const Ti
         // A face that slides on to the next one keeps the memory of its joint. The sides of the pair may change places:
         // the first end of a is then at the second end of b. `along` reverses twice with the normal, so the shear
         // traction keeps its sign. The inherited dilation is at most the gap one step ago, less the lead without
-        // dilation.
+        // dilation. So is the lead, if the faces have faced each other over some length without a force, as beside a
+        // corner that is pressed in: no force appears at once.
         const double unraised = (before->lead[0] + before->lead[1]) / 2 - before->dilation;
         const Gaps last = gaps_before(pair, found, faces_, step.move);
-        const double room =
-            last.slid < found.length ? std::min(last.gap[0], last.gap[1]) - unraised : before->dilation;
-        pair.dilation = std::max(pair.dilation, std::clamp(room, 0.0, before->dilation));
+        const double gap = std::min(last.gap[0], last.gap[1]), faced = found.length - last.slid;
+        const double shorter = std::min(shapes_[pair.a].length, shapes_[pair.b].length);
+        pair.dilation = std::max(
+            pair.dilation, std::clamp(faced > 0 ? gap - unraised : before->dilation, 0.0, before->dilation));
         pair.law = law_slid_on_to(pair, *before);
         pair.tau = before->tau;
         pair.memory = before->memory;
         pair.creep = creep_slid_on_to(pair, *before);
-        pair.lead = {unraised + pair.dilation, unraised + pair.dilation};
+        const double lead =
+            (faced > touching * shorter ? std::min(unraised, std::max(0.0, gap)) : unraised) + pair.dilation;
+        pair.lead = {lead, lead};
     }
     pair.is_known = true;
     return true;

@@ -208,6 +208,28 @@ TEST(face_contacts, history_goes_on_to_the_next_face)
     EXPECT_GT(contacts.searches(), 5);
 }
 
+// The upper row has a corner on the lower one, pressed in by the lead of the flat face. The face beyond the corner rises,
+// and starts without a force, whenever it is found: no energy appears.
+TEST(face_contacts, a_face_beside_a_corner_that_is_pressed_in_starts_without_a_force)
+{
+    const double lead = 0.05;
+    TwoLines lines({{4, 0}, {0, 0}}, {{0.5, 0}, {2, 0}, {3, 0.5}});
+    large_displacements::FacePair flat{.a = 0, .b = 1};
+    flat.lead = {lead, lead};
+    flat.is_known = flat.is_closed = true;
+    FaceContacts contacts({joint::Coulomb{k_n, k_s, 0, friction, 0}});
+    contacts.set_faces(lines.faces, {flat}, lines.place);
+    std::vector<Vector2d> move(lines.place.size(), Vector2d::Zero());
+    const double stored = k_n * lead * lead / 2 * 1.5;
+    for (const double down : {0.0, 0.0, 1e-9, 0.0}) {
+        for (std::size_t g = 2; g < lines.place.size(); ++g)
+            lines.place[g] += move[g] = {0, -down};
+        contacts.update(lines.place, move, 1, 0, 1);
+        EXPECT_NEAR(contacts.energy().stored, stored, 1e-6 * stored);
+        EXPECT_LT(forces_of(contacts, lines.place.size())[4].norm(), 1e-6 * k_n * lead);
+    }
+}
+
 TEST(face_contacts, faces_far_apart_are_not_sought_again_while_nothing_moves_far)
 {
     TwoLines lines = rows(1e-4);
