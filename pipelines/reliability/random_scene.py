@@ -145,6 +145,8 @@ def in_situ(random, density, height, ground):
     """About the rock's weight, and a share of it sideways."""
     weight = density * 9.81e-6
     keys = random.choice([{"elevation_m": height}, {"ground_m": ground}])
+    if chance(random, 0.2):
+        return keys | {"horizontal_stress_ratio": uniform(random, 0.3, 1.2)}
     stress = {"compression_xx_MPa": uniform(random, 0.3, 1.2) * weight, "compression_yy_MPa": weight, "shear_xy_MPa": 0}
     if chance(random, 0.7):
         return keys | {key: 0 for key in stress} | {key.replace("_MPa", "_gradient_MPa_per_m"): value
@@ -153,15 +155,16 @@ def in_situ(random, density, height, ground):
                                for depth in (0, height / 3, 2 * height)]}
 
 
-def boundaries(random, width, right, height, material, days, large):
-    """The base, both sides, and sometimes a load on the top."""
-    base = random.choice([{"fix": "xy"}, {"fix": "xy"}, {"fix": "y"}, {"joint": material}])
-    moved = chance(random, 0.15) and not large
+def boundaries(random, width, right, height, material, days, large, rise):
+    """The base, which rises to the right, both sides, and sometimes a load on the top."""
+    rollers = {"fix": "normal"}  # meet no side that is moved, and do not go with large displacements
+    base = random.choice([{"fix": "xy"}, {"fix": "xy"}, {"fix": "y"}, {"joint": material}, *([] if large else [rollers])])
+    moved = chance(random, 0.15) and not large and base != rollers
     history = [[0, 0], [days / 2, 1], [days, uniform(random, 0.5, 1)]]
-    yield {"from_m": [0, 0], "to_m": [width, 0], **base}
+    yield {"from_m": [0, 0], "to_m": [width, rise], **base}
     yield {"from_m": [0, 0], "to_m": [0, height], "fix": "x",
            **({"displacement_mm": [uniform(random, -1, 1), 0], "load_history": history} if moved else {})}
-    yield {"from_m": [width, 0], "to_m": [width, right], "fix": "x"}
+    yield {"from_m": [width, rise], "to_m": [width, right], "fix": "x" if large else random.choice(["x", "normal"])}
     if chance(random, 0.2):
         yield {"from_m": [0, height], "to_m": [width / 4, height], "traction_MPa": [0, -uniform(random, 0, 0.1)],
                **({"load_history": history} if chance(random, 0.5) and not large else {})}
@@ -193,15 +196,16 @@ def random_scene(random):
     large, quick = chance(random, 0.12), chance(random, 0.5)
     height = log_uniform(random, 20 if large else 3, 80)  # time steps of small or stiff zones are short
     width, days = float(f"{height * random.uniform(1, 2.5):.4g}"), random.choice([10, 60, 400])
-    creeps = not large and chance(random, 0.5)
+    creeps = chance(random, 0.5)
     right = height if chance(random, 0.5) else float(f"{height * random.uniform(0.3, 0.8):.4g}")
+    rise = float(f"{height * random.choice([0, 0, 0.02, 0.1]):.4g}")
     top = [[width, height]] if right == height else [[width, right], [width * 0.7, right], [width * 0.5, height]]
-    section = {"outline_m": [[0, 0], [width, 0], *top, [0, height]], "rock": "rock 0", "gravity_m_per_s2": 9.81,
+    section = {"outline_m": [[0, 0], [width, rise], *top, [0, height]], "rock": "rock 0", "gravity_m_per_s2": 9.81,
                "azimuth_deg": 90}
     if chance(random, 0.15):
         x, y, r = width * 0.2, height * 0.4, height * 0.1
         section["holes_m"] = [[[x - r, y - r], [x + r, y - r], [x + r, y + r], [x, y + 1.5 * r], [x - r, y + r]]]
-    rocks = [rock(random, f"rock {i}", creeps, 5 if large else 60) for i in range(random.randint(1, 3))]
+    rocks = [rock(random, f"rock {i}", creeps and not large, 5 if large else 60) for i in range(random.randint(1, 3))]
     names = [one["name"] for one in rocks]
     stress = rocks[0]["density_kg_per_m3"] * 9.81e-6 * height
     materials = [joint_material(random, f"material {i}", stress, height, creeps) for i in range(random.randint(1, 3))]
@@ -229,7 +233,7 @@ def random_scene(random):
                       for _ in range(3))})]
     parts.append(table("[in_situ_stress]", in_situ(random, rocks[0]["density_kg_per_m3"], height,
                                                    [[-1, height], [width / 2, height * 1.05], [width + 1, height]])))
-    parts += [table("[[boundary]]", one) for one in boundaries(random, width, right, height, kinds[0], days, large)]
+    parts += [table("[[boundary]]", one) for one in boundaries(random, width, right, height, kinds[0], days, large, rise)]
     start = random.choice([0, 100])
     parts.append(table("[schedule]", {"start": start, "end": start + days}))
     benches = random.randint(0, 3)
@@ -257,7 +261,8 @@ def random_scene(random):
             ["joint", "lower bound", "upper bound", "staggered"])}))
     parts.append(table("[equilibrium]", equilibrium(random, large)))
     if large:
-        parts.append(table("[large_displacements]", {"new_contacts": kinds[0], "longest_s": 0.5, **(
-            {"rigid_rocks": [names[0]]} if quick else {"mass_damping_per_s": 1})}))
+        parts.append(table("[large_displacements]", {
+            "new_contacts": kinds[0], "longest_s": 0.5, **({"release_s": 0.05} if creeps else {}),
+            **({"rigid_rocks": [names[0]]} if quick else {"mass_damping_per_s": 1})}))
     parts.append(table("[random]", {"seed": random.randrange(2**31)}))
     return "\n".join(parts)
