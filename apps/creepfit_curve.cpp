@@ -291,7 +291,7 @@ std::vector<Option> curve_options()
          "of a curve: when the load changed (default: day of the first reading); the mean of readings "
          "before it is taken as 0"},
         {"converged-day", "DAY",
-         "of a curve: when creep is taken to be over, for the closed estimate (default: last reading)"}};
+         "of a curve: day when creep is taken as ended, for Eq. 14 (default: last reading)"}};
 }
 
 void fit_curve(const Arguments& arguments)

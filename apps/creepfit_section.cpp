@@ -145,10 +145,10 @@ std::vector<Option> section_options()
         {"measurements", "FILE.csv", "through the solver: displacements of the scene's points"},
         {"fit", "NAMES",
          "through the solver: factors to find, of " + all_options(" and ") +
-             "; of joints with normal- or shear- before the name and @MATERIAL behind it for one direction and joint material "
-             "alone, separated by commas, each with bounds if given: joint-stiffness=0.5:2 (default "
-             "bounds: 0.05:20); kelvin-viscosity is that of Maxwell dashpots, too; the search starts from 1, or "
-             "from the geometric mean of the bounds if 1 is outside them"},
+             ", separated by commas. normal- or shear- before the name: for one direction of joints. "
+             "@MATERIAL behind it: for one joint material. Bounds may follow: joint-stiffness=0.5:2 (default "
+             "bounds: 0.05:20). kelvin-viscosity is that of Maxwell dashpots, too. The search starts from 1, "
+             "or from the geometric mean of the bounds if 1 is outside them"},
         {"since-first-reading", "",
          "through the solver: measurements count from each point's first reading, and share its error"},
         {"runs", "N",

@@ -39,7 +39,7 @@ namespace
 
 const Program program{
     .name = "demsolve",
-    .summary = "Excavates a jointed section in stages and lets joints and rock creep.",
+    .summary = "Computes the equilibrium, the excavation in stages, and the creep of a jointed section.",
     .input = "joints.h5",
     .output = "result.h5",
     .options = demsolve::options(),

@@ -141,12 +141,14 @@ void Files::check_same_run(const std::string& path, const StrengthReduction& red
                            const std::vector<std::string>& of_here, const std::string& wanted) {
         if (of_kept != of_here)
             throw input_error(path + ": " + dataset + " is \"" + (of_kept.empty() ? "" : of_kept.back()) +
-                              "\"; wanted " + wanted + ". Delete the checkpoint to begin anew");
+                              "\"; wanted " + wanted + ". Delete the checkpoint to start again");
     };
     check("/provenance/input_sha256", kept.input_sha256, here.input_sha256,
           "that of " + input_ + ", \"" + here.input_sha256.back() + '"');
     check("/provenance/version", kept.version, here.version,
-          "\"" + here.version.back() + "\", this program's, as another one may compute otherwise");
+          "\"" + here.version.back() +
+              "\", the version of this program: another version may have other "
+              "results");
     check("/provenance/options", kept.options, here.options,
           "the same options, \"" + here.options.back() + '"');
 }

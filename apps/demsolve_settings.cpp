@@ -179,18 +179,20 @@ std::vector<Option> options()
         {"factor-of-safety", "",
          "bracket the largest F with which every equilibrium is found, by runs with different F; "
          "result.h5 is of that F, result.failed.h5 of the next one"},
-        {"safety-width", "W", "width of that bracket, over F (default 0.01)"},
+        {"safety-width", "W", "width of the bracket of --factor-of-safety, over F (default 0.01)"},
         {"safety-displacement", "R",
-         "largest displacement that counts as failure, over that with strengths 64 times as large (default 10)"},
+         "a run fails if its largest displacement is more than R times that with strengths 64 times as large "
+         "(default 10)"},
         {"runs-at-once", "N",
          "make N runs of that search side by side; they do not change the result (default 1)"},
         {"no-mesh-estimate", "",
          "where rock yields: no second search with zones twice as large, which estimates the error of the mesh"},
-        {"until", "DAY", "end there instead of at the scene's end, before or after it [day]"},
+        {"until", "DAY", "end on this day, before or after the scene's end [day]"},
         {"checkpoint", "FILE",
-         "before every stage, and at intervals, write the state there; if FILE exists, continue from it"},
+         "write the state to FILE, before every stage and at intervals; if FILE exists, continue from it"},
         {"checkpoint-every", "MIN",
-         "write it after so many minutes, at the next possible moment (default 10; 0: before stages only)"},
+         "write the checkpoint again when MIN minutes have passed, at the next possible moment (default 10; "
+         "0: before stages only)"},
         {"states", "N", "record the whole section every N creep steps too (default: at dates only)"},
         {"step-history", "N", "record points and gauges every N solver steps"}};
     all.insert(all.end(), others.begin(), others.end());

@@ -361,17 +361,18 @@ int main(int argc, char** argv)
          .output = "NAME.EXT",
          .options =
              {{"format", "NAME", "format, where several have the extension"},
-              {"formats", "", "show the table of formats, tab separated, and no more"},
+              {"formats", "", "show the table of formats, tab separated, and nothing else"},
               {"what", "NAME",
                "joints (traces), bridges, edges, blocks, section, planes (joints in space); from a result file "
                "also zones, contacts, histories. Several, separated by commas, where the format holds them. "
                "Default: by format (docs/exchange.md)"},
               {"width", "M",
-               "how far joints that are no discs reach across the section, and blocks of 3dec and yade (1 m)"},
+               "width across the section of joints that are not discs, and of blocks of 3dec and yade "
+               "(default of blocks: 1 m)"},
               {"state", "STATE",
                "of zones and contacts in a .vtu or .vtkhdf file: its number, counted from 0, the stage that it "
                "follows, or last (default)"},
-              {"file-format", "", "show the format of the HDF5 files of the chain, and no more"}},
+              {"file-format", "", "show the format of the HDF5 files of the chain, and nothing else"}},
          .example = "jointexport result.h5 -o zones.vtu --state \"block 2 removed\"",
          .takes_several = true,
          .writes_text = true},

@@ -42,11 +42,11 @@ const Program program{
           "compare the network with the laws of the scene, print the result, and keep it in the file"},
          {"check", "", "read the scene, cut it, report, and write nothing"},
          {"cut-with", "NAME",
-          "what divides the lines where they cross: own (default), or cgal: CGAL's Arrangement_2, which takes longer and gives "
-          "the same blocks; built with the tests only"},
+          "code that divides lines where they cross: own (default), or cgal, CGAL's Arrangement_2. cgal "
+          "gives the same blocks and takes longer; it is built with the tests only"},
          {"traces", "",
-          "print the traces of a file as a scene's [[mapped]] takes them, as CSV, and no more; the file is in place "
-          "of the scene"},
+          "print the traces of a file as CSV, as [[mapped]] of a scene reads them, and nothing else; give the file in "
+          "place of the scene"},
          {"layer", "NAME", "with --traces: layer of the file"},
          {"property", "NAME", "with --traces: property whose value is printed"},
          {"scene-keys", "", "print every scene key as a table, tab separated"},

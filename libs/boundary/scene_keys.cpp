@@ -44,8 +44,9 @@ Table<Boundary> boundary()
     };
     return {
         {"boundary", in_list, required,
-         "Supports and loads of a straight piece of the outline: fix or joint, traction, fix and a traction in the "
-         "free direction, or fix and displacement. Elsewhere the outline is free."},
+         "Supports and loads of a straight piece of the outline. It has fix, joint, or traction. With fix it "
+         "can also have a traction in the free direction, or a displacement. The outline is free where there "
+         "is no [[boundary]]."},
         {point("from_m", &Boundary::from, "One end, on the outline."),
          point("to_m", &Boundary::to, "The other end, on the same straight piece of the outline."),
          choice<Boundary, Fixed>("fix", fix,
@@ -53,27 +54,29 @@ Table<Boundary> boundary()
                                   {"y", {false, true}},
                                   {"xy", {true, true}},
                                   {"normal", {false, false, true}}},
-                                 "It does not move in these directions. normal: rollers, free only along the "
-                                 "segment; where rollers of two directions meet, nothing moves.")
+                                 "Directions in which it does not move. normal: rollers, which move only "
+                                 "along the segment. A gridpoint where rollers of two directions meet does "
+                                 "not move.")
              .optional(),
          text("joint", &Boundary::joint, "It rests on fixed ground through a joint of this joint material.")
              .optional(),
-         vector(
-             "traction_MPa", &Boundary::traction, MPa, stresses,
-             "Total force on the rock per area {x, y}, 0 in a direction that is fixed. It includes the traction of "
-             "the in-situ stress, which nothing else balances in a direction that is not fixed.")
+         vector("traction_MPa", &Boundary::traction, MPa, stresses,
+                "Total force on the rock per area {x, y}, 0 in a fixed direction. In the other directions no "
+                "support balances the in-situ stress. So this force must include the traction of the in-situ "
+                "stress.")
              .optional(),
          vector("displacement_mm", &Boundary::displacement, millimetres, within(1e6),
-                "Imposed displacement {x, y}, 0 in a direction that is not fixed; with fix and load_history.")
+                "Imposed displacement {x, y}, 0 in a direction that is not fixed. It needs fix and "
+                "load_history.")
              .optional(),
          key_of<Boundary>(
              {"load_history",
               "load history",
               {},
               within(farthest_day),
-              "Factor of traction and displacement over time: pairs of a date and a factor with straight "
-              "lines between them, as for a ramp or cycles. Without it a traction acts from the start, "
-              "and the in-situ equilibrium is found under it."},
+              "Multiplier of traction and displacement over time: pairs of a date and a multiplier, linear "
+              "between dates. Examples are a ramp and cycles. Without it a traction acts from the start, and "
+              "the in-situ equilibrium is found under it."},
              &Boundary::load_history, read_load_history)
              .asks_for("pairs of a date and a number, [[date, factor], ...]")
              .formerly("course")

@@ -253,10 +253,9 @@ bool Solver::converge(Assembly& assembly, const State& start, const Equilibrium&
             return true;
         if (corrections_ - first == most_corrections ||
             course.since_least == (yields(assembly) ? most_without_gain_with_flow : most_without_gain)) {
-            reason_ = unsupported_ < 0
-                          ? "forces do not come into balance"
-                          : "contacts do not carry the weight of, and the loads on, the rock at " +
-                                shown(assembly.position[unsupported_]);
+            reason_ = unsupported_ < 0 ? "forces do not come into balance"
+                                       : "contacts do not carry the weight and the loads of the rock at " +
+                                             shown(assembly.position[unsupported_]);
             return false;
         }
 

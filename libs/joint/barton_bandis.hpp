@@ -30,15 +30,16 @@ inline const Parameter roughness{
     from(0).to(30),
     WithBridges::refused,
     WithStrengthDivided::same,
-    "JRC. With it and the next two keys the joint has Barton and Bandis's law: normal_stiffness is that without "
-    "pressure, friction_angle the residual one, and cohesion, tensile strength and dilation angle are 0."};
+    "JRC, the roughness of the joint. JRC, JCS and V_m together select Barton and Bandis's law. The normal "
+    "stiffness is then that without pressure, and the friction angle is the residual one. Cohesion, tensile "
+    "strength and dilation angle are 0."};
 inline const Parameter wall_strength{"wall_strength",
                                      "joint_wall_strength_MPa",
                                      MPa,
                                      above(0).to(1e4),
                                      WithBridges::refused,
                                      WithStrengthDivided::same,
-                                     "JCS, the compressive strength of its walls."};
+                                     "JCS, the compressive strength of the joint walls."};
 inline const Parameter largest_closure{"largest_closure",
                                        "largest_closure_mm",
                                        millimetres,

@@ -34,8 +34,9 @@ inline const Parameter initial_friction_angle{
     frictions,
     WithBridges::refused,
     WithStrengthDivided::tangent,
-    "Friction angle of the rough joint before it has slipped, at least the friction angle. With it and the next key "
-    "the joint yields continuously (Cundall and Lemos 1990); cohesion, tensile strength and dilation angle are 0."};
+    "Friction angle of the rough joint before the first slip, at least the friction angle. It and the "
+    "roughness length R select the continuously yielding law (Cundall and Lemos 1990). Cohesion, tensile "
+    "strength and dilation angle are then 0."};
 inline const Parameter roughness_length{
     "roughness_length",
     "roughness_length_mm",
@@ -43,8 +44,8 @@ inline const Parameter roughness_length{
     above(0).to(1e4),
     WithBridges::refused,
     WithStrengthDivided::same,
-    "R. The friction angle less that of the smooth joint decreases as exp(-u_p / R), u_p the plastic "
-    "shear displacement."};
+    "Roughness length R. The friction angle decreases from the initial one to that of the smooth joint. The "
+    "difference is in proportion to exp(-u_p / R), with the plastic shear displacement u_p."};
 
 } // namespace parameters
 

@@ -101,7 +101,7 @@ inline const Parameter dilation_until{
     from(0).to(1000),
     WithBridges::own,
     WithStrengthDivided::same,
-    "Slip at which dilation ends, also that of rock bridges in the joint; 0 if it does not.",
+    "Slip at which dilation ends, that of rock bridges, too. 0: dilation does not end.",
     0.0,
     &JointMaterial::dilation_until,
     &EquivalentJoints::dilation_until};

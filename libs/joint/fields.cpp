@@ -157,13 +157,15 @@ std::vector<Field> fields_of(States& states)
         {"/states/contact_status", &states.contact_status, {"state", "contact"}, "1", between(0, 3),
          "0 removed (a side has been excavated), 1 stuck, 2 slipping, 3 open."},
         {"/states/slip", &states.slip, {"state", "contact"}, "m", any(),
-         "Slip since the in-situ equilibrium: shear_stiffness times (relative_displacement - crept - slip) is the change of "
-         "shear traction since then. In a dynamic analysis with large displacements it is found from that."},
+         "Slip since the in-situ equilibrium: shear_stiffness times (relative_displacement - crept - slip) "
+         "is the change of shear traction since then. In a dynamic analysis with large displacements slip is "
+         "computed by this equation."},
         {"/states/dilation", &states.dilation, {"state", "contact"}, "m", any(),
-         "Opening by slip since then; in a dynamic analysis the mean of the faces that meet at the contact."},
+         "Opening by slip since the in-situ equilibrium. In a dynamic analysis: the mean of the faces that "
+         "meet at the contact."},
         {"/states/bond_broken", &states.bond_broken, {"state", "contact"}, "1", between(0, 1),
-         "1 once the bonds of the contact are broken: it has its strength without bonds. In a dynamic analysis on more than "
-         "half of the faces that meet there."},
+         "1 once the bonds of the contact are broken: it has its strength without bonds. In a dynamic "
+         "analysis: once they are broken on more than half of the faces that meet there."},
         {"/states/crept", &states.crept, {"state", "contact"}, "m", any(),
          "Creep part of the relative displacement {normal, shear}."},
         {"/states/initial_gap", &states.initial_gap, {"contact"}, "m", at_least(0),
@@ -220,14 +222,15 @@ std::vector<Field> fields_of(Checkpoint& checkpoint)
          "0 removed, 1 stuck, 2 slipping, 3 open."},
         {"/checkpoint/traction", &checkpoint.traction, contact, "Pa", any(), "Traction {normal, shear}, tension positive."},
         {"/checkpoint/initial_traction", &checkpoint.initial_traction, contact, "Pa", any(),
-         "The same at zero displacement; where open, what its springs would carry."},
+         "Traction {normal, shear} at zero displacement. Of an open contact: the traction that its springs "
+         "would carry."},
         {"/checkpoint/relative_displacement", &checkpoint.relative_displacement, contact, "m", any(),
          "Displacement of side b minus that of side a {normal, shear}."},
-        {"/checkpoint/offset", &checkpoint.offset, contact, "m", any(), "Creep part of it {normal, shear}."},
+        {"/checkpoint/offset", &checkpoint.offset, contact, "m", any(), "Creep part of this displacement {normal, shear}."},
         {"/checkpoint/slip", &checkpoint.slip, contact, "m", any(), "Slip since the in-situ equilibrium."},
-        {"/checkpoint/dilation", &checkpoint.dilation, contact, "m", any(), "Opening by slip since then."},
+        {"/checkpoint/dilation", &checkpoint.dilation, contact, "m", any(), "Opening by slip since the in-situ equilibrium."},
         {"/checkpoint/opening_rate", &checkpoint.opening_rate, {"open_contact"}, "m/s", any(),
-         "Rate of {opening, shear} in the last creep step, of contacts open in it; of others 0."},
+         "Rate of {opening, shear} of contacts that were open in the last creep step; 0 of others."},
         {"/checkpoint/is_broken", &checkpoint.is_broken, contact, "1", between(0, 1),
          "1 once the bonds of the contact are broken."},
         {"/checkpoint/first_memory", &checkpoint.first_memory, contact, "1", any(),
@@ -271,7 +274,7 @@ std::vector<Field> fields_of(DynamicsState& state)
         {"/dynamics_state/first_reference", &state.first_reference, pair, "Pa", any(),
          "Pressure from which creep counts, at the first end of the first face."},
         {"/dynamics_state/second_reference", &state.second_reference, pair, "Pa", any(), "The same at its second end."},
-        {"/dynamics_state/shear_reference", &state.shear_reference, pair, "Pa", any(), "The same of the shear traction."},
+        {"/dynamics_state/shear_reference", &state.shear_reference, pair, "Pa", any(), "Shear traction from which creep counts."},
         {"/dynamics_state/pair_crept", &state.pair_crept, {"pair_unit"}, "m", any(),
          "Creep displacement of the unit: closure, or shear."},
         {"/dynamics_state/pressed_in", &state.pressed_in, pair, "J/m", at_least(0), "Energy of the normal springs between them."},

@@ -23,8 +23,8 @@ inline const Parameter residual_cohesion{
     strengths,
     WithBridges::share,
     WithStrengthDivided::value,
-    "Cohesion once the joint has slipped or opened, at most its cohesion. Without this and the next key only "
-    "opening removes the cohesion."};
+    "Residual cohesion, after the first slip or opening: at most the cohesion. A joint without residual "
+    "strength loses its cohesion by opening only."};
 inline const Parameter residual_friction_angle{
     "residual_friction_angle",
     "residual_friction_angle_deg",
@@ -32,7 +32,8 @@ inline const Parameter residual_friction_angle{
     frictions,
     WithBridges::weaker,
     WithStrengthDivided::tangent,
-    "Friction angle from then on, at most the friction angle and at least the dilation angle."};
+    "Residual friction angle, after the first slip or opening: at most the friction angle, at least the "
+    "dilation angle."};
 
 } // namespace parameters
 

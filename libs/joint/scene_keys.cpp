@@ -158,9 +158,9 @@ Table<Averaging> averaging()
                  {"lower bound", StiffnessRule::lower_bound},
                  {"upper bound", StiffnessRule::upper_bound},
                  {"staggered", StiffnessRule::staggered}},
-                "Stiffnesses and Kelvin constants of a joint with rock bridges: the joint's own; bounds for "
-                "joint traces connected by rock bridges; or those of many lines with staggered "
-                "traces and bridges.")
+                "Stiffnesses and Kelvin constants of a joint with rock bridges. joint: those of the joint "
+                "itself. lower bound, upper bound: bounds for joint traces that rock bridges connect. "
+                "staggered: those of many lines with staggered traces and bridges.")
              .or_else(std::string("joint"))}};
 }
 

@@ -23,8 +23,8 @@ inline const Parameter dilation_wear{
     above(0).to(1e6),
     WithBridges::own,
     WithStrengthDivided::same,
-    "w. With it dilation wears off: the tangent of the dilation angle is multiplied by exp(-w W), W the "
-    "work of slip per area."};
+    "Wear w. With it dilation wears off: the tangent of the dilation angle is multiplied by exp(-w W), with "
+    "the work W of slip per area."};
 
 } // namespace parameters
 

@@ -528,17 +528,17 @@ void Dynamics::check_rounding(double of_springs, double rounding) const
     if (now_.largest_mean <= of_springs || rounding <= most_rounding * now_.largest_mean)
         return;
     const std::string where =
-        "; what is stiffest is at " + shown(assembly_.position[now_.stiffest_gridpoint]) + ": wanted ";
+        "; the stiffest gridpoint is at " + shown(assembly_.position[now_.stiffest_gridpoint]) + ": wanted ";
     if (of_springs > most_rounding * now_.largest_mean)
         throw equilibrium_error(
-            "dynamic analysis: rounding errors of places, times stiffness, are not small beside the "
-            "mean force on a gridpoint, " +
-            shown(now_.largest_mean) + " N/m" + where + "more load, softer joints, or no zones so small");
-    throw equilibrium_error("dynamic analysis: a step takes " + shown(now_.dt) + " s, and what " +
-                            shown(settings_.stiffness_damping) +
-                            " s of stiffness damping makes of rounding errors is no longer small beside the "
-                            "forces" +
-                            where + "less damping there, or no zones so small");
+            "dynamic analysis: forces by rounding errors of positions are not small compared with the mean "
+            "force on a gridpoint, " +
+            shown(now_.largest_mean) + " N/m" + where + "more load, softer joints, or larger zones there");
+    throw equilibrium_error("dynamic analysis: with a step of " + shown(now_.dt) +
+                            " s and stiffness damping of " + shown(settings_.stiffness_damping) +
+                            " s, damping forces by rounding errors are not small compared with the forces of "
+                            "the rock" +
+                            where + "less damping there, or larger zones");
 }
 
 bool Dynamics::is_at_rest()

@@ -500,7 +500,7 @@ public:
                     " of displacement remain, wanted " +
                     shown_length(enough(settings_.tolerance) * relaxation.reference_displacement());
         if (unsupported_.displacement > 0)
-            text += "; contacts do not carry the weight of, and the loads on, the rock at " +
+            text += "; contacts do not carry the weight and the loads of the rock at " +
                     shown(assembly_.position[unsupported_.gridpoint]);
         return text + "; the largest unbalanced force is at " +
                shown(assembly_.position[balance_of(assembly_).worst]);

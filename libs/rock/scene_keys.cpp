@@ -68,7 +68,7 @@ Table<Region> region()
         {"region", in_list, optional,
          "A part of the section made of another rock. Later ones cover earlier ones."},
         {text("rock", &Region::rock, "Name of its rock."),
-         polygon("outline_m", &Region::outline, "Its outline; what reaches out of the section is cut off.")}};
+         polygon("outline_m", &Region::outline, "Its outline. The part outside the section is cut off.")}};
 }
 
 Table<InSituStress::Level> stress_profile()

@@ -516,7 +516,7 @@ private:
                                          " s; no rest is possible before");
         if (scene_.large_displacements->stop && scene_.stages.empty())
             once("large_displacements")
-                .refuse("stop_s", "the scene has no [[stage]], whose analysis would end");
+                .refuse("stop_s", "wanted a [[stage]]: this key ends the dynamic analysis of the last one");
         if (scene_.large_displacements->stop > scene_.large_displacements->longest)
             once("large_displacements")
                 .refuse("stop_s",
@@ -526,12 +526,12 @@ private:
             once("large_displacements")
                 .refuse("stop_s", "wanted more than release_s, " +
                                       shown(scene_.large_displacements->release) +
-                                      " s, in which the rock of the stage goes");
+                                      " s, in which the forces of the excavated rock decrease to 0");
         if (scene_.equilibrium.unloading_increments > 1)
             once("equilibrium")
                 .refuse("unloading_increments",
                         "with [large_displacements] a stage excavates its rock at once; wanted 1, and "
-                        "[large_displacements] release_s for forces that go to 0 in time");
+                        "[large_displacements] release_s for forces that decrease to 0 slowly");
         if (scene_.equilibrium.increments_tolerance)
             once("equilibrium")
                 .refuse("increments_tolerance", "a scene with [large_displacements] has no increments");
@@ -549,11 +549,10 @@ private:
         const LargeDisplacements& large = *scene_.large_displacements;
         const Given given = once("large_displacements");
         if (!(large.release > 0))
-            given.refuse(
-                "release_s",
-                "with [creep] wanted more than 0: what joints creep in a step is added in that time");
+            given.refuse("release_s",
+                         "wanted more than 0 with [creep]: the creep of a step is added in this time");
         if (large.stop)
-            given.refuse("stop_s", "a scene with [creep] has none: rock rests before it creeps");
+            given.refuse("stop_s", "wanted no such key with [creep]: creep begins when the rock is at rest");
         for (std::size_t i = 0; i < scene_.rocks.size(); ++i)
             if (scene_.rocks[i].kelvin || scene_.rocks[i].maxwell_viscosity)
                 in_list("rock", i).refuse("name",

@@ -235,9 +235,9 @@ Table<WrittenOrientation> orientation_law()
     return {
         {"joint_set.orientation", inside, optional,
          "Law of the poles (normals) of the joint planes in space, with section.azimuth_deg. For lines, "
-         "Fisher's law is that of the planes that a scanline along the mean trace's normal meets in the "
-         "section, and the bootstrap that of all planes of the set. For segments and discs both are laws of "
-         "all joints in space; the section meets joints at a larger angle to it more often."},
+         "Fisher's law describes the planes that a scanline meets in the section, along the normal of the "
+         "mean trace. The bootstrap describes all planes of the set. For segments and discs, both laws "
+         "describe all joints in space. Joints at a larger angle to the section are met more often."},
         {choice("law", &W::bootstrap, {{"Fisher", false}, {"bootstrap", true}},
                 "Probability law. Fisher's: symmetric about the mean pole. Bootstrap: measured poles, drawn "
                 "with replacement."),
@@ -263,14 +263,14 @@ Table<WrittenOrientation> orientation_law()
              .optional(),
          text(
              "poles", &W::file,
-             "File beside the scene, in its folder or a folder there, with the measured planes: CSV with the "
-             "columns dip_deg, dip_direction_deg and, if wanted, weight." +
+             "File with the measured planes, in the folder of the scene or in a subfolder: CSV with the columns "
+             "dip_deg, dip_direction_deg and, optional, weight." +
                  bootstrap_only)
              .optional(),
          number<W>(
              "scanline_trend_deg", trend, degrees, from(0).to(360),
-             "Bearing of the lower end of the scanline or borehole on which they were measured: weights "
-             "them by Terzaghi, by one over the cosine of the angle between pole and scanline." +
+             "Bearing of the lower end of the scanline or borehole on which the planes were measured. They "
+             "then have Terzaghi's weights: one over the cosine of the angle between pole and scanline." +
                  bootstrap_only)
              .together("scanline"),
          number<W>("scanline_plunge_deg", plunge, degrees, from(-90).to(90),
@@ -463,11 +463,13 @@ Table<WrittenDensity> density_table()
     const Range dense = from(1e-9).to(1e6);
     return {
         {"joint_set.density", inside, optional,
-         "Density of a set, as one of five measures, of joint traces before they end at others. For lines it "
-         "sets the mean spacing. Scatter of the orientation is taken into account."},
+         "Density of a set, by one of five measures. Joint traces count before terminations at other sets "
+         "shorten them. For lines it sets the mean spacing. Scatter of the orientation is taken into "
+         "account."},
         {number("P10_per_m", &W::p10, per_m, dense,
-                "Joint traces that a scanline meets per metre, with its direction: scanline_angle_deg, or "
-                "scanline_trend_deg and scanline_plunge_deg. Corrected by Terzaghi.")
+                "Joint traces that a scanline meets per metre. It needs the direction of the scanline: "
+                "scanline_angle_deg, or scanline_trend_deg and scanline_plunge_deg. With Terzaghi's "
+                "correction.")
              .optional(),
          number("P20_per_m2", &W::p20, per_m2, dense, "Trace midpoints per area of section; not of lines.")
              .optional(),
@@ -566,12 +568,12 @@ Table<JointSet> joint_set(const TablesInJointSet& laws)
          choice(
              "kind", &JointSet::kind,
              {{"lines", SetKind::lines}, {"segments", SetKind::segments}, {"discs", SetKind::discs}},
-             "Lines through the whole section, along each of which joint traces and rock bridges alternate; "
-             "segments of the section at random (Baecher), each a joint trace; or the traces that discs at "
-             "random in space leave in the section.")
+             "lines: lines through the whole section; along each line joint traces and rock bridges "
+             "alternate. segments: joint traces at random places in the section (Baecher). discs: the traces "
+             "of discs at random places in space.")
              .or_else(std::string("lines")),
          law("trace_angle", &JointSet::trace_angle, laws.trace_angle, laws_of_angles(),
-             "Angle of the traces in the section; not of discs.")
+             "Angle of the traces in the section. Not for discs.")
              .optional(),
          law("dip", &JointSet::dip, laws.dip, laws_of_angles(), "Dip of the joint planes.").optional(),
          law("dip_direction", &JointSet::dip_direction, laws.dip_direction, laws_of_angles(),
@@ -579,10 +581,10 @@ Table<JointSet> joint_set(const TablesInJointSet& laws)
              .optional(),
          orientation(laws.orientation),
          law("spacing", &JointSet::spacing, laws.spacing, laws_of_lengths(),
-             "Of lines: distance between neighbouring joint planes. Lines need it or a density. With both "
-             "the density sets the mean, and the law is stretched to this mean; with a density alone the "
-             "law is negative exponential. The position of the first line is random, also with a constant spacing. "
-             "For a joint at a given place use [[joint]].")
+             "For lines: distance between neighbouring joint planes. Lines need it or a density. With both, "
+             "the density gives the mean, and the law is scaled to this mean. With a density alone the law "
+             "is negative exponential. The position of the first line is random, also with a constant "
+             "spacing. For a joint at a given place use [[joint]].")
              .optional(),
          key_of<JointSet>(
              {"density", "density", {}, {}, "Density of the joints. Segments and discs need it."},
@@ -593,14 +595,14 @@ Table<JointSet> joint_set(const TablesInJointSet& laws)
              "Length of the joint traces. Segments need it, and lines unless their persistence is 0 or 1.")
              .optional(),
          law("diameter", &JointSet::diameter, laws.diameter, laws_of_lengths(),
-             "Diameter of the discs, which need it; of others refused.")
+             "Diameter of the discs. Discs need it; other kinds refuse it.")
              .optional(),
          number("persistence", &JointSet::persistence, no_unit, from(0).to(1),
-                "Fraction of a line that is joint. Lines need it, or bridge_length_m; of others refused.")
+                "Fraction of a line that is joint. Lines need it, or bridge_length_m; other kinds refuse it.")
              .optional(),
          bridge_length(),
          names("terminates_at", &JointSet::terminates_at,
-               "Names of joint sets, joints and mapped sets at whose traces those of this set may end; of "
+               "Names of joint sets, joints and mapped sets. Traces of this set may end at their traces. For "
                "segments and discs.")
              .optional(),
          number("termination_probability", &JointSet::termination_probability, no_unit, above(0).to(1),
@@ -621,18 +623,19 @@ Table<WrittenMapped> mapped()
          text("material", &W::material, "Name of the joint material."),
          text(
              "file", &W::file,
-             "File beside the scene, in its folder or a folder there, with coordinates in metres of the "
-             "section. GeoJSON of LineString and MultiLineString; or CSV with the columns x1_m, y1_m, x2_m, "
-             "y2_m and, if wanted, id; or CSV with the columns id, x_m, y_m, a row for each point of a trace, the "
-             "rows of a trace one after another; or a GeoPackage, a Shapefile or a DXF file, if the programs were built with GDAL. Where every "
-             "id is a whole number from 0 to 2097151 it becomes the joint's number; elsewhere the place in the file "
-             "does."),
+             "File in the folder of the scene or in a subfolder, with coordinates in metres of the section. "
+             "One of: GeoJSON of LineString and MultiLineString; CSV with the columns x1_m, y1_m, x2_m, y2_m "
+             "and, optional, id; CSV with the columns id, x_m, y_m, a row for each point of a trace, the "
+             "rows of a trace one after another; GeoPackage, Shapefile or DXF, if the programs were built "
+             "with GDAL. If every id is a whole number from 0 to 2097151, it is the number of the joint. "
+             "Otherwise the position in the file is its number."),
          text(
              "layer", &W::layer,
              "Layer of the file, of a DXF file that of its entities. Needed where lines are in several layers.")
              .optional(),
          text("property", &W::property,
-              "Takes only the traces whose property of this name, in CSV a column, has the value below.")
+              "Name of a property, in CSV of a column. Only traces for which it has the value below are "
+              "used.")
              .together("property"),
          text("value", &W::value, "The property's value.").together("property")}};
 }
@@ -693,8 +696,8 @@ Table<MonitoringPoint> monitoring_point()
         {text("name", &MonitoringPoint::name, "Name, once among the points."),
          point(
              "at_m", &MonitoringPoint::at,
-             "Where, inside the section or on its outline. On the face of an excavation it belongs to the rock "
-             "that stays, between two stages to the rock that stays longer."),
+             "Its place, inside the section or on its outline. A point on the face of an excavation belongs "
+             "to the rock that stays. A point between two stages belongs to the rock that stays longer."),
          date("first_reading", &MonitoringPoint::first_reading, "When its own readings begin.")
              .optional("the start")}};
 }
@@ -798,17 +801,17 @@ Table<Cutting> cutting()
          "Limits below which details are merged when the section is cut into blocks."},
         {number(
              "shortest_edge_m", &Cutting::shortest_edge, metres, above(0).to(farthest_metre),
-             "Vertices closer than this, or than half of it to an edge, are merged. At most the zone size, "
-             "and less than the extent of the section.")
+             "Vertices that are closer to each other than this are merged, and vertices that are closer to "
+             "an edge than half of it. At most the zone size, and less than the extent of the section.")
              .optional("0.02 x zones.size_m"),
          number("smallest_angle_deg", &Cutting::smallest_angle, degrees, from(0).to(30),
                 "Narrower wedges between edges are closed where vertices move little.")
              .or_else(std::int64_t{1}),
          choice("dangling_ends", &Cutting::dangling_ends,
                 {{"prune", DanglingEnds::prune}, {"extend", DanglingEnds::extend}},
-                "A joint that ends inside a block is cut back to the last block edge it "
-                "met (prune), or extended in its own direction to the next line, as rock bridge, which "
-                "needs the strength of every rock.")
+                "What happens to a joint that ends inside a block. prune: it is cut back to the last block "
+                "edge that it met. extend: it is extended in its own direction to the next line. The "
+                "extension is rock bridge, so every rock needs a strength.")
              .formerly("dead_ends")
              .or_else("prune")}};
 }
@@ -850,7 +853,7 @@ Table<Equilibrium> equilibrium()
              .optional("0.8"),
          integer("unloading_increments", &E::unloading_increments, numbers_of_increments,
                  "Number of increments of excavation, and of loads that change between dates. With "
-                 "[large_displacements] 1; there release_s is used.")
+                 "[large_displacements] it is 1; release_s is used in its place.")
              .or_else(std::int64_t{1}),
          number(
              "increments_tolerance", &E::increments_tolerance, no_unit, increments_tolerances,
@@ -859,8 +862,9 @@ Table<Equilibrium> equilibrium()
              .optional(),
          integer(
              "most_steps", &E::most_steps, from(1).to(2147483647),
-             "Largest number of steps of dynamic relaxation for an equilibrium; then the exit code is 3. With "
-             "[large_displacements] this is for the equilibrium in situ; longest_s limits what follows.")
+             "Largest number of steps of dynamic relaxation for an equilibrium; then the exit code is 3. "
+             "With [large_displacements] it limits the search for the in-situ equilibrium; longest_s limits "
+             "the dynamic analyses.")
              .or_else(std::int64_t{1000000})}};
 }
 
@@ -868,8 +872,9 @@ Table<LargeDisplacements> large_displacements()
 {
     return {
         {"large_displacements", once, optional,
-         "Dynamic analysis with large displacements after each stage: real masses, contacts found anew, "
-         "until the rock is at rest. Between creep steps of joints, too. Without this table displacements are small.",
+         "Dynamic analysis with large displacements after each stage, until the rock is at rest. Masses are "
+         "real, and contacts are found again as blocks move. Each creep step of joints is such an analysis, "
+         "too. Without this table displacements are small.",
          in_list, "motion"},
         {text("new_contacts", &LargeDisplacements::new_contacts,
               "Joint material of new contacts, and of rock that slides off its joint: its stiffnesses and "
@@ -884,12 +889,12 @@ Table<LargeDisplacements> large_displacements()
              "vibration; shortens the time step.")
              .or_else(1e-4),
          number("mass_damping_per_s", &LargeDisplacements::mass_damping, per_s, from(0).to(1e6),
-                "Force over mass and velocity. It also slows down moving blocks.")
+                "Damping force per mass and velocity. It also slows down moving blocks.")
              .or_else(0.0),
          number(
              "release_s", &LargeDisplacements::release, seconds, from(0).to(1e6),
-             "Time in which the forces of a stage's rock go to 0, and in which a creep step is added. Above 0 with "
-             "[creep].")
+             "Time in which the forces of excavated rock decrease to 0, and in which the creep of a step is "
+             "added. It must be above 0 with [creep].")
              .or_else(0.0),
          number(
              "longest_s", &LargeDisplacements::longest, seconds, above(0).to(1e6),

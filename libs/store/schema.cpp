@@ -204,7 +204,8 @@ std::vector<Field> fields_of(History& history)
         {"/history/present", &history.present, {"time", "point"}, "1", between(0, 1),
          "1 while the point is there, 0 once it is removed."},
         {"/history/reset_row", &history.reset_row, {"time"}, "1", index_of("time"),
-         "Row from which displacements are to count since the last stage that resets them; 0 before one."},
+         "Row of the last stage that resets displacements: they count from there. 0 before the first such "
+         "stage."},
     };
     // clang-format on
 }
@@ -228,7 +229,8 @@ std::vector<Field> fields_of(States& states)
     // clang-format off
     append(all, {
         {"/states/reset_state", &states.reset_state, {"state"}, "1", index_of("state"),
-         "State from which displacements are to count since the last stage that resets them; 0 before one."},
+         "State after the last stage that resets displacements: they count from there. 0 before the first "
+         "such stage."},
     });
     // clang-format on
     return all;
@@ -348,7 +350,7 @@ std::vector<Field> fields_of(DynamicsHistory& dynamics)
     std::vector<Field> all = {
         {"/dynamics/time", &dynamics.time, {"moment"}, "day", ascending(), "Time of the stage since the start."},
         {"/dynamics/dynamic_time", &dynamics.dynamic_time, {"moment"}, "s", at_least(0), "Time since the dynamic analysis began."},
-        {"/dynamics/state", &dynamics.state, {"moment"}, "1", index_of("state"), "The section's state then."},
+        {"/dynamics/state", &dynamics.state, {"moment"}, "1", index_of("state"), "State of the section at this moment."},
         {"/dynamics/work_of_loads", &dynamics.work_of_loads, {"moment"}, "J/m", any(),
          "Work of weight, of forces of excavated rock and of tractions since then; except for the error of time "
          "steps the sum of the next four."},
@@ -374,9 +376,10 @@ std::vector<Field> fields_of(GuardHistory& guards)
     // clang-format off
     return {
         {"/guards/area_error", &guards.area_error, {"state"}, "1", at_least(0),
-         "Area of the zones of a block less the block's, over that; the largest."},
+         "Area of the zones of a block minus the area of the block, over the area of the block. The largest "
+         "value."},
         {"/guards/weight_error", &guards.weight_error, {"state"}, "1", at_least(0),
-         "Loads less the weight of the rock that is there, over the weight of all rock."},
+         "Loads minus the weight of the present rock, over the weight of all rock."},
         {"/guards/penetration", &guards.penetration, {"state"}, "m", at_least(0),
          "Closure of a contact beyond its normal stress over its normal stiffness, or beyond its gap where "
          "it is open; the largest. 0 at large displacements."},
@@ -394,7 +397,8 @@ std::vector<Field> fields_of(Failure& failure)
         {"/failure/time", &failure.time, {}, "day", at_least(0), "Time since the start."},
         {"/failure/moves_on", &failure.moves_on, {}, "1", between(0, 1),
          "1 blocks slide or fall, 0 undecided: the search for equilibrium ended without an answer."},
-        {"/failure/steps", &failure.steps, {}, "1", at_least(0), "Number of the last steps of the engine."},
+        {"/failure/steps", &failure.steps, {}, "1", at_least(0), "Number of steps of the engine to which "
+                                                                 "/failure/motion belongs."},
         {"/failure/seconds", &failure.seconds, {}, "s", at_least(0),
          "Duration of these steps with real masses; otherwise 0."},
         {"/failure/block", &failure.block, {"moving_block"}, "1", index_of("block"),
@@ -447,13 +451,14 @@ std::vector<Field> fields_of(Checkpoint& checkpoint)
          "Displacement {x, y} since the in-situ equilibrium."},
         {"/checkpoint/is_free", &checkpoint.is_free, gridpoint, "1", between(0, 1),
          "In {x, y}: 1 free, 0 fixed itself or without rock."},
-        {"/checkpoint/load", &checkpoint.load, gridpoint, "N/m", any(), "Weight {x, y} that the gridpoint has."},
-        {"/checkpoint/force", &checkpoint.force, gridpoint, "N/m", any(), "Unbalanced force {x, y}, also where it is fixed."},
+        {"/checkpoint/load", &checkpoint.load, gridpoint, "N/m", any(), "Weight {x, y} on the gridpoint."},
+        {"/checkpoint/force", &checkpoint.force, gridpoint, "N/m", any(), "Unbalanced force {x, y}, also of a fixed "
+                                                                          "gridpoint."},
         {"/checkpoint/released", &checkpoint.released, {"released_gridpoint"}, "N/m", any(),
-         "Within a stage: force {x, y} of the excavated rock on the gridpoint before."},
+         "Within a stage: force {x, y} of the excavated rock on the gridpoint, before its excavation."},
         {"/checkpoint/unloaded", &checkpoint.unloaded, {}, "1", at_least(0),
          "Number of finest increments unloaded so far; 0 outside of a stage. A finest increment is 1/32 of "
-         "an increment of the scene, or with dynamic relaxation alone the whole."},
+         "an increment of the scene; with dynamic relaxation alone it is the whole increment."},
         {"/checkpoint/increment", &checkpoint.increment, {}, "1", at_least(0),
          "Number of finest increments to be unloaded next."},
     };
@@ -468,7 +473,7 @@ std::vector<Field> fields_of(Checkpoint& checkpoint)
         {"/checkpoint/steps_since_record", &checkpoint.steps_since_record, {}, "1", at_least(0),
          "Solver steps since a row of the step history."},
         {"/checkpoint/steps_since_state", &checkpoint.steps_since_state, {}, "1", at_least(0),
-         "Creep steps since a state by their number."},
+         "Creep steps since the last state that was recorded by their number (--states)."},
         {"/checkpoint/remark", &checkpoint.remark, remark, "1", any(), "A joint, a rock, a reason or a stage, by name."},
         {"/checkpoint/remark_kind", &checkpoint.remark_kind, remark, "1", between(0, 4),
          "0 contacts of the joint at yield in the initial stress state, 1 zones of the rock, 2 why the implicit engine found no equilibrium, 3 the stage's "
@@ -514,8 +519,7 @@ std::vector<Invariant> invariants_of(const Network& network)
         return blocks.edge_kind[edge] == static_cast<Index>(kind);
     };
     const auto differ = [](const std::string& dimension, const std::vector<std::string>& names) {
-        return Invariant{"/names/" + dimension, "all names differ", dimension,
-                         [&names](std::size_t row) {
+        return Invariant{"/names/" + dimension, "all names differ", dimension, [&names](std::size_t row) {
                              const auto here = names.begin() + static_cast<std::ptrdiff_t>(row);
                              return std::find(names.begin(), here, *here) == here;
                          }};

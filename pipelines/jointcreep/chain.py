@@ -23,7 +23,7 @@ def run(program, *arguments):
     done = subprocess.run([program, *map(str, arguments)], capture_output=True, text=True)
     words = f"{pathlib.Path(program).name}, exit code {done.returncode}: {done.stderr.strip()}"
     if was_stopped(done.returncode):
-        raise SystemExit(f"{words}; it was stopped, and is run again the next time")
+        raise SystemExit(f"{words}; it was stopped; the same command runs it again")
     if done.returncode != 0:
         raise Failed(words)
     return done.stdout

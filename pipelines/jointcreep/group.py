@@ -148,7 +148,7 @@ def guarded(make):
     try:
         make()
     except Interrupted as error:
-        print(f"jointcreep: {error}; it is made when the study goes on", file=sys.stderr, flush=True)
+        print(f"jointcreep: {error}; the same command of the study makes it", file=sys.stderr, flush=True)
         return CANNOT_WRITE
     return 0
 

@@ -155,7 +155,7 @@ def of_run(source, programs, folder):
         parts.append(table(["point", f"x on day {time[-1]:g} (mm)", "y (mm)", ""],
                            [(name, 1e3 * x, 1e3 * y, "" if there else "excavated; its last displacement")
                             for name, (x, y), there in zip(points, last, present)]))
-    parts.append("<h2>State in the end</h2>")
+    parts.append("<h2>State at the end</h2>")
     for field, caption in (("displacement", "Displacements."), ("stress", "Stresses."), ("contacts", "Contacts that slip or open.")):
         parts.append(drawn("state", source, folder, caption, field=field))
     parts += ["<h2>Numbers</h2>", table(["", ""], numbers), "<h2>Settings</h2>", settings(scene), "<h2>Warnings</h2>",
@@ -242,7 +242,7 @@ def of_study(out, programs, folder):
     parts.append("<h2>Runs without a value</h2>")
     missing = (out / "summary.txt").read_text("utf-8").partition("the design has none\n")[2].strip().splitlines()
     parts.append("<ul>" + "".join(f"<li>{escaped(line)}</li>" for line in missing[:MOST_ROWS]) + "</ul>" if missing else "<p>None.</p>")
-    parts.append("<h2>Checks</h2><p>Each run that has an exit code of 0 kept to the guards of demsolve in every state that it recorded: "
+    parts.append("<h2>Checks</h2><p>Each run that has an exit code of 0 satisfied the guards of demsolve in every state that it recorded: "
                  "finite values, areas, weight, penetration, energies, unbalanced forces.</p>")
     parts += ["<h2>Settings</h2>", settings(scene), "<h2>Versions</h2>",
               table(["program", "version"], found["identity"]["the programs' versions"].items()),

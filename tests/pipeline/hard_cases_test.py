@@ -126,7 +126,7 @@ class UniformStress(ChainTest):
         joints = self.chain.joints(patch(lines, 1000, 500, nub=True, more=FINE + '[large_displacements]\nnew_contacts = "joint"\n'))
         done = self.chain.answer("demsolve", joints, "-o", joints.with_name("result.h5"))
         self.assertEqual(done.returncode, 3)
-        self.assertRegex(done.stderr, r"a step takes .*e-1[0-9] s.* rounding errors .* stiffest is at \[")
+        self.assertRegex(done.stderr, r"with a step of .*e-1[0-9] s.* rounding errors .* stiffest gridpoint is at \[")
 
     def test_joints_nearly_parallel(self):
         one = line((1, 0.5), 100)
