@@ -370,16 +370,24 @@ Confidence Instruments::confidence(const Evaluation& raw, const Minimum& minimum
     Confidence found = confidence_of(minimum, readings_.knows_deviations && !errors_.correlated);
     if (!errors_.correlated || found.parameters == 0)
         return found;
-    // The variance is that within each correlation and that between them.
-    std::vector<bool> is_free;
-    std::vector<Eigen::Index> free;
+    // The variance is that within each correlation and that between them. A parameter at a bound is not known: the others
+    // have the variance that they have when it is free.
+    std::vector<bool> is_free, is_moving;
+    std::vector<Eigen::Index> free, places; // of the free ones, among those that move
+    Eigen::Index moving = 0;
     for (std::size_t i = 0; i < found.is_fixed.size(); ++i) {
+        const auto index = static_cast<Eigen::Index>(i);
         is_free.push_back(!found.is_fixed[i]);
-        if (is_free.back())
-            free.push_back(static_cast<Eigen::Index>(i));
+        is_moving.push_back(minimum.there.jacobian.col(index).norm() > 0);
+        if (is_free.back()) {
+            free.push_back(index);
+            places.push_back(moving);
+        }
+        if (is_moving.back())
+            ++moving;
     }
     const VectorXd shares = likelihood(raw, is_free);
-    const MatrixXd all = beside(raw.residual, effects(raw, is_free));
+    const MatrixXd all = beside(raw.residual, effects(raw, is_free)), with_bound = effects(raw, is_moving);
     const auto p = static_cast<Eigen::Index>(free.size());
     MatrixXd covariance = MatrixXd::Zero(p, p);
     for (std::size_t k = 0; k < times_.size(); ++k) {
@@ -388,19 +396,19 @@ Confidence Instruments::confidence(const Evaluation& raw, const Minimum& minimum
             continue;
         const MatrixXd white = whitened(all, times_[k]), X = white.rightCols(white.cols() - 1);
         const VectorXd length = X.colwise().norm();
-        const MatrixXd scaled = X * length.cwiseInverse().asDiagonal();
-        const Eigen::ColPivHouseholderQR<MatrixXd> qr(scaled);
-        const VectorXd step = -(length.cwiseInverse().asDiagonal() * qr.solve(white.col(0)));
+        const VectorXd step =
+            -(length.cwiseInverse().asDiagonal() *
+              (X * length.cwiseInverse().asDiagonal()).colPivHouseholderQr().solve(white.col(0)));
         const double squares =
             (white.col(0) + X * step).squaredNorm() / static_cast<double>(X.rows() - X.cols());
+        const MatrixXd M = whitened(with_bound, times_[k]);
+        const VectorXd shorter = M.colwise().norm().cwiseInverse();
+        const MatrixXd scaled = M * shorter.asDiagonal();
         const MatrixXd inverse =
-            (scaled.transpose() * scaled).ldlt().solve(MatrixXd::Identity(X.cols(), X.cols()));
-        covariance +=
-            share *
-            (squares * (length.cwiseInverse().asDiagonal() * inverse * length.cwiseInverse().asDiagonal())
-                           .eval()
-                           .topLeftCorner(p, p) +
-             step.head(p) * step.head(p).transpose());
+            shorter.asDiagonal() *
+            (scaled.transpose() * scaled).ldlt().solve(MatrixXd::Identity(M.cols(), M.cols())) *
+            shorter.asDiagonal();
+        covariance += share * (squares * inverse(places, places) + step.head(p) * step.head(p).transpose());
     }
     const VectorXd error = covariance.diagonal().cwiseMax(1e-300).cwiseSqrt();
     found.covariance(free, free) = covariance;

@@ -70,12 +70,14 @@ struct Result {
     double correlation_time;
 };
 
-Result fitted(Line line, const Errors& errors)
+Result fitted(Line line, const Errors& errors, double most_a = 1e3)
 {
     Instruments instruments(line.readings, errors);
     Result found;
-    found.fit = minimise(line.model(), instruments, VectorXd::Zero(2), VectorXd::Constant(2, -1e3),
-                         VectorXd::Constant(2, 1e3), 100, 1e-12);
+    VectorXd high = VectorXd::Constant(2, 1e3);
+    high[0] = most_a;
+    found.fit =
+        minimise(line.model(), instruments, VectorXd::Zero(2), VectorXd::Constant(2, -1e3), high, 100, 1e-12);
     found.confidence = instruments.confidence(found.fit.raw, found.fit.minimum);
     found.errors = instruments.errors(found.fit.raw, found.confidence);
     found.outliers = instruments.outliers(found.fit.raw);
@@ -197,6 +199,21 @@ TEST(instrument, truth_lies_in_95_percent_of_intervals_where_the_error_is_looked
     EXPECT_LT(count({}, 0, step).held, 600 * 0.9);
     EXPECT_LT(count({}, 0, drift).held, 600 * 0.9);
     EXPECT_LT(count({}, 0.6, nothing).held, 600 * 0.9);
+}
+
+// A bound that a only just reaches changes nothing in what the readings know of b.
+TEST(instrument, a_parameter_at_a_bound_is_not_known_to_the_others)
+{
+    std::mt19937_64 random(4);
+    const Line line(random, 1, 0.6);
+    for (const Errors& errors : {Errors{}, Errors{.robust = true}, Errors{.correlated = true}}) {
+        const Result within = fitted(line, errors),
+                     at_bound = fitted(line, errors, within.fit.minimum.parameters[0] - 1e-4);
+        ASSERT_FALSE(within.confidence.is_fixed[0]);
+        ASSERT_TRUE(at_bound.confidence.is_fixed[0]);
+        EXPECT_NEAR(at_bound.confidence.standard_error(1) / within.confidence.standard_error(1), 1, 0.1)
+            << errors.robust << errors.correlated;
+    }
 }
 
 TEST(instrument, residuals_that_are_no_noise_are_doubted)
