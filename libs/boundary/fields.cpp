@@ -44,7 +44,7 @@ fields::ForceFields fields_in_files()
     return {
         .dimensions = {
             {"side", "a side of a zone that lies on a boundary condition"},
-            {"quadratic_side", "such a side again, if zones are quadratic: all or none"},
+            {"quadratic_side", "such a side, if zones are quadratic; otherwise there is none"},
         },
         .network = fields_of,
         .mesh = fields_of,

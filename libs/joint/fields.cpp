@@ -140,7 +140,7 @@ std::vector<Field> fields_of(Mesh& mesh)
         {"/mesh/contact_length", &mesh.contact_length, {"contact"}, "m", positive(),
          "Length of edge that belongs to the contact."},
         {"/mesh/contact_centre", &mesh.contact_centre, {"contact"}, "m", any(),
-         "Where a traction that is linear along the edge has its mean over the contact {x, y}."},
+         "Point {x, y} where a traction that is linear along the edge equals its mean over the contact."},
     };
     // clang-format on
 }
@@ -324,11 +324,11 @@ fields::ForceFields fields_in_files()
             {"bridge", "a rock bridge: rock between the traces of a joint"},
             {"kelvin_unit", "a Kelvin unit of a joint's chain, as many as the longest chain has"},
             {"contact", "a pair of gridpoints that face each other across a joint"},
-            {"open_contact", "a contact again, where creep steps are cut as contacts close: all or none"},
+            {"open_contact", "a contact, if creep steps are cut where contacts close; otherwise there is none"},
             {"gauge", "a gauge of the scene"},
             {"moving_contact", "two faces of blocks that touch at a recorded moment of a dynamic analysis"},
             {"direction", "the normal or the shear of a contact that creeps"},
-            {"direction_unit", "a Kelvin unit or dashpot of one of these"},
+            {"direction_unit", "a Kelvin unit or dashpot of a direction"},
             {"face", "a side of a zone with no rock before it, or of the ground"},
             {"pair", "two faces that may touch"},
             {"pair_unit", "a Kelvin unit or dashpot of such a pair: of the normal at both ends, of shear"},

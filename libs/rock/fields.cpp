@@ -120,14 +120,14 @@ fields::ForceFields fields_in_files()
     return {
         .dimensions = {
             {"zone", "a triangle, of constant strain or quadratic"},
-            {"quadratic_zone", "a zone again, if zones are quadratic: all or none"},
+            {"quadratic_zone", "a zone, if zones are quadratic; otherwise there is none"},
             {"yielding_zone", "a zone of rock that yields"},
             {"stress_point", "a point of a zone at which its stress is computed: one of a zone of constant strain, three of a quadratic one"},
             {"yielding_point", "a stress point of rock that yields"},
             {"creeping_zone", "a zone of rock that creeps"},
-            {"creeping_point", "a stress point of one of these"},
+            {"creeping_point", "a stress point of rock that creeps"},
             {"zone_unit", "a Kelvin unit or dashpot of a creeping point"},
-            {"quadratic_point", "a stress point again, if zones are quadratic: all or none"},
+            {"quadratic_point", "a stress point, if zones are quadratic; otherwise there is none"},
         },
         .mesh = fields_of,
         .invariants_of_mesh = invariants_of,

@@ -52,7 +52,7 @@ std::vector<Field> fields_of(Joints& joints)
          "Point {x, y} at which the joint was placed; its angle is applied about this point. It may be "
          "outside the section."},
         {"/joints/diameter", &joints.diameter, {"joint"}, "m", at_least(0),
-         "Diameter of the disc in space that the section meets in this joint; 0 where it is none."},
+         "Diameter of the disc in space whose trace is this joint; 0 for joints that are not discs."},
         {"/joints/centre", &joints.centre, {"joint"}, "m", any(),
          "Centre of that disc {x, y, z}, z being across the section; elsewhere {x, y} of /joints/point, and 0."},
 
@@ -141,7 +141,8 @@ std::vector<Field> fields_of(Statistics& rows)
     // clang-format off
     return {
         {"/statistics/subject", &rows.subject, statistic, "1", any(),
-         "What the row is about: a joint set, `blocks` or `nodes`. Rows are there only if a report was asked for."},
+         "Subject of the row: a joint set, `blocks` or `nodes`. There are rows only if a report was asked "
+         "for."},
         {"/statistics/quantity", &rows.quantity, statistic, "1", any(), "Quantity that is examined."},
         {"/statistics/unit", &rows.unit, statistic, "1", any(),
          "Unit of target, achieved value and interval: SI, angles in rad."},
@@ -149,7 +150,7 @@ std::vector<Field> fields_of(Statistics& rows)
         {"/statistics/target", &rows.target, statistic, unit, any(),
          "By the laws of the scene; 0 where there is none."},
         {"/statistics/achieved", &rows.achieved, statistic, unit, any(),
-         "What the network has; of a law, the largest distance between the two distribution functions."},
+         "Value of the network. For a law: the largest distance between the two distribution functions."},
         {"/statistics/has_interval", &rows.has_interval, statistic, "1", between(0, 1),
          "1 if there is a confidence interval."},
         {"/statistics/low", &rows.low, statistic, unit, any(),
@@ -582,7 +583,7 @@ const std::vector<Described>& dimensions()
         {"corner", "a corner of a ring"},
         {"statistic", "a row of the report on the network"},
         {"gridpoint", "a corner of zones, split along joints"},
-        {"released_gridpoint", "a gridpoint again, within a stage: all or none"},
+        {"released_gridpoint", "a gridpoint, within a stage; otherwise there is none"},
         {"tie", "a pair of gridpoints that move as one until a stage"},
         {"time", "a recorded time of the history"},
         {"point", "a monitoring point of the scene"},
