@@ -19,11 +19,20 @@ WIDTH = 118  # of a line of the scene, in characters
 DECAY = 20  # of the tectonic stress towards the surface [m]
 STRESSES = {"low": (2.0, 0.020), "mid": (3.0, 0.022), "high": (5.0, 0.025)}  # a [MPa], b [MPa/m]
 BY_ROCK = {"fresh": (1400.0, 168000.0), "weathered": (480.0, 57600.0)}  # E [MPa], eta [MPa day]: Table 2 by rock
+YOUNGS_MODULI = {"fresh": (20, 40), "weak": (12, 17)}  # Table 1's ranges [GPa]
 LINEAR = 1e4  # a strength that no joint reaches [MPa]
 SPRINGS = ("normal_stiffness_MPa_per_m", "shear_stiffness_MPa_per_m")
 KELVIN = ("normal_kelvin_stiffness_MPa_per_m", "normal_kelvin_viscosity_MPa_day_per_m",
           "shear_kelvin_stiffness_MPa_per_m", "shear_kelvin_viscosity_MPa_day_per_m")
+STRENGTHS = ("cohesion_MPa", "tensile_strength_MPa")
 PLACES = ("outline_m", "region_m", "ground_m", "from_m", "to_m", "remove_m", "at_m", "fine_m")
+UPDATED = """
+[large_displacements]
+new_contacts = "fresh, k 0.2"                  # assumed: the middle one
+release_s = 0.25                               # assumed: slow enough that little slips in the overshoot
+stiffness_damping_s = 1e-6                     # assumed: so small that steps are not shorter for it
+mass_damping_per_s = 15                        # assumed: about that of the slowest vibration of a small section
+"""
 # Chamber 3, the candidate for section B-B, by the elevations of chamber 2: floor, wall top, and 20 m less above.
 CHAMBER_3 = ((112, 92.2), (160, 139), (170, 150), (1000, 980))
 
@@ -227,10 +236,35 @@ def first_reading(days):
     return change
 
 
+def loads(times):
+    """Weight, stress and strengths alike: at small displacements everything moves as many times as far."""
+    def change(table, _, key, value):
+        if (table, key) == ("section", "gravity_m_per_s2") or key in STRENGTHS:
+            return value * times
+        if (table, key) == ("in_situ_stress", "profile"):
+            return [{name: one * (1 if name == "depth_m" else times) for name, one in level.items()} for level in value]
+
+    return change
+
+
+def creep_step(days):
+    def change(table, _, key, __):
+        return days if (table, key) == ("creep", "step_days") else None
+
+    return change
+
+
+def end(date):
+    def change(table, _, key, __):
+        return datetime.date.fromisoformat(date) if (table, key) == ("schedule", "end") else None
+
+    return change
+
+
 def linear(_):
     """Joints that neither slip nor open."""
     def change(table, _, key, __):
-        if table in ("joint_material", "rock") and key in ("cohesion_MPa", "tensile_strength_MPa"):
+        if table in ("joint_material", "rock") and key in STRENGTHS:
             return LINEAR
 
     return change
@@ -238,11 +272,9 @@ def linear(_):
 
 def youngs_modulus(which):
     """The ends of Table 1's ranges."""
-    ranges = {"fresh": (20, 40), "weak": (12, 17)}
-
     def change(table, record, key, _):
-        if (table, key) == ("rock", "youngs_modulus_GPa") and record["name"] in ranges:
-            return ranges[record["name"]][which == "high"]
+        if (table, key) == ("rock", "youngs_modulus_GPa") and record["name"] in YOUNGS_MODULI:
+            return YOUNGS_MODULI[record["name"]][which == "high"]
 
     return change
 
@@ -290,7 +322,8 @@ def changes_of(arguments, scene):
                        ("rule", rule), ("table_2", table_2), ("stiffness_times", stiffness),
                        ("kelvin_times", kelvin), ("youngs_modulus", youngs_modulus),
                        ("box", lambda of: box(scene, *of)), ("domain", lambda of: domain(scene, *of)),
-                       ("zone_size", zone_size), ("first_reading_days", first_reading), ("linear", linear)):
+                       ("zone_size", zone_size), ("first_reading_days", first_reading), ("loads_times", loads),
+                       ("creep_step", creep_step), ("end", end), ("linear", linear)):
         if given[name] not in (None, False):
             yield make(given[name])
 
@@ -300,6 +333,11 @@ def variant(text, arguments):
         text = edited(text, change)
     if arguments.no_creep:
         text = re.sub(r"^\[creep\]\n(?:[a-z].*\n)*", "", text, flags=re.MULTILINE)
+    if arguments.cutting:
+        edge, angle = arguments.cutting
+        text = re.sub(r"^shortest_edge_m = .*", f"shortest_edge_m = {edge:g}\nsmallest_angle_deg = {angle:g}", text, flags=re.MULTILINE)
+    if arguments.large_displacements:
+        text += UPDATED
     if arguments.section_b:
         text = ("# Section B-B (chamber 3): the scene of section A-A, below, with its elevations moved. What comments say of places\n"
                 "# and sources is section A-A's.\n#\n" + text)
@@ -320,6 +358,11 @@ def main():
     parser.add_argument("--domain", type=float, nargs=2, metavar=("HALF", "BOTTOM"), help="sides and base, in m")
     parser.add_argument("--zone-size", type=float, metavar="M", help="at the faces that are dug")
     parser.add_argument("--first-reading-days", type=int, metavar="DAYS", help="later than in the scene")
+    parser.add_argument("--loads-times", type=float, metavar="FACTOR", help="weight, stress and strengths")
+    parser.add_argument("--creep-step", type=float, metavar="DAYS", help="largest creep step")
+    parser.add_argument("--end", metavar="DATE", help="of the computation, such as 1999-12-31")
+    parser.add_argument("--cutting", type=float, nargs=2, metavar=("EDGE", "ANGLE"), help="shortest edge in m, smallest angle in degrees")
+    parser.add_argument("--large-displacements", action="store_true", help="geometry updated: [large_displacements]")
     parser.add_argument("--linear", action="store_true", help="joints that neither slip nor open")
     parser.add_argument("--no-creep", action="store_true", help="without the table [creep]")
     write_variant(parser, variant)

@@ -101,6 +101,104 @@ class Shiplock(ChainTest):
         floor = min(y for stage in lower["stage"] for polygon in stage["remove_m"] for _, y in polygon)
         self.assertEqual(floor, 92.2)
 
+    def test_loads_times(self):
+        """Weight, stress and strengths, and nothing else; the scene of the updated geometry is one."""
+        import updated_geometry
+        own, new = tomllib.loads(self.chain.text(SCENE)), tomllib.loads(self.variant("--loads-times", "0.01"))
+        keys = set()
+        for one, other in ((own["section"], new["section"]), *zip(own["rock"], new["rock"]), *zip(own["joint_material"], new["joint_material"]),
+                           *zip(own["in_situ_stress"]["profile"], new["in_situ_stress"]["profile"])):
+            for key, value in one.items():
+                if other[key] != value:
+                    keys.add(key)
+                    self.assertAlmostEqual(other[key], 0.01 * value)
+        self.assertEqual(keys, {"gravity_m_per_s2", "cohesion_MPa", "tensile_strength_MPa", "compression_xx_MPa", "compression_yy_MPa"})
+        text = self.variant(*map(str, [*updated_geometry.COARSE, *updated_geometry.RUNS["tiny"][0]]))
+        scene = tomllib.loads(text)
+        self.assertEqual((scene["creep"]["step_days"], str(scene["schedule"]["end"]), scene["cutting"]["smallest_angle_deg"]),
+                         (400, "1999-12-31", 20))
+        self.assertIn("large_displacements", scene)
+        self.chain.network(text)
+
+    def test_table_of_the_updated_geometry(self):
+        """Parts of a difference: of the geometry, and of the engine, whose displacements at tiny loads are multiplied."""
+        import updated_geometry
+        def result(first, last):
+            return {"names": ["N215"], "days": [0.0, 100.0, 2025.0], "total": [[0.0], [first], [last]], "first": [100],
+                    "there": [True], "start": "1994-06-15", "zones": 9}
+        targets = {"end_of_record": datetime.date(1999, 12, 31)}
+        rows = updated_geometry.rows_of({"small": result(20.0, 60.0), "updated": result(21.0, 63.0), "tiny": result(0.202, 0.61)}, targets)
+        numpy.testing.assert_allclose(rows[0][1]["total"], [60, 3, 2, 1], atol=1e-9)
+        numpy.testing.assert_allclose(rows[0][1]["recorded"], [40, 2, 1.2, 0.8], atol=1e-9)
+        text = updated_geometry.markdown(rows, 9, "1999-12-31")
+        self.assertIn("| N215 | 60.00 | +3.00 (+5.0 %) | +2.00 (+3.33 %) | +1.00 (+1.7 %) | 40.00 |", text)
+        self.assertIn("total +2.00 mm (N215)", text)
+
+    def test_scene_of_the_shares(self):
+        """With the scene's own values it is the scene; each input but the first readings changes it."""
+        import shares
+        text = self.chain.text(SCENE)
+        own = {key: one.own for key, one in shares.INPUTS.items()}
+        unchanged = shares.scene_of(text, own)
+        scene, same = tomllib.loads(text), tomllib.loads(unchanged)
+        for one, other in zip(scene["in_situ_stress"].pop("profile"), same["in_situ_stress"].pop("profile"), strict=True):
+            for key, value in one.items():
+                self.assertAlmostEqual(other[key], value, delta=1e-4)
+        self.assertEqual(same, scene)
+        for key, one in shares.INPUTS.items():
+            self.assertAlmostEqual(one.value(one.share(one.own)), one.own)
+            self.assertTrue(one.low < one.own < one.high, key)
+            self.assertEqual(shares.scene_of(text, {**own, key: one.value(0.9)}) == unchanged, key == "readings", key)
+        rows = shares.shares_of_range(16)
+        self.assertTrue(((rows >= 0) & (rows < 1)).all())
+        numpy.testing.assert_array_equal(shares.shares_of_range(5), rows[:5])
+        self.chain.network(shares.scene_of(text, shares.values_of_set(rows[3])))
+
+    def test_shares_of_a_closed_form(self):
+        """Logarithms linear in two inputs and in the network: shares of the logarithm's variance are known, and for small ones
+        those of the displacement are the same. The misfit far from its least value is linear too."""
+        import shares
+        number, inputs, draw = 64, 6, numpy.random.default_rng(1)
+        rows = shares.shares_of_range(number)[:, :inputs]
+        networks = 0.03 * draw.normal(size=(number, 2, 1))
+        x = math.sqrt(3) * (2 * rows - 1)
+        logs = math.log(50) + (0.06 * x[:, 0] + 0.04 * x[:, 3])[:, None, None] + networks + numpy.zeros((1, 1, 4))
+        targets = {"total_mm": [60, 90], "recorded_mm": [200, 400]}
+        indices, fit = shares.shares(rows, numpy.exp(logs), targets, power=11)
+        deviation = ((networks[:, 0] - networks[:, 1]) ** 2).mean() / 2
+        whole = 0.06**2 + 0.04**2 + deviation
+        for i, variance in ((0, 0.06**2), (3, 0.04**2), (1, 0), (inputs, deviation)):
+            for j in range(2):
+                numpy.testing.assert_allclose(indices[j, i, :2], variance / whole, atol=0.03)
+        own = shares.straight(numpy.exp(logs), targets)
+        self.assertAlmostEqual(own[2, 0], deviation / whole, delta=0.04)
+        for lack in shares.lack_of_fit(rows, numpy.exp(logs), fit):
+            self.assertAlmostEqual(lack, 0, delta=0.03)
+        square = numpy.exp(logs + 0.1 * (x[:, 0] * x[:, 3])[:, None, None])
+        self.assertTrue({(0,), (3,), (0, 3)} <= set(shares.fit_of(rows, square).terms))
+        number = 400
+        values = draw.normal(size=number)
+        self.assertAlmostEqual(shares.errors_of(lambda which: values[which].mean(), number) * math.sqrt(number), 1, delta=0.5)
+        answers = shares.answers_of(numpy.array([[60.0, 90, 200, 500]]), targets)
+        numpy.testing.assert_allclose(answers, [[75, 350, (1 + 1 + 1 + 4) / 4]])
+
+    def test_tables_and_pictures_of_the_shares(self):
+        import shares
+        names = [("a", "1 to 2"), ("network", "two")]
+        indices = numpy.array([[[0.1, 0.1, 0.1], [0.6, 0.6, 0.6]], [[0.2, 0.2, 0.2], [0.8, 0.8, 0.8]]])
+        text = shares.markdown(names, indices, 0.01 + 0 * indices, ["Two runs."])
+        self.assertLess(text.index("| network | two | 0.600 ± 0.010 | 0.800 ± 0.010 |"), text.index("| a | 1 to 2 |"))
+        rows = shares.shares_of_range(64)
+        pairs = numpy.exp(4 + 0.3 * rows[:, :1, None] + 0.01 * numpy.random.default_rng(1).normal(size=(64, 2, 4)))
+        targets = {"total_mm": [60, 90], "recorded_mm": [20, 40]}
+        with unittest.mock.patch.object(shares.figure, "save") as save:
+            shares.picture(names, indices, 0 * indices, "shares.png")
+            told = shares.ridge(rows, pairs, shares.fit_of(rows, pairs), targets, "ridge.png")
+        self.assertEqual([call.args[1] for call in save.call_args_list], ["shares.png", "ridge.png"])
+        self.assertEqual(told[2], 13)
+        for call in save.call_args_list:
+            shares.figure.plt.close(call.args[0])
+
     def coarse(self, *variant):
         """A result of few large blocks in few creep steps."""
         text = changed(self.variant("--spacing-times", "3.1", *variant), r"^step_days = \S+", "step_days = 180")

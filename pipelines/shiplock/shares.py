@@ -1,0 +1,503 @@
+#!/usr/bin/python3
+"""All assumed inputs of the shiplock at once, the network among them: whose variance is it?
+
+    shares.py PROGRAMS SCENE.toml TARGETS.toml -n SETS [-j JOBS] -o OUT
+
+SETS sets of the inputs below are drawn by a scrambled Sobol sequence, each evenly in its range (those given as factors in the
+logarithm), and each is computed with two networks that no other run has. Quantities are the mean total and the mean recorded
+displacement of the points below the crest, and the misfit of the run.
+
+The share of the network in all is half the mean square of the differences of the pairs, over the variance (Jansen). Other
+shares are of a polynomial fitted to the pairs' means of the logarithms of every total and record, with linear terms, squares and
+products as long as they make the error of sets left out smaller. From it, with the pairs' own differences as the
+network's deviations, come totals, records and misfit of as many samples as wanted, and their indices (Saltelli, Jansen).
+Standard errors are by leaving out one in twenty of the sets after the other (jackknife). An input without a term has the share
+0: it is too small to be seen. What the polynomial does not explain, and the network does not either, is the
+lack of fit.
+
+In OUT it writes shares.md, shares.csv, shares.png and ridge.png. Every run leaves OUT/runs/NUMBER.json, and is made again only
+if its scene changes. Blocks and zones are coarser than the scene's: COARSE.
+"""
+
+import argparse
+import concurrent.futures
+import csv
+import hashlib
+import io
+import json
+import math
+import pathlib
+import sys
+import tempfile
+import tomllib
+from dataclasses import dataclass
+
+import matplotlib.colors
+import numpy as np
+from scipy.stats import qmc
+
+import records
+import study
+import variant
+from jointcreep import chain, files
+from jointcreep.chain import Failed, run
+from records import figure
+
+HERE = pathlib.Path(__file__).resolve().parent
+COARSE = ["--cutting", "2", "5", "--zone-size", "12", "--creep-step", "60", "--end", "1999-12-31"]
+SEED = 24
+SETS = ("J1", "J2", "J3", "J4")
+
+
+@dataclass(frozen=True)
+class Input:
+    name: str  # in tables
+    low: float
+    high: float
+    unit: str = ""  # a factor has none, and is even in its logarithm
+    own: float = 1  # the scene's
+
+    def value(self, share):
+        """At a share of the range, from 0 to 1."""
+        return self.low + share * (self.high - self.low) if self.unit else self.low * (self.high / self.low) ** share
+
+    def share(self, value):
+        if self.unit:
+            return (value - self.low) / (self.high - self.low)
+        return math.log(value / self.low) / math.log(self.high / self.low)
+
+
+INPUTS = {
+    "tectonic": Input("stress at depth, tectonic part", 1.5, 4.5, "MPa", 3),
+    "gradient": Input("stress, gradient", 0.018, 0.026, "MPa/m", 0.022),
+    "decay": Input("depth of decay of the tectonic stress", 5, 40, "m", 20),
+    "spacing": Input("spacing of all sets, times", 0.75, 1.4),
+    **{f"spacing {name}": Input(f"spacing of {name} alone, times", 0.67, 1.5) for name in SETS},
+    **{f"dip {name}": Input(f"dip of {name}", -10, 10, "deg", 0) for name in SETS},
+    **{f"direction {name}": Input(f"dip direction of {name}", -15, 15, "deg", 0) for name in SETS},
+    "scatter": Input("scatter of dip and direction, times", 0.5, 1.5),
+    "persistence": Input("persistence, times", 0.67, 1.5),
+    "stiffness": Input("K over its rule K/k, times", 0.5, 2),
+    "kelvin": Input("E over K, times", 0.5, 2),
+    "time": Input("time of creep eta/E, times", 0.5, 2),
+    "cohesion": Input("cohesion of joints, times", 0.5, 2),
+    "friction": Input("friction angle of joints", 30, 40, "deg", 35),
+    "bridges": Input("cohesion of rock bridges, times", 0.67, 1.5),
+    "tension": Input("tensile strength of rock bridges, times", 0.67, 1.5),
+    "cover": Input("thickness of the cover", 13, 20, "m", 17),
+    "weak": Input("thickness of the weak rock", 10, 20, "m", 15),
+    "box": Input("jointed box, to each side", 150, 330, "m", 220),
+    "domain": Input("domain, to each side", 900, 3600, "m", 1800),
+    "rock": Input("Young's modulus of the rock, in Table 1's ranges", 0, 1, "of 1", 0.5),
+    "readings": Input("days of first readings", -60, 60, "days", 0),
+}
+
+
+# --- The runs -----------------------------------------------------------------------------------------------------------------
+
+
+def stress_profile(scene, values):
+    """sigma_x by its law, sigma_y the weight; levels at the bottoms of cover and weak rock."""
+    density = {rock["name"]: rock["density_kg_per_m3"] for rock in scene["rock"]}
+    gravity = scene["section"]["gravity_m_per_s2"]
+    bottoms = (values["cover"], values["cover"] + values["weak"])
+    depths = sorted({0, 5, 10, 50, 75, 100, 150, 300, *bottoms})
+    levels = []
+    for h in depths:
+        weight = (density["cover"] * min(h, bottoms[0]) + density["weak"] * min(max(h - bottoms[0], 0), values["weak"])
+                  + density["fresh"] * max(h - bottoms[1], 0))
+        across = values["tectonic"] * (1 - math.exp(-h / values["decay"])) + values["gradient"] * h
+        levels.append({"depth_m": round(h, 4), "compression_xx_MPa": round(across, 5),
+                       "compression_yy_MPa": round(1e-6 * gravity * weight, 5), "shear_xy_MPa": 0})
+    return levels
+
+
+def box_bottom(half):
+    """60 m at the scene's 220 m, and about the extents of study.py."""
+    return 60 - 0.5 * (half - 220)
+
+
+def scene_of(text, values):
+    """The scene's text with the values of all inputs but the first readings, which are shifted when histories are read."""
+    scene = tomllib.loads(text)
+    ground = scene["in_situ_stress"]["ground_m"]
+    set_box = variant.box(scene, values["box"], box_bottom(values["box"]))
+    springs = values["stiffness"] / values["persistence"]
+
+    def of_set(record, key, value):
+        name = record["name"]
+        if key == "spacing":
+            return {**value, "mean_m": value["mean_m"] * values["spacing"] * values[f"spacing {name}"]}
+        if key in ("dip", "dip_direction"):
+            mean = value["mean_deg"] + values[f"{'dip' if key == 'dip' else 'direction'} {name}"]
+            return {**value, "mean_deg": mean % 360, "deviation_deg": value["deviation_deg"] * values["scatter"]}
+        if key == "persistence":
+            return value * values["persistence"]
+
+    def of_material(_, key, value):
+        if key in variant.SPRINGS:
+            return value * springs
+        if key in variant.KELVIN:
+            return value * springs * values["kelvin"] * (values["time"] if "viscosity" in key else 1)
+        if key == "cohesion_MPa":
+            return value * values["cohesion"]
+        if key == "friction_angle_deg":
+            return values["friction"]
+
+    def of_rock(record, key, value):
+        if key == "cohesion_MPa":
+            return value * values["bridges"]
+        if key == "tensile_strength_MPa":
+            return value * values["tension"]
+        if key == "youngs_modulus_GPa" and record["name"] in variant.YOUNGS_MODULI:
+            low, high = variant.YOUNGS_MODULI[record["name"]]
+            return low + values["rock"] * (high - low)
+
+    def of_region(record, key, _):
+        if key == "outline_m":
+            depth = values["cover"] + (0 if record["rock"] == "cover" else values["weak"])
+            return [*ground, *([x, round(y - depth, 4)] for x, y in reversed(ground))]
+
+    tables = {"joint_set": of_set, "joint_material": of_material, "rock": of_rock, "region": of_region}
+
+    def change(table, record, key, value):
+        if (table, key) == ("in_situ_stress", "profile"):
+            return stress_profile(scene, values)
+        in_box = set_box(table, record, key, value)
+        return tables[table](record, key, value) if in_box is None and table in tables else in_box
+
+    text = variant.edited(text, change)
+    half = values["domain"]
+    return variant.edited(text, variant.domain(tomllib.loads(text), half, 200 - half * 2 / 3))
+
+
+def shares_of_range(number):
+    """[set, input], from 0 to 1; the first sets do not depend on their number."""
+    return qmc.Sobol(len(INPUTS), seed=SEED).random_base2(math.ceil(math.log2(number)))[:number] if number > 1 else (
+        qmc.Sobol(len(INPUTS), seed=SEED).random(1))
+
+
+def values_of_set(row):
+    return {key: one.value(share) for (key, one), share in zip(INPUTS.items(), row)}
+
+
+def run_of(arguments, text, row, number):
+    """Result of a run, from its file if that is of the same scene."""
+    values = values_of_set(row)
+    scene = scene_of(text, values)
+    key = hashlib.sha256(f"{number} {scene}".encode()).hexdigest()
+    path = arguments.output / "runs" / f"{number:04d}.json"
+    if path.exists():
+        found = json.loads(path.read_text())
+        if found["key"] == key:
+            return found
+    try:
+        with tempfile.TemporaryDirectory(prefix="jointcreep-") as folder:
+            folder = pathlib.Path(folder)
+            joints = chain.joints_of(arguments.programs, scene, folder, "--realization", number)
+            run(arguments.programs / "demsolve", joints, "--quiet", "-o", folder / "r.h5")
+            result = study.read(folder / "r.h5")
+    except Failed as error:
+        result = {"failed": str(error)}
+    print(f"run {number}: {result.get('failed', 'equilibrium')}", flush=True)
+    result = {"key": key, "values": values, **result}
+    files.write_text(path, json.dumps(result))
+    return result
+
+
+def results_of(arguments):
+    """Rows of the design, and its results: runs 2 i and 2 i + 1 are those of set i."""
+    (arguments.output / "runs").mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory(prefix="jointcreep-") as folder:
+        base = pathlib.Path(folder) / "base.toml"
+        run(sys.executable, HERE / "variant.py", arguments.scene, *COARSE, "-o", base)
+        text = base.read_text(encoding="utf-8")
+    rows = shares_of_range(arguments.sets)
+    pool = concurrent.futures.ThreadPoolExecutor(arguments.jobs)
+    try:
+        # Two runs of a set, one after the other: what is stopped has whole sets.
+        return rows, list(pool.map(lambda number: run_of(arguments, text, rows[number // 2], number), range(2 * len(rows))))
+    finally:
+        pool.shutdown(cancel_futures=True)
+
+
+# --- The fit ------------------------------------------------------------------------------------------------------------------
+
+
+def legendre(rows):
+    """Of degree 1 and 2, each of variance 1 over the range; [row, input]."""
+    x = 2 * rows - 1
+    return math.sqrt(3) * x, math.sqrt(5) * (3 * x * x - 1) / 2
+
+
+def columns_of(rows, terms):
+    """A 1, then the terms: (i,) linear, (i, i) the square, (i, j) the product of two."""
+    one, two = legendre(rows)
+    return np.column_stack([np.ones(len(rows)), *(one[:, term[0]] if len(term) == 1 else two[:, term[0]] if term[0] == term[1]
+                                                  else one[:, term[0]] * one[:, term[1]] for term in terms)])
+
+
+def error_left_out(columns, values):
+    """Mean square of the errors at rows left out one by one, summed over quantities of variance 1."""
+    q, _ = np.linalg.qr(columns)
+    leverage = np.minimum((q * q).sum(axis=1), 1 - 1e-9)
+    return float(np.sum(np.mean(((values - q @ (q.T @ values)) / (1 - leverage)[:, None]) ** 2, axis=0)))
+
+
+def terms_of(rows, values, most=12):
+    """Terms, one by one, that make the error of rows left out smallest, as long as it becomes 1 percent smaller: linear ones, then
+    squares and products of the inputs that these have."""
+    values = (values - values.mean(axis=0)) / values.std(axis=0)
+    terms = []
+
+    def chosen(wanted, most):
+        error = error_left_out(columns_of(rows, terms), values)
+        while wanted and len(terms) < min(most, len(rows) // 2):
+            errors = [error_left_out(columns_of(rows, [*terms, term]), values) for term in wanted]
+            best = int(np.argmin(errors))
+            if errors[best] > 0.99 * error:
+                return
+            error = errors[best]
+            terms.append(wanted.pop(best))
+
+    chosen([(i,) for i in range(rows.shape[1])], rows.shape[1])
+    first = sorted(i for i, in terms)
+    chosen([(i, j) for i in first for j in first if i <= j], len(terms) + most)
+    return terms
+
+
+@dataclass
+class Fit:
+    """Logarithms of totals and records of a network, at any point of the inputs."""
+    terms: list
+    coefficients: np.ndarray  # [term, quantity]
+    deviations: np.ndarray  # of a network from the mean of networks: [number, quantity]
+
+    def __call__(self, rows, network):
+        """[row, quantity] in mm; network: from 0 to 1, which of the deviations."""
+        which = np.minimum((network * len(self.deviations)).astype(int), len(self.deviations) - 1)
+        return np.exp(columns_of(rows, self.terms) @ self.coefficients + self.deviations[which])
+
+
+def fit_of(rows, pairs):
+    """pairs: [set, network of two, quantity] in mm."""
+    logs = np.log(pairs)
+    means = logs.mean(axis=1)
+    half = logs.shape[2] // 2
+    terms = terms_of(rows, np.column_stack([means[:, :half].mean(axis=1), means[:, half:].mean(axis=1)]))
+    coefficients = np.linalg.lstsq(columns_of(rows, terms), means, rcond=None)[0]
+    half_differences = (logs[:, 0] - logs[:, 1]) / math.sqrt(2)
+    return Fit(terms, coefficients, np.concatenate([half_differences, -half_differences]))
+
+
+def answers_of(values, targets):
+    """[row, total, recorded and misfit] of [row, quantity]: totals, then records, of the points below the crest."""
+    half = values.shape[1] // 2
+    found = [values[:, :half].mean(axis=1), values[:, half:].mean(axis=1)]
+    misfit = sum(((part - np.mean(targets[key])) / (np.ptp(targets[key]) / 2)) ** 2
+                 for part, key in ((values[:, :half], "total_mm"), (values[:, half:], "recorded_mm"))).mean(axis=1) / 2
+    return np.column_stack([*found, misfit])
+
+
+def indices_of(model, inputs, power, seed=1):
+    """First-order and total indices [first or total, input, answer] of model(samples), by 2^power samples of a Sobol sequence."""
+    samples = qmc.Sobol(2 * inputs, seed=seed).random_base2(power)
+    a, b = samples[:, :inputs], samples[:, inputs:]
+    at_a, at_b = model(a), model(b)
+    variance = np.concatenate([at_a, at_b]).var(axis=0)
+    indices = np.empty((2, inputs, at_a.shape[1]))
+    for i in range(inputs):
+        mixed = a.copy()
+        mixed[:, i] = b[:, i]
+        at_mixed = model(mixed)
+        indices[0, i] = ((at_b - at_b.mean(axis=0)) * (at_mixed - at_a)).mean(axis=0) / variance
+        indices[1, i] = ((at_a - at_mixed) ** 2).mean(axis=0) / (2 * variance)
+    return indices
+
+
+def shares(rows, pairs, targets, power=12):
+    """Indices of all inputs, the network last: [first or total, input, answer]; and the fit."""
+    fit = fit_of(rows, pairs)
+    number = rows.shape[1]
+    return indices_of(lambda x: answers_of(fit(x[:, :number], x[:, number]), targets), number + 1, power), fit
+
+
+def straight(pairs, targets):
+    """Of the runs themselves: [mean, standard deviation, total share of the network] of the answers."""
+    answers = answers_of(pairs.reshape(-1, pairs.shape[2]), targets)
+    each = answers.reshape(len(pairs), 2, -1)
+    return np.stack([answers.mean(axis=0), answers.std(axis=0, ddof=1),
+                     ((each[:, 0] - each[:, 1]) ** 2).mean(axis=0) / 2 / answers.var(axis=0, ddof=1)])
+
+
+def errors_of(statistic, number, groups=20):
+    """Standard errors of statistic(places of sets), by leaving out one group of sets after the other (jackknife)."""
+    groups = min(groups, number)
+    found = [statistic(np.flatnonzero(np.arange(number) % groups != left)) for left in range(groups)]
+    return np.sqrt((groups - 1) * np.var(found, axis=0))
+
+
+def lack_of_fit(rows, pairs, fit):
+    """Share of the variance of the logarithms, of the mean total and the mean record, that neither polynomial nor network
+    explains: the mean square of the pair means' errors at sets left out, less half the networks' variance."""
+    logs = np.log(pairs)
+    half = logs.shape[2] // 2
+    both = np.stack([logs[:, :, :half].mean(axis=2), logs[:, :, half:].mean(axis=2)], axis=2)
+    found = []
+    columns = columns_of(rows, fit.terms)
+    for k in range(2):
+        network = ((both[:, 0, k] - both[:, 1, k]) ** 2).mean() / 2
+        means = both[:, :, k].mean(axis=1)[:, None]
+        found.append((error_left_out(columns, means) - network / 2) / both[:, :, k].var(ddof=1))
+    return found
+
+
+# --- What it shows ------------------------------------------------------------------------------------------------------------
+
+ANSWERS = ("mean total", "mean recorded", "misfit")
+
+
+def markdown(names, indices, errors, facts):
+    """A row for each input, the largest total share first."""
+    order = np.argsort(-indices[1, :, :2].sum(axis=1))
+    lines = ["| input | range | " + " | ".join(f"{answer}: alone | in all" for answer in ANSWERS) + " |", "|---|---|" + "---|" * 6]
+    for i in order:
+        name, span = names[i]
+        cells = [f"{indices[j, i, k]:.3f} ± {errors[j, i, k]:.3f}" for k in range(3) for j in range(2)]
+        lines.append(f"| {name} | {span} | " + " | ".join(cells) + " |")
+    return "\n".join([*lines, "", *facts]) + "\n"
+
+
+def range_of(one):
+    if one.unit == "of 1":
+        return "20 to 40 GPa (fresh), 12 to 17 GPa (weak)"
+    change = one.unit in ("deg", "days") and one.own == 0
+    return f"{one.low:{'+' if change else ''}g} to {one.high:{'+' if change else ''}g}{' ' + one.unit if one.unit else ''}"
+
+
+def picture(names, indices, errors, path, most=16):
+    order = np.argsort(-indices[1].max(axis=1))[:most][::-1]
+    plot, panels = figure.plt.subplots(1, 3, sharey=True, figsize=(figure.TWO_COLUMNS, 0.8 + 0.19 * len(order)))
+    for k, (axes, answer) in enumerate(zip(panels, ANSWERS)):
+        for j, (shift, color, label) in enumerate(((0.2, figure.COLORS[4], "alone (first order)"),
+                                                   (-0.2, figure.COLORS[0], "in all (total)"))):
+            axes.barh(np.arange(len(order)) + shift, indices[j, order, k], 0.38, xerr=errors[j, order, k], color=color, label=label,
+                      error_kw={"linewidth": 0.6, "ecolor": "#555555"})
+        axes.set_xlabel(f"share of the variance, {answer}")
+        axes.set_xlim(left=min(0, axes.get_xlim()[0]))
+        axes.tick_params(axis="y", length=0)
+    panels[0].set_yticks(range(len(order)), [names[i][0] for i in order], fontsize=6)
+    panels[2].legend(loc="lower right")
+    figure.save(plot, path)
+
+
+def ridge(rows, pairs, fit, targets, path):
+    """Misfit over horizontal stress and joint stiffness times spacing: of the runs, and of the polynomial with all other inputs
+    as in the scene."""
+    keys = list(INPUTS)
+    values = [values_of_set(row) for row in rows]
+    stiffness = np.array([v["stiffness"] / v["persistence"] * v["spacing"] for v in values])
+    stress = np.array([60 * v["gradient"] + v["tectonic"] * (1 - math.exp(-60 / v["decay"])) for v in values])
+    misfit = answers_of(np.exp(np.log(pairs).mean(axis=1)), targets)[:, 2]
+    plot, (left, right) = figure.plt.subplots(1, 2, figsize=(figure.TWO_COLUMNS, 2.9), sharey=True)
+    limits = [0.25, 0.5, 1, 2, 4, 8, 16]
+    colors = matplotlib.colors.BoundaryNorm(limits, 256, extend="both")
+    order = np.argsort(-misfit)  # small ones on top
+    dots = left.scatter(stiffness[order], stress[order], c=misfit[order], norm=colors, cmap="viridis", s=14, edgecolor="k", linewidth=0.3)
+    left.set_xlabel("joint stiffness times spacing, over the scene's")
+    left.set_ylabel("horizontal stress 60 m below the ground (MPa)")
+    left.set_title("runs, all inputs changed (mean of two networks)")
+    own = np.array([one.share(one.own) for one in INPUTS.values()])
+    i, j = keys.index("stiffness"), keys.index("tectonic")
+    x, y = np.meshgrid(np.linspace(0, 1, 41), np.linspace(0, 1, 41))
+    grid = np.tile(own, (x.size, 1))
+    grid[:, i], grid[:, j] = x.ravel(), y.ravel()
+    at = np.exp(columns_of(grid, fit.terms) @ fit.coefficients)
+    found = answers_of(at, targets)
+    scene = {key: one.own for key, one in INPUTS.items()}
+    across = [INPUTS["stiffness"].value(one) for one in x[0]]
+    up = [60 * scene["gradient"] + INPUTS["tectonic"].value(one) * (1 - math.exp(-60 / scene["decay"])) for one in y[:, 0]]
+    right.contourf(across, up, found[:, 2].reshape(x.shape), limits, norm=colors, cmap="viridis", extend="both")
+    lines = right.contour(across, up, found[:, 0].reshape(x.shape), [45, 60, 75, 90, 120], colors="w", linewidths=0.8)
+    right.clabel(lines, fmt="%g mm", fontsize=6)
+    right.plot(1, 60 * scene["gradient"] + scene["tectonic"] * (1 - math.exp(-60 / scene["decay"])), "k*", markersize=7)
+    right.set_xlabel("joint stiffness, over the scene's")
+    right.set_title("polynomial, other inputs as in the scene; lines: mean total")
+    for axes in (left, right):
+        axes.set_xscale("log")
+        axes.xaxis.set_major_formatter(matplotlib.ticker.ScalarFormatter())
+        axes.xaxis.set_minor_formatter(matplotlib.ticker.NullFormatter())
+        axes.set_xticks([0.5, 1, 2])
+    plot.colorbar(dots, ax=[left, right], label="misfit", ticks=limits)
+    figure.save(plot, path)
+    small = misfit < np.quantile(misfit, 0.2)
+    return (float(np.corrcoef(np.log(stiffness), np.log(stress))[0, 1]),
+            float(np.corrcoef(np.log(stiffness[small]), np.log(stress[small]))[0, 1]), int(small.sum()))
+
+
+def pairs_of(results, targets, below):
+    """Places of the sets with two results, and [set, network, quantity]: totals, then records, of the points below the crest."""
+    kept, pairs = [], []
+    for i in range(0, len(results), 2):
+        two = results[i:i + 2]
+        if any("failed" in one for one in two):
+            continue
+        each = [study.values_of(one, targets, round(one["values"]["readings"])) for one in two]
+        values = np.array([np.concatenate([total[below], recorded[below]]) for total, recorded in each])
+        if np.all(values > 0):  # a point that was excavated with its rock has no number
+            kept.append(i // 2)
+            pairs.append(values)
+    return kept, np.array(pairs)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("programs", type=pathlib.Path)
+    parser.add_argument("scene", type=pathlib.Path)
+    parser.add_argument("targets", type=pathlib.Path)
+    parser.add_argument("-n", "--sets", type=int, default=128, help="of inputs, two runs each")
+    parser.add_argument("-j", "--jobs", type=int, default=1)
+    parser.add_argument("-o", "--output", type=pathlib.Path, required=True)
+    arguments = parser.parse_args()
+    targets = records.targets_of(arguments.targets)
+    below, _ = study.below_the_crest(arguments.scene, targets)
+    rows, results = results_of(arguments)
+    kept, pairs = pairs_of(results, targets, below)
+    rows = rows[kept]
+    if len(rows) < 10:
+        sys.exit(f"shares.py: {len(rows)} sets have two results; at least 10 are wanted, a larger --sets")
+
+    indices, fit = shares(rows, pairs, targets)
+    errors = errors_of(lambda which: shares(rows[which], pairs[which], targets, power=10)[0], len(rows))
+    own, own_errors = straight(pairs, targets), errors_of(lambda which: straight(pairs[which], targets), len(rows))
+    lack = lack_of_fit(rows, pairs, fit)
+
+    names = [(one.name, range_of(one)) for one in INPUTS.values()] + [("network", "two for each set")]
+    told = ridge(rows, pairs, fit, targets, arguments.output / "ridge.png")
+    failed = sum("failed" in one for one in results)
+    more = [" x ".join(names[i][0] for i in (term if term[0] != term[1] else term[:1])) + (" (square)" if term[0] == term[1] else "")
+            for term in fit.terms if len(term) == 2]
+    facts = [
+        f"{len(results)} runs, two networks for each of {len(results) // 2} sets; {failed} without equilibrium; {len(rows)} sets are used.",
+        "Mean and standard deviation: " + "; ".join(
+            f"{name} {own[0, k]:.1f} and {own[1, k]:.1f}{' mm' if k < 2 else ''}" for k, name in enumerate(ANSWERS)) + ".",
+        "The network's share in all from the runs alone: " + ", ".join(
+            f"{own[2, k]:.3f} ± {own_errors[2, k]:.3f} ({name})" for k, name in enumerate(ANSWERS)) + ".",
+        f"Lack of fit, of the variance of the logarithm: {lack[0]:.3f} (mean total), {lack[1]:.3f} (mean recorded).",
+        "Squares and products in the polynomial: " + ("; ".join(more) or "none") + ".",
+        f"Correlation of stress with joint stiffness times spacing, in logarithms: {told[1]:.2f} over the {told[2]} sets with the "
+        f"smallest misfit, {told[0]:.2f} over all.",
+    ]
+    files.write_text(arguments.output / "shares.md", markdown(names, indices, errors, facts))
+    picture(names, indices, errors, arguments.output / "shares.png")
+    text = io.StringIO()
+    out = csv.writer(text, lineterminator="\n")
+    out.writerow(["input", "answer", "first_order", "first_order_error", "total", "total_error"])
+    for i, (name, _) in enumerate(names):
+        for k, answer in enumerate(ANSWERS):
+            out.writerow([name, answer, *(f"{value:.4f}" for j in range(2) for value in (indices[j, i, k], errors[j, i, k]))])
+    files.write_text(arguments.output / "shares.csv", text.getvalue())
+
+
+if __name__ == "__main__":
+    main()
