@@ -121,12 +121,16 @@ class Documentation(ChainTest):
                 self.assertEqual(recorded.get(path.name), wanted, f"{path.name} is stale: make {command}")
         self.assertEqual(found, len(recorded))
 
-    def run_commands(self, page, folder):
-        """Runs all commands of a page in a folder that has the scenes and the plots, and finds this build's programs."""
+    def run_commands(self, page, folder, *changes):
+        """Runs all commands of a page, with changes of what and by what, in a folder that has the scenes and the plots, and finds this
+        build's programs."""
         for name in "data", "pipelines":
             (folder / name).symlink_to(self.chain.source / name)
         commands = "".join(code_blocks(page, "sh"))
         self.assertIn(PATH, commands)
+        for what, by in changes:
+            self.assertEqual(commands.count(what), 1)
+            commands = commands.replace(what, by)
         script = f'set -eu\nPATH="{self.chain.programs}:$PATH"\n' + commands.replace(PATH, "")
         done = subprocess.run(["sh", "-c", script], cwd=folder, capture_output=True, text=True, timeout=300)
         self.assertEqual(done.returncode, 0, done.stderr)
@@ -233,11 +237,17 @@ class Documentation(ChainTest):
         for name in "katex.min.js", "katex.min.css", "fonts/KaTeX_Main-Regular.woff2":
             self.assertTrue((source / "site" / "_static" / name).is_file(), name)
 
+        for path in (source / "docs").glob("*.md"):
+            path.unlink()
+        (source / "docs" / "index.md").write_text("# Index\n\n```{toctree}\nlimits\n```\n")
+        (source / "docs" / "limits.md").write_text("# Limits\n\n[here](index.md)\n")
+        done = made()
+        self.assertEqual(done.returncode, 0, done.stderr)
         with (source / "docs" / "limits.md").open("a") as page:
-            page.write("\n[nowhere](method.md#nowhere)\n")
+            page.write("\n[nowhere](index.md#nowhere)\n")
         done = made()
         self.assertNotEqual(done.returncode, 0)
-        self.assertIn("limits.md", done.stderr)
+        self.assertRegex(done.stderr, r"limits\.md.*nowhere")
 
     def test_studies_example(self):
         """The first study of docs/studies.md runs by its commands."""
@@ -279,7 +289,7 @@ class Documentation(ChainTest):
         page, folder = self.chain.text("docs/python.md"), self.chain.new_folder()
         (shell,) = code_blocks(page, "sh")
         self.assertIn('export PYTHONPATH="$PWD/pipelines"\n', shell)
-        self.run_commands(page, folder)
+        self.run_commands(page, folder, ("-o out/slope\n", "-o out/slope --makefile\nmake -C out/slope result.h5\n"))  # no pictures
         (folder / "scene.toml").write_text(self.chain.small())
         (folder / "study.toml").write_text('scene = "scene.toml"\n[[vary]]\nnetwork = true\n[design]\nruns = 3\n[[collect]]\nname = "crest"\n'
                                            'what = "displacement"\npoint = "crest"\ncomponent = "x"\n')
