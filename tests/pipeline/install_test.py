@@ -185,7 +185,7 @@ class DebianPackage(ChainTest):
     def setUpClass(cls):
         super().setUpClass()
         folder = cls.chain.new_folder()
-        subprocess.run(["cpack", "-G", "DEB", "-B", folder, "--config", cls.chain.programs.parent / "CPackConfig.cmake"], check=True,
+        subprocess.run(["cpack", "-G", "DEB", "-B", folder, "-D", "CPACK_DEBIAN_COMPRESSION_TYPE=gzip", "--config", cls.chain.programs.parent / "CPackConfig.cmake"], check=True,
                        capture_output=True)
         (cls.package,) = folder.glob("*.deb")
         cls.content = folder / "content.tar"

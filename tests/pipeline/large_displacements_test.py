@@ -265,19 +265,19 @@ class Blocks(ChainTest):
             files = [self.chain.run("demsolve", joints, self.chain.new_folder() / "result.h5", "--threads", n)
                      for n in (1, 2)]
         one, two = map(datasets, files)
-        self.assertGreater(len(one["/mesh/zone_block"]), 4000)  # of fewer than 2000 one thread takes all
+        self.assertGreater(len(one["/mesh/zone_block"]), 2500)  # of fewer than 2000 one thread takes all
         for name, values in one.items():
             self.assertTrue(np.array_equal(values, two[name]), name)
         return one
 
     def test_threads_do_not_change_a_byte(self):
-        self.assert_threads_change_nothing(incline(30, 35), 0.3)  # zones that deform
+        self.assert_threads_change_nothing(incline(30, 35), 0.37)  # zones that deform
 
     def test_threads_do_not_change_a_byte_of_what_slides(self):
         for psi in 0, 8:  # contacts are found anew; the joint dilates
             text = changed(incline(30, 25, length=7, more=RIGID), "^(normal|shear)_stiffness_MPa_per_m = .*",
                            r"\1_stiffness_MPa_per_m = 500", 2)  # on soft joints steps are longer
-            data = self.assert_threads_change_nothing(dilatant(text, psi, 0.3) if psi else text, 0.15)
+            data = self.assert_threads_change_nothing(dilatant(text, psi, 0.3) if psi else text, 0.185)
             self.assertGreater(self.along(data, 30), 1.9)  # to the wall
 
     def test_what_goes_on_moving_is_named(self):

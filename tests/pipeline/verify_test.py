@@ -70,13 +70,19 @@ class Verify(ChainTest):
         spec = importlib.util.spec_from_loader("jointverify", loader)
         cls.script = importlib.util.module_from_spec(spec)
         loader.exec_module(cls.script)
-        cls.made = {}
+        cls.made, cls.said = {}, {}
 
     def result(self, name):
         """A result file, made once."""
         if name not in self.made:
             self.made[name] = self.make(name)
         return self.made[name]
+
+    def of_result(self, name):
+        """What verified() finds in a result file, once."""
+        if name not in self.said:
+            self.said[name] = self.verified(self.result(name))
+        return self.said[name]
 
     def make(self, name):
         run, text = self.chain.result, self.chain.text
@@ -151,7 +157,7 @@ class Verify(ChainTest):
     def test_results_of_the_solver_verify(self):
         for name in self.RESULTS:
             with self.subTest(name):
-                code, checks, said = self.verified(self.result(name))
+                code, checks, said = self.of_result(name)
                 self.assertEqual(code, 0, said)
                 self.assertRegex(said.splitlines()[-1], rf"^verified: {len(checks)} checks of {len(checks)}$")
                 self.assertGreater(len(checks), 15)
@@ -160,9 +166,9 @@ class Verify(ChainTest):
         for name, part in (("collapse", "at large displacements"), ("slope", "displacement that joints have crept"),
                            ("continuously yielding", "plastic displacement"), ("wearing", "work of slip"),
                            ("creeping rock", "rock has crept")):
-            self.assertRegex(self.verified(self.result(name))[2], f"not verified: .*{part}")
+            self.assertRegex(self.of_result(name)[2], f"not verified: .*{part}")
         for name in "column", "chain":
-            self.assertNotIn("not verified", self.verified(self.result(name))[2])
+            self.assertNotIn("not verified", self.of_result(name)[2])
 
     # The name of the check, the result, the dataset, where (a function of the file), and the value that is put there (of
     # the one that was).
@@ -294,7 +300,7 @@ class Verify(ChainTest):
                 found.add(check)
         shown = set()
         for name in self.RESULTS:
-            shown |= set(self.verified(self.result(name))[1])
+            shown |= set(self.of_result(name)[1])
         self.assertEqual(shown - found, set(), "checks that no wrong value is tried on")
 
     def test_slip_by_rounding_in_situ(self):
@@ -411,11 +417,10 @@ class Verify(ChainTest):
                 copy = self.chain.new_folder() / "copy.h5"
                 shutil.copyfile(good, copy)
                 damage(copy, random.Random(case))
-                done = self.chain.answer("jointverify", copy)
-                self.assertIn(done.returncode, (2, 4) if damage in MUST_BE_REFUSED else (0, 2, 3, 4), done.stderr)
-                self.assertNotIn("Traceback", done.stderr)
-                if done.returncode in (2, 4):
-                    self.assertIn("jointverify: " + str(copy), done.stderr)
+                code, _, said = self.verified(copy)
+                self.assertIn(code, (2, 4) if damage in MUST_BE_REFUSED else (0, 2, 3, 4), said)
+                if code in (2, 4):
+                    self.assertIn("jointverify: " + str(copy), said)
 
 
 if __name__ == "__main__":
