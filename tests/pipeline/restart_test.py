@@ -182,10 +182,10 @@ class Restart(ChainTest):
     def test_in_the_middle_of_a_stage(self):
         """Between two increments by dynamic relaxation: these are not made again."""
         text = changed(SCENE, "^tolerance = 1e-4", "tolerance = 1e-4\nunloading_increments = 40")
-        self.assert_killed_goes_on(text, "--engine", "relaxation", "--no-creep", kills=(20, 60))
+        self.assert_killed_goes_on(text, "--engine", "relaxation", "--no-creep", kills=(40,))
 
     def test_between_creep_steps(self):
-        went_on = self.assert_killed_goes_on(SCENE, "--creep-step", 0.05, kills=(3, 6, 9))
+        went_on = self.assert_killed_goes_on(SCENE, "--creep-step", 0.05, kills=(3, 9))
         self.assertTrue(any("stage" not in place for place in went_on), went_on)
 
     def test_between_creep_steps_at_large_displacements(self):
@@ -195,13 +195,13 @@ class Restart(ChainTest):
 
     def test_in_the_middle_of_a_dynamic_analysis(self):
         for more in 'rigid_rocks = ["rock"]', "stiffness_damping_s = 3e-5\nrelease_s = 0.05":
-            went_on = self.assert_killed_goes_on(sliding_block(more), kills=(10, 200))
+            went_on = self.assert_killed_goes_on(sliding_block(more), kills=(40,))
             self.assertTrue(all("in the middle of a search" in place for place in went_on), went_on)
 
     def test_in_the_middle_of_a_search_for_a_factor_of_safety(self):
         """The runs that are decided are not made again."""
         search = ("--factor-of-safety", "--safety-width", 0.2, "--no-creep", "--engine", "relaxation")
-        self.assert_killed_goes_on(SCENE, *search, kills=(10, 60, 150))
+        self.assert_killed_goes_on(SCENE, *search, kills=(10, 60))
         joints = self.chain.joints(SCENE)
         command = [joints, "-o", joints.with_name("result.h5"), *search, "--checkpoint", joints.with_name("kept.h5")]
         whole = self.chain.answer("demsolve", *command)
