@@ -233,12 +233,12 @@ std::vector<std::string> warnings_of(const analysis::Trial& trial)
         warnings.push_back("energy balance " + off_by(percent, stage));
     if (const double strain = rock::largest_plastic_strain(run.assembly().zones);
         strain > much_plastic_strain)
-        warnings.push_back("plastic shear strain of " + shown(strain) +
+        warnings.push_back("plastic shear strain of " + rounded(strain) +
                            " in a zone: the rock may have failed");
     if (const double share = run.largest_displacement() / size_of(run.assembly());
         !trial.scene().large_displacements && share > large_displacement)
         warnings.push_back(
-            "displacement of " + shown(run.largest_displacement()) + " m, " + shown(100 * share) +
+            "displacement of " + rounded(run.largest_displacement()) + " m, " + rounded(100 * share) +
             " percent of the section's size: too much for the formulas of small displacements");
     return warnings;
 }

@@ -79,11 +79,11 @@ std::string broken_guard(const GuardedState& state, double size_of_section)
     if (!state.is_finite)
         return "displacements, stresses or tractions are not finite numbers";
     if (!(state.area_error <= rounding))
-        return "areas of zones are off by " + shown(state.area_error) + " of their block's";
+        return "areas of zones are off by " + rounded(state.area_error) + " of their block's";
     if (!(state.weight_error <= rounding))
-        return "loads are off by " + shown(state.weight_error) + " of the weight";
+        return "loads are off by " + rounded(state.weight_error) + " of the weight";
     if (!(state.penetration <= rounding * size_of_section))
-        return "a contact is closed by " + shown(state.penetration) +
+        return "a contact is closed by " + rounded(state.penetration) +
                " m more than its normal stress over its stiffness";
     return "";
 }
@@ -91,10 +91,10 @@ std::string broken_guard(const GuardedState& state, double size_of_section)
 std::string broken_guard(double unbalanced_force_ratio, double energy_error, double tolerance)
 {
     if (!(unbalanced_force_ratio <= tolerance))
-        return "the unbalanced force ratio of an equilibrium is " + shown(unbalanced_force_ratio) +
+        return "the unbalanced force ratio of an equilibrium is " + rounded(unbalanced_force_ratio) +
                ", wanted " + shown(tolerance);
     if (!(energy_error <= std::max(most_energy_error, 100 * tolerance)))
-        return "the energy balance of an equilibrium is off by " + shown(energy_error) + " of its terms";
+        return "the energy balance of an equilibrium is off by " + rounded(energy_error) + " of its terms";
     return "";
 }
 

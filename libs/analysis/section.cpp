@@ -125,7 +125,7 @@ void fail(Section& section, Failure failure, double time)
     if (failure.steps > 0)
         message += ", in the last " + std::to_string(failure.steps) + " steps";
     if (failure.seconds > 0)
-        message += ", " + shown(failure.seconds) + " s";
+        message += ", " + rounded(failure.seconds) + " s";
     section.result.failure = std::move(failure);
     throw equilibrium_error(message);
 }

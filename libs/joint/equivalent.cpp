@@ -371,7 +371,7 @@ void refuse_bridges(const Network& network, std::size_t edge, const JointMateria
     if (std::ranges::any_of(law.parameters,
                             [](const Parameter& one) { return one.with_bridges == WithBridges::refused; }))
         throw input_error("joint set \"" + set_name(network, edge) + "\" leaves rock bridges, " +
-                          shown(1 - persistence) + " of " + place_of(network.blocks, edge) +
+                          rounded(1 - persistence) + " of " + place_of(network.blocks, edge) +
                           ", and its joint material \"" + material.name + "\" is one of " +
                           std::string(law.name) +
                           ", which has no average with rock; wanted a persistence of 1");

@@ -23,6 +23,13 @@ std::string shown(double value)
     return {text.data(), end};
 }
 
+std::string rounded(double value)
+{
+    std::array<char, 32> text{};
+    std::snprintf(text.data(), text.size(), "%.4g", value);
+    return text.data();
+}
+
 std::string shown(const Eigen::Vector2d& place)
 {
     std::array<char, 64> text{};

@@ -174,7 +174,11 @@ public:
                                  " has moved without bound; does anything support it?");
         if (moved > too_far_)
             give_up("the rock at " + shown(a_.position[g]) + " has moved " + shown_length(moved) +
-                        " and is still moving; does anything support it?",
+                        " and is still moving; " +
+                        (settings_.damping == Damping::kinetic && has_any(stiffening_)
+                             ? "joints that stiffen as they close can make kinetic damping unstable; try "
+                               "another damping"
+                             : "does anything support it?"),
                     true, steps);
         const auto [in_all, h] = largest_displacement(a_);
         if (in_all > settings_.largest_displacement)
@@ -494,7 +498,7 @@ public:
     std::string reason(const Relaxation& relaxation) const
     {
         std::string text = "after " + std::to_string(report.steps) + " steps the unbalanced force ratio is " +
-                           shown(report.unbalanced_force_ratio) + ", wanted " + shown(settings_.tolerance);
+                           rounded(report.unbalanced_force_ratio) + ", wanted " + shown(settings_.tolerance);
         if (report.remaining_displacement > 0)
             text += ", and by estimate " + shown_length(report.remaining_displacement) +
                     " of displacement remain, wanted " +

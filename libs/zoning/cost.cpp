@@ -19,6 +19,13 @@ namespace
 
 constexpr double share = 0.2, least_per_corner = 0.5, most_per_corner = 3;
 
+// Of a zone. Measured: elastic, in one or two blocks, by the implicit engine, one thread.
+struct Cost {
+    double bytes, seconds;
+};
+constexpr Cost constant_strain{2300, 30e-6}, quadratic{11000, 80e-6};
+constexpr double much_memory = 2.3e9; // is warned of [bytes]
+
 // Integral of 1/size^2 over the section. Triangles between the first corner and the sides of a polygon, with their
 // sign, make its area whatever its shape. They are halved until the size hardly changes in them.
 class Integral
@@ -83,12 +90,30 @@ std::string up_to_two_digits(double value)
     return to_two_digits(std::ceil(value / unit - 1e-9) * unit);
 }
 
+double perimeter_of(const Blocks& blocks, std::size_t block)
+{
+    double sum = 0;
+    for (Index r = blocks.block_ring[block]; r < blocks.block_ring[block + 1]; ++r)
+        for (Index i = blocks.ring_start[r]; i < blocks.ring_start[r + 1]; ++i) {
+            const Index next = i + 1 < blocks.ring_start[r + 1] ? i + 1 : blocks.ring_start[r];
+            sum += (blocks.vertex[blocks.ring_vertex[next]] - blocks.vertex[blocks.ring_vertex[i]]).norm();
+        }
+    return sum;
+}
+
+// Zones along a block that is thinner than a zone should be: as many as it is longer than thick.
+double along(double perimeter, double area, double size)
+{
+    const double compact = 6; // the ratio below of blocks whose corners have all zones
+    return 2 * area < size * perimeter ? std::max(0.0, perimeter * perimeter / (4 * area) - compact) : 0.0;
+}
+
 } // namespace
 
 double expected_zones(const Scene& scene, const Blocks& blocks)
 {
     const ZoneSize size(scene, blocks);
-    double at_corners = 0;
+    double at_corners = 0, along_thin_blocks = 0;
     for (std::size_t b = 0; b < blocks.block_area.size(); ++b) {
         const Index from = blocks.ring_start[blocks.block_ring[b]],
                     to = blocks.ring_start[blocks.block_ring[b + 1]];
@@ -96,14 +121,16 @@ double expected_zones(const Scene& scene, const Blocks& blocks)
         at_corners += (to - from) *
                       std::min(most_per_corner, least_per_corner + (most_per_corner - least_per_corner) *
                                                                        blocks.block_area[b] / (here * here));
+        along_thin_blocks += along(perimeter_of(blocks, b), blocks.block_area[b], here);
     }
-    return Integral(scene, size).total() / share + at_corners;
+    return Integral(scene, size).total() / share + at_corners + along_thin_blocks;
 }
 
 std::string check_cost(const Scene& scene, const Blocks& blocks, const std::string& file)
 {
     const double zones = expected_zones(scene, blocks);
-    if (!(zones > many_zones))
+    const Cost cost = scene.zones_are_quadratic() ? quadratic : constant_strain;
+    if (!(zones * cost.bytes > much_memory))
         return "";
     const std::string found =
         file + ": [zones] size_m is " + shown(scene.zone_size) + " m" +
@@ -124,11 +151,9 @@ std::string check_cost(const Scene& scene, const Blocks& blocks, const std::stri
                                      up_to_two_digits(factor * *scene.zone_size_at_faces) + " m or more"
                                : ""));
     }
-    // Measured: zones of three gridpoints, elastic, in one block, by the implicit engine.
-    constexpr double bytes = 2300, seconds = 30e-6;
-    return found + ". They need about " + to_two_digits(zones * bytes / 1e9) +
+    return found + ". They need about " + to_two_digits(zones * cost.bytes / 1e9) +
            " GB of memory, and the in-situ equilibrium of elastic rock about " +
-           to_two_digits(zones * seconds) + " s; stages, creep and rock that yields take longer";
+           to_two_digits(zones * cost.seconds) + " s; stages, creep and rock that yields take longer";
 }
 
 } // namespace jointcreep::zoning

@@ -13,6 +13,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <tuple>
 
 namespace cost_test
 {
@@ -53,6 +54,19 @@ Scene square(double zone_size)
 }
 
 } // namespace
+
+// Zones along strips are as short as the strips are thin.
+TEST(cost, number_of_zones_of_strips)
+{
+    for (const double thickness : {0.5, 1.0}) {
+        Scene scene = section({{0, 0}, {100, 0}, {100, 50}, {0, 50}}, 0.01);
+        scene.zone_size = 10;
+        Joints joints;
+        for (int i = 0; i < 40; ++i)
+            add_joint(joints, {-1, 10 + thickness * i}, {101, 10 + thickness * i});
+        EXPECT_NEAR(ratio(scene, blocks::cut(scene, joints)), 1, 0.4) << thickness;
+    }
+}
 
 // Where there are enough of them that it matters. Seen: 0.87 to 1.15.
 TEST(cost, number_of_zones_in_the_sections_of_data)
@@ -132,10 +146,16 @@ TEST(cost, a_size_at_faces_counts)
 TEST(cost, many_zones_are_warned_of)
 {
     const Blocks blocks = blocks_of(square(1));
-    EXPECT_EQ(zoning::check_cost(square(0.1), blocks, "scene.toml"), "");
-    const std::string warning = zoning::check_cost(square(0.02), blocks, "scene.toml");
-    EXPECT_NE(warning.find("about 2.5e+06 zones"), std::string::npos) << warning;
-    EXPECT_NE(warning.find("about 5.8 GB"), std::string::npos) << warning;
+    for (const auto& [is_quadratic, size, few, words] :
+         {std::tuple(false, 0.02, 0.04, "about 2.5e+06 zones. They need about 5.8 GB"),
+          std::tuple(true, 0.05, 0.1, "about 4e+05 zones. They need about 4.4 GB")}) {
+        Scene scene = square(few);
+        scene.asks_for_quadratic_zones = is_quadratic;
+        EXPECT_EQ(zoning::check_cost(scene, blocks, "scene.toml"), "");
+        scene.zone_size = size;
+        const std::string warning = zoning::check_cost(scene, blocks, "scene.toml");
+        EXPECT_NE(warning.find(words), std::string::npos) << warning;
+    }
 }
 
 } // namespace cost_test
