@@ -47,7 +47,7 @@ std::optional<StableLimit> limit_of_published(const Section& section)
     if (scene.creep->step && *scene.creep->step >= limit.step)
         throw unstable_step("creep step of " + shown(*scene.creep->step / unit::day) +
                             " day: the published scheme is stable only below " +
-                            rounded(limit.step / unit::day) + " day, the limit of " + limit.set_by);
+                            shown(limit.step / unit::day) + " day, the limit of " + limit.set_by);
     return StableLimit{limit.step, limit.set_by};
 }
 
