@@ -14,6 +14,7 @@ extensions = ["myst_parser"]
 myst_enable_extensions = ["dollarmath"]
 myst_heading_anchors = 3
 nitpicky = True
+smartquotes_action = "qe"  # two hyphens are an option of a program, no dash
 
 html_theme = "furo"
 html_title = f"jointcreep {release}"
