@@ -5,6 +5,8 @@
 #include <Eigen/Cholesky>
 
 #include <algorithm>
+#include <cmath>
+#include <optional>
 
 namespace jointcreep::estimation
 {
@@ -12,34 +14,48 @@ namespace jointcreep::estimation
 namespace
 {
 
-// The step of the free parameters. Those that would go beyond a bound stop there, and the others take the best step
-// then.
+// The step of the free parameters: straight to where they are best. The first that reaches a bound stays there, and the
+// others go on from there. So the sum of squares of the linear model falls all the way.
 VectorXd step_within(const MatrixXd& information, const VectorXd& downhill, double lambda,
                      std::vector<Eigen::Index> free, const VectorXd& low, const VectorXd& high)
 {
     VectorXd step = VectorXd::Zero(downhill.size());
+    MatrixXd damped = information;
+    damped.diagonal() *= 1 + lambda;
     while (!free.empty()) {
-        const VectorXd right = (downhill - information * step)(free);
-        MatrixXd damped = information(free, free);
-        damped.diagonal() *= 1 + lambda;
-        const VectorXd found = damped.ldlt().solve(right);
-        std::vector<Eigen::Index> within;
-        VectorXd next = step;
+        const VectorXd right = (downhill - damped * step)(free);
+        const VectorXd more = MatrixXd(damped(free, free)).ldlt().solve(right);
+        double share = 1, bound = 0;
+        std::optional<std::size_t> first;
         for (std::size_t k = 0; k < free.size(); ++k) {
             const Eigen::Index i = free[k];
-            const double wanted = found[static_cast<Eigen::Index>(k)];
-            next[i] = std::clamp(wanted, low[i], high[i]);
-            if (next[i] == wanted)
-                within.push_back(i);
+            const double wanted = more[static_cast<Eigen::Index>(k)], end = wanted < 0 ? low[i] : high[i];
+            if (std::abs(wanted) * share > std::abs(end - step[i])) {
+                share = std::abs((end - step[i]) / wanted);
+                bound = end;
+                first = k;
+            }
         }
-        if (within.size() == free.size())
-            return next;
-        for (const Eigen::Index i : within)
-            next[i] = 0;
-        step = next;
-        free = std::move(within);
+        for (std::size_t k = 0; k < free.size(); ++k)
+            step[free[k]] += share * more[static_cast<Eigen::Index>(k)];
+        if (!first)
+            return step;
+        step[free[*first]] = bound;
+        free.erase(free.begin() + static_cast<std::ptrdiff_t>(*first));
     }
     return step;
+}
+
+// A step to a bound ends there, whatever rounding.
+VectorXd after(const VectorXd& parameters, const VectorXd& step, const VectorXd& low, const VectorXd& high)
+{
+    VectorXd next = (parameters + step).cwiseMax(low).cwiseMin(high);
+    for (Eigen::Index i = 0; i < next.size(); ++i)
+        if (step[i] < 0 && step[i] == low[i] - parameters[i])
+            next[i] = low[i];
+        else if (step[i] > 0 && step[i] == high[i] - parameters[i])
+            next[i] = high[i];
+    return next;
 }
 
 // Whether the step left is within a tenth of a standard error, whatever its direction: by the quadratic form
@@ -90,7 +106,7 @@ Minimum minimise(const Model& model, const VectorXd& start, const VectorXd& low,
         for (;;) {
             const VectorXd step = step_within(information, downhill, lambda, free, low - best.parameters,
                                               high - best.parameters);
-            const VectorXd next = (best.parameters + step).cwiseMax(low).cwiseMin(high);
+            const VectorXd next = after(best.parameters, step, low, high);
             const double predicted = sum - (r + J * step).squaredNorm();
             if (!(predicted > relative * sum) || step.lpNorm<Eigen::Infinity>() < smallest_step ||
                 lambda > largest_lambda) {

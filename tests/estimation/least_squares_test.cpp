@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <random>
 
 namespace least_squares_test
 {
@@ -81,6 +82,42 @@ TEST(least_squares, turns_along_a_bound)
     EXPECT_EQ(found.at_bound, (std::vector<AtBound>{AtBound::high, AtBound::no}));
     EXPECT_EQ(found.parameters[0], 1);
     EXPECT_NEAR(found.parameters[1], 54. / 55, 1e-6);
+}
+
+// Three parameters with nearly the same effect: often two of them reach bounds that only one of them ends at.
+TEST(least_squares, finds_the_best_point_between_bounds)
+{
+    std::mt19937_64 random(1);
+    std::normal_distribution<double> normal;
+    const VectorXd high = VectorXd::Constant(3, 0.7), low = -high;
+    int at_bounds = 0;
+    for (int trial = 0; trial < 500; ++trial) {
+        MatrixXd J(30, 3);
+        VectorXd y(30);
+        for (Eigen::Index i = 0; i < 30; ++i) {
+            const double common = normal(random);
+            for (Eigen::Index k = 0; k < 3; ++k)
+                J(i, k) = common + 0.15 * normal(random);
+            y[i] = normal(random);
+        }
+        const Model model = [&](const VectorXd& p) -> std::optional<Evaluation> {
+            return Evaluation{J * p - y, J};
+        };
+        const Minimum found = minimise(model, VectorXd::Zero(3), low, high, 100, 1e-12);
+        EXPECT_TRUE(found.is_converged) << trial;
+        const VectorXd downhill = -J.transpose() * found.there.residual;
+        for (Eigen::Index k = 0; k < 3; ++k) {
+            const AtBound at = found.at_bound[static_cast<std::size_t>(k)];
+            at_bounds += at != AtBound::no ? 1 : 0;
+            if (at == AtBound::no) {
+                EXPECT_NEAR(downhill[k], 0, 1e-3) << trial;
+                EXPECT_LT(std::abs(found.parameters[k]), 0.7) << trial;
+            } else {
+                EXPECT_EQ(found.parameters[k], at == AtBound::low ? -0.7 : 0.7) << trial;
+            }
+        }
+    }
+    EXPECT_GT(at_bounds, 200);
 }
 
 // The line above at its bound a = 1. Of b the data know what they know of it in a free line: variance 1 / sum of (x - mean)^2
