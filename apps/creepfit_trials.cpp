@@ -74,7 +74,7 @@ public:
     Run operator()(const std::vector<double>& factors) const
     {
         const VectorXd x = scaled(factors);
-        if (x.lpNorm<Eigen::Infinity>() > 1)
+        if (x.lpNorm<Eigen::Infinity>() > 1 + 1e-9) // rounding: the search may end at a bound
             return section_(factors);
         Run run = like_;
         const auto n = static_cast<Eigen::Index>(factors.size());
