@@ -245,7 +245,7 @@ def error_left_out(columns, values):
 
 
 def terms_of(rows, values, most=12):
-    """Terms, one by one, that make the error of rows left out smallest, as long as it becomes 1 percent smaller: linear ones, then
+    """Terms, one by one, that make the error of rows left out smallest, as long as it becomes 3 percent smaller: linear ones, then
     squares and products of the inputs that these have."""
     values = (values - values.mean(axis=0)) / values.std(axis=0)
     terms = []
@@ -255,7 +255,7 @@ def terms_of(rows, values, most=12):
         while wanted and len(terms) < min(most, len(rows) // 2):
             errors = [error_left_out(columns_of(rows, [*terms, term]), values) for term in wanted]
             best = int(np.argmin(errors))
-            if errors[best] > 0.99 * error:
+            if errors[best] > 0.97 * error:
                 return
             error = errors[best]
             terms.append(wanted.pop(best))
@@ -383,7 +383,7 @@ def picture(names, indices, errors, path, most=16):
                                                    (-0.2, figure.COLORS[0], "in all (total)"))):
             axes.barh(np.arange(len(order)) + shift, indices[j, order, k], 0.38, xerr=errors[j, order, k], color=color, label=label,
                       error_kw={"linewidth": 0.6, "ecolor": "#555555"})
-        axes.set_xlabel(f"share of the variance, {answer}")
+        axes.set_xlabel(f"share of {answer}")
         axes.set_xlim(left=min(0, axes.get_xlim()[0]))
         axes.tick_params(axis="y", length=0)
     panels[0].set_yticks(range(len(order)), [names[i][0] for i in order], fontsize=6)
@@ -406,7 +406,7 @@ def ridge(rows, pairs, fit, targets, path):
     dots = left.scatter(stiffness[order], stress[order], c=misfit[order], norm=colors, cmap="viridis", s=14, edgecolor="k", linewidth=0.3)
     left.set_xlabel("joint stiffness times spacing, over the scene's")
     left.set_ylabel("horizontal stress 60 m below the ground (MPa)")
-    left.set_title("runs, all inputs changed (mean of two networks)")
+    left.set_title("runs: all inputs changed")
     own = np.array([one.share(one.own) for one in INPUTS.values()])
     i, j = keys.index("stiffness"), keys.index("tectonic")
     x, y = np.meshgrid(np.linspace(0, 1, 41), np.linspace(0, 1, 41))
@@ -422,7 +422,7 @@ def ridge(rows, pairs, fit, targets, path):
     right.clabel(lines, fmt="%g mm", fontsize=6)
     right.plot(1, 60 * scene["gradient"] + scene["tectonic"] * (1 - math.exp(-60 / scene["decay"])), "k*", markersize=7)
     right.set_xlabel("joint stiffness, over the scene's")
-    right.set_title("polynomial, other inputs as in the scene; lines: mean total")
+    right.set_title("polynomial: others as in the scene; mean total")
     for axes in (left, right):
         axes.set_xscale("log")
         axes.xaxis.set_major_formatter(matplotlib.ticker.ScalarFormatter())

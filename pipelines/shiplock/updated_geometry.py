@@ -73,6 +73,10 @@ def computed(arguments, name, start):
 def rows_of(results, targets):
     """[(point, {total, recorded: [small, updated less small, its part of geometry, its part of the engine] in mm})]"""
     values = {name: np.array(study.values_of(result, targets)) for name, result in results.items()}
+    first = np.array(results["small"]["first"])
+    end = (targets["end_of_record"] - datetime.date.fromisoformat(results["small"]["start"])).days
+    for one in values.values():
+        one[1, first >= end] = np.nan  # read later
     values["tiny"] = values["tiny"] / TIMES
     small, updated, tiny = (values[name] for name in RUNS)
     columns = np.stack([small, updated - small, updated - tiny, tiny - small], axis=-1)  # [total or recorded, point, column]
@@ -86,17 +90,16 @@ def markdown(rows, zones, date):
         cells = [name]
         for key in ("total", "recorded"):
             small, change, geometry, engine = values[key]
-            if small == 0:
+            if np.isnan(small):
                 cells += ["", "", "", ""]
                 continue
-            cells += [f"{small:.2f}", f"{change:+.2f} ({100 * change / small:+.1f} %)", f"{geometry:+.2f} ({100 * geometry / small:+.2f} %)",
-                      f"{engine:+.2f} ({100 * engine / small:+.1f} %)"]
+            share = lambda part: f" ({100 * part / small:+.1f} %)" if small >= 1 else ""
+            cells += [f"{small:.2f}", f"{change:+.2f}{share(change)}", f"{geometry:+.3f}{share(geometry)}", f"{engine:+.2f}{share(engine)}"]
         lines.append("| " + " | ".join(cells) + " |")
-    largest = {key: max(rows, key=lambda row: abs(row[1][key][2])) for key in ("total", "recorded")}
-    told = "; ".join(f"{key} {values[key][2]:+.2f} mm ({name})" for key, (name, values) in largest.items())
-    mean = np.mean([values["total"][2] / values["total"][0] for _, values in rows])
+    largest = {key: max(rows, key=lambda row: np.nan_to_num(abs(row[1][key][2]))) for key in ("total", "recorded")}
+    told = "; ".join(f"{key} {values[key][2]:+.3f} mm ({name})" for key, (name, values) in largest.items() if not np.isnan(values[key][2]))
     return "\n".join([*lines, "", f"Realization 0, horizontal, toward the lock, on {date}; {zones} zones in all runs.",
-                      f"Largest effect of geometry: {told}; mean of the totals {100 * mean:+.2f} percent."]) + "\n"
+                      f"Largest effect of geometry: {told}."]) + "\n"
 
 
 def main():

@@ -131,8 +131,13 @@ class Shiplock(ChainTest):
         numpy.testing.assert_allclose(rows[0][1]["total"], [60, 3, 2, 1], atol=1e-9)
         numpy.testing.assert_allclose(rows[0][1]["recorded"], [40, 2, 1.2, 0.8], atol=1e-9)
         text = updated_geometry.markdown(rows, 9, "1999-12-31")
-        self.assertIn("| N215 | 60.00 | +3.00 (+5.0 %) | +2.00 (+3.33 %) | +1.00 (+1.7 %) | 40.00 |", text)
-        self.assertIn("total +2.00 mm (N215)", text)
+        self.assertIn("| N215 | 60.00 | +3.00 (+5.0 %) | +2.000 (+3.3 %) | +1.00 (+1.7 %) | 40.00 |", text)
+        self.assertIn("total +2.000 mm (N215)", text)
+        early = {"end_of_record": datetime.date(1994, 9, 1)}
+        rows = updated_geometry.rows_of({name: result(20.0, 60.0) for name in ("small", "updated", "tiny")}, early)
+        text = updated_geometry.markdown(rows, 9, "1994-09-01")
+        self.assertNotIn("nan", text)
+        self.assertRegex(text, r"\| N215 \| 15\.60 \|.*\|  \|  \|  \|  \|\n", "not read yet")
 
     def test_scene_of_the_shares(self):
         """With the scene's own values it is the scene; each input but the first readings changes it."""
