@@ -26,9 +26,10 @@ from . import files, histories
 from .errors import NotWanted
 
 AXES = {2: ["x", "y"], 3: ["xx", "yy", "xy"]}  # parts of a dataset's last dimension
-IN_PLANE, ALONG_JOINT = ["x", "y"], ["normal", "shear"]
+IN_PLANE, IN_SPACE, ALONG_JOINT = ["x", "y"], ["x", "y", "z"], ["normal", "shear"]
 COMPONENTS = {"displacement": IN_PLANE, "reaction": IN_PLANE, "point_position": IN_PLANE, "gridpoint_position": IN_PLANE,
-              "stress": AXES[3], "traction": ALONG_JOINT, "relative_displacement": ALONG_JOINT}  # of datasets of these names
+              "pole": IN_SPACE, "centre": IN_SPACE, "stress": AXES[3], "traction": ALONG_JOINT,
+              "relative_displacement": ALONG_JOINT}  # of datasets of these names
 STATUS = ["removed", "stuck", "slipping", "open"]  # of contacts, by number
 
 
@@ -54,7 +55,10 @@ class Table(dict):
         """Adds a column; one of several parts as one for each: "displacement x", "displacement y"."""
         if np.ndim(values) == 1:
             self[name], self.units[name] = values, unit
-        for part, axis in enumerate(AXES[values.shape[1]] if np.ndim(values) == 2 else []):
+        axes = AXES[values.shape[1]] if np.ndim(values) == 2 else []
+        if len(axes) == 3 and COMPONENTS.get(name) == IN_SPACE:
+            axes = IN_SPACE
+        for part, axis in enumerate(axes):
             self[f"{name} {axis}"], self.units[f"{name} {axis}"] = values[:, part], unit
 
 

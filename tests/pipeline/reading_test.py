@@ -55,7 +55,11 @@ class Files(ChainTest):
         moved = run.gridpoints()
         self.assertTrue((moved["displacement x"] == wanted["/states/displacement"][-1, :, 0]).all())
         self.assertEqual(run.equilibria().rows(), len(wanted["/equilibria/steps"]))
-        self.assertEqual(run.joints().rows(), len(wanted["/joints/set"]))
+        joints = run.joints()
+        self.assertEqual(joints.rows(), len(wanted["/joints/set"]))
+        for part, axis in enumerate("xyz"):
+            np.testing.assert_array_equal(joints[f"pole {axis}"], wanted["/joints/pole"][:, part])
+            np.testing.assert_array_equal(joints[f"centre {axis}"], wanted["/joints/centre"][:, part])
         self.assertEqual(run.edges()["joint fraction"].shape, wanted["/edges/joint_fraction"].shape)
         self.assertEqual((run.states().rows(), run.unit("/history/time")), (len(wanted["/states/time"]), "day"))
 
