@@ -214,6 +214,8 @@ def main():
     out, programs = pathlib.Path.cwd(), pathlib.Path(os.environ["JOINTCREEP_PROGRAMS"])
     try:
         return make_group(sys.argv[1], out, programs)
+    except KeyboardInterrupt:  # said by the study
+        return 128 + signal.SIGINT
     except (NotDone, NotWanted) as error:
         print(f"jointcreep: {error}", file=sys.stderr)
         return CANNOT_WRITE

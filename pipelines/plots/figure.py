@@ -315,25 +315,27 @@ def mark_stages(axes, places, names, with_names=True):
 
 
 class DateTicks(matplotlib.ticker.Locator):
-    """Ticks of an axis of days since a date, where months or years begin."""
+    """Ticks of an axis of days since a date, where months or years begin; at most `most`, if given."""
 
-    def __init__(self, start):
+    def __init__(self, start, most):
         self.first, self.dates = matplotlib.dates.date2num(start), matplotlib.dates.AutoDateLocator(minticks=3, maxticks=7)
+        self.most = most
 
     def tick_values(self, low, high):
         ends = [matplotlib.dates.num2date(self.first + day) for day in (low, max(high, low + 1))]
-        return np.array([day - self.first for day in self.dates.tick_values(*ends) if low <= day - self.first <= high])
+        ticks = np.array([day - self.first for day in self.dates.tick_values(*ends) if low <= day - self.first <= high])
+        return ticks[:: -(-len(ticks) // self.most)] if self.most and len(ticks) else ticks
 
     def __call__(self):
         return self.tick_values(*sorted(self.axis.get_view_interval()))
 
 
-def label_time(file, axes, more=""):
+def label_time(file, axes, more="", most_dates=None):
     """Names an x axis of days; where the scene has a date of the start, its ticks are dates. more: a line below."""
     start = scene_of(file)["schedule"].get("start", 0)
     label = "time since the start (days)"
     if not isinstance(start, (int, float)):
         label = f"date (start: {start})"
-        axes.xaxis.set_major_locator(DateTicks(start))
+        axes.xaxis.set_major_locator(DateTicks(start, most_dates))
         axes.xaxis.set_major_formatter(lambda day, _: str(start + datetime.timedelta(days=round(day))))
     axes.set_xlabel("\n".join(filter(None, (label, more))))

@@ -62,7 +62,7 @@ def draw(file, component="x", point=(), since_first_reading=False):
     for axes in panels[len(chosen):]:
         axes.set_visible(False)
     for axes in panels[max(0, len(chosen) - columns):len(chosen)]:
-        figure.label_time(file, axes)
+        figure.label_time(file, axes, most_dates=4 if columns > 1 else None)
         axes.tick_params(labelbottom=True)
     since = ", since the first reading" if since_first_reading else ""
     plot.supylabel(LABELS[component].replace(" (mm)", since + " (mm)"), fontsize=8)
