@@ -210,8 +210,11 @@ def draw_stress(file, state, section, axes, component, limits):
 
 def contact_lines(file, section):
     """The pieces of joint that contacts stand for: pairs of places [piece, 2, 2], and the contact of each. A piece is
-    half a zone's side, from its end, where the contact is, to its middle."""
-    contacts = {frozenset(pair): i for i, pair in enumerate(figure.array(file, "/mesh/contact_gridpoint").tolist())}
+    half a zone's side, from its end, where the contact is, to its middle. At the face of an excavation two contacts have the
+    same gridpoints: one of the rock that stays."""
+    contacts, centre = {}, figure.array(file, "/mesh/contact_centre")
+    for i, pair in enumerate(figure.array(file, "/mesh/contact_gridpoint").tolist()):
+        contacts.setdefault(frozenset(pair), []).append(i)
     outline, on_joints = section.borders()
     in_zones = np.unique(figure.array(file, "/mesh/zone_gridpoint"))
     ground = np.setdiff1d(np.arange(len(section.place)), in_zones)  # that the rock rests on, without zones
@@ -229,10 +232,10 @@ def contact_lines(file, section):
         ends = {place: section.position[[one[place], other[place]]].mean(axis=0) for place in one}
         middle = sum(ends.values()) / 2
         for place, end in ends.items():
-            contact = contacts.get(frozenset((one[place], other[place])))
-            if contact is not None:
+            here = contacts.get(frozenset((one[place], other[place])))
+            if here:
                 lines.append((end, middle))
-                of_contact.append(contact)
+                of_contact.append(min(here, key=lambda i, at=(end + middle) / 2: np.sum((centre[i] - at) ** 2)))
     return np.reshape(lines, (-1, 2, 2)), np.array(of_contact, int)
 
 

@@ -58,6 +58,18 @@ class Plots(ChainTest):
     def setUp(self):
         self.plots = self.chain.source / "pipelines" / "plots"
 
+    def test_joints_reach_the_face(self):
+        """Where a stage cuts a joint, two contacts have the same gridpoints. The one of the rock that stays is drawn."""
+        import figure
+        import plot_state
+        with figure.opened(self.chain.result(self.chain.small())) as file:
+            pairs = [frozenset(pair) for pair in figure.array(file, "/mesh/contact_gridpoint").tolist()]
+            status = figure.array(file, "/states/contact_status")[-1]
+            drawn = plot_state.contact_lines(file, plot_state.Section(file, len(figure.array(file, "/states/time")) - 1, 0))[1]
+        cut = {pair for pair, one in zip(pairs, status) if one == 0} & {pair for pair, one in zip(pairs, status) if one != 0}
+        self.assertGreater(len(cut), 0)
+        self.assertTrue((status[drawn] != 0).all())
+
     def test_functions(self):
         """What the functions draw is what the scripts draw, also one after another; what a file lacks is an exception."""
         from jointcreep import NotWanted, plots
