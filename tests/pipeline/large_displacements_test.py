@@ -326,7 +326,7 @@ class Blocks(ChainTest):
 
     def test_what_does_not_go_together_is_refused(self):
         text = incline(30, 25)
-        for more, message in (('[creep]\nstep_days = 1\n', r"with \[creep\] wanted more than 0"),
+        for more, message in (('[creep]\nstep_days = 1\n', r"wanted more than 0 with \[creep\]"),
                               ("[equilibrium]\nunloading_increments = 2\n",
                                r"unloading_increments = 2: with \[large_displacements\] a stage excavates its rock at once; wanted 1"),
                               ("", r"release_s = 5: wanted less than longest_s, 5 s"),
