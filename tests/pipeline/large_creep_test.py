@@ -194,7 +194,7 @@ class Refused(ChainTest):
         text = incline(30, 35, more="release_s = 0.2\n") + "[creep]\nstep_days = 1\n"
         unit = "".join(f"{key} = {of}\n" for key, of in kelvin(100, 1).items())
         for scene_text, message in (
-                (text.replace("release_s = 0.2", ""), r"release_s.*with \[creep\] wanted more than 0"),
+                (text.replace("release_s = 0.2", ""), r"release_s.*wanted more than 0 with \[creep\]"),
                 (text.replace("release_s = 0.2", "release_s = 0.2\nstop_s = 5"), r"stop_s = 5: a scene with \[creep\] has none"),
                 (text.replace('poissons_ratio = 0.25', "poissons_ratio = 0.25\nkelvin_shear_modulus_GPa = 5\n"
                               "kelvin_shear_viscosity_GPa_day = 50"), r"joints creep, and rock does not"),
