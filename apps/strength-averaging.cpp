@@ -9,13 +9,12 @@
 #include "program.hpp"
 
 #include "joint/equivalent.hpp"
+#include "model/error.hpp"
 #include "model/units.hpp"
 #include "model/version.hpp"
 #include "scene/scene.hpp"
 #include "store/files.hpp"
 
-#include <array>
-#include <cstdio>
 #include <optional>
 
 using namespace jointcreep;
@@ -32,21 +31,13 @@ const Program program{
     .example = "strength-averaging network.h5 -o joints.h5",
 };
 
-// A number with four digits.
-std::string digits(double value)
-{
-    std::array<char, 32> text{};
-    std::snprintf(text.data(), text.size(), "%.4g", value);
-    return text.data();
-}
-
 // "0.1 joint, 2 bridges, 1.2 equivalent"; without bridges "0.1".
 std::string beside(double joint, std::optional<double> bridges, double equivalent, double unit)
 {
     if (joint == equivalent)
-        return digits(joint / unit);
-    return digits(joint / unit) + " joint, " + (bridges ? digits(*bridges / unit) + " bridges, " : "") +
-           digits(equivalent / unit) + " equivalent";
+        return rounded(joint / unit);
+    return rounded(joint / unit) + " joint, " + (bridges ? rounded(*bridges / unit) + " bridges, " : "") +
+           rounded(equivalent / unit) + " equivalent";
 }
 
 // For each set: persistence, target and achieved; and the properties of joints, bridges and their averages.
@@ -63,10 +54,10 @@ void report(const Arguments& arguments, const Network& network, const Equivalent
             summary.add(name + ": persistence", "1, all joint");
         if (sets.edge_length[set] == 0 || sets.edge_persistence[set] == 1)
             continue;
-        summary.add(name + ": persistence", digits(sets.target_persistence[set]) + " wanted, " +
-                                                digits(sets.line_persistence[set]) + " on lines (error " +
-                                                digits(sets.persistence_error[set]) + "), " +
-                                                digits(sets.edge_persistence[set]) + " on edges");
+        summary.add(name + ": persistence", rounded(sets.target_persistence[set]) + " wanted, " +
+                                                rounded(sets.line_persistence[set]) + " on lines (error " +
+                                                rounded(sets.persistence_error[set]) + "), " +
+                                                rounded(sets.edge_persistence[set]) + " on edges");
         summary.add(
             name + ": cohesion",
             beside(sets.joint_cohesion[set], sets.bridge_cohesion[set], sets.cohesion[set], unit::MPa),

@@ -4,8 +4,6 @@
 #include "model/polygon.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cstdio>
 #include <map>
 #include <random>
 
@@ -75,13 +73,8 @@ void check_crossings(const Scene& scene, const Joints& joints, const Box& box)
     const ExpectedCrossings expected = expected_crossings(joints, box);
     if (!(expected.number > most_crossings))
         return;
-    const auto shown_short = [](double number) {
-        std::array<char, 32> text{};
-        std::snprintf(text.data(), text.size(), "%.2g", number);
-        return std::string(text.data());
-    };
-    throw input_error("about " + shown_short(expected.number) +
-                      " crossings of joints in the section; expected at most " + shown_short(most_crossings) +
+    throw input_error("about " + rounded(expected.number, 2) +
+                      " crossings of joints in the section; expected at most " + rounded(most_crossings, 2) +
                       ". Most are on joint set \"" + names_of(scene).joint_set[expected.set] + "\". " +
                       advice_for(scene, expected.set));
 }

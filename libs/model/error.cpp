@@ -23,10 +23,10 @@ std::string shown(double value)
     return {text.data(), end};
 }
 
-std::string rounded(double value)
+std::string rounded(double value, int digits)
 {
     std::array<char, 32> text{};
-    std::snprintf(text.data(), text.size(), "%.4g", value);
+    std::snprintf(text.data(), text.size(), "%.*g", digits, value);
     return text.data();
 }
 

@@ -35,7 +35,7 @@ std::string shown(const Eigen::Vector2d& place);
 // A number as it is shown in messages: the shortest text that reads back as the same double.
 std::string shown(double value);
 
-// A computed number as it is shown in messages: rounded to four digits.
-std::string rounded(double value);
+// A computed number as it is shown in messages: rounded to so many digits.
+std::string rounded(double value, int digits = 4);
 
 } // namespace jointcreep

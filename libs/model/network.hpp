@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include "model/polygon.hpp"
 #include "model/statistics.hpp"
 
 #include <Eigen/Core>
@@ -119,6 +120,14 @@ struct Blocks {
     JointFates fates;
     CuttingReport report;
 };
+
+inline Polygon ring_of(const Blocks& blocks, Index ring)
+{
+    Polygon corners;
+    for (Index i = blocks.ring_start[ring]; i < blocks.ring_start[ring + 1]; ++i)
+        corners.push_back(blocks.vertex[blocks.ring_vertex[i]]);
+    return corners;
+}
 
 // What jointgen makes.
 struct Network {

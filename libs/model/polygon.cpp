@@ -69,4 +69,12 @@ double area_of(const Polygon& polygon)
     return std::abs(signed_area_of(polygon));
 }
 
+double perimeter_of(const Polygon& polygon)
+{
+    double sum = 0;
+    for (std::size_t i = 0; i < polygon.size(); ++i)
+        sum += (polygon[i] - polygon[(i + 1) % polygon.size()]).norm();
+    return sum;
+}
+
 } // namespace jointcreep

@@ -43,4 +43,6 @@ double distance_to_sides(const Polygon& polygon, const Eigen::Vector2d& place);
 double area_of(const Polygon& polygon);
 double signed_area_of(const Polygon& polygon);
 
+double perimeter_of(const Polygon& polygon); // [m]
+
 } // namespace jointcreep

@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
 namespace jointcreep::relaxation
@@ -32,9 +31,7 @@ constexpr double rounding = 1e-11;              // of the unbalanced force ratio
 
 std::string shown_length(double length)
 {
-    std::array<char, 32> text{};
-    std::snprintf(text.data(), text.size(), "%.3g m", length);
-    return text.data();
+    return rounded(length, 3) + " m";
 }
 
 // Patience with the remaining displacement, once forces are in balance. It ends where the remaining displacement

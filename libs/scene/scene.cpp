@@ -147,12 +147,9 @@ void check_areas(const std::string& path, const Blocks& blocks)
     for (std::size_t block = 0; block < blocks.block_area.size(); ++block) {
         double area = 0, perimeter = 0; // of the outline less holes; of all rings
         for (Index ring = blocks.block_ring[block]; ring < blocks.block_ring[block + 1]; ++ring) {
-            Polygon corners;
-            for (Index i = blocks.ring_start[ring]; i < blocks.ring_start[ring + 1]; ++i)
-                corners.push_back(blocks.vertex[blocks.ring_vertex[i]]);
+            const Polygon corners = ring_of(blocks, ring);
             area += (ring == blocks.block_ring[block] ? 1 : -1) * area_of(corners);
-            for (std::size_t i = 0; i < corners.size(); ++i)
-                perimeter += (corners[i] - corners[(i + 1) % corners.size()]).norm();
+            perimeter += perimeter_of(corners);
         }
         const double stored = blocks.block_area[block];
         if (!(std::abs(area - stored) <= 1e-6 * stored + 1e-9 * perimeter))

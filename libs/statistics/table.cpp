@@ -1,5 +1,7 @@
 #include "statistics/statistics.hpp"
 
+#include "model/error.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -14,14 +16,13 @@ namespace
 
 std::string number(double value, const std::string& unit)
 {
-    std::array<char, 32> text{};
     const bool is_count = unit == "1" && std::abs(value) < 1e15 && value == std::round(value);
     if (is_count) {
+        std::array<char, 32> text{};
         std::snprintf(text.data(), text.size(), "%.0f", value);
         return text.data();
     }
-    std::snprintf(text.data(), text.size(), "%.4g", unit == "rad" ? value * 180 / std::numbers::pi : value);
-    return text.data();
+    return rounded(unit == "rad" ? value * 180 / std::numbers::pi : value);
 }
 
 std::string shown_unit(const std::string& unit)

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <vector>
 
 namespace jointcreep::zoning
@@ -79,9 +78,7 @@ private:
 
 std::string to_two_digits(double value)
 {
-    std::array<char, 32> text{};
-    std::snprintf(text.data(), text.size(), "%.2g", value);
-    return text.data();
+    return rounded(value, 2);
 }
 
 std::string up_to_two_digits(double value)
@@ -90,19 +87,16 @@ std::string up_to_two_digits(double value)
     return to_two_digits(std::ceil(value / unit - 1e-9) * unit);
 }
 
-double perimeter_of(const Blocks& blocks, std::size_t block)
+double length_of_rings(const Blocks& blocks, std::size_t block)
 {
     double sum = 0;
     for (Index r = blocks.block_ring[block]; r < blocks.block_ring[block + 1]; ++r)
-        for (Index i = blocks.ring_start[r]; i < blocks.ring_start[r + 1]; ++i) {
-            const Index next = i + 1 < blocks.ring_start[r + 1] ? i + 1 : blocks.ring_start[r];
-            sum += (blocks.vertex[blocks.ring_vertex[next]] - blocks.vertex[blocks.ring_vertex[i]]).norm();
-        }
+        sum += perimeter_of(ring_of(blocks, r));
     return sum;
 }
 
 // Zones along a block that is thinner than a zone should be: as many as it is longer than thick.
-double along(double perimeter, double area, double size)
+double zones_along(double perimeter, double area, double size)
 {
     const double compact = 6; // the ratio below of blocks whose corners have all zones
     return 2 * area < size * perimeter ? std::max(0.0, perimeter * perimeter / (4 * area) - compact) : 0.0;
@@ -121,7 +115,7 @@ double expected_zones(const Scene& scene, const Blocks& blocks)
         at_corners += (to - from) *
                       std::min(most_per_corner, least_per_corner + (most_per_corner - least_per_corner) *
                                                                        blocks.block_area[b] / (here * here));
-        along_thin_blocks += along(perimeter_of(blocks, b), blocks.block_area[b], here);
+        along_thin_blocks += zones_along(length_of_rings(blocks, b), blocks.block_area[b], here);
     }
     return Integral(scene, size).total() / share + at_corners + along_thin_blocks;
 }
