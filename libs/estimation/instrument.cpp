@@ -387,21 +387,24 @@ Confidence Instruments::confidence(const Evaluation& raw, const Minimum& minimum
             ++moving;
     }
     const VectorXd shares = likelihood(raw, is_free);
-    const MatrixXd all = beside(raw.residual, effects(raw, is_free)), with_bound = effects(raw, is_moving);
+    const MatrixXd all = beside(raw.residual, effects(raw, is_moving));
     const auto p = static_cast<Eigen::Index>(free.size());
+    std::vector<Eigen::Index> known = places; // columns without the parameters at bounds
+    for (Eigen::Index column = moving; column + 1 < all.cols(); ++column)
+        known.push_back(column);
     MatrixXd covariance = MatrixXd::Zero(p, p);
     for (std::size_t k = 0; k < times_.size(); ++k) {
         const double share = shares[static_cast<Eigen::Index>(k)];
         if (share < 1e-6)
             continue;
-        const MatrixXd white = whitened(all, times_[k]), X = white.rightCols(white.cols() - 1);
+        const MatrixXd white = whitened(all, times_[k]), M = white.rightCols(white.cols() - 1),
+                       X = M(Eigen::all, known);
         const VectorXd length = X.colwise().norm();
         const VectorXd step =
             -(length.cwiseInverse().asDiagonal() *
               (X * length.cwiseInverse().asDiagonal()).colPivHouseholderQr().solve(white.col(0)));
         const double squares =
             (white.col(0) + X * step).squaredNorm() / static_cast<double>(X.rows() - X.cols());
-        const MatrixXd M = whitened(with_bound, times_[k]);
         const VectorXd shorter = M.colwise().norm().cwiseInverse();
         const MatrixXd scaled = M * shorter.asDiagonal();
         const MatrixXd inverse =
