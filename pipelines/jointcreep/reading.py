@@ -55,10 +55,9 @@ class Table(dict):
         """Adds a column; one of several parts as one for each: "displacement x", "displacement y"."""
         if np.ndim(values) == 1:
             self[name], self.units[name] = values, unit
-        axes = AXES[values.shape[1]] if np.ndim(values) == 2 else []
-        if len(axes) == 3 and COMPONENTS.get(name) == IN_SPACE:
-            axes = IN_SPACE
-        for part, axis in enumerate(axes):
+            return
+        parts, named = values.shape[1], COMPONENTS.get(name, [])
+        for part, axis in enumerate(named if len(named) == parts else AXES[parts]):
             self[f"{name} {axis}"], self.units[f"{name} {axis}"] = values[:, part], unit
 
 
