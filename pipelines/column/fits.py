@@ -311,7 +311,7 @@ def column(given, tables, failed):
     one_load, no_loads = chosen(given, {"one load": ({}, [])}), chosen(given, {"loads that the scene does not have": ({}, [])})
 
     def found(joints, site, cases, n):
-        return fits(given.programs, TRUTH, response_of(given), [joints], trials_of(site, cases, n), given.out) if cases else ()
+        return fits(given.programs, TRUTH, response_of(given.runs, 4, NEAR), [joints], trials_of(site, cases, n), given.out) if cases else ()
 
     add_coverage(tables["fits"], "column", cases, found(three, site, cases, given.n), given.n, failed)
     add_coverage(tables["fits"], "column", one_load, found(one, single, one_load, given.n), given.n, failed)
@@ -321,15 +321,20 @@ def column(given, tables, failed):
         compare(given, tables["checks"], "column", three, trials_of(site, cases, 5), 5 * len(cases))
 
 
-def response_of(given):
-    return f"5,{given.runs},4,0.5:1.4,0.7:2.2,0.75:1.6"  # around truth and start
+NEAR = {"kelvin-stiffness": (0.5, 1.4), "kelvin-viscosity": (0.7, 2.2), "joint-stiffness": (0.75, 1.6)}  # around truth and start
+WIDE = {"kelvin-stiffness": (0.35, 2), "kelvin-viscosity": (0.4, 4.5), "joint-stiffness": (0.55, 2)}
+
+
+def response_of(runs, checks, bounds):
+    """Polynomials of degree 5 from so many runs, for creepfit_trials."""
+    return ",".join(["5", str(runs), str(checks), *(f"{low}:{high}" for low, high in bounds.values())])
 
 
 def compare(given, table, site, joints, trials, n):
     """How far fits are from those whose every step is a run, as creepfit's."""
     trials = [(number, *one[1:]) for number, one in zip(range(n), trials)]
     ours, exact = ({number: group for number, _, group in fits(given.programs, TRUTH, response, [joints], trials, given.out)}
-                   for response in (response_of(given), "runs"))
+                   for response in (response_of(given.runs, 4, NEAR), "runs"))
     add_difference(table, site, ours, exact)
 
 
@@ -356,8 +361,7 @@ def by_solver(given, tables, failed, name, path, components, every, drift, n):
     unknown = [((one[0], False), *one[1:]) for one in trials_of(site, wrong, n)]
     # Readings leave the factors open by more than those of the column do. The bounds of the search are those of the polynomials.
     factors = [f"{factor}={low}:{high}" for factor, (low, high) in WIDE.items()]
-    response = ",".join(["5", str(given.runs_solver), "1", *(f"{low}:{high}" for low, high in WIDE.values())])
-    found = fits(given.programs, factors, response, [joints], known + unknown, given.out)
+    found = fits(given.programs, factors, response_of(given.runs_solver, 1, WIDE), [joints], known + unknown, given.out)
     first = {}
 
     def kept(groups):
@@ -374,9 +378,6 @@ def by_solver(given, tables, failed, name, path, components, every, drift, n):
         trials = [(case, *rest) for (case, _), *rest in known[:n * given.checks:n]]
         exact = {case: group for case, _, group in fits(given.programs, factors, "runs", [joints], trials, given.out)}
         add_difference(tables["checks"], name, first, exact)
-
-
-WIDE = {"kelvin-stiffness": (0.35, 2), "kelvin-viscosity": (0.4, 4.5), "joint-stiffness": (0.55, 2)}
 
 
 def slope(given, tables, failed):

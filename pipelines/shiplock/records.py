@@ -72,11 +72,16 @@ def targets_of(path):
 
 
 def misfit(medians, targets):
-    """Of medians {total, recorded} of points [mm]: the mean of the squares of (median less the middle of the paper's range)
-    over half its width."""
+    """Of medians {total, recorded} of points [mm]."""
+    return float(misfits(medians, targets))
+
+
+def misfits(displacements, targets):
+    """Of {total, recorded} [..., point] [mm]: the mean over points of the squares of (displacement less the middle of the paper's
+    range) over half its width."""
     terms = [((one - np.mean(targets[key])) / (np.ptp(targets[key]) / 2)) ** 2
-             for one, key in zip(medians, ("total_mm", "recorded_mm"))]
-    return float(np.mean(terms))
+             for one, key in zip(displacements, ("total_mm", "recorded_mm"))]
+    return np.mean(terms, axis=(0, -1))
 
 
 def standard_error(statistic, number, draws=2000):

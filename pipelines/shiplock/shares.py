@@ -20,7 +20,6 @@ if its scene changes. Blocks and zones are coarser than the scene's: COARSE.
 """
 
 import argparse
-import concurrent.futures
 import csv
 import hashlib
 import io
@@ -106,10 +105,14 @@ def stress_profile(scene, values):
     for h in depths:
         weight = (density["cover"] * min(h, bottoms[0]) + density["weak"] * min(max(h - bottoms[0], 0), values["weak"])
                   + density["fresh"] * max(h - bottoms[1], 0))
-        across = values["tectonic"] * (1 - math.exp(-h / values["decay"])) + values["gradient"] * h
-        levels.append({"depth_m": round(h, 4), "compression_xx_MPa": round(across, 5),
+        levels.append({"depth_m": round(h, 4), "compression_xx_MPa": round(across_at(h, values), 5),
                        "compression_yy_MPa": round(1e-6 * gravity * weight, 5), "shear_xy_MPa": 0})
     return levels
+
+
+def across_at(depth, values):
+    """Horizontal stress [MPa]."""
+    return variant.horizontal_stress(depth, values["tectonic"], values["gradient"], values["decay"])
 
 
 def box_bottom(half):
@@ -173,8 +176,7 @@ def scene_of(text, values):
 
 def shares_of_range(number):
     """[set, input], from 0 to 1; the first sets do not depend on their number."""
-    return qmc.Sobol(len(INPUTS), seed=SEED).random_base2(math.ceil(math.log2(number)))[:number] if number > 1 else (
-        qmc.Sobol(len(INPUTS), seed=SEED).random(1))
+    return qmc.Sobol(len(INPUTS), seed=SEED).random_base2(math.ceil(math.log2(number)))[:number]
 
 
 def values_of_set(row):
@@ -195,8 +197,7 @@ def run_of(arguments, text, row, number):
         with tempfile.TemporaryDirectory(prefix="jointcreep-") as folder:
             folder = pathlib.Path(folder)
             joints = chain.joints_of(arguments.programs, scene, folder, "--realization", number)
-            run(arguments.programs / "demsolve", joints, "--quiet", "-o", folder / "r.h5")
-            result = study.read(folder / "r.h5")
+            result = study.solved(arguments.programs, joints, folder)
     except Failed as error:
         result = {"failed": str(error)}
     print(f"run {number}: {result.get('failed', 'equilibrium')}", flush=True)
@@ -213,12 +214,9 @@ def results_of(arguments):
         run(sys.executable, HERE / "variant.py", arguments.scene, *COARSE, "-o", base)
         text = base.read_text(encoding="utf-8")
     rows = shares_of_range(arguments.sets)
-    pool = concurrent.futures.ThreadPoolExecutor(arguments.jobs)
-    try:
-        # Two runs of a set, one after the other: what is stopped has whole sets.
-        return rows, list(pool.map(lambda number: run_of(arguments, text, rows[number // 2], number), range(2 * len(rows))))
-    finally:
-        pool.shutdown(cancel_futures=True)
+    # Two runs of a set, one after the other: what is stopped has whole sets.
+    return rows, study.side_by_side(arguments.jobs, lambda number: run_of(arguments, text, rows[number // 2], number),
+                                    range(2 * len(rows)))
 
 
 # --- The fit ------------------------------------------------------------------------------------------------------------------
@@ -293,10 +291,8 @@ def fit_of(rows, pairs):
 def answers_of(values, targets):
     """[row, total, recorded and misfit] of [row, quantity]: totals, then records, of the points below the crest."""
     half = values.shape[1] // 2
-    found = [values[:, :half].mean(axis=1), values[:, half:].mean(axis=1)]
-    misfit = sum(((part - np.mean(targets[key])) / (np.ptp(targets[key]) / 2)) ** 2
-                 for part, key in ((values[:, :half], "total_mm"), (values[:, half:], "recorded_mm"))).mean(axis=1) / 2
-    return np.column_stack([*found, misfit])
+    parts = values[:, :half], values[:, half:]
+    return np.column_stack([*(part.mean(axis=1) for part in parts), records.misfits(parts, targets)])
 
 
 def indices_of(model, inputs, power, seed=1):
@@ -397,7 +393,7 @@ def ridge(rows, pairs, fit, targets, path):
     keys = list(INPUTS)
     values = [values_of_set(row) for row in rows]
     stiffness = np.array([v["stiffness"] / v["persistence"] * v["spacing"] for v in values])
-    stress = np.array([60 * v["gradient"] + v["tectonic"] * (1 - math.exp(-60 / v["decay"])) for v in values])
+    stress = np.array([across_at(60, v) for v in values])
     misfit = answers_of(np.exp(np.log(pairs).mean(axis=1)), targets)[:, 2]
     plot, (left, right) = figure.plt.subplots(1, 2, figsize=(figure.TWO_COLUMNS, 2.9), sharey=True)
     limits = [0.25, 0.5, 1, 2, 4, 8, 16]
@@ -416,11 +412,11 @@ def ridge(rows, pairs, fit, targets, path):
     found = answers_of(at, targets)
     scene = {key: one.own for key, one in INPUTS.items()}
     across = [INPUTS["stiffness"].value(one) for one in x[0]]
-    up = [60 * scene["gradient"] + INPUTS["tectonic"].value(one) * (1 - math.exp(-60 / scene["decay"])) for one in y[:, 0]]
+    up = [across_at(60, {**scene, "tectonic": INPUTS["tectonic"].value(one)}) for one in y[:, 0]]
     right.contourf(across, up, found[:, 2].reshape(x.shape), limits, norm=colors, cmap="viridis", extend="both")
     lines = right.contour(across, up, found[:, 0].reshape(x.shape), [45, 60, 75, 90, 120], colors="w", linewidths=0.8)
     right.clabel(lines, fmt="%g mm", fontsize=6)
-    right.plot(1, 60 * scene["gradient"] + scene["tectonic"] * (1 - math.exp(-60 / scene["decay"])), "k*", markersize=7)
+    right.plot(1, across_at(60, scene), "k*", markersize=7)
     right.set_xlabel("joint stiffness, over the scene's")
     right.set_title("polynomial: others as in the scene; mean total")
     for axes in (left, right):

@@ -74,8 +74,22 @@ def computed(programs, scene, options, number):
     """Days and curves of one network, as JSON takes them."""
     with tempfile.TemporaryDirectory(prefix="jointcreep-") as folder:
         folder = pathlib.Path(folder)
-        run(programs / "demsolve", joints_of(programs, scene, options, number, folder), "--quiet", "-o", folder / "r.h5")
-        return read(folder / "r.h5")
+        return solved(programs, joints_of(programs, scene, options, number, folder), folder)
+
+
+def solved(programs, joints, folder):
+    """Days and curves of a joints file, by a result in the folder."""
+    run(programs / "demsolve", joints, "--quiet", "-o", folder / "r.h5")
+    return read(folder / "r.h5")
+
+
+def side_by_side(jobs, function, todo):
+    """[function(one) for one in todo], so many at a time, begun in this order; what has not begun is left where one fails."""
+    pool = concurrent.futures.ThreadPoolExecutor(jobs)
+    try:
+        return list(pool.map(function, todo))
+    finally:
+        pool.shutdown(cancel_futures=True)
 
 
 def read(path):
@@ -108,12 +122,8 @@ def results_of(arguments, options):
     all of them on fewer networks."""
     (arguments.output / "runs").mkdir(parents=True, exist_ok=True)
     todo = [(name, number) for number in range(arguments.networks) for name in options]
-    pool = concurrent.futures.ThreadPoolExecutor(arguments.jobs)
-    try:
-        done = list(pool.map(lambda one: result_of(arguments.programs, arguments.scene, arguments.output, one[0],
-                                                   options[one[0]], one[1]), todo))
-    finally:
-        pool.shutdown(cancel_futures=True)
+    done = side_by_side(arguments.jobs, lambda one: result_of(arguments.programs, arguments.scene, arguments.output, one[0],
+                                                              options[one[0]], one[1]), todo)
     return {name: [result for (other, _), result in zip(todo, done) if other == name] for name in options}
 
 

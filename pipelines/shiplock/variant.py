@@ -113,10 +113,14 @@ def edited(text, change):
 # --- The changes -------------------------------------------------------------------------------------------------------------
 
 
+def horizontal_stress(depth, a, b, decay):
+    """sigma_x = a (1 - exp(-h / decay)) + b h [MPa]."""
+    return a * (1 - math.exp(-depth / decay)) + b * depth
+
+
 def stress_profile(levels, a, b, decay=DECAY):
-    """sigma_x = a (1 - exp(-h / decay)) + b h [MPa] at the levels of the scene, all else as there."""
-    return [{**level, "compression_xx_MPa":
-             round(a * (1 - math.exp(-level["depth_m"] / decay)) + b * level["depth_m"], 4)} for level in levels]
+    """The horizontal stress at the levels of the scene, all else as there."""
+    return [{**level, "compression_xx_MPa": round(horizontal_stress(level["depth_m"], a, b, decay), 4)} for level in levels]
 
 
 def stress(which):
@@ -222,11 +226,15 @@ def domain(scene, half, bottom):
     return change
 
 
-def zone_size(metres):
-    def change(table, _, key, __):
-        return metres if (table, key) == ("zones", "size_m") else None
+def setting(of_table, of_key):
+    """Gives one key of the scene another value."""
+    def make(value):
+        def change(table, _, key, __):
+            return value if (table, key) == (of_table, of_key) else None
 
-    return change
+        return change
+
+    return make
 
 
 def first_reading(days):
@@ -243,20 +251,6 @@ def loads(times):
             return value * times
         if (table, key) == ("in_situ_stress", "profile"):
             return [{name: one * (1 if name == "depth_m" else times) for name, one in level.items()} for level in value]
-
-    return change
-
-
-def creep_step(days):
-    def change(table, _, key, __):
-        return days if (table, key) == ("creep", "step_days") else None
-
-    return change
-
-
-def end(date):
-    def change(table, _, key, __):
-        return datetime.date.fromisoformat(date) if (table, key) == ("schedule", "end") else None
 
     return change
 
@@ -322,8 +316,8 @@ def changes_of(arguments, scene):
                        ("rule", rule), ("table_2", table_2), ("stiffness_times", stiffness),
                        ("kelvin_times", kelvin), ("youngs_modulus", youngs_modulus),
                        ("box", lambda of: box(scene, *of)), ("domain", lambda of: domain(scene, *of)),
-                       ("zone_size", zone_size), ("first_reading_days", first_reading), ("loads_times", loads),
-                       ("creep_step", creep_step), ("end", end), ("linear", linear)):
+                       ("zone_size", setting("zones", "size_m")), ("first_reading_days", first_reading), ("loads_times", loads),
+                       ("creep_step", setting("creep", "step_days")), ("end", setting("schedule", "end")), ("linear", linear)):
         if given[name] not in (None, False):
             yield make(given[name])
 
@@ -360,7 +354,7 @@ def main():
     parser.add_argument("--first-reading-days", type=int, metavar="DAYS", help="later than in the scene")
     parser.add_argument("--loads-times", type=float, metavar="FACTOR", help="weight, stress and strengths")
     parser.add_argument("--creep-step", type=float, metavar="DAYS", help="largest creep step")
-    parser.add_argument("--end", metavar="DATE", help="of the computation, such as 1999-12-31")
+    parser.add_argument("--end", type=datetime.date.fromisoformat, metavar="DATE", help="of the computation, such as 1999-12-31")
     parser.add_argument("--cutting", type=float, nargs=2, metavar=("EDGE", "ANGLE"), help="shortest edge in m, smallest angle in degrees")
     parser.add_argument("--large-displacements", action="store_true", help="geometry updated: [large_displacements]")
     parser.add_argument("--linear", action="store_true", help="joints that neither slip nor open")
