@@ -3,7 +3,6 @@
 
 #pragma once
 
-#include "model/polygon.hpp"
 #include "model/statistics.hpp"
 
 #include <Eigen/Core>
@@ -121,9 +120,10 @@ struct Blocks {
     CuttingReport report;
 };
 
-inline Polygon ring_of(const Blocks& blocks, Index ring)
+// Corners of a ring, a Polygon.
+inline std::vector<Eigen::Vector2d> ring_of(const Blocks& blocks, Index ring)
 {
-    Polygon corners;
+    std::vector<Eigen::Vector2d> corners;
     for (Index i = blocks.ring_start[ring]; i < blocks.ring_start[ring + 1]; ++i)
         corners.push_back(blocks.vertex[blocks.ring_vertex[i]]);
     return corners;
