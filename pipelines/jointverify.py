@@ -47,6 +47,7 @@ MAJOR, MINOR = 2, 3  # of the format; older files lack what is checked
 BEST_COMPRESSION = 1100  # deflating stores a byte for up to 1032
 ROUNDING = 1e-12
 ENERGY_OF_DYNAMICS = 0.01  # demsolve warns above this
+ENERGY = 1e-8  # of other searches, with which only rounding is missing
 AT_STRENGTH = 1e-6  # a contact this near its strength counts as slipping
 REMOVED, STUCK, SLIPPING, OPEN = range(4)
 COULOMB, RESIDUAL, BARTON_BANDIS, WEARING, YIELDING = LAWS = range(5)
@@ -1163,7 +1164,7 @@ class Verification:
         whole = self.stored_energy()
         chosen = np.flatnonzero(~self.ends_creep_step())
         self.checks.see("report: work of loads is stored, dissipated or damped", "J/m", np.abs(e["work_of_loads"] - sum(parts))[chosen],
-                        ((ENERGY_OF_DYNAMICS if self.scene.large_displacements else tolerance) * size + ROUNDING * whole)[chosen],
+                        ((ENERGY_OF_DYNAMICS if self.scene.large_displacements else ENERGY) * size + ROUNDING * whole)[chosen],
                         lambda i: f"/equilibria/work_of_loads[{chosen[i]}], day {e['time'][chosen[i]]:.6g}")
         if len(chosen) < len(size):
             self.checks.leave_out(f"energy of {len(size) - len(chosen)} creep steps at large displacements")

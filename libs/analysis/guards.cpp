@@ -12,8 +12,7 @@ namespace
 {
 
 constexpr double rounding = 1e-9; // over what it is of
-// Of the energy balance, or 100 times the tolerance of equilibria if that is more.
-constexpr double most_energy_error = 1e-3;
+constexpr double most_energy_error = 1e-6; // of the energy balance, over its terms
 
 // Of the blocks with present zones, the largest.
 double area_error(const Section& section)
@@ -93,7 +92,7 @@ std::string broken_guard(double unbalanced_force_ratio, double energy_error, dou
     if (!(unbalanced_force_ratio <= tolerance))
         return "the unbalanced force ratio of an equilibrium is " + rounded(unbalanced_force_ratio) +
                ", wanted " + shown(tolerance);
-    if (!(energy_error <= std::max(most_energy_error, 100 * tolerance)))
+    if (!(energy_error <= most_energy_error))
         return "the energy balance of an equilibrium is off by " + rounded(energy_error) + " of its terms";
     return "";
 }

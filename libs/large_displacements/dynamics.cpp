@@ -363,7 +363,7 @@ Dynamics::MovedRock Dynamics::move_rock()
     return moved;
 }
 
-// Work in this step of loads and of the forces of excavated rock still applied; `held` is their share at its beginning.
+// Work in this step of loads and of the forces of excavated rock still applied; `held` is their mean share in it.
 Dynamics::Work Dynamics::work_of_loads(double held) const
 {
     return sum_in_chunks<Work>(
@@ -377,7 +377,7 @@ Dynamics::Work Dynamics::work_of_loads(double held) const
 
 void Dynamics::step()
 {
-    const double held = release_factor();
+    const double held_before = release_factor();
     const MovedRock moved = move_rock();
     now_.energy.damped += moved.damped;
     if (moved.fastest_gridpoint >= 0)
@@ -392,15 +392,15 @@ void Dynamics::step()
     }
     now_.fastest = std::sqrt(moved.fastest);
     now_.has_moved = now_.has_moved || now_.fastest > slow;
-    const Work worked = work_of_loads(held);
+    add(now_.dt, now_.time, now_.time_lost);
+    now_.last_dt = now_.dt;
+    const Work worked = work_of_loads((held_before + release_factor()) / 2);
     now_.energy.work += worked.work;
     if (!std::isfinite(now_.fastest) || !std::isfinite(moved.kinetic))
         throw equilibrium_error("dynamic analysis: the velocity of rock is no number; it was at " +
                                 shown(assembly_.position[now_.fastest_gridpoint]));
     if (worked.is_gone)
         throw moves_on("rock has left the section, and is as far from it as the section is large");
-    add(now_.dt, now_.time, now_.time_lost);
-    now_.last_dt = now_.dt;
     if (is_creeping_)
         contacts_.creep_to(std::min(1.0, now_.time / settings_.release));
     find_forces(move_);

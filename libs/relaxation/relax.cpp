@@ -264,7 +264,7 @@ public:
         follow_masses_and_step();
     }
 
-    // Ends the movement and settles the energy balance.
+    // Ends the movement and settles the energy balance. The end takes what kinetic energy is left, as damping does.
     void finish(Convergence& convergence)
     {
         a_.stiffness_damping_rate = 0;
@@ -276,7 +276,7 @@ public:
         // is missing.
         convergence.damped = settings_.stiffness_damping > 0
                                  ? convergence.work_of_loads - convergence.stored - convergence.dissipated
-                                 : work_ + work_of_changes_ - kinetic_energy();
+                                 : work_ + work_of_changes_ + work_of_half_a_step();
     }
 
 private:
@@ -412,12 +412,14 @@ private:
         }
     }
 
-    double kinetic_energy() const
+    // Each step counts half of its displacement under the forces at its start and half under those at its end, which
+    // the next step adds; no step follows the last one [J/m].
+    double work_of_half_a_step() const
     {
-        double energy = 0;
+        double work = 0;
         for (std::size_t g = 0; g < velocity_.size(); ++g)
-            energy += mass_[g] / 2 * velocity_[g].squaredNorm();
-        return energy;
+            work += free_part(a_, g, a_.force[g]).dot(velocity_[g]) * dt_ / 2;
+        return work;
     }
 
     double local_damping() const

@@ -320,6 +320,22 @@ TEST(dynamics, a_block_on_a_joint_swings_at_its_frequency)
     EXPECT_GT(500 * theta, 4 * 2 * std::numbers::pi);
 }
 
+// The force that carries a block fades in a time of many steps. It does work until then, and energy closes to the last digits.
+TEST(dynamics, energy_closes_while_a_force_is_released)
+{
+    const double gravity = 2000, frequency = std::sqrt(k_n / (density * 1));
+    const double sag = gravity / (frequency * frequency), period = 2 * std::numbers::pi / frequency;
+    Moving released(stack(gravity), rigid, {.release = period / 3});
+    double most = 0.01 * density * 2 * gravity * sag; // the weight times a hundredth of the sag at least
+    while (released.dynamics.time() < period) {
+        released.dynamics.step();
+        const large_displacements::Energy energy = released.dynamics.energy();
+        most = std::max({most, std::abs(energy.work), energy.stored});
+        ASSERT_NEAR(energy.error(), 0, 1e-9 * most) << released.dynamics.time() / period;
+    }
+    EXPECT_GT(released.dynamics.energy().work, 0);
+}
+
 // Blocks that slide, rock and lie on each other, with dashpots and without: what loads do is kinetic, stored,
 // lost to friction, or damped.
 TEST(dynamics, energy_closes_at_every_step)

@@ -109,6 +109,18 @@ TEST_P(relax_with, a_block_on_an_incline_rests_below_the_friction_angle)
         }
 }
 
+// However early a search ends: what is still moving then is stopped, and its energy counts as damped.
+TEST_P(relax_with, energy_balances_where_the_search_ends_early)
+{
+    Section s = incline(25 * deg, 30 * deg);
+    Equilibrium how = settings(GetParam().first, GetParam().second);
+    how.tolerance = 1e-2;
+    const Convergence convergence = relaxation::relax(s.assembly, how);
+    EXPECT_GT(convergence.unbalanced_force_ratio, 1e-7);
+    EXPECT_NEAR(convergence.work_of_loads, convergence.stored + convergence.dissipated + convergence.damped,
+                1e-10 * convergence.work_of_loads);
+}
+
 // A stack of 60 cubes under its weight, and then 1e-4 of the weight of all on its top: what is unbalanced
 // is small beside the forces there are long before the stack has gone down as far as it must,
 //   u = P ((i + 1) / K + y / E)       of the cube i, y up to its middle.
