@@ -11,9 +11,18 @@ namespace jointcreep::joint
 namespace
 {
 
-double normal_stiffness(const Contacts& contacts, std::size_t c)
+// Slopes of a contact at displacements of which its traction need not know yet.
+Slopes slopes_at(std::span<const Vector2d> displacement, const Contacts& contacts, std::size_t c)
 {
-    return slopes(contacts.law[c], contacts.state[c], contacts.traction[c].x()).k_n;
+    const Law& law = contacts.law[c];
+    const State& state = contacts.state[c];
+    if (!stiffens(law))
+        return slopes(law, state, contacts.traction[c].x());
+    const auto [a, b] = contacts.gridpoint[c];
+    const double apart = (displacement[b] - displacement[a]).dot(contacts.normal[c]);
+    return slopes(law, state,
+                  normal_traction(law, contacts.initial_traction[c].x(),
+                                  apart - contacts.offset[c].x() - state.dilation));
 }
 
 } // namespace
@@ -130,13 +139,14 @@ ContactResponse respond(const Contacts& contacts, std::size_t c, const State& st
             {state.memory[0].slope, state.memory[1].slope, state.memory[2].slope}};
 }
 
-void add_row_sums(const Contacts& contacts, std::vector<Vector2d>& sums)
+void add_row_sums(const Contacts& contacts, std::span<const Vector2d> displacement,
+                  std::vector<Vector2d>& sums)
 {
     for (std::size_t c = 0; c < contacts.gridpoint.size(); ++c) {
         if (contacts.status[c] == ContactStatus::removed)
             continue;
         const Vector2d n = contacts.normal[c].cwiseAbs(), t(n.y(), n.x());
-        const Slopes law = slopes(contacts.law[c], contacts.state[c], contacts.traction[c].x());
+        const Slopes law = slopes_at(displacement, contacts, c);
         const double k_n = (stiffens(contacts.law[c]) ? room_to_stiffen : 1) * law.k_n;
         const Vector2d row =
             2 * contacts.length[c] * (k_n * n * (n.x() + n.y()) + law.k_s * t * (t.x() + t.y()));
@@ -155,19 +165,20 @@ double stored_energy(const Contacts& contacts)
     return energy;
 }
 
-std::vector<Stiffening> stiffening_of(const Contacts& contacts)
+std::vector<Stiffening> stiffening_of(const Contacts& contacts, std::span<const Vector2d> displacement)
 {
     std::vector<Stiffening> found;
     for (std::size_t c = 0; c < contacts.law.size(); ++c)
         if (stiffens(contacts.law[c]) && contacts.status[c] != ContactStatus::removed)
-            found.push_back({c, room_to_stiffen * normal_stiffness(contacts, c)});
+            found.push_back({c, room_to_stiffen * slopes_at(displacement, contacts, c).k_n});
     return found;
 }
 
-bool are_beyond(const Contacts& contacts, const std::vector<Stiffening>& stiffening)
+bool are_beyond(const Contacts& contacts, std::span<const Vector2d> displacement,
+                const std::vector<Stiffening>& stiffening)
 {
     return std::ranges::any_of(stiffening, [&](const Stiffening& one) {
-        return normal_stiffness(contacts, one.contact) > one.most;
+        return slopes_at(displacement, contacts, one.contact).k_n > one.most;
     });
 }
 

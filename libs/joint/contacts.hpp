@@ -111,17 +111,21 @@ ContactResponse respond(const Contacts& contacts, std::size_t c, const State& st
 // For joints that grow stiffer as they close, the normal stiffness is taken as this many times the present one.
 inline constexpr double room_to_stiffen = 2;
 
-// Adds the row sums of the magnitudes of the contacts' stiffness {x, y} to the sums of their gridpoints [Pa].
-void add_row_sums(const Contacts& contacts, std::vector<Vector2d>& sums);
+// Adds the row sums of the magnitudes of the contacts' stiffness {x, y} at displacements of the gridpoints to the sums of
+// their gridpoints [Pa].
+void add_row_sums(const Contacts& contacts, std::span<const Vector2d> displacement,
+                  std::vector<Vector2d>& sums);
 
-// Contacts that grow stiffer as they close, with the normal stiffness up to which row sums hold now [Pa/m].
+// Contacts that grow stiffer as they close, with the normal stiffness up to which row sums at these displacements hold
+// [Pa/m].
 struct Stiffening {
     std::size_t contact;
     double most;
 };
-std::vector<Stiffening> stiffening_of(const Contacts& contacts);
-// Whether any of them is stiffer now.
-bool are_beyond(const Contacts& contacts, const std::vector<Stiffening>& stiffening);
+std::vector<Stiffening> stiffening_of(const Contacts& contacts, std::span<const Vector2d> displacement);
+// Whether any of them is stiffer at these displacements.
+bool are_beyond(const Contacts& contacts, std::span<const Vector2d> displacement,
+                const std::vector<Stiffening>& stiffening);
 void pass(Tape& tape, std::vector<Stiffening>& stiffening);
 
 // Energy stored in contacts [J/m]; only differences have a meaning.

@@ -342,7 +342,9 @@ void record_state(const Assembly& assembly, States& states)
 Stiffening stiffening_of(const Assembly& assembly)
 {
     Stiffening all;
-    for_each_force([](const auto& force, auto& of_force) { of_force = stiffening_of(force); }, assembly, all);
+    for_each_force(
+        [&](const auto& force, auto& of_force) { of_force = stiffening_of(force, assembly.displacement); },
+        assembly, all);
     return all;
 }
 
@@ -356,8 +358,11 @@ bool has_any(const Stiffening& stiffening)
 bool are_beyond(const Assembly& assembly, const Stiffening& stiffening)
 {
     bool any = false;
-    for_each_force([&](const auto& force, const auto& of_force) { any = any || are_beyond(force, of_force); },
-                   assembly, stiffening);
+    for_each_force(
+        [&](const auto& force, const auto& of_force) {
+            any = any || are_beyond(force, assembly.displacement, of_force);
+        },
+        assembly, stiffening);
     return any;
 }
 
@@ -369,7 +374,7 @@ void pass(Tape& tape, Stiffening& stiffening)
 std::vector<double> stiffness_row_sums(const Assembly& assembly)
 {
     std::vector<Vector2d> sums(assembly.position.size(), Vector2d::Zero());
-    for_each_force([&](const auto& one) { add_row_sums(one, sums); }, assembly);
+    for_each_force([&](const auto& one) { add_row_sums(one, assembly.displacement, sums); }, assembly);
     for (const auto& [follower, leader] : assembly.tied)
         sums[leader] += sums[follower];
     std::vector<double> larger;

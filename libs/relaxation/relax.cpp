@@ -121,6 +121,8 @@ public:
     // step: when all gridpoints have moved, and when all zones and contacts have been pulled.
     void move(Index steps)
     {
+        if (has_any(stiffening_))
+            remember_before_step();
 #pragma omp parallel num_threads(a_.threads) if (a_.threads > 1)
         {
             double alpha = settings_.damping == Damping::mass ? settings_.mass_damping : alpha_;
@@ -129,6 +131,8 @@ public:
             bool starts_from_rest = starts_from_rest_;
             for (Index i = 0; i < steps; ++i) {
                 step_in_team(alpha, starts_from_rest);
+                while (stiffens_too_far_in_team())
+                    step_in_team(alpha, starts_from_rest);
 #pragma omp master
                 ++steps_since_;
                 Sums sums; // every thread adds them up for itself, before the next step writes new ones
@@ -145,11 +149,6 @@ public:
                 starts_from_rest = settings_.damping == Damping::kinetic && sums.energy < last_energy;
                 last_energy = starts_from_rest ? 0.0 : sums.energy;
                 find_forces_in_team(a_, i + 1 < steps);
-                if (has_any(stiffening_)) {
-#pragma omp barrier
-#pragma omp single
-                    follow_stiffness();
-                }
             }
 #pragma omp barrier
 #pragma omp single
@@ -171,11 +170,7 @@ public:
                                  " has moved without bound; does anything support it?");
         if (moved > too_far_)
             give_up("the rock at " + shown(a_.position[g]) + " has moved " + shown_length(moved) +
-                        " and is still moving; " +
-                        (settings_.damping == Damping::kinetic && has_any(stiffening_)
-                             ? "joints that stiffen as they close can make kinetic damping unstable; try "
-                               "another damping"
-                             : "does anything support it?"),
+                        " and is still moving; does anything support it?",
                     true, steps);
         const auto [in_all, h] = largest_displacement(a_);
         if (in_all > settings_.largest_displacement)
@@ -330,22 +325,50 @@ private:
         a_.stiffness_damping_rate = settings_.stiffness_damping / dt_;
     }
 
-    // Masses or the step follow joints that have grown stiffer than these are stable for. Velocities keep the
-    // kinetic energy, or energies would not balance.
-    void follow_stiffness()
+    // Whether joints would be stiffer after the step than masses, or its length, are stable for. If so, undoes it before forces
+    // follow, and takes masses or a length for that stiffness.
+    bool stiffens_too_far_in_team()
     {
-        if (!are_beyond(a_, stiffening_))
-            return;
-        const std::vector<double> before = mass_;
+        if (!has_any(stiffening_))
+            return false;
+#pragma omp single
+        {
+            undoes_step_ = are_beyond(a_, stiffening_);
+            if (undoes_step_)
+                undo_step();
+            else
+                remember_before_step();
+        }
+        return undoes_step_;
+    }
+
+    void remember_before_step()
+    {
+        last_velocity_ = velocity_;
+        force_before_ = last_force_;
+        undone_row_sums_.clear();
+    }
+
+    // Velocities keep the kinetic energy, or energies would not balance.
+    void undo_step()
+    {
+        const std::vector<double> mass = mass_;
         const double last_dt = dt_;
-        take_stiffness(stiffness_row_sums(a_));
-        for (std::size_t g = 0; g < before.size(); ++g) {
-            if (!(before[g] > 0))
+        std::vector<double> row_sums = stiffness_row_sums(a_);
+        for (std::size_t g = 0; g < undone_row_sums_.size(); ++g) // other joints may have opened since
+            row_sums[g] = std::max(row_sums[g], undone_row_sums_[g]);
+        take_stiffness(row_sums);
+        undone_row_sums_ = std::move(row_sums);
+        last_force_ = force_before_;
+        for (std::size_t g = 0; g < mass.size(); ++g) {
+            if (!(mass[g] > 0))
                 continue;
-            const Vector2d last = velocity_[g], force = free_part(a_, g, a_.force[g]);
-            velocity_[g] *= std::sqrt(before[g] / mass_[g]);
-            // The next step takes half of the last one's work to be that of this velocity.
-            work_of_changes_ += force.dot(last_dt * last - dt_ * velocity_[g]) / 2;
+            a_.displacement[g] -= last_dt * velocity_[g];
+            velocity_[g] = std::sqrt(mass[g] / mass_[g]) * last_velocity_[g];
+            // The step takes half of the last one's work to be that of this velocity.
+            work_of_changes_ +=
+                free_part(a_, g, a_.force[g]).dot(last_dt * last_velocity_[g] - dt_ * velocity_[g]) / 2;
+            last_velocity_[g] = velocity_[g];
         }
     }
 
@@ -439,6 +462,9 @@ private:
     const Equilibrium& settings_;
     std::vector<Vector2d> velocity_;
     std::vector<Vector2d> start_, patience_ago_, last_force_;
+    std::vector<Vector2d> last_velocity_, force_before_; // before the step, where joints stiffen
+    std::vector<double> undone_row_sums_;                // of this step, as often as it was undone
+    bool undoes_step_ = false;
     Moment older_, newer_;                    // a quarter of all steps ago or more
     std::vector<double> mass_, inverse_mass_; // [kg/m], [m/kg]
     std::vector<Sums> sums_;                  // of each chunk

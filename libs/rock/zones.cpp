@@ -294,7 +294,7 @@ Vector3d strain_at(const Zones& zones, std::size_t z, std::span<const Vector2d> 
     return {exx, eyy, gxy};
 }
 
-void add_row_sums(const Zones& zones, std::vector<Vector2d>& sums)
+void add_row_sums(const Zones& zones, std::span<const Vector2d> /*displacement*/, std::vector<Vector2d>& sums)
 {
     for (std::size_t z = 0; z < zones.size(); ++z) {
         if (!zones.is_present[z])

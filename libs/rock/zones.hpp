@@ -124,7 +124,7 @@ inline void add_magnitudes_on(const Zones& zones, Index gridpoint, double& magni
 Vector3d strain_at(const Zones& zones, std::size_t z, std::span<const Vector2d> displacement);
 
 // Adds the row sums of the magnitudes of the zones' stiffness {x, y} to those of their gridpoints [Pa].
-void add_row_sums(const Zones& zones, std::vector<Vector2d>& sums);
+void add_row_sums(const Zones& zones, std::span<const Vector2d> displacement, std::vector<Vector2d>& sums);
 
 // Adds the masses of present zones to their gridpoints [kg/m]: a third of a zone of constant strain to each; of a
 // quadratic one 1/19 to its corners and 16/57 to the middles of its sides, in proportion to the diagonal of its mass
@@ -138,11 +138,11 @@ void add_weight(const Zones& zones, std::size_t z, double share, std::vector<Vec
 // Of joints only (joint/contacts.hpp): rock does not grow stiffer as it deforms.
 struct Stiffening {
 };
-inline std::vector<Stiffening> stiffening_of(const Zones&)
+inline std::vector<Stiffening> stiffening_of(const Zones&, std::span<const Vector2d>)
 {
     return {};
 }
-inline bool are_beyond(const Zones&, const std::vector<Stiffening>&)
+inline bool are_beyond(const Zones&, std::span<const Vector2d>, const std::vector<Stiffening>&)
 {
     return false;
 }

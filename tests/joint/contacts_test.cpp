@@ -84,7 +84,7 @@ TEST(contacts, removed_ones_do_nothing)
     EXPECT_EQ(contacts.work[0], 0);
     EXPECT_EQ(stored_energy(contacts), 0);
     std::vector<Vector2d> sums(2, Vector2d::Zero());
-    add_row_sums(contacts, sums);
+    add_row_sums(contacts, parted(contacts, contacts.relative_displacement[0]), sums);
     EXPECT_EQ(sums, std::vector<Vector2d>(2, Vector2d::Zero()));
     const ContactResponse none =
         respond(contacts, 0, {}, {.spring = {1, 1}, .slip = 2, .dilation = 3, .memory = {4, 5, 6}});
@@ -126,7 +126,7 @@ TEST(contacts, row_sums_have_room_where_a_joint_stiffens)
         const Law law = some_law(place);
         Contacts level = contact(law, {0, 1}, {-1e6, 0});
         std::vector<Vector2d> sums(2, Vector2d(1, 1));
-        add_row_sums(level, sums);
+        add_row_sums(level, parted(level, {0, 0}), sums);
         const double k = slopes(law, {}, -1e6).k_n * (stiffens(law) ? room_to_stiffen : 1);
         for (const Vector2d& sum : sums)
             EXPECT_LT((sum - Vector2d(1 + 5 * 5e8, 1 + 5 * k)).norm(), 1e-6 * k) << laws()[place].name;
@@ -255,7 +255,7 @@ RC_GTEST_PROP(contacts, row_sums_bound_the_tangent, ())
     Contacts contacts = contact(law, any_direction(), {-1e6, 0});
     part(contacts, {any_number(4e-4), any_number(1e-4)});
     std::vector<Vector2d> sums(2, Vector2d::Zero());
-    add_row_sums(contacts, sums);
+    add_row_sums(contacts, parted(contacts, contacts.relative_displacement[0]), sums);
     const auto stiffness = [&] { return slopes(law, contacts.state[0], contacts.traction[0].x()).k_n; };
     const double k = stiffness();
     const State start = contacts.state[0];

@@ -29,12 +29,16 @@ inline Contacts contact(const joint::Law& law, const Eigen::Vector2d& normal = {
     return one;
 }
 
-// Its forces where side b has moved by {normal, shear} beside side a [m].
-inline void part(Contacts& contacts, const Eigen::Vector2d& by, double damping = 0)
+// Displacements of its gridpoints where side b has moved by {normal, shear} beside side a [m].
+inline std::vector<Eigen::Vector2d> parted(const Contacts& contacts, const Eigen::Vector2d& by)
 {
     const Eigen::Vector2d a(0.3, -0.2), normal = contacts.normal[0];
-    const std::vector<Eigen::Vector2d> displacement{a, a + by.x() * normal + by.y() * along(normal)};
-    find_forces_in_team(contacts, displacement, damping, false);
+    return {a, a + by.x() * normal + by.y() * along(normal)};
+}
+// Its forces there.
+inline void part(Contacts& contacts, const Eigen::Vector2d& by, double damping = 0)
+{
+    find_forces_in_team(contacts, parted(contacts, by), damping, false);
 }
 
 } // namespace jointcreep::test

@@ -121,6 +121,38 @@ TEST_P(relax_with, energy_balances_where_the_search_ends_early)
                 1e-10 * convergence.work_of_loads);
 }
 
+// A block is put on a joint that becomes 1e4 times as stiff as it closes. It comes to rest where the joint carries its weight.
+TEST(relax, a_block_on_a_joint_that_stiffens)
+{
+    const double weight = 2700 * 9.81, largest_closure = 5e-3;
+    const joint::BartonBandis law{weight / 99 / largest_closure, 1e5, largest_closure, 30 * deg, 10, 1e8};
+    for (const Damping damping : {Damping::adaptive, Damping::kinetic})
+        for (const Masses masses : {Masses::scaled, Masses::real}) {
+            Scene scene = section({{0, 0}, {1, 0}, {1, 1}, {0, 1}}, 0.01);
+            scene.rocks = {{"rock", 2700, 1e9, 0, std::nullopt}};
+            scene.zone_size = 1;
+            scene.gravity = 9.81;
+            scene.boundaries = {{.from = {0, 0}, .to = {1, 0}, .joint = "joint"},
+                                {.from = {0, 0}, .to = {0, 1}, .fix_x = true},
+                                {.from = {1, 0}, .to = {1, 1}, .fix_x = true}};
+            Section s = assembled(std::move(scene), {}, 1e9, 1e8);
+            for (joint::Law& one : s.assembly.contacts.law)
+                one = law;
+            const Convergence convergence = relaxation::relax(s.assembly, settings(damping, masses));
+            EXPECT_NEAR(convergence.work_of_loads,
+                        convergence.stored + convergence.dissipated + convergence.damped,
+                        1e-9 * convergence.work_of_loads);
+            double carried = 0;
+            for (std::size_t c = 0; c < s.assembly.contacts.law.size(); ++c) {
+                const double pressure = -s.assembly.contacts.traction[c].x();
+                carried += s.assembly.contacts.length[c] * pressure;
+                EXPECT_NEAR(s.assembly.contacts.relative_displacement[c].x(), -law.closure(pressure),
+                            1e-9 * largest_closure);
+            }
+            EXPECT_NEAR(carried, weight, 1e-6 * weight);
+        }
+}
+
 // A stack of 60 cubes under its weight, and then 1e-4 of the weight of all on its top: what is unbalanced
 // is small beside the forces there are long before the stack has gone down as far as it must,
 //   u = P ((i + 1) / K + y / E)       of the cube i, y up to its middle.

@@ -240,7 +240,7 @@ RC_GTEST_PROP(zones, row_sums_bound_the_forces, ())
     Patch patch(3, 3, 0.4, any_kind());
     patch.zones.is_present[*rc::gen::inRange<std::size_t>(0, patch.zones.is_present.size())] = 0;
     Displacements sums(patch.mesh.gridpoint.size(), Vector2d::Zero());
-    add_row_sums(patch.zones, sums);
+    add_row_sums(patch.zones, sums, sums);
     const Displacements force = patch.forces(patch.any_displacements(1));
     for (std::size_t g = 0; g < force.size(); ++g)
         RC_ASSERT((sums[g] - force[g].cwiseAbs()).minCoeff() > -1e-6);
@@ -250,7 +250,7 @@ RC_GTEST_PROP(zones, row_sums_bound_the_forces, ())
     patch.zones.is_present[z] = 1;
     for (Vector2d& sum : sums)
         sum.setZero();
-    add_row_sums(patch.zones, sums);
+    add_row_sums(patch.zones, sums, sums);
     const auto corner = patch.zones.gridpoints(z);
     const int n = patch.zones.gridpoints_of_zone;
     for (int i = 0; i < n; ++i)
