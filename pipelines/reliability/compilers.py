@@ -1,4 +1,4 @@
-"""The same scenes by programs that other compilers and options made: g++ -O2 against g++ -O3, and clang++ 16 against g++.
+"""The same scenes by programs that other compilers and options made: g++ -O2 and clang++ 16 against the given programs, g++ -O3's.
 
 Scenes are all those of data and of tests/pipeline; N is how many of them, at most. -O2 and -O3 of g++ have to give the same
 bytes. clang++ may round otherwise: every dataset has to agree to CLOSE of its largest number.
@@ -12,17 +12,18 @@ import numpy as np
 from campaign import HANGS, LONGEST, ROOT, Campaign, ended
 from recover import scenes
 
-BUILDS = {"g++ -O2": ("g++", "-O2"), "g++ -O3": ("g++", "-O3"), "clang++ -O3": ("clang++-16", "-O3")}
+BUILDS = {"g++ -O2": ("g++", "-O2"), "clang++ -O3": ("clang++-16", "-O3")}
+CHAIN = ["jointgen", "strength-averaging", "demsolve"]
 CLOSE = 1e-6
 
 
-def build(campaign, compiler, optimisation):
+def build(compiler, optimisation):
     """Folder of the programs that this compiler made."""
     folder = ROOT / "build" / f"{compiler}{optimisation}"
     configure = ["cmake", "-S", ROOT, "-B", folder, "-G", "Ninja", "-D", f"CMAKE_CXX_COMPILER={compiler}",
                  "-D", "CMAKE_BUILD_TYPE=Release", "-D", f"CMAKE_CXX_FLAGS_RELEASE={optimisation} -DNDEBUG",
                  "-D", "BUILD_TESTING=OFF", "-D", "JOINTCREEP_WERROR=OFF"]
-    for command in configure, ["cmake", "--build", folder]:
+    for command in configure, ["cmake", "--build", folder, "--target", *CHAIN]:
         if subprocess.run([*map(str, command)], stdout=subprocess.DEVNULL, check=False).returncode:
             raise SystemExit(f"compilers: {compiler} {optimisation} does not build it; first: sh pipelines/setup.sh fuzz")
     return folder / "apps"
@@ -31,9 +32,8 @@ def build(campaign, compiler, optimisation):
 def results(campaign, programs, scene, joints):
     """The files of a scene's chain; joints of another compiler's averaging if given, so that programs are compared one by one."""
     folder = campaign.chain.new_folder()
-    codes = [ended([programs / program, source, "-q", "-o", folder / name], 10 * LONGEST).code for program, source, name in (
-        ("jointgen", scene, "network.h5"), ("strength-averaging", folder / "network.h5", "joints.h5"),
-        ("demsolve", joints or folder / "joints.h5", "result.h5"))]
+    codes = [ended([programs / program, source, "-q", "-o", folder / name], 10 * LONGEST).code for program, source, name in zip(
+        CHAIN, (scene, folder / "network.h5", joints or folder / "joints.h5"), ("network.h5", "joints.h5", "result.h5"))]
     return folder, codes
 
 
@@ -57,12 +57,12 @@ def farthest(one, other):
 
 
 def body(campaign):
-    programs = {name: build(campaign, *of) for name, of in BUILDS.items()}
+    others = {name: build(*of) for name, of in BUILDS.items()}
     for scene in scenes()[:campaign.n]:
         case = str(scene.relative_to(ROOT))
-        first, codes = results(campaign, programs["g++ -O3"], scene, None)
-        for name in "g++ -O2", "clang++ -O3":
-            folder, its_codes = results(campaign, programs[name], scene, first / "joints.h5")
+        first, codes = results(campaign, campaign.programs, scene, None)
+        for name, programs in others.items():
+            folder, its_codes = results(campaign, programs, scene, first / "joints.h5")
             outcome, what = "same bytes", ""
             for path in sorted(first.glob("*.h5")):
                 if its_codes != codes or HANGS in codes or not (folder / path.name).exists():
