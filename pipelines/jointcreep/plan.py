@@ -102,8 +102,8 @@ def identity(study, scene, programs):
                                              str(one.highest), one.values] for one in study.parameters]],
         "[[correlation]]": study.correlations,
         "[design]": [design.kind, design.seed, *sizes, *levels, *by_numpy],
-        "[[collect]]": [[one.name, one.what, one.point, one.component, one.since, one.stage, str(one.date), one.statistic]
-                        for one in study.quantities],
+        "[[collect]]": [[one.name, one.what, one.point, *filter(None, [one.relative_to]), one.component, one.since, one.stage,
+                         str(one.date), one.statistic] for one in study.quantities],
         "demsolve_options": study.demsolve_options,
         "histories": study.histories,
         "keep": study.keep,

@@ -13,14 +13,25 @@ NO_EQUILIBRIUM = 3  # exit code of demsolve
 
 def check(study, scene):
     """Refuses quantities that the scene cannot have. `scene` as tomllib reads it."""
-    points = [str(point.get("name", "")) for point in scene.get("point", [])]
+    points = names_of_points(scene)
     stages = [str(stage.get("name", "")) for stage in scene.get("stage", [])]
     for one in study.quantities:
-        for name, there, what in ((one.point, points, "point"), (one.stage, stages, "stage")):
+        for name, there, what in ((one.point, points, "point"), (one.relative_to, points, "relative_to"), (one.stage, stages, "stage")):
             if name and name not in there:
                 raise NotWanted(f'{one.place}{what} is "{name}"; expected one that the scene has: {", ".join(there) or "it has none"}')
+        if one.point and one.relative_to == one.point:
+            raise NotWanted(f'{one.place}relative_to is "{one.relative_to}"; expected another point')
         if one.date is not None and not 0 <= day_of(one, scene) <= days_between(scene, scene["schedule"]["end"]):
             raise NotWanted(f"{one.place}date is {one.date}; expected one within the scene's schedule")
+
+
+def names_of_points(scene):
+    """Of [[point]]s, and of the points on each [[monitoring_line]]."""
+    names = [str(point.get("name", "")) for point in scene.get("point", [])]
+    for line in scene.get("monitoring_line", []):
+        count = line.get("points", 0)
+        names += [f"{line.get('name', '')} {i + 1}" for i in range(count if isinstance(count, int) else 0)]
+    return names
 
 
 def days_between(scene, date):
@@ -43,10 +54,12 @@ def day_of(quantity, scene):
 
 
 def displacement(file, quantity, scene):
-    """Displacement of a point at a time [mm], or None if an excavation has taken the point."""
+    """Displacement of a point at a time [mm], or that relative to another point. None if an excavation has taken a point. Both count from
+    the first reading of the first one."""
     history = reading.history_of(file)
     time, moves, there = history.time, history.displacement, history.present
     point = history.point.index(quantity.point)
+    others = [history.point.index(quantity.relative_to)] if quantity.relative_to else []
     first = int(history.first_reading_row[point])
     if quantity.stage:
         row = history.event.index(quantity.stage)
@@ -61,13 +74,13 @@ def displacement(file, quantity, scene):
         if found is None:
             return None
         value, is_there, _ = found
-    if not is_there[point]:
+    if not all(is_there[one] for one in [point, *others]):
         return None
-    vector = value[point]
     if quantity.since == "first reading":
         if day < time[first]:
             return None
-        vector = vector - moves[first, point]
+        value = value - moves[first]
+    vector = value[point] - sum(value[one] for one in others)
     return 1e3 * float({"x": vector[0], "y": vector[1], "length": np.hypot(*vector)}[quantity.component])
 
 

@@ -229,12 +229,16 @@ class File:
         return table
 
     def contacts(self, stage=None):
-        """Table of the contacts after a stage, or in the end: centre and length (m), edge, tractions (Pa, tension positive), relative
-        displacements (m, opening positive), slip (m), status (of STATUS)."""
+        """Table of the contacts after a stage, or in the end: centre and length (m), edge, name of the joint set or single joint ("" on
+        other edges), tractions (Pa, tension positive), relative displacements (m, opening positive), slip (m), status (of STATUS). A
+        contact that is removed keeps its last slip."""
         table = Table()
         table.put("centre", self["/mesh/contact_centre"], "m")
         table.put("length", self["/mesh/contact_length"], "m")
         table.put("edge", self["/mesh/contact_edge"])
+        names = np.array([*self["/names/joint_set"], ""], str)  # the last one for -1
+        joint = self["/edges/joint"][table["edge"]]
+        table.put("set", names[np.append(self["/joints/set"], -1)[joint]])
         for name, unit in (("traction", "Pa"), ("relative_displacement", "m")):
             values = self.of_state(f"/states/{name}", stage)
             for part, direction in enumerate(("normal", "shear")):

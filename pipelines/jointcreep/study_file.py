@@ -60,6 +60,7 @@ class Quantity:
     what: str
     unit: str
     point: str
+    relative_to: str  # another point, whose displacement is subtracted; "" for none
     component: str
     since: str
     stage: str
@@ -365,12 +366,13 @@ def is_day(value):
 
 def quantity_of(table):
     what = table.text("what", None, WHAT)
-    point = component = since = stage = statistic = ""
+    point = relative_to = component = since = stage = statistic = ""
     date = None
     unit = "1"
     if what == "displacement":
         unit = "mm"
         point = table.text("point")
+        relative_to = table.text("relative_to", "")
         component = table.text("component", None, ["x", "y", "length"])
         since = table.text("since", "in situ", ["in situ", "first reading"])
         if "stage" in table.left:
@@ -383,10 +385,10 @@ def quantity_of(table):
     limits = "a list of numbers, in the unit of the quantity"
     above, below = ([] if what == "failed" else list(map(float, table.several(name, [], is_number, limits)))
                     for name in ("above", "below"))
-    name = table.text("name", f"{point} {component}" if what == "displacement" else statistic and f"blocks, {statistic}" or what)
+    name = table.text("name", f"{point} {relative_to and f'relative to {relative_to} '}{component}" if what == "displacement" else statistic and f"blocks, {statistic}" or what)
     place = table.place()
     table.end()
-    return Quantity(name, what, unit, point, component, since, stage, date, statistic, above, below, place)
+    return Quantity(name, what, unit, point, relative_to, component, since, stage, date, statistic, above, below, place)
 
 
 def stop_of(table, quantities, design):

@@ -34,7 +34,7 @@ BATCH = 50
 
 def study_of(design, limit=None, stop=""):
     """A study with one quantity; its scene is never read."""
-    quantity = study_file.Quantity("value", "displacement", "1", "", "", "", "", None, "", [limit] if limit is not None else [], [], "")
+    quantity = study_file.Quantity("value", "displacement", "1", "", "", "", "", "", None, "", [limit] if limit is not None else [], [], "")
     return study_file.Study(pathlib.Path(), "", pathlib.Path(), True, [], [], design, [quantity],
                             study_file.Stop(stop, STOP_AT if stop else 0.0, 0.0, 0.0, math.inf), [])
 

@@ -51,6 +51,14 @@ class Files(ChainTest):
         self.assertTrue((zones["stress xy"] == wanted["/states/stress"][state, :, 2]).all())
         self.assertTrue((contacts["shear traction"] == wanted["/states/traction"][-1, :, 1]).all())
         self.assertTrue(((contacts["status"] == "removed") == (wanted["/states/contact_status"][-1] == 0)).all())
+        # A contact is on a joint of its set, within what cutting moves it.
+        joints, names = run.joints(), run["/names/joint_set"]
+        self.assertEqual(set(contacts["set"]), {names[number] for number in set(joints["set"])})
+        for name, at in zip(contacts["set"], np.stack([contacts["centre x"], contacts["centre y"]], axis=1)):
+            of_set = joints["set"] == names.index(name)
+            start, end = (np.stack([joints[f"{which} {axis}"][of_set] for axis in "xy"], axis=1) for which in ("from", "to"))
+            along = (end - start) / np.linalg.norm(end - start, axis=1)[:, None]
+            self.assertLess(np.abs(along[:, 0] * (at - start)[:, 1] - along[:, 1] * (at - start)[:, 0]).min(), 0.3, name)
         self.assertTrue((zones["block"][~zones["present"]] != zones["block"][zones["present"]][0]).all())
         moved = run.gridpoints()
         self.assertTrue((moved["displacement x"] == wanted["/states/displacement"][-1, :, 0]).all())

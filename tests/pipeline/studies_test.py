@@ -158,6 +158,25 @@ class Runs(Studies):
             self.assertEqual(file["scene"].asstr()[0], SCENE)
         self.assertFalse(list((out / "work").iterdir()))
 
+    def test_relative_to_another_point(self):
+        """Points of a monitoring line less another point, from the in-situ state or the first reading of the first."""
+        text = SCENE + '[[monitoring_line]]\nname = "E"\nfrom_m = [24, 10]\nto_m = [24, 2]\npoints = 3\n'
+        (self.folder / "scene.toml").write_text(text)
+        collect = '[[collect]]\nname = "{0}"\nwhat = "displacement"\npoint = "floor"\nrelative_to = "E 3"\ncomponent = "{0}"\n{1}\n'
+        study = NETWORKS.split("[[collect]]")[0].format(runs=2) + collect.format("y", "") + collect.format(
+            "length", 'since = "first reading"')
+        for row in rows_of(self.made(self.written(study), self.folder / "out")):
+            joints = self.chain.joints(text, "--realization", row["network"])
+            result = datasets(self.chain.run("demsolve", joints, joints.with_name("r.h5")))
+            names = list(result["/history/point"])
+            moves = 1e3 * result["/history/displacement"]
+            between = moves[:, names.index("floor")] - moves[:, names.index("E 3")]
+            first = result["/history/first_reading_row"][names.index("floor")]
+            self.assertAlmostEqual(float(row["y (mm)"]), between[-1, 1], delta=1e-12)
+            self.assertAlmostEqual(float(row["length (mm)"]), np.hypot(*(between[-1] - between[first])), delta=1e-12)
+        self.refused(study.replace('"E 3"', '"E 4"'), r'relative_to is "E 4"; expected one that the scene has: .*floor, E 1, E 2, E 3')
+        self.refused(study.replace('"E 3"', '"floor"'), 'relative_to is "floor"; expected another point')
+
     def test_on_a_day_between_steps(self):
         """Runs whose creep steps are chosen have rows on other days; values are of the same day all the same."""
         text = SCENE.replace('step_days = 2\nscheme = "published"', "tolerance_m = 1e-8")
