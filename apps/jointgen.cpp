@@ -56,7 +56,7 @@ const Program program{
     .other_usage = "SCENE.toml --check",
 };
 
-// Of joint sets that are on no edge.
+// Of joint sets that are on no edge, or that are mostly cut back.
 Warnings warnings_of(const Network& network)
 {
     const Blocks& blocks = network.blocks;
@@ -67,11 +67,25 @@ Warnings warnings_of(const Network& network)
             on_edges[network.joints.set[blocks.edge_joint[e]]] +=
                 (blocks.vertex[a] - blocks.vertex[b]).norm();
         }
+    const JointFates& fates = blocks.fates;
+    std::vector<double> cut_back(on_edges.size(), 0.0), inside(on_edges.size(), 0.0); // [m]
+    for (std::size_t j = 0; j < network.joints.set.size(); ++j) {
+        const Index set = network.joints.set[j];
+        cut_back[set] += fates.dangling_end[j];
+        inside[set] += fates.kept[j] + fates.shared[j] + fates.dangling_end[j];
+    }
     Warnings warnings;
-    for (std::size_t set = 0; set < on_edges.size(); ++set)
+    for (std::size_t set = 0; set < on_edges.size(); ++set) {
+        const std::string& name = network.names.joint_set[set];
         if (on_edges[set] == 0)
-            warnings.add(program.name, "no block edge lies on joint set \"" + network.names.joint_set[set] +
+            warnings.add(program.name, "no block edge lies on joint set \"" + name +
                                            "\": its joints are outside the section, or end inside blocks");
+        else if (cut_back[set] > inside[set] / 2)
+            warnings.add(program.name, rounded(100 * cut_back[set] / inside[set], 2) +
+                                           " percent of joint set \"" + name +
+                                           "\" are cut back, because they end inside blocks; " +
+                                           "[cutting] dangling_ends = \"extend\" keeps them");
+    }
     return warnings;
 }
 

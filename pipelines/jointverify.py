@@ -688,7 +688,7 @@ class Verification:
                 wanted[ends[on & there]] = value
             held = ~np.isnan(wanted) & ~stays
             see("fixed gridpoints are where supports hold them", "m", np.abs(u[held, axis] - wanted[held]),
-                ROUNDING * np.abs(wanted[held]),
+                ROUNDING * (np.abs(wanted[held]) + m.reach * self.scene.large_displacements),
                 self.in_state("/states/displacement", s, m.position, "gridpoint", np.flatnonzero(held)))
         for at, normal in self.on_rollers(s):
             see("gridpoints on rollers move along them", "m", np.abs(u[at] @ normal), ROUNDING * norm(u[at]),

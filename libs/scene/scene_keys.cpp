@@ -464,7 +464,7 @@ Table<WrittenDensity> density_table()
     return {
         {"joint_set.density", inside, optional,
          "Density of a set, by one of five measures. Joint traces count before terminations at other sets "
-         "shorten them. For lines it sets the mean spacing. Scatter of the orientation is taken into "
+         "shorten them. For lines it sets the mean spacing; a spacing that is given too has the form of the law only. Scatter of the orientation is taken into "
          "account."},
         {number("P10_per_m", &W::p10, per_m, dense,
                 "Joint traces that a scanline meets per metre. It needs the direction of the scanline: "
@@ -592,13 +592,15 @@ Table<JointSet> joint_set(const TablesInJointSet& laws)
              .asks_for("a density such as { P21_per_m = 0.5 }")
              .optional(),
          law("length", &JointSet::length, laws.length, laws_of_lengths(),
-             "Length of the joint traces. Segments need it, and lines unless their persistence is 0 or 1.")
+             "Length of the joint traces, before terminations at other sets shorten them. Segments need it, and "
+             "lines unless their persistence is 0 or 1.")
              .optional(),
          law("diameter", &JointSet::diameter, laws.diameter, laws_of_lengths(),
              "Diameter of the discs. Discs need it; other kinds refuse it.")
              .optional(),
          number("persistence", &JointSet::persistence, no_unit, from(0).to(1),
-                "Fraction of a line that is joint. Lines need it, or bridge_length_m; other kinds refuse it.")
+                "Fraction of a line that is joint. Lines need it, or bridge_length_m. Segments and discs "
+                "refuse it: they end where their length or diameter ends.")
              .optional(),
          bridge_length(),
          names("terminates_at", &JointSet::terminates_at,

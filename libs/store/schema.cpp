@@ -532,6 +532,15 @@ std::vector<Invariant> invariants_of(const Network& network)
         differ("stage", network.names.stage),
         {"/edges/vertex", "the two vertices of an edge differ", "edge",
          [&blocks](std::size_t edge) { return blocks.edge_vertex[edge][0] != blocks.edge_vertex[edge][1]; }},
+        {"/vertices/position", "each vertex is an end of an edge", "vertex",
+         [&blocks, is_end = std::vector<char>()](std::size_t vertex) mutable {
+             if (is_end.empty()) {
+                 is_end.resize(blocks.vertex.size());
+                 for (const auto& [a, b] : blocks.edge_vertex)
+                     is_end[a] = is_end[b] = 1;
+             }
+             return is_end[vertex] != 0;
+         }},
         {"/edges/block", "a boundary edge has a block on one side, any other edge on both", "edge",
          [&blocks, is](std::size_t edge) {
              const auto [left, right] = blocks.edge_block[edge];

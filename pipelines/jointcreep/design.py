@@ -21,7 +21,7 @@ def openturns():
     try:
         import openturns
     except ImportError:
-        raise NotWanted("Python's module openturns is not installed; first run: sh pipelines/setup.sh studies") from None
+        raise NotWanted("Python's module openturns is not installed; first run: apt install python3-openturns (in the sources: sh pipelines/setup.sh studies)") from None
     openturns.Log.Show(openturns.Log.NONE)
     return openturns
 

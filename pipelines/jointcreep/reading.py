@@ -268,7 +268,10 @@ class Study:
         table = self.answers
         rows = np.flatnonzero((table["statistic"] == statistic) & ((table["quantity"] == quantity) if quantity else True))
         if len(rows) != 1:
-            raise NotWanted(f'{self.folder / "answers.csv"}: "{statistic}" is there {len(rows)} times; expected the name of a quantity, too')
+            chosen = quantity or f"one of {', '.join(sorted(set(table['quantity'])))}"
+            names = sorted(set(table["statistic"][table["quantity"] == quantity] if quantity else table["statistic"]))
+            raise NotWanted(f'{self.folder / "answers.csv"}: "{statistic}" is there {len(rows)} times; expected a statistic that is there once: '
+                            f"{', '.join(names) or 'none'}; of the quantity: {chosen}")
         return tuple(float(table[name][rows[0]]) for name in ("value", "low", "high"))
 
 

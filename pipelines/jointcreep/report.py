@@ -240,7 +240,8 @@ def of_study(out, programs, folder):
             parts.append(picture(out / name, caption_of(kind, quantity, study)))
     parts += histories_of(out)
     parts.append("<h2>Runs without a value</h2>")
-    missing = (out / "summary.txt").read_text("utf-8").partition("the design has none\n")[2].strip().splitlines()
+    missing = [line for line in (out / "summary.txt").read_text("utf-8").partition("the design has none\n")[2].splitlines()
+               if line.startswith(("run ", "... and ")) or " runs: " in line]
     parts.append("<ul>" + "".join(f"<li>{escaped(line)}</li>" for line in missing[:MOST_ROWS]) + "</ul>" if missing else "<p>None.</p>")
     parts.append("<h2>Checks</h2><p>Each run that has an exit code of 0 satisfied the guards of demsolve in every state that it recorded: "
                  "finite values, areas, weight, penetration, energies, unbalanced forces.</p>")

@@ -258,6 +258,8 @@ def read(path):
         table.end()
     if not varies_network and not parameters:
         raise NotWanted(f"{path}: nothing varies; expected a [[vary]], for example with network = true")
+    if "safety.h5" in kept and not any(one.get("what") == "factor of safety" for one in tables.get("collect", [])):
+        top.wrong("keep", 'a [[collect]] with what = "factor of safety" for safety.h5')
     unique(parameters, path)
     correlations = [correlation_of(table, parameters) for table in each("correlation")]
     quantities = [quantity_of(table) for table in each("collect")]

@@ -144,7 +144,7 @@ def draw(file, component="y", point=(), readings=False, since_reset=False, witho
 if __name__ == "__main__":
     figure.run(draw, figure.arguments_of(
         __doc__,
-        (["--component"], {"choices": list(LABELS), "default": "y", "help": "default: y"}),
+        (["--component"], {"choices": list(LABELS), "default": "y", "help": "toward: horizontal, toward the middle of what is removed; default: y"}),
         (["--point"], {"action": "append", "default": [], "help": "only this point; may be given several times"}),
         (["--readings"], {"action": "store_true", "help": "displacements since each point's own first reading"}),
         (["--since-reset"], {"action": "store_true", "help": "displacements since the last stage that resets them"}),

@@ -12,7 +12,7 @@ import numpy as np
 import figure
 
 STANDS, FAILS, UNDECIDED = 1, 0, -1
-KINDS = [(STANDS, "o", "stands"), (FAILS, "x", "fails"), (UNDECIDED, "s", "undecided")]
+KINDS = [(STANDS, "o", "stable"), (FAILS, "x", "fails: ended there"), (UNDECIDED, "s", "undecided")]
 
 
 def bracket(factor, stands):
@@ -49,7 +49,7 @@ def draw(file, safety_displacement=10):
             draw_runs(axes, factor, stands, displacement, color, label if has_coarse else None)
             limit = safety_displacement * displacement[np.argmin(factor)]
             if np.any((displacement >= limit) & (displacement < 1.5 * limit)):  # a run was ended there; else the option was another
-                axes.axhline(1e3 * limit, color=color, linewidth=0.6, linestyle="--", label=None if prefix else "limit")
+                axes.axhline(1e3 * limit, color=color, linewidth=0.6, linestyle="--", label=None if prefix else f"limit: {safety_displacement:g} times that with hardly any slip")
             low, high = bracket(factor, stands)
             if low is not None and high is not None:
                 axes.axvspan(low, high, color=color, alpha=0.15, linewidth=0)

@@ -313,7 +313,8 @@ def draw_failure(file, section, axes):
                     units="inches", width=0.024, headwidth=4, headlength=5, headaxislength=4.5, minlength=0.6, color=figure.COLORS[1],
                     edgecolor="white", linewidth=0.5, zorder=8)
         seconds, steps = figure.array(file, "/failure/seconds")[0], figure.array(file, "/failure/steps")[0]
-        label += f", up to {1e3 * largest:.3g} mm in " + (f"{seconds:.3g} s" if seconds > 0 else f"{steps} steps")
+        label += f" (red arrows; the longest is {1e3 * largest:.3g} mm in " + (
+            f"{seconds:.3g} s)" if seconds > 0 else f"{steps} steps of the solver)")
     entries[-1].set_label(label)
     return entries
 

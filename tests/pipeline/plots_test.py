@@ -89,7 +89,7 @@ class Plots(ChainTest):
         plots.save("safety", safety, folder / "function.png")
         self.assertEqual((folder / "script.png").read_bytes(), (folder / "function.png").read_bytes())
         axes = plots.draw("safety", safety).axes[0]
-        limit = next(line for line in axes.lines if line.get_label() == "limit").get_ydata()[0]
+        limit = next(line for line in axes.lines if line.get_label().startswith("limit")).get_ydata()[0]
         with h5py.File(safety) as file:
             self.assertAlmostEqual(limit, 1e4 * file["/safety/largest_displacement"][()][numpy.argmin(file["/safety/factor"][()])])
         self.assertEqual({f"plot_{name}.py" for name in plots.NAMES} | {"plot_fit.py"}, {path.name for path in self.plots.glob("plot_*.py")})

@@ -178,7 +178,8 @@ class Run(ChainTest):
         self.assertIn(reason.removeprefix("no equilibrium: "), title)
         labels = [text.get_text() for text in axes.get_legend().get_texts()]
         self.assertIn("excavated then: bench", labels)
-        self.assertIn(f"1 moving block, up to {1e3 * np.linalg.norm(failure['/failure/motion']):.3g} mm in 5000 steps", labels)
+        longest = f"{1e3 * np.linalg.norm(failure['/failure/motion']):.3g} mm in 5000 steps of the solver"
+        self.assertIn(f"1 moving block (red arrows; the longest is {longest})", labels)
         plots.figure.plt.close(picture)
 
         # The answer is known the next time.

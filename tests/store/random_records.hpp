@@ -95,7 +95,10 @@ private:
     // At least 2 rows of everything, so that there is something to index, and a second one that differs.
     std::size_t size(const std::string& dimension)
     {
-        return sizes_.try_emplace(dimension, 2 + random_() % (largest_ - 1)).first->second;
+        const auto [found, is_new] = sizes_.try_emplace(dimension, 2 + random_() % (largest_ - 1));
+        if (is_new && dimension == "edge") // each vertex is an end of one
+            found->second = std::max(found->second, (size("vertex") + 1) / 2);
+        return found->second;
     }
 
     void fill(const std::vector<fields::Field>& fields)
@@ -168,7 +171,10 @@ private:
                 (*names)[i] += '#' + std::to_string(i);
         Blocks& blocks = file.network.blocks;
         for (std::size_t edge = 0; edge < blocks.edge_vertex.size(); ++edge) {
-            blocks.edge_vertex[edge] = two_of(blocks.vertex.size());
+            const auto next = static_cast<Index>(2 * edge), n = static_cast<Index>(blocks.vertex.size());
+            // The first edges have all vertices.
+            blocks.edge_vertex[edge] =
+                next < n ? std::array<Index, 2>{next, (next + 1) % n} : two_of(blocks.vertex.size());
             const auto kind = static_cast<EdgeKind>(blocks.edge_kind[edge]);
             blocks.edge_block[edge] = two_of(blocks.block_area.size());
             if (kind == EdgeKind::boundary)

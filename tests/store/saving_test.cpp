@@ -189,6 +189,8 @@ TEST(Saving, RefusesRecordsThatBreakTheSchema)
             "/states/stress[0, 1, 2] is nan");
     refused([](ResultFile& f) { f.result.history.time[0] = -1; }, "/history/time[0] is -1");
     refused([](ResultFile& f) { f.network.blocks.edge_vertex[1][0] = 99; }, "/edges/vertex[1, 0] is 99");
+    refused([](ResultFile& f) { f.network.blocks.vertex.emplace_back(0, 0); },
+            "each vertex is an end of an edge");
     refused([](ResultFile& f) { f.network.blocks.ring_start.back() += 1; }, "/rings/first_corner");
     refused([](ResultFile& f) { f.network.blocks.block_area.push_back(1); }, "/blocks/area");
     refused([](ResultFile& f) { f.result.history.present.pop_back(); }, "/history/present");
