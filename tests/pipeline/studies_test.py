@@ -825,6 +825,7 @@ class StudyFile(Studies):
             (good.replace("runs = 3", 'runs = 3\nkind = "poor"'), r'kind is "poor"; expected one of "plain", "latin hypercube"'),
             (good.replace('point = "floor"', 'point = "flor"', 1), r'line 10: \[\[collect\]\]: point is "flor"; expected one that the '
              "scene has: crest, dug away, floor"),
+            ('keep = ["safety.h5"]\n' + good, r"keep is .*safety\.h5.*; expected a \[\[collect\]\] with what = \"factor of safety\""),
             (good.replace('"bench"', '"banch"'), r'stage is "banch"; expected one that the scene has: bench'),
             (good.replace('stage = "bench"', "date = 2000-01-01"), "2000-01-01 is a date, and the scene's schedule has numbers of days"),
             (good.replace('stage = "bench"', "date = 11"), "date is 11; expected one within the scene's schedule"),
