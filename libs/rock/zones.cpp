@@ -1,6 +1,7 @@
 #include "rock/zones.hpp"
 
 #include "model/signs.hpp"
+#include "rock/zone_stiffness.hpp"
 
 #include <algorithm>
 #include <cmath>

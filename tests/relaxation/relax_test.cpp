@@ -16,7 +16,6 @@ namespace relax_test
 using namespace jointcreep;
 using namespace jointcreep::test;
 using Eigen::Vector2d;
-using mechanics::Assembly;
 using mechanics::Convergence;
 
 namespace
