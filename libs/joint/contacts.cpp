@@ -11,18 +11,23 @@ namespace jointcreep::joint
 namespace
 {
 
+// The normal traction of the spring where the sides of a contact are this far apart [m]; of an open one the tension that
+// it would have.
+double spring_tension(const Contacts& contacts, std::size_t c, double apart)
+{
+    return normal_traction(contacts.law[c], contacts.initial_traction[c].x(),
+                           apart - contacts.offset[c].x() - contacts.state[c].dilation);
+}
+
 // Slopes of a contact at displacements of which its traction need not know yet.
 Slopes slopes_at(std::span<const Vector2d> displacement, const Contacts& contacts, std::size_t c)
 {
-    const Law& law = contacts.law[c];
-    const State& state = contacts.state[c];
-    if (!stiffens(law))
-        return slopes(law, state, contacts.traction[c].x());
-    const auto [a, b] = contacts.gridpoint[c];
-    const double apart = (displacement[b] - displacement[a]).dot(contacts.normal[c]);
-    return slopes(law, state,
-                  normal_traction(law, contacts.initial_traction[c].x(),
-                                  apart - contacts.offset[c].x() - state.dilation));
+    double traction = contacts.traction[c].x();
+    if (stiffens(contacts.law[c])) {
+        const auto [a, b] = contacts.gridpoint[c];
+        traction = spring_tension(contacts, c, (displacement[b] - displacement[a]).dot(contacts.normal[c]));
+    }
+    return slopes(contacts.law[c], contacts.state[c], traction);
 }
 
 } // namespace
@@ -260,10 +265,8 @@ double penetration(const Contacts& contacts)
 void start_from_here(Contacts& contacts)
 {
     for (std::size_t c = 0; c < contacts.gridpoint.size(); ++c) {
-        // The gap of an open contact is kept as the tension that its spring would have.
-        const double normal = normal_traction(contacts.law[c], contacts.initial_traction[c].x(),
-                                              contacts.relative_displacement[c].x() - contacts.offset[c].x() -
-                                                  contacts.state[c].dilation);
+        // The gap of an open contact is kept as this tension.
+        const double normal = spring_tension(contacts, c, contacts.relative_displacement[c].x());
         contacts.initial_traction[c] = {normal, contacts.traction[c].y()};
         contacts.offset[c].setZero();
     }

@@ -111,8 +111,8 @@ ContactResponse respond(const Contacts& contacts, std::size_t c, const State& st
 // For joints that grow stiffer as they close, the normal stiffness is taken as this many times the present one.
 inline constexpr double room_to_stiffen = 2;
 
-// Adds the row sums of the magnitudes of the contacts' stiffness {x, y} at displacements of the gridpoints to the sums of
-// their gridpoints [Pa].
+// Adds the row sums of the magnitudes of the contacts' stiffness {x, y}, at displacements of the gridpoints, to the sums
+// of their gridpoints [Pa].
 void add_row_sums(const Contacts& contacts, std::span<const Vector2d> displacement,
                   std::vector<Vector2d>& sums);
 

@@ -156,13 +156,13 @@ void pass(Tape& tape, Assembly& assembly);
 // Appends the present state of the forces to the states of a result.
 void record_state(const Assembly& assembly, States& states);
 
-// Row sums of the stiffness matrix's magnitudes at the present displacement, the larger of x and y, of every gridpoint [Pa]: no
-// eigenvalue of stiffness over mass is above the largest row sum over its mass (Gershgorin). Joints that grow
+// Row sums of the stiffness matrix's magnitudes at the present displacement, the larger of x and y, of every gridpoint
+// [Pa]: no eigenvalue of stiffness over mass is above the largest row sum over its mass (Gershgorin). Joints that grow
 // stiffer as they close count with joint::room_to_stiffen.
 std::vector<double> stiffness_row_sums(const Assembly& assembly);
 
-// Forces that grow stiffer as they deform, with the stiffness up to which row sums at the present displacement hold; whether
-// there are any, and whether one is stiffer at the displacement there is now. Forces need not know of it yet.
+// Forces that grow stiffer as they deform, with the stiffness up to which row sums at the present displacement hold;
+// whether there are any, and whether one is stiffer at the displacement there is now. Forces need not know of it yet.
 Stiffening stiffening_of(const Assembly& assembly);
 bool has_any(const Stiffening& stiffening);
 bool are_beyond(const Assembly& assembly, const Stiffening& stiffening);

@@ -325,8 +325,8 @@ private:
         a_.stiffness_damping_rate = settings_.stiffness_damping / dt_;
     }
 
-    // Whether joints would be stiffer after the step than masses, or its length, are stable for. If so, undoes it before forces
-    // follow, and takes masses or a length for that stiffness.
+    // Whether joints would be stiffer after the step than masses, or its length, are stable for. If so, undoes it before
+    // forces follow, and takes masses or a length for that stiffness.
     bool stiffens_too_far_in_team()
     {
         if (!has_any(stiffening_))

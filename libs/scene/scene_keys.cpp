@@ -464,8 +464,8 @@ Table<WrittenDensity> density_table()
     return {
         {"joint_set.density", inside, optional,
          "Density of a set, by one of five measures. Joint traces count before terminations at other sets "
-         "shorten them. For lines it sets the mean spacing; a spacing that is given too has the form of the law only. Scatter of the orientation is taken into "
-         "account."},
+         "shorten them. For lines it sets the mean spacing; a spacing that is given too has the form of the law "
+         "only. Scatter of the orientation is taken into account."},
         {number("P10_per_m", &W::p10, per_m, dense,
                 "Joint traces that a scanline meets per metre. It needs the direction of the scanline: "
                 "scanline_angle_deg, or scanline_trend_deg and scanline_plunge_deg. With Terzaghi's "

@@ -13,7 +13,7 @@ NO_EQUILIBRIUM = 3  # exit code of demsolve
 
 def check(study, scene):
     """Refuses quantities that the scene cannot have. `scene` as tomllib reads it."""
-    points = names_of_points(scene)
+    points = [str(point.get("name", "")) for point in scene.get("point", [])] + points_on_lines(scene)
     stages = [str(stage.get("name", "")) for stage in scene.get("stage", [])]
     for one in study.quantities:
         for name, there, what in ((one.point, points, "point"), (one.relative_to, points, "relative_to"), (one.stage, stages, "stage")):
@@ -25,13 +25,10 @@ def check(study, scene):
             raise NotWanted(f"{one.place}date is {one.date}; expected one within the scene's schedule")
 
 
-def names_of_points(scene):
-    """Of [[point]]s, and of the points on each [[monitoring_line]]."""
-    names = [str(point.get("name", "")) for point in scene.get("point", [])]
-    for line in scene.get("monitoring_line", []):
-        count = line.get("points", 0)
-        names += [f"{line.get('name', '')} {i + 1}" for i in range(count if isinstance(count, int) else 0)]
-    return names
+def points_on_lines(scene):
+    """Names of the points on the monitoring lines of a scene, which may lack keys yet, as tomllib reads it."""
+    return [f"{line.get('name', '')} {number}" for line in scene.get("monitoring_line", []) if isinstance(line.get("points"), int)
+            for number in range(1, line["points"] + 1)]
 
 
 def days_between(scene, date):
@@ -59,7 +56,7 @@ def displacement(file, quantity, scene):
     history = reading.history_of(file)
     time, moves, there = history.time, history.displacement, history.present
     point = history.point.index(quantity.point)
-    others = [history.point.index(quantity.relative_to)] if quantity.relative_to else []
+    other = history.point.index(quantity.relative_to) if quantity.relative_to else None
     first = int(history.first_reading_row[point])
     if quantity.stage:
         row = history.event.index(quantity.stage)
@@ -74,13 +71,13 @@ def displacement(file, quantity, scene):
         if found is None:
             return None
         value, is_there, _ = found
-    if not all(is_there[one] for one in [point, *others]):
+    if not is_there[point] or other is not None and not is_there[other]:
         return None
     if quantity.since == "first reading":
         if day < time[first]:
             return None
         value = value - moves[first]
-    vector = value[point] - sum(value[one] for one in others)
+    vector = value[point] if other is None else value[point] - value[other]
     return 1e3 * float({"x": vector[0], "y": vector[1], "length": np.hypot(*vector)}[quantity.component])
 
 

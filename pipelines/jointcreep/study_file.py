@@ -258,14 +258,14 @@ def read(path):
         table.end()
     if not varies_network and not parameters:
         raise NotWanted(f"{path}: nothing varies; expected a [[vary]], for example with network = true")
-    if "safety.h5" in kept and not any(one.get("what") == "factor of safety" for one in tables.get("collect", [])):
-        top.wrong("keep", 'a [[collect]] with what = "factor of safety" for safety.h5')
     unique(parameters, path)
     correlations = [correlation_of(table, parameters) for table in each("correlation")]
     quantities = [quantity_of(table) for table in each("collect")]
     if not quantities and not with_histories:
         raise NotWanted(f'{path}: nothing is collected; expected a [[collect]], for example with what = "failed"')
     unique([*parameters, *quantities], path)
+    if "safety.h5" in kept and all(one.what != "factor of safety" for one in quantities):
+        top.wrong("keep", 'a [[collect]] with what = "factor of safety" for safety.h5')
     design = design_of(Table(path, text, "[design]", tables.get("design", {})), varies_network, parameters, correlations, quantities)
     stop = stop_of(Table(path, text, "[stop]", tables.get("stop", {})), quantities, design)
     if with_histories and design.kind != "plain":

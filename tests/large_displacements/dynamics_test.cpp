@@ -320,7 +320,8 @@ TEST(dynamics, a_block_on_a_joint_swings_at_its_frequency)
     EXPECT_GT(500 * theta, 4 * 2 * std::numbers::pi);
 }
 
-// The force that carries a block fades in a time of many steps. It does work until then, and energy closes to the last digits.
+// The force that carries a block fades in a time of many steps. It does work until then, and energy closes to the last
+// digits.
 TEST(dynamics, energy_closes_while_a_force_is_released)
 {
     const double gravity = 2000, frequency = std::sqrt(k_n / (density * 1));

@@ -120,7 +120,8 @@ TEST_P(relax_with, energy_balances_where_the_search_ends_early)
                 1e-10 * convergence.work_of_loads);
 }
 
-// A block is put on a joint that becomes 1e4 times as stiff as it closes. It comes to rest where the joint carries its weight.
+// A block is put on a joint that becomes 1e4 times as stiff as it closes. It comes to rest where the joint carries its
+// weight.
 TEST(relax, a_block_on_a_joint_that_stiffens)
 {
     const double weight = 2700 * 9.81, largest_closure = 5e-3;
