@@ -123,7 +123,7 @@ void fail(Section& section, Failure failure, double time)
         message += (failure.moves_on ? "; moving blocks: " : "; blocks that moved most: ") +
                    mechanics::shown_blocks(failure);
     if (failure.steps > 0)
-        message += ", in the last " + std::to_string(failure.steps) + " steps";
+        message += ", in the last " + std::to_string(failure.steps) + " steps of the solver";
     if (failure.seconds > 0)
         message += ", " + rounded(failure.seconds) + " s";
     section.result.failure = std::move(failure);

@@ -19,14 +19,13 @@ from .errors import NotWanted
 from .intervals import CONFIDENCE
 
 PROBABILITIES = [0.05, 0.25, 0.50, 0.75, 0.95]
-FORMAT_VERSION = [3, 0]  # of ensemble.h5
+FORMAT_VERSION = [4, 0]  # of ensemble.h5
 LISTED = 100  # runs that the summary describes one by one
 KINDS = {
     "displacement": "since the in-situ equilibrium",
     "displacement_since_first_reading": "since the first reading of the point",
 }
-CUTTING = ["shortest_edge", "merged_vertices", "merged_edge_length", "merged_block_area", "largest_move",
-           "pruned_length"]
+CUTTING = ["shortest_edge", "merged_vertices", "merged_edge_length", "merged_block_area", "largest_move"]
 # What is told of each run: name, unit, heading and format in the summary, description.
 OF_EACH = [
     ("blocks", "1", "blocks", "d", "Blocks it has."),
@@ -45,7 +44,7 @@ OF_EACH = [
     ("merged_edge_length", "m", "merged\nedges (m)", ".3g", "Length of edges that vanished so."),
     ("merged_block_area", "m2", "merged\nblocks (m2)", ".3g", "Area of blocks that vanished so."),
     ("largest_move", "m", "largest\nmove (m)", ".3g", "How far cutting moved a vertex at most."),
-    ("pruned_length", "m", "cut\nback (m)", ".3g", "Length of joints that ended inside a block and were cut back."),
+    ("cut_back_length", "m", "cut\nback (m)", ".3g", "Length of joints that ended inside a block and were cut back."),
 ]
 EXPLAINED = [
     "unbalanced force ratio: the largest that an equilibrium ended with",
@@ -116,6 +115,7 @@ def of_run(path):
                 "energy_error": energy_error(file),
                 "area_error": area_error(file),
                 **{name: file[f"/cutting/{name}"][0].item() for name in CUTTING},
+                "cut_back_length": float(file["/fates/dangling_end_length"][()].sum()),
             },
         }
 

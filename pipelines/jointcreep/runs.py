@@ -19,7 +19,8 @@ from .errors import NotDone, NotWanted
 
 PATIENCE = 5  # s to wait for processes of a study that was killed
 LOOKS = 0.5  # s between two looks at how far the runs are
-SPOKEN = 10  # lines of progress where there is no terminal
+SPOKEN = 10  # lines of progress where there is no terminal, or
+SILENT = 60  # s, after which there is one in any case
 TIMED_OUT = "timed out"
 
 MAKEFILE = """# The groups of runs of a study; jointcreep study calls it. Names nothing of the scene.
@@ -49,7 +50,7 @@ rule group:
 @contextlib.contextmanager
 def locked(out, kind="study"):
     """Holds the lock of the folder of a "study" or a "run"; yields its file, which processes inherit. A folder that has something and
-    no such file is of someone else."""
+    no such file is of someone else. The file goes again if the input is refused before anything else is written."""
     path = out / f"{kind}.lock"
     if any(out.iterdir()) and not path.exists():
         raise NotWanted(f"{out}: has files, and is not the folder of a {kind}; expected a new or empty folder")
@@ -64,7 +65,12 @@ def locked(out, kind="study"):
                     raise NotWanted(f"another {kind} works in {out}; wait until it has ended, or choose another folder") from None
                 time.sleep(0.1)
         os.set_inheritable(file.fileno(), True)
-        yield file
+        try:
+            yield file
+        except NotWanted:
+            if list(out.iterdir()) == [path]:
+                path.unlink()
+            raise
 
 
 def read_rows(out):
@@ -99,6 +105,7 @@ class Progress:
     def __init__(self, total, what, quiet):
         self.total, self.what, self.quiet = total, what, quiet
         self.begin, self.first, self.told = time.monotonic(), None, 0
+        self.spoke = self.begin
 
     def tell(self, done):
         if self.first is None:
@@ -111,8 +118,8 @@ class Progress:
         line = f"{done} of {self.total} {self.what}{left if done < self.total else ''}"
         if sys.stderr.isatty():
             print(f"\r{line:60}", end="" if done < self.total else "\n", file=sys.stderr, flush=True)
-        elif (done - self.told) * SPOKEN >= self.total or done == self.total > self.told:
-            self.told = done
+        elif (done - self.told) * SPOKEN >= self.total or done == self.total > self.told or time.monotonic() - self.spoke > SILENT:
+            self.told, self.spoke = done, time.monotonic()
             print(line, file=sys.stderr, flush=True)
 
 

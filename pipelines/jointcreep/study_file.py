@@ -5,6 +5,7 @@ Whatever is wrong is refused with a message that names file, line, key and value
 
 import dataclasses
 import datetime
+import difflib
 import math
 import pathlib
 import re
@@ -180,6 +181,8 @@ class Table:
 
     def wrong(self, key, expected):
         found = f"{key} is {shown(self.left[key])}" if key in self.left else f"{key} is missing"
+        for like in difflib.get_close_matches(key, self.left.keys() - self.taken - {key}, 1):
+            found += f" (and {like} is unknown)" * (key not in self.left)
         raise NotWanted(f"{self.place(key)}{found}; expected {expected}")
 
     def get(self, key, default, fits, expected):

@@ -106,11 +106,13 @@ def draw(file):
     """Figure of spacings, trace lengths and block areas, beside their laws."""
     joints = joint_sets.Joints(file)
     area = figure.array(file, "/blocks/area")
-    count = len(joints.sets)
+    drawn = [i for i, one in enumerate(joints.sets) if one.keys() & {"spacing", "length", "diameter"}]  # others have no law to show
+    count = len(drawn)
     plot = figure.plt.figure(figsize=(figure.TWO_COLUMNS, 1.75 * count + 2.1))
     grid = plot.add_gridspec(count + 1, 2, height_ratios=[1] * count + [1.1])
-    for i, joint_set in enumerate(joints.sets):
-        left, right = plot.add_subplot(grid[i, 0]), plot.add_subplot(grid[i, 1])
+    for line, i in enumerate(drawn):
+        joint_set = joints.sets[i]
+        left, right = plot.add_subplot(grid[line, 0]), plot.add_subplot(grid[line, 1])
         values = spacings(joints, i)
         if "spacing" in joint_set:
             law = None if "density" in joint_set else joint_set["spacing"]  # else its mean follows from the density
@@ -123,7 +125,7 @@ def draw(file):
             draw_law(right, law, *lengths(joints, i), "trace length", figure.set_color(i))
         else:
             right.axis("off")
-        if i == 0:
+        if line == 0:
             right.legend(handles=[matplotlib.patches.Patch(label="in the section", **BARS),
                                   matplotlib.lines.Line2D([], [], label="law of the scene", **LAW)],
                          loc="lower right", bbox_to_anchor=(1, 0.98), ncol=2)

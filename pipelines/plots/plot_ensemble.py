@@ -56,9 +56,8 @@ def draw(file, component="x", point=(), since_first_reading=False):
         draw_point(axes, time, of_point, probabilities, count[:, point] > 1, max(1, len(time) // 12))
         figure.mark_stages(axes, time[stages], [event[row] for row in stages], axes in panels[:columns])
         axes.axhline(0, color="0.8", linewidth=0.5, zorder=0)
-        axes.annotate(names[point], (0, 1), xycoords="axes fraction", xytext=(4, -4), textcoords="offset points",
-                      ha="left", va="top", path_effects=figure.HALO)
         axes.margins(x=0.02, y=0.06)
+        axes.legend(handles=[], title=names[point], loc="best", borderpad=0, title_fontsize=8)  # where it hides least
     for axes in panels[len(chosen):]:
         axes.set_visible(False)
     for axes in panels[max(0, len(chosen) - columns):len(chosen)]:

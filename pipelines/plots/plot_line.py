@@ -2,7 +2,9 @@
 """Displacements along monitoring lines: across the line, as an inclinometer measures, and along it, as an extensometer does.
 
 A curve for each stage, just after its excavation, and one for the end. The distance is from the line's first end. Displacements
-count from the in-situ equilibrium, or with --readings from the line's own first reading: earlier stages have no curve. Points that are excavated are left out.
+count from the in-situ equilibrium, or with --readings from the line's own first reading: earlier stages have no curve. With
+--anchor they are those relative to the line's last point, as of an extensometer that is anchored there. Points that are
+excavated are left out.
 """
 
 import numpy as np
@@ -35,9 +37,9 @@ def first_reading(file, line):
     return figure.array(file, "/history/first_reading_row")[point]
 
 
-def displacements(file, line, readings):
+def displacements(file, line, readings, anchor):
     """Distance of its points from the first end [m], and displacements [row, point, (across, along)] [m]; not finite where a point is
-    excavated. Across is to the right of the way from the first end to the other."""
+    excavated. Across is to the right of the way from the first end to the other. With `anchor` relative to the last point."""
     names = figure.texts(file, "/history/point")
     first = names.index(f"{line['name']} 1")
     points = slice(first, first + line["points"])
@@ -47,17 +49,20 @@ def displacements(file, line, readings):
     if readings:
         moved = moved - moved[figure.array(file, "/history/first_reading_row")[first]]
     moved = np.where(figure.array(file, "/history/present")[:, points, None] == 1, moved, np.nan)
+    if anchor:
+        moved = moved - moved[:, -1:]
     across = np.array([along[1], -along[0]])
     return (place - place[0]) @ along, np.stack([moved @ across, moved @ along], axis=-1)
 
 
-def draw(file, line=(), readings=False):
-    """Figure of monitoring lines: of all, or those that are named; readings: since the line's first."""
+def draw(file, line=(), readings=False, anchor=False):
+    """Figure of monitoring lines: of all, or those that are named; readings: since the line's first; anchor: relative to its last
+    point."""
     lines, rows = lines_of(file, line), rows_of(file)
     plot, axes = figure.plt.subplots(len(lines), 2, figsize=(figure.TWO_COLUMNS, 2.6 * len(lines) + 0.5), squeeze=False, sharey="row")
     since = "since the first reading" if readings else "since the in-situ equilibrium"
     for one, pair in zip(lines, axes):
-        distance, moved = displacements(file, one, readings)
+        distance, moved = displacements(file, one, readings, anchor)
         begin = first_reading(file, one) if readings else 0
         for i, ax in enumerate(pair):
             for number, (row, label) in enumerate(rows):
@@ -68,7 +73,7 @@ def draw(file, line=(), readings=False):
             ax.axvline(0, color="0.6", linewidth=0.5, zorder=0)
             ax.set_xlabel(f"{('across', 'along')[i]} the line (mm)")
         pair[0].set_ylabel(f"{one['name']}:\ndistance from its first end (m)")
-    plot.suptitle(f"displacements {since}", fontsize=8)
+    plot.suptitle(f"displacements {'relative to the last point, ' if anchor else ''}{since}", fontsize=8)
     shown = dict(reversed([(label, line) for pair in axes for line, label in zip(*pair[1].get_legend_handles_labels())]))  # of all lines
     labels = [label for _, label in rows if label in shown]
     axes[0, 1].legend([shown[label] for label in labels], labels, loc="upper left", bbox_to_anchor=(1.02, 1), borderaxespad=0)
@@ -80,4 +85,5 @@ if __name__ == "__main__":
         __doc__,
         (["--line"], {"action": "append", "default": [], "help": "only this line; may be given several times"}),
         (["--readings"], {"action": "store_true", "help": "displacements since the line's own first reading"}),
+        (["--anchor"], {"action": "store_true", "help": "displacements relative to the line's last point, as of an extensometer"}),
     ))

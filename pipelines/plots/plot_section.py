@@ -144,29 +144,35 @@ def side_of(place, name, taken):
     return SIDES[chosen]
 
 
+def annotate(name, place, axes, taken):
+    """Writes the name of a place beside it; taken as in side_of()."""
+    scale = 72 * (axes.figure.get_figwidth() - 0.8) / np.ptp(axes.get_xlim())  # [pt/m]
+    dx, dy, across, up = side_of(scale * np.array(place, float), name, taken)
+    axes.annotate(name, place, xytext=(dx, dy), textcoords="offset points", zorder=6, path_effects=figure.HALO, ha=across,
+                  va="baseline" if dy > 0 else up)
+
+
 def draw_places(scene, key, label, marker, axes, taken):
     """Monitoring points, or gauges, with their names; taken as in side_of()."""
-    scale = 72 * (axes.figure.get_figwidth() - 0.8) / np.ptp(axes.get_xlim())  # [pt/m]
     places = {place["name"]: place["at_m"] for place in scene.get(key, [])}
     look = {"linestyle": "none", "marker": marker, "color": "k", "markersize": 3.5}
     for name, place in places.items():
         if not figure.is_in(axes, place):
             continue
         axes.plot(*place, zorder=5, path_effects=figure.HALO, **look)
-        dx, dy, across, up = side_of(scale * np.array(place, float), name, taken)
-        axes.annotate(name, place, xytext=(dx, dy), textcoords="offset points", zorder=5, path_effects=figure.HALO, ha=across,
-                      va="baseline" if dy > 0 else up)
+        annotate(name, place, axes, taken)
     return [matplotlib.lines.Line2D([], [], label=label, **look)] if places else []
 
 
-def draw_lines(scene, axes):
+def draw_lines(scene, axes, taken):
+    """Monitoring lines, with their names; taken as in side_of()."""
     lines = scene.get("monitoring_line", [])
     look = {"color": "k", "linewidth": 0.8, "marker": "|", "markersize": 4}
     for line in lines:
         ends = np.array([line["from_m"], line["to_m"]], float)
         places = ends[0] + np.linspace(0, 1, line["points"])[:, None] * (ends[1] - ends[0])
         axes.plot(*places.T, zorder=5, **look)
-        axes.annotate(line["name"], ends[0], textcoords="offset points", xytext=(4, 3), fontsize=7, zorder=6, path_effects=figure.HALO)
+        annotate(line["name"], ends[0], axes, taken)
     return [matplotlib.lines.Line2D([], [], label="monitoring line", **look)] if lines else []
 
 
@@ -186,7 +192,7 @@ def draw(file, window=None):
     others += draw_boundaries(scene, outline, axes)
     taken = []
     others += draw_places(scene, "point", "monitoring point", "o", axes, taken)
-    others += draw_lines(scene, axes)
+    others += draw_lines(scene, axes, taken)
     others += draw_places(scene, "gauge", "gauge on a joint", "D", axes, taken)
     if len(stages) == 1:  # no column of its own
         stages, others = [], stages + others

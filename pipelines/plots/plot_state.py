@@ -24,6 +24,7 @@ from stage_names import plain
 
 MOVING = "#dfaaa0"  # fill of moving blocks
 STUCK, SLIPPING, OPEN = 1, 2, 3  # /states/contact_status
+SLIPPED = 1e-3  # of the largest slip; below, a contact counts as one that has not slipped
 COMPONENTS = {
     "major": "larger principal stress",
     "minor": "smaller principal stress",
@@ -245,9 +246,14 @@ def draw_contacts(file, state, section, axes):
     lines, of_contact = contact_lines(file, section)
     draw_borders(section, axes, joints=False)
 
-    stuck = {"color": "0.65", "linewidth": 0.5}
-    axes.add_collection(LineCollection(lines[status[of_contact] == STUCK], zorder=2, **stuck))
-    entries = [matplotlib.lines.Line2D([], [], label=f"{np.sum(status == STUCK)} contacts closed", **stuck)]
+    slip = np.abs(figure.array(file, "/states/slip")[state])
+    slipped = (status == STUCK) & (slip > SLIPPED * slip.max(initial=0))
+    entries = []
+    for chosen, label, look in (((status == STUCK) & ~slipped, "contacts closed", {"color": "0.65", "linewidth": 0.5}),
+                                (slipped, "closed, slipped earlier", {"color": "#87a9cf", "linewidth": 1.2})):
+        axes.add_collection(LineCollection(lines[chosen[of_contact]], zorder=2, **look))
+        if label == "contacts closed" or np.any(chosen):
+            entries.append(matplotlib.lines.Line2D([], [], label=f"{np.sum(chosen)} {label}", **look))
     thin, thick = 2.2, 4.8  # lines without and with the largest relative displacement of their kind [pt]
     for code, label, amount, color in ((SLIPPING, "slipping", shear, figure.COLORS[0]),
                                      (OPEN, "open", opening, figure.COLORS[1])):

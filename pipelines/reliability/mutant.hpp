@@ -1,14 +1,19 @@
 // Operators with a mark between them, for mutants.py: `a + mutant::plus<7> + b` is a + b, or a - b where the environment
-// variable JOINTCREEP_MUTANT is 7.
+// variable JOINTCREEP_MUTANT is 7. A process writes the numbers of the marks that it came to into a file of the folder that
+// JOINTCREEP_MUTANTS_SEEN names.
 
 #pragma once
 
 #if defined(__cplusplus) && __cplusplus >= 202002L
 
 #include <algorithm>
+#include <array>
 #include <concepts>
 #include <cstdlib>
+#include <fstream>
+#include <string>
 #include <type_traits>
+#include <unistd.h>
 #include <utility>
 
 namespace mutant
@@ -18,6 +23,28 @@ inline const int chosen = [] {
     const char* const number = std::getenv("JOINTCREEP_MUTANT");
     return number ? std::atoi(number) : 0;
 }();
+
+struct Seen {
+    std::array<bool, 10000> marks{};
+
+    ~Seen()
+    {
+        if (const char* const folder = std::getenv("JOINTCREEP_MUTANTS_SEEN")) {
+            std::ofstream file(std::string(folder) + '/' + std::to_string(getpid()));
+            for (std::size_t number = 0; number < marks.size(); ++number)
+                if (marks[number])
+                    file << number << '\n';
+        }
+    }
+};
+inline Seen seen;
+
+template <int number>
+bool is_chosen()
+{
+    seen.marks[number] = true;
+    return chosen == number;
+}
 
 // The left operand, until the right one comes.
 template <int number, char kind, class A>
@@ -52,7 +79,7 @@ auto value(const A& a)
     {                                                                                                                  \
         const A& a = left.a;                                                                                           \
         using Value = decltype(value(a op b));                                                                         \
-        return chosen == number ? Value(changed) : Value(a op b);                                                      \
+        return is_chosen<number>() ? Value(changed) : Value(a op b);                                                   \
     }
 
 // Whole numbers change at the bound, others turn round.
@@ -83,22 +110,22 @@ JOINTCREEP_MUTANT(other, '!', !=, !(a != b))
 template <int number, class... A>
 auto min(const A&... a)
 {
-    return chosen == number ? std::max(a...) : std::min(a...);
+    return is_chosen<number>() ? std::max(a...) : std::min(a...);
 }
 template <int number, class T>
 T min(std::initializer_list<T> all)
 {
-    return chosen == number ? std::max(all) : std::min(all);
+    return is_chosen<number>() ? std::max(all) : std::min(all);
 }
 template <int number, class... A>
 auto max(const A&... a)
 {
-    return chosen == number ? std::min(a...) : std::max(a...);
+    return is_chosen<number>() ? std::min(a...) : std::max(a...);
 }
 template <int number, class T>
 T max(std::initializer_list<T> all)
 {
-    return chosen == number ? std::min(all) : std::max(all);
+    return is_chosen<number>() ? std::min(all) : std::max(all);
 }
 
 } // namespace mutant

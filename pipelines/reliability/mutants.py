@@ -1,33 +1,35 @@
 """Mutants: N places of the sources in which an operator, a sign or a bound is changed, one at a time. Do the tests find them?
 
 All are compiled into one build of a copy of the sources, and chosen by an environment variable when a test runs: an operator
-becomes two with a mark between them (mutant.hpp). Where that does not compile, the place is left out. A mutant is found if
-a test of its own folder fails, ends by a signal or takes LONGEST seconds; if none does, the other C++ tests and then the
-closed forms of whole programs are tried. Those that no test finds are printed: some change nothing that matters.
+becomes two with a mark between them (mutant.hpp). Where that does not compile, the place is left out. First each test runs
+without a mutant, and tells which places it reaches and how long it takes. Then the tests that reach a mutant run, the fastest
+first, until one fails, ends by a signal or takes far longer than before. Mutants that no test finds are printed: some change
+nothing that matters. The tests are the C++ tests, and those of WHOLE, which compare results of the programs with closed forms.
 """
 
+import concurrent.futures
+import json
 import os
 import pathlib
 import re
 import resource
 import shutil
 import subprocess
+import time
 
 from campaign import ROOT, Campaign, chance
 
-LONGEST = 300  # s of the processor, of one test program
-GROUPS = {  # sources, and the test programs that are tried first
-    "laws": (["libs/joint/*.hpp", "libs/rock/mohr_coulomb.cpp", "libs/rock/mohr_coulomb.hpp"],
-             ["joint", "rock", "large_displacements", "creep"]),
-    "certificate": (["libs/mechanics/assembly.cpp", "libs/mechanics/rest.cpp", "libs/mechanics/failure.cpp",
-                     "libs/relaxation/relax.cpp", "libs/analysis/guards.cpp"],
-                    ["mechanics", "implicit", "analysis", "relaxation"]),
-    "subdivision": (["libs/blocks/*.cpp"], ["blocks", "zoning"]),
-    "statistics": (["libs/statistics/*.cpp"], ["statistics"]),
+GROUPS = {  # sources
+    "laws": ["libs/joint/*.hpp", "libs/rock/mohr_coulomb.cpp", "libs/rock/mohr_coulomb.hpp"],
+    "certificate": ["libs/mechanics/assembly.cpp", "libs/mechanics/rest.cpp", "libs/mechanics/failure.cpp",
+                    "libs/relaxation/relax.cpp", "libs/analysis/guards.cpp"],
+    "subdivision": ["libs/blocks/*.cpp"],
+    "statistics": ["libs/statistics/*.cpp"],
 }
-OTHERS = ["joint", "rock", "large_displacements", "mechanics", "creep", "implicit", "sensitivity", "analysis", "blocks", "zoning",
-          "statistics", "relaxation", "store", "sampling", "back_analysis"]
-WHOLE = ["verification_test", "literature_test", "statistics_test", "joint_laws_test", "blocks_test", "bridges_test"]
+WHOLE = ["verification", "literature", "statistics", "joint_laws", "blocks", "bridges"]
+LONGEST = 600  # s of the processor, of a test without a mutant
+SLOWER = 5  # times as long as without a mutant, and MARGIN, a test may take with one
+MARGIN = 10  # s
 OPERATORS = {"+": "plus", "-": "minus", "*": "times", "/": "over", "<": "less", ">": "more", "<=": "at_most", ">=": "at_least",
              "==": "same", "!=": "other"}
 PLACE = re.compile(r"(?<=[\w)\]}]) (\+|-|\*|/|<=|>=|==|!=|<|>) (?=[\w(\-{:])|\bstd::(min|max)\(")
@@ -43,14 +45,44 @@ def places(text):
 
 
 def mutated(text, chosen):
-    """The text with marks; chosen: (number, start, end, operator)."""
+    """The text with marks, its lines numbered as before; chosen: (number, start, end, operator)."""
     for number, start, end, operator in sorted(chosen, key=lambda one: -one[1]):
         if operator in ("min", "max"):
             head = text[:start].removesuffix("std::")
             text = f"{head}mutant::{operator}<{number}>{text[end:]}"
         else:
             text = f"{text[:start]}{operator} mutant::{OPERATORS[operator]}<{number}> {operator}{text[end:]}"
-    return text
+    return f'#include "mutant.hpp"\n#line 1\n{text}' if chosen else text
+
+
+class Test:
+    """A test of the copy: how it is run, how long it takes, the numbers of the mutants that it reaches."""
+
+    def __init__(self, tree, name, command):
+        self.tree, self.name, self.command, self.seconds, self.reached = tree, name, command, None, set()
+
+    def fails(self, number, seconds, **variables):
+        def limit():
+            resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds))
+            resource.setrlimit(resource.RLIMIT_AS, (8 << 30, 8 << 30))
+        paths = ":".join(str(self.tree / path) for path in ("pipelines", "pipelines/plots", "tests/pipeline"))
+        environment = dict(os.environ, JOINTCREEP_MUTANT=str(number), RC_PARAMS="seed=20030501 noshrink=1", OMP_NUM_THREADS="1",
+                           GTEST_FAIL_FAST="1", PYTHONPATH=paths, **variables)
+        try:
+            return subprocess.run(self.command, env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, cwd=self.tree,
+                                  timeout=6 * seconds, preexec_fn=limit, check=False).returncode != 0
+        except subprocess.TimeoutExpired:
+            return True
+
+    def first_run(self):
+        """Without a mutant. Each process adds a file of the places that it came through."""
+        seen = self.tree / "seen" / self.name
+        seen.mkdir(parents=True)
+        begin = time.monotonic()
+        if self.fails(0, LONGEST, JOINTCREEP_MUTANTS_SEEN=str(seen)):
+            raise SystemExit(f"mutants: {self.name} fails without a mutant")
+        self.seconds = time.monotonic() - begin
+        self.reached = {int(number) for path in seen.iterdir() for number in path.read_text().split()}
 
 
 class Mutants:
@@ -60,24 +92,25 @@ class Mutants:
         shutil.rmtree(self.tree, ignore_errors=True)
         ignored = shutil.ignore_patterns("build", "out", ".git", "__pycache__")
         shutil.copytree(ROOT, self.tree, ignore=ignored)
-        shutil.copy(pathlib.Path(__file__).with_name("mutant.hpp"), self.tree)
+        shutil.copy(pathlib.Path(__file__).with_name("mutant.hpp"), self.tree / "libs")
         self.chosen = []  # (number, group, path, start, end, operator)
-        for group, (patterns, _) in GROUPS.items():
+        share = campaign.n // len(GROUPS)
+        for group, patterns in GROUPS.items():
             found = [(path, *place) for pattern in patterns for path in sorted(ROOT.glob(pattern))
                      for place in places(path.read_text())]
-            share = campaign.n // len(GROUPS)
             for path, *place in chance("mutants", campaign.seed, group).sample(found, min(2 * share, len(found))):
                 self.chosen.append((len(self.chosen) + 1, group, path.relative_to(ROOT), *place))
+        self.paths = sorted({path for _, _, path, *_ in self.chosen})
 
     def write(self):
-        for path in {path for _, _, path, *_ in self.chosen}:
+        for path in self.paths:
             text = mutated((ROOT / path).read_text(), [(number, *place) for number, _, its, *place in self.chosen if its == path])
             if (self.tree / path).read_text() != text:
                 (self.tree / path).write_text(text)
 
     def build(self):
         """Leaves out the places that do not compile."""
-        configure = ["cmake", "--preset", "test", "-D", "JOINTCREEP_WERROR=OFF", "-D", f"CMAKE_CXX_FLAGS=-include {self.tree}/mutant.hpp"]
+        configure = ["cmake", "--preset", "test", "-D", "JOINTCREEP_WERROR=OFF"]
         subprocess.run(configure, cwd=self.tree, check=True, stdout=subprocess.DEVNULL)
         while True:
             self.write()
@@ -105,42 +138,34 @@ class Mutants:
             if count[one[1]] <= share:
                 yield one
 
-    def found_by(self, number, group):
-        """The test that finds it, or None."""
-        environment = dict(os.environ, JOINTCREEP_MUTANT=str(number), RC_PARAMS="seed=1", OMP_NUM_THREADS="1")
+    def tests(self):
+        """The fastest first."""
+        told = subprocess.run(["ctest", "--preset", "test", "--show-only=json-v1"], cwd=self.tree, check=True, capture_output=True).stdout
+        tests = [Test(self.tree, test["name"], test["command"]) for test in json.loads(told)["tests"]
+                 if not test["name"].startswith("pipeline/") or test["name"].removeprefix("pipeline/") in WHOLE]
+        with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+            for _ in pool.map(Test.first_run, tests):
+                pass
+        return sorted(tests, key=lambda test: test.seconds)
 
-        def fails(command, longest=LONGEST):
-            def limit():
-                resource.setrlimit(resource.RLIMIT_CPU, (longest, longest))
-                resource.setrlimit(resource.RLIMIT_AS, (8 << 30, 8 << 30))
-            try:
-                return subprocess.run(command, env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, timeout=6 * longest,
-                                      preexec_fn=limit, cwd=self.tree).returncode != 0
-            except subprocess.TimeoutExpired:
-                return True
-        first = GROUPS[group][1]
-        for folder in [*first, *(other for other in OTHERS if other not in first)]:
-            for program in sorted((self.tree / "build/release/tests" / folder).glob("*_tests")):
-                if fails([program]):
-                    return f"tests/{folder}"
-        for name in WHOLE:
-            if fails(["python3", f"tests/pipeline/{name}.py", "build/release/apps", "."], 3 * LONGEST):
-                return name
-        return None
+
+def found_by(number, tests):
+    """The name of the first test that finds a mutant, or None."""
+    return next((test.name for test in tests
+                 if number in test.reached and test.fails(number, int(SLOWER * test.seconds + MARGIN))), None)
 
 
 def body(campaign):
     mutants = Mutants(campaign)
     mutants.build()
-    for group in GROUPS:
-        if by := mutants.found_by(0, group):
-            raise SystemExit(f"mutants: {by} fails without a mutant")
-        break
-    for number, group, path, start, end, operator in mutants.choose():
-        text = (ROOT / path).read_text()
-        line = text.count("\n", 0, start) + 1
-        by = mutants.found_by(number, group)
-        campaign.count(group, "found" if by else "lives", f"{path}:{line} {operator}", by or text.splitlines()[line - 1])
+    tests, chosen = mutants.tests(), list(mutants.choose())
+    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+        for (number, group, path, start, _, operator), by in zip(chosen, pool.map(lambda one: found_by(one[0], tests), chosen)):
+            text = (ROOT / path).read_text()
+            line = text.count("\n", 0, start) + 1
+            reaching = sum(number in test.reached for test in tests)
+            campaign.count(group, "found" if by else "lives", f"{path}:{line} {operator}",
+                           by or f"{text.splitlines()[line - 1].strip()} (reached by {reaching} tests)")
 
 
 if __name__ == "__main__":

@@ -70,6 +70,20 @@ class Plots(ChainTest):
         self.assertGreater(len(cut), 0)
         self.assertTrue((status[drawn] != 0).all())
 
+    def test_contacts_that_slipped_earlier(self):
+        """They are closed again, and drawn apart from those that never slipped."""
+        import h5py
+        from jointcreep import plots
+        result = self.chain.result(self.chain.small())
+        with h5py.File(result, "r+") as file:
+            slip, status = file["/states/slip"], file["/states/contact_status"]
+            closed = numpy.flatnonzero(status[-1] == 1)
+            slip[-1, :] = numpy.where(status[-1] == 1, 1e-9, slip[-1])
+            slip[-1, closed[:3]] = (0.001, -0.002, 0.003)
+        legend = plots.draw("state", result, field="contacts").axes[0].get_legend()
+        labels = [text.get_text() for text in legend.get_texts()]
+        self.assertEqual(labels[:2], [f"{len(closed) - 3} contacts closed", "3 closed, slipped earlier"])
+
     def test_functions(self):
         """What the functions draw is what the scripts draw, also one after another; what a file lacks is an exception."""
         from jointcreep import NotWanted, plots
@@ -184,7 +198,9 @@ class Plots(ChainTest):
             names = figure.texts(file, "/history/point")
             points = [names.index(f"L {i}") for i in range(1, 6)]
             moved = figure.array(file, "/history/displacement")[:, points]
-            distance, turned = plot_line.displacements(file, plot_line.lines_of(file, [])[0], False)
+            distance, turned = plot_line.displacements(file, plot_line.lines_of(file, [])[0], False, False)
+            anchored = plot_line.displacements(file, plot_line.lines_of(file, [])[0], False, True)[1]
+            numpy.testing.assert_allclose(anchored[..., 1], (moved - moved[:, -1:]) @ [0.6, 0.8], atol=1e-15)
             numpy.testing.assert_allclose(distance, [0, 2.5, 5, 7.5, 10], atol=1e-12)
             numpy.testing.assert_allclose(turned[..., 0], moved @ [0.8, -0.6], atol=1e-15)  # to the right of the way up
             numpy.testing.assert_allclose(turned[..., 1], moved @ [0.6, 0.8], atol=1e-15)
@@ -192,7 +208,7 @@ class Plots(ChainTest):
             self.assertEqual(plot_line.rows_of(file)[-1][0], len(moved) - 1)
             others = plot_histories.of_no_line(file, names)
             self.assertEqual([names[i] for i in others], [name for name in names if not name.startswith("L ")])
-        for name, *options in [("line",), ("line", "--readings", "--line", "L"), ("section",)]:
+        for name, *options in [("line",), ("line", "--readings", "--line", "L"), ("line", "--anchor"), ("section",)]:
             picture = result.with_name("picture.png")
             done = self.plot(name, result, picture, *options)
             self.assertEqual((done.returncode, done.stderr), (0, ""))
@@ -204,6 +220,8 @@ class Plots(ChainTest):
         self.assertEqual(drawn._suptitle.get_text(), "displacements since the in-situ equilibrium")
         drawn.canvas.draw()
         self.assertFalse(matplotlib.transforms.Bbox.intersection(*(axes.xaxis.label.get_window_extent() for axes in drawn.axes)))
+        self.assertEqual(plots.draw("line", result, anchor=True)._suptitle.get_text(),
+                         "displacements relative to the last point, since the in-situ equilibrium")
         with unittest.mock.patch.object(plot_line, "first_reading", return_value=len(moved) - 1):
             self.assertEqual(len(plots.draw("line", result, readings=True).axes[0].lines), 2)  # the last row, and the line at 0
         figure.plt.close("all")

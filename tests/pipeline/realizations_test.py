@@ -212,8 +212,9 @@ class Small(Realizations):
         self.assertLess(values["/run/energy_error"].max(), 1e-6)
         self.assertLess(values["/run/area_error"].max(), 1e-12)
         results = [datasets(path) for path in self.kept()]
-        for name in ("merged_vertices", "merged_edge_length", "merged_block_area", "largest_move", "pruned_length"):
+        for name in ("merged_vertices", "merged_edge_length", "merged_block_area", "largest_move"):
             self.assertEqual(list(values[f"/run/{name}"]), [result[f"/cutting/{name}"][0] for result in results])
+        self.assertEqual(list(values["/run/cut_back_length"]), [result["/fates/dangling_end_length"].sum() for result in results])
         text = (self.whole() / "summary.txt").read_text()
         self.assertIn(f"{values['/run/smallest_zone_altitude'][3]:.4g}", text)
         false = [shutil.copy(path, self.folder / f"{place}.h5") for place, path in enumerate(self.kept()[1:3])]

@@ -842,6 +842,7 @@ class StudyFile(Studies):
             (good.split("[[collect]]")[0], "nothing is collected"),
             (good.replace("network = true", ""), r"\[\[vary\]\]: key is missing; expected a key of the scene"),
             (good.replace("network = true", "network = false\nkey = 'x.y'"), r"law is missing; expected one of .normal"),
+            (good.replace("runs = 3", "rums = 3"), r"line 7: \[design\]: runs is missing \(and rums is unknown\); expected a whole"),
             (good + 'a = [', "study.toml: "),
         ]
         for text, expected in cases:
@@ -868,6 +869,8 @@ class StudyFile(Studies):
     def test_the_folder_stays_clean(self):
         self.refused(NETWORKS.format(runs=1), "runs is 1")
         self.assertFalse((self.folder / "refused").exists())
+        self.refused(NETWORKS.format(runs=3).replace('"bench"', '"last"'), 'stage is "last"; expected')  # seen with the scene
+        self.assertEqual(list((self.folder / "refused").iterdir()), [])
 
     def test_command_line(self):
         for name in ("run", "study", "report", "fit"):
