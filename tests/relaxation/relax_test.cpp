@@ -293,10 +293,10 @@ Section pulled_bar()
 TEST(relax, a_bar_under_traction)
 {
     double last_time = std::numeric_limits<double>::infinity();
-    for (const double stiffness_damping : {0.0, 2e-4}) {
+    for (const auto& [mass_damping, stiffness_damping] : {std::pair(100.0, 0.0), {100.0, 2e-4}, {0.0, 1e-3}}) {
         Section s = pulled_bar();
         Equilibrium how = settings(Damping::mass, Masses::real);
-        how.mass_damping = 100;
+        how.mass_damping = mass_damping;
         how.stiffness_damping = stiffness_damping;
         double time = 0;
         const Convergence convergence = relaxation::relax(s.assembly, how, [&](double t) { time = t; });
@@ -318,8 +318,8 @@ TEST(relax, a_bar_under_traction)
 //   w = sqrt(K / m),  z = alpha / (2 w) + beta w / 2,  w_d = w sqrt(1 - z^2)
 TEST(relax, the_dashpots_of_contacts)
 {
-    const double K = 1e8, mass = 2700, w = std::sqrt(K / mass), alpha = 4;
-    for (const double beta : {0.0, 1e-4, 5e-4}) {
+    const double K = 1e8, mass = 2700, w = std::sqrt(K / mass);
+    for (const auto& [alpha, beta] : {std::pair(4.0, 0.0), {4.0, 1e-4}, {4.0, 5e-4}, {0.0, 5e-4}}) {
         Scene scene = section({{0, 0}, {1, 0}, {1, 1}, {0, 1}}, 0.01);
         scene.rocks = {{"rock", mass, 1e12, 0, std::nullopt}};
         scene.zone_size = 2;
