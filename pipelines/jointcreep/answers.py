@@ -7,7 +7,6 @@ The probability to fail counts all runs that either have an equilibrium or were 
 import math
 
 import numpy as np
-import scipy.stats
 
 from . import failure, files, intervals
 from .design import openturns
@@ -81,9 +80,14 @@ def limits_of(quantity):
 
 def share_with_interval(study, hits, run):
     """Share of runs that hit, with the ends of its interval: of independent runs that of Clopper and Pearson, which is too wide
-    for a Latin hypercube or a Sobol sequence; of a crossed design that of the mean, within 0 and 1."""
-    if study.design.kind != "networks x parameters":
+    for a Latin hypercube or a Sobol sequence; of a crossed design that of the mean, within 0 and 1, or where all or none hit, that of
+    as many independent runs as it has networks or parameters, if these are fewer."""
+    design = study.design
+    if design.kind != "networks x parameters":
         return intervals.probability(int(hits.sum()), len(hits))
+    if hits.all() or not hits.any():  # no scatter to tell of
+        independent = min(design.networks, design.parameters)
+        return intervals.probability(independent * bool(hits.all()), independent)
     value, low, high = mean_with_interval(study, hits.astype(float), run)
     return value, None if low is None else max(0.0, low), None if high is None else min(1.0, high)
 
@@ -171,15 +175,17 @@ def rank_correlations(study, rows, given, at):
     if len(values) < FEWEST or not numeric or np.ptp(values) == 0:
         return []
     inputs = np.array([[given[number]["given"][column] for column in numeric] for number in run], float)
-    ranks = scipy.stats.rankdata(values)
+    from scipy import stats  # takes long to load
+    ranks = stats.rankdata(values)
     rows = []
     for column, of_parameter in zip(numeric, inputs.T):
-        r = correlation(ranks, scipy.stats.rankdata(of_parameter))
+        r = correlation(ranks, stats.rankdata(of_parameter))
         if r is None:
             continue
         half = 1.96 * np.sqrt((1 + r * r / 2) / (len(values) - 3))
-        low, high = np.tanh(np.arctanh(np.clip(r, -1 + 1e-12, 1 - 1e-12)) + np.array([-half, half]))
-        rows.append((study.parameters[column].name, "rank correlation", float(r), float(low), float(high)))
+        low, high = np.tanh(np.arctanh(r) + np.array([-half, half])) if abs(r) < 1 - 1e-12 else (np.nan, np.nan)
+        ends = (float(low), float(high)) if np.isfinite(low) else (None, None)
+        rows.append((study.parameters[column].name, "rank correlation", float(r), *ends))
     return rows
 
 
@@ -307,7 +313,7 @@ def summary(study, rows, why, of_each, of_histories):
     of_all = "" if study.design.directions else f" of {study.design.runs}"
     lines += [f"design               {study.design.kind}",
               f"runs                 {len(rows)}" + (f"{of_all}, ended {why}" if why else ""),
-              f"without equilibrium  {without}", f"failed otherwise     {other}"]
+              f"without equilibrium  {without}", f"other failures       {other}"]
     for quantity, found, of_shares in of_each:
         lines += ["", quantity.title() + f", {found['runs']} {study.design.counted()}"]
         lines += in_columns([["", "value", "from", "to"],

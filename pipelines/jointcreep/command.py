@@ -148,12 +148,10 @@ def study(source, options, beside):
     """Makes a study."""
     programs = programs_in(options.get("programs"), beside)
     of_study = study_file.read(source)
-    out = pathlib.Path(options["output"])
-    out.mkdir(parents=True, exist_ok=True)
-    out = out.resolve()
     profile = options.get("snakemake")
     if profile and not (pathlib.Path(profile) / "config.yaml").exists():
         raise NotWanted(f"--snakemake: {profile} has no config.yaml; expected the folder of a profile")
+    out = pathlib.Path(options["output"]).resolve()
     with runs.locked(out) as lock:
         scene = plan.make(of_study, out, programs)
         from . import answers  # after the study is known to be right: it takes longer to load

@@ -28,6 +28,7 @@ from .chain import CANNOT_WRITE, was_stopped
 from .errors import NotDone, NotWanted
 
 LONGEST_REASON = 500  # characters
+SEARCH_OPTIONS = ("--safety-width", "--safety-displacement", "--runs-at-once")  # of demsolve --factor-of-safety
 PR_SET_PDEATHSIG = 1  # linux/prctl.h
 LIBC = ctypes.CDLL(None)
 
@@ -43,6 +44,12 @@ class Interrupted(Exception):
     """A program was stopped from outside, or could not read or write."""
 
 
+def without_search(options):
+    """Options of demsolve without those of the search of the factor of safety, each with its value in the same word or in the next."""
+    left = iter(options)
+    return [option for option in left if option.split("=")[0] not in SEARCH_OPTIONS or "=" not in option and not next(left, "")]
+
+
 def programs_of(study, run):
     """The programs of a run in their order: name and arguments."""
     needs, options = quantities.needed(study), study.options_of(run)
@@ -50,7 +57,7 @@ def programs_of(study, run):
     if any(needs.values()):
         chain.append(("strength-averaging", ["network.h5", "-o", "joints.h5"]))
     if needs["result.h5"]:
-        chain.append(("demsolve", ["joints.h5", *options, "-o", "result.h5"]))
+        chain.append(("demsolve", ["joints.h5", *without_search(options), "-o", "result.h5"]))
     if needs["safety.h5"]:
         chain.append(("demsolve", ["joints.h5", *options, "--factor-of-safety", "--no-mesh-estimate", "-o", "safety.h5"]))
     return chain
@@ -71,7 +78,8 @@ def called(program, arguments, folder):
     except OSError as error:
         raise Interrupted(f"{program} cannot be started: {error.strerror}") from None
     lines = [line for line in done.stderr.decode("utf-8", "replace").splitlines() if ": warning: " not in line]
-    return done.returncode, " ".join(" ".join(lines).split())[:LONGEST_REASON], time.monotonic() - begin
+    lines = lines[:1] + [line.removeprefix(f"{program.name}: ") for line in lines[1:]]
+    return done.returncode, " ".join("; ".join(lines).split())[:LONGEST_REASON], time.monotonic() - begin
 
 
 def made(study, scene, text, run, programs, folder):

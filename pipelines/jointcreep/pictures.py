@@ -19,6 +19,7 @@ from stage_names import plain
 BAND = "#c9d8ea"
 MOST_PANELS = 6
 BAND_POINTS = 60
+CORRELATION = "rank correlation"  # a measure of answers.py
 FEWEST_BARS = 4  # that a panel has room for, so that one is not broad
 
 
@@ -29,7 +30,7 @@ def distribution(quantity, study, values):
     if study.design.kind != "networks x parameters":
         counts = np.unique(np.linspace(1, n, min(n, BAND_POINTS)).astype(int))
         ends = np.array([intervals.probability(int(count), n)[1:] for count in counts])
-        axes.fill_between(ordered[counts - 1], 100 * ends[:, 0], 100 * ends[:, 1], step="post" if n <= BAND_POINTS else None, facecolor=BAND,
+        axes.fill_between(ordered[counts - 1], 100 * ends[:, 0], 100 * ends[:, 1], step="post", facecolor=BAND,
                           linewidth=0, label="95 % confidence")
     axes.step(ordered, 100 * np.arange(1, n + 1) / n, where="post", color=figure.COLORS[0], label=f"{n} {study.design.counted()}")
     for place, limit in enumerate([*quantity.above, *quantity.below]):
@@ -63,7 +64,7 @@ def convergence(quantity, rows, stop, counted):
             axes.xaxis.set_major_locator(matplotlib.ticker.LogLocator(subs=(1, 2, 5)))
             axes.xaxis.set_major_formatter(matplotlib.ticker.StrMethodFormatter("{x:g}"))
             axes.xaxis.set_minor_formatter(matplotlib.ticker.NullFormatter())
-        axes.set_ylabel(f"mean of {quantity.title()}" if name == "mean" else f"{name} (percent)")
+        axes.set_ylabel(f"mean of {quantity.title()}" if name == "mean" else f"{answers.with_unit(name, quantity)}\n(percent)")
         if axes is panels[0, 0]:
             axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncol=3)
     panels[-1, 0].set_xlabel(f"number of {counted}")
@@ -74,29 +75,38 @@ def parameters(quantity, study, values, run, given, of_shares):
     """The quantity over each parameter, and the shares of the variance or the rank correlations as bars."""
     numeric = [column for column, one in enumerate(study.parameters) if not any(isinstance(value, str) for value in one.values)]
     numeric = numeric[:MOST_PANELS]
-    count = len(numeric) + 1
+    correlations = [one for one in of_shares if one[1] == CORRELATION]
+    kinds = [kind for kind in ([one for one in of_shares if one[1] != CORRELATION], correlations) if kind]
+    count = len(numeric) + len(kinds)
     columns = min(3, count)
     lines = -(-count // columns)
-    plot, panels = figure.plt.subplots(lines, columns, figsize=(figure.TWO_COLUMNS, 0.4 + 2.1 * lines), squeeze=False)
-    panels = panels.ravel()
+    plot = figure.plt.figure(figsize=(figure.TWO_COLUMNS, 0.4 + 2.1 * lines))
+    grid = plot.add_gridspec(lines, columns)
+    places = [(place // columns, slice(place % columns, None if place == count - 1 else place % columns + 1)) for place in range(count)]
+    panels = [plot.add_subplot(grid[place]) for place in places]  # the last one as wide as there is room
     for axes, column in zip(panels, numeric):
         axes.plot([given[one]["given"][column] for one in run], values, linestyle="none", marker="o", markersize=1.8,
                   color=figure.COLORS[0], alpha=0.6, markeredgewidth=0)
         axes.set_xlabel(study.parameters[column].name)
         axes.set_ylabel(quantity.title())
-    bars = panels[len(numeric)]
-    for place, (name, measure, value, low, high) in enumerate(of_shares):
-        bars.barh(place, value, color=figure.COLORS[0 if "total" not in measure else 4], height=0.6)
-        bars.plot([low, high], [place, place], color=figure.COLORS[1], linewidth=1.0, marker="|", markersize=4)
-    measures = list(dict.fromkeys(measure for _, measure, *_ in of_shares))
-    labels = [name if len(measures) == 1 else f"{name},\n{measure}" for name, measure, *_ in of_shares]
-    bars.set_yticks(range(len(of_shares)), ["\n".join(textwrap.wrap(label, 20)) for label in labels], fontsize=6)
-    bars.set_ylim(max(len(of_shares), FEWEST_BARS) - 0.5, -0.5)
-    bars.axvline(0, color="0.6", linewidth=0.6)
-    bars.set_xlabel(f"{measures[0] if len(measures) == 1 else 'value'}, 95 % confidence", fontsize=7)
-    for axes in panels[count:]:
-        axes.set_visible(False)
+    for axes, rows in zip(panels[len(numeric):], kinds):
+        bars(axes, rows)
     return plot
+
+
+def bars(axes, rows):
+    """Shares of the variance, indices or correlations (input, measure, value, low, high) as bars with their intervals."""
+    for place, (_, measure, value, low, high) in enumerate(rows):
+        axes.barh(place, value, color=figure.COLORS[0 if "total" not in measure else 4], height=0.6)
+        if low is not None:
+            axes.plot([low, high], [place, place], color=figure.COLORS[1], linewidth=1.0, marker="|", markersize=4)
+    measures = list(dict.fromkeys(measure for _, measure, *_ in rows))
+    labels = [name if len(measures) == 1 else f"{name},\n{measure}" for name, measure, *_ in rows]
+    axes.set_yticks(range(len(rows)), ["\n".join(textwrap.wrap(label, 20)) for label in labels], fontsize=6)
+    axes.set_ylim(max(len(rows), FEWEST_BARS) - 0.5, -0.5)
+    axes.axvline(0, color="0.6", linewidth=0.6)
+    axes.set_xlim((-1, 1) if measures == [CORRELATION] else (min(0, axes.get_xlim()[0]), max(1, axes.get_xlim()[1])))
+    axes.set_xlabel(f"{measures[0] if len(measures) == 1 else 'index'}, 95 % confidence", fontsize=7)
 
 
 def of_histories(out):

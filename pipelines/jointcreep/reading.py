@@ -268,22 +268,27 @@ class Study:
         table = self.answers
         rows = np.flatnonzero((table["statistic"] == statistic) & ((table["quantity"] == quantity) if quantity else True))
         if len(rows) != 1:
-            chosen = quantity or f"one of {', '.join(sorted(set(table['quantity'])))}"
+            there = ", ".join(sorted(set(table["quantity"])))
+            chosen = quantity if quantity in table["quantity"] else f"one of {there}"
             names = sorted(set(table["statistic"][table["quantity"] == quantity] if quantity else table["statistic"]))
             raise NotWanted(f'{self.folder / "answers.csv"}: "{statistic}" is there {len(rows)} times; expected a statistic that is there once: '
                             f"{', '.join(names) or 'none'}; of the quantity: {chosen}")
         return tuple(float(table[name][rows[0]]) for name in ("value", "low", "high"))
 
 
+TEXTS = ("program", "reason")  # columns of text, also where all fields are empty
+
+
 def csv_table(path):
-    """A CSV file with a heading as a table. Columns of which all fields are numbers or empty are float, nan where empty; a unit is
-    what stands in brackets at the end of a heading."""
+    """A CSV file with a heading as a table. Columns of which all fields are numbers or empty are float, nan where empty, but for those
+    of TEXTS; a unit is what stands in brackets at the end of a heading."""
     with open(path, encoding="utf-8", newline="") as file:
         heads, *rows = csv.reader(file)
     table = Table()
     for name, column in zip(heads, zip(*rows) if rows else [()] * len(heads)):
         try:
-            values = np.array([float(field) if field else np.nan for field in column])
+            values = np.array([float(field) if field else np.nan for field in column]) if any(column) or name not in TEXTS else \
+                np.array(column, str)
         except ValueError:
             values = np.array(column, str)
         table.put(name, values, name.rpartition(" (")[2].removesuffix(")") if name.endswith(")") else "1")

@@ -130,6 +130,7 @@ def factor_of_safety(source, folder):
 def of_run(source, programs, folder):
     """Title and parts of the page of a result file."""
     import figure  # matplotlib takes long to load
+    from suited import detail
     with h5py.File(source) as file:
         scene_text = file["/scene"][0].decode()
         scene = tomllib.loads(scene_text)
@@ -146,8 +147,11 @@ def of_run(source, programs, folder):
     parts = [f'<p class="bad">The run ended early: {escaped(failure[0])}</p>'] if failure else []
     parts += [f'<p class="bad">All strengths of this run are divided by {factor:.4g}.</p>'] if factor != 1 else []
     parts += factor_of_safety(source, folder)
-    parts += ["<h2>Section and network</h2>", drawn("section", source, folder, "The section, its joints, stages and points."),
-              drawn("blocks", source, folder, "Blocks by size."),
+    window = detail(scene)
+    near = {"window": window} if window else {}
+    parts += ["<h2>Section and network</h2>", drawn("section", source, folder, "The section, its joints, stages and points.")]
+    parts += [drawn("section", source, folder, "Its stages and points.", **near)] if near else []
+    parts += [drawn("blocks", source, folder, "Blocks by size."),
               "<h2>Histories</h2>"]
     if points:
         for component, caption in (("x", "Horizontal displacement of the points, to the right."), ("y", "Vertical displacement, upward.")):
@@ -155,9 +159,11 @@ def of_run(source, programs, folder):
         parts.append(table(["point", f"x on day {time[-1]:g} (mm)", "y (mm)", ""],
                            [(name, 1e3 * x, 1e3 * y, "" if there else "excavated; its last displacement")
                             for name, (x, y), there in zip(points, last, present)]))
-    parts.append("<h2>State at the end</h2>")
+    if "monitoring_line" in scene:
+        parts.append(drawn("line", source, folder, "Displacements along monitoring lines."))
+    parts.append("<h2>Last state before the run ended early</h2>" if failure else "<h2>State at the end</h2>")
     for field, caption in (("displacement", "Displacements."), ("stress", "Stresses."), ("contacts", "Contacts that slip or open.")):
-        parts.append(drawn("state", source, folder, caption, field=field))
+        parts.append(drawn("state", source, folder, caption, field=field, **near))
     parts += ["<h2>Numbers</h2>", table(["", ""], numbers), "<h2>Settings</h2>", settings(scene), "<h2>Warnings</h2>",
               table(["program", "warning"], warnings) if warnings else "<p>None.</p>",
               "<h2>Checks</h2>", checks(source, programs),
@@ -212,8 +218,8 @@ def of_study(out, programs, folder):
     parts = ["<h2>The study</h2>", table(["", ""], [
         ("scene", scene.get("title", "")), ("design", study.design.kind), ("runs", len(rows)),
         ("runs with a result", len(rows) - len(failed)), ("runs without equilibrium", sum(row["exit code"] == "3" for row in rows)),
-        ("runs that failed otherwise", sum(row["exit code"] not in ("0", "3") for row in rows)),
-        ("runs made twice", sum(row["attempts"] != "1" for row in times)), ("hours of the processor, of the programs", hours)])]
+        ("runs with other failures", sum(row["exit code"] not in ("0", "3") for row in rows)),
+        ("runs that were repeated", sum(row["attempts"] != "1" for row in times)), ("processor time of the programs (hours)", hours)])]
     with tempfile.TemporaryDirectory(dir=folder) as work:
         network = pathlib.Path(work) / "network.h5"
         done = subprocess.run([programs / "jointgen", out / "scene.toml", "-o", network], capture_output=True, text=True)

@@ -134,7 +134,9 @@ class Plan:
         return [(word, word) for word, stage in zip(words, stages) if is_before(stage.get("date", 0), until, start)] + [("last", "last")]
 
     def pictures(self, failed=None):
-        from suited import state_fields, suited
+        from suited import detail, state_fields, suited
+        window = detail(self.scene)
+        near = {"window": window} if window else {}
         result = pathlib.Path(RESULT if failed is None else FAILED)
         network, joints = pathlib.Path("network.h5"), pathlib.Path("joints.h5")
         wanted = set(suited(self.scene))
@@ -145,6 +147,8 @@ class Plan:
         for name, source in of.items():
             if name in wanted:
                 yield self.picture(name, source, name.replace("_", "-"))
+        if window:
+            yield self.picture("section", network, "section-detail", **near)
         for component in "xy" if "histories" in wanted else "":
             yield self.picture("histories", result, f"histories-{component}", component=component)
         if "line" in wanted:
@@ -152,7 +156,8 @@ class Plan:
         for word, state in self.states(failed):
             for field in state_fields(self.scene):
                 has_moved = "large_displacements" in self.scene and field != "contacts"  # then the rock is drawn where it is
-                yield self.picture("state", result, f"{word}-{field}", state=state, field=field, **({"magnify": 1} if has_moved else {}))
+                yield self.picture("state", result, f"{word}-{field}", state=state, field=field, **near,
+                                   **({"magnify": 1} if has_moved else {}))
 
     def picture(self, name, source, picture, **options):
         def draw(folder):
@@ -160,7 +165,8 @@ class Plan:
             plots.save(name, folder / source, folder / output, **options)
 
         output = pathlib.Path(f"{picture}.png")
-        words = [word for option, value in options.items() for word in (f"--{option.replace('_', '-')}", str(value))]
+        words = [word for option, value in options.items()
+                 for word in (f"--{option.replace('_', '-')}", *map(str, value if isinstance(value, list) else [value]))]
         script = PLOTS / f"plot_{name}.py"
         return Step(str(output), [PYTHON, script, source, *words, "-o", output], draw=draw)
 
@@ -382,7 +388,6 @@ def run(source, options, programs, launcher):
     for read in [path, *named_files(scene, path.parent)]:
         if read.parent == out.resolve():
             raise NotWanted(f"{read}: is read, and is in the folder of the run; expected another folder")
-    out.mkdir(parents=True, exist_ok=True)
     with runs.locked(out, "run") as lock:
         folder = Folder(out, source, path, quiet, lock)
         of_scene = Plan(scene, path, options["rest"], programs, launcher)

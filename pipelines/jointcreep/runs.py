@@ -50,8 +50,9 @@ rule group:
 @contextlib.contextmanager
 def locked(out, kind="study"):
     """Holds the lock of the folder of a "study" or a "run"; yields its file, which processes inherit. A folder that has something and
-    no such file is of someone else. The file goes again if the input is refused before anything else is written."""
-    path = out / f"{kind}.lock"
+    no such file is of someone else. The file, and a folder that is new, go again if the input is refused before anything else is written."""
+    path, is_new = out / f"{kind}.lock", not out.exists()
+    out.mkdir(parents=True, exist_ok=True)
     if any(out.iterdir()) and not path.exists():
         raise NotWanted(f"{out}: has files, and is not the folder of a {kind}; expected a new or empty folder")
     with open(path, "a") as file:
@@ -70,6 +71,8 @@ def locked(out, kind="study"):
         except NotWanted:
             if list(out.iterdir()) == [path]:
                 path.unlink()
+                if is_new:
+                    out.rmdir()
             raise
 
 
@@ -149,17 +152,31 @@ def command_for(out, names, jobs, profile):
     return ["make", "--silent", "--keep-going", f"-j{jobs}", "-f", "Makefile", "all"]
 
 
+def end(running, profile):
+    """Ends make or Snakemake, and with it what it runs."""
+    if profile:
+        running.send_signal(signal.SIGTERM)
+    else:  # its recipes end with it (setpriv); after another signal it would say that they were terminated
+        running.kill()
+    running.wait()
+
+
 def make_groups(out, programs, names, jobs, profile, lock, deadline, tell):
     """Makes what is missing of these groups. Returns TIMED_OUT if the deadline came first."""
     missing = [name for name in names if not (out / "groups" / f"{name}.rows").exists()]
     if not missing:
         return ""
     command, parent = command_for(out, missing, jobs, profile), os.getpid()
+
+    def prepared():
+        group.die_with(parent)
+        if not profile:  # Ctrl-C ends this process, and that ends them, without words of theirs
+            signal.signal(signal.SIGINT, signal.SIG_IGN)
     try:
         # In a process group of its own it could outlive Ctrl-C; so it is in this one, and dies with this process.
         running = subprocess.Popen(command, cwd=out, env=environment(programs), stdin=subprocess.DEVNULL,
                                    stdout=subprocess.DEVNULL, pass_fds=[lock.fileno()],
-                                   preexec_fn=lambda: group.die_with(parent))
+                                   preexec_fn=prepared)
     except FileNotFoundError:
         raise NotWanted(f"{command[0]} is not installed" + ("; first run: sh pipelines/setup.sh studies" if profile else "")) \
             from None
@@ -167,17 +184,12 @@ def make_groups(out, programs, names, jobs, profile, lock, deadline, tell):
         while running.poll() is None:
             tell()
             if time.monotonic() > deadline:
-                if profile:
-                    running.send_signal(signal.SIGTERM)
-                else:  # its recipes end with it (setpriv); after another signal it would say that they were terminated
-                    running.kill()
-                running.wait()
+                end(running, profile)
                 return TIMED_OUT
             with contextlib.suppress(subprocess.TimeoutExpired):
                 running.wait(LOOKS)
     except KeyboardInterrupt:
-        running.send_signal(signal.SIGTERM)
-        running.wait()
+        end(running, profile)
         raise
     tell()
     missing = [name for name in names if not (out / "groups" / f"{name}.rows").exists()]

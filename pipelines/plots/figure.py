@@ -300,8 +300,8 @@ def legend_below(axes, *groups):
         entries = [entry for group in groups for entry in group]
         columns = max(1, min(len(entries), columns))
         rows = -(-len(entries) // columns)
-    axes.figure.set_size_inches(width, height + 0.1 + 0.16 * rows)
-    axes.legend(handles=entries, loc="upper center", bbox_to_anchor=(0.5, -0.45 / (height - 0.5)), ncol=columns,
+    axes.figure.set_size_inches(width, height + 0.22 + 0.16 * rows)
+    axes.legend(handles=entries, loc="upper center", bbox_to_anchor=(0.5, -0.52 / (height - 0.5)), ncol=columns,
                 borderaxespad=0)
 
 

@@ -7,6 +7,7 @@ count from the in-situ equilibrium, or with --readings from the line's own first
 excavated are left out.
 """
 
+import matplotlib.ticker
 import numpy as np
 
 import figure
@@ -25,9 +26,9 @@ def rows_of(file):
     """Rows of the histories just after each stage, and the last one: (row, label)."""
     event = figure.texts(file, "/history/event")
     time = figure.array(file, "/history/time")
-    rows = [(row, f"{name}, day {time[row]:.4g}") for row, name in enumerate(event) if name]
+    rows = [(row, f"{name}, {figure.day_of(file, time[row])}") for row, name in enumerate(event) if name]
     if not rows or rows[-1][0] != len(event) - 1:
-        rows.append((len(event) - 1, f"end, day {time[-1]:.4g}"))
+        rows.append((len(event) - 1, f"end, {figure.day_of(file, time[-1])}"))
     return rows
 
 
@@ -71,6 +72,7 @@ def draw(file, line=(), readings=False, anchor=False):
                 ax.plot(1e3 * moved[row, :, i], distance, color=figure.COLORS[number % 6], marker=figure.MARKERS[number % 6],
                         markerfacecolor="white", markeredgewidth=0.8, linestyle=figure.LINES[number % 6], label=label)
             ax.axvline(0, color="0.6", linewidth=0.5, zorder=0)
+            ax.xaxis.set_major_locator(matplotlib.ticker.MaxNLocator(5))
             ax.set_xlabel(f"{('across', 'along')[i]} the line (mm)")
         pair[0].set_ylabel(f"{one['name']}:\ndistance from its first end (m)")
     plot.suptitle(f"displacements {'relative to the last point, ' if anchor else ''}{since}", fontsize=8)

@@ -292,9 +292,14 @@ def draw_blocks(section, of_block, axes, zorder, facecolor, **look):
     return matplotlib.patches.Patch(facecolor=facecolor, **look)
 
 
+def length_text(metres):
+    """A length in m, or in mm if it is shorter than 1 m."""
+    return f"{metres:.3g} m" if metres >= 1 else f"{1e3 * metres:.3g} mm"
+
+
 def draw_failure(file, section, axes):
     """What happened after the last state of a run without equilibrium: rock that was excavated, and the moving blocks. Their
-    arrows are in proportion to their motion; the fastest one's is as long as a tenth of the section. Returns legend entries."""
+    arrows are in proportion to their motion; the fastest one's is as long as a tenth of the picture. Returns legend entries."""
     entries = []
     block = figure.array(file, "/mesh/zone_block")[section.there]
     stage = figure.texts(file, "/failure/stage")[0]
@@ -314,12 +319,13 @@ def draw_failure(file, section, axes):
     largest = np.linalg.norm(motion, axis=1).max()
     if largest > 0:
         shift = (section.position - section.start)[section.zones].mean(axis=1)
+        size = max(np.ptp(axes.get_xlim()), np.ptp(axes.get_ylim()))
         place = figure.array(file, "/failure/place") + [shift[block == one].mean(axis=0) if one in block else (0, 0) for one in moving]
-        axes.quiver(*place.T, *motion.T, angles="xy", scale_units="xy", scale=largest / (0.1 * np.ptp(section.start, axis=0).max()),
+        axes.quiver(*place.T, *motion.T, angles="xy", scale_units="xy", scale=largest / (0.1 * size),
                     units="inches", width=0.024, headwidth=4, headlength=5, headaxislength=4.5, minlength=0.6, color=figure.COLORS[1],
                     edgecolor="white", linewidth=0.5, zorder=8)
         seconds, steps = figure.array(file, "/failure/seconds")[0], figure.array(file, "/failure/steps")[0]
-        label += f" (red arrows; the longest is {1e3 * largest:.3g} mm in " + (
+        label += f" (red arrows; the longest is {length_text(largest)} in " + (
             f"{seconds:.3g} s)" if seconds > 0 else f"{steps} steps of the solver)")
     entries[-1].set_label(label)
     return entries

@@ -39,6 +39,40 @@ def state_fields(scene):
     return [name for name, is_shown in shows.items() if is_shown]
 
 
+SMALL = 0.25  # a part of the section up to this share of its area has pictures of its own
+
+
+def places_of(value):
+    """All {x, y} and circles in nested lists and tables of a scene, as places; None where something is a name or a sum."""
+    if isinstance(value, dict):
+        if "radius_m" in value and "center_m" in value:
+            (x, y), radius = value["center_m"], value["radius_m"]
+            return [(x - radius, y - radius), (x + radius, y + radius)]
+        return places_of(list(value.values()))
+    if isinstance(value, list):
+        if len(value) == 2 and all(isinstance(one, (int, float)) for one in value):
+            return [tuple(value)]
+        found = [places_of(one) for one in value]
+        return None if None in found else [place for one in found for place in one]
+    return None if isinstance(value, str) else []
+
+
+def detail(scene):
+    """Window {x0, y0, x1, y1} [m] of the stages and monitoring points, with as much rock on each side as they are wide or high. None
+    if that is more than SMALL of the section, or not known before jointgen has read the scene."""
+    try:
+        outline = places_of(scene["section"]["outline_m"])
+        places = places_of([stage["remove_m"] for stage in scene.get("stage", [])] + [point["at_m"] for point in scene.get("point", [])])
+        (x0, y0), (x1, y1) = map(min, zip(*outline)), map(max, zip(*outline))
+        (left, low), (right, high) = map(min, zip(*places)), map(max, zip(*places))
+        around = max(right - left, high - low)
+        window = [max(x0, left - around), max(y0, low - around), min(x1, right + around), min(y1, high + around)]
+        is_small = (window[2] - window[0]) * (window[3] - window[1]) <= SMALL * (x1 - x0) * (y1 - y0)
+    except (KeyError, TypeError, ValueError):  # a scene that nobody has checked; jointgen says it
+        return None
+    return window if is_small and around > 0 else None
+
+
 if __name__ == "__main__":
     with open(sys.argv[1], encoding="utf-8-sig") as file:  # with or without a byte order mark
         print(*suited(tomllib.loads(file.read())))
