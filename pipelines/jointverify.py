@@ -1120,6 +1120,7 @@ class Verification:
             f"{i % max(len(names), 1)}]")
         corner = m.position[m.zone]
         side = np.roll(corner, -2, axis=1) - np.roll(corner, -1, axis=1)
+        stages_of_rows, stages_of_states = (np.cumsum([bool(name) for name in names]) for names in (event, st.event))
         unmatched = set(range(len(time)))
         for p, place in enumerate(places):
             share = np.stack([cross(side[:, i], place - np.roll(corner, -1, axis=1)[:, i]) for i in range(3)], axis=1) / \
@@ -1129,7 +1130,9 @@ class Verification:
             for s in range(len(st.time)):
                 if s in self.moving:
                     continue
-                rows = np.flatnonzero((time == st.time[s]) & (event == st.event[s]))
+                # A run that failed keeps its last state once more, without the name of the stage.
+                rows = np.flatnonzero((time == st.time[s]) & (stages_of_rows == stages_of_states[s]) &
+                                      ((event == st.event[s]) | (st.event[s] == "")))
                 unmatched -= set(rows)
                 rows = [row for row in rows if present[row, p]]
                 if not rows:

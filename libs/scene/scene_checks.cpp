@@ -473,7 +473,8 @@ private:
             equilibrium.refuse("stiffness_damping_s", "wanted damping = \"mass\" beside it");
         if ((damping == Damping::mass) != (equilibrium.find("mass_damping_per_s") != nullptr))
             equilibrium.refuse("mass_damping_per_s", "damping = \"mass\" needs it, and nothing else does");
-        if (damping == Damping::mass && scene_.equilibrium.mass_damping + scene_.equilibrium.stiffness_damping == 0)
+        if (damping == Damping::mass &&
+            scene_.equilibrium.mass_damping + scene_.equilibrium.stiffness_damping == 0)
             equilibrium.refuse("mass_damping_per_s", "wanted more than 0, or stiffness_damping_s beside it");
         if (damping != Damping::local && damping != Damping::combined && equilibrium.find("local_damping"))
             equilibrium.refuse("local_damping", "only damping = \"local\" and \"combined\" use it");

@@ -843,9 +843,10 @@ Table<Equilibrium> equilibrium()
                  {"mass", Damping::mass}},
                 "Damping of dynamic relaxation.")
              .or_else(std::string("adaptive")),
-         number("mass_damping_per_s", &E::mass_damping, per_s, from(0).to(1e12),
-                "Mass-proportional damping; with damping = \"mass\", and only then. 0 with stiffness_damping_s "
-                "only.")
+         number(
+             "mass_damping_per_s", &E::mass_damping, per_s, from(0).to(1e12),
+             "Mass-proportional damping; with damping = \"mass\", and only then. 0 with stiffness_damping_s "
+             "only.")
              .optional(),
          number("stiffness_damping_s", &E::stiffness_damping, seconds, above(0).to(1e6),
                 "Stiffness-proportional damping of zones, and dashpots in joints that neither slip nor are "

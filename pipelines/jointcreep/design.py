@@ -21,9 +21,9 @@ def openturns():
     try:
         import openturns
     except ImportError:
-        raise NotWanted("Python's module openturns is not installed. It draws [[vary]] with a law, and the designs sobol sequence and sobol "
-                        "indices; [[vary]] with a list of values does not need it. First run: apt install python3-openturns (in the sources: "
-                        "sh pipelines/setup.sh studies)") from None
+        raise NotWanted("Python's module openturns is not installed. It draws [[vary]] with a law, and the designs sobol sequence and "
+                        "sobol indices; [[vary]] with a list of values does not need it. First run: apt install python3-openturns "
+                        "(in the sources: sh pipelines/setup.sh studies)") from None
     openturns.Log.Show(openturns.Log.NONE)
     return openturns
 

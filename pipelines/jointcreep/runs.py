@@ -50,7 +50,8 @@ rule group:
 @contextlib.contextmanager
 def locked(out, kind="study"):
     """Holds the lock of the folder of a "study" or a "run"; yields its file, which processes inherit. A folder that has something and
-    no such file is of someone else. The file, and a folder that is new, go again if the input is refused before anything else is written."""
+    no such file is of someone else. The file, and a folder that is new, go again if the input is refused before anything else is
+    written."""
     path, is_new = out / f"{kind}.lock", not out.exists()
     out.mkdir(parents=True, exist_ok=True)
     if any(out.iterdir()) and not path.exists():

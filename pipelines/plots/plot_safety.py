@@ -24,7 +24,8 @@ def bracket(factor, stands):
 
 
 def draw_runs(axes, factor, stands, displacement, color, label):
-    """The runs of a search in the order of their factors, but for the first one, whose strengths are so large that hardly any contact slips."""
+    """The runs of a search in the order of their factors, but for the first one, whose strengths are so large that hardly any contact
+    slips."""
     order = np.argsort(factor)[1:]
     factor, stands, displacement = factor[order], stands[order], 1e3 * displacement[order]
     stood = stands == STANDS
@@ -49,7 +50,8 @@ def draw(file, safety_displacement=10):
             draw_runs(axes, factor, stands, displacement, color, label if has_coarse else None)
             limit = safety_displacement * displacement[np.argmin(factor)]
             if np.any((displacement >= limit) & (displacement < 1.5 * limit)):  # a run was ended there; else the option was another
-                axes.axhline(1e3 * limit, color=color, linewidth=0.6, linestyle="--", label=None if prefix else f"limit: {safety_displacement:g} times the displacement at the smallest factor")
+                label = f"limit: {safety_displacement:g} times the displacement at the smallest factor"
+                axes.axhline(1e3 * limit, color=color, linewidth=0.6, linestyle="--", label=None if prefix else label)
             low, high = bracket(factor, stands)
             if low is not None and high is not None:
                 axes.axvspan(low, high, color=color, alpha=0.15, linewidth=0)

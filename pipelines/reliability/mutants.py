@@ -94,17 +94,18 @@ class Mutants:
         shutil.copytree(ROOT, self.tree, ignore=ignored)
         shutil.copy(pathlib.Path(__file__).with_name("mutant.hpp"), self.tree / "libs")
         self.chosen = []  # (number, group, path, start, end, operator)
+        self.text = {}  # of the sources, by path: they may change while the campaign runs
         share = campaign.n // len(GROUPS)
         for group, patterns in GROUPS.items():
             found = [(path, *place) for pattern in patterns for path in sorted(ROOT.glob(pattern))
                      for place in places(path.read_text())]
             for path, *place in chance("mutants", campaign.seed, group).sample(found, min(2 * share, len(found))):
                 self.chosen.append((len(self.chosen) + 1, group, path.relative_to(ROOT), *place))
-        self.paths = sorted({path for _, _, path, *_ in self.chosen})
+        self.text = {path: (ROOT / path).read_text() for _, _, path, *_ in self.chosen}
 
     def write(self):
-        for path in self.paths:
-            text = mutated((ROOT / path).read_text(), [(number, *place) for number, _, its, *place in self.chosen if its == path])
+        for path in sorted(self.text):
+            text = mutated(self.text[path], [(number, *place) for number, _, its, *place in self.chosen if its == path])
             if (self.tree / path).read_text() != text:
                 (self.tree / path).write_text(text)
 
@@ -122,13 +123,15 @@ class Mutants:
             lines = {(path, int(line)) for path, line in ERROR.findall(done.stdout + done.stderr)}
             kept = []
             for one in self.chosen:
-                text = (ROOT / one[2]).read_text()
-                if (str(one[2]), text.count("\n", 0, one[3]) + 1) not in lines:
+                if (str(one[2]), self.line(one)) not in lines:
                     kept.append(one)
             if len(kept) == len(self.chosen):
                 raise SystemExit("mutants: does not compile:\n" + done.stdout[-3000:] + done.stderr[-3000:])
             print(f"mutants: {len(self.chosen) - len(kept)} places do not compile with a mark", flush=True)
             self.chosen = kept
+
+    def line(self, one):
+        return self.text[one[2]].count("\n", 0, one[3]) + 1
 
     def choose(self):
         """So many of each group, of those that compile."""
@@ -160,12 +163,12 @@ def body(campaign):
     mutants.build()
     tests, chosen = mutants.tests(), list(mutants.choose())
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-        for (number, group, path, start, _, operator), by in zip(chosen, pool.map(lambda one: found_by(one[0], tests), chosen)):
-            text = (ROOT / path).read_text()
-            line = text.count("\n", 0, start) + 1
+        for one, by in zip(chosen, pool.map(lambda one: found_by(one[0], tests), chosen)):
+            number, group, path, start, end, operator = one
+            begin, line = mutants.text[path].rfind("\n", 0, start) + 1, mutants.text[path][:end].count("\n") + 1
             reaching = sum(number in test.reached for test in tests)
-            campaign.count(group, "found" if by else "lives", f"{path}:{line} {operator}",
-                           by or f"{text.splitlines()[line - 1].strip()} (reached by {reaching} tests)")
+            campaign.count(group, "found" if by else "lives", f"{path}:{line}:{start - begin + 1} {operator}",
+                           by or f"{mutants.text[path].splitlines()[line - 1].strip()} (mutant {number}, reached by {reaching} tests)")
 
 
 if __name__ == "__main__":

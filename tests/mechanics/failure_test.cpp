@@ -49,6 +49,22 @@ TEST(failure_of_unsupported, names_the_block_and_where_it_is)
     EXPECT_EQ(failure.motion[0], Vector2d(0, 0));
 }
 
+TEST(failure_of_unsupported, five_blocks_are_shown)
+{
+    Failure failure;
+    for (Index block = 0; block < 5; ++block) {
+        failure.block.push_back(block);
+        failure.place.emplace_back(block, 0);
+        failure.motion.emplace_back(0, 0);
+    }
+    EXPECT_EQ(
+        mechanics::shown_blocks(failure),
+        "block 0 at [0, 0] m; block 1 at [1, 0] m; block 2 at [2, 0] m; block 3 at [3, 0] m; block 4 at [4, 0] m");
+    for (Index block = 5; block < 7; ++block)
+        failure.block.push_back(block);
+    EXPECT_NE(mechanics::shown_blocks(failure).find("block 4 at [4, 0] m; and 2 more"), std::string::npos);
+}
+
 TEST(failure_of_unsupported, looks_at_each_direction)
 {
     const Boundary roller{.from = {0, 5}, .to = {0, 10}, .fix_x = true};

@@ -339,6 +339,26 @@ class Verify(ChainTest):
         code, _, said = self.verified(failed)
         self.assertEqual(code, 0, said)
 
+    def test_a_run_that_fails_after_a_stage(self):
+        """It keeps the state after the stage once more, as its last one. The history has one row for both, and another one before the
+        stage, of the same time."""
+        copy = self.chain.new_folder() / "copy.h5"
+        shutil.copyfile(self.result("slope"), copy)
+        with h5py.File(copy, "r+", libver=("v110", "v110")) as file:
+            event, rows = file["/states/event"].asstr()[:], file["/history/event"].asstr()[:]
+            state = next(i for i, name in enumerate(event) if name)
+            kept = {"states": [*range(state + 1), state], "history": [*range(list(rows).index(event[state]) + 1)]}
+            counts = {"states": len(event), "history": len(rows)}
+            for group, chosen in kept.items():
+                for name, dataset in [*file[group].items()]:
+                    if dataset.shape[:1] == (counts[group],):
+                        values, attributes = dataset[:][chosen], dict(dataset.attrs)
+                        values = np.where(np.arange(len(chosen)) > state, b"", values) if name == "event" and group == "states" else values
+                        del file[group][name]
+                        file[group].create_dataset(name, data=values.astype(dataset.dtype) if name != "event" else list(values))
+                        file[group][name].attrs.update({key: value for key, value in attributes.items() if key in ("units", "description")})
+        self.assertEqual(self.verified(copy)[1]["histories are the states' displacements at the points"][0], "ok")
+
     def test_it_runs_as_a_program(self):
         good = self.result("column")
         done = self.chain.answer("jointverify", good)

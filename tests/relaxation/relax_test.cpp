@@ -293,7 +293,8 @@ Section pulled_bar()
 TEST(relax, a_bar_under_traction)
 {
     double last_time = std::numeric_limits<double>::infinity();
-    for (const auto& [mass_damping, stiffness_damping] : {std::pair(100.0, 0.0), {100.0, 2e-4}, {0.0, 1e-3}}) {
+    for (const auto& [mass_damping, stiffness_damping] :
+         {std::pair(100.0, 0.0), {100.0, 2e-4}, {0.0, 1e-3}}) {
         Section s = pulled_bar();
         Equilibrium how = settings(Damping::mass, Masses::real);
         how.mass_damping = mass_damping;
@@ -348,6 +349,32 @@ TEST(relax, the_dashpots_of_contacts)
         });
         EXPECT_LT(worst, 1e-3 * std::abs(rest)) << beta;
     }
+}
+
+// Adaptive damping finds the frequency w of this oscillator, so that its damping is critical.
+//   u = -m g / K (1 - (1 + w t) exp(-w t))
+TEST(relax, adaptive_damping_is_critical)
+{
+    const double K = 1e8, mass = 2700, w = std::sqrt(K / mass), rest = -mass * 9.81 / K;
+    Scene scene = section({{0, 0}, {1, 0}, {1, 1}, {0, 1}}, 0.01);
+    scene.rocks = {{"rock", mass, 1e12, 0, std::nullopt}};
+    scene.zone_size = 2;
+    scene.gravity = 9.81;
+    scene.boundaries = {{.from = {0, 0}, .to = {1, 0}, .joint = "joint"},
+                        {.from = {0, 0}, .to = {0, 1}, .fix_x = true},
+                        {.from = {1, 0}, .to = {1, 1}, .fix_x = true}};
+    Section s = assembled(std::move(scene), {}, K, 0);
+    Equilibrium how = settings(Damping::adaptive, Masses::real);
+    how.tolerance = 1e-2;
+    std::size_t top = 0;
+    while (s.assembly.position[top].y() < 1)
+        ++top;
+    double worst = 0;
+    relaxation::relax(s.assembly, how, [&](double t) {
+        const double exact = rest * (1 - (1 + w * t) * std::exp(-w * t));
+        worst = std::max(worst, std::abs(s.assembly.displacement[top].y() - exact));
+    });
+    EXPECT_LT(worst, 0.02 * std::abs(rest));
 }
 
 // The same block without dashpots: moving away from rest it is held back by (1 + b) K u, towards it driven by

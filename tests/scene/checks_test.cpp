@@ -395,8 +395,8 @@ TEST(checks, numbers_that_depend_on_others)
     expect_refused("damping = \"mass\"\nmass_damping_per_s = 20\nstiffness_damping_s = 1e-5",
                    "damping = \"adaptive\"\nmass_damping_per_s = 20", "mass_damping_per_s = 20",
                    "mass_damping_per_s = 20");
-    expect_refused("mass_damping_per_s = 20\nstiffness_damping_s = 1e-5", "mass_damping_per_s = 0", "more than 0",
-                   "mass_damping_per_s = 0");
+    expect_refused("mass_damping_per_s = 20\nstiffness_damping_s = 1e-5", "mass_damping_per_s = 0",
+                   "more than 0", "mass_damping_per_s = 0");
     expect_refused("mass_damping_per_s = 20", "mass_damping_per_s = 20\nlocal_damping = 0.8",
                    "only damping = \"local\"", "local_damping = 0.8");
 }
