@@ -114,4 +114,24 @@ TEST(Counts, AreSureForConstantIntervals)
     EXPECT_NEAR(count_variance(20, renewal), 1.0 / 6, 1e-12);
 }
 
+// The same tables, with the correction for 10 values.
+TEST(Distribution, FitsOfSmallSamplesAsInTables)
+{
+    const double n = 10, root = std::sqrt(n);
+    const auto short_of = [&](double missing) { // the largest value is so much below 1
+        std::vector<double> uniforms;
+        for (int i = 1; i <= 10; ++i)
+            uniforms.push_back(i / n * (1 - missing));
+        return uniforms;
+    };
+    const double above = 1.358 / (root + 0.12 + 0.11 / root);
+    const Fit one = kolmogorov_smirnov(short_of(above));
+    EXPECT_NEAR(one.distance, above, 1e-12);
+    EXPECT_NEAR(one.p_value, 0.05, 5e-4);
+    const double both = 1.747 / (root + 0.155 + 0.24 / root); // above, and (1 - above) / n below
+    const Fit round = kuiper(short_of((n * both - 1) / (n - 1)));
+    EXPECT_NEAR(round.distance, both, 1e-12);
+    EXPECT_NEAR(round.p_value, 0.05, 5e-4);
+}
+
 } // namespace distribution_test
