@@ -73,17 +73,17 @@ struct FacePair {
     // At present, if closed: the ends of the closed part, as fractions of a and of b, the force on a there, and the
     // mean normal traction.
     std::array<double, 2> on_a{}, on_b{};
-    std::array<Vector2d, 2> force{};
-    Vector2d normal{0, 0};                 // from a to b
-    std::array<double, 2> closing{};       // at the ends of the closed part [m]
-    std::array<double, 3> creeps{};        // of creep.to_come, in this step [m]
-    double raised = 0;                     // of the dilation, in the last step [m]
-    double opened = 0;                     // in the last step, without dilation [m]
-    double length = 0, sigma = 0;          // [m], [Pa]
-    double stiffest = 0;                   // of its normal springs [Pa/m]
-    std::array<Vector2d, 2> held{};        // part of the force by dashpots [N/m]
-    double pressed_in = 0, sheared_in = 0; // energy of the springs [J/m]
-    double friction = 0, damped = 0;       // in the last step [J/m]
+    std::array<Vector2d, 2> force{Vector2d(0, 0), Vector2d(0, 0)};
+    Vector2d normal{0, 0};                                        // from a to b
+    std::array<double, 2> closing{};                              // at the ends of the closed part [m]
+    std::array<double, 3> creeps{};                               // of creep.to_come, in this step [m]
+    double raised = 0;                                            // of the dilation, in the last step [m]
+    double opened = 0;                                            // in the last step, without dilation [m]
+    double length = 0, sigma = 0;                                 // [m], [Pa]
+    double stiffest = 0;                                          // of its normal springs [Pa/m]
+    std::array<Vector2d, 2> held{Vector2d(0, 0), Vector2d(0, 0)}; // part of the force by dashpots [N/m]
+    double pressed_in = 0, sheared_in = 0;                        // energy of the springs [J/m]
+    double friction = 0, damped = 0;                              // in the last step [J/m]
 
     void raise(double by)
     {

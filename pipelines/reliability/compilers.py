@@ -15,6 +15,7 @@ from recover import scenes
 BUILDS = {"g++ -O2": ("g++", "-O2"), "clang++ -O3": ("clang++-16", "-O3")}
 CHAIN = ["jointgen", "strength-averaging", "demsolve"]
 CLOSE = 1e-6
+NOTHING = 1e-30  # numbers below it, in SI units, are 0
 
 
 def build(compiler, optimisation):
@@ -49,7 +50,7 @@ def farthest(one, other):
             far.append(np.inf)
         elif item.size:
             x, y = np.asarray(item, float), np.asarray(b[name], float)
-            far.append(np.abs(x - y).max() / max(np.abs(x).max(), 1e-300))
+            far.append(np.abs(x - y).max() / max(np.abs(x).max(), NOTHING))
 
     with h5py.File(one) as a, h5py.File(other) as b:
         a.visititems(compare)
