@@ -15,6 +15,7 @@ from .quantities import NO_EQUILIBRIUM
 from .study_file import EXTENSIBLE, NETWORK
 
 QUANTILES = [0.05, 0.25, 0.50, 0.75, 0.95]
+CORRELATION = "rank correlation"  # a measure in shares.csv
 FEWEST = 10  # values from which convergence is shown
 STEPS = 30  # numbers of runs at which it is shown, at most
 NAMED = 20  # failed runs that the summary lists
@@ -182,10 +183,11 @@ def rank_correlations(study, rows, given, at):
         r = correlation(ranks, stats.rankdata(of_parameter))
         if r is None:
             continue
-        half = 1.96 * np.sqrt((1 + r * r / 2) / (len(values) - 3))
-        low, high = np.tanh(np.arctanh(r) + np.array([-half, half])) if abs(r) < 1 - 1e-12 else (np.nan, np.nan)
-        ends = (float(low), float(high)) if np.isfinite(low) else (None, None)
-        rows.append((study.parameters[column].name, "rank correlation", float(r), *ends))
+        low = high = None
+        if abs(r) < 1 - 1e-12:  # at 1 and -1 the transformation is infinite
+            half = 1.96 * np.sqrt((1 + r * r / 2) / (len(values) - 3))
+            low, high = map(float, np.tanh(np.arctanh(r) + np.array([-half, half])))
+        rows.append((study.parameters[column].name, CORRELATION, float(r), low, high))
     return rows
 
 

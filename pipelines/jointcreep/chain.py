@@ -18,6 +18,18 @@ def was_stopped(code):
     return code == CANNOT_WRITE or -code in STOPPING or code - 128 in STOPPING
 
 
+def without(words, names):
+    """Options without those that have these names, each with a value; and these."""
+    left, taken, rest = [], [], list(words)
+    while rest:
+        word = rest.pop(0)
+        if word in names and rest:
+            taken += [word, rest.pop(0)]
+        else:
+            (taken if word.partition("=")[0] in names else left).append(word)
+    return left, taken
+
+
 def run(program, *arguments):
     """What a program writes to stdout. Raises Failed with its message; ends this script where it was stopped, which is no result."""
     done = subprocess.run([program, *map(str, arguments)], capture_output=True, text=True)

@@ -24,7 +24,7 @@ import sys
 import time
 
 from . import ensemble, plan, quantities, scene_keys, study_file
-from .chain import CANNOT_WRITE, was_stopped
+from .chain import CANNOT_WRITE, was_stopped, without
 from .errors import NotDone, NotWanted
 
 LONGEST_REASON = 500  # characters
@@ -44,12 +44,6 @@ class Interrupted(Exception):
     """A program was stopped from outside, or could not read or write."""
 
 
-def without_search(options):
-    """Options of demsolve without those of the search of the factor of safety, each with its value in the same word or in the next."""
-    left = iter(options)
-    return [option for option in left if option.split("=")[0] not in SEARCH_OPTIONS or "=" not in option and not next(left, "")]
-
-
 def programs_of(study, run):
     """The programs of a run in their order: name and arguments."""
     needs, options = quantities.needed(study), study.options_of(run)
@@ -57,7 +51,7 @@ def programs_of(study, run):
     if any(needs.values()):
         chain.append(("strength-averaging", ["network.h5", "-o", "joints.h5"]))
     if needs["result.h5"]:
-        chain.append(("demsolve", ["joints.h5", *without_search(options), "-o", "result.h5"]))
+        chain.append(("demsolve", ["joints.h5", *without(options, SEARCH_OPTIONS)[0], "-o", "result.h5"]))
     if needs["safety.h5"]:
         chain.append(("demsolve", ["joints.h5", *options, "--factor-of-safety", "--no-mesh-estimate", "-o", "safety.h5"]))
     return chain

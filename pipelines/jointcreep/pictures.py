@@ -19,7 +19,6 @@ from stage_names import plain
 BAND = "#c9d8ea"
 MOST_PANELS = 6
 BAND_POINTS = 60
-CORRELATION = "rank correlation"  # a measure of answers.py
 FEWEST_BARS = 4  # that a panel has room for, so that one is not broad
 
 
@@ -75,8 +74,8 @@ def parameters(quantity, study, values, run, given, of_shares):
     """The quantity over each parameter, and the shares of the variance or the rank correlations as bars."""
     numeric = [column for column, one in enumerate(study.parameters) if not any(isinstance(value, str) for value in one.values)]
     numeric = numeric[:MOST_PANELS]
-    correlations = [one for one in of_shares if one[1] == CORRELATION]
-    kinds = [kind for kind in ([one for one in of_shares if one[1] != CORRELATION], correlations) if kind]
+    correlations = [one for one in of_shares if one[1] == answers.CORRELATION]
+    kinds = [kind for kind in ([one for one in of_shares if one[1] != answers.CORRELATION], correlations) if kind]
     count = len(numeric) + len(kinds)
     columns = min(3, count)
     lines = -(-count // columns)
@@ -105,7 +104,7 @@ def bars(axes, rows):
     axes.set_yticks(range(len(rows)), ["\n".join(textwrap.wrap(label, 20)) for label in labels], fontsize=6)
     axes.set_ylim(max(len(rows), FEWEST_BARS) - 0.5, -0.5)
     axes.axvline(0, color="0.6", linewidth=0.6)
-    axes.set_xlim((-1, 1) if measures == [CORRELATION] else (min(0, axes.get_xlim()[0]), max(1, axes.get_xlim()[1])))
+    axes.set_xlim((-1, 1) if measures == [answers.CORRELATION] else (min(0, axes.get_xlim()[0]), max(1, axes.get_xlim()[1])))
     axes.set_xlabel(f"{measures[0] if len(measures) == 1 else 'index'}, 95 % confidence", fontsize=7)
 
 

@@ -14,6 +14,7 @@ Values are those of the files: SI units (times in days), tension and opening pos
 DataFrame of a table; where xarray is, array() makes a DataArray of a dataset.
 """
 
+import contextlib
 import csv
 import dataclasses
 import pathlib
@@ -286,11 +287,10 @@ def csv_table(path):
         heads, *rows = csv.reader(file)
     table = Table()
     for name, column in zip(heads, zip(*rows) if rows else [()] * len(heads)):
-        try:
-            values = np.array([float(field) if field else np.nan for field in column]) if any(column) or name not in TEXTS else \
-                np.array(column, str)
-        except ValueError:
-            values = np.array(column, str)
+        values = np.array(column, str)
+        if name not in TEXTS:
+            with contextlib.suppress(ValueError):
+                values = np.array([float(field) if field else np.nan for field in column])
         table.put(name, values, name.rpartition(" (")[2].removesuffix(")") if name.endswith(")") else "1")
     return table
 

@@ -148,11 +148,9 @@ def of_run(source, programs, folder):
     parts += [f'<p class="bad">All strengths of this run are divided by {factor:.4g}.</p>'] if factor != 1 else []
     parts += factor_of_safety(source, folder)
     window = detail(scene)
-    near = {"window": window} if window else {}
     parts += ["<h2>Section and network</h2>", drawn("section", source, folder, "The section, its joints, stages and points.")]
-    parts += [drawn("section", source, folder, "Its stages and points.", **near)] if near else []
-    parts += [drawn("blocks", source, folder, "Blocks by size."),
-              "<h2>Histories</h2>"]
+    parts += [drawn("section", source, folder, "Its stages and points.", window=window)] if window else []
+    parts += [drawn("blocks", source, folder, "Blocks by size."), "<h2>Histories</h2>"]
     if points:
         for component, caption in (("x", "Horizontal displacement of the points, to the right."), ("y", "Vertical displacement, upward.")):
             parts.append(drawn("histories", source, folder, caption, component=component))
@@ -163,7 +161,7 @@ def of_run(source, programs, folder):
         parts.append(drawn("line", source, folder, "Displacements along monitoring lines."))
     parts.append("<h2>Last state before the run ended early</h2>" if failure else "<h2>State at the end</h2>")
     for field, caption in (("displacement", "Displacements."), ("stress", "Stresses."), ("contacts", "Contacts that slip or open.")):
-        parts.append(drawn("state", source, folder, caption, field=field, **near))
+        parts.append(drawn("state", source, folder, caption, field=field, window=window))
     parts += ["<h2>Numbers</h2>", table(["", ""], numbers), "<h2>Settings</h2>", settings(scene), "<h2>Warnings</h2>",
               table(["program", "warning"], warnings) if warnings else "<p>None.</p>",
               "<h2>Checks</h2>", checks(source, programs),

@@ -21,7 +21,7 @@ import tomllib
 import h5py
 
 from . import files, group, plan, runs
-from .chain import CANNOT_WRITE, was_stopped
+from .chain import CANNOT_WRITE, was_stopped, without
 from .errors import NotDone, NotWanted
 
 PROGRAMS = ["jointgen", "strength-averaging", "demsolve", "jointexport"]
@@ -56,18 +56,6 @@ class Step:
 def typed(path):
     """A path as a word of a command line, which no program takes for an option."""
     return f"./{path}" if str(path).startswith("-") else str(path)
-
-
-def without(words, names):
-    """Options without those that have these names, each with a value; and these."""
-    left, taken, rest = [], [], list(words)
-    while rest:
-        word = rest.pop(0)
-        if word in names and rest:
-            taken += [word, rest.pop(0)]
-        else:
-            (taken if word.partition("=")[0] in names else left).append(word)
-    return left, taken
 
 
 def value_of(words, name):
@@ -136,7 +124,6 @@ class Plan:
     def pictures(self, failed=None):
         from suited import detail, state_fields, suited
         window = detail(self.scene)
-        near = {"window": window} if window else {}
         result = pathlib.Path(RESULT if failed is None else FAILED)
         network, joints = pathlib.Path("network.h5"), pathlib.Path("joints.h5")
         wanted = set(suited(self.scene))
@@ -148,7 +135,7 @@ class Plan:
             if name in wanted:
                 yield self.picture(name, source, name.replace("_", "-"))
         if window:
-            yield self.picture("section", network, "section-detail", **near)
+            yield self.picture("section", network, "section-detail", window=window)
         for component in "xy" if "histories" in wanted else "":
             yield self.picture("histories", result, f"histories-{component}", component=component)
         if "line" in wanted:
@@ -156,10 +143,13 @@ class Plan:
         for word, state in self.states(failed):
             for field in state_fields(self.scene):
                 has_moved = "large_displacements" in self.scene and field != "contacts"  # then the rock is drawn where it is
-                yield self.picture("state", result, f"{word}-{field}", state=state, field=field, **near,
-                                   **({"magnify": 1} if has_moved else {}))
+                yield self.picture("state", result, f"{word}-{field}", state=state, field=field, window=window,
+                                   magnify=1 if has_moved else None)
 
     def picture(self, name, source, picture, **options):
+        """The step that draws a plot; options that are None are left out."""
+        options = {option: value for option, value in options.items() if value is not None}
+
         def draw(folder):
             from . import plots  # matplotlib takes long to load
             plots.save(name, folder / source, folder / output, **options)

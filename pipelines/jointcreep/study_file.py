@@ -38,6 +38,7 @@ LEVEL = "level"  # name of the column that says whether a run of "two levels" is
 RESERVED = {"run", NETWORK, LEVEL, "exit code", "program", "reason"}
 KEPT = ["network.h5", "joints.h5", "result.h5", "safety.h5"]  # files of a run that may be kept
 MOST_RUNS = 1_000_000
+LIKE = 0.75  # of two keys, by difflib: more than of any two that are known, such as fine_runs and fine_options (0.67)
 
 
 @dataclasses.dataclass
@@ -180,9 +181,11 @@ class Table:
         return f"{self.path}{line}: " + (f"{self.heading}: " if self.heading else "")
 
     def wrong(self, key, expected):
-        found = f"{key} is {shown(self.left[key])}" if key in self.left else f"{key} is missing"
-        for like in difflib.get_close_matches(key, self.left.keys() - self.taken - {key}, 1):
-            found += f" (and {like} is unknown)" * (key not in self.left)
+        if key in self.left:
+            found = f"{key} is {shown(self.left[key])}"
+        else:
+            like = difflib.get_close_matches(key, sorted(self.left.keys() - self.taken), 1, LIKE)
+            found = f"{key} is missing" + (f" (and {like[0]} is unknown)" if like else "")
         raise NotWanted(f"{self.place(key)}{found}; expected {expected}")
 
     def get(self, key, default, fits, expected):

@@ -50,8 +50,8 @@ def draw(file, safety_displacement=10):
             draw_runs(axes, factor, stands, displacement, color, label if has_coarse else None)
             limit = safety_displacement * displacement[np.argmin(factor)]
             if np.any((displacement >= limit) & (displacement < 1.5 * limit)):  # a run was ended there; else the option was another
-                label = f"limit: {safety_displacement:g} times the displacement at the smallest factor"
-                axes.axhline(1e3 * limit, color=color, linewidth=0.6, linestyle="--", label=None if prefix else label)
+                axes.axhline(1e3 * limit, color=color, linewidth=0.6, linestyle="--",
+                             label=None if prefix else f"limit: --safety-displacement {safety_displacement:g}")
             low, high = bracket(factor, stands)
             if low is not None and high is not None:
                 axes.axvspan(low, high, color=color, alpha=0.15, linewidth=0)

@@ -4,7 +4,7 @@ All are compiled into one build of a copy of the sources, and chosen by an envir
 becomes two with a mark between them (mutant.hpp). Where that does not compile, the place is left out. First each test runs
 without a mutant, and tells which places it reaches and how long it takes. Then the tests that reach a mutant run, the fastest
 first, until one fails, ends by a signal or takes far longer than before. Mutants that no test finds are printed: some change
-nothing that matters. The tests are the C++ tests, and those of WHOLE, which compare results of the programs with closed forms.
+nothing that matters. The tests are the C++ tests, and those of WHOLE, which run the programs.
 """
 
 import concurrent.futures
@@ -94,13 +94,13 @@ class Mutants:
         shutil.copytree(ROOT, self.tree, ignore=ignored)
         shutil.copy(pathlib.Path(__file__).with_name("mutant.hpp"), self.tree / "libs")
         self.chosen = []  # (number, group, path, start, end, operator)
-        self.text = {}  # of the sources, by path: they may change while the campaign runs
         share = campaign.n // len(GROUPS)
         for group, patterns in GROUPS.items():
             found = [(path, *place) for pattern in patterns for path in sorted(ROOT.glob(pattern))
                      for place in places(path.read_text())]
             for path, *place in chance("mutants", campaign.seed, group).sample(found, min(2 * share, len(found))):
                 self.chosen.append((len(self.chosen) + 1, group, path.relative_to(ROOT), *place))
+        # Of the sources, by path: they may change while the campaign runs.
         self.text = {path: (ROOT / path).read_text() for _, _, path, *_ in self.chosen}
 
     def write(self):
@@ -121,10 +121,7 @@ class Mutants:
                 return
             # All lines that an error names, as templates are at fault where they are called.
             lines = {(path, int(line)) for path, line in ERROR.findall(done.stdout + done.stderr)}
-            kept = []
-            for one in self.chosen:
-                if (str(one[2]), self.line(one)) not in lines:
-                    kept.append(one)
+            kept = [one for one in self.chosen if (str(one[2]), self.line(one)) not in lines]
             if len(kept) == len(self.chosen):
                 raise SystemExit("mutants: does not compile:\n" + done.stdout[-3000:] + done.stderr[-3000:])
             print(f"mutants: {len(self.chosen) - len(kept)} places do not compile with a mark", flush=True)
@@ -164,10 +161,10 @@ def body(campaign):
     tests, chosen = mutants.tests(), list(mutants.choose())
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
         for one, by in zip(chosen, pool.map(lambda one: found_by(one[0], tests), chosen)):
-            number, group, path, start, end, operator = one
-            begin, line = mutants.text[path].rfind("\n", 0, start) + 1, mutants.text[path][:end].count("\n") + 1
+            number, group, path, start, _, operator = one
+            line, column = mutants.line(one), start - mutants.text[path].rfind("\n", 0, start)
             reaching = sum(number in test.reached for test in tests)
-            campaign.count(group, "found" if by else "lives", f"{path}:{line}:{start - begin + 1} {operator}",
+            campaign.count(group, "found" if by else "lives", f"{path}:{line}:{column} {operator}",
                            by or f"{mutants.text[path].splitlines()[line - 1].strip()} (mutant {number}, reached by {reaching} tests)")
 
 

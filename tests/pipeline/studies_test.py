@@ -844,6 +844,7 @@ class StudyFile(Studies):
             (good.replace("network = true", ""), r"\[\[vary\]\]: key is missing; expected a key of the scene"),
             (good.replace("network = true", "network = false\nkey = 'x.y'"), r"law is missing; expected one of .normal"),
             (good.replace("runs = 3", "rums = 3"), r"line 7: \[design\]: runs is missing \(and rums is unknown\); expected a whole"),
+            (good.replace("runs = 3", 'kind = "two levels"\nfine_options = ["--no-creep"]'), "fine_runs is missing; expected a whole number"),
             (good + 'a = [', "study.toml: "),
         ]
         for text, expected in cases:

@@ -313,22 +313,38 @@ TEST(relax, a_bar_under_traction)
     }
 }
 
-// A block of stiff rock on one joint, its weight put on at once: an oscillator, whose dashpots are alpha
-// times its mass and the contacts' beta times their springs.
+// A block of stiff rock, 1 m x 1 m, on a joint of normal stiffness K [Pa/m], which can only move up and down. Its mass is in
+// kg/m.
+Section block_on_joint(double K, double mass)
+{
+    Scene scene = section({{0, 0}, {1, 0}, {1, 1}, {0, 1}}, 0.01);
+    scene.rocks = {{"rock", mass, 1e12, 0, std::nullopt}};
+    scene.zone_size = 2;
+    scene.gravity = 9.81;
+    scene.boundaries = {{.from = {0, 0}, .to = {1, 0}, .joint = "joint"},
+                        {.from = {0, 0}, .to = {0, 1}, .fix_x = true},
+                        {.from = {1, 0}, .to = {1, 1}, .fix_x = true}};
+    return assembled(std::move(scene), {}, K, 0);
+}
+
+// A gridpoint on its top.
+std::size_t on_top(const Section& s)
+{
+    std::size_t top = 0;
+    while (s.assembly.position[top].y() < 1)
+        ++top;
+    return top;
+}
+
+// This block, its weight put on at once, is an oscillator, whose dashpots are alpha times its mass and the contacts' beta
+// times their springs.
 //   u = -m g / K (1 - exp(-z w t) (cos w_d t + z w / w_d sin w_d t)),
 //   w = sqrt(K / m),  z = alpha / (2 w) + beta w / 2,  w_d = w sqrt(1 - z^2)
 TEST(relax, the_dashpots_of_contacts)
 {
     const double K = 1e8, mass = 2700, w = std::sqrt(K / mass);
     for (const auto& [alpha, beta] : {std::pair(4.0, 0.0), {4.0, 1e-4}, {4.0, 5e-4}, {0.0, 5e-4}}) {
-        Scene scene = section({{0, 0}, {1, 0}, {1, 1}, {0, 1}}, 0.01);
-        scene.rocks = {{"rock", mass, 1e12, 0, std::nullopt}};
-        scene.zone_size = 2;
-        scene.gravity = 9.81;
-        scene.boundaries = {{.from = {0, 0}, .to = {1, 0}, .joint = "joint"},
-                            {.from = {0, 0}, .to = {0, 1}, .fix_x = true},
-                            {.from = {1, 0}, .to = {1, 1}, .fix_x = true}};
-        Section s = assembled(std::move(scene), {}, K, 0);
+        Section s = block_on_joint(K, mass);
         Equilibrium how = settings(Damping::mass, Masses::real);
         how.mass_damping = alpha;
         how.stiffness_damping = beta;
@@ -336,9 +352,7 @@ TEST(relax, the_dashpots_of_contacts)
         how.tolerance = 1e-2;
         const double z = alpha / (2 * w) + beta * w / 2, damped_w = w * std::sqrt(1 - z * z);
         const double rest = -mass * 9.81 / K;
-        std::size_t top = 0;
-        while (s.assembly.position[top].y() < 1)
-            ++top;
+        const std::size_t top = on_top(s);
         double worst = 0;
         relaxation::relax(s.assembly, how, [&](double t) {
             const double u = s.assembly.displacement[top].y();
@@ -356,19 +370,10 @@ TEST(relax, the_dashpots_of_contacts)
 TEST(relax, adaptive_damping_is_critical)
 {
     const double K = 1e8, mass = 2700, w = std::sqrt(K / mass), rest = -mass * 9.81 / K;
-    Scene scene = section({{0, 0}, {1, 0}, {1, 1}, {0, 1}}, 0.01);
-    scene.rocks = {{"rock", mass, 1e12, 0, std::nullopt}};
-    scene.zone_size = 2;
-    scene.gravity = 9.81;
-    scene.boundaries = {{.from = {0, 0}, .to = {1, 0}, .joint = "joint"},
-                        {.from = {0, 0}, .to = {0, 1}, .fix_x = true},
-                        {.from = {1, 0}, .to = {1, 1}, .fix_x = true}};
-    Section s = assembled(std::move(scene), {}, K, 0);
+    Section s = block_on_joint(K, mass);
     Equilibrium how = settings(Damping::adaptive, Masses::real);
     how.tolerance = 1e-2;
-    std::size_t top = 0;
-    while (s.assembly.position[top].y() < 1)
-        ++top;
+    const std::size_t top = on_top(s);
     double worst = 0;
     relaxation::relax(s.assembly, how, [&](double t) {
         const double exact = rest * (1 - (1 + w * t) * std::exp(-w * t));
@@ -384,14 +389,7 @@ TEST(relax, a_block_that_swings_on_its_joint)
 {
     for (const Damping damping : {Damping::local, Damping::combined, Damping::kinetic}) {
         const double K = 1e8, mass = 2700;
-        Scene scene = section({{0, 0}, {1, 0}, {1, 1}, {0, 1}}, 0.01);
-        scene.rocks = {{"rock", mass, 1e12, 0, std::nullopt}};
-        scene.zone_size = 2;
-        scene.gravity = 9.81;
-        scene.boundaries = {{.from = {0, 0}, .to = {1, 0}, .joint = "joint"},
-                            {.from = {0, 0}, .to = {0, 1}, .fix_x = true},
-                            {.from = {1, 0}, .to = {1, 1}, .fix_x = true}};
-        Section s = assembled(std::move(scene), {}, K, 0);
+        Section s = block_on_joint(K, mass);
         Equilibrium how = settings(damping, Masses::real);
         how.local_damping = 0.5;
         how.tolerance = 1e-2;
