@@ -7,6 +7,8 @@
 #include <gtest/gtest.h>
 #include <rapidcheck/gtest.h>
 
+#include <cstdint>
+#include <limits>
 #include <numbers>
 #include <random>
 #include <set>
@@ -251,6 +253,80 @@ TEST(arrangement, a_crossing_is_rounded_to_the_nearest_doubles)
         ASSERT_EQ(blocks::crossing(a, b, c, d), blocks::rational_crossing(a, b, c, d)) << spread;
     }
     EXPECT_GT(crossings, 10000);
+}
+
+// A crossing that is off the middle between two doubles by 1e-32 and less: twice the precision of doubles puts it into the middle,
+// or on its wrong side.
+TEST(arrangement, a_crossing_beside_the_middle_between_two_doubles_is_rounded_to_its_own_side)
+{
+    const double unit = std::numeric_limits<double>::epsilon(); // between 1 and the next double
+    std::mt19937 random(8);
+    std::uniform_int_distribution<std::int64_t> units(0, std::int64_t{1} << 40),
+        more(0, std::int64_t{1} << 50);
+    int to_odd = 0, to_even = 0;
+    for (int i = 0; i < 3000; ++i)
+        for (const double side : {-1.0, 0.0, 1.0})
+            for (const double from : {1.0, 1 + unit}) {
+                // The second line crosses the first one at a share of it of about (1 - side * 2^-104) / 2.
+                const double width =
+                    4503599627370496.0 + 2 * static_cast<double>(more(random)); // 2^52 and more
+                const double height = 1 + static_cast<double>(units(random)) * unit;
+                const Vector2d p0(from, 0), p1(from + unit, 2 * height), q0(from, height + unit),
+                    q1(from + width / 2, height + unit - (width + side));
+                const Vector2d place = blocks::crossing(p0, p1, q0, q1);
+                ASSERT_EQ(place, blocks::rational_crossing(p0, p1, q0, q1))
+                    << i << ' ' << side << ' ' << from;
+                ++(place.x() == 1 + unit ? to_odd : to_even);
+            }
+    EXPECT_GT(to_odd, 1000);
+    EXPECT_GT(to_even, 1000);
+}
+
+// The face around an island is that beside the nearest edge to the left: here the first edge of all, which goes up or down. Also
+// below the level 0.
+TEST(arrangement, the_first_edge_may_be_the_one_left_of_an_island)
+{
+    for (const double low : {0.0, -1000.0, 1000.0})
+        for (const double lean : {-1.0, 0.0, 1.0}) {
+            Graph lines;
+            const std::array<Vector2d, 4> corner = {
+                Vector2d(0, low), {10, low}, {10, low + 10}, {lean, low + 10}};
+            for (int i = 0; i < 4; ++i)
+                add_line(lines, corner[i], corner[(i + 1) % 4]);
+            for (int i = 0; i < 3; ++i) {
+                const Vector2d a(2, low + 1 + 3 * i), b(4, low + 1 + 3 * i), c(3, low + 3 + 3 * i);
+                add_line(lines, a, b);
+                add_line(lines, b, c);
+                add_line(lines, a, c);
+            }
+            EXPECT_EQ(difference(lines), "");
+            blocks::Sources sources = sources_for(lines);
+            const Graph graph = blocks::arrange(lines, sources);
+            const blocks::Edge& first = graph.edge[0];
+            EXPECT_LE(graph.vertex[first.first].x() + graph.vertex[first.second].x(), 1) << "the left side";
+            const blocks::Faces faces = blocks::trace_faces(graph);
+            EXPECT_EQ(faces.area, (std::vector<double>{100 - 5 * lean - 3 * 2, 2, 2, 2}));
+        }
+}
+
+// Two edges to the left of an island, of which the nearer one is the first of all.
+TEST(arrangement, an_island_is_in_the_face_beside_the_nearest_edge)
+{
+    Graph lines;
+    const std::array<Vector2d, 5> corner = {Vector2d(0, 0), {1, 1}, {10, 1}, {2, 10}, {10, -2}};
+    add_line(lines, corner[0], corner[1]);
+    add_line(lines, corner[1], corner[2]);
+    add_line(lines, corner[2], corner[3]);
+    add_line(lines, corner[3], corner[0]);
+    add_line(lines, corner[0], corner[4]);
+    add_line(lines, corner[4], corner[2]);
+    const std::array<Vector2d, 3> island = {Vector2d(3, 0.25), {4, 0.25}, {4, 0.75}};
+    for (int i = 0; i < 3; ++i)
+        add_line(lines, island[i], island[(i + 1) % 3]);
+    EXPECT_EQ(difference(lines), "");
+    blocks::Sources sources = sources_for(lines);
+    const blocks::Faces faces = blocks::trace_faces(blocks::arrange(lines, sources));
+    EXPECT_EQ(faces.size(), 3u);
 }
 
 } // namespace arrangement_test

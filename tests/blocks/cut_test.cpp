@@ -2,7 +2,12 @@
 
 #include "section.hpp"
 
+#include "model/polygon.hpp"
+
 #include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
 
 namespace cut_test
 {
@@ -192,6 +197,90 @@ TEST(cut, vertices_closer_than_the_limit_are_merged_and_the_outline_keeps_its_co
     EXPECT_NEAR(blocks.report.merged_block_area, 0.2 * 9.7 + 0.3 * 10, 0.2);
     for (const Vector2d& corner : square)
         EXPECT_NE(std::find(blocks.vertex.begin(), blocks.vertex.end(), corner), blocks.vertex.end());
+}
+
+// A corner that points at a joint, in every part of it. The joint then goes through the corner, and what is above it are two blocks.
+TEST(cut, a_joint_close_to_a_corner_goes_through_it)
+{
+    for (int i = 0; i < 20; ++i)
+        for (const bool is_reversed : {false, true}) {
+            const double x = 1 + i * 0.42; // the joint's ends are at 0 and 10
+            const Scene scene =
+                section({{0, 0}, {10, 0}, {10, 10}, {x + 0.4, 10}, {x, 5.2}, {x - 0.4, 10}, {0, 10}}, 0.5);
+            Joints joints;
+            add_joint(joints, {is_reversed ? 11.0 : -1.0, 5}, {is_reversed ? -1.0 : 11.0, 5});
+            const Blocks blocks = blocks::cut(scene, joints);
+            EXPECT_EQ(faults(scene, blocks), "");
+            EXPECT_EQ(blocks.block_area.size(), 3u) << x;
+            EXPECT_NEAR(blocks.report.largest_move, 0.2, 1e-12);
+        }
+}
+
+// Two joints from one place, half a degree apart where the limit is 1 degree, from 50 to 200 m long: the far end of one moves to
+// the other if it is not farther than five shortest edges.
+TEST(cut, a_narrow_wedge_is_closed_unless_its_end_is_too_wide)
+{
+    for (const double length : {50.0, 56.0, 59.0, 200.0}) {
+        const Scene scene = section({{0, 0}, {length, 0}, {length, 100}, {0, 100}}, 0.1);
+        const double wide = length * std::tan(0.5 * std::numbers::pi / 180);
+        Joints joints;
+        add_joint(joints, {0, 50}, {length, 50});
+        add_joint(joints, {0, 50}, {length, 50 + wide});
+        const Blocks blocks = blocks::cut(scene, joints);
+        EXPECT_EQ(faults(scene, blocks), "");
+        const bool is_closed = wide < 0.5;
+        EXPECT_EQ(blocks.block_area.size(), is_closed ? 2u : 3u) << wide;
+        EXPECT_NEAR(blocks.report.smallest_angle * 180 / std::numbers::pi, is_closed ? 90 - 0.5 : 0.5,
+                    is_closed ? 0.51 : 1e-9);
+    }
+}
+
+// Blocks whose angles are all different, the narrowest behind wide ones.
+TEST(cut, the_smallest_angle_is_the_narrowest_of_all_corners)
+{
+    for (const double narrow : {50.0, 60.0, 70.0, 80.0})
+        for (const double scale : {0.3, 1.0, 40.0}) {
+            // A quadrilateral with angles of 85, 100, `narrow` degrees and the rest, one corner after the other the first.
+            const auto direction = [](double degrees) {
+                return Vector2d(std::cos(degrees * std::numbers::pi / 180),
+                                std::sin(degrees * std::numbers::pi / 180));
+            };
+            const Vector2d a(0, 0), b(10, 0), c = b + 12 * direction(80);
+            // From c to the line through a at 85 degrees, so that the angle at c is `narrow`.
+            const Vector2d along_ad = direction(85), along_cd = direction(260 - narrow);
+            const double s = cross(c - a, along_cd) / cross(along_ad, along_cd);
+            ASSERT_GT(s, 0);
+            std::vector<Vector2d> corners{a, b, c, a + s * along_ad};
+            for (int first = 0; first < 4; ++first) {
+                Polygon outline;
+                for (int i = 0; i < 4; ++i)
+                    outline.push_back(scale * corners[(first + i) % 4]);
+                const Blocks blocks = blocks::cut(section(outline, 0.01), {});
+                double smallest = 180;
+                for (int i = 0; i < 4; ++i) {
+                    const Vector2d out = corners[(i + 1) % 4] - corners[i],
+                                   back = corners[(i + 3) % 4] - corners[i];
+                    smallest = std::min(smallest, std::acos(out.dot(back) / out.norm() / back.norm()) * 180 /
+                                                      std::numbers::pi);
+                }
+                EXPECT_NEAR(blocks.report.smallest_angle * 180 / std::numbers::pi, smallest, 1e-9);
+            }
+        }
+}
+
+// Crossings are rounded to doubles, which is no move: also in a section of a kilometre.
+TEST(cut, nothing_moves_where_nothing_is_close)
+{
+    const Scene scene = section({{0, 0}, {1000, 0}, {1000, 1000}, {0, 1000}}, 0.1);
+    Joints joints;
+    for (int i = 1; i < 8; ++i) {
+        add_joint(joints, {-10, 100.0 * i + std::sqrt(i)}, {1010, 100.0 * i - std::sqrt(i)});
+        add_joint(joints, {100.0 * i + std::sqrt(2 * i), -10}, {100.0 * i - std::sqrt(i), 1010});
+    }
+    const Blocks blocks = blocks::cut(scene, joints);
+    EXPECT_EQ(faults(scene, blocks), "");
+    EXPECT_EQ(blocks.block_area.size(), 64u);
+    EXPECT_EQ(blocks.report.largest_move, 0);
 }
 
 TEST(cut, a_joint_that_ends_inside_a_block_may_be_carried_on_as_rock_bridge)
