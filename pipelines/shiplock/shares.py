@@ -353,14 +353,26 @@ def lack_of_fit(rows, pairs, fit):
 ANSWERS = ("mean total", "mean recorded", "misfit")
 
 
+SMALL = 0.005  # a total share below it, of all three answers, has no row
+
+
+def by_size(indices):
+    """Numbers of the inputs, the largest total shares of total and record first."""
+    return np.argsort(-indices[1, :, :2].sum(axis=1), kind="stable")
+
+
 def markdown(names, indices, errors, facts):
-    """A row for each input, the largest total share first."""
-    order = np.argsort(-indices[1, :, :2].sum(axis=1))
+    """A row for each input; those whose shares are small only by name."""
+    order = by_size(indices)
+    is_small = (indices[1] < SMALL).all(axis=1)
     lines = ["| input | range | " + " | ".join(f"{answer}: alone | in all" for answer in ANSWERS) + " |", "|---|---|" + "---|" * 6]
-    for i in order:
+    for i in order[~is_small[order]]:
         name, span = names[i]
         cells = [f"{indices[j, i, k]:.3f} ± {errors[j, i, k]:.3f}" for k in range(3) for j in range(2)]
         lines.append(f"| {name} | {span} | " + " | ".join(cells) + " |")
+    small = "; ".join(f"{names[i][0]} ({names[i][1]})" for i in order[is_small[order]])
+    if small:
+        lines += ["", f"Less than {SMALL} of each, in all: {small}."]
     return "\n".join([*lines, "", *facts]) + "\n"
 
 
@@ -372,7 +384,7 @@ def range_of(one):
 
 
 def picture(names, indices, errors, path, most=16):
-    order = np.argsort(-indices[1].max(axis=1))[:most][::-1]
+    order = by_size(indices)[:most][::-1]
     plot, panels = figure.plt.subplots(1, 3, sharey=True, figsize=(figure.TWO_COLUMNS, 0.8 + 0.19 * len(order)))
     for k, (axes, answer) in enumerate(zip(panels, ANSWERS)):
         for j, (shift, color, label) in enumerate(((0.2, figure.COLORS[4], "alone (first order)"),
