@@ -71,7 +71,7 @@ std::unique_ptr<Trial> run_by_increments(double factor, Scene scene, const RunWi
     summary.add("unloading increments, chosen", increments);
     summary.add("  change from half as many", change);
     if (change > *scene.equilibrium.increments_tolerance)
-        files.warn("from half as many increments results still change by " + shown(100 * change) +
+        files.warn("from half as many increments results still change by " + rounded(100 * change) +
                    " percent");
     return run;
 }

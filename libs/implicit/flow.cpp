@@ -61,8 +61,8 @@ bool Solver::flow_to_rest(Assembly& assembly, const State& start, const Equilibr
                 break;
             const std::size_t at = largest_displacement(assembly).second;
             collapse_.emplace("the displacement of the rock at " + shown(assembly.position[at]) +
-                              " grows without bound: no equilibrium with displacements up to " + shown(most) +
-                              " m");
+                              " grows without bound: no equilibrium with displacements up to " +
+                              rounded(most) + " m");
             collapse_->moves_on = true;
             collapse_->steps = 1;
             for (std::size_t g = 0; g < from.size(); ++g)

@@ -20,7 +20,7 @@ from .intervals import CONFIDENCE
 
 PROBABILITIES = [0.05, 0.25, 0.50, 0.75, 0.95]
 FORMAT_VERSION = [4, 0]  # of ensemble.h5
-LISTED = 100  # runs that the summary describes one by one
+LISTED = 12  # runs that the summary describes one by one
 KINDS = {
     "displacement": "since the in-situ equilibrium",
     "displacement_since_first_reading": "since the first reading of the point",

@@ -27,7 +27,7 @@ from . import ensemble, plan, quantities, scene_keys, study_file
 from .chain import CANNOT_WRITE, was_stopped, without
 from .errors import NotDone, NotWanted
 
-LONGEST_REASON = 500  # characters
+LONGEST_REASON = 2000  # characters
 SEARCH_OPTIONS = ("--safety-width", "--safety-displacement", "--runs-at-once")  # of demsolve --factor-of-safety
 PR_SET_PDEATHSIG = 1  # linux/prctl.h
 LIBC = ctypes.CDLL(None)

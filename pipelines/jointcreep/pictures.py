@@ -63,6 +63,8 @@ def convergence(quantity, rows, stop, counted):
             axes.xaxis.set_major_locator(matplotlib.ticker.LogLocator(subs=(1, 2, 5)))
             axes.xaxis.set_major_formatter(matplotlib.ticker.StrMethodFormatter("{x:g}"))
             axes.xaxis.set_minor_formatter(matplotlib.ticker.NullFormatter())
+        else:
+            axes.xaxis.set_major_locator(matplotlib.ticker.MaxNLocator(integer=True))
         axes.set_ylabel(f"mean of {quantity.title()}" if name == "mean" else f"{answers.with_unit(name, quantity)}\n(percent)")
         if axes is panels[0, 0]:
             axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncol=3)

@@ -13,6 +13,7 @@ import json
 import os
 import pathlib
 import shlex
+import signal
 import shutil
 import subprocess
 import sys
@@ -295,9 +296,7 @@ class Folder:
         """The exit code of a program, which writes to the same screen."""
         words = [str(step.command[0]), *words[1:], *(["--quiet"] if self.quiet and "--quiet" not in words else [])]
         sys.stdout.flush()
-        parent = os.getpid()
-        done = subprocess.run(words, stdin=subprocess.DEVNULL, pass_fds=[self.lock.fileno()], preexec_fn=lambda: group.die_with(parent))
-        code = done.returncode
+        code = until_ended(words, self.lock)
         if was_stopped(code) and code != CANNOT_WRITE:
             raise NotDone(f"{step.command[0].name} was stopped (exit code {code}); the same command continues")
         return code if code >= 0 else 128 - code
@@ -323,6 +322,29 @@ class Folder:
         names = {step.makes for step in steps}
         self.record["steps"] = {name: step for name, step in self.record["steps"].items() if name in names}
         self.save()
+
+
+def until_ended(words, lock):
+    """The exit code of a program. A signal to stop is passed on to it, once: demsolve then keeps its state in a checkpoint. In a
+    process group of its own, or Ctrl-C would come twice, which ends it at once."""
+    def stop(signal_number, _):
+        print("jointcreep: stopped; the same command continues", file=sys.stderr, flush=True)
+        raise SystemExit(128 + signal_number)
+
+    parent = os.getpid()
+    before = {number: signal.signal(number, stop) for number in (signal.SIGTERM, signal.SIGHUP)}
+    try:
+        with subprocess.Popen(words, stdin=subprocess.DEVNULL, pass_fds=[lock.fileno()], process_group=0,
+                              preexec_fn=lambda: group.die_with(parent)) as running:
+            try:
+                return running.wait()
+            except BaseException:
+                running.terminate()
+                running.wait()
+                raise
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
 
 
 def in_make(path):

@@ -273,6 +273,24 @@ class Run(ChainTest):
         self.assertEqual(left, [])
         self.assertEqual(self.made("--programs", self.fakes("exit 5"), code=5), {"result.h5"})
 
+    def test_stopped(self):
+        """A signal to stop goes to the program, which may keep its state, and is waited for."""
+        self.scene.write_text(self.chain.small())
+        here = shlex.quote(str(self.folder))
+        fakes = self.fakes(f"trap 'sleep 0.3; touch {here}/kept; exit 143' TERM; touch {here}/begun; while true; do sleep 0.05; done")
+        for number in signal.SIGTERM, signal.SIGINT, signal.SIGHUP:
+            with self.subTest(number):
+                for name in "begun", "kept":
+                    (self.folder / name).unlink(missing_ok=True)
+                running = subprocess.Popen([self.chain.programs / "jointcreep", "run", "scene.toml", "-o", "out", "--programs", fakes],
+                                           cwd=self.folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+                end = time.monotonic() + 60
+                while not (self.folder / "begun").exists() and time.monotonic() < end:
+                    time.sleep(0.02)
+                running.send_signal(number)
+                self.assertEqual(running.wait(60), 128 + number)
+                self.assertTrue((self.folder / "kept").exists())
+
     def test_odd_names_and_makefile(self):
         """Whatever names have, nothing of them is a command; make makes the same files as run."""
         folder = self.folder / ODD
