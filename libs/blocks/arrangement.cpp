@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <tuple>
 
 namespace jointcreep::blocks
@@ -202,24 +201,17 @@ std::vector<Index> number_in_order(std::vector<Vector2d>& place)
     const auto strip_of = [&](const Vector2d& p) {
         return std::min(static_cast<std::size_t>((p.x() - low) * per_strip), strips - 1);
     };
-    std::vector<std::size_t> start(strips + 1, 0);
-    for (const Vector2d& p : place)
-        ++start[strip_of(p) + 1];
-    std::partial_sum(start.begin(), start.end(), start.begin());
-    std::vector<Numbered> sorted(place.size());
-    {
-        std::vector<std::size_t> next(start.begin(), start.end() - 1);
+    Grouped<Numbered> sorted(strips, [&](auto add) {
         for (std::size_t i = 0; i < place.size(); ++i) // -0 becomes 0
-            sorted[next[strip_of(place[i])]++] = {place[i].x() + 0.0, place[i].y() + 0.0,
-                                                  static_cast<Index>(i)};
-    }
+            add(strip_of(place[i]), {place[i].x() + 0.0, place[i].y() + 0.0, static_cast<Index>(i)});
+    });
     for (std::size_t s = 0; s < strips; ++s)
-        std::sort(sorted.begin() + static_cast<std::ptrdiff_t>(start[s]),
-                  sorted.begin() + static_cast<std::ptrdiff_t>(start[s + 1]),
-                  [](const Numbered& a, const Numbered& b) { return a.x != b.x ? a.x < b.x : a.y < b.y; });
+        std::ranges::sort(sorted[s], [](const Numbered& a, const Numbered& b) {
+            return a.x != b.x ? a.x < b.x : a.y < b.y;
+        });
     std::vector<Index> number(place.size());
     std::size_t count = 0;
-    for (const Numbered& n : sorted) {
+    for (const Numbered& n : sorted.all()) {
         const Vector2d here(n.x, n.y);
         if (count == 0 || place[count - 1] != here)
             place[count++] = here;
@@ -232,25 +224,20 @@ std::vector<Index> number_in_order(std::vector<Vector2d>& place)
 // Edges by their ends; those with the same ends become one.
 void sort_and_unite(Graph& graph, Sources& sources)
 {
-    std::vector<Index> start(graph.vertex.size() + 1, 0);
-    for (const Edge& e : graph.edge)
-        ++start[e.first + 1];
-    std::partial_sum(start.begin(), start.end(), start.begin());
-    std::vector<Edge> sorted(graph.edge.size());
-    {
-        std::vector<Index> next(start.begin(), start.end() - 1);
+    Grouped<Edge> leaving(graph.vertex.size(), [&](auto add) {
         for (const Edge& e : graph.edge)
-            sorted[next[e.first]++] = e;
-    }
+            add(e.first, e);
+    });
     graph.edge.clear();
-    for (std::size_t v = 0; v + 1 < start.size(); ++v) {
-        std::sort(sorted.begin() + start[v], sorted.begin() + start[v + 1], [](const Edge& a, const Edge& b) {
+    for (std::size_t v = 0; v < leaving.size(); ++v) {
+        const std::span<Edge> edges = leaving[v];
+        std::ranges::sort(edges, [](const Edge& a, const Edge& b) {
             return std::tie(a.second, a.sources) < std::tie(b.second, b.sources);
         });
-        for (Index from = start[v], to = from; from < start[v + 1]; from = to) {
-            while (to < start[v + 1] && sorted[to].second == sorted[from].second)
+        for (auto from = edges.begin(), to = from; from != edges.end(); from = to) {
+            while (to != edges.end() && to->second == from->second)
                 ++to;
-            graph.edge.push_back(united({sorted.data() + from, sorted.data() + to}, sources));
+            graph.edge.push_back(united({from, to}, sources));
         }
     }
 }
@@ -294,19 +281,13 @@ Graph arrange(const Graph& lines, Sources& sources, const std::optional<Box>& wi
     const std::vector<Index> vertex_of = number_in_order(place);
     Graph planar{.vertex = std::move(place), .edge = {}};
 
-    std::vector<Index> start(lines.edge.size() + 1, 0);
-    for (const Stop& stop : stops)
-        ++start[stop.edge + 1];
-    std::partial_sum(start.begin(), start.end(), start.begin());
-    std::vector<Index> on_edge(stops.size());
-    {
-        std::vector<Index> next(start.begin(), start.end() - 1);
+    Grouped<Index> on_edge(lines.edge.size(), [&](auto add) { // vertices
         for (const Stop& stop : stops)
-            on_edge[next[stop.edge]++] = vertex_of[stop.place];
-    }
+            add(stop.edge, vertex_of[stop.place]);
+    });
     planar.edge.reserve(stops.size());
     for (Index e = 0; e < count; ++e) {
-        const auto begin = on_edge.begin() + start[e], end = on_edge.begin() + start[e + 1];
+        const auto begin = on_edge[e].begin(), end = on_edge[e].end();
         const bool is_whole = end - begin == 2; // not even touched: its own ends are all its stops
         std::sort(begin, end);
         // The order of vertices is that along the edge, but for vertices of one x on a falling edge.

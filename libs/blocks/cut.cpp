@@ -14,7 +14,6 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <numeric>
 
 namespace jointcreep::blocks
 {
@@ -108,24 +107,15 @@ private:
 };
 
 // The edges at each vertex.
-struct Incidence {
-    std::vector<Index> start, edge;
-
-    explicit Incidence(const Graph& graph) : start(graph.vertex.size() + 1, 0), edge(2 * graph.edge.size())
-    {
-        for (const Edge& e : graph.edge) {
-            ++start[e.first + 1];
-            ++start[e.second + 1];
-        }
-        std::partial_sum(start.begin(), start.end(), start.begin());
-        std::vector<Index> next(start.begin(), start.end() - 1);
-        for (std::size_t e = 0; e < graph.edge.size(); ++e) {
-            edge[next[graph.edge[e].first]++] = static_cast<Index>(e);
-            edge[next[graph.edge[e].second]++] = static_cast<Index>(e);
-        }
-    }
-    std::span<Index> at(Index v) { return {edge.data() + start[v], edge.data() + start[v + 1]}; }
-};
+Grouped<Index> edges_at_vertices(const Graph& graph)
+{
+    return {graph.vertex.size(), [&](auto add) {
+                for (Index e = 0; e < static_cast<Index>(graph.edge.size()); ++e) {
+                    add(graph.edge[e].first, e);
+                    add(graph.edge[e].second, e);
+                }
+            }};
+}
 
 class Cutter
 {
@@ -446,13 +436,13 @@ private:
     // Removes vertices that only divide a straight edge, as pruning and merging leave behind.
     bool straighten()
     {
-        Incidence incidence(graph_);
+        Grouped<Index> edges_at = edges_at_vertices(graph_);
         std::vector<char> gone(graph_.edge.size(), 0);
         bool any = false;
         for (Index v = 0; v < static_cast<Index>(graph_.vertex.size()); ++v) {
-            if (incidence.at(v).size() != 2)
+            if (edges_at[v].size() != 2)
                 continue;
-            const Index e = incidence.at(v)[0], f = incidence.at(v)[1];
+            const Index e = edges_at[v][0], f = edges_at[v][1];
             Edge &kept = graph_.edge[e], &dropped = graph_.edge[f];
             if (kept.sources != dropped.sources)
                 continue;
@@ -460,13 +450,13 @@ private:
             const Index a = other(kept), b = other(dropped);
             const double off = distance_to(graph_.vertex[a], graph_.vertex[b], graph_.vertex[v]);
             const double straight = is_on_outline(kept) ? 1e-13 * size_ : 1e-3 * reach_;
-            if (off > straight || std::ranges::find(incidence.at(a), f) != incidence.at(a).end())
+            if (off > straight || std::ranges::find(edges_at[a], f) != edges_at[a].end())
                 continue;
             gone[f] = 1;
             any = true;
             kept.first = std::min(a, b);
             kept.second = std::max(a, b);
-            std::ranges::replace(incidence.at(b), f, e);
+            std::ranges::replace(edges_at[b], f, e);
             kept.is_settled = kept.is_settled && dropped.is_settled &&
                               turn(graph_.vertex[a], graph_.vertex[v], graph_.vertex[b]) == 0;
         }

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 namespace jointcreep::blocks
 {
@@ -18,17 +17,12 @@ class HalfEdges
 {
 public:
     explicit HalfEdges(const Graph& graph)
-        : graph_(graph), begin_(graph.vertex.size() + 1, 0), leaving_(2 * graph.edge.size()),
-          next_(2 * graph.edge.size()), has_fan_(graph.vertex.size(), 0)
+        : graph_(graph), next_(2 * graph.edge.size()), has_fan_(graph.vertex.size(), 0),
+          leaving_(graph.vertex.size(), [&](auto add) {
+              for (Index h = 0; h < count(); ++h)
+                  add(start(h), h);
+          })
     {
-        for (const Edge& e : graph.edge) {
-            ++begin_[e.first + 1];
-            ++begin_[e.second + 1];
-        }
-        std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
-        std::vector<Index> place(begin_.begin(), begin_.end() - 1);
-        for (Index h = 0; h < count(); ++h)
-            leaving_[place[start(h)]++] = h;
     }
 
     Index count() const { return static_cast<Index>(next_.size()); }
@@ -48,7 +42,7 @@ private:
     void make_fan(Index v)
     {
         has_fan_[v] = 1;
-        const std::span<Index> fan(leaving_.data() + begin_[v], leaving_.data() + begin_[v + 1]);
+        const std::span<Index> fan = leaving_[v];
         const Vector2d& centre = graph_.vertex[v];
         std::sort(fan.begin(), fan.end(), [&](Index g, Index h) {
             const Vector2d &a = graph_.vertex[end(g)], &b = graph_.vertex[end(h)];
@@ -61,8 +55,9 @@ private:
     }
 
     const Graph& graph_;
-    std::vector<Index> begin_, leaving_, next_;
+    std::vector<Index> next_;
     std::vector<char> has_fan_;
+    Grouped<Index> leaving_; // half-edges, by the vertex
 };
 
 // Closed rings of vertices, one after the other.
@@ -99,12 +94,13 @@ public:
             high_ = std::max(high_, v.y());
         }
         strips_ = std::max<Index>(1, static_cast<Index>(std::sqrt(static_cast<double>(graph.edge.size()))));
-        start_.assign(static_cast<std::size_t>(strips_) + 1, 0);
-        for_strips([&](Index, Index strip) { ++start_[strip + 1]; });
-        std::partial_sum(start_.begin(), start_.end(), start_.begin());
-        edge_.resize(start_.back());
-        std::vector<std::size_t> next(start_.begin(), start_.end() - 1);
-        for_strips([&](Index e, Index strip) { edge_[next[strip]++] = e; });
+        edges_ = {static_cast<std::size_t>(strips_), [&](auto add) {
+                      for (Index e = 0; e < static_cast<Index>(graph_.edge.size()); ++e) {
+                          const auto [below, above] = upward(e);
+                          for (Index s = strip_of(below.y()); s <= strip_of(above.y()); ++s)
+                              add(s, e);
+                      }
+                  }};
     }
 
     // The half-edge with the ray's face on its left; -1 if the ray meets none. Edges of the vertex's own
@@ -113,13 +109,12 @@ public:
     {
         const Vector2d& from = graph_.vertex[vertex];
         Index nearest = -1;
-        const Index strip = strip_of(from.y());
-        for (std::size_t i = start_[strip]; i < start_[strip + 1]; ++i) {
-            const auto [below, above] = upward(edge_[i]);
+        for (const Index e : edges_[strip_of(from.y())]) {
+            const auto [below, above] = upward(e);
             if (!(below.y() <= from.y() && from.y() < above.y()) || turn(below, above, from) >= 0)
                 continue; // off the ray, or not left of the vertex
-            if (nearest < 0 || is_left_of(nearest, edge_[i]))
-                nearest = edge_[i];
+            if (nearest < 0 || is_left_of(nearest, e))
+                nearest = e;
         }
         if (nearest < 0)
             return -1;
@@ -132,15 +127,6 @@ private:
     {
         const double strip = high_ > low_ ? (y - low_) / (high_ - low_) * strips_ : 0;
         return std::min(static_cast<Index>(strip), strips_ - 1);
-    }
-    template <class Visit>
-    void for_strips(Visit visit) const
-    {
-        for (std::size_t e = 0; e < graph_.edge.size(); ++e) {
-            const auto [below, above] = upward(static_cast<Index>(e));
-            for (Index s = strip_of(below.y()); s <= strip_of(above.y()); ++s)
-                visit(static_cast<Index>(e), s);
-        }
     }
     std::pair<Vector2d, Vector2d> upward(Index e) const
     {
@@ -166,8 +152,7 @@ private:
     const Graph& graph_;
     double low_, high_;
     Index strips_;
-    std::vector<std::size_t> start_;
-    std::vector<Index> edge_;
+    Grouped<Index> edges_; // of each strip
 };
 
 // Whether a ring is the rim of a component, seen from outside it; exact. At the ring's first vertex from the
@@ -235,16 +220,11 @@ Inside::Inside(const Polygon& polygon) : polygon_(polygon), low_(polygon[0]), hi
     if (climb > 0)
         strips_ += static_cast<Index>(static_cast<double>(polygon.size()) *
                                       std::min(1.0, 4 * (high_.y() - low_.y()) / climb));
-    start_.assign(static_cast<std::size_t>(strips_) + 1, 0);
-    for (std::size_t i = 0; i < polygon.size(); ++i)
-        for (auto [strip, last] = strips_of(i); strip <= last; ++strip)
-            ++start_[strip + 1];
-    std::partial_sum(start_.begin(), start_.end(), start_.begin());
-    side_.resize(start_.back());
-    std::vector<Index> next(start_.begin(), start_.end() - 1);
-    for (std::size_t i = 0; i < polygon.size(); ++i)
-        for (auto [strip, last] = strips_of(i); strip <= last; ++strip)
-            side_[next[strip]++] = static_cast<Index>(i);
+    sides_ = {static_cast<std::size_t>(strips_), [&](auto add) {
+                  for (std::size_t i = 0; i < polygon.size(); ++i)
+                      for (auto [strip, last] = strips_of(i); strip <= last; ++strip)
+                          add(strip, static_cast<Index>(i));
+              }};
 }
 
 Index Inside::strip_of(double y) const
@@ -265,9 +245,8 @@ bool Inside::holds(const Vector2d& place) const
     if (!((place.array() >= low_.array()).all() && (place.array() <= high_.array()).all()))
         return false;
     bool inside = false;
-    const Index strip = strip_of(place.y());
-    for (Index s = start_[strip]; s < start_[strip + 1]; ++s) {
-        const auto i = static_cast<std::size_t>(side_[s]);
+    for (const Index side : sides_[strip_of(place.y())]) {
+        const auto i = static_cast<std::size_t>(side);
         const Vector2d &p = polygon_[i], &q = polygon_[i + 1 < polygon_.size() ? i + 1 : 0];
         const bool p_above = p.y() > place.y(), q_above = q.y() > place.y();
         if (p_above == q_above) {
@@ -279,10 +258,10 @@ bool Inside::holds(const Vector2d& place) const
                 return true;
             continue;
         }
-        const int side = p_above ? turn(q, p, place) : turn(p, q, place);
-        if (side == 0)
+        const int turned = p_above ? turn(q, p, place) : turn(p, q, place);
+        if (turned == 0)
             return true;
-        inside ^= side > 0;
+        inside ^= turned > 0;
     }
     return inside;
 }

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
+#include <limits>
 
 namespace jointcreep::blocks
 {
@@ -68,20 +68,13 @@ JointFates FateRecord::table(double tolerance) const
         column->assign(count, 0);
     table.fate.assign(count, 0);
 
-    std::vector<std::size_t> start(count + 1, 0);
-    for (const Piece& piece : pieces_)
-        ++start[piece.joint + 1];
-    std::partial_sum(start.begin(), start.end(), start.begin());
-    std::vector<Piece> sorted(pieces_.size());
-    {
-        std::vector<std::size_t> next(start.begin(), start.end() - 1);
+    const Grouped<Piece> pieces(count, [&](auto add) {
         for (const Piece& piece : pieces_)
-            sorted[next[piece.joint]++] = piece;
-    }
+            add(piece.joint, piece);
+    });
     for (std::size_t j = 0; j < count; ++j) {
         const double length = (joints_.to[j] - joints_.from[j]).norm();
-        const std::span<const Piece> pieces(sorted.data() + start[j], sorted.data() + start[j + 1]);
-        const Lengths sum = lengths_of(pieces, length);
+        const Lengths sum = lengths_of(pieces[j], length);
         const auto of = [&](Fate fate) { return sum.by_fate[static_cast<std::size_t>(fate)]; };
         table.kept[j] = of(Fate::kept);
         table.shared[j] = of(Fate::shared);
@@ -108,24 +101,22 @@ JointFates FateRecord::table(double tolerance) const
 }
 
 TracesAlong::TracesAlong(const Joints& joints)
-    : joints_(joints), start_(joints.set.size() + 1, 0), stretch_(joints.trace_joint.size())
+    : joints_(joints), stretches_(joints.set.size(), [&](auto add) {
+          for (std::size_t t = 0; t < joints.trace_joint.size(); ++t) {
+              const Index j = joints.trace_joint[t];
+              const Vector2d along = (joints.to[j] - joints.from[j]).normalized();
+              const auto place = [&](const Vector2d& x) { return (x - joints.from[j]).dot(along); };
+              const auto [low, high] = std::minmax({place(joints.trace_from[t]), place(joints.trace_to[t])});
+              add(j, {low, high, high});
+          }
+      })
 {
-    for (const Index j : joints.trace_joint)
-        ++start_[j + 1];
-    std::partial_sum(start_.begin(), start_.end(), start_.begin());
-    std::vector<Index> next(start_.begin(), start_.end() - 1);
-    for (std::size_t t = 0; t < joints.trace_joint.size(); ++t) {
-        const Index j = joints.trace_joint[t];
-        const Vector2d along = (joints.to[j] - joints.from[j]).normalized();
-        const auto place = [&](const Vector2d& x) { return (x - joints.from[j]).dot(along); };
-        const auto [low, high] = std::minmax({place(joints.trace_from[t]), place(joints.trace_to[t])});
-        stretch_[next[j]++] = {low, high, high};
-    }
-    for (std::size_t j = 0; j + 1 < start_.size(); ++j) {
-        const auto begin = stretch_.begin() + start_[j], end = stretch_.begin() + start_[j + 1];
-        std::stable_sort(begin, end, [](const Stretch& a, const Stretch& b) { return a.low < b.low; });
-        for (auto s = begin; s != end; ++s)
-            s->highest_yet = s == begin ? s->high : std::max((s - 1)->highest_yet, s->high);
+    for (std::size_t j = 0; j < stretches_.size(); ++j) {
+        const std::span<Stretch> stretches = stretches_[j];
+        std::ranges::stable_sort(stretches, {}, &Stretch::low);
+        double highest = -std::numeric_limits<double>::infinity();
+        for (Stretch& stretch : stretches)
+            stretch.highest_yet = highest = std::max(highest, stretch.high);
     }
 }
 
@@ -144,10 +135,9 @@ double TracesAlong::fraction(Index j, const Vector2d& p, const Vector2d& q, doub
     const auto [low, high] = std::minmax({place(p), place(q)});
     const std::array<bool, 2> ends = ends_.empty() ? std::array<bool, 2>{} : ends_[j];
     double open = 0;
-    const auto last = stretch_.begin() + start_[j + 1];
-    auto s = std::lower_bound(stretch_.begin() + start_[j], last, low - overlap,
-                              [](const Stretch& stretch, double to) { return stretch.highest_yet < to; });
-    for (; s != last && s->low <= high + overlap; ++s) {
+    const std::span<const Stretch> stretches = stretches_[j];
+    auto s = std::ranges::lower_bound(stretches, low - overlap, {}, &Stretch::highest_yet);
+    for (; s != stretches.end() && s->low <= high + overlap; ++s) {
         double from = s->low, to = s->high;
         if (from <= 1e-9 * total && !ends[0])
             from -= overlap;

@@ -2,6 +2,7 @@
 
 #pragma once
 
+#include "model/grouped.hpp"
 #include "model/network.hpp"
 
 #include <Eigen/Core>
@@ -69,8 +70,7 @@ private:
         double highest_yet; // of this and all before [m]
     };
     const Joints& joints_;
-    std::vector<Index> start_; // [joints + 1]
-    std::vector<Stretch> stretch_;
+    Grouped<Stretch> stretches_;            // of each joint
     std::vector<std::array<bool, 2>> ends_; // of each joint; empty if none does
 };
 

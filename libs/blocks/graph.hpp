@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include "model/grouped.hpp"
 #include "model/network.hpp"
 #include "model/scene.hpp"
 
@@ -147,8 +148,7 @@ private:
     Polygon polygon_;
     Eigen::Vector2d low_, high_; // [m]
     Index strips_ = 1;           // of equal height
-    std::vector<Index> start_;   // of each strip's sides
-    std::vector<Index> side_;    // by its first corner
+    Grouped<Index> sides_;       // of each strip, by their first corners
 };
 
 // A place well inside a face, found from its rings alone.

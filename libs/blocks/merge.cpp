@@ -118,34 +118,20 @@ Foot foot_on(const Vector2d& p, const Vector2d& q, const Vector2d& v)
 }
 
 // Neighbours of vertices along edges, and these edges.
-struct Adjacency {
-    std::vector<Index> start, neighbour, edge;
-
-    Adjacency(std::size_t vertices, const std::vector<Edge>& edges)
-        : start(vertices + 1, 0), neighbour(2 * edges.size()), edge(2 * edges.size())
-    {
-        for (const Edge& e : edges) {
-            ++start[e.first + 1];
-            ++start[e.second + 1];
-        }
-        std::partial_sum(start.begin(), start.end(), start.begin());
-        std::vector<Index> next(start.begin(), start.end() - 1);
-        for (std::size_t e = 0; e < edges.size(); ++e)
-            for (const auto& [v, other] :
-                 {std::pair(edges[e].first, edges[e].second), std::pair(edges[e].second, edges[e].first)}) {
-                neighbour[next[v]] = other;
-                edge[next[v]++] = static_cast<Index>(e);
-            }
-    }
-    std::span<const Index> operator[](Index v) const
-    {
-        return {neighbour.data() + start[v], neighbour.data() + start[v + 1]};
-    }
-    std::span<const Index> edges_at(Index v) const
-    {
-        return {edge.data() + start[v], edge.data() + start[v + 1]};
-    }
+struct Neighbour {
+    Index vertex, edge;
 };
+using Neighbours = Grouped<Neighbour>;
+
+Neighbours neighbours_of(std::size_t vertices, const std::vector<Edge>& edges)
+{
+    return {vertices, [&](auto add) {
+                for (Index e = 0; e < static_cast<Index>(edges.size()); ++e) {
+                    add(edges[e].first, {edges[e].second, e});
+                    add(edges[e].second, {edges[e].first, e});
+                }
+            }};
+}
 
 // Edges by their ends; those that have become one are united, and one length of each pair is merged away.
 void unite(std::vector<Edge>& edges, const std::vector<Vector2d>& vertex, Sources& sources,
@@ -316,18 +302,18 @@ std::vector<NearEdge> vertices_near_edges(const std::vector<Vector2d>& vertex, c
 }
 
 // Adds both sides of wedges narrower than the limit, each with the other's far end.
-void add_narrow_wedges(const std::vector<Vector2d>& vertex, const Adjacency& neighbours,
+void add_narrow_wedges(const std::vector<Vector2d>& vertex, const Neighbours& neighbours,
                        const std::vector<Index>& used, double smallest_angle, std::vector<NearEdge>& near)
 {
     const double sine = std::sin(smallest_angle) * (1 + 1e-6);
     std::vector<Vector2d> to; // the neighbours, from the tip
     std::vector<double> squared;
     for (const Index tip : used) {
-        const std::span<const Index> around = neighbours[tip], by = neighbours.edges_at(tip);
+        const std::span<const Neighbour> around = neighbours[tip];
         to.clear();
         squared.clear();
         for (std::size_t i = 0; i < around.size(); ++i) {
-            const Vector2d d = vertex[around[i]] - vertex[tip];
+            const Vector2d d = vertex[around[i].vertex] - vertex[tip];
             to.push_back(d);
             squared.push_back(d.squaredNorm());
             for (std::size_t j = 0; j < i; ++j) {
@@ -336,8 +322,8 @@ void add_narrow_wedges(const std::vector<Vector2d>& vertex, const Adjacency& nei
                     continue;
                 const double across = d.x() * o.y() - d.y() * o.x();
                 if (across * across <= sine * sine * squared[i] * squared[j]) {
-                    near.push_back({by[i], around[j]});
-                    near.push_back({by[j], around[i]});
+                    near.push_back({around[i].edge, around[j].vertex});
+                    near.push_back({around[j].edge, around[i].vertex});
                 }
             }
         }
@@ -381,7 +367,7 @@ struct Bent {
 class Bending
 {
 public:
-    Bending(const Graph& graph, const std::vector<Edge>& edges, const Adjacency& neighbours,
+    Bending(const Graph& graph, const std::vector<Edge>& edges, const Neighbours& neighbours,
             const std::vector<Level>& level, const Sources& sources, const MergeLimits& limits)
         : vertex_(graph.vertex), edges_(edges), neighbours_(neighbours), level_(level), sources_(sources),
           limits_(limits), bent_{graph.vertex, std::vector<char>(graph.vertex.size(), 0), {}}
@@ -445,7 +431,8 @@ private:
             return via != nullptr && std::ranges::find(*via, end) != via->end();
         };
         const auto is_wedge_from = [&](Index tip, Index end) {
-            return closed_from != end && std::ranges::find(neighbours_[v], tip) != neighbours_[v].end() &&
+            return closed_from != end &&
+                   std::ranges::find(neighbours_[v], tip, &Neighbour::vertex) != neighbours_[v].end() &&
                    distance < (vertex_[v] - vertex_[tip]).norm() * std::sin(limits_.smallest_angle) &&
                    !is_closed_already(tip, end);
         };
@@ -456,7 +443,7 @@ private:
 
     const std::vector<Vector2d>& vertex_;
     const std::vector<Edge>& edges_;
-    const Adjacency& neighbours_;
+    const Neighbours& neighbours_;
     const std::vector<Level>& level_;
     const Sources& sources_;
     const MergeLimits& limits_;
@@ -469,7 +456,7 @@ Bent bend_edges(const Graph& graph, const std::vector<Edge>& edges, std::vector<
                 const std::vector<Level>& level, const Sources& sources, const MergeLimits& limits,
                 CuttingReport& report)
 {
-    const Adjacency neighbours(graph.vertex.size(), edges);
+    const Neighbours neighbours = neighbours_of(graph.vertex.size(), edges);
     std::erase_if(used, [&](Index v) { return neighbours[v].empty(); });
     std::vector<NearEdge> near = vertices_near_edges(graph.vertex, edges, used, limits.shortest_edge);
     const auto in_order = static_cast<std::ptrdiff_t>(near.size());

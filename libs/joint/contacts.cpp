@@ -80,7 +80,7 @@ void find_incidence(Contacts& contacts, std::size_t n_gridpoints)
     std::vector<Index> gridpoint; // of each side
     for (const auto& [a, b] : contacts.gridpoint)
         gridpoint.insert(gridpoint.end(), {a, b});
-    contacts.sides = {gridpoint, n_gridpoints};
+    contacts.sides = grouped(gridpoint, n_gridpoints);
     contacts.force.assign(contacts.gridpoint.size(), Vector2d::Zero());
 }
 

@@ -3,9 +3,9 @@
 #pragma once
 
 #include "joint/law.hpp"
-#include "model/by_gridpoint.hpp"
 #include "model/checkpoint.hpp"
 #include "model/disjoint_sets.hpp"
+#include "model/grouped.hpp"
 #include "model/network.hpp"
 #include "model/result.hpp"
 #include "model/scene.hpp"
@@ -46,7 +46,7 @@ struct Contacts {
     std::vector<double> work;
     double stored_before = 0;
 
-    ByGridpoint sides; // 2 contact + side (0 a, 1 b); filled by find_incidence
+    Grouped<Index> sides; // 2 contact + side (0 a, 1 b); filled by find_incidence
 };
 
 // What equilibria and creep change in Contacts.
@@ -79,12 +79,12 @@ inline std::span<const Vector2d> reported_forces(const Contacts& contacts)
 // Adds the forces of the contacts at a gridpoint [N/m], or their magnitudes.
 inline void add_force_on(const Contacts& contacts, Index gridpoint, Vector2d& force)
 {
-    for (const Index side : contacts.sides.at(gridpoint))
+    for (const Index side : contacts.sides[gridpoint])
         force += (1 - 2 * (side & 1)) * contacts.force[side >> 1]; // a product is quicker than a branch
 }
 inline void add_magnitudes_on(const Contacts& contacts, Index gridpoint, double& magnitudes)
 {
-    for (const Index side : contacts.sides.at(gridpoint))
+    for (const Index side : contacts.sides[gridpoint])
         magnitudes += contacts.force[side / 2].norm();
 }
 

@@ -293,7 +293,7 @@ void Dynamics::find_forces(const std::vector<Vector2d>& move)
     for_each(static_cast<Index>(now_.place.size()), assembly_.threads, [&](Index g) {
         Vector2d force = assembly_.load[g] + assembly_.applied[g] + held * released_[g];
         if (any_deforms_)
-            for (const Index corner : assembly_.zones.corners.at(g))
+            for (const Index corner : assembly_.zones.corners[g])
                 force += zones_.corner_force[corner];
         now_.force[g] = force;
     });
@@ -502,7 +502,7 @@ Dynamics::Balance Dynamics::balance(const std::vector<Vector2d>& contact_force) 
             found.largest = std::max(found.largest, now_.force[g].cwiseProduct(assembly_.is_free[g]).norm());
         found.farthest = std::max(found.farthest, now_.place[g].norm());
         double all = assembly_.load[g].norm() + assembly_.applied[g].norm() + contact_force[g].norm();
-        for (const Index corner : assembly_.zones.corners.at(g))
+        for (const Index corner : assembly_.zones.corners[g])
             all += zones_.corner_force[corner].norm();
         if (all > 0) {
             sum += all;

@@ -41,7 +41,7 @@ void Dynamics::find_ground()
     std::map<Index, std::vector<std::size_t>> on_ground; // contacts of a gridpoint
     for (std::size_t c = 0; c < contacts.gridpoint.size(); ++c) {
         const auto [a, b] = contacts.gridpoint[c];
-        if (assembly_.zones.corners.at(a).empty())
+        if (assembly_.zones.corners[a].empty())
             on_ground[b].push_back(c);
     }
     for (std::size_t s = 0; s < mesh_.side_gridpoint.size(); ++s) {

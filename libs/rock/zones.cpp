@@ -221,7 +221,7 @@ Zones zones_of(const Scene& scene, const Network& network, const Mesh& mesh)
 
 void find_incidence(Zones& zones, std::size_t n_gridpoints)
 {
-    zones.corners = {zones.gridpoint, n_gridpoints};
+    zones.corners = grouped(zones.gridpoint, n_gridpoints);
     zones.slots = {};
     Slots& slots = zones.slots;
     std::vector<Index> gridpoint; // of each slot
@@ -243,19 +243,19 @@ void find_incidence(Zones& zones, std::size_t n_gridpoints)
     slots.part_start.push_back(static_cast<Index>(gridpoint.size()));
     slots.force.assign(gridpoint.size(), Vector2d::Zero());
     slots.magnitudes.assign(gridpoint.size(), 0.0);
-    slots.by_gridpoint = {gridpoint, n_gridpoints};
+    slots.by_gridpoint = grouped(gridpoint, n_gridpoints);
 }
 
 bool has_rock(const Zones& zones, Index gridpoint)
 {
-    return std::ranges::any_of(zones.corners.at(gridpoint), [&](Index corner) {
+    return std::ranges::any_of(zones.corners[gridpoint], [&](Index corner) {
         return zones.is_present[corner / zones.gridpoints_of_zone] != 0;
     });
 }
 
 bool has_lost_rock(const Zones& zones, Index gridpoint)
 {
-    return !zones.corners.at(gridpoint).empty() && !has_rock(zones, gridpoint);
+    return !zones.corners[gridpoint].empty() && !has_rock(zones, gridpoint);
 }
 
 namespace

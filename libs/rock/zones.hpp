@@ -2,9 +2,9 @@
 
 #pragma once
 
-#include "model/by_gridpoint.hpp"
 #include "model/checkpoint.hpp"
 #include "model/disjoint_sets.hpp"
+#include "model/grouped.hpp"
 #include "model/network.hpp"
 #include "model/result.hpp"
 #include "model/scene.hpp"
@@ -30,7 +30,7 @@ struct Slots {
     std::vector<Index> of_zone;     // [stress point, gridpoint of its zone]
     std::vector<Vector2d> force;    // [N/m]
     std::vector<double> magnitudes; // sums of the magnitudes of the zones' forces [N/m]
-    ByGridpoint by_gridpoint;       // slots
+    Grouped<Index> by_gridpoint;    // slots
 };
 
 // Zones: triangles in plane strain and small strain, elastic or yielding. A zone of constant strain has three
@@ -71,8 +71,8 @@ struct Zones {
     std::vector<char> creeps; // whether the rock of a stress point creeps
 
     // Filled by find_incidence.
-    ByGridpoint corners; // places in `gridpoint`
-    Slots slots;         // their forces are filled by find_forces_in_team
+    Grouped<Index> corners; // places in `gridpoint`
+    Slots slots;            // their forces are filled by find_forces_in_team
 };
 
 // What equilibria and creep change in Zones.
@@ -111,12 +111,12 @@ inline std::span<const Vector2d> reported_forces(const Zones&)
 // Adds the forces of the zones at a gridpoint [N/m], or their magnitudes.
 inline void add_force_on(const Zones& zones, Index gridpoint, Vector2d& force)
 {
-    for (const Index slot : zones.slots.by_gridpoint.at(gridpoint))
+    for (const Index slot : zones.slots.by_gridpoint[gridpoint])
         force += zones.slots.force[slot];
 }
 inline void add_magnitudes_on(const Zones& zones, Index gridpoint, double& magnitudes)
 {
-    for (const Index slot : zones.slots.by_gridpoint.at(gridpoint))
+    for (const Index slot : zones.slots.by_gridpoint[gridpoint])
         magnitudes += zones.slots.magnitudes[slot];
 }
 

@@ -1,5 +1,6 @@
 #include "statistics/nodes.hpp"
 
+#include "model/grouped.hpp"
 #include "model/polygon.hpp"
 
 #include <algorithm>
@@ -39,7 +40,6 @@ public:
                          1e-3 * size.norm());
         columns_ = static_cast<Index>(size.x() / cell_) + 1;
         rows_ = static_cast<Index>(size.y() / cell_) + 1;
-        first_.assign(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_) + 1, 0);
     }
 
     Index column(double x) const
@@ -84,27 +84,21 @@ public:
 
     void fill(const std::vector<Segment>& segments)
     {
-        for (const Segment& segment : segments)
-            for_cells(segment, [this](std::size_t at) { ++first_[at + 1]; });
-        for (std::size_t i = 1; i < first_.size(); ++i)
-            first_[i] += first_[i - 1];
-        segments_.resize(first_.back());
-        std::vector<std::size_t> next(first_.begin(), first_.end() - 1);
-        for (std::size_t s = 0; s < segments.size(); ++s)
-            for_cells(segments[s], [&](std::size_t at) { segments_[next[at]++] = s; });
+        segments_ = {static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_), [&](auto add) {
+                         for (std::size_t s = 0; s < segments.size(); ++s)
+                             for_cells(segments[s], [&](std::size_t at) { add(at, static_cast<Index>(s)); });
+                     }};
     }
 
-    std::size_t begin(std::size_t at) const { return first_[at]; }
-    std::size_t end(std::size_t at) const { return first_[at + 1]; }
-    std::size_t segment(std::size_t i) const { return segments_[i]; }
-    std::size_t cells() const { return first_.size() - 1; }
+    std::size_t cells() const { return segments_.size(); }
+    std::span<const Index> segments(std::size_t cell) const { return segments_[cell]; }
     std::size_t cell_of(const Vector2d& place) const { return cell(column(place.x()), row(place.y())); }
 
 private:
     Vector2d low_, high_;
     double cell_ = 1, margin_;
     Index columns_ = 1, rows_ = 1;
-    std::vector<std::size_t> first_, segments_;
+    Grouped<Index> segments_; // of each cell
 };
 
 } // namespace
@@ -122,10 +116,11 @@ Nodes count_nodes(const Joints& joints, const Polygon& outline, double tolerance
         return joints.trace_joint[a] != joints.trace_joint[b];
     };
     // Crossings, each in the cell that it lies in.
-    for (std::size_t cell = 0; cell < grid.cells(); ++cell)
-        for (std::size_t i = grid.begin(cell); i < grid.end(cell); ++i)
-            for (std::size_t j = grid.begin(cell); j < i; ++j) {
-                const std::size_t a = grid.segment(i), b = grid.segment(j);
+    for (std::size_t cell = 0; cell < grid.cells(); ++cell) {
+        const std::span<const Index> here = grid.segments(cell);
+        for (std::size_t i = 0; i < here.size(); ++i)
+            for (const Index b : here.first(i)) {
+                const Index a = here[i];
                 if (!may_meet(a, b))
                     continue;
                 const Segment &s = segments[a], &o = segments[b];
@@ -145,16 +140,15 @@ Nodes count_nodes(const Joints& joints, const Polygon& outline, double tolerance
                 if (!is_at_end)
                     ++nodes.x;
             }
+    }
     // Ends.
     for (std::size_t a = 0; a < segments.size(); ++a)
         for (const Vector2d& end : {segments[a].from, segments[a].to}) {
             if (!covers(outline, end))
                 continue;
-            bool is_at_other = false;
-            const std::size_t cell = grid.cell_of(end);
-            for (std::size_t i = grid.begin(cell); i < grid.end(cell) && !is_at_other; ++i)
-                is_at_other =
-                    may_meet(a, grid.segment(i)) && segments[grid.segment(i)].distance(end) <= tolerance;
+            const bool is_at_other = std::ranges::any_of(grid.segments(grid.cell_of(end)), [&](Index b) {
+                return may_meet(a, b) && segments[b].distance(end) <= tolerance;
+            });
             ++(is_at_other ? nodes.y : nodes.i);
         }
     return nodes;

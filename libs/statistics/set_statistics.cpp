@@ -186,7 +186,7 @@ void add_spacings(Seen& seen, const JointSet& set, const MeanTrace& mean, const 
 }
 
 Seen look_at(const JointSet& set, const Window& window, const MeanTrace& mean, const Circle& circle,
-             const Joints& joints, const TraceRows& traces, Index index)
+             const Joints& joints, const Grouped<Index>& traces, Index index)
 {
     Seen seen;
     const Scanline scanline = scanline_of(window, mean);
@@ -205,8 +205,8 @@ Seen look_at(const JointSet& set, const Window& window, const MeanTrace& mean, c
             places[number] = place;
 
         std::vector<Interval> open;
-        for (std::size_t t = traces.first[j]; t < traces.first[j + 1]; ++t) {
-            const Vector2d &begin = joints.trace_from[traces.row[t]], &end = joints.trace_to[traces.row[t]];
+        for (const Index t : traces[j]) {
+            const Vector2d &begin = joints.trace_from[t], &end = joints.trace_to[t];
             open.push_back({(begin - from).dot(direction), (end - from).dot(direction)});
             const InCircle here = in_circle(circle, begin, end);
             seen.in_circle_crossings += here.crossings;
@@ -903,19 +903,6 @@ ProbabilityLaw times(ProbabilityLaw law, double factor)
 
 } // namespace
 
-TraceRows trace_rows(const Joints& joints)
-{
-    TraceRows rows{std::vector<std::size_t>(joints.set.size() + 1, 0),
-                   std::vector<std::size_t>(joints.trace_joint.size())};
-    for (const Index joint : joints.trace_joint)
-        ++rows.first[static_cast<std::size_t>(joint) + 1];
-    std::partial_sum(rows.first.begin(), rows.first.end(), rows.first.begin());
-    std::vector<std::size_t> next(rows.first.begin(), rows.first.end() - 1);
-    for (std::size_t t = 0; t < joints.trace_joint.size(); ++t)
-        rows.row[next[static_cast<std::size_t>(joints.trace_joint[t])]++] = t;
-    return rows;
-}
-
 MeanTrace mean_trace(const Scene& scene, const JointSet& set)
 {
     const Vector2d trace = sampling::Orientations(set, scene).mean_trace();
@@ -961,7 +948,7 @@ std::vector<double> turns_by_law(const Scene& scene, const JointSet& set)
     return turns;
 }
 
-void add_set(Statistics& statistics, const Scene& scene, const Joints& joints, const TraceRows& traces,
+void add_set(Statistics& statistics, const Scene& scene, const Joints& joints, const Grouped<Index>& traces,
              Index index)
 {
     JointSet set = scene.joint_sets[static_cast<std::size_t>(index)];

@@ -19,17 +19,12 @@
 
 #pragma once
 
+#include "model/grouped.hpp"
 #include "model/network.hpp"
 #include "model/scene.hpp"
 
 namespace jointcreep::statistics
 {
-
-// Rows of the joint traces of each joint: those of joint j are row[first[j]] .. row[first[j + 1]].
-struct TraceRows {
-    std::vector<std::size_t> first, row;
-};
-TraceRows trace_rows(const Joints& joints);
 
 // Angles from the mean trace to traces, so many that each stands for the same share of the set's law [rad].
 std::vector<double> turns_by_law(const Scene& scene, const JointSet& set);
@@ -43,7 +38,7 @@ struct MeanTrace {
 MeanTrace mean_trace(const Scene& scene, const JointSet& set);
 
 // Adds the rows of a set.
-void add_set(Statistics& statistics, const Scene& scene, const Joints& joints, const TraceRows& traces,
+void add_set(Statistics& statistics, const Scene& scene, const Joints& joints, const Grouped<Index>& traces,
              Index set);
 
 } // namespace jointcreep::statistics

@@ -198,7 +198,7 @@ void add_nodes(Statistics& statistics, const Scene& scene, const Joints& joints,
 Statistics statistics_of(const Scene& scene, const Network& network)
 {
     Statistics statistics;
-    const TraceRows traces = trace_rows(network.joints);
+    const Grouped<Index> traces = grouped(network.joints.trace_joint, network.joints.set.size()); // rows
     for (std::size_t set = 0; set < scene.joint_sets.size(); ++set)
         add_set(statistics, scene, network.joints, traces, static_cast<Index>(set));
     const std::optional<Expected> expected = expected_of(scene);
