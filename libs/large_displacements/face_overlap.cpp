@@ -12,6 +12,9 @@ namespace
 {
 
 constexpr double rounding_of_corners = 0.01; // of the shorter face: where two corners meet
+// An overlap is at most so many times as long as that in the plane midway between the faces. Two corners beside each other
+// come to overlap there first, and their force grows from 0.
+constexpr double longest = 2;
 
 std::optional<Overlap> overlap_along(const Vector2d& tangent, const std::array<Vector2d, 2>& a,
                                      const std::array<Vector2d, 2>& b)
@@ -27,7 +30,7 @@ std::optional<Overlap> overlap_along(const Vector2d& tangent, const std::array<V
     Overlap& found = overlap.emplace();
     found.tangent = tangent;
     found.inset = {along_a[0] - along_b[1], along_b[0] - along_a[1]};
-    found.length = at[1] - at[0];
+    found.length = found.whole = at[1] - at[0];
     const Vector2d normal = found.normal();
     for (int i = 0; i < 2; ++i) {
         found.on_a[i] = at[i] / along_a[1];
@@ -36,6 +39,18 @@ std::optional<Overlap> overlap_along(const Vector2d& tangent, const std::array<V
             (b[0] + found.on_b[i] * (b[1] - b[0]) - a[0] - found.on_a[i] * (a[1] - a[0])).dot(normal);
     }
     return overlap;
+}
+
+// Leaves so much of an overlap, at its deeper end.
+void shorten(Overlap& overlap, double length)
+{
+    if (length >= overlap.length)
+        return;
+    const int deep = overlap.gap[1] < overlap.gap[0] ? 1 : 0;
+    const double left = length / overlap.length;
+    for (auto* const ends : {&overlap.on_a, &overlap.on_b, &overlap.gap})
+        (*ends)[1 - deep] = (*ends)[deep] + left * ((*ends)[1 - deep] - (*ends)[deep]);
+    overlap.length = length;
 }
 
 } // namespace
@@ -59,7 +74,10 @@ std::optional<Overlap> overlap_along(const Vector2d& tangent, const std::array<V
         0.5 + between->inset[deep] / (2 * rounding_of_corners * std::min(shape_a.length, shape_b.length)),
         0.0, 1.0);
     const double of_b = is_end_of_a * shape_a.sharp[deep] + (1 - is_end_of_a) * (1 - shape_b.sharp[1 - deep]);
-    return overlap_along((of_b * along_b + (1 - of_b) * along_a).normalized(), a, b);
+    auto found = overlap_along((of_b * along_b + (1 - of_b) * along_a).normalized(), a, b);
+    if (found)
+        shorten(*found, longest * between->length);
+    return found;
 }
 
 } // namespace jointcreep::large_displacements

@@ -1,6 +1,7 @@
 // Contacts between two rows of faces, against closed forms.
 
 #include "large_displacements/face_contacts.hpp"
+#include "large_displacements/face_overlap.hpp"
 #include "model/error.hpp"
 
 #include <Eigen/Geometry>
@@ -70,6 +71,45 @@ TwoLines rows(double sunk)
 }
 
 } // namespace
+
+// Two corners beside each other come to overlap as one of them passes the other: from 0 on, though the gap between them has
+// another length in each plane, and a joint that was closed before carries load across a gap.
+TEST(face_contacts, two_corners_beside_each_other_overlap_from_zero_on)
+{
+    Faces faces;
+    faces.gridpoint = {{0, 1}, {2, 3}};
+    faces.depth = {1, 1};
+    const double angle = 69 * std::numbers::pi / 180;
+    const Vector2d along_b(-std::cos(angle), -std::sin(angle)), beside(0.0022, -0.0032);
+    const std::vector<large_displacements::FaceShape> shapes{{{1, 0}, 8}, {along_b, 6}};
+    const Vector2d passing = (Vector2d(1, 0) - along_b).normalized();
+    const double step = 1e-5;
+    double last = 0;
+    int overlapping = 0;
+    for (int i = -300; i < 1000; ++i) {
+        const Vector2d corner = beside + i * step * passing;
+        const std::vector<Vector2d> place{{0, 0}, {8, 0}, corner, corner + 6 * along_b};
+        const auto found = large_displacements::overlap_of({.a = 0, .b = 1}, faces, shapes, place);
+        const double length = found ? found->length : 0.0;
+        EXPECT_LT(std::abs(length - last), 5 * step) << i;
+        overlapping += length > 0 ? 1 : 0;
+        last = length;
+        if (found) {
+            // Its ends are where they are said to be.
+            for (int end = 0; end < 2; ++end) {
+                const Vector2d on_a = large_displacements::at(std::array<Vector2d, 2>{place[0], place[1]},
+                                                              found->on_a[end]),
+                               on_b = large_displacements::at(std::array<Vector2d, 2>{place[2], place[3]},
+                                                              found->on_b[end]);
+                EXPECT_NEAR((on_b - on_a).dot(found->normal()), found->gap[end], 1e-12);
+                EXPECT_NEAR((on_b - on_a).dot(found->tangent), 0, 1e-12);
+            }
+            EXPECT_GE(found->whole, found->length);
+        }
+    }
+    EXPECT_GT(overlapping, 900);
+    EXPECT_LT(overlapping, 1100);
+}
 
 // Uniform closing gives uniform traction: every gridpoint has half of the loaded sides beside it, although
 // none has a partner.
