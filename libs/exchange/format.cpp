@@ -23,6 +23,14 @@ std::string listed(const std::vector<std::string_view>& words, const char* betwe
     return text;
 }
 
+std::string by_default(const Format& format)
+{
+    const std::string of_result(format.usual_of_result);
+    if (format.usual.empty())
+        return of_result;
+    return listed(format.usual) + (of_result.empty() ? "" : "; of a result " + of_result);
+}
+
 std::string in_one_file(const Format& format)
 {
     if (format.holds_several)
@@ -219,13 +227,15 @@ std::vector<Layer> Job::all(std::string_view name) const
 
 std::string formats_text()
 {
-    std::string text = "format\textension\tholds\tin one file\tas\n";
+    std::string text = "format\textension\tholds\tby default\tin one file\tas\n";
     for (const Format& format : formats())
         text.append(format.name)
             .append("\t")
             .append(listed(format.extensions))
             .append("\t")
             .append(listed(format.holds))
+            .append("\t")
+            .append(by_default(format))
             .append("\t")
             .append(in_one_file(format))
             .append("\t")

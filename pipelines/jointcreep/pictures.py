@@ -19,7 +19,7 @@ from stage_names import plain
 BAND = "#c9d8ea"
 MOST_PANELS = 6
 BAND_POINTS = 60
-FEWEST_BARS = 4  # that a panel has room for, so that one is not broad
+FEWEST_BARS = 3  # that a panel has room for, so that one is not broad
 
 
 def distribution(quantity, study, values):

@@ -9,6 +9,7 @@ Names are those of the scripts plot_NAME.py; options are those of their command 
 """
 
 import importlib
+import inspect
 import pathlib
 
 import figure
@@ -23,8 +24,13 @@ def draw(name, path, **options):
     """A figure of matplotlib. path: the file that it is drawn of. Raises NotWanted if the file does not have what the plot needs."""
     if name not in NAMES:
         raise NotWanted(f'there is no plot "{name}"; there are: {", ".join(NAMES)}')
+    function = importlib.import_module(f"plot_{name}").draw
+    takes = inspect.signature(function).parameters
+    for option, value in options.items():  # one word in place of a list of words
+        if isinstance(value, str) and option in takes and isinstance(takes[option].default, tuple):
+            options[option] = [value]
     try:
-        return figure.drawn(importlib.import_module(f"plot_{name}").draw, path, **options)
+        return figure.drawn(function, path, **options)
     except figure.NotWanted as error:
         raise NotWanted(str(error)) from None
 

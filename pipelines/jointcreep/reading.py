@@ -193,7 +193,7 @@ class File:
     def history(self):
         """History of the monitoring points; of result files."""
         with self.opened() as file:
-            self.check("/history/time", file)
+            self.check("/history/displacement", file)
             return history_of(file)
 
     def states(self):

@@ -117,7 +117,8 @@ def factor_of_safety(source, folder):
     parts.append(drawn("safety", source, folder, "The largest displacement over the strength reduction factor."))
     failed = failed_run(source)
     if failed:
-        parts.append(drawn("state", failed, folder, "The run with the smallest factor without equilibrium: moving blocks.", state="last"))
+        parts.append(drawn("state", failed, folder, "The run with the smallest factor without equilibrium: moving blocks.",
+                           around_failure=True))
         with h5py.File(failed) as file:
             rows = list(zip(file["/failure/block"][()], file["/failure/place"][()], 1e3 * file["/failure/motion"][()]))
         rows = sorted(rows, key=lambda row: -np.linalg.norm(row[2]))
@@ -160,6 +161,7 @@ def of_run(source, programs, folder):
     if "monitoring_line" in scene:
         parts.append(drawn("line", source, folder, "Displacements along monitoring lines."))
     parts.append("<h2>Last state before the run ended early</h2>" if failure else "<h2>State at the end</h2>")
+    parts += [drawn("state", source, folder, "Moving blocks.", around_failure=True)] if failure else []
     for field, caption in (("displacement", "Displacements."), ("stress", "Stresses."), ("contacts", "Contacts that slip or open.")):
         parts.append(drawn("state", source, folder, caption, field=field, window=window))
     parts += ["<h2>Numbers</h2>", table(["", ""], numbers), "<h2>Settings</h2>", settings(scene), "<h2>Warnings</h2>",

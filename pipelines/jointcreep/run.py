@@ -146,6 +146,11 @@ class Plan:
                 has_moved = "large_displacements" in self.scene and field != "contacts"  # then the rock is drawn where it is
                 yield self.picture("state", result, f"{word}-{field}", state=state, field=field, window=window,
                                    magnify=1 if has_moved else None)
+        if failed is not None:
+            yield self.moving_blocks()
+
+    def moving_blocks(self):
+        return self.picture("state", pathlib.Path(FAILED), "failure", around_failure=True)
 
     def picture(self, name, source, picture, **options):
         """The step that draws a plot; options that are None are left out."""
@@ -157,7 +162,8 @@ class Plan:
 
         output = pathlib.Path(f"{picture}.png")
         words = [word for option, value in options.items()
-                 for word in (f"--{option.replace('_', '-')}", *map(str, value if isinstance(value, list) else [value]))]
+                 for word in (f"--{option.replace('_', '-')}",
+                              *([] if value is True else map(str, value if isinstance(value, list) else [value])))]
         script = PLOTS / f"plot_{name}.py"
         return Step(str(output), [PYTHON, script, source, *words, "-o", output], draw=draw)
 
@@ -170,7 +176,7 @@ class Plan:
             times = value_of(self.options, "--safety-displacement")
             steps.append(self.picture("safety", result, "safety", **({"safety_displacement": float(times)} if times else {})))
         if falls:
-            steps.append(self.picture("state", pathlib.Path(FAILED), "failure", state="last", field="displacement"))
+            steps.append(self.moving_blocks())
         for name in ["histories.csv"] * ("point" in self.scene or "monitoring_line" in self.scene) + ["states.xdmf2"]:
             steps.append(Step(name, [self.programs / "jointexport", result, "--quiet", "-o", pathlib.Path(name)]))
 

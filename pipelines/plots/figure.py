@@ -301,6 +301,7 @@ def legend_below(axes, *groups):
         columns = max(1, min(len(entries), columns))
         rows = -(-len(entries) // columns)
     axes.figure.set_size_inches(width, height + 0.22 + 0.16 * rows)
+    axes.figure.cuts_margins = True  # of a high picture the legend would reach beyond its lower edge
     axes.legend(handles=entries, loc="upper center", bbox_to_anchor=(0.5, -0.52 / (height - 0.5)), ncol=columns,
                 borderaxespad=0)
 

@@ -48,7 +48,7 @@ def draw(file, component="x", point=(), since_first_reading=False):
     columns = min(2, len(chosen))
     rows = -(-len(chosen) // columns)
     plot, panels = figure.plt.subplots(rows, columns, sharex=True, squeeze=False,
-                                       figsize=(figure.TWO_COLUMNS, 1.0 + 1.6 * rows))
+                                       figsize=(figure.TWO_COLUMNS, max(3.2, 1.0 + 1.6 * rows)))
     panels = panels.ravel()
     stages = [row for row, name in enumerate(event) if name]
     for axes, point in zip(panels, chosen):

@@ -23,6 +23,7 @@ import figure
 from stage_names import plain
 
 MOVING = "#dfaaa0"  # fill of moving blocks
+SMALL = 0.25  # share of the section, up to which the surroundings of moving blocks are drawn alone
 STUCK, SLIPPING, OPEN = 1, 2, 3  # /states/contact_status
 SLIPPED = 1e-3  # of the largest slip; below, a contact counts as one that has not slipped
 COMPONENTS = {
@@ -128,7 +129,7 @@ def draw_displacement(file, state, section, axes, since_reset, limits):
     if largest == 0 and not limits:
         axes.tripcolor(section.triangles, size, shading="gouraud", cmap=figure.SHADES, vmin=0, vmax=1, rasterized=True)
         draw_borders(section, axes)
-        return [matplotlib.lines.Line2D([], [], linestyle="none", label="no displacement in this state")]
+        return [matplotlib.patches.Patch(facecolor=figure.plt.get_cmap(figure.SHADES)(0.0), label="no displacement in this state")]
     low, high = limits or (0, largest)
     colored = axes.tripcolor(section.triangles, size, shading="gouraud", cmap=figure.SHADES, vmin=low, vmax=high,
                              rasterized=True)
@@ -156,7 +157,7 @@ def round_below(value):
 
 def add_key(axes, arrows, value, unit):
     """How long an arrow, or a cross, of some size is: in the corner above the section."""
-    axes.quiverkey(arrows, 0.9, 0.965, value, f"{value:g} {unit}", labelpos="W", labelsep=0.06)
+    axes.quiverkey(arrows, 0.9, 0.965, value, f"{value:g} {unit}", labelpos="W", labelsep=0.06).text.set_path_effects(figure.HALO)
 
 
 def principal(stress):
@@ -299,7 +300,8 @@ def length_text(metres):
 
 def draw_failure(file, section, axes):
     """What happened after the last state of a run without equilibrium: rock that was excavated, and the moving blocks. Their
-    arrows are in proportion to their motion; the fastest one's is as long as a tenth of the picture. Returns legend entries."""
+    arrows are in proportion to their motion; the fastest one's is as long as the moving blocks together, within 3 and 10 percent of
+    the picture. Returns legend entries."""
     entries = []
     block = figure.array(file, "/mesh/zone_block")[section.there]
     stage = figure.texts(file, "/failure/stage")[0]
@@ -320,8 +322,10 @@ def draw_failure(file, section, axes):
     if largest > 0:
         shift = (section.position - section.start)[section.zones].mean(axis=1)
         size = max(np.ptp(axes.get_xlim()), np.ptp(axes.get_ylim()))
+        of_all = np.ptp(section.position[section.zones[of_moving >= 0]].reshape(-1, 2), axis=0).max()
+        length = np.clip(of_all, 0.03 * size, 0.1 * size)
         place = figure.array(file, "/failure/place") + [shift[block == one].mean(axis=0) if one in block else (0, 0) for one in moving]
-        axes.quiver(*place.T, *motion.T, angles="xy", scale_units="xy", scale=largest / (0.1 * size),
+        axes.quiver(*place.T, *motion.T, angles="xy", scale_units="xy", scale=largest / length,
                     units="inches", width=0.024, headwidth=4, headlength=5, headaxislength=4.5, minlength=0.6, color=figure.COLORS[1],
                     edgecolor="white", linewidth=0.5, zorder=8)
         seconds, steps = figure.array(file, "/failure/seconds")[0], figure.array(file, "/failure/steps")[0]
@@ -331,12 +335,31 @@ def draw_failure(file, section, axes):
     return entries
 
 
-def draw(file, state="last", field="displacement", component="major", since_reset=False, window=None, magnify=0, limits=None):
+def window_of_failure(file):
+    """The surroundings of the blocks that move in the end of a run without equilibrium, x0, y0, x1, y1 [m]: as much on each side as
+    they are wide or high. None if nothing moves, or that is a large part of the section."""
+    position = figure.array(file, "/mesh/gridpoint_position")
+    zones = figure.array(file, "/mesh/zone_gridpoint")
+    moving = np.isin(figure.array(file, "/mesh/zone_block"), figure.array(file, "/failure/block")) if "/failure" in file else []
+    if not np.any(moving):
+        return None
+    of_moving = position[zones[moving]].reshape(-1, 2)
+    low, high = of_moving.min(axis=0), of_moving.max(axis=0)
+    around = (high - low).max()
+    low, high = np.maximum(low - around, position.min(axis=0)), np.minimum(high + around, position.max(axis=0))
+    return None if np.prod(high - low) > SMALL * np.prod(np.ptp(position, axis=0)) else [*low, *high]
+
+
+def draw(file, state="last", field="displacement", component="major", since_reset=False, window=None, around_failure=False, magnify=0,
+         limits=None):
     """Figure of one state: field "displacement", "stress" or "contacts". state: plain words for a stage, or "last"; component of
-    the stress; window: x0, y0, x1, y1 [m]; limits: low, high of the colour scale."""
+    the stress; window: x0, y0, x1, y1 [m]; around_failure: the surroundings of moving blocks in its place, if they are small;
+    limits: low, high of the colour scale."""
     if figure.file_type(file) not in ("jointcreep result", "jointcreep checkpoint"):
         raise figure.NotWanted("there are no states in this file; demsolve makes one that has them")
     state = state_index(file, state)
+    if around_failure:
+        window = window_of_failure(file)
     section = Section(file, state, magnify, window, since_reset)
     plot, axes = figure.section_axes(section.start, window)
     plot.cuts_margins = True  # scales and legends leave margins of different widths
@@ -378,10 +401,12 @@ if __name__ == "__main__":
         (["--field"], {"choices": ["displacement", "stress", "contacts"], "default": "displacement",
                        "help": "default: displacement"}),
         (["--component"], {"choices": list(COMPONENTS), "default": "major",
-                           "help": "of the stress; major and minor come with crosses along their directions; "
-                                   "default: major"}),
+                           "help": "of the stress, compression positive: major is the larger compression, minor the smaller one "
+                                   "(both with crosses along their directions), mean, xx, yy; default: major"}),
         (["--since-reset"], {"action": "store_true", "help": "displacements since the last stage that resets them"}),
         figure.WINDOW,
+        (["--around-failure"], {"action": "store_true",
+                                "help": "draw the surroundings of the moving blocks of a run without equilibrium, if they are small"}),
         (["--magnify"], {"type": float, "default": 0, "metavar": "TIMES",
                          "help": "draw the rock displaced so many times; default: 0"}),
         (["--range"], {"dest": "limits", "nargs": 2, "type": float, "metavar": ("LOW", "HIGH"),

@@ -337,12 +337,13 @@ region_m = [[2, 2], [78, 2], [78, 12], [50, 12], [50, 6], [25, 6], [25, 45], [2,
 
     def test_formats_are_listed(self):
         rows = [line.split("\t") for line in self.chain.answer("jointexport", "--formats").stdout.splitlines()]
-        self.assertEqual(rows[0], ["format", "extension", "holds", "in one file", "as"])
-        self.assertEqual({len(row) for row in rows}, {5})
+        self.assertEqual(rows[0], ["format", "extension", "holds", "by default", "in one file", "as"])
+        self.assertEqual({len(row) for row in rows}, {6})
         page = self.chain.text("docs/exchange.md")
         self.assertGreater(len(rows), 15)
-        for name, extension, *_ in rows[1:]:
-            self.assertIn(f"| `{name}` | {extension} |", page)
+        for name, extension, _, default, *_ in rows[1:]:
+            of_page = re.search(rf"^\| `{name}` \| {re.escape(extension)} \|[^|]*\|([^|]*)\|", page, flags=re.MULTILINE)
+            self.assertEqual(of_page[1].replace(",", "").strip(), default, name)
 
     def test_no_file_is_written_over_an_input(self):
         folder = self.chain.new_folder()

@@ -150,7 +150,7 @@ class Run(ChainTest):
         self.scene.write_text(self.failing())
         done = self.called()
         self.assertEqual(done.returncode, 3, done.stderr)
-        wanted = {name for name in OF_SMALL if not name.startswith("bench-")} - {"result.h5"} | {"result.failed.h5"}
+        wanted = {name for name in OF_SMALL if not name.startswith("bench-")} - {"result.h5"} | {"result.failed.h5", "failure.png"}
         self.assertEqual(self.names(), wanted | OF_RUN)
         failure = datasets(self.out / "result.failed.h5")
         reason = failure["/failure/reason"][0]
