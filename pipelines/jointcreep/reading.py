@@ -190,6 +190,16 @@ class File:
         """Table of the equilibria found: time (day), unbalanced force ratio, energies (J/m), steps."""
         return self.table("/equilibria", len(self["/equilibria/steps"]))
 
+    def moving_blocks(self):
+        """Table of the blocks that move in the end of a run without equilibrium (NAME.failed.h5): block, its middle (m), motion in the
+        last steps (m), the fastest first."""
+        table = Table()
+        order = np.argsort(-np.linalg.norm(self["/failure/motion"], axis=1), kind="stable")
+        table.put("block", self["/failure/block"][order])
+        table.put("place", self["/failure/place"][order], "m")
+        table.put("motion", self["/failure/motion"][order], "m")
+        return table
+
     def history(self):
         """History of the monitoring points; of result files."""
         with self.opened() as file:

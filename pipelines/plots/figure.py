@@ -22,10 +22,12 @@ import matplotlib.colors
 import matplotlib.dates
 import matplotlib.lines
 import matplotlib.patches
+import matplotlib.path
 import matplotlib.patheffects
 import matplotlib.pyplot as plt
 import matplotlib.text
 import matplotlib.ticker
+import matplotlib.transforms
 import numpy as np
 
 LOOK = 3  # one more when pictures look different: those of docs/pictures are stale then (docs/pictures.py)
@@ -266,6 +268,15 @@ def extension(values, low, high):
     """Which ends of a colour scale are pointed, since values lie beyond it."""
     ends = {(0, 0): "neither", (1, 0): "min", (0, 1): "max", (1, 1): "both"}
     return ends[int(np.min(values) < low), int(np.max(values) > high)]
+
+
+def part_in(axes, corners):
+    """The corners of what the axes show of a polygon; none if it is outside."""
+    box = matplotlib.transforms.Bbox.from_extents(axes.get_xlim()[0], axes.get_ylim()[0], axes.get_xlim()[1], axes.get_ylim()[1])
+    closed = matplotlib.path.Path([*corners, corners[0]], closed=True)
+    if all(is_in(axes, corner) for corner in corners):
+        return np.array(corners, float)
+    return closed.clip_to_bbox(box).to_polygons()[0][:-1] if closed.clip_to_bbox(box).vertices.size else np.empty((0, 2))
 
 
 def is_in(axes, place):

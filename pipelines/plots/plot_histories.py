@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Displacement histories of the monitoring points against days; with --closed-form column beside the exact answer.
+"""Displacement histories of the monitoring points over time; with --closed-form column beside the exact answer.
 
 All points that are not on monitoring lines are drawn; if all are on lines,
 these (plot_line.py). A point's history ends when it is removed. Displacements count from the in-situ equilibrium, or with --readings from
@@ -85,6 +85,11 @@ def histories_without(path, file, *options):
     with figure.checked(path) as other:
         if figure.texts(other, "/scene") != figure.texts(file, "/scene"):
             raise figure.NotWanted(f"this was made from another scene than {file.filename}")
+        if "--no-creep" not in figure.texts(other, "/provenance/options")[-1].split():
+            raise figure.NotWanted("this run has creep; wanted one of demsolve --no-creep")
+        if figure.strength_factor_of(other) != figure.strength_factor_of(file):
+            raise figure.NotWanted(f"this run has strengths / {figure.strength_factor_of(other):.4g}, and {file.filename} has strengths / "
+                                   f"{figure.strength_factor_of(file):.4g}; wanted the same")
         return Histories(other, *options)
 
 
@@ -120,7 +125,7 @@ def draw(file, component="y", point=(), readings=False, since_reset=False, witho
         thin = {"linestyle": (0, (4, 2)), "linewidth": 0.7}
         for i, look in enumerate(looks):
             shown = other.shown[:, i]
-            axes.plot(other.time[shown], other.values[shown, i], zorder=2, markevery=[-1], **{**look, **thin})
+            axes.plot(other.time[shown], other.values[shown, i], zorder=2, **{**look, **thin, "marker": "none"})
         entries.append(matplotlib.lines.Line2D([], [], color="0.3", label="without creep", **thin))
 
     axes.margins(x=0.02, y=0.05)

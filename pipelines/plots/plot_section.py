@@ -82,10 +82,10 @@ def draw_stages(scene, axes, inside):
                                                **STAGE_BORDER, zorder=0.5)
             axes.add_patch(patch)
             clip(patch, inside)
-            place = number_place(corners, points, size)
-            if not figure.is_in(axes, place):
+            seen = figure.part_in(axes, corners)
+            if len(seen) == 0:
                 continue
-            shown = True
+            shown, place = True, number_place(seen, points, size)
             axes.annotate(str(number), place, ha="center", va="center", zorder=4, fontsize=8 if few else 5.5,
                           bbox={"boxstyle": "circle,pad=0.2", "facecolor": "white", "linewidth": 0.5})
         if not shown:

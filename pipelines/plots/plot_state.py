@@ -146,6 +146,9 @@ def draw_displacement(file, state, section, axes, since_reset, limits):
                          units="inches", width=0.012, headwidth=4, headlength=5, headaxislength=4.5, minlength=0.6,
                          zorder=5)
     add_key(axes, arrows, round_below(longest), "mm")
+    if figure.ending_of(file):
+        return [matplotlib.lines.Line2D([], [], color="k", linewidth=0.8, marker=5, markevery=[1],
+                                        label="black arrows: displacement in the last equilibrium")]
     return []
 
 
@@ -329,7 +332,7 @@ def draw_failure(file, section, axes):
                     units="inches", width=0.024, headwidth=4, headlength=5, headaxislength=4.5, minlength=0.6, color=figure.COLORS[1],
                     edgecolor="white", linewidth=0.5, zorder=8)
         seconds, steps = figure.array(file, "/failure/seconds")[0], figure.array(file, "/failure/steps")[0]
-        label += f" (red arrows; the longest is {length_text(largest)} in " + (
+        label += f" (red arrows, on a scale of their own; the longest is {length_text(largest)} in " + (
             f"{seconds:.3g} s)" if seconds > 0 else f"{steps} steps of the solver)")
     entries[-1].set_label(label)
     return entries
