@@ -56,6 +56,14 @@ def displacements(file, line, readings, anchor):
     return (place - place[0]) @ along, np.stack([moved @ across, moved @ along], axis=-1)
 
 
+def look(number, of):
+    """Of one curve of so many: of a few its own colour, marker and line, of many a colour from dark, early, to light, late."""
+    if of > len(figure.COLORS):
+        return {"color": figure.plt.get_cmap("viridis")(0.95 * number / (of - 1)), "linewidth": 0.9}
+    return {"color": figure.COLORS[number], "marker": figure.MARKERS[number], "markerfacecolor": "white", "markeredgewidth": 0.8,
+            "linestyle": figure.LINES[number]}
+
+
 def draw(file, line=(), readings=False, anchor=False):
     """Figure of monitoring lines: of all, or those that are named; readings: since the line's first; anchor: relative to its last
     point."""
@@ -69,12 +77,13 @@ def draw(file, line=(), readings=False, anchor=False):
             for number, (row, label) in enumerate(rows):
                 if row < begin:
                     continue
-                ax.plot(1e3 * moved[row, :, i], distance, color=figure.COLORS[number % 6], marker=figure.MARKERS[number % 6],
-                        markerfacecolor="white", markeredgewidth=0.8, linestyle=figure.LINES[number % 6], label=label)
+                ax.plot(1e3 * moved[row, :, i], distance, label=label, **look(number, len(rows)))
             ax.axvline(0, color="0.6", linewidth=0.5, zorder=0)
             ax.xaxis.set_major_locator(matplotlib.ticker.MaxNLocator(5))
             ax.set_xlabel(f"{('across', 'along')[i]} the line (mm)")
         pair[0].set_ylabel(f"{one['name']}:\ndistance from its first end (m)")
+        if one["to_m"][1] - one["from_m"][1] < -abs(one["to_m"][0] - one["from_m"][0]):  # as it goes down
+            pair[0].invert_yaxis()
     plot.suptitle(f"displacements {'relative to the last point, ' if anchor else ''}{since}", fontsize=8)
     shown = dict(reversed([(label, line) for pair in axes for line, label in zip(*pair[1].get_legend_handles_labels())]))  # of all lines
     labels = [label for _, label in rows if label in shown]

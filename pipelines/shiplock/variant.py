@@ -264,6 +264,18 @@ def linear(_):
     return change
 
 
+# Name, ends on the north side, points, first reading: that of the point at its head. Assumed, as the paper has none.
+LINES = [("inclinometer", [140, 231], [140, 111], 25, "1995-07-31"), ("extensometer", [66.5, 145], [96.5, 145], 16, "1997-10-31")]
+
+
+def monitoring_lines():
+    """Tables [[monitoring_line]] of both sides."""
+    return "".join(
+        f'\n[[monitoring_line]]\nname = "{name} {side}"\nfrom_m = [{sign * x0:g}, {y0:g}]\nto_m = [{sign * x1:g}, {y1:g}]\n'
+        f"points = {points}\nfirst_reading = {date}\n"
+        for name, (x0, y0), (x1, y1), points, date in LINES for side, sign in (("N", 1), ("S", -1)))
+
+
 def youngs_modulus(which):
     """The ends of Table 1's ranges."""
     def change(table, record, key, _):
@@ -332,6 +344,8 @@ def variant(text, arguments):
         text = re.sub(r"^shortest_edge_m = .*", f"shortest_edge_m = {edge:g}\nsmallest_angle_deg = {angle:g}", text, flags=re.MULTILINE)
     if arguments.large_displacements:
         text += UPDATED
+    if arguments.monitoring_lines:
+        text += monitoring_lines()
     if arguments.section_b:
         text = ("# Section B-B (chamber 3): the scene of section A-A, below, with its elevations moved. What comments say of places\n"
                 "# and sources is section A-A's.\n#\n" + text)
@@ -358,6 +372,7 @@ def main():
     parser.add_argument("--cutting", type=float, nargs=2, metavar=("EDGE", "ANGLE"), help="shortest edge in m, smallest angle in degrees")
     parser.add_argument("--large-displacements", action="store_true", help="geometry updated: [large_displacements]")
     parser.add_argument("--linear", action="store_true", help="joints that neither slip nor open")
+    parser.add_argument("--monitoring-lines", action="store_true", help="inclinometers behind the crests, extensometers behind the walls")
     parser.add_argument("--no-creep", action="store_true", help="without the table [creep]")
     write_variant(parser, variant)
 
