@@ -178,8 +178,16 @@ TEST(cut, boundary_conditions_find_their_edges)
     EXPECT_NEAR(held[0], 10, 1e-12);
     EXPECT_NEAR(held[1], 5, 1e-12);
 
-    scene.boundaries[0].to = {10, 1};
-    EXPECT_THROW(blocks::cut(scene, joints), std::runtime_error);
+    scene.boundaries[1].to = {0.5, 7};
+    try {
+        blocks::cut(scene, joints);
+        ADD_FAILURE() << "a boundary inside the section";
+    } catch (const std::runtime_error& error) {
+        EXPECT_EQ(std::string(error.what())
+                      .find("boundary 2: its end [0.5, 7] m lies 0.5 m off the section's outline"),
+                  0u)
+            << error.what();
+    }
 }
 
 TEST(cut, vertices_closer_than_the_limit_are_merged_and_the_outline_keeps_its_corners)

@@ -82,6 +82,30 @@ TEST(inside, comb)
     expect_right(polygon, random);
 }
 
+// Of faces with corners that reach far in, a place that is well inside.
+TEST(inside, place_inside_a_face)
+{
+    std::mt19937 random(9);
+    std::uniform_real_distribution<double> reach(0.05, 1);
+    for (int round = 0; round < 2000; ++round) {
+        const int corners = 5 + round % 12;
+        Polygon polygon;
+        blocks::Graph graph;
+        for (Index i = 0; i < corners; ++i) {
+            const double angle = 2 * std::numbers::pi * i / corners;
+            polygon.push_back(reach(random) * Vector2d(std::cos(angle), std::sin(angle)));
+            graph.edge.push_back({std::min(i, (i + 1) % corners), std::max(i, (i + 1) % corners), 0});
+        }
+        graph.vertex = polygon;
+        const blocks::Faces faces = blocks::trace_faces(graph);
+        ASSERT_EQ(faces.size(), 1u);
+        const Vector2d place = blocks::place_inside(graph.vertex, faces, 0);
+        ASSERT_TRUE(winds_around(polygon, place)) << round;
+        for (int i = 0; i < corners; ++i)
+            ASSERT_NE(blocks::turn(polygon[i], polygon[(i + 1) % corners], place), 0) << round;
+    }
+}
+
 TEST(inside, level_line_of_no_height)
 {
     const Polygon polygon{{0, 0}, {1, 0}, {2, 0}};

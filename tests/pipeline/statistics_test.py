@@ -44,6 +44,10 @@ class Report(ChainTest):
         lines = [line for line in printed.split("95% from")[1].splitlines() if line.startswith("  ")][:]
         shown = [line for line in lines if re.match(r"  \S", line)]
         self.assertEqual(len(shown), len(rows["quantity"]))
+        self.assertIn("rad", rows["unit"])
+        for line, unit, achieved in zip(shown, rows["unit"], rows["achieved"]):
+            if unit == "rad":
+                self.assertRegex(line, rf"\b{re.escape(f'{numpy.degrees(achieved):.4g}')}", "degrees on the screen")
         for line, quantity, verdict in zip(shown, rows["quantity"], rows["verdict"]):
             self.assertTrue(line.startswith("  " + quantity), line)
             ending = next((word for word in VERDICTS if word and line.endswith("  " + word)), "")

@@ -164,6 +164,32 @@ TEST(Nodes, AreThoseOfAllPairs)
     }
 }
 
+// Two sets at right angles with negative exponential spacings cut a box into (1 + n) (1 + m) blocks, n and m of Poisson's law. The
+// interval is that of their error to first order.
+TEST(Blocks, TheirNumberHasTheErrorOfTwoCounts)
+{
+    Scene scene = examples()[1].scene; // of another section
+    scene.outline = box();             // 100 m x 60 m
+    scene.cutting = {1e-6, 1e-6};
+    scene.joint_sets[0].persistence = 1;
+    scene.joint_sets[0].trace_angle = ProbabilityLaw{Kind::constant, 0, 0};
+    scene.joint_sets[0].spacing = {Kind::negative_exponential, 4, 4};
+    scene.joint_sets.push_back(scene.joint_sets[0]);
+    scene.joint_sets[1].name = "others";
+    scene.joint_sets[1].trace_angle = ProbabilityLaw{Kind::constant, 90 * deg, 0};
+    scene.joint_sets[1].spacing = {Kind::negative_exponential, 5, 5};
+    Network network;
+    network.joints = sampling::sample_joints(scene, 3, 0);
+    network.blocks = blocks::cut(scene, network.joints);
+    const Statistics rows = statistics_of(scene, network);
+    const std::size_t i = row_of(rows, "blocks", "number");
+    const double n = 60. / 4, m = 100. / 5,
+                 error = std::sqrt(n * (1 + m) * (1 + m) + m * (1 + n) * (1 + n)) / ((1 + n) * (1 + m));
+    EXPECT_NEAR(rows.target[i], (1 + n) * (1 + m), 1e-9);
+    EXPECT_NEAR(std::log(rows.high[i] / rows.achieved[i]), 1.96 * error, 1e-9);
+    EXPECT_NEAR(std::log(rows.achieved[i] / rows.low[i]), 1.96 * error, 1e-9);
+}
+
 // Two sets without bridges: number of blocks and of crossings, mean area, on average what they should be
 // (network of parallelograms), and their stated errors right.
 TEST(Blocks, AreAsManyAsExpected)
