@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""All assumed inputs of the shiplock at once, the network among them: whose variance is it?
+"""31 assumed inputs of the shiplock at once, and the network: whose variance is it?
 
     shares.py PROGRAMS SCENE.toml TARGETS.toml -n SETS [-j JOBS] -o OUT
 
@@ -333,19 +333,21 @@ def errors_of(statistic, number, groups=20):
     return np.sqrt((groups - 1) * np.var(found, axis=0))
 
 
-def lack_of_fit(rows, pairs, fit):
+def lack_of_fit(rows, pairs, folds=10):
     """Share of the variance of the logarithms, of the mean total and the mean record, that neither polynomial nor network
-    explains: the mean square of the pair means' errors at sets left out, less half the networks' variance."""
+    explains: the mean square of the pair means' errors at a tenth of the sets, by a polynomial whose terms and coefficients are of the
+    others, less half the networks' variance."""
     logs = np.log(pairs)
     half = logs.shape[2] // 2
-    both = np.stack([logs[:, :, :half].mean(axis=2), logs[:, :, half:].mean(axis=2)], axis=2)
-    found = []
-    columns = columns_of(rows, fit.terms)
-    for k in range(2):
-        network = ((both[:, 0, k] - both[:, 1, k]) ** 2).mean() / 2
-        means = both[:, :, k].mean(axis=1)[:, None]
-        found.append((error_left_out(columns, means) - network / 2) / both[:, :, k].var(ddof=1))
-    return found
+    both = np.stack([logs[:, :, :half].mean(axis=2), logs[:, :, half:].mean(axis=2)], axis=2)  # [set, network, total or record]
+    means, errors = both.mean(axis=1), np.empty((len(rows), 2))
+    for fold in range(folds):
+        left = np.arange(len(rows)) % folds == fold
+        fit = fit_of(rows[~left], pairs[~left])
+        found = columns_of(rows[left], fit.terms) @ fit.coefficients
+        errors[left] = means[left] - np.stack([found[:, :half].mean(axis=1), found[:, half:].mean(axis=1)], axis=1)
+    networks = ((both[:, 0] - both[:, 1]) ** 2).mean(axis=0) / 2
+    return ((errors**2).mean(axis=0) - networks / 2) / both.reshape(-1, 2).var(axis=0, ddof=1)
 
 
 # --- What it shows ------------------------------------------------------------------------------------------------------------
@@ -372,7 +374,7 @@ def markdown(names, indices, errors, facts):
         lines.append(f"| {name} | {span} | " + " | ".join(cells) + " |")
     small = "; ".join(f"{names[i][0]} ({names[i][1]})" for i in order[is_small[order]])
     if small:
-        lines += ["", f"Less than {SMALL} of each, in all: {small}."]
+        lines += ["", f"Without a term in the polynomial, or with shares below {SMALL}: {small}."]
     return "\n".join([*lines, "", *facts]) + "\n"
 
 
@@ -478,7 +480,7 @@ def main():
     indices, fit = shares(rows, pairs, targets)
     errors = errors_of(lambda which: shares(rows[which], pairs[which], targets, power=10)[0], len(rows))
     own, own_errors = straight(pairs, targets), errors_of(lambda which: straight(pairs[which], targets), len(rows))
-    lack = lack_of_fit(rows, pairs, fit)
+    lack = lack_of_fit(rows, pairs)
 
     names = [(one.name, range_of(one)) for one in INPUTS.values()] + [("network", "two for each set")]
     told = ridge(rows, pairs, fit, targets, arguments.output / "ridge.png")

@@ -177,8 +177,11 @@ class Shiplock(ChainTest):
                 numpy.testing.assert_allclose(indices[j, i, :2], variance / whole, atol=0.03)
         own = shares.straight(numpy.exp(logs), targets)
         self.assertAlmostEqual(own[2, 0], deviation / whole, delta=0.04)
-        for lack in shares.lack_of_fit(rows, numpy.exp(logs), fit):
+        for lack in shares.lack_of_fit(rows, numpy.exp(logs)):
             self.assertAlmostEqual(lack, 0, delta=0.03)
+        cubic = 0.06 * math.sqrt(7) * (5 * (2 * rows[:, 0] - 1) ** 3 - 3 * (2 * rows[:, 0] - 1)) / 2  # no polynomial of degree 2
+        for lack in shares.lack_of_fit(rows, numpy.exp(logs + cubic[:, None, None])):
+            self.assertAlmostEqual(lack, 0.06**2 / (whole + 0.06**2), delta=0.12)
         square = numpy.exp(logs + 0.1 * (x[:, 0] * x[:, 3])[:, None, None])
         self.assertTrue({(0,), (3,), (0, 3)} <= set(shares.fit_of(rows, square).terms))
         number = 400
