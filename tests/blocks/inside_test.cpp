@@ -106,6 +106,21 @@ TEST(inside, place_inside_a_face)
     }
 }
 
+// Two spikes of the outside between the lowest corner and its neighbours. The first hides the tip of the second: half-way there is
+// outside.
+TEST(inside, place_inside_a_corner_with_two_spikes)
+{
+    const Polygon polygon{{0, 0},  {10, 0},  {10, 0.5}, {0.5, 1.2}, {10, 4},
+                          {10, 5}, {3, 2.6}, {10, 9},   {0, 10}};
+    ASSERT_FALSE(winds_around(polygon, {1.5, 1.3}));
+    blocks::Graph graph{.vertex = polygon, .edge = {}};
+    for (Index i = 0; i + 1 < 9; ++i)
+        graph.edge.push_back({i, i + 1, 0});
+    graph.edge.push_back({0, 8, 0});
+    const Vector2d place = blocks::place_inside(polygon, blocks::trace_faces(graph), 0);
+    EXPECT_TRUE(winds_around(polygon, place)) << place.transpose();
+}
+
 TEST(inside, level_line_of_no_height)
 {
     const Polygon polygon{{0, 0}, {1, 0}, {2, 0}};
