@@ -269,7 +269,7 @@ bool FaceContacts::lies_behind(const Overlap& found, const FacePair* before, con
     if (!found.is_behind() || before == nullptr)
         return found.is_behind();
     const auto other = overlap_of(*before, faces_, shapes_, step.place);
-    return -std::max(found.gap[0], found.gap[1]) > (other ? other->sunk() : 0.0) + found.length;
+    return found.least_sunk > (other ? other->sunk() : 0.0) + found.whole;
 }
 
 // Sets the inherited state of an open pair that comes to touch. Returns false if it stays open, because other faces

@@ -38,6 +38,7 @@ std::optional<Overlap> overlap_along(const Vector2d& tangent, const std::array<V
         found.gap[i] =
             (b[0] + found.on_b[i] * (b[1] - b[0]) - a[0] - found.on_a[i] * (a[1] - a[0])).dot(normal);
     }
+    found.least_sunk = -std::max(found.gap[0], found.gap[1]);
     return overlap;
 }
 

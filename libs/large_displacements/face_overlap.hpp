@@ -23,12 +23,13 @@ struct Overlap {
     std::array<double, 2> gap;   // along the normal from a to b [m]
     std::array<double, 2> inset; // at each end: how far the end of a is inside b; below 0: of b inside a [m]
     double length;               // [m]
-    double whole; // length in the plane of the contact; more only where two corners just meet [m]
+    // In the plane of the contact; other than length and gap only where two corners just meet: length, and smallest depth [m].
+    double whole, least_sunk;
 
     Vector2d normal() const { return {tangent.y(), -tangent.x()}; }
     // Whether they are everywhere deeper in each other than their overlap is long: then other faces of the two corners
     // touch.
-    bool is_behind() const { return -std::max(gap[0], gap[1]) > whole; }
+    bool is_behind() const { return least_sunk > whole; }
     double sunk() const { return -std::min(gap[0], gap[1]); } // the largest depth [m]
 };
 

@@ -25,11 +25,10 @@ public:
     {
         each([&](auto group, const Entry&) { ++start_[static_cast<std::size_t>(group) + 1]; });
         std::partial_sum(start_.begin(), start_.end(), start_.begin());
-        entry_.resize(static_cast<std::size_t>(start_.back()));
-        std::vector<Index> next = start_;
-        each([&](auto group, const Entry& entry) {
-            entry_[static_cast<std::size_t>(next[static_cast<std::size_t>(group)]++)] = entry;
-        });
+        entry_.resize(start_.back());
+        std::vector<std::size_t> next = start_;
+        each(
+            [&](auto group, const Entry& entry) { entry_[next[static_cast<std::size_t>(group)]++] = entry; });
     }
 
     std::size_t size() const { return start_.empty() ? 0 : start_.size() - 1; } // groups
@@ -46,7 +45,7 @@ public:
     std::span<const Entry> all() const { return entry_; } // by group
 
 private:
-    std::vector<Index> start_; // [groups + 1] into `entry_`
+    std::vector<std::size_t> start_; // [groups + 1] into `entry_`
     std::vector<Entry> entry_;
 };
 

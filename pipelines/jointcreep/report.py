@@ -161,7 +161,7 @@ def of_run(source, programs, folder):
     if "monitoring_line" in scene:
         parts.append(drawn("line", source, folder, "Displacements along monitoring lines."))
     parts.append("<h2>Last state before the run ended early</h2>" if failure else "<h2>State at the end</h2>")
-    parts += [drawn("state", source, folder, "Moving blocks.", around_failure=True)] if failure else []
+    parts += [drawn("state", source, folder, "Moving blocks.", around_failure=True, magnify=1 if "large_displacements" in scene else 0)] if failure else []
     for field, caption in (("displacement", "Displacements."), ("stress", "Stresses."), ("contacts", "Contacts that slip or open.")):
         parts.append(drawn("state", source, folder, caption, field=field, window=window))
     parts += ["<h2>Numbers</h2>", table(["", ""], numbers), "<h2>Settings</h2>", settings(scene), "<h2>Warnings</h2>",

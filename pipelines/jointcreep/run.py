@@ -150,7 +150,8 @@ class Plan:
             yield self.moving_blocks()
 
     def moving_blocks(self):
-        return self.picture("state", pathlib.Path(FAILED), "failure", around_failure=True)
+        return self.picture("state", pathlib.Path(FAILED), "failure", around_failure=True,
+                            magnify=1 if "large_displacements" in self.scene else None)
 
     def picture(self, name, source, picture, **options):
         """The step that draws a plot; options that are None are left out."""
@@ -331,17 +332,21 @@ class Folder:
 
 
 def until_ended(words, lock):
-    """The exit code of a program. A signal to stop is passed on to it, once: demsolve then keeps its state in a checkpoint. In a
-    process group of its own, or Ctrl-C would come twice, which ends it at once."""
+    """The exit code of a program. A signal to stop is passed on to it, once: demsolve then keeps its state in a checkpoint. It ignores
+    Ctrl-C, which a terminal sends to it, too: a second signal would end it at once. Signals that are ignored here (nohup) stay so."""
     def stop(signal_number, _):
         print("jointcreep: stopped; the same command continues", file=sys.stderr, flush=True)
         raise SystemExit(128 + signal_number)
 
+    def prepared():
+        group.die_with(parent)
+        signal.signal(signal.SIGINT, signal.SIG_IGN)
+
     parent = os.getpid()
-    before = {number: signal.signal(number, stop) for number in (signal.SIGTERM, signal.SIGHUP)}
+    before = {number: signal.signal(number, stop) for number in (signal.SIGTERM, signal.SIGHUP)
+              if signal.getsignal(number) is not signal.SIG_IGN}
     try:
-        with subprocess.Popen(words, stdin=subprocess.DEVNULL, pass_fds=[lock.fileno()], process_group=0,
-                              preexec_fn=lambda: group.die_with(parent)) as running:
+        with subprocess.Popen(words, stdin=subprocess.DEVNULL, pass_fds=[lock.fileno()], preexec_fn=prepared) as running:
             try:
                 return running.wait()
             except BaseException:

@@ -85,7 +85,7 @@ def histories_without(path, file, *options):
     with figure.checked(path) as other:
         if figure.texts(other, "/scene") != figure.texts(file, "/scene"):
             raise figure.NotWanted(f"this was made from another scene than {file.filename}")
-        if "--no-creep" not in figure.texts(other, "/provenance/options")[-1].split():
+        if "creep" in figure.scene_of(file) and "--no-creep" not in figure.texts(other, "/provenance/options")[-1].split():
             raise figure.NotWanted("this run has creep; wanted one of demsolve --no-creep")
         if figure.strength_factor_of(other) != figure.strength_factor_of(file):
             raise figure.NotWanted(f"this run has strengths / {figure.strength_factor_of(other):.4g}, and {file.filename} has strengths / "

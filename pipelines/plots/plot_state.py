@@ -148,7 +148,7 @@ def draw_displacement(file, state, section, axes, since_reset, limits):
     add_key(axes, arrows, round_below(longest), "mm")
     if figure.ending_of(file):
         return [matplotlib.lines.Line2D([], [], color="k", linewidth=0.8, marker=5, markevery=[1],
-                                        label="black arrows: displacement in the last equilibrium")]
+                                        label="black arrows: displacement in the last recorded state")]
     return []
 
 
@@ -338,15 +338,14 @@ def draw_failure(file, section, axes):
     return entries
 
 
-def window_of_failure(file):
+def window_of_failure(file, section):
     """The surroundings of the blocks that move in the end of a run without equilibrium, x0, y0, x1, y1 [m]: as much on each side as
     they are wide or high. None if nothing moves, or that is a large part of the section."""
-    position = figure.array(file, "/mesh/gridpoint_position")
-    zones = figure.array(file, "/mesh/zone_gridpoint")
-    moving = np.isin(figure.array(file, "/mesh/zone_block"), figure.array(file, "/failure/block")) if "/failure" in file else []
+    block = figure.array(file, "/mesh/zone_block")[section.there]
+    moving = np.isin(block, figure.array(file, "/failure/block")) if "/failure" in file else []
     if not np.any(moving):
         return None
-    of_moving = position[zones[moving]].reshape(-1, 2)
+    position, of_moving = section.position, section.position[section.zones[moving]].reshape(-1, 2)
     low, high = of_moving.min(axis=0), of_moving.max(axis=0)
     around = (high - low).max()
     low, high = np.maximum(low - around, position.min(axis=0)), np.minimum(high + around, position.max(axis=0))
@@ -356,13 +355,13 @@ def window_of_failure(file):
 def draw(file, state="last", field="displacement", component="major", since_reset=False, window=None, around_failure=False, magnify=0,
          limits=None):
     """Figure of one state: field "displacement", "stress" or "contacts". state: plain words for a stage, or "last"; component of
-    the stress; window: x0, y0, x1, y1 [m]; around_failure: the surroundings of moving blocks in its place, if they are small;
+    the stress; window: x0, y0, x1, y1 [m]; around_failure: the surroundings of moving blocks in its place, if there are some and they are small;
     limits: low, high of the colour scale."""
     if figure.file_type(file) not in ("jointcreep result", "jointcreep checkpoint"):
         raise figure.NotWanted("there are no states in this file; demsolve makes one that has them")
     state = state_index(file, state)
     if around_failure:
-        window = window_of_failure(file)
+        window = window_of_failure(file, Section(file, state, magnify)) or window
     section = Section(file, state, magnify, window, since_reset)
     plot, axes = figure.section_axes(section.start, window)
     plot.cuts_margins = True  # scales and legends leave margins of different widths

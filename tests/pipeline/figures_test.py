@@ -25,7 +25,7 @@ CUT = [  # scene, realizations
     ("data/cavern/scene.toml", 1),
     ("data/verification/hole/scene.toml", 1),
 ]
-SOLVED = ["tests/pipeline/kinds/scene.toml", "tests/pipeline/random_slope.toml", "tests/pipeline/bonded.toml",
+SOLVED = ["tests/pipeline/benches.toml", "tests/pipeline/random_slope.toml", "tests/pipeline/bonded.toml",
           "data/column/scene.toml", "data/verification/punch/scene.toml", "data/verification/slipping-crack/scene.toml",
           "data/verification/opening-joints/scene.toml"]
 # Ways to an equilibrium, and how near to balance it is, may differ where processors round otherwise.

@@ -290,6 +290,16 @@ class Run(ChainTest):
                 running.send_signal(number)
                 self.assertEqual(running.wait(60), 128 + number)
                 self.assertTrue((self.folder / "kept").exists())
+        # What is ignored stays ignored: after nohup the end of a session ends nothing.
+        fakes = self.fakes(f"touch {here}/hung; sleep 1; exit 5")
+        (self.folder / "hung").unlink(missing_ok=True)
+        running = subprocess.Popen(["nohup", self.chain.programs / "jointcreep", "run", "scene.toml", "-o", "out", "--programs", fakes],
+                                   cwd=self.folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        end = time.monotonic() + 60
+        while not (self.folder / "hung").exists() and time.monotonic() < end:
+            time.sleep(0.02)
+        running.send_signal(signal.SIGHUP)
+        self.assertEqual(running.wait(60), 5)
 
     def test_odd_names_and_makefile(self):
         """Whatever names have, nothing of them is a command; make makes the same files as run."""
