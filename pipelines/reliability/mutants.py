@@ -26,7 +26,7 @@ GROUPS = {  # sources
     "subdivision": ["libs/blocks/*.cpp"],
     "statistics": ["libs/statistics/*.cpp"],
 }
-WHOLE = ["verification", "literature", "statistics", "joint_laws", "blocks", "bridges", "boundaries", "restart"]
+WHOLE = ["figures", "verification", "literature", "statistics", "joint_laws", "blocks", "bridges", "boundaries", "restart"]
 LONGEST = 600  # s of the processor, of a test without a mutant
 SLOWER = 5  # times as long as without a mutant, and MARGIN, a test may take with one
 MARGIN = 10  # s
