@@ -267,7 +267,7 @@ std::vector<Edge> joined_edges(const Graph& graph, const std::vector<Index>& joi
 // An edge and a vertex that is perhaps close to it.
 struct NearEdge {
     Index edge, vertex;
-    auto operator<=>(const NearEdge&) const = default;
+    auto operator<=>(const NearEdge&) const = default; // NOLINT: there is no pointer
 };
 
 // Vertices within about half the reach of an edge, in the order of edges.

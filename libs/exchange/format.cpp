@@ -25,10 +25,10 @@ std::string listed(const std::vector<std::string_view>& words, const char* betwe
 
 std::string by_default(const Format& format)
 {
-    const std::string of_result(format.usual_of_result);
-    if (format.usual.empty())
-        return of_result;
-    return listed(format.usual) + (of_result.empty() ? "" : "; of a result " + of_result);
+    std::string text = listed(format.usual);
+    if (!text.empty() && !format.usual_of_result.empty())
+        text += "; of a result ";
+    return text.append(format.usual_of_result);
 }
 
 std::string in_one_file(const Format& format)

@@ -182,8 +182,8 @@ class Documentation(ChainTest):
 
     def check_cavern(self, page, folder):
         """The counts of the page, and the closure of the walls that its Python prints, are those of the result."""
-        (example,) = code_blocks(page, "python")
-        done = subprocess.run([sys.executable, "-c", example], cwd=folder, capture_output=True, text=True)
+        example, stress = code_blocks(page, "python")
+        done = subprocess.run([sys.executable, "-c", f"{example}\n{stress}"], cwd=folder, capture_output=True, text=True)
         self.assertEqual((done.returncode, done.stderr), (0, ""))
         with h5py.File(folder / "result.h5") as file:
             slipping = (file["/states/contact_status"][-1] == 2).sum()
@@ -191,7 +191,9 @@ class Documentation(ChainTest):
             self.assertIn(f"At the end {slipping} contacts slip and one is open.", page)
             names = file["/history/point"].asstr()[:].tolist()
             last = file["/history/displacement"][-1] * 1e3
-        x, y = map(float, done.stdout.strip(" []\n").split())
+        closure, largest = done.stdout.strip().splitlines()
+        self.assertIn(f"# {float(largest):.1f} MPa", page)
+        x, y = map(float, closure.strip(" []").split())
         self.assertAlmostEqual(x, last[names.index("south wall"), 0] - last[names.index("north wall"), 0], places=3)
         self.assertAlmostEqual(y, last[names.index("south wall"), 1] - last[names.index("north wall"), 1], places=3)
         self.assertRegex(page, rf"approach, by {x:.0f} mm")
