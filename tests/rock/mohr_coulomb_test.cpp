@@ -36,7 +36,7 @@ double number(double least, double most)
 Vector3d admissible(const MohrCoulomb& law)
 {
     for (;;) {
-        const Vector3d s(number(-5e7, law.tension), number(-5e7, law.tension), number(-5e7, law.tension));
+        Vector3d s(number(-5e7, law.tension), number(-5e7, law.tension), number(-5e7, law.tension));
         if (!(law.n_phi * s.maxCoeff() - s.minCoeff() > law.shear))
             return s;
     }
