@@ -77,7 +77,7 @@ class Files(ChainTest):
         text = self.chain.new_folder() / "text.h5"
         text.write_text("no HDF5 file")
         for call, expected in [
-            (network.history, "there is no /history/time in this network file"),
+            (network.history, "there is no /history/displacement in this network file"),
             (lambda: jointcreep.read(self.result()).history().of("creast"), 'no point "creast"; there are: crest, dug away, floor'),
             (lambda: jointcreep.read(self.result()).contacts(stage="banch"), 'no stage "banch"; there are: bench'),
             (lambda: jointcreep.read(text), "text.h5: "), (lambda: jointcreep.read(text.with_name("none.h5")), "none.h5: "),

@@ -43,7 +43,7 @@ class StandardOutput(ChainTest):
         """Every format of jointexport, of the network and, where it has states, of the result."""
         rows = [line.split("\t") for line in self.answer("jointexport", "--formats")[1].decode().splitlines()[1:]]
         self.assertLess(TEXT, {row[0] for row in rows})
-        for name, extension, holds, _, how in rows:
+        for name, extension, holds, *_, how in rows:
             file = "result.h5" if "zones" in holds.split() else "network.h5"
             arguments = file, "--format", name, *(["--width", "1"] if name in ("fracman", "dfnworks") else [])
             with self.subTest(name):
