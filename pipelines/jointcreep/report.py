@@ -12,7 +12,7 @@ import tomllib
 import h5py
 import numpy as np
 
-from . import files, intervals, plan, study_file
+from . import files, intervals, plan, reading, study_file
 from .errors import NotWanted
 
 STYLE = """
@@ -119,12 +119,10 @@ def factor_of_safety(source, folder):
     if failed:
         parts.append(drawn("state", failed, folder, "The run with the smallest factor without equilibrium: moving blocks.",
                            around_failure=True))
-        with h5py.File(failed) as file:
-            rows = list(zip(file["/failure/block"][()], file["/failure/place"][()], 1e3 * file["/failure/motion"][()]))
-        rows = sorted(rows, key=lambda row: -np.linalg.norm(row[2]))
+        moving = reading.File(failed).moving_blocks()
         parts.append(table(["moving block", "x (m)", "y (m)", "motion x (mm)", "motion y (mm)"],
-                           [(int(block), *place, *motion) for block, place, motion in rows[:MOST_BLOCKS]]))
-        parts += [f"<p>The fastest {MOST_BLOCKS} of {len(rows)} moving blocks.</p>"] * (len(rows) > MOST_BLOCKS)
+                           [(int(block), x, y, 1e3 * by_x, 1e3 * by_y) for block, x, y, by_x, by_y in zip(*moving.values())][:MOST_BLOCKS]))
+        parts += [f"<p>The fastest {MOST_BLOCKS} of {moving.rows()} moving blocks.</p>"] * (moving.rows() > MOST_BLOCKS)
     return parts
 
 
@@ -161,7 +159,9 @@ def of_run(source, programs, folder):
     if "monitoring_line" in scene:
         parts.append(drawn("line", source, folder, "Displacements along monitoring lines."))
     parts.append("<h2>Last state before the run ended early</h2>" if failure else "<h2>State at the end</h2>")
-    parts += [drawn("state", source, folder, "Moving blocks.", around_failure=True, magnify=1 if "large_displacements" in scene else 0)] if failure else []
+    if failure:
+        parts.append(drawn("state", source, folder, "Moving blocks.", around_failure=True,
+                           magnify=1 if "large_displacements" in scene else 0))
     for field, caption in (("displacement", "Displacements."), ("stress", "Stresses."), ("contacts", "Contacts that slip or open.")):
         parts.append(drawn("state", source, folder, caption, field=field, window=window))
     parts += ["<h2>Numbers</h2>", table(["", ""], numbers), "<h2>Settings</h2>", settings(scene), "<h2>Warnings</h2>",

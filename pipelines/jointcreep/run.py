@@ -13,8 +13,8 @@ import json
 import os
 import pathlib
 import shlex
-import signal
 import shutil
+import signal
 import subprocess
 import sys
 import tomllib

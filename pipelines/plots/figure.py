@@ -272,11 +272,11 @@ def extension(values, low, high):
 
 def part_in(axes, corners):
     """The corners of what the axes show of a polygon; none if it is outside."""
-    box = matplotlib.transforms.Bbox.from_extents(axes.get_xlim()[0], axes.get_ylim()[0], axes.get_xlim()[1], axes.get_ylim()[1])
-    closed = matplotlib.path.Path([*corners, corners[0]], closed=True)
     if all(is_in(axes, corner) for corner in corners):
         return np.array(corners, float)
-    return closed.clip_to_bbox(box).to_polygons()[0][:-1] if closed.clip_to_bbox(box).vertices.size else np.empty((0, 2))
+    box = matplotlib.transforms.Bbox(np.transpose([axes.get_xlim(), axes.get_ylim()]))
+    parts = matplotlib.path.Path([*corners, corners[0]], closed=True).clip_to_bbox(box).to_polygons()
+    return parts[0][:-1] if parts else np.empty((0, 2))
 
 
 def is_in(axes, place):

@@ -21,9 +21,9 @@ from matplotlib.collections import LineCollection, PolyCollection
 
 import figure
 from stage_names import plain
+from suited import surroundings
 
 MOVING = "#dfaaa0"  # fill of moving blocks
-SMALL = 0.25  # share of the section, up to which the surroundings of moving blocks are drawn alone
 STUCK, SLIPPING, OPEN = 1, 2, 3  # /states/contact_status
 SLIPPED = 1e-3  # of the largest slip; below, a contact counts as one that has not slipped
 COMPONENTS = {
@@ -339,24 +339,20 @@ def draw_failure(file, section, axes):
 
 
 def window_of_failure(file, section):
-    """The surroundings of the blocks that move in the end of a run without equilibrium, x0, y0, x1, y1 [m]: as much on each side as
-    they are wide or high. None if nothing moves, or that is a large part of the section."""
+    """The surroundings of the blocks that move in the end of a run without equilibrium, x0, y0, x1, y1 [m]. None if nothing moves, or
+    they are a large part of the section."""
     block = figure.array(file, "/mesh/zone_block")[section.there]
     moving = np.isin(block, figure.array(file, "/failure/block")) if "/failure" in file else []
     if not np.any(moving):
         return None
-    position, of_moving = section.position, section.position[section.zones[moving]].reshape(-1, 2)
-    low, high = of_moving.min(axis=0), of_moving.max(axis=0)
-    around = (high - low).max()
-    low, high = np.maximum(low - around, position.min(axis=0)), np.minimum(high + around, position.max(axis=0))
-    return None if np.prod(high - low) > SMALL * np.prod(np.ptp(position, axis=0)) else [*low, *high]
+    return surroundings(section.position[section.zones[moving]].reshape(-1, 2), section.position)
 
 
 def draw(file, state="last", field="displacement", component="major", since_reset=False, window=None, around_failure=False, magnify=0,
          limits=None):
     """Figure of one state: field "displacement", "stress" or "contacts". state: plain words for a stage, or "last"; component of
-    the stress; window: x0, y0, x1, y1 [m]; around_failure: the surroundings of moving blocks in its place, if there are some and they are small;
-    limits: low, high of the colour scale."""
+    the stress; window: x0, y0, x1, y1 [m]; around_failure: the surroundings of moving blocks in its place, if there are some and they
+    are small; limits: low, high of the colour scale."""
     if figure.file_type(file) not in ("jointcreep result", "jointcreep checkpoint"):
         raise figure.NotWanted("there are no states in this file; demsolve makes one that has them")
     state = state_index(file, state)

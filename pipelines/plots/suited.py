@@ -57,20 +57,24 @@ def places_of(value):
     return None if isinstance(value, str) else []
 
 
+def surroundings(places, section):
+    """Window {x0, y0, x1, y1} [m] of some places, with as much of the section on each side as they are wide or high. None if they are
+    in one place, or the window is more than SMALL of the section."""
+    (x0, y0), (x1, y1) = map(min, zip(*section)), map(max, zip(*section))
+    (left, low), (right, high) = map(min, zip(*places)), map(max, zip(*places))
+    around = max(right - left, high - low)
+    window = [max(x0, left - around), max(y0, low - around), min(x1, right + around), min(y1, high + around)]
+    is_small = (window[2] - window[0]) * (window[3] - window[1]) <= SMALL * (x1 - x0) * (y1 - y0)
+    return window if is_small and around > 0 else None
+
+
 def detail(scene):
-    """Window {x0, y0, x1, y1} [m] of the stages and monitoring points, with as much rock on each side as they are wide or high. None
-    if that is more than SMALL of the section, or not known before jointgen has read the scene."""
+    """The surroundings of the stages and monitoring points. None if they are large, or not known before jointgen has read the scene."""
     try:
-        outline = places_of(scene["section"]["outline_m"])
         places = places_of([stage["remove_m"] for stage in scene.get("stage", [])] + [point["at_m"] for point in scene.get("point", [])])
-        (x0, y0), (x1, y1) = map(min, zip(*outline)), map(max, zip(*outline))
-        (left, low), (right, high) = map(min, zip(*places)), map(max, zip(*places))
-        around = max(right - left, high - low)
-        window = [max(x0, left - around), max(y0, low - around), min(x1, right + around), min(y1, high + around)]
-        is_small = (window[2] - window[0]) * (window[3] - window[1]) <= SMALL * (x1 - x0) * (y1 - y0)
+        return surroundings(places, places_of(scene["section"]["outline_m"]))
     except (KeyError, TypeError, ValueError):  # a scene that nobody has checked; jointgen says it
         return None
-    return window if is_small and around > 0 else None
 
 
 if __name__ == "__main__":

@@ -264,6 +264,12 @@ def terms_of(rows, values, most=12):
     return terms
 
 
+def halves(values):
+    """Means over the points [..., total or record], of [..., quantity]: totals, then records."""
+    half = values.shape[-1] // 2
+    return np.stack([values[..., :half].mean(axis=-1), values[..., half:].mean(axis=-1)], axis=-1)
+
+
 @dataclass
 class Fit:
     """Logarithms of totals and records of a network, at any point of the inputs."""
@@ -281,8 +287,7 @@ def fit_of(rows, pairs):
     """pairs: [set, network of two, quantity] in mm."""
     logs = np.log(pairs)
     means = logs.mean(axis=1)
-    half = logs.shape[2] // 2
-    terms = terms_of(rows, np.column_stack([means[:, :half].mean(axis=1), means[:, half:].mean(axis=1)]))
+    terms = terms_of(rows, halves(means))
     coefficients = np.linalg.lstsq(columns_of(rows, terms), means, rcond=None)[0]
     half_differences = (logs[:, 0] - logs[:, 1]) / math.sqrt(2)
     return Fit(terms, coefficients, np.concatenate([half_differences, -half_differences]))
@@ -337,15 +342,12 @@ def lack_of_fit(rows, pairs, folds=10):
     """Share of the variance of the logarithms, of the mean total and the mean record, that neither polynomial nor network
     explains: the mean square of the pair means' errors at a tenth of the sets, by a polynomial whose terms and coefficients are of the
     others, less half the networks' variance."""
-    logs = np.log(pairs)
-    half = logs.shape[2] // 2
-    both = np.stack([logs[:, :, :half].mean(axis=2), logs[:, :, half:].mean(axis=2)], axis=2)  # [set, network, total or record]
+    both = halves(np.log(pairs))  # [set, network, total or record]
     means, errors = both.mean(axis=1), np.empty((len(rows), 2))
     for fold in range(folds):
         left = np.arange(len(rows)) % folds == fold
         fit = fit_of(rows[~left], pairs[~left])
-        found = columns_of(rows[left], fit.terms) @ fit.coefficients
-        errors[left] = means[left] - np.stack([found[:, :half].mean(axis=1), found[:, half:].mean(axis=1)], axis=1)
+        errors[left] = means[left] - halves(columns_of(rows[left], fit.terms) @ fit.coefficients)
     networks = ((both[:, 0] - both[:, 1]) ** 2).mean(axis=0) / 2
     return ((errors**2).mean(axis=0) - networks / 2) / both.reshape(-1, 2).var(axis=0, ddof=1)
 
@@ -495,8 +497,8 @@ def main():
             f"{own[2, k]:.3f} ± {own_errors[2, k]:.3f} ({name})" for k, name in enumerate(ANSWERS)) + ".",
         f"Lack of fit, of the variance of the logarithm: {lack[0]:.3f} (mean total), {lack[1]:.3f} (mean recorded).",
         "Squares and products in the polynomial: " + ("; ".join(more) or "none") + ".",
-        f"Correlation of stress with joint stiffness times spacing, in logarithms: {told[1]:.2f} over the {told[2]} sets with the "
-        f"smallest misfit, {told[0]:.2f} over all.",
+        f"Logarithms of stress, and of joint stiffness times spacing: their correlation is {told[0]:.2f} in all sets. In the {told[2]} sets "
+        f"that fit best it is {told[1]:.2f}.",
     ]
     files.write_text(arguments.output / "shares.md", markdown(names, indices, errors, facts))
     picture(names, indices, errors, arguments.output / "shares.png")

@@ -52,21 +52,20 @@ def figures(path):
 class Figures(ChainTest):
     file = "tests/pipeline/figures.csv"
 
+    def joints(self, scene, *options):
+        """Path of the joints file of a scene file; the options are jointgen's."""
+        network = self.chain.run("jointgen", self.chain.source / scene, self.chain.new_folder() / "network.h5", "--quiet", *options)
+        return self.chain.run("strength-averaging", network, network.with_name("joints.h5"), "--quiet")
+
     def made(self):
         """(scene, file, dataset) and its figures, of all runs."""
         for scene, realizations in CUT:
             for realization in range(realizations):
-                folder = self.chain.new_folder()
-                network = self.chain.run("jointgen", self.chain.source / scene, folder / "network.h5", "--report", "--quiet",
-                                         *(["--realization", realization] if realization else []))
-                joints = self.chain.run("strength-averaging", network, folder / "joints.h5", "--quiet")
-                for dataset, values in figures(joints).items():
+                for dataset, values in figures(self.joints(scene, "--report", "--realization", realization)).items():
                     yield (f"{scene} {realization}", "joints.h5", dataset), values
         for scene in SOLVED:
-            folder = self.chain.new_folder()
-            network = self.chain.run("jointgen", self.chain.source / scene, folder / "network.h5", "--quiet")
-            joints = self.chain.run("strength-averaging", network, folder / "joints.h5", "--quiet")
-            result = self.chain.run("demsolve", joints, folder / "result.h5", "--quiet")
+            joints = self.joints(scene)
+            result = self.chain.run("demsolve", joints, joints.with_name("result.h5"), "--quiet")
             known = figures(joints)
             for dataset, values in figures(result).items():
                 if dataset not in known:

@@ -211,6 +211,16 @@ class Run(ChainTest):
         (folder / "demsolve").chmod(0o755)
         return str(folder)
 
+    def begun(self, *arguments, before=(), **options):
+        """`jointcreep run` of the scene, whose demsolve has begun: it touches the file `begun`."""
+        (self.folder / "begun").unlink(missing_ok=True)
+        running = subprocess.Popen([*before, self.chain.programs / "jointcreep", "run", "scene.toml", "-o", "out", *arguments],
+                                   cwd=self.folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, **options)
+        end = time.monotonic() + 60
+        while not (self.folder / "begun").exists() and time.monotonic() < end:
+            time.sleep(0.02)
+        return running
+
     def test_interrupted(self):
         """What has ended stays when a program fails or is killed, and the same command goes on."""
         (self.folder / "traces.csv").write_text("x1_m,y1_m,x2_m,y2_m\n0,3,10,4\n")
@@ -257,11 +267,7 @@ class Run(ChainTest):
         """With it dies the program that it called; the same command goes on."""
         self.scene.write_text(self.chain.small())
         fakes = self.fakes(f"touch {shlex.quote(str(self.folder))}/begun; exec sleep 100")
-        running = subprocess.Popen([self.chain.programs / "jointcreep", "run", "scene.toml", "-o", "out", "--programs", fakes],
-                                   cwd=self.folder, start_new_session=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        end = time.monotonic() + 60
-        while not (self.folder / "begun").exists() and time.monotonic() < end:
-            time.sleep(0.02)
+        running = self.begun("--programs", fakes, start_new_session=True)
         running.kill()
         running.wait()
         end = time.monotonic() + 10
@@ -280,24 +286,14 @@ class Run(ChainTest):
         fakes = self.fakes(f"trap 'sleep 0.3; touch {here}/kept; exit 143' TERM; touch {here}/begun; while true; do sleep 0.05; done")
         for number in signal.SIGTERM, signal.SIGINT, signal.SIGHUP:
             with self.subTest(number):
-                for name in "begun", "kept":
-                    (self.folder / name).unlink(missing_ok=True)
-                running = subprocess.Popen([self.chain.programs / "jointcreep", "run", "scene.toml", "-o", "out", "--programs", fakes],
-                                           cwd=self.folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-                end = time.monotonic() + 60
-                while not (self.folder / "begun").exists() and time.monotonic() < end:
-                    time.sleep(0.02)
+                (self.folder / "kept").unlink(missing_ok=True)
+                running = self.begun("--programs", fakes)
                 running.send_signal(number)
                 self.assertEqual(running.wait(60), 128 + number)
                 self.assertTrue((self.folder / "kept").exists())
         # What is ignored stays ignored: after nohup the end of a session ends nothing.
-        fakes = self.fakes(f"touch {here}/hung; sleep 1; exit 5")
-        (self.folder / "hung").unlink(missing_ok=True)
-        running = subprocess.Popen(["nohup", self.chain.programs / "jointcreep", "run", "scene.toml", "-o", "out", "--programs", fakes],
-                                   cwd=self.folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        end = time.monotonic() + 60
-        while not (self.folder / "hung").exists() and time.monotonic() < end:
-            time.sleep(0.02)
+        fakes = self.fakes(f"touch {here}/begun; sleep 1; exit 5")
+        running = self.begun("--programs", fakes, before=["nohup"])
         running.send_signal(signal.SIGHUP)
         self.assertEqual(running.wait(60), 5)
 
