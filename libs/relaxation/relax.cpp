@@ -101,12 +101,12 @@ public:
         : a_(assembly), settings_(settings), velocity_(assembly.position.size(), Vector2d::Zero()),
           start_(assembly.displacement),
           patience_ago_(assembly.displacement), older_{0, assembly.displacement, assembly.force, 0},
-          newer_(older_)
+          newer_(older_), row_sums_(row_sums)
     {
         if (settings.damping == Damping::mass && settings.masses == Masses::scaled)
             throw input_error("equilibrium: damping \"mass\" needs masses = \"real\"; scaled masses have no "
                               "frequency of their own");
-        take_stiffness(row_sums);
+        take_stiffness();
         too_far_ = size_of(assembly) / 10;
         sums_.resize(chunks_of(assembly));
         begin_search(assembly, settings.stiffness_damping > 0);
@@ -267,7 +267,7 @@ public:
     void pass(Tape& tape)
     {
         mechanics::pass(tape, a_);
-        tape(velocity_, patience_ago_, last_force_, older_, newer_, mass_, work_of_changes_, work_,
+        tape(velocity_, patience_ago_, last_force_, older_, newer_, row_sums_, mass_, work_of_changes_, work_,
              time_before_, steps_since_, dt_, alpha_, checks_in_movement_, last_energy_, starts_from_rest_);
         mechanics::pass(tape, stiffening_);
         follow_masses_and_step();
@@ -305,8 +305,8 @@ private:
         return work > 0 && work * moved > answer * too_far_;
     }
 
-    // Masses and step for these row sums, and all that follows from them.
-    void take_stiffness(const std::vector<double>& row_sums)
+    // Masses and step for row_sums_, and all that follows from them.
+    void take_stiffness()
     {
         const double local = 1 + local_damping();
         time_before_ = time();
@@ -316,14 +316,14 @@ private:
             double highest = 0; // frequency squared
             for (std::size_t g = 0; g < mass_.size(); ++g)
                 if (mass_[g] > 0)
-                    highest = std::max(highest, row_sums[g] / mass_[g]);
+                    highest = std::max(highest, row_sums_[g] / mass_[g]);
             // Stiffness damping shortens the stable step: (2 / w) (sqrt(1 + xi^2) - xi), xi = beta w / 2.
             const double xi = settings_.stiffness_damping * std::sqrt(highest) / 2;
             dt_ = safety * 2 / std::sqrt(highest * local) * (std::sqrt(1 + xi * xi) - xi);
         } else {
             dt_ = 1;
             mass_.clear();
-            for (const double sum : row_sums)
+            for (const double sum : row_sums_)
                 mass_.push_back(sum * local / (4 * safety * safety));
         }
         follow_masses_and_step();
@@ -360,7 +360,6 @@ private:
     {
         last_velocity_ = velocity_;
         force_before_ = last_force_;
-        undone_row_sums_.clear();
     }
 
     // Velocities keep the kinetic energy, or energies would not balance.
@@ -368,11 +367,10 @@ private:
     {
         const std::vector<double> mass = mass_;
         const double last_dt = dt_;
-        std::vector<double> row_sums = stiffness_row_sums(a_);
-        for (std::size_t g = 0; g < undone_row_sums_.size(); ++g) // other joints may have opened since
-            row_sums[g] = std::max(row_sums[g], undone_row_sums_[g]);
-        take_stiffness(row_sums);
-        undone_row_sums_ = std::move(row_sums);
+        const std::vector<double> now = stiffness_row_sums(a_);
+        for (std::size_t g = 0; g < now.size(); ++g) // joints that have opened may close again
+            row_sums_[g] = std::max(row_sums_[g], now[g]);
+        take_stiffness();
         last_force_ = force_before_;
         for (std::size_t g = 0; g < mass.size(); ++g) {
             if (!(mass[g] > 0))
@@ -477,10 +475,10 @@ private:
     std::vector<Vector2d> velocity_;
     std::vector<Vector2d> start_, patience_ago_, last_force_;
     std::vector<Vector2d> last_velocity_, force_before_; // before the step, where joints stiffen
-    std::vector<double> undone_row_sums_;                // of this step, as often as it was undone
     bool undoes_step_ = false;
     Moment older_, newer_;                    // a quarter of all steps ago or more
-    std::vector<double> mass_, inverse_mass_; // [kg/m], [m/kg]
+    std::vector<double> row_sums_;            // the largest so far [Pa]
+    std::vector<double> mass_, inverse_mass_; // for these: [kg/m], [m/kg]
     std::vector<Sums> sums_;                  // of each chunk
     double work_of_changes_ = 0;              // of the step, apart as every thread adds up work_ for itself
     double work_ = 0, stored_at_start_ = 0;

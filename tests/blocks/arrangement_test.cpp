@@ -255,6 +255,26 @@ TEST(arrangement, a_crossing_is_rounded_to_the_nearest_doubles)
     EXPECT_GT(crossings, 10000);
 }
 
+// Two long lines that begin near the origin: their differences need more than one double, and nearly all digits of the products cancel.
+TEST(arrangement, a_crossing_of_long_nearly_parallel_lines_is_rounded_to_the_nearest_doubles)
+{
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> unit(-1, 1);
+    const auto anywhere = [&] { return Vector2d(unit(random), unit(random)); };
+    int crossings = 0;
+    for (int i = 0; i < 20000; ++i) {
+        const double far = std::pow(10, 1 + i % 8), apart = far * std::numeric_limits<double>::epsilon();
+        const Vector2d a = anywhere(), b = far * anywhere();
+        const Vector2d c = a + apart * anywhere(), d = b + 3 * apart * anywhere();
+        if (blocks::turn(a, b, c) * blocks::turn(a, b, d) >= 0 ||
+            blocks::turn(c, d, a) * blocks::turn(c, d, b) >= 0)
+            continue;
+        ++crossings;
+        ASSERT_EQ(blocks::crossing(a, b, c, d), blocks::rational_crossing(a, b, c, d)) << far;
+    }
+    EXPECT_GT(crossings, 3000);
+}
+
 // A crossing that is off the middle between two doubles by 1e-32 and less: twice the precision of doubles puts it into the middle,
 // or on its wrong side.
 TEST(arrangement, a_crossing_beside_the_middle_between_two_doubles_is_rounded_to_its_own_side)

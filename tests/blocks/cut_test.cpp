@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -101,6 +102,44 @@ TEST(cut, a_joint_that_ends_at_corners_in_line_with_their_sides_divides_the_rock
         EXPECT_EQ(faults(scene, blocks), "");
         EXPECT_EQ(blocks.block_area.size(), 2u) << degrees;
         EXPECT_EQ(blocks.report.pruned_length, 0) << degrees;
+    }
+}
+
+// A joint of the scene with four others that lie on it, with a gap, in any order: each replaces its part. Their ends are rounded to 1e-9 m,
+// so they are not exactly on it.
+TEST(cut, joints_on_a_joint_replace_its_parts_in_any_order)
+{
+    const double ends[][2] = {{2, 3.5}, {3.5, 5}, {6, 7.5}, {7.5, 9}};
+    for (int degrees = 1; degrees < 90; degrees += 4) {
+        const double angle = degrees * std::numbers::pi / 180;
+        const Vector2d along(std::cos(angle), std::sin(angle)), from(-10, -10);
+        const auto at = [&](double s) {
+            const Vector2d exact = from + 2 * s * along;
+            return Vector2d(std::round(exact.x() * 1e9) / 1e9, std::round(exact.y() * 1e9) / 1e9);
+        };
+        Scene scene = section({{-20, -20}, {20, -20}, {20, 20}, {-20, 20}}, 0.01);
+        scene.joints.resize(6);
+        std::vector<int> order = {0, 1, 2, 3};
+        do {
+            Joints joints;
+            add_joint(joints, at(-20), at(40));
+            for (const int part : order)
+                add_joint(joints, at(ends[part][0]), at(ends[part][1]));
+            const Vector2d across(-along.y(), along.x()); // no end in the rock
+            add_joint(joints, at(5.5) - 60 * across, at(5.5) + 60 * across);
+            const Blocks blocks = blocks::cut(scene, joints);
+            ASSERT_EQ(faults(scene, blocks), "");
+            ASSERT_EQ(blocks.block_area.size(), 4u) << degrees;
+            ASSERT_EQ(blocks.report.pruned_length, 0) << degrees;
+            std::vector<double> length(6);
+            for (std::size_t e = 0; e < blocks.edge_joint.size(); ++e)
+                if (const Index joint = blocks.edge_joint[e]; joint >= 0)
+                    length[static_cast<std::size_t>(joint)] +=
+                        (blocks.vertex[blocks.edge_vertex[e][1]] - blocks.vertex[blocks.edge_vertex[e][0]])
+                            .norm();
+            for (std::size_t i = 0; i < order.size(); ++i)
+                ASSERT_NEAR(length[1 + i], 2 * (ends[order[i]][1] - ends[order[i]][0]), 1e-6) << degrees;
+        } while (std::next_permutation(order.begin(), order.end()));
     }
 }
 

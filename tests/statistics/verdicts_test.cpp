@@ -262,6 +262,40 @@ TEST(Verdicts, AreWithheldFromSmallSamples)
     EXPECT_NE(table(rows).find("too few"), std::string::npos);
 }
 
+// Ten are a sample, nine are not.
+TEST(Verdicts, OfALawNeedTen)
+{
+    std::map<std::string, std::map<Index, int>> sizes; // of laws: how often there are nine, and ten
+    std::vector<Example> all = examples();
+    for (const Example& example : other_kinds())
+        all.push_back(example);
+    for (Example& example : all) {
+        JointSet& set = example.scene.joint_sets[0];
+        if (set.spacing.kind == Kind::constant)
+            continue; // judged without a sample
+        if (set.density)
+            set.density->value /= 15;
+        if (!set.density || set.kind == SetKind::lines)
+            stretch(set.spacing, 4);
+        for (int r = 0; r < 60; ++r) {
+            const Statistics rows = report_of(example.scene, example.scene, r);
+            for (std::size_t i = 0; i < rows.quantity.size(); ++i) {
+                if (!rows.quantity[i].ends_with(", law") ||
+                    rows.verdict[i] == static_cast<Index>(Verdict::none))
+                    continue;
+                EXPECT_EQ(rows.verdict[i] == static_cast<Index>(Verdict::too_few), rows.sample_size[i] < 10)
+                    << example.name << ": " << rows.quantity[i] << " of " << rows.sample_size[i];
+                ++sizes[rows.quantity[i]][rows.sample_size[i]];
+            }
+        }
+    }
+    for (auto& [quantity, count] : sizes) {
+        EXPECT_GT(count[9], 0) << quantity;
+        EXPECT_GT(count[10], 0) << quantity;
+    }
+    EXPECT_GE(sizes.size(), 4u);
+}
+
 // Constants leave nothing to chance.
 TEST(Verdicts, OfConstantsAreExact)
 {
