@@ -97,19 +97,20 @@ std::string shown_without_answer(const Found& found, const Factors& factors)
 // A factor with its intervals, or why it has none.
 std::string shown_factor(const Found& found, std::size_t i)
 {
-    const std::string value = rounded(found.factors[i]);
-    if (const AtBound at = found.minimum.at_bound[i]; at != AtBound::no)
-        return value + (found.is_resolved[i] ? "" : ": not resolved by these readings") + ": at its " +
-               (at == AtBound::low ? "lower" : "upper") + " bound; the readings fit better beyond it";
-    if (found.confidence.is_fixed[i])
-        return value + ": not resolved: it does not change these readings";
-    const auto index = static_cast<Eigen::Index>(i);
-    const auto shown_range = [&](bool all_together) {
-        const Interval of = found.confidence.interval(found.minimum.parameters[index], index, all_together);
+    const auto shown_range = [&](bool with_all) {
+        const Interval of = found.interval(i, with_all);
         return shown_interval({std::exp(of.low), std::exp(of.high)});
     };
-    return value + (found.is_resolved[i] ? "" : ": not resolved by these readings") +
-           " (95 %: " + shown_range(false) + "; all together: " + shown_range(true) + ")";
+    const std::string value = rounded(found.factors[i]) +
+                              (found.is_resolved[i] ? "" : ": not resolved by these readings"),
+                      intervals =
+                          " (95 %: " + shown_range(false) + "; all together: " + shown_range(true) + ")";
+    if (const AtBound at = found.minimum.at_bound[i]; at != AtBound::no)
+        return value + ": at its " + (at == AtBound::low ? "lower" : "upper") +
+               " bound; the readings fit better beyond it" + (found.profiles.empty() ? "" : intervals);
+    if (found.confidence.is_fixed[i])
+        return rounded(found.factors[i]) + ": not resolved: it does not change these readings";
+    return value + intervals;
 }
 
 void add_factors(Summary& summary, const Found& found, const Factors& factors)
@@ -289,9 +290,7 @@ std::string found_table(const Found& found, const Factors& factors, bool knows_d
     table += '\n';
     for (std::size_t i = 0; i < factors.size(); ++i) {
         const auto index = static_cast<Eigen::Index>(i);
-        const double logarithm = found.minimum.parameters[index];
-        const Interval each = confidence.interval(logarithm, index),
-                       all = confidence.interval(logarithm, index, true);
+        const Interval each = found.interval(i), all = found.interval(i, true);
         table += exchange::csv_field(option_of(factors[i])) + ',' + shown(found.factors[i]) + ',' +
                  shown_bound(each.low) + ',' + shown_bound(each.high) + ',' + shown_bound(all.low) + ',' +
                  shown_bound(all.high) + ',' +
@@ -361,6 +360,8 @@ void report(const Arguments& arguments, const Found& found, const Measurements& 
     Summary summary;
     summary.add("readings", measurements.size());
     summary.add("runs", found.minimum.evaluations);
+    if (!found.profiles.empty())
+        summary.add("runs of profile intervals", found.profile_runs);
     if (!found.without_answer.empty())
         summary.add("runs without an answer", shown_without_answer(found, factors));
     add_factors(summary, found, factors);
@@ -378,8 +379,12 @@ void report(const Arguments& arguments, const Found& found, const Measurements& 
     warn_of_interpolation(summary, found, measurements);
     const std::string not_resolved = unresolved(found, factors);
     if (!not_resolved.empty())
-        summary.warn("not resolved by these readings: " + not_resolved +
-                     ", which may be 10 times as large or as small. Fit fewer factors");
+        summary.warn(
+            "not resolved by these readings: " + not_resolved +
+            (found.profiles.empty()
+                 ? ", which may be 10 times as large or as small. Fit fewer factors"
+                 : ", whose interval extends to a bound or by a factor of 10. Fit fewer factors, or give "
+                   "wider bounds"));
     warn_of_doubts(summary, of_instruments);
     // One without any effect stays as it is in the scene.
     bool may_advise = !is_doubtful(of_instruments);

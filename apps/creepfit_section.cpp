@@ -41,7 +41,8 @@ back_analysis::Settings settings_of(const Arguments& arguments)
             .since_first_reading = arguments.has("since-first-reading"),
             .errors = errors,
             .threads = arguments.threads(),
-            .most_runs = static_cast<int>(arguments.whole_number("runs", 1, 100000).value_or(60))};
+            .most_runs = static_cast<int>(arguments.whole_number("runs", 1, 100000).value_or(60)),
+            .profile_intervals = arguments.has("profile-intervals")};
 }
 
 Measurements read_measurements(const std::string& path, const Scene& scene, std::size_t n_factors)
@@ -103,8 +104,9 @@ bool are_same(const Joints& a, const Joints& b)
 void fit_networks(const Arguments& arguments, const std::string& measured,
                   const back_analysis::Settings& settings)
 {
-    if (arguments.has("readings"))
-        throw input_error("--readings is of one network, and several are given");
+    for (const char* option : {"readings", "profile-intervals"})
+        if (arguments.has(option))
+            throw input_error("--" + std::string(option) + " is of one network, and several are given");
     std::string text; // of the scene
     bool knows_deviations = false;
     std::vector<Found> found;
@@ -151,8 +153,11 @@ std::vector<Option> section_options()
              "or from the geometric mean of the bounds if 1 is outside them"},
         {"since-first-reading", "",
          "through the solver: measurements count from each point's first reading, and share its error"},
+        {"profile-intervals", "",
+         "through the solver: 95 percent intervals by profiles of the sum of squares, in place of standard errors, which are wrong "
+         "where displacements are far from linear in the factors' logarithms. Each factor takes 10 to 90 more runs"},
         {"runs", "N",
-         "through the solver: largest number of runs (default 60); if they are too few the exit code is 3, "
+         "through the solver: largest number of runs of the search (default 60); if they are too few the exit code is 3, "
          "and the best factors are in FOUND.failed.csv"},
         {"threads", "N", "through the solver: threads (default 1)"}};
 }

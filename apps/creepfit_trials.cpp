@@ -208,9 +208,17 @@ struct NetworkFits {
     back_analysis::Section section;
 };
 
-estimation::Errors errors_of(const std::vector<std::string>& words)
+struct Trial {
+    std::string readings;
+    std::vector<std::size_t> networks;
+    estimation::Errors errors{};
+    bool profile_intervals = false;
+};
+
+// The options of a line of the list.
+void read_options(const std::vector<std::string>& words, Trial& trial)
 {
-    estimation::Errors errors;
+    estimation::Errors& errors = trial.errors;
     for (std::size_t i = 0; i < words.size(); ++i)
         if (words[i] == "--offset")
             errors.offset = true;
@@ -220,18 +228,13 @@ estimation::Errors errors_of(const std::vector<std::string>& words)
             errors.robust = true;
         else if (words[i] == "--correlated-noise")
             errors.correlated = true;
+        else if (words[i] == "--profile-intervals")
+            trial.profile_intervals = true;
         else if (words[i] == "--steps" && i + 1 < words.size())
             errors.steps = creepfit::steps_in(words[++i]);
         else
             throw input_error('"' + words[i] + "\": no option of errors");
-    return errors;
 }
-
-struct Trial {
-    std::string readings;
-    std::vector<std::size_t> networks;
-    estimation::Errors errors;
-};
 
 void print_row(const Trial& trial, std::size_t networks, const std::string& rest)
 {
@@ -249,6 +252,7 @@ constexpr std::array<std::size_t, 6> counts{1, 2, 3, 5, 10, 20};
 void fit(const Trial& trial, std::deque<NetworkFits>& networks, back_analysis::Settings settings)
 {
     settings.errors = trial.errors;
+    settings.profile_intervals = trial.profile_intervals;
     const std::string text = creepfit::text_of(trial.readings);
     std::vector<estimation::OfOneModel> models;
     bool knows_deviations = false;
@@ -273,11 +277,10 @@ void fit(const Trial& trial, std::deque<NetworkFits>& networks, back_analysis::S
         const auto across = n > 1 ? estimation::across(models, knows_deviations)
                                   : std::vector<std::optional<estimation::Across>>();
         for (std::size_t i = 0; i < settings.factors.size(); ++i) {
-            const auto index = static_cast<Eigen::Index>(i);
             const std::string name = creepfit::option_of(settings.factors[i]) + ',';
             if (n == 1) {
-                const double value = found.minimum.parameters[index];
-                const estimation::Interval interval = found.confidence.interval(value, index);
+                const double value = found.minimum.parameters[static_cast<Eigen::Index>(i)];
+                const estimation::Interval interval = found.interval(i);
                 print_row(trial, n,
                           name + shown(std::exp(value)) + ',' + end_of(interval.low) + ',' +
                               end_of(interval.high) + ',' + (found.is_resolved[i] ? "yes," : "no,") +
@@ -326,7 +329,8 @@ void fit_all(const std::vector<std::string>& arguments)
         std::vector<std::string> words = split(line, ' ');
         if (words.size() < 2)
             throw input_error('"' + line + "\": wanted READINGS.csv NETWORKS and options");
-        Trial trial{words[0], {}, errors_of({words.begin() + 2, words.end()})};
+        Trial trial{words[0], {}};
+        read_options({words.begin() + 2, words.end()}, trial);
         for (const std::string& number : split(words[1], ','))
             trial.networks.push_back(std::stoul(number));
         fit(trial, networks, settings);

@@ -189,6 +189,7 @@ public:
             throw input_error("all readings are first readings, from which measurements count");
     }
 
+    int count() const { return count_; }
     const Chosen& readings() const { return chosen_; }
     const Done& first() const { return done_.front(); }
     const Done& at(const VectorXd& logarithms) const
@@ -278,7 +279,34 @@ bool are_noisy(const Found& found, const std::vector<scene::Measurement>& measur
     return residual > 1e-4 * largest;
 }
 
+// A factor is known where both ends are within a factor of 10.
+void add_profiles(Found& found, Runs& runs, const estimation::Instruments& instruments,
+                  const estimation::Bounds& bounds)
+{
+    const int before = runs.count();
+    found.profiles = estimation::profiles(
+        [&](const VectorXd& logarithms) -> std::optional<Evaluation> {
+            const std::optional<Evaluation> raw = runs.evaluate(logarithms);
+            return raw ? std::optional(instruments.independent(*raw)) : std::nullopt;
+        },
+        found.minimum, found.confidence, bounds);
+    found.profile_runs = runs.count() - before;
+    for (std::size_t i = 0; i < found.profiles.size(); ++i) {
+        const auto [low, high] = found.profiles[i].interval;
+        const double at = found.minimum.parameters[static_cast<Eigen::Index>(i)];
+        found.is_resolved[i] = std::max(at - low, high - at) < std::log(10.0);
+    }
+}
+
 } // namespace
+
+estimation::Interval Found::interval(std::size_t factor, bool with_all) const
+{
+    if (!profiles.empty())
+        return with_all ? profiles[factor].with_all : profiles[factor].interval;
+    const auto i = static_cast<Eigen::Index>(factor);
+    return confidence.interval(minimum.parameters[i], i, with_all);
+}
 
 Section section_of(const Scene& scene, const Network& network, const EquivalentJoints& joints,
                    const Settings& settings)
@@ -345,10 +373,12 @@ Found fit(const Scene& scene, const Section& section, const std::vector<scene::M
         high, settings.most_runs, 1e-4 / static_cast<double>(readings.measurement.size()));
     found.minimum = std::move(fitted.minimum);
     found.is_settled = fitted.is_settled;
-    found.without_answer = runs.without_answer();
     found.factors = factors_at(found.minimum.parameters);
     found.confidence = instruments.confidence(fitted.raw, found.minimum);
     found.is_resolved = estimation::resolved(found.minimum, found.confidence);
+    if (settings.profile_intervals && found.minimum.is_converged)
+        add_profiles(found, runs, instruments, {low, high});
+    found.without_answer = runs.without_answer();
     found.series = readings.series;
     const Runs::Done& best = runs.at(found.minimum.parameters);
     found.interpolation_error = best.interpolation_error;

@@ -7,6 +7,7 @@
 
 #include "analysis/analysis.hpp"
 #include "estimation/instrument.hpp"
+#include "estimation/profile.hpp"
 #include "scene/measurements.hpp"
 
 namespace jointcreep::back_analysis
@@ -27,7 +28,8 @@ struct Settings {
     // both of the latter two.
     estimation::Errors errors{};
     int threads = 1;
-    int most_runs = 60;
+    int most_runs = 60;             // of the search
+    bool profile_intervals = false; // by 10 to 90 more runs for each factor
 };
 
 struct Computed {
@@ -52,6 +54,9 @@ struct Found {
     // share a first reading's error.
     estimation::Minimum minimum;
     estimation::Confidence confidence;
+    // Of the factors' logarithms, where they are asked for and the search has converged; the runs that they took.
+    std::vector<estimation::Profile> profiles;
+    int profile_runs = 0;
     std::vector<Computed> computed; // of the measurements
     // Error of linear interpolation between the steps of the analysis, by estimate [m].
     std::vector<double> interpolation_error;
@@ -67,6 +72,9 @@ struct Found {
     std::vector<double> instrument; // what errors add to `computed`, of the measurements [m]
     std::vector<bool>
         is_resolved; // factors that the measurements know better than by a factor of 10 up and down
+
+    // 95 percent of a factor's logarithm, by itself or with all: by its profile if there is one, else by its standard error.
+    estimation::Interval interval(std::size_t factor, bool with_all = false) const;
 };
 
 // Called before every run, with its factors.

@@ -1,5 +1,6 @@
 #include "estimation/creep_curve.hpp"
 
+#include "estimation/profile.hpp"
 #include "model/error.hpp"
 #include "model/units.hpp"
 
@@ -107,39 +108,24 @@ public:
     }
 
     // Where it is below `limit`. An end is 0 or infinite where that is more than a factor of 1000 away.
-    Interval interval(Fixed fixed, double limit, double first_step) const
+    Interval interval(Fixed fixed, double limit, double least_sum, double first_step) const
     {
-        const double widest = std::log(1e3);
         VectorXd at = best_;
         if (fixed == viscosity)
             at[0] += at[1];
         const Eigen::Index i = fixed == time ? 1 : 0;
-        const double middle = at[i];
+        Bounds bounds{VectorXd::Constant(at.size(), -1e3), VectorXd::Constant(at.size(), 1e3)};
+        // Far from the minimum, where creep is over at once or hardly begins, the sum is flat: nothing would bring the
+        // search back.
+        if (fixed != time) {
+            bounds.low[1] = std::log(shortest_share * shortest_interval(curve_));
+            bounds.high[1] = std::log(longest_share * curve_.time.back());
+        }
         const auto end = [&](double side) {
-            VectorXd start = at;
-            const auto is_within = [&](double distance) {
-                VectorXd low = VectorXd::Constant(at.size(), -1e3), high = -low;
-                // Far from the minimum, where creep is over at once or hardly begins, the sum is flat: nothing
-                // would bring the search back.
-                low[1] = std::log(shortest_share * shortest_interval(curve_));
-                high[1] = std::log(longest_share * curve_.time.back());
-                low[i] = high[i] = middle + side * distance;
-                const Minimum least = minimise(model(fixed == viscosity), start, low, high, 100, 1e-10);
-                start = least.parameters;
-                return least.sum_of_squares() <= limit;
-            };
-            double within = 0, beyond = std::clamp(first_step, 1e-7, 0.5);
-            while (is_within(beyond)) {
-                within = beyond;
-                beyond *= 1.5;
-                if (within > widest)
-                    return side * std::numeric_limits<double>::infinity();
-            }
-            while (beyond - within > 1e-4 * beyond) {
-                const double between = (within + beyond) / 2;
-                (is_within(between) ? within : beyond) = between;
-            }
-            return middle + side * beyond;
+            VectorXd guess = at;
+            guess[i] += side * std::clamp(first_step, 1e-7, 0.5);
+            return profile_end(model(fixed == viscosity), at, least_sum, limit, i, guess, bounds,
+                               {.share = 1e-4, .least_gain = 1e-6});
         };
         return {std::exp(end(-1)), std::exp(end(1))};
     }
@@ -269,7 +255,8 @@ void add_intervals(CurveFit& fit, const CreepCurve& curve, const Unknowns& u, co
         const double noise = quantile * (unit_error > 0 && error > 0 && instruments.changes_errors()
                                              ? error / unit_error
                                              : confidence.noise_factor);
-        return profiles.interval(fixed, minimum.sum_of_squares() + noise * noise, quantile * error);
+        return profiles.interval(fixed, minimum.sum_of_squares() + noise * noise, minimum.sum_of_squares(),
+                                 quantile * error);
     };
     fit.time = {fit.retardation_time, profile(Profiles::time, of_time, confidence.standard_error(of_time))};
     fit.stiffness = {ratio, profile(Profiles::stiffness, of_stiffness, stiffness_error)};

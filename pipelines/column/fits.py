@@ -348,15 +348,16 @@ def add_difference(table, site, ours, exact):
     table.add(site, len(exact), f"{off:.3f}")
 
 
-def by_solver(given, tables, failed, name, text, components, every, drift, n, bounds):
+def by_solver(given, tables, failed, name, text, components, every, drift, n, bounds, intervals=()):
     """A section whose readings count from each point's first one: all fits have --offset. Displacements are polynomials within `bounds`;
-    steps beyond are runs."""
+    steps beyond are runs. `intervals` are options of the fits whose coverage is counted."""
     joints = joints_of(given.programs, text, given.out / name)
     made = joints_of(given.programs, with_factors(text, TRUTH), given.out / f"{name}-made")
     site = Solved(given.programs, made, components, every)
     cases = cases_of(drift, ["--offset"])
     del cases["unknown zeros of 2 mm"]  # as all fits
-    cases, wrong = chosen(given, cases), chosen(given, without(WRONG, cases))
+    wrong = chosen(given, without(WRONG, cases))
+    cases = {case: (faults, [*options, *intervals]) for case, (faults, options) in chosen(given, cases).items()}
     known = [((one[0], True), *one[1:]) for one in trials_of(site, cases, n)]
     unknown = [((one[0], False), *one[1:]) for one in trials_of(site, wrong, n)]
     # Readings leave the factors open by more than those of the column do.
@@ -381,7 +382,8 @@ def by_solver(given, tables, failed, name, text, components, every, drift, n, bo
 
 
 def slope(given, tables, failed):
-    by_solver(given, tables, failed, "slope", (given.data / "slope/scene.toml").read_text(), "x", 7, 0.01, given.n_slope, WIDE)
+    by_solver(given, tables, failed, "slope", (given.data / "slope/scene.toml").read_text(), "x", 7, 0.01, given.n_slope, WIDE,
+              ["--profile-intervals"])
 
 
 def lock(given, tables, failed):

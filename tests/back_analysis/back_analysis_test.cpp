@@ -204,6 +204,52 @@ TEST(back_analysis, truth_lies_in_its_intervals_in_90_of_100_trials)
     }
 }
 
+// An end of a profile interval is where a fit with the factor fixed there is worse by the square of so many standard errors, whatever errors
+// of instruments are fitted. With little noise the intervals are those by standard errors, with much they are not.
+TEST(back_analysis, profile_intervals_end_where_the_fit_is_worse_by_that_much)
+{
+    const JointedSection section;
+    const std::vector<Measurement> exact = made(section, three);
+    std::mt19937_64 random(3);
+    for (const bool offset : {false, true})
+        for (const double noise : {3e-7, 5e-6}) {
+            const std::vector<Measurement> readings = noisy(exact, noise, random, true);
+            back_analysis::Settings settings = settings_for(three);
+            settings.errors.offset = offset;
+            settings.profile_intervals = true;
+            const auto fit = [&](const back_analysis::Settings& how) {
+                return back_analysis::fit(section.scene, section.network, section.joints, readings, how);
+            };
+            const Found found = fit(settings);
+            EXPECT_LT(found.profile_runs, 300);
+            settings.profile_intervals = false;
+            double asymmetry = 0;
+            for (std::size_t i = 0; i < three.size(); ++i) {
+                const auto [low, high] = found.interval(i);
+                const auto index = static_cast<Eigen::Index>(i);
+                const double at = found.minimum.parameters[index],
+                             half = found.confidence.quantile * found.confidence.standard_error(index);
+                if (noise < 1e-6) {
+                    EXPECT_NEAR((high - low) / 2, half, .05 * half);
+                }
+                asymmetry = std::max(asymmetry, std::abs(high + low - 2 * at) / half);
+                for (const double end : {low, high}) {
+                    if (std::isinf(end))
+                        continue;
+                    back_analysis::Settings fixed = settings;
+                    for (std::size_t j = 0; j < three.size(); ++j)
+                        fixed.factors[j].start = found.factors[j];
+                    fixed.factors[i].low = fixed.factors[i].high = fixed.factors[i].start = std::exp(end);
+                    const double worse = fit(fixed).minimum.sum_of_squares() - found.minimum.sum_of_squares();
+                    EXPECT_NEAR(worse, std::pow(found.confidence.quantile * found.confidence.noise_factor, 2),
+                                .1)
+                        << i << ' ' << noise;
+                }
+            }
+            EXPECT_EQ(asymmetry > .3, noise > 1e-6) << asymmetry;
+        }
+}
+
 TEST(back_analysis, counts_from_first_readings)
 {
     JointedSection section;
