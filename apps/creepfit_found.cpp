@@ -349,8 +349,10 @@ std::string why_not_converged(const Found& found, const Factors& factors)
         why += ", but no run in that direction was better";
     if (!found.without_answer.empty())
         why += "\nruns without an answer: " + shown_without_answer(found, factors);
-    return why + (minimum.has_stalled ? "\nwanted other bounds in --fit, or fewer factors"
-                                      : "\nwanted more --runs");
+    return why + (found.members > 0
+                      ? "\nwanted a larger --ensemble, narrower bounds in --fit, or fewer factors"
+                  : minimum.has_stalled ? "\nwanted other bounds in --fit, or fewer factors"
+                                        : "\nwanted more --runs");
 }
 
 void report(const Arguments& arguments, const Found& found, const Measurements& measurements,
@@ -359,7 +361,9 @@ void report(const Arguments& arguments, const Found& found, const Measurements& 
     const Factors& factors = settings.factors;
     Summary summary;
     summary.add("readings", measurements.size());
-    summary.add("runs", found.minimum.evaluations);
+    summary.add("runs",
+                std::to_string(found.minimum.evaluations) +
+                    (found.members > 0 ? ", by an ensemble of " + std::to_string(found.members) : ""));
     if (!found.profiles.empty())
         summary.add("runs of profile intervals", found.profile_runs);
     if (!found.without_answer.empty())

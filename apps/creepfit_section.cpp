@@ -37,21 +37,33 @@ back_analysis::Settings settings_of(const Arguments& arguments)
                           (errors.offset   ? "offset, which contains it"
                            : errors.robust ? "robust; wanted --offset in its place"
                                            : "correlated-noise; wanted --offset in its place"));
+    std::optional<estimation::EnsembleSearch> ensemble;
+    if (const auto members = arguments.whole_number("ensemble", 4, 100000)) {
+        for (const char* option : {"robust", "correlated-noise", "profile-intervals", "runs"})
+            if (arguments.has(option))
+                throw input_error("--ensemble does not go with --" + std::string(option));
+        ensemble = {.members = static_cast<int>(*members)};
+    }
     return {.factors = factors_in(*arguments.text("fit")),
             .since_first_reading = arguments.has("since-first-reading"),
             .errors = errors,
             .threads = arguments.threads(),
             .most_runs = static_cast<int>(arguments.whole_number("runs", 1, 100000).value_or(60)),
-            .profile_intervals = arguments.has("profile-intervals")};
+            .profile_intervals = arguments.has("profile-intervals"),
+            .ensemble = ensemble};
 }
 
-Measurements read_measurements(const std::string& path, const Scene& scene, std::size_t n_factors)
+Measurements read_measurements(const std::string& path, const Scene& scene,
+                               const back_analysis::Settings& settings)
 {
     const std::string text = text_of(path);
     Measurements measurements = of_file(path, [&] { return scene::measurements_in_csv(text, scene); });
-    if (measurements.size() <= n_factors)
+    if (measurements.size() <= settings.factors.size())
         throw input_error(path + ": " + std::to_string(measurements.size()) + " readings for " +
-                          std::to_string(n_factors) + " factors; wanted more readings");
+                          std::to_string(settings.factors.size()) + " factors; wanted more readings");
+    if (settings.ensemble && !measurements.front().deviation)
+        throw input_error(path +
+                          ": no sigma_mm; wanted the standard deviation of each reading with --ensemble");
     return measurements;
 }
 
@@ -104,7 +116,7 @@ bool are_same(const Joints& a, const Joints& b)
 void fit_networks(const Arguments& arguments, const std::string& measured,
                   const back_analysis::Settings& settings)
 {
-    for (const char* option : {"readings", "profile-intervals"})
+    for (const char* option : {"readings", "profile-intervals", "ensemble"})
         if (arguments.has(option))
             throw input_error("--" + std::string(option) + " is of one network, and several are given");
     std::string text; // of the scene
@@ -126,7 +138,7 @@ void fit_networks(const Arguments& arguments, const std::string& measured,
                               arguments.inputs()[static_cast<std::size_t>(same - joints_before.begin())] +
                               "; wanted each network once");
         joints_before.push_back(joints);
-        const Measurements measurements = read_measurements(measured, section.scene, settings.factors.size());
+        const Measurements measurements = read_measurements(measured, section.scene, settings);
         knows_deviations = measurements.front().deviation.has_value() && !settings.errors.robust &&
                            !settings.errors.correlated;
         found.push_back(search(arguments, section.file, section.scene, measurements, settings));
@@ -156,6 +168,10 @@ std::vector<Option> section_options()
         {"profile-intervals", "",
          "through the solver: 95 percent intervals by profiles of the sum of squares, in place of standard errors, which are wrong "
          "where displacements are far from linear in the factors' logarithms. Each factor takes 10 to 90 more runs"},
+        {"ensemble", "N",
+         "through the solver: search by an ensemble of N runs a round, without sensitivities: for many factors, and where joints or rock have "
+         "no sensitivities (Barton-Bandis joints, rock that yields). Bounds of a factor are then its 95 percent interval beforehand (default "
+         "0.05:20). Readings need sigma_mm"},
         {"runs", "N",
          "through the solver: largest number of runs of the search (default 60); if they are too few the exit code is 3, "
          "and the best factors are in FOUND.failed.csv"},
@@ -176,7 +192,7 @@ void fit_section(const Arguments& arguments)
 
     // 1. The section, and its measurements.
     const auto [file, scene] = read_section(arguments, arguments.input(), settings.factors);
-    const Measurements measurements = read_measurements(measured, scene, settings.factors.size());
+    const Measurements measurements = read_measurements(measured, scene, settings);
 
     // 2. The factors that fit the measurements.
     const Found found = search(arguments, file, scene, measurements, settings);

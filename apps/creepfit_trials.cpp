@@ -213,6 +213,7 @@ struct Trial {
     std::vector<std::size_t> networks;
     estimation::Errors errors{};
     bool profile_intervals = false;
+    std::optional<estimation::EnsembleSearch> ensemble{};
 };
 
 // The options of a line of the list.
@@ -230,6 +231,8 @@ void read_options(const std::vector<std::string>& words, Trial& trial)
             errors.correlated = true;
         else if (words[i] == "--profile-intervals")
             trial.profile_intervals = true;
+        else if (words[i] == "--ensemble" && i + 1 < words.size())
+            trial.ensemble = {.members = std::stoi(words[++i])};
         else if (words[i] == "--steps" && i + 1 < words.size())
             errors.steps = creepfit::steps_in(words[++i]);
         else
@@ -253,6 +256,7 @@ void fit(const Trial& trial, std::deque<NetworkFits>& networks, back_analysis::S
 {
     settings.errors = trial.errors;
     settings.profile_intervals = trial.profile_intervals;
+    settings.ensemble = trial.ensemble;
     const std::string text = creepfit::text_of(trial.readings);
     std::vector<estimation::OfOneModel> models;
     bool knows_deviations = false;

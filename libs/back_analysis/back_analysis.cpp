@@ -211,7 +211,7 @@ public:
             Prediction found = predicted(factors);
             Evaluation at = compared(found);
             // Before the first stage nothing moves, whatever the factors.
-            if (is_first && at.jacobian.norm() == 0)
+            if (is_first && !settings_.ensemble && at.jacobian.norm() == 0)
                 throw input_error("no factor changes any of the readings; wanted readings from the first "
                                   "stage on that depend on the factors");
             done_.push_back(
@@ -240,8 +240,7 @@ private:
     Evaluation compared(const Prediction& found) const
     {
         const auto rows = static_cast<Eigen::Index>(chosen_.measurement.size());
-        Evaluation at{VectorXd(rows),
-                      estimation::MatrixXd(rows, static_cast<Eigen::Index>(settings_.factors.size()))};
+        Evaluation at{VectorXd(rows), estimation::MatrixXd(rows, found.sensitivity.cols())};
         for (Eigen::Index row = 0; row < rows; ++row) {
             const std::size_t m = chosen_.measurement[static_cast<std::size_t>(row)];
             const double deviation = deviation_of(measurements_[m]);
@@ -279,6 +278,38 @@ bool are_noisy(const Found& found, const std::vector<scene::Measurement>& measur
     return residual > 1e-4 * largest;
 }
 
+// Bounds are the 95 percent interval of a normal law.
+estimation::Prior prior_of(const estimation::Bounds& bounds)
+{
+    constexpr double standard_errors = 1.959964;
+    return {(bounds.low + bounds.high) / 2, (bounds.high - bounds.low) / 2 / standard_errors};
+}
+
+// The search by an ensemble, as a minimum that was found.
+estimation::InstrumentFit by_members(Runs& runs, const estimation::Instruments& instruments,
+                                     const estimation::Bounds& bounds,
+                                     const estimation::EnsembleSearch& search)
+{
+    const estimation::Prior prior = prior_of(bounds);
+    runs.evaluate(prior.mean); // where there must be an equilibrium
+    estimation::Inversion inversion = estimation::invert(
+        [&runs](const VectorXd& logarithms) -> std::optional<VectorXd> {
+            const std::optional<Evaluation> at = runs.evaluate(logarithms);
+            return at ? std::optional(at->residual) : std::nullopt;
+        },
+        [&instruments](const Evaluation& raw) { return instruments.independent(raw); }, prior, search);
+    estimation::InstrumentFit fitted;
+    fitted.minimum = {.parameters = inversion.mean,
+                      .there = instruments.independent(inversion.raw),
+                      .at_bound =
+                          std::vector(static_cast<std::size_t>(prior.mean.size()), estimation::AtBound::no),
+                      .left = inversion.step,
+                      .evaluations = runs.count(),
+                      .is_converged = inversion.is_converged};
+    fitted.raw = std::move(inversion.raw);
+    return fitted;
+}
+
 // A factor is known where both ends are within a factor of 10.
 void add_profiles(Found& found, Runs& runs, const estimation::Instruments& instruments,
                   const estimation::Bounds& bounds)
@@ -312,7 +343,7 @@ Section section_of(const Scene& scene, const Network& network, const EquivalentJ
                    const Settings& settings)
 {
     EquivalentJoints own = joints;
-    analysis::Recording recording;
+    std::vector<Scaled> factors_on;
     for (const Factor& factor : settings.factors) {
         Scaled scaled = factor.scaled;
         if (!factor.material.empty()) {
@@ -323,19 +354,22 @@ Section section_of(const Scene& scene, const Network& network, const EquivalentJ
             scaled.material = static_cast<Index>(material - scene.joint_materials.begin());
             own.material = joint::materials_of(scene, network);
         }
-        recording.parameters.push_back(scaled);
+        factors_on.push_back(scaled);
     }
-    return
-        [&scene, &network, own, recording, threads = settings.threads](const std::vector<double>& factors) {
-            Scene changed = scene;
-            EquivalentJoints stiffer = own;
-            for (std::size_t i = 0; i < factors.size(); ++i)
-                sensitivity::scale(stiffer, changed.in_situ_stress, recording.parameters[i], factors[i]);
-            analysis::Analysis analysis(changed, network, stiffer, threads, recording,
-                                        [](const analysis::Progress&) {});
-            analysis.run();
-            return Run{analysis.result().history, analysis.sensitivities()};
-        };
+    analysis::Recording recording;
+    if (!settings.ensemble)
+        recording.parameters = factors_on;
+    return [&scene, &network, own, factors_on, recording,
+            threads = settings.threads](const std::vector<double>& factors) {
+        Scene changed = scene;
+        EquivalentJoints stiffer = own;
+        for (std::size_t i = 0; i < factors.size(); ++i)
+            sensitivity::scale(stiffer, changed.in_situ_stress, factors_on[i], factors[i]);
+        analysis::Analysis analysis(changed, network, stiffer, threads, recording,
+                                    [](const analysis::Progress&) {});
+        analysis.run();
+        return Run{analysis.result().history, analysis.sensitivities()};
+    };
 }
 
 Found fit(const Scene& scene, const Network& network, const EquivalentJoints& joints,
@@ -367,17 +401,26 @@ Found fit(const Scene& scene, const Section& section, const std::vector<scene::M
                           std::to_string(settings.factors.size()) + " factors and " +
                           std::to_string(instruments.unknowns()) +
                           " unknown errors of instruments; wanted more readings, or fewer of both");
-    // A step that would win a hundredth of a standard error is not worth a run.
-    estimation::InstrumentFit fitted = estimation::minimise(
-        [&runs](const VectorXd& logarithms) { return runs.evaluate(logarithms); }, instruments, start, low,
-        high, settings.most_runs, 1e-4 / static_cast<double>(readings.measurement.size()));
+    const estimation::Bounds bounds{low, high};
+    estimation::InstrumentFit fitted =
+        settings.ensemble
+            ? by_members(runs, instruments, bounds, *settings.ensemble)
+            // A step that would win a hundredth of a standard error is not worth a run.
+            : estimation::minimise([&runs](const VectorXd& logarithms) { return runs.evaluate(logarithms); },
+                                   instruments, start, low, high, settings.most_runs,
+                                   1e-4 / static_cast<double>(readings.measurement.size()));
     found.minimum = std::move(fitted.minimum);
     found.is_settled = fitted.is_settled;
     found.factors = factors_at(found.minimum.parameters);
     found.confidence = instruments.confidence(fitted.raw, found.minimum);
+    if (settings.ensemble) {
+        found.members = settings.ensemble->members;
+        found.confidence =
+            estimation::with_prior(std::move(found.confidence), found.minimum, prior_of(bounds).deviation);
+    }
     found.is_resolved = estimation::resolved(found.minimum, found.confidence);
     if (settings.profile_intervals && found.minimum.is_converged)
-        add_profiles(found, runs, instruments, {low, high});
+        add_profiles(found, runs, instruments, bounds);
     found.without_answer = runs.without_answer();
     found.series = readings.series;
     const Runs::Done& best = runs.at(found.minimum.parameters);

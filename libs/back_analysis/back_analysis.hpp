@@ -1,11 +1,13 @@
 // Back analysis: the factors on joint constants and in-situ stress that fit measured displacements.
 //
 // Each evaluation is an analysis from the in-situ state to the scene's end, with sensitivities found along
-// with it (libs/sensitivity); least squares (libs/estimation) over the factors' logarithms.
+// with it (libs/sensitivity); least squares (libs/estimation) over the factors' logarithms. Or by an ensemble, without
+// sensitivities: also of joints and rock that have none.
 
 #pragma once
 
 #include "analysis/analysis.hpp"
+#include "estimation/ensemble.hpp"
 #include "estimation/instrument.hpp"
 #include "estimation/profile.hpp"
 #include "scene/measurements.hpp"
@@ -30,6 +32,9 @@ struct Settings {
     int threads = 1;
     int most_runs = 60;             // of the search
     bool profile_intervals = false; // by 10 to 90 more runs for each factor
+    // By an ensemble. The factors' bounds are then the 95 percent interval of a normal prior of the logarithm. Measurements need
+    // deviations; not with robust weights, lasting errors or profile intervals.
+    std::optional<estimation::EnsembleSearch> ensemble{};
 };
 
 struct Computed {
@@ -57,6 +62,7 @@ struct Found {
     // Of the factors' logarithms, where they are asked for and the search has converged; the runs that they took.
     std::vector<estimation::Profile> profiles;
     int profile_runs = 0;
+    int members = 0;                // of the ensemble, if it was searched by one
     std::vector<Computed> computed; // of the measurements
     // Error of linear interpolation between the steps of the analysis, by estimate [m].
     std::vector<double> interpolation_error;

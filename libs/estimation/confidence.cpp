@@ -3,6 +3,7 @@
 #include "model/error.hpp"
 #include "statistics/distribution.hpp"
 
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 
 #include <algorithm>
@@ -119,6 +120,18 @@ Confidence confidence_of(const Minimum& minimum, bool deviations_are_known)
     found.correlation(free, free) = error.cwiseInverse().asDiagonal() * MatrixXd(covariance(free, free)) *
                                     error.cwiseInverse().asDiagonal();
     return found;
+}
+
+Confidence with_prior(Confidence confidence, const Minimum& minimum, const VectorXd& deviations)
+{
+    const MatrixXd J = minimum.there.jacobian / confidence.noise_factor;
+    MatrixXd information = J.transpose() * J;
+    information.diagonal() += deviations.array().square().inverse().matrix();
+    confidence.covariance = information.llt().solve(MatrixXd::Identity(J.cols(), J.cols()));
+    const VectorXd inverse_error = confidence.covariance.diagonal().cwiseSqrt().cwiseInverse();
+    confidence.correlation = inverse_error.asDiagonal() * confidence.covariance * inverse_error.asDiagonal();
+    confidence.is_fixed.assign(confidence.is_fixed.size(), false);
+    return confidence;
 }
 
 std::optional<WeakCombination> weak_combination(const Minimum& minimum, const Confidence& confidence)

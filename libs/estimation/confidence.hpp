@@ -47,6 +47,8 @@ struct Confidence {
 };
 
 Confidence confidence_of(const Minimum& minimum, bool deviations_are_known);
+// The same with normal priors of these deviations: no parameter is without an interval.
+Confidence with_prior(Confidence confidence, const Minimum& minimum, const VectorXd& deviations);
 
 // The combination of free parameters that the data know least, if they know it badly: by less than a factor of 2 up
 // and down (parameters are logarithms), or 10 times less than if each parameter were fitted alone

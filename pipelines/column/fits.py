@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Does creepfit survive the faults of real readings?  fits.py PROGRAMS DATA OUT [--only column,slope,lock,networks,apart]
+"""Does creepfit survive the faults of real readings?  fits.py PROGRAMS DATA OUT [--only column,slope,lock,ensemble,networks,apart,curve]
 
 Readings are made with other constants than the scene's, noise of .5 mm and a fault. The fits are those of creepfit, many in one
 process (apps/creepfit_trials.cpp). Writes the tables of docs/back-analysis.md into OUT. Ends with exit code 1 where a
@@ -9,6 +9,7 @@ are warned of.
 column    readings of the column by its closed form (column_closed_form.py), with joints ten times softer; each step of a fit is a run
 slope     of the bench slope by the solver, horizontal; a fit takes displacements from polynomials in the factors, found from runs
 lock      of the shiplock with joints that neither slip nor open, the same
+ensemble  of the column, by an ensemble in place of sensitivities
 networks  of small sections, each fitted with other networks
 apart     normal and shear constants
 """
@@ -254,7 +255,7 @@ WRONG = "an outlier", "a step", "drift", "unknown zeros", "correlated noise"
 
 def trials_of(site, cases, n):
     for name, (faults, options) in cases.items():
-        words = [word for option in options for word in ((option, f"{site.step:g}") if option == "--steps" else (option,))]
+        words = [word for option in options for word in (f"--steps {site.step:g}" if option == "--steps" else option).split()]
         for seed in range(n):
             yield name, readings(site, seed, **faults), SIGMA, "0", words
 
@@ -328,6 +329,21 @@ WIDE = {"kelvin-stiffness": (0.35, 2), "kelvin-viscosity": (0.4, 4.5), "joint-st
 def response_of(runs, checks, bounds):
     """Polynomials of degree 5 from so many runs, for creepfit_trials."""
     return ",".join(["5", str(runs), str(checks), *(f"{low}:{high}" for low, high in bounds.values())])
+
+
+def ensemble(given, tables, failed):
+    """The column by --ensemble, every step a run: without sensitivities, with a prior that the truth is near."""
+    text = softer((given.data / "column/scene.toml").read_text())
+    joints, site = joints_of(given.programs, text, given.out / "three-loads"), Column(text)
+    cases = chosen(given, {name: (faults, [*options, f"--ensemble {MEMBERS}"]) for name, (faults, options) in cases_of(0.1, []).items()
+                           if name in ("even readings", "late first reading", "drift of 0.1 mm/day")})
+    factors = [f"{factor}=0.25:4" for factor in TRUTH]
+    found = fits(given.programs, factors, "runs", [joints], trials_of(site, cases, given.n_ensemble), given.out)
+    groups = ((name, number, {factor.partition("=")[0]: row for factor, row in group.items()}) for name, number, group in found)
+    add_coverage(tables["fits"], "column", cases, groups, given.n_ensemble, failed)
+
+
+MEMBERS = 24  # of an ensemble
 
 
 def compare(given, table, site, joints, trials, n):
@@ -501,7 +517,7 @@ TABLES = {
     "checks": ["section", "fits", "largest difference, standard errors"],
     "wrong": ["section", "readings", "fits", "warned of"],
 }
-SECTIONS = {one.__name__: one for one in (column, slope, lock, networks, apart, curve)}
+SECTIONS = {one.__name__: one for one in (column, slope, lock, ensemble, networks, apart, curve)}
 
 
 def main():
@@ -514,6 +530,7 @@ def main():
     parser.add_argument("--n", type=int, default=2000)
     parser.add_argument("--n-slope", type=int, default=200)
     parser.add_argument("--n-lock", type=int, default=20)
+    parser.add_argument("--n-ensemble", type=int, default=200)
     parser.add_argument("--n-networks", type=int, default=100)
     parser.add_argument("--n-apart", type=int, default=200)
     parser.add_argument("--n-curve", type=int, default=500)

@@ -250,6 +250,57 @@ TEST(back_analysis, profile_intervals_end_where_the_fit_is_worse_by_that_much)
         }
 }
 
+// Without sensitivities: values and intervals as by least squares.
+TEST(back_analysis, an_ensemble_finds_what_least_squares_find)
+{
+    const JointedSection section;
+    std::mt19937_64 random(3);
+    const std::vector<Measurement> readings = noisy(made(section, three), 1e-6, random, true);
+    for (const bool offset : {false, true}) {
+        back_analysis::Settings settings = settings_for(three);
+        settings.errors.offset = offset;
+        const auto fit = [&] {
+            return back_analysis::fit(section.scene, section.network, section.joints, readings, settings);
+        };
+        const Found exact = fit();
+        settings.ensemble = {.members = 24};
+        const Found found = fit();
+        EXPECT_TRUE(found.minimum.is_converged);
+        EXPECT_EQ(found.is_resolved, exact.is_resolved);
+        EXPECT_TRUE(found.doubts.empty());
+        for (Eigen::Index i = 0; i < 3; ++i) {
+            const double error = exact.confidence.standard_error(i);
+            EXPECT_NEAR(found.minimum.parameters[i], exact.minimum.parameters[i], .2 * error) << offset << i;
+            EXPECT_NEAR(found.confidence.standard_error(i), error, .1 * error) << offset << i;
+        }
+    }
+}
+
+// Rock with a strength has no sensitivities.
+TEST(back_analysis, an_ensemble_needs_no_sensitivities)
+{
+    JointedSection section;
+    section.scene.rocks[0].strength =
+        RockStrength{.cohesion = 2e5, .friction_angle = .6, .tensile_strength = 1e5};
+    section.scene.rocks[0].law = RockLaw::mohr_coulomb;
+    std::mt19937_64 random(3);
+    const std::vector<Measurement> readings = noisy(made(section, three), 1e-6, random, true);
+    back_analysis::Settings settings = settings_for(three);
+    const auto fit = [&] {
+        return back_analysis::fit(section.scene, section.network, section.joints, readings, settings);
+    };
+    EXPECT_THROW(fit(), input_error);
+    settings.ensemble = {.members = 12};
+    const Found found = fit();
+    EXPECT_TRUE(found.minimum.is_converged);
+    for (std::size_t i = 0; i < three.size(); ++i) {
+        const auto [low, high] = found.interval(i);
+        EXPECT_LT(low, std::log(three[i].factor));
+        EXPECT_GT(high, std::log(three[i].factor));
+        EXPECT_LT(high - low, 1);
+    }
+}
+
 TEST(back_analysis, counts_from_first_readings)
 {
     JointedSection section;
