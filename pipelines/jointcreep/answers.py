@@ -1,10 +1,13 @@
 """What a study answers: means, quantiles and probabilities with confidence, how they converge, and shares of the variance.
 
 Only runs that have a value count: a run without an equilibrium, or whose point an excavation has taken, is named in the summary.
-The probability to fail counts all runs that either have an equilibrium or were found to have none.
+Probabilities "or no equilibrium" and that to fail also count the runs that were found to have none.
 """
 
+import collections
 import math
+import re
+import textwrap
 
 import numpy as np
 
@@ -16,9 +19,12 @@ from .study_file import EXTENSIBLE, NETWORK
 
 QUANTILES = [0.05, 0.25, 0.50, 0.75, 0.95]
 CORRELATION = "rank correlation"  # a measure in shares.csv
+NOT_LINEAR = "parameters, not linear or together"  # what no parameter explains alone
+SETS_EACH = 4  # sets of parameters for each parameter, so that their share is divided
 FEWEST = 10  # values from which convergence is shown
 STEPS = 30  # numbers of runs at which it is shown, at most
-NAMED = 20  # failed runs that the summary lists
+NAMED = 10  # failed runs that the summary lists
+SHORT = 90  # characters of a reason there
 
 
 def values_of(study, rows, at):
@@ -46,23 +52,34 @@ def coarse_of(study, rows, at, run):
     return np.array([[block[0], np.mean([one for one in block if one is not None])] for block in blocks]).reshape(-1, 2)
 
 
+def without_equilibrium(study, rows, at):
+    """Numbers of the runs that have no equilibrium, and so no value of a quantity, of those that values_of() may have."""
+    last = 2 * study.design.points if study.design.kind == "sobol indices" else study.design.runs
+    if study.design.fine_runs and rows:
+        last = (rows[-1]["run"] + 1) // study.design.block() * study.design.block()
+    return np.array([row["run"] for row in rows if row["exit_code"] == NO_EQUILIBRIUM and row["values"][at] is None and row["run"] < last and
+                     study.design.level(row["run"]) != "coarse"], int)
+
+
 def crossed_table(study, values, run):
-    """Values [network, parameters] of the networks that have all; None if they are fewer than two."""
+    """Values [network, parameters], nan where there is none, of networks and sets of parameters that have one. None if they are fewer
+    than two, or for another design."""
     if study.design.kind != "networks x parameters":
         return None
     full = np.full(study.design.runs, np.nan)
     full[run] = values
     table = full.reshape(study.design.networks, study.design.parameters)
-    table = table[np.isfinite(table).all(axis=1)]
-    return table if len(table) > 1 else None
+    there = np.isfinite(table)
+    table = table[there.any(axis=1)][:, there.any(axis=0)]
+    return table if min(table.shape) > 1 else None
 
 
 def mean_with_interval(study, values, run, coarse=None):
-    """Mean and ends of its interval, by what the design allows. coarse [value, 2]: as coarse_of()."""
+    """Mean, ends of its interval and its standard error, by what the design allows. coarse [value, 2]: as coarse_of()."""
     design = study.design
     if design.kind == "networks x parameters":
         table = crossed_table(study, values, run)
-        return intervals.mean_of_crossed(table) if table is not None else (None, None, None)
+        return intervals.mean_of_crossed(table) if table is not None else (float(np.mean(values)), None, None, None)
     if coarse is not None:
         return intervals.mean_by_control(values, coarse[:, 1] - coarse[:, 0])
     if design.replicates > 1:
@@ -71,26 +88,40 @@ def mean_with_interval(study, values, run, coarse=None):
 
 
 def limits_of(quantity):
-    """Its limits with their sides: name and test."""
+    """Its limits with their sides: name, test, and what a run without equilibrium counts, which has no value: None if it is left out."""
     if quantity.what == "failed":
-        return [("probability", lambda values: values > 0.5)]
-    return [(f"probability {side} {limit:g}", (lambda values, limit=limit: values > limit) if side == "above" else
-             (lambda values, limit=limit: values < limit))
-            for side, limits in (("above", quantity.above), ("below", quantity.below)) for limit in limits]
+        return [("probability", lambda values: values > 0.5, None)]
+    found = []
+    for side, limits in (("above", quantity.above), ("below", quantity.below)):
+        for limit in limits:
+            def hit(values, side=side, limit=limit):
+                return values > limit if side == "above" else values < limit
+            name = f"probability {side} {limit:g}"
+            if quantity.what == "displacement":
+                found += [(f"{name}, of stable runs", hit, None), (f"{name} or no equilibrium", hit, True)]
+            else:  # without equilibrium, even with the largest strengths, a factor of safety is below all limits
+                found.append((name, hit, side == "below" if quantity.what == "factor of safety" else None))
+    return found
 
 
 def share_with_interval(study, hits, run):
     """Share of runs that hit, with the ends of its interval: of independent runs that of Clopper and Pearson, which is too wide
-    for a Latin hypercube or a Sobol sequence; of a crossed design that of the mean, within 0 and 1, or where all or none hit, that of
-    as many independent runs as it has networks or parameters, if these are fewer."""
-    design = study.design
-    if design.kind != "networks x parameters":
+    for a Latin hypercube or a Sobol sequence."""
+    if study.design.kind != "networks x parameters":
         return intervals.probability(int(hits.sum()), len(hits))
-    if hits.all() or not hits.any():  # no scatter to tell of
-        independent = min(design.networks, design.parameters)
-        return intervals.probability(independent * bool(hits.all()), independent)
-    value, low, high = mean_with_interval(study, hits.astype(float), run)
-    return value, None if low is None else max(0.0, low), None if high is None else min(1.0, high)
+    table = crossed_table(study, hits.astype(float), run)
+    return intervals.probability_of_crossed(table) if table is not None else (float(np.mean(hits)), None, None)
+
+
+def shares_of_limits(study, quantity, values, run, without):
+    """Probabilities of the limits of a quantity: name, number of runs, value, low, high."""
+    found = []
+    for name, hit, of_failed in limits_of(quantity):
+        hits, of = hit(values), run
+        if of_failed is not None:
+            hits, of = np.append(hits, np.full(len(without), of_failed)), np.append(run, without)
+        found.append((name, len(of), *share_with_interval(study, hits, of)))
+    return found
 
 
 def correlation(values, others):
@@ -98,32 +129,32 @@ def correlation(values, others):
     return float(np.corrcoef(values, others)[0, 1]) if len(values) > 2 and np.ptp(values) > 0 and np.ptp(others) > 0 else None
 
 
-def statistics(study, quantity, values, run, coarse=None):
-    """Statistics of a quantity: name, value, low, high. coarse [value, 2]: as coarse_of()."""
-    found = []
+def statistics(study, quantity, values, run, coarse=None, without=()):
+    """Statistics of a quantity: name, number of runs, value, low, high. coarse [value, 2]: as coarse_of(); without: as
+    without_equilibrium()."""
+    found, n = [], len(values)
     if quantity.what != "failed":
-        found.append(("mean", *mean_with_interval(study, values, run, coarse)))
+        *mean, error = mean_with_interval(study, values, run, coarse)
+        found += [("mean", n, *mean), ("standard error of the mean", n, error, None, None)]
         if coarse is not None:
-            found.append(("mean of fine runs alone", *intervals.mean(values)))
-            found.append(("fine less coarse", *intervals.mean(values - coarse[:, 0])))
-            found.append(("correlation of fine and coarse", correlation(values, coarse[:, 0]), None, None))
-        deviation = float(np.std(values, ddof=1)) if len(values) > 1 else None
-        found.append(("standard deviation", deviation, None, None))
+            found.append(("mean of fine runs alone", n, *intervals.mean(values)[:3]))
+            found.append(("fine less coarse", n, *intervals.mean(values - coarse[:, 0])[:3]))
+            found.append(("correlation of fine and coarse", n, correlation(values, coarse[:, 0]), None, None))
+        deviation = float(np.std(values, ddof=1)) if n > 1 else None
+        found.append(("standard deviation", n, deviation, None, None))
         for part in QUANTILES:
             value, low, high = intervals.quantile(values, part)
             dependent = study.design.kind == "networks x parameters"  # order statistics are of independent values
-            found.append((f"quantile {part:g}", value, *((None, None) if dependent else (low, high))))
-    for name, hit in limits_of(quantity):
-        found.append((name, *share_with_interval(study, hit(values), run)))
-    return found
+            found.append((f"quantile {part:g}", n, value, *((None, None) if dependent else (low, high))))
+    return found + shares_of_limits(study, quantity, values, run, without)
 
 
-def first_of(quantity, study, values, run, coarse=None):
+def first_of(quantity, study, values, run, coarse=None, without=()):
     """The statistics whose convergence is shown: mean, or probability of failure; and the probabilities of limits."""
+    found = shares_of_limits(study, quantity, values, run, without)
     if quantity.what == "failed":
-        return statistics(study, quantity, values, run)
-    found = [("mean", *mean_with_interval(study, values, run, coarse))]
-    return found + [(name, *share_with_interval(study, hit(values), run)) for name, hit in limits_of(quantity)]
+        return found
+    return [("mean", len(values), *mean_with_interval(study, values, run, coarse)[:3])] + found
 
 
 def counts_shown(n):
@@ -134,13 +165,15 @@ def counts_shown(n):
 
 
 def convergence(study, rows, at):
-    """Rows (statistic, runs, value, low, high) over a growing number of runs; designs that are made as a whole have one."""
+    """Rows (statistic, runs, value, low, high) over a growing number of runs with a value; designs that are made as a whole have one."""
     quantity = study.quantities[at]
     values, run = values_of(study, rows, at)
-    coarse = coarse_of(study, rows, at, run)
-    counts = counts_shown(len(values)) if study.design.kind in EXTENSIBLE else [len(values)]
-    return [(name, count, value, low, high) for count in counts if count > 0
-            for name, value, low, high in first_of(quantity, study, values[:count], run[:count], None if coarse is None else coarse[:count])]
+    coarse, without = coarse_of(study, rows, at, run), without_equilibrium(study, rows, at)
+    found = []
+    for count in counts_shown(len(values)) if study.design.kind in EXTENSIBLE else [len(values)]:
+        before = without if count == len(values) else without[without < run[count]]
+        found += first_of(quantity, study, values[:count], run[:count], None if coarse is None else coarse[:count], before)
+    return found
 
 
 def enough(study, rows):
@@ -150,7 +183,8 @@ def enough(study, rows):
     values, run = values_of(study, rows, at)
     if len(values) < (FEWEST if study.design.fine_runs else 2):
         return False
-    for name, value, low, high in first_of(quantity, study, values, run, coarse_of(study, rows, at, run)):
+    for name, _, value, low, high in first_of(quantity, study, values, run, coarse_of(study, rows, at, run),
+                                              without_equilibrium(study, rows, at)):
         half = (high - low) / 2
         if name == "mean":
             if stop.half_width and half > stop.half_width:
@@ -165,14 +199,20 @@ def enough(study, rows):
 # --- Shares of the variance -----------------------------------------------------------------------------------------
 
 
+def numeric_columns(study):
+    """Columns of the parameters that are numbers."""
+    return [column for column, one in enumerate(study.parameters) if not any(isinstance(value, str) for value in one.values)]
+
+
 def rank_correlations(study, rows, given, at):
     """Spearman's correlation of each parameter with the quantity; the interval is of Fisher's transformation with the variance
-    of Bonett and Wright (2000). Of networks x parameters with the means over networks, because runs are not independent."""
+    of Bonett and Wright (2000). Of networks x parameters with the effect of each set of parameters (mean over networks), because runs
+    are not independent."""
     values, run = values_of(study, rows, at)
     table = crossed_table(study, values, run)
     if study.design.kind == "networks x parameters":
-        values, run = (table.mean(axis=0), np.arange(study.design.parameters)) if table is not None else ([], [])
-    numeric = [column for column, one in enumerate(study.parameters) if not any(isinstance(value, str) for value in one.values)]
+        values, run = (intervals.additive(table)[1], sets_of(study, run)) if table is not None else ([], [])
+    numeric = numeric_columns(study)
     if len(values) < FEWEST or not numeric or np.ptp(values) == 0:
         return []
     inputs = np.array([[given[number]["given"][column] for column in numeric] for number in run], float)
@@ -191,26 +231,62 @@ def rank_correlations(study, rows, given, at):
     return rows
 
 
-def crossed_shares(study, rows, at):
-    """Shares of the networks, of the parameters, and of both together beside that, in the variance; intervals by 1000 tables drawn
-    from the networks and the sets of parameters (bootstrap of both)."""
+def sets_of(study, run):
+    """Numbers of the sets of parameters that these runs of networks x parameters have; they are those of the first network's runs."""
+    return np.unique(run % study.design.parameters)
+
+
+def linear_parts(effects, inputs):
+    """Of effects that depend on inputs [effect, input]: the part of their variance that each input explains linearly, and the rest. They
+    add up to 1. Inputs are independent, so the part of each is in proportion to its squared standardized regression coefficient; all
+    of them together have the adjusted coefficient of determination."""
+    n, count = inputs.shape
+    inputs = inputs - inputs.mean(axis=0)
+    effects = effects - effects.mean()
+    slopes = np.linalg.lstsq(inputs, effects, rcond=1e-9)[0]
+    left = ((effects - inputs @ slopes) ** 2).sum() / (n - 1 - count)
+    explained = max(0.0, 1 - left / ((effects**2).sum() / (n - 1)))
+    parts = slopes**2 * (inputs**2).sum(axis=0)
+    parts = parts / parts.sum() * explained if parts.sum() > 0 else np.zeros(count)
+    return np.append(parts, 1 - parts.sum())
+
+
+def crossed_shares(study, rows, given, at):
+    """Shares of the networks, of the parameters, and of both together beside that, in the variance; that of the parameters is also
+    divided among them, if they are independent and several, and there are enough sets. Intervals by 1000 tables drawn from the networks
+    and the sets of parameters (bootstrap of both)."""
     values, run = values_of(study, rows, at)
     table = crossed_table(study, values, run)
-    if table is None or np.ptp(table) == 0:
+    if table is None or np.ptp(values) == 0 or intervals.components(table) is None:
         return []
+    numeric, sets = numeric_columns(study), sets_of(study, run)
+    divided = len(study.parameters) > 1 and not study.correlations and numeric and len(sets) >= max(FEWEST, SETS_EACH * len(numeric))
+    inputs = np.array([[given[one]["given"][column] for column in numeric] for one in sets], float) if divided else None
 
-    def shares(of):
-        by_network, by_parameter, rest = intervals.crossed(of)
-        parts = np.array([max(0.0, by_network - rest) / of.shape[1], max(0.0, by_parameter - rest) / of.shape[0], rest])
-        return parts / parts.sum() if parts.sum() > 0 else parts
+    def shares(networks, of_sets):
+        of = table[networks][:, of_sets]
+        there = np.isfinite(of)
+        full_rows, full_columns = there.any(axis=1), there.any(axis=0)
+        of, of_sets = of[full_rows][:, full_columns], of_sets[full_columns]
+        found = intervals.components(of) if min(of.shape) > 1 else None
+        if found is None:
+            return None
+        parts = np.maximum(0.0, found)
+        parts = parts / parts.sum() if parts.sum() > 0 else parts
+        if not divided:
+            return parts
+        effects = intervals.additive(of)[1]
+        return np.append(parts, parts[1] * linear_parts(effects, inputs[of_sets])) if np.ptp(effects) > 0 and \
+            len(of_sets) > len(numeric) + 1 else np.append(parts, np.zeros(len(numeric) + 1))
 
     random = np.random.Generator(np.random.Philox(study.design.seed))
-    drawn = np.array([shares(table[random.integers(0, len(table), len(table))][:, random.integers(0, table.shape[1], table.shape[1])])
-                      for _ in range(1000)])
-    low, high = np.quantile(drawn, [(1 - CONFIDENCE) / 2, (1 + CONFIDENCE) / 2], axis=0)
+    drawn = (shares(*(random.integers(0, count, count) for count in table.shape)) for _ in range(1000))
+    low, high = np.quantile([one for one in drawn if one is not None], [(1 - CONFIDENCE) / 2, (1 + CONFIDENCE) / 2], axis=0)
     names = [NETWORK, "all parameters", f"{NETWORK} with parameters"]
+    if divided:
+        names += [study.parameters[column].name for column in numeric] + [NOT_LINEAR]
     return [(name, "share of variance", float(share), float(of_low), float(of_high))
-            for name, share, of_low, of_high in zip(names, shares(table), low, high)]
+            for name, share, of_low, of_high in zip(names, shares(*map(np.arange, table.shape)), low, high)]
 
 
 def sobol_indices(study, rows, at):
@@ -244,7 +320,7 @@ def shares(study, rows, given, at):
     if study.design.kind == "sobol indices":
         return sobol_indices(study, rows, at)
     if study.design.kind == "networks x parameters":
-        return crossed_shares(study, rows, at) + rank_correlations(study, rows, given, at)
+        return crossed_shares(study, rows, given, at) + rank_correlations(study, rows, given, at)
     return rank_correlations(study, rows, given, at)
 
 
@@ -259,11 +335,10 @@ def level_costs(study, rows):
         values, run = values_of(study, rows, at)
         coarse = coarse_of(study, rows, at, run)
         r = correlation(values, coarse[:, 0])
-        _, low, high = mean_with_interval(study, values, run, coarse)
-        if quantity.what == "failed" or r is None or low is None or not low < high or r * r == 1:
+        error = mean_with_interval(study, values, run, coarse)[3]
+        if quantity.what == "failed" or r is None or not error or r * r == 1:
             continue
         cheapest = max(2, round(math.sqrt(r * r / (1 - r * r) * seconds[0] / seconds[1])))
-        error = (high - low) / 2 / intervals.student_factor(len(values) - 2)
         plain = float(np.var(values, ddof=1)) / error**2 * seconds[0]
         mine = len(values) * (seconds[0] + study.design.coarse_per_fine * seconds[1])
         found.append((quantity.name, *seconds, r, cheapest, mine / plain))
@@ -284,14 +359,23 @@ def in_columns(rows):
                       for place, (cell, width) in enumerate(zip(row, widths))).rstrip() for row in rows]
 
 
+def is_moving(row):
+    """Whether a run without equilibrium ended because blocks move; by the words of demsolve."""
+    return "moving blocks: " in row["reason"]
+
+
+def failure_words(row):
+    """A short line on a run that failed."""
+    reason = row["reason"].partition(";")[0].removeprefix(f"{row['program']}: ")
+    code = "" if row["exit_code"] == NO_EQUILIBRIUM else f"exit code {row['exit_code']}: "
+    return f"run {row['run']} failed: {row['program']}: {code}{textwrap.shorten(reason, SHORT, placeholder=' ...')}".removesuffix(": ")
+
+
 def missing_words(study, rows):
     """Which runs have no value, and why."""
-    lines = []
-    for row in rows:
-        if row["exit_code"] != 0:
-            lines.append(f"run {row['run']} failed: {row['program']}, exit code {row['exit_code']}: {row['reason']}")
+    lines = [failure_words(row) for row in rows if row["exit_code"] != 0]
     if len(lines) > NAMED:
-        lines[NAMED:] = [f"... and {len(lines) - NAMED} more that failed, in runs.csv"]
+        lines[NAMED:] = [f"and {len(lines) - NAMED} more in runs.csv"]
     for at, one in enumerate(study.quantities):
         runs = [row["run"] for row in rows if row["values"][at] is None and row["exit_code"] == 0]
         if runs and one.what == "displacement":
@@ -302,38 +386,64 @@ def missing_words(study, rows):
     return lines
 
 
+def incomplete_words(study, rows):
+    """Warnings of the quantities of networks x parameters that some runs of a network have and others do not."""
+    lines = []
+    for at, one in enumerate(study.quantities if study.design.kind == "networks x parameters" else []):
+        of_network = collections.Counter(row["run"] // study.design.parameters for row in rows if row["values"][at] is None)
+        if of_network:
+            lines.append(f"warning: {one.title()}: {sum(of_network.values())} of {len(rows)} runs, of {len(of_network)} networks, have no "
+                         "value; answers are of the other runs")
+    return lines
+
+
+def warning_words(rows):
+    """The warnings of the programs, with the number of runs that have each; numbers in a warning are those of the first such run."""
+    texts, count = {}, collections.Counter()
+    for row in rows:
+        kinds = {re.sub(r'(?<![\w."])-?\d+(\.\d+)?(e[+-]?\d+)?', "#", text): text for text in row.get("warnings", [])}
+        count.update(kinds.keys())
+        texts = {**kinds, **texts}
+    return [f"warning in {number} of {len(rows)} runs: {texts[kind]}" for kind, number in count.most_common()]
+
+
 def with_unit(name, quantity):
     """The name of a statistic, where it has a limit with the unit of this."""
-    return f"{name} {quantity.unit}" if name.startswith("probability ") and quantity.unit != "1" and name[-1].isdecimal() else name
+    return name if quantity.unit == "1" else re.sub(r"^(probability (?:above|below) [^ ,]+)", rf"\1 {quantity.unit}", name)
 
 
 def summary(study, rows, why, of_each, of_histories):
     """What a person reads first."""
-    without = sum(row["exit_code"] == NO_EQUILIBRIUM for row in rows)
+    without = [row for row in rows if row["exit_code"] == NO_EQUILIBRIUM]
     other = sum(row["exit_code"] not in (0, NO_EQUILIBRIUM) for row in rows)
     lines = [study.title] * bool(study.title)
     of_all = "" if study.design.directions else f" of {study.design.runs}"
     lines += [f"design               {study.design.kind}",
               f"runs                 {len(rows)}" + (f"{of_all}, ended {why}" if why else ""),
-              f"without equilibrium  {without}", f"other failures       {other}"]
+              f"without equilibrium  {len(without)}"]
+    lines += [f"  blocks move        {sum(map(is_moving, without))}",
+              f"  undecided          {len(without) - sum(map(is_moving, without))}"] * bool(without)
+    lines.append(f"other failures       {other}")
     for quantity, found, of_shares in of_each:
-        lines += ["", quantity.title() + f", {found['runs']} {study.design.counted()}"]
-        lines += in_columns([["", "value", "from", "to"],
-                             *([with_unit(name, quantity), *map(number_text, numbers)] for name, *numbers in found["statistics"])])
+        lines += ["", quantity.title()]
+        lines += in_columns([["", study.design.counted(), "value", "from", "to"],
+                             *([with_unit(name, quantity), str(n), *map(number_text, numbers)] for name, n, *numbers in found["statistics"])])
         if of_shares:
             lines += in_columns([["", "value", "from", "to"],
                                  *([f"{measure}, {name}", *map(number_text, numbers)] for name, measure, *numbers in of_shares)])
     lines += ["", f"from, to: {CONFIDENCE:.0%} confidence interval; empty where the runs are too few or the design has none"]
     lines += [""] * bool(of_histories) + of_histories
-    missing = [] if study.design.directions else missing_words(study, rows)
-    return "\n".join(lines + ([""] + missing if missing else [])) + "\n"
+    notes = warning_words(rows)
+    if not study.design.directions:
+        notes = incomplete_words(study, rows) + notes + missing_words(study, rows)
+    return "\n".join(lines + [""] * bool(notes) + notes) + "\n"
 
 
 def of_failure(study, rows, estimates):
     """Quantity, statistics and no shares of a directional sampling: runs are along directions, so nothing else is known of them."""
     (quantity,) = (one for one in study.quantities if one.name == study.design.failure)
-    statistics = [("probability of failure", *failure.probability(np.array(estimates)))]
-    return quantity, {"at": study.quantities.index(quantity), "runs": len(rows), "statistics": statistics}, []
+    statistics = [("probability of failure", len(rows), *failure.probability(np.array(estimates)))]
+    return quantity, {"at": study.quantities.index(quantity), "statistics": statistics}, []
 
 
 def write(study, rows, given, why, estimates, of_histories, out):
@@ -347,12 +457,11 @@ def write(study, rows, given, why, estimates, of_histories, out):
     for at, quantity in enumerate([] if by_direction else study.quantities):
         values, run = values_of(study, rows, at)
         if len(values):
-            of = statistics(study, quantity, values, run, coarse_of(study, rows, at, run))
-            found.append((quantity, {"at": at, "runs": len(values), "statistics": of},
-                          shares(study, rows, given, at)))
+            of = statistics(study, quantity, values, run, coarse_of(study, rows, at, run), without_equilibrium(study, rows, at))
+            found.append((quantity, {"at": at, "statistics": of}, shares(study, rows, given, at)))
     files.write_text(out / "answers.csv", files.csv_text(
         ["quantity", "unit", "statistic", "runs", "value", "low", "high"],
-        [(one.name, one.unit, name, of["runs"], *numbers) for one, of, _ in found for name, *numbers in of["statistics"]]))
+        [(one.name, one.unit, *row) for one, of, _ in found for row in of["statistics"]]))
     files.write_text(out / "convergence.csv", files.csv_text(
         ["quantity", "unit", "statistic", "runs", "value", "low", "high"],
         [(one.name, one.unit, *row) for one, of, _ in found if not by_direction for row in convergence(study, rows, of["at"])]))

@@ -151,7 +151,7 @@ def statistics_of(displacement, counts):
         sample = displacement[counts[:, row, point], row, point]
         for component in (0, 1):
             at = row, point, component
-            found["mean"][at], found["mean_low"][at], found["mean_high"][at] = intervals.mean(sample[:, component])
+            found["mean"][at], found["mean_low"][at], found["mean_high"][at] = intervals.mean(sample[:, component])[:3]
         found["standard_deviation"][row, point] = sample.std(axis=0, ddof=1)
         found["quantile"][:, row, point] = np.quantile(sample, PROBABILITIES, axis=0)
     return found

@@ -54,5 +54,5 @@ def estimate(study, replicate, run):
 
 def probability(estimates):
     """Mean of the replicates' estimates, and ends of Student's interval, not below 0."""
-    value, low, high = intervals.mean(estimates)
+    value, low, high, _ = intervals.mean(estimates)
     return value, max(0.0, low), high

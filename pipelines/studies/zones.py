@@ -65,7 +65,7 @@ def main():
     print("| choice | mean (mm) | difference to the reference (percent) | seconds a run | runs | hours |\n|---|---|---|---|---|---|")
     for name, (moves, seconds) in found.items():
         moves = moves[there]
-        difference, low, high = (100 * one / fine.mean() for one in intervals.mean(moves - fine))
+        difference, low, high = (100 * one / fine.mean() for one in intervals.mean(moves - fine)[:3])
         runs = plain_runs(moves, arguments.error)
         print(f"| {name} | {moves.mean():.3f} | {difference:+.2f} ({low:+.2f} to {high:+.2f}) | {seconds:.2f} | {runs} | "
               f"{runs * seconds / 3600:.2f} |")
