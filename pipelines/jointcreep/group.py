@@ -29,6 +29,7 @@ from .errors import NotDone, NotWanted
 
 LONGEST_REASON = 2000  # characters
 SEARCH_OPTIONS = ("--safety-width", "--safety-displacement", "--runs-at-once")  # of demsolve --factor-of-safety
+UP_TO_THERE = "the run up to there is "  # where demsolve has left a file, which goes with the others of the run
 PR_SET_PDEATHSIG = 1  # linux/prctl.h
 LIBC = ctypes.CDLL(None)
 
@@ -64,16 +65,18 @@ def processor_seconds():
 
 
 def called(program, arguments, folder):
-    """Exit code, message and wall time [s] of a program."""
+    """Exit code, message, warnings and wall time [s] of a program."""
     begin, parent = time.monotonic(), os.getpid()
     try:
         done = subprocess.run([program, *arguments], cwd=folder, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
                               stderr=subprocess.PIPE, preexec_fn=lambda: die_with(parent))
     except OSError as error:
         raise Interrupted(f"{program} cannot be started: {error.strerror}") from None
-    lines = [line for line in done.stderr.decode("utf-8", "replace").splitlines() if ": warning: " not in line]
+    lines = done.stderr.decode("utf-8", "replace").splitlines()
+    warnings = [line.replace(": warning: ", ": ", 1) for line in lines if ": warning: " in line]
+    lines = [line for line in lines if ": warning: " not in line and not line.removeprefix(f"{program.name}: ").startswith(UP_TO_THERE)]
     lines = lines[:1] + [line.removeprefix(f"{program.name}: ") for line in lines[1:]]
-    return done.returncode, " ".join("; ".join(lines).split())[:LONGEST_REASON], time.monotonic() - begin
+    return done.returncode, " ".join("; ".join(lines).split())[:LONGEST_REASON], warnings, time.monotonic() - begin
 
 
 def made(study, scene, text, run, programs, folder):
@@ -85,13 +88,14 @@ def made(study, scene, text, run, programs, folder):
         for key in parameter.keys:
             values[key] = scene_keys.value_at(scene, key) * value if parameter.multiplies else value
     (folder / "scene.toml").write_text(scene_keys.toml_text(scene_keys.changed(scene, values)) if values else text, "utf-8")
-    row = {"run": run["run"], "exit_code": 0, "program": "", "reason": ""}
+    row = {"run": run["run"], "exit_code": 0, "program": "", "reason": "", "warnings": []}
     seconds, processor_before, solve_code = 0.0, processor_seconds(), None
     for name, arguments in programs_of(study, run["run"]):
         if name == "jointgen":
             arguments = [*arguments, "--realization", str(run["network"])]
-        code, message, took = called(programs / name, ["--quiet", *arguments] if name == "demsolve" else arguments, folder)
+        code, message, warnings, took = called(programs / name, ["--quiet", *arguments] if name == "demsolve" else arguments, folder)
         seconds += took
+        row["warnings"] += warnings
         if was_stopped(code):
             why = f"exit code {code}" if code > 0 else f"signal {-code}"
             raise Interrupted(f"run {run['run']}: {name} was stopped ({why}){': ' if message else ''}{message}")
@@ -112,12 +116,14 @@ def made(study, scene, text, run, programs, folder):
 
 
 def keep_files(study, run, folder):
-    """Moves what is to be kept of a run to kept/RUN-NAME in the study's folder."""
+    """Moves what is to be kept of a run to kept/RUN-NAME in the study's folder; what an earlier try left there goes."""
+    kept = folder.parent.parent / "kept"
     for name in study.keep:
         if (folder / name).exists():
-            kept = folder.parent.parent / "kept"
             kept.mkdir(exist_ok=True)
             os.replace(folder / name, kept / f"{run:06d}-{name}")
+        else:
+            (kept / f"{run:06d}-{name}").unlink(missing_ok=True)
 
 
 def result_of(study, scene, text, run, programs, folder):

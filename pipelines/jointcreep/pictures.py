@@ -19,7 +19,9 @@ from stage_names import plain
 BAND = "#c9d8ea"
 MOST_PANELS = 6
 BAND_POINTS = 60
+LABEL = 28  # characters in a line of a label
 FEWEST_BARS = 3  # that a panel has room for, so that one is not broad
+CLASSES = 5  # of a parameter, for the share of failed runs
 
 
 def distribution(quantity, study, values):
@@ -65,10 +67,12 @@ def convergence(quantity, rows, stop, counted):
             axes.xaxis.set_minor_formatter(matplotlib.ticker.NullFormatter())
         else:
             axes.xaxis.set_major_locator(matplotlib.ticker.MaxNLocator(integer=True))
-        axes.set_ylabel(f"mean of {quantity.title()}" if name == "mean" else f"{answers.with_unit(name, quantity)}\n(percent)")
+        label = f"mean of {quantity.title()}" if name == "mean" else f"{answers.with_unit(name, quantity)} (percent)"
+        axes.set_ylabel("\n".join(textwrap.wrap(label, LABEL)))
         if axes is panels[0, 0]:
             axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncol=3)
-    panels[-1, 0].set_xlabel(f"number of {counted}")
+    of_what = "" if quantity.what == "failed" else " with a value" + " (or no equilibrium)" * any("no equilibrium" in name for name in names)
+    panels[-1, 0].set_xlabel(f"number of {counted}{of_what}")
     return plot
 
 
@@ -86,13 +90,25 @@ def parameters(quantity, study, values, run, given, of_shares):
     places = [(place // columns, slice(place % columns, None if place == count - 1 else place % columns + 1)) for place in range(count)]
     panels = [plot.add_subplot(grid[place]) for place in places]  # the last one as wide as there is room
     for axes, column in zip(panels, numeric):
-        axes.plot([given[one]["given"][column] for one in run], values, linestyle="none", marker="o", markersize=1.8,
-                  color=figure.COLORS[0], alpha=0.6, markeredgewidth=0)
+        of_runs = np.array([given[one]["given"][column] for one in run], float)
+        if quantity.what == "failed":
+            share_in_classes(axes, of_runs, values)
+        else:
+            axes.plot(of_runs, values, linestyle="none", marker="o", markersize=1.8, color=figure.COLORS[0], alpha=0.6, markeredgewidth=0)
         axes.set_xlabel(study.parameters[column].name)
-        axes.set_ylabel(quantity.title())
+        axes.set_ylabel(f"{quantity.title()} (percent of runs)" if quantity.what == "failed" else quantity.title())
     for axes, rows in zip(panels[len(numeric):], kinds):
         bars(axes, rows)
     return plot
+
+
+def share_in_classes(axes, of_runs, failed):
+    """Share of failed runs in classes of a parameter that have about as many runs each."""
+    edges = np.unique(np.quantile(of_runs, np.linspace(0, 1, CLASSES + 1)))
+    place = np.clip(np.searchsorted(edges, of_runs, side="right") - 1, 0, max(0, len(edges) - 2))
+    shares = [100 * failed[place == one].mean() for one in range(len(edges) - 1)]
+    axes.bar(edges[:-1], shares, np.diff(edges), align="edge", color=figure.COLORS[0], edgecolor="w", linewidth=0.5)
+    axes.set_ylim(bottom=0)
 
 
 def bars(axes, rows):
@@ -104,10 +120,11 @@ def bars(axes, rows):
     measures = list(dict.fromkeys(measure for _, measure, *_ in rows))
     labels = [name if len(measures) == 1 else f"{name},\n{measure}" for name, measure, *_ in rows]
     axes.set_yticks(range(len(rows)), ["\n".join(textwrap.wrap(label, 20)) for label in labels], fontsize=6)
-    axes.set_ylim(max(len(rows), FEWEST_BARS) - 0.5, -0.5)
+    middle, half = (len(rows) - 1) / 2, max(len(rows), FEWEST_BARS) / 2
+    axes.set_ylim(middle + half, middle - half)
     axes.axvline(0, color="0.6", linewidth=0.6)
     axes.set_xlim((-1, 1) if measures == [answers.CORRELATION] else (min(0, axes.get_xlim()[0]), max(1, axes.get_xlim()[1])))
-    axes.set_xlabel(f"{measures[0] if len(measures) == 1 else 'index'}, 95 % confidence", fontsize=7)
+    axes.set_xlabel(f"{measures[0] if len(measures) == 1 else 'index'},\n95 % confidence", fontsize=7)
 
 
 def of_histories(out):
@@ -127,7 +144,7 @@ def write(study, rows, given, found, out):
         if quantity.what != "failed":
             drawn["distribution"] = distribution(quantity, study, values)
         over_runs = answers.convergence(study, rows, of["at"])
-        if len({runs for _, runs, *_ in over_runs}) > 1:
+        if len({runs for name, runs, *_ in over_runs if name == over_runs[0][0]}) > 1:
             drawn["convergence"] = convergence(quantity, over_runs, study.stop, study.design.counted())
         if of_shares:
             drawn["parameters"] = parameters(quantity, study, values, run, given, of_shares)

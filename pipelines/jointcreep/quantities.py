@@ -87,16 +87,20 @@ def blocks(file, statistic):
     return float({"number": len, "mean area": np.mean, "median area": np.median, "largest area": np.max}[statistic](area))
 
 
-def factor_of_safety(file):
-    """The largest factor with which the run stands: lower end of the bracket."""
+def factor_of_safety(file, end):
+    """The "lower end" of the bracket: the largest factor with which the run stands; or its "upper end": the smallest one with which it
+    does not, None if it stands with all."""
     factor, stands = file["/safety/factor"][()], file["/safety/stands"][()]
-    return float(factor[stands == 1].max())
+    if end == "lower end":
+        return float(factor[stands == 1].max())
+    return float(factor[stands == 0].min()) if (stands == 0).any() else None
 
 
 def needed(study):
     """Which files of a run are wanted, beside network.h5."""
     what = {one.what for one in study.quantities}
-    wanted = {"result.h5": bool(what & {"displacement", "failed"}) or study.histories, "safety.h5": "factor of safety" in what}
+    wanted = {"result.h5": bool(what & {"displacement", "failed"}) or study.histories or "result.failed.h5" in study.keep,
+              "safety.h5": "factor of safety" in what}
     return {name: is_wanted or name in study.keep for name, is_wanted in {"joints.h5": any(wanted.values()), **wanted}.items()}
 
 
@@ -116,6 +120,6 @@ def of_run(study, scene, folder, solve_code):
                 elif one.what == "blocks":
                     value = blocks(file, one.statistic)
                 else:
-                    value = factor_of_safety(file)
+                    value = factor_of_safety(file, one.statistic)
         values.append(value)
     return values

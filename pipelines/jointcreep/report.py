@@ -209,15 +209,18 @@ def histories_of(out):
 
 def of_study(out, programs, folder):
     """Title and parts of the page of a study's folder."""
+    from . import answers  # takes long to load
     study = study_file.read(out / "study.toml")
     found = plan.parsed((out / "plan.json").read_bytes(), out / "plan.json")
-    rows, answers, shares, times = (csv_rows(out / f"{name}.csv") for name in ("runs", "answers", "shares", "times"))
+    rows, found_answers, shares, times = (csv_rows(out / f"{name}.csv") for name in ("runs", "answers", "shares", "times"))
     failed = [row for row in rows if row["exit code"] != "0"]
+    without = [row for row in failed if row["exit code"] == "3"]
     scene = tomllib.loads((out / "scene.toml").read_text("utf-8"))
     hours = sum(float(row["processor_seconds"]) for row in times) / 3600
     parts = ["<h2>The study</h2>", table(["", ""], [
         ("scene", scene.get("title", "")), ("design", study.design.kind), ("runs", len(rows)),
-        ("runs with a result", len(rows) - len(failed)), ("runs without equilibrium", sum(row["exit code"] == "3" for row in rows)),
+        ("runs with a result", len(rows) - len(failed)), ("runs without equilibrium: blocks move", sum(map(answers.is_moving, without))),
+        ("runs without equilibrium: undecided", len(without) - sum(map(answers.is_moving, without))),
         ("runs with other failures", sum(row["exit code"] not in ("0", "3") for row in rows)),
         ("runs that were repeated", sum(row["attempts"] != "1" for row in times)), ("processor time of the programs (hours)", hours)])]
     with tempfile.TemporaryDirectory(dir=folder) as work:
@@ -227,16 +230,16 @@ def of_study(out, programs, folder):
                      if done.returncode == 0 else f"<p>The section is not drawn: {escaped(done.stderr)}</p>")
     parts.append("<h2>Answers</h2>")
     parts.append(f"<p>From, to: {100 * intervals.CONFIDENCE:.0f} percent confidence interval; empty where the runs are too few or the "
-                 "design has none. Only runs that have the value count.</p>")
+                 "design has none.</p>")
     pictures = plan.parsed((out / "pictures.json").read_bytes(), out / "pictures.json")
     for quantity in study.quantities:
-        of = [row for row in answers if row["quantity"] == quantity.name]
+        of = [row for row in found_answers if row["quantity"] == quantity.name]
         parts.append(f"<h3>{escaped(quantity.title())}</h3>")
         if not of:
             parts.append("<p>No run has this value.</p>")
             continue
-        parts.append(table([f"{of[0]['runs']} runs", "value", "from", "to"],
-                           [(row["statistic"], row["value"], row["low"], row["high"]) for row in of]))
+        parts.append(table(["", study.design.counted(), "value", "from", "to"],
+                           [(answers.with_unit(row["statistic"], quantity), row["runs"], row["value"], row["low"], row["high"]) for row in of]))
         of_shares = [(row["input"], row["measure"], row["value"], row["low"], row["high"]) for row in shares
                      if row["quantity"] == quantity.name]
         if of_shares:
@@ -245,10 +248,12 @@ def of_study(out, programs, folder):
             kind = name.removesuffix(".png").rpartition("-")[2]
             parts.append(picture(out / name, caption_of(kind, quantity, study)))
     parts += histories_of(out)
-    parts.append("<h2>Runs without a value</h2>")
-    missing = [line for line in (out / "summary.txt").read_text("utf-8").partition("the design has none\n")[2].splitlines()
-               if line.startswith(("run ", "... and ")) or " runs: " in line]
-    parts.append("<ul>" + "".join(f"<li>{escaped(line)}</li>" for line in missing[:MOST_ROWS]) + "</ul>" if missing else "<p>None.</p>")
+    notes = (out / "summary.txt").read_text("utf-8").partition("the design has none\n")[2].splitlines()
+    warned = [line for line in notes if line.startswith("warning")]
+    missing = [line for line in notes if line not in warned and (line.startswith(("run ", "and ")) or " runs: " in line)]
+    for heading, lines in (("Warnings", warned), ("Runs without a value", missing)):
+        parts.append(f"<h2>{heading}</h2>")
+        parts.append("<ul>" + "".join(f"<li>{escaped(line)}</li>" for line in lines[:MOST_ROWS]) + "</ul>" if lines else "<p>None.</p>")
     parts.append("<h2>Checks</h2><p>Each run that has an exit code of 0 satisfied the guards of demsolve in every state that it recorded: "
                  "finite values, areas, weight, penetration, energies, unbalanced forces.</p>")
     parts += ["<h2>Settings</h2>", settings(scene), "<h2>Versions</h2>",

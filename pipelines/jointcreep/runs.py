@@ -104,22 +104,29 @@ def count_ended(out, names, size, in_groups):
 
 
 class Progress:
-    """Tells how many runs have ended and how long the rest takes; on a terminal in one line that changes."""
+    """Tells how many runs have ended and how long the rest takes; on a terminal in one line that changes. The time left is by the pace of
+    the last half of the runs that have ended: the first ones may take longer than others, for example all of a network that fails."""
 
     def __init__(self, total, what, quiet):
         self.total, self.what, self.quiet = total, what, quiet
-        self.begin, self.first, self.told = time.monotonic(), None, 0
-        self.spoke = self.begin
+        self.ended, self.told = [], 0  # time and number of runs, at each change
+        self.spoke = time.monotonic()
+
+    def seconds_left(self):
+        """None as long as no run has ended."""
+        (_, first), (now, done) = self.ended[0], self.ended[-1]
+        since, before = [one for one in self.ended if one[1] <= (first + done) / 2][-1]
+        return (now - since) / (done - before) * (self.total - done) if done > first else None
 
     def tell(self, done):
-        if self.first is None:
-            self.first = self.told = done
+        if not self.ended:
+            self.told = done
+        if not self.ended or done != self.ended[-1][1]:
+            self.ended.append((time.monotonic(), done))
         if self.quiet:
             return
-        left = ""
-        if done > self.first:
-            left = f", {duration((time.monotonic() - self.begin) / (done - self.first) * (self.total - done))} left"
-        line = f"{done} of {self.total} {self.what}{left if done < self.total else ''}"
+        left = self.seconds_left()
+        line = f"{done} of {self.total} {self.what}" + (f", {duration(left)} left" if left is not None and done < self.total else "")
         if sys.stderr.isatty():
             print(f"\r{line:60}", end="" if done < self.total else "\n", file=sys.stderr, flush=True)
         elif (done - self.told) * SPOKEN >= self.total or done == self.total > self.told or time.monotonic() - self.spoke > SILENT:

@@ -31,12 +31,13 @@ LAWS = {  # parameters of each, in the unit of the key that varies
     "triangular": ["lowest", "most_likely", "highest"],
 }
 BOUNDED = ["normal", "lognormal"]  # these may be cut off at lowest and highest
+ENDS = ["lower end", "upper end"]  # of the bracket of a factor of safety
 BLOCKS = {"number": "1", "mean area": "m2", "median area": "m2", "largest area": "m2"}  # statistics and their units
 WHAT = ["displacement", "blocks", "factor of safety", "failed"]
 NETWORK = "network"  # name of the column of the network's number
 LEVEL = "level"  # name of the column that says whether a run of "two levels" is fine or coarse
 RESERVED = {"run", NETWORK, LEVEL, "exit code", "program", "reason"}
-KEPT = ["network.h5", "joints.h5", "result.h5", "safety.h5"]  # files of a run that may be kept
+KEPT = ["network.h5", "joints.h5", "result.h5", "result.failed.h5", "safety.h5"]  # files of a run that may be kept
 MOST_RUNS = 1_000_000
 LIKE = 0.75  # of two keys, by difflib: more than of any two that are known, such as fine_runs and fine_options (0.67)
 
@@ -67,13 +68,15 @@ class Quantity:
     since: str
     stage: str
     date: object  # datetime.date, number of days, or None: the end
-    statistic: str
+    statistic: str  # of blocks; of a factor of safety one of ENDS
     above: list  # limits of which the probabilities to be above are wanted
     below: list
     place: str
 
     def title(self):
-        """Name and unit."""
+        """Name and unit; of a factor of safety also its end."""
+        if self.statistic == ENDS[0]:
+            return f"{self.name}, {ENDS[0]}"
         return self.name if self.unit == "1" else f"{self.name} ({self.unit})"
 
 
@@ -266,7 +269,7 @@ def read(path):
         raise NotWanted(f"{path}: nothing varies; expected a [[vary]], for example with network = true")
     unique(parameters, path)
     correlations = [correlation_of(table, parameters) for table in each("correlation")]
-    quantities = [quantity_of(table) for table in each("collect")]
+    quantities = [end for table in each("collect") for end in both_ends(quantity_of(table))]
     if not quantities and not with_histories:
         raise NotWanted(f'{path}: nothing is collected; expected a [[collect]], for example with what = "failed"')
     unique([*parameters, *quantities], path)
@@ -397,6 +400,13 @@ def quantity_of(table):
     place = table.place()
     table.end()
     return Quantity(name, what, unit, point, relative_to, component, since, stage, date, statistic, above, below, place)
+
+
+def both_ends(quantity):
+    """A factor of safety is two quantities: both ends of its bracket."""
+    if quantity.what != "factor of safety":
+        return [quantity]
+    return [dataclasses.replace(quantity, name=f"{quantity.name}{more}", statistic=end) for end, more in zip(ENDS, ("", f", {ENDS[1]}"))]
 
 
 def stop_of(table, quantities, design):
