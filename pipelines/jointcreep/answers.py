@@ -212,6 +212,7 @@ def rank_correlations(study, rows, given, at):
     table = crossed_table(study, values, run)
     if study.design.kind == "networks x parameters":
         values, run = (intervals.additive(table)[1], sets_of(study, run)) if table is not None else ([], [])
+        values = np.round(values, 9 - math.floor(math.log10(np.ptp(values)))) if len(values) and np.ptp(values) > 0 else values  # for ties
     numeric = numeric_columns(study)
     if len(values) < FEWEST or not numeric or np.ptp(values) == 0:
         return []

@@ -51,12 +51,12 @@ def plain_studies(law, name, n_studies, runs, random):
     """Coverage of each statistic of plain designs."""
     limit = float(law.ppf(0.9))
     study = study_of(plain(runs), limit)
-    true = {"mean": float(law.mean()), f"probability above {limit:g}": 0.1,
+    true = {"mean": float(law.mean()), f"probability above {limit:g}, of stable runs": 0.1,
             **{f"quantile {part:g}": float(law.ppf(part)) for part in answers.QUANTILES}}
     hits = dict.fromkeys(true, 0)
     for _ in range(n_studies):
         values = law.rvs(runs, random_state=random)
-        for statistic, _, low, high in answers.statistics(study, study.quantities[0], values, np.arange(runs)):
+        for statistic, _, _, low, high in answers.statistics(study, study.quantities[0], values, np.arange(runs)):
             if statistic in true:
                 hits[statistic] += covers(low, high, true[statistic])
     for statistic, count in hits.items():
@@ -65,16 +65,23 @@ def plain_studies(law, name, n_studies, runs, random):
 
 
 def crossed_studies(n_studies, random):
-    """Coverage of the mean of networks x parameters, whose values are not independent."""
+    """Coverage of the mean of networks x parameters and of the probability of 0.1, whose values are not independent: of all runs, and
+    without those above 1.5, which fail."""
     design = study_file.Design("networks x parameters", 1, NETWORKS * PARAMETERS, NETWORKS, PARAMETERS, 0, 1, 0, "")
     study = study_of(design)
-    run, hits = np.arange(design.runs), 0
-    for _ in range(n_studies):
-        of_network, of_parameters, of_both = (math.sqrt(share) * random.normal(size=size) for share, size in
-                                              zip(SHARES, ((NETWORKS, 1), (1, PARAMETERS), (NETWORKS, PARAMETERS))))
-        _, low, high = answers.mean_with_interval(study, (of_network + of_parameters + of_both).ravel(), run)
-        hits += covers(low, high, 0.0)
-    yield design.kind, "normal", "mean", hits, None
+    for name, highest in (("normal", math.inf), ("normal, failures", 1.5)):
+        below = stats.truncnorm(-math.inf, highest)
+        hits = dict.fromkeys(("mean", "probability 0.1"), 0)
+        for _ in range(n_studies):
+            of_network, of_parameters, of_both = (math.sqrt(share) * random.normal(size=size) for share, size in
+                                                  zip(SHARES, ((NETWORKS, 1), (1, PARAMETERS), (NETWORKS, PARAMETERS))))
+            values = (of_network + of_parameters + of_both).ravel()
+            run = np.flatnonzero(values <= highest)
+            values = values[run]
+            hits["mean"] += covers(*answers.mean_with_interval(study, values, run)[1:3], float(below.mean()))
+            hits["probability 0.1"] += covers(*answers.share_with_interval(study, values > below.ppf(0.9), run)[1:], 0.1)
+        for statistic, count in hits.items():
+            yield design.kind, name, statistic, count, None
 
 
 def latin_studies(n_studies, random):
@@ -85,7 +92,7 @@ def latin_studies(n_studies, random):
     for _ in range(n_studies):
         columns = [np.concatenate([(random.permutation(size) + random.random(size)) / size for _ in range(10)]) for _ in range(2)]
         values = np.exp(columns[0]) + columns[1] ** 2 + 0.2 * random.normal(size=100)
-        _, low, high = answers.mean_with_interval(study, values, run)
+        _, low, high, _ = answers.mean_with_interval(study, values, run)
         hits += covers(low, high, math.e - 1 + 1 / 3)
     yield design.kind, "curved with noise", "mean", hits, None
 
@@ -98,7 +105,7 @@ def stopped_studies(n_studies, random):
         values = random.normal(size=MOST)
         rows = [{"values": [value], "run": run} for run, value in enumerate(values)]
         end = next((end for end in range(BATCH, MOST, BATCH) if answers.enough(study, rows[:end])), MOST)
-        _, low, high = answers.mean_with_interval(study, values[:end], np.arange(end))
+        _, low, high, _ = answers.mean_with_interval(study, values[:end], np.arange(end))
         hits += covers(low, high, 0.0)
     yield "plain, stop rule", "normal", "mean", hits, None
 
@@ -120,7 +127,7 @@ def two_level_studies(name, n_studies, random):
         rows = [{"run": run, "values": [float(value)]} for run, value in enumerate(values)]
         found, run = answers.values_of(study, rows, 0)
         assert (run == fine_numbers).all()
-        value, low, high = answers.mean_with_interval(study, found, run, answers.coarse_of(study, rows, 0, run))
+        value, low, high, _ = answers.mean_with_interval(study, found, run, answers.coarse_of(study, rows, 0, run))
         estimates.append(value)
         hits += covers(low, high, true)
     yield design.kind, name, "mean", hits, MEAN if name == "normal" else None

@@ -24,7 +24,7 @@ import numpy as np
 
 from chain import LONGEST_RUN, ChainTest, alive, datasets, main
 
-from jointcreep import answers, failure, intervals, plan, scene_keys, study_file
+from jointcreep import answers, failure, intervals, plan, runs, scene_keys, study_file
 from jointcreep import design as draw_design
 from jointcreep.errors import NotWanted
 
@@ -318,9 +318,10 @@ class Failures(Studies):
         """It is kept with code and reason, does not stop the others, and counts where failure is the answer; where it is not, it is
         made twice."""
         case = 'case "$PWD" in *work/000001*) echo "demsolve: warning: soon" >&2; echo "demsolve: no equilibrium: on purpose" >&2; ' \
-               "exit 3 ;; esac"
+               'echo "demsolve: the run up to there is in result.failed.h5" >&2; touch result.failed.h5; exit 3 ;; esac'
         programs = self.programs(case)
-        out = self.made(self.written(NETWORKS.format(runs=4)), self.folder / "out", programs=programs)
+        out = self.made(self.written('keep = ["result.failed.h5"]\n' + NETWORKS.format(runs=4)), self.folder / "out", programs=programs)
+        self.assertEqual([path.name for path in (out / "kept").iterdir()], ["000001-result.failed.h5"])
         rows = rows_of(out)
         self.assertEqual([row["exit code"] for row in rows], ["0", "3", "0", "0"])
         self.assertEqual((rows[1]["program"], rows[1]["reason"]), ("demsolve", "demsolve: no equilibrium: on purpose"))
@@ -332,11 +333,23 @@ class Failures(Studies):
             with open(folder / "times.csv", encoding="utf-8") as file:
                 self.assertEqual([row["attempts"] for row in csv.DictReader(file)], ["1", attempts, "1", "1"])
         text = (out / "summary.txt").read_text()
-        self.assertIn("without equilibrium  1\n", text)
-        self.assertIn("run 1 failed: demsolve, exit code 3: demsolve: no equilibrium: on purpose\n", text)
+        self.assertIn("without equilibrium  1\n  blocks move        0\n  undecided          1\n", text)
+        self.assertIn("\nwarning in 1 of 4 runs: demsolve: soon\n", text)
+        self.assertTrue(text.endswith("run 1 failed: demsolve: no equilibrium: on purpose\n"
+                                      "of the point dug away (mm): an excavation takes the point \"dug away\" before, or it is not read yet, "
+                                      "in 3 of 4 runs: 0, 2, 3\n"), text)
         with open(out / "answers.csv", encoding="utf-8") as file:
             found = {(row["quantity"], row["statistic"]): row for row in csv.DictReader(file)}
         self.assertEqual(found["floor y", "mean"]["runs"], "3")
+        above = [float(row["floor y (mm)"]) > 0.1 for row in rows if row["floor y (mm)"]]
+        for name, n, count in (("probability above 0.1, of stable runs", 3, sum(above)),
+                               ("probability above 0.1 or no equilibrium", 4, sum(above) + 1)):
+            row = found["floor y", name]
+            self.assertEqual((int(row["runs"]), *(float(row[key]) for key in ("value", "low", "high"))),
+                             (n, *intervals.probability(count, n)))
+        row = found["floor y", "standard error of the mean"]
+        values = [float(row["floor y (mm)"]) for row in rows if row["floor y (mm)"]]
+        self.assertAlmostEqual(float(row["value"]), np.std(values, ddof=1) / np.sqrt(3), delta=1e-12)
         self.assertEqual(float(found["failed", "probability"]["value"]), 0.25)
 
     def test_a_run_that_fails_once(self):
@@ -345,6 +358,45 @@ class Failures(Studies):
         case = 'case "$PWD" in *work/000001*) if [ ! -e "{folder}/once" ]; then touch "{folder}/once"; kill -SEGV $$; fi ;; esac'
         self.assert_same(self.made(study, self.folder / "whole"),
                          self.made(study, self.folder / "out", programs=self.programs(case)))
+
+    def test_lines_of_failures(self):
+        """Short ones, ten at most, and of both kinds of runs without equilibrium; warnings of one kind are counted together."""
+        study = study_file.read(self.written(NETWORKS.format(runs=30)))
+        moving = "demsolve: no equilibrium: the rock is moving; on day 2; moving blocks: block 73 at [1, 2] m by [0.1, 0.2] m; and more"
+        undecided = "demsolve: no equilibrium: after 1000000 steps the unbalanced force ratio is 0.00016; " + "word " * 300
+        rows = [{"run": run, "exit_code": 3 if run < 12 else 0, "program": "demsolve" if run < 12 else "", "values": [None] * 4 + [1.0],
+                 "reason": "" if run >= 12 else moving if run % 4 else undecided,
+                 "warnings": [f'jointgen: {50 + run}.5 percent of joint set "J1" are cut back'] * (run % 2)} for run in range(30)]
+        text = answers.summary(study, rows, "", [], [])
+        self.assertIn("without equilibrium  12\n  blocks move        9\n  undecided          3\n", text)
+        self.assertIn('\nwarning in 15 of 30 runs: jointgen: 51.5 percent of joint set "J1" are cut back\n', text)
+        lines = [line for line in text.splitlines() if line.startswith("run ")]
+        self.assertEqual(lines[:2], ["run 0 failed: demsolve: no equilibrium: after 1000000 steps the unbalanced force ratio is 0.00016",
+                                     "run 1 failed: demsolve: no equilibrium: the rock is moving"])
+        self.assertEqual(text.splitlines()[text.splitlines().index(lines[-1]) + 1], "and 2 more in runs.csv")
+        self.assertEqual(len([line for line in lines if " failed: " in line]), 10)
+        many = answers.failure_words({**rows[0], "reason": "demsolve: " + "word " * 300})
+        self.assertLess(len(many), 130)
+
+    def test_warnings_of_the_programs(self):
+        """A warning that the programs print is in the summary and in the report, with the number of runs."""
+        case = 'case "$PWD" in *work/*) echo "jointgen: warning: 7 percent are gone" >&2 ;; esac'
+        out = self.made(self.written(NETWORKS.format(runs=2)), self.folder / "out", programs=self.programs(case, "jointgen"))
+        self.assertIn("warning in 2 of 2 runs: jointgen: 7 percent are gone\n", (out / "summary.txt").read_text())
+        subprocess.run([self.chain.programs / "jointcreep", "report", out, "-o", self.folder / "r.html"], check=True, timeout=LONGEST_RUN)
+        self.assertIn("<li>warning in 2 of 2 runs: jointgen: 7 percent are gone</li>", (self.folder / "r.html").read_text())
+
+    def test_time_left(self):
+        """By the pace of the last half: the first 10 of 100 runs take 20 s each, the others 1 s."""
+        now = [0.0]
+        with unittest.mock.patch.object(runs.time, "monotonic", lambda: now[0]):
+            progress = runs.Progress(100, "runs", True)
+            progress.tell(0)
+            self.assertIsNone(progress.seconds_left())
+            for done in range(1, 41):
+                now[0] += 20 if done <= 10 else 1
+                progress.tell(done)
+        self.assertAlmostEqual(progress.seconds_left(), 60)
 
     def test_what_is_no_result(self):
         """A full disk, or a program that is killed: the run is made when the study goes on."""
@@ -363,7 +415,7 @@ class Failures(Studies):
         study = self.written(NETWORKS.format(runs=2).split("[[collect]]\nname")[0])
         done = self.study(study, self.folder / "out", programs=self.programs('[ "$1" = --version ] || exit 5'))
         self.assertEqual(done.returncode, 3, done.stderr)
-        self.assertIn("run 0 failed: demsolve, exit code 5", done.stdout)
+        self.assertIn("run 0 failed: demsolve: exit code 5", done.stdout)
         self.assertNotIn("Traceback", done.stderr)
 
 
@@ -475,12 +527,68 @@ values = [1, 2, 6]
                       f"parameters = {parameters}\n", NETWORKS) + FRICTION
         study = study_file.read(self.written(text))
         rows = [{"run": run, "values": [value]} for run, value in enumerate(sum(parts).ravel())]
-        rows[7]["values"] = [None]  # its network is left out
-        found = answers.crossed_shares(study, rows, 0)
+        rows[7]["values"] = [None]
+        found = answers.crossed_shares(study, rows, {}, 0)
         for (name, _, value, low, high), share in zip(found, np.array(true) / sum(true)):
             with self.subTest(name):
                 self.assertAlmostEqual(value, share, delta=0.03)
                 self.assertTrue(low <= share <= high)
+
+    def test_shares_of_each_parameter(self):
+        """Of a linear function of independent parameters the parts are known; they add up to the share of all parameters. A curved
+        function of one has a rest; correlated parameters are not divided."""
+        networks, parameters, chance = 25, 40, np.random.default_rng(4)
+        text = re.sub(r"\[design\]\nruns = .*\n", f'[design]\nkind = "networks x parameters"\nnetworks = {networks}\n'
+                      f"parameters = {parameters}\n", NETWORKS)
+        text += "".join(f"\n[[vary]]\nkey = '{name}'\nlaw = 'uniform'\nlowest = 0\nhighest = 1\n" for name in "abc")
+        study = study_file.read(self.written(text))
+        x = chance.normal(size=(parameters, 3))
+        x -= x.mean(axis=0)
+        x = np.linalg.qr(x)[0] * np.sqrt(parameters - 1)  # without correlation, of variance 1
+        of_network = 2 * chance.normal(size=(networks, 1))
+        given = [{"given": list(x[run % parameters])} for run in range(networks * parameters)]
+        curved = x[:, 0] ** 2 - (x[:, 0] ** 2).mean()
+        curved -= x @ (x.T @ curved) / (parameters - 1)
+        curved /= curved.std(ddof=1)
+        for more, rest in ((0, 0.0), (curved, 1.0)):
+            values = (of_network + x @ [2, 1, 0] + more).ravel()
+            rows = [{"run": run, "values": [value], "exit_code": 0} for run, value in enumerate(values)]
+            found = {name: value for name, _, value, _, _ in answers.crossed_shares(study, rows, given, 0)}
+            total = of_network.var(ddof=1) + 5 + rest
+            degrees = (parameters - 1) / (parameters - 4)  # of the adjusted coefficient
+            wanted = (1 - rest / (5 + rest) * degrees) * (5 + rest) / total
+            for name, share in (("a", 0.8 * wanted), ("b", 0.2 * wanted), ("c", 0), (answers.NOT_LINEAR, rest * degrees / total)):
+                self.assertAlmostEqual(found[name], share, places=9)
+            self.assertAlmostEqual(found["all parameters"], (5 + rest) / total, places=9)
+        study.correlations = [("a", "b", 0.5)]
+        self.assertEqual(len(answers.crossed_shares(study, rows, given, 0)), 3)
+
+    def test_incomplete_networks(self):
+        """All runs with a value count, the rank correlations are of the parameters' effects, and the summary says so."""
+        networks, parameters, chance = 6, 12, np.random.default_rng(8)
+        text = re.sub(r"\[design\]\nruns = .*\n", f'[design]\nkind = "networks x parameters"\nnetworks = {networks}\n'
+                      f"parameters = {parameters}\n", NETWORKS) + FRICTION
+        study = study_file.read(self.written(text))
+        friction = chance.normal(size=parameters)
+        table = 5 * chance.normal(size=(networks, 1)) + np.arange(parameters)[np.argsort(np.argsort(friction))]
+        rows = [{"run": run, "values": [value, None, None, None, 0.0], "exit_code": 0, "reason": "", "program": ""}
+                for run, value in enumerate(table.ravel().tolist())]
+        for run in (0, 3, 14):
+            rows[run].update(values=[None] * 4 + [1.0], exit_code=3, program="demsolve", reason="demsolve: no equilibrium")
+        given = [{"given": [friction[run % parameters]]} for run in range(len(rows))]
+        values, run = answers.values_of(study, rows, 0)
+        without = answers.without_equilibrium(study, rows, 0)
+        self.assertEqual(list(without), [0, 3, 14])
+        found = {name: row for name, *row in answers.statistics(study, study.quantities[0], values, run, None, without)}
+        there = np.delete(table.ravel(), [0, 3, 14])
+        self.assertEqual(found["mean"][0], 69)
+        self.assertAlmostEqual(found["mean"][1], there.mean(), places=12)
+        self.assertEqual(found["probability above 0.1, of stable runs"][:2], [69, (there > 0.1).mean()])
+        self.assertEqual(found["probability above 0.1 or no equilibrium"][:2], [72, ((there > 0.1).sum() + 3) / 72])
+        (_, _, r, _, _), = answers.rank_correlations(study, rows, given, 0)
+        self.assertAlmostEqual(r, 1, places=12)
+        self.assertIn("warning: floor y (mm): 3 of 72 runs, of 2 networks, have no value; answers are of the other runs\n",
+                      answers.summary(study, rows, "", [], []))
 
     def test_lists_of_values_need_no_openturns(self):
         lists = "\n[[vary]]\nname = 'angle'\nkey = 'joint_material.joint.friction_angle_deg'\nvalues = [30, 35, 40, 45]\n"
@@ -503,7 +611,7 @@ values = [1, 2, 6]
                     self.assertEqual(draw_design.draw(longer)[1][:40], given)
                     self.assertIn("by numpy", plan.identity(study, "", self.chain.programs)["[design]"])
                     self.assertIn("probability above 0.1 mm ", answers.summary(study, [], "", [
-                        (study.quantities[0], {"runs": 2, "statistics": [("probability above 0.1", 0.5, 0.1, 0.9)]}, [])], []))
+                        (study.quantities[0], {"statistics": [("probability above 0.1", 2, 0.5, 0.1, 0.9)]}, [])], []))
 
     @needs_openturns
     def test_a_study_with_parameters(self):
@@ -567,7 +675,7 @@ values = [1, 2, 6]
         out = self.made(self.written(text + stop.format(1.0)), self.folder / "out", "-j2")
         self.assertEqual(len(rows_of(out)), 100)
         values = np.array([float(row["blocks, number" if "blocks, number" in row else "blocks"]) for row in rows_of(out)])
-        halves = [np.diff(intervals.mean(values[:end])[1:])[0] / 2 for end in (50, 100)]
+        halves = [np.diff(intervals.mean(values[:end])[1:3])[0] / 2 for end in (50, 100)]
         self.assertGreater(halves[0], 1.0)
         self.assertLess(halves[1], 1.0)
         self.made(self.written(text), out)
@@ -653,7 +761,7 @@ class TwoLevels(Studies):
             rows = [{"run": run, "values": [value]} for run, value in enumerate(values)]
             found, run = answers.values_of(study, rows, 0)
             self.assertEqual(list(found), list(fine))
-            value, low, high = answers.mean_with_interval(study, found, run, answers.coarse_of(study, rows, 0, run))
+            value, low, high, _ = answers.mean_with_interval(study, found, run, answers.coarse_of(study, rows, 0, run))
             estimates.append(value)
             halves.append((high - low) / 2)
             alone.append(np.std(fine, ddof=1) / np.sqrt(fine_runs))
@@ -717,7 +825,6 @@ class TwoLevels(Studies):
 
 
 class FactorOfSafety(Studies):
-    @needs_openturns
     def test_of_a_block_on_a_plane(self):
         """The factor of each run is that of demsolve, and holds the closed form: cos b tan(phi) / sin b of the plane's dip b, here also
         with cohesion c: (c + cos b tan(phi)) / sin b for a load of 1 MPa."""
@@ -731,18 +838,19 @@ class FactorOfSafety(Studies):
         rows, dip = rows_of(out), np.radians(25)
         self.assertGreater(len({(row["phi"], row["c"]) for row in rows}), 1)
         for row in rows:
-            phi, c, factor = (float(row[name]) for name in ("phi", "c", "F"))
+            phi, c, factor = (float(row[name]) for name in ("phi", "c", "F, lower end"))
             true = (c + np.cos(dip) * np.tan(np.radians(phi))) / np.sin(dip)
             self.assertTrue(factor <= true < 1.011 * factor, (factor, true))
+            self.assertTrue(true <= float(row["F, upper end"]) <= 1.0101 * factor, (row, true))
         row = rows[0]
         changed = re.sub(r"(?m)^friction_angle_deg = .*", f"friction_angle_deg = {row['phi']}", scene)
         changed = re.sub(r"(?m)^cohesion_MPa = .*", f"cohesion_MPa = {row['c']}", changed)
         joints = self.chain.joints(changed)
         safety = datasets(self.chain.run("demsolve", joints, joints.with_name("s.h5"), "--no-creep", "--factor-of-safety"))
-        self.assertEqual(float(row["F"]), safety["/safety/factor"][safety["/safety/stands"] == 1].max())
+        self.assertEqual(float(row["F, lower end"]), safety["/safety/factor"][safety["/safety/stands"] == 1].max())
         with open(out / "answers.csv", encoding="utf-8") as file:
             below = next(one for one in csv.DictReader(file) if one["statistic"] == "probability below 1.4")
-        self.assertEqual(float(below["value"]), sum(float(one["F"]) < 1.4 for one in rows) / 4)
+        self.assertEqual(float(below["value"]), sum(float(one["F, lower end"]) < 1.4 for one in rows) / 4)
 
 
 @unittest.skipUnless(shutil.which("snakemake"), "snakemake is not installed: sh pipelines/setup.sh studies")
@@ -917,7 +1025,10 @@ class SearchOptions(Studies):
         with open(self.made(self.written(text), self.folder / "out") / "runs.csv", encoding="utf-8") as file:
             rows = list(csv.DictReader(file))
         self.assertEqual([row["exit code"] for row in rows], ["0"] * 3)
-        self.assertTrue(all(float(row["floor y (mm)"]) != 0 and float(row["factor of safety"]) > 1 for row in rows))
+        self.assertTrue(all(float(row["floor y (mm)"]) != 0 and float(row["factor of safety, lower end"]) > 1 for row in rows))
+        for row in rows:  # one that stands with the largest factor that is tried has no upper end
+            low, high = row["factor of safety, lower end"], row["factor of safety, upper end"]
+            self.assertTrue(float(low) == 64 if high == "" else float(high) > float(low), (low, high))
 
 
 class Intervals(unittest.TestCase):
@@ -953,16 +1064,70 @@ class Intervals(unittest.TestCase):
             self.assertAlmostEqual(found, wanted, places=9)
 
     def test_crossed_without_scatter(self):
-        """Where no run of a crossed design hits, or all do, the interval is that of as many runs as the fewer of its two sides."""
-        crossed = types.SimpleNamespace(design=types.SimpleNamespace(kind="networks x parameters", networks=8, parameters=5))
-        for hits, count in ((np.zeros(40, bool), 0), (np.ones(40, bool), 5)):
-            self.assertEqual(answers.share_with_interval(crossed, hits, np.arange(40)), intervals.probability(count, 5))
+        """Where no run of a crossed design hits, or all do, the interval is that of as many runs as the fewer of its two sides; also
+        where runs have no value."""
+        crossed = types.SimpleNamespace(design=types.SimpleNamespace(kind="networks x parameters", networks=8, parameters=5, runs=40))
+        for run in (np.arange(40), np.arange(3, 38)):
+            for hits, count in ((np.zeros(len(run), bool), 0), (np.ones(len(run), bool), 5)):
+                self.assertEqual(answers.share_with_interval(crossed, hits, run), intervals.probability(count, 5))
+
+    def test_components(self):
+        """Of a full table those of the analysis of variance. Where values are missing: none of both together of a sum, and no bias."""
+        chance = np.random.default_rng(2)
+        table = chance.normal(size=(7, 1)) + chance.normal(size=(7, 5))
+        middle, rows, columns = table.mean(), table.mean(axis=1, keepdims=True), table.mean(axis=0, keepdims=True)
+        of_both = ((table - rows - columns + middle) ** 2).sum() / 24
+        wanted = ((rows.var(ddof=1) * 5 - of_both) / 5, (columns.var(ddof=1) * 7 - of_both) / 7, of_both)
+        np.testing.assert_allclose(intervals.components(table), wanted, atol=1e-12)
+        there = chance.random((12, 9)) < 0.7
+        found = []
+        for _ in range(2000):
+            both = 3 * chance.normal(size=(12, 1)) + 2 * chance.normal(size=(1, 9))
+            self.assertLess(intervals.components(np.where(there, both, np.nan))[2], 1e-20)
+            found.append(intervals.components(np.where(there, both + chance.normal(size=(12, 9)), np.nan)))
+        error = np.std(found, axis=0) / np.sqrt(2000)
+        self.assertTrue((np.abs(np.mean(found, axis=0) - [9, 4, 1]) < 4 * error).all(), (np.mean(found, axis=0), error))
+
+    def test_additive_by_least_squares(self):
+        """Where values are missing, by numpy's least squares with a column for each network and each set of parameters."""
+        chance = np.random.default_rng(3)
+        table = np.where(chance.random((6, 5)) < 0.7, chance.normal(size=(6, 5)), np.nan)
+        row, column = np.nonzero(np.isfinite(table))
+        matrix = np.concatenate([np.eye(6)[row], np.eye(5)[column]], axis=1)
+        of = table[row, column]
+        wanted = of - matrix @ np.linalg.lstsq(matrix, of, rcond=None)[0]
+        networks, parameters, rest, freedom = intervals.additive(table)
+        np.testing.assert_allclose(rest[row, column], wanted, atol=1e-12)
+        np.testing.assert_allclose(of - of.mean() - networks[row] - parameters[column], wanted, atol=1e-12)
+        self.assertEqual(freedom, len(of) - np.linalg.matrix_rank(matrix))
+
+    def test_crossed_with_failures(self):
+        """Coverage where the runs with the largest values fail, so that networks have few or many values: 1000 studies, without the
+        solver. The mean of complete networks alone is far off."""
+        chance, n, limit = np.random.default_rng(7), 1000, 1.2
+        true = -np.exp(-limit**2 / 2) / np.sqrt(2 * np.pi) / intervals.special().ndtr(limit)
+        above = 1 - intervals.special().ndtr(0.8) / intervals.special().ndtr(limit)
+        hits, of_complete = np.zeros(2), []
+        for _ in range(n):
+            table = sum(np.sqrt(share) * chance.normal(size=size) for share, size in zip((0.6, 0.2, 0.2), ((20, 1), (1, 20), (20, 20))))
+            table[table > limit] = np.nan
+            there = np.isfinite(table)
+            of_complete.append(table[there.all(axis=1)].mean() if there.all(axis=1).any() else np.nan)
+            table = table[there.any(axis=1)][:, there.any(axis=0)]
+            shares = np.where(np.isfinite(table), table > 0.8, np.nan)
+            for place, (wanted, found) in enumerate(((true, intervals.mean_of_crossed(table)),
+                                                     (above, intervals.probability_of_crossed(shares)))):
+                hits[place] += found[1] <= wanted <= found[2]
+        self.assertAlmostEqual(hits[0] / n, 0.95, delta=0.025)
+        self.assertGreater(hits[1] / n, 0.93)
+        self.assertLess(np.nanmean(of_complete), true - 0.2)
 
     def test_parts(self):
         values = np.array([1.0, 2, 3, 4, 5, 9])
-        middle, low, high = intervals.mean_of_parts(values, np.array([0, 0, 1, 1, 2, 2]))
-        _, wanted_low, wanted_high = intervals.mean(np.array([1.5, 3.5, 7]))
-        for found, wanted in zip((middle, low, high), (4.0, wanted_low, wanted_high)):
+        middle, low, high, error = intervals.mean_of_parts(values, np.array([0, 0, 1, 1, 2, 2]))
+        _, wanted_low, wanted_high, _ = intervals.mean(np.array([1.5, 3.5, 7]))
+        wanted_error = np.std([1.5, 3.5, 7], ddof=1) / np.sqrt(3)
+        for found, wanted in zip((middle, low, high, error), (4.0, wanted_low, wanted_high, wanted_error)):
             self.assertAlmostEqual(found, wanted, places=12)
 
 
