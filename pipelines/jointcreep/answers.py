@@ -57,7 +57,7 @@ def without_equilibrium(study, rows, at):
     last = 2 * study.design.points if study.design.kind == "sobol indices" else study.design.runs
     if study.design.fine_runs and rows:
         last = (rows[-1]["run"] + 1) // study.design.block() * study.design.block()
-    return np.array([row["run"] for row in rows if row["exit_code"] == NO_EQUILIBRIUM and row["values"][at] is None and row["run"] < last and
+    return np.array([row["run"] for row in rows if row["values"][at] is None and row["exit_code"] == NO_EQUILIBRIUM and row["run"] < last and
                      study.design.level(row["run"]) != "coarse"], int)
 
 
