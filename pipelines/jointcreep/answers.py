@@ -426,7 +426,7 @@ def summary(study, rows, why, of_each, of_histories):
               f"  undecided          {len(without) - sum(map(is_moving, without))}"] * bool(without)
     lines.append(f"other failures       {other}")
     for quantity, found, of_shares in of_each:
-        lines += ["", quantity.title()]
+        lines += ["", f"{quantity.title()}, {found['statistics'][0][1]} {study.design.counted()} with a value"]
         lines += in_columns([["", study.design.counted(), "value", "from", "to"],
                              *([with_unit(name, quantity), str(n), *map(number_text, numbers)] for name, n, *numbers in found["statistics"])])
         if of_shares:
