@@ -3,7 +3,7 @@
 stacked.
 
 Areas are to scale: the radius is the square root of the share. Angles count counter-clockwise from the section's x
-axis. Traces count with their length inside the section.
+axis. Classes are centred on multiples of their width. Traces count with their length inside the section.
 """
 
 import matplotlib.patches
@@ -21,7 +21,7 @@ def class_of(angle, width):
     return np.floor((angle + width / 2) / width + ROUNDING).astype(int) % round(180 / width)
 
 
-def draw(file, width=10):
+def draw(file, width=5):
     """Figure of the directions of joint traces, in classes of `width` degrees."""
     joints = joint_sets.Joints(file)
     if not 1 <= width <= 90 or 180 % width != 0:
@@ -64,7 +64,8 @@ def draw(file, width=10):
     axes.set_xticks(np.radians(np.arange(0, 360, 30)))
     axes.grid(linewidth=0.4, color="0.75")
     axes.spines["polar"].set_linewidth(0.6)
-    axes.set_title("traces in the section, weighted by their length in it;\narea of a class in proportion to its share", fontsize=7, pad=14)
+    axes.set_title(f"traces in the section, weighted by their length in it;\nclasses of {width:g} degrees, area in proportion to the share",
+                   fontsize=7, pad=14)
     if len(entries) > 8:
         entries = []
     if entries:
@@ -74,4 +75,4 @@ def draw(file, width=10):
 
 if __name__ == "__main__":
     figure.run(draw, figure.arguments_of(
-        __doc__, (["--width"], {"type": float, "default": 10, "help": "of a class, in degrees; default: 10"})))
+        __doc__, (["--width"], {"type": float, "default": 5, "help": "of a class, in degrees; default: 5"})))

@@ -267,6 +267,7 @@ class Plots(ChainTest):
         border = 55 * (1 + numpy.array([-1e-15, 0, 1e-15]))  # equal angles but for rounding
         self.assertEqual(plot_rose.class_of(border, 10).tolist(), [6, 6, 6])
         self.assertEqual(plot_rose.class_of(numpy.array([0.0, 54.9, 174.9, 175]), 10).tolist(), [0, 5, 17, 0])
+        self.assertEqual((plot_rose.class_of(numpy.array([145, 142.6, 147.4, 75]), 5) * 5).tolist(), [145, 145, 145, 75])
         scenes = {"data/slope/scene.toml": ["stereonet", "rose", "distributions"],
                   "tests/pipeline/random_slope.toml": ["rose", "distributions"]}
         for scene, names in scenes.items():
