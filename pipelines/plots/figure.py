@@ -201,7 +201,7 @@ def ending_of(file):
     if "/failure" not in file:
         return ""
     stage, day = texts(file, "/failure/stage")[0], day_of(file, array(file, "/failure/time")[0])
-    return f'no equilibrium after stage "{stage}", {day}' if stage else f"no equilibrium on {day}"
+    return f'stage "{stage}" found no equilibrium on {day}' if stage else f"no equilibrium on {day}"
 
 
 def strength_factor_of(file):

@@ -5,8 +5,8 @@ drawn, and positions are those at the start, unless displacements are magnified.
 The state is its number, counted from 0, the name of the stage that it follows, the plain word for that name
 (stage_names.py), or "last".
 
-Of a run that found no equilibrium, the last state also shows what happened after it: the rock that was excavated, and the moving
-blocks, with arrows along their motion. The title says why the run ended.
+Of a run that found no equilibrium, the last state is that before the stage that found none. Its picture also shows what happened
+after it: the rock that was excavated, and the moving blocks, with arrows along their motion. The title says why the run ended.
 """
 
 import textwrap
@@ -118,9 +118,15 @@ def draw_borders(section, axes, joints=True):
 
 
 def add_scale(axes, colored, label, low, high, values):
-    """A colour scale, with a pointed end where values lie beyond it."""
-    axes.figure.colorbar(colored, ax=axes, label=label, shrink=0.75, aspect=25, pad=0.02,
-                         extend=figure.extension(values, low, high))
+    """A colour scale as high as the axes, with a pointed end where values lie beyond it. Beside low axes its label is horizontal."""
+    width = axes.figure.get_figwidth() - 1.7  # of the axes [in]
+    height = width * np.ptp(axes.get_ylim()) / np.ptp(axes.get_xlim())
+    bar = axes.figure.colorbar(colored, cax=axes.inset_axes([1 + 0.12 / width, 0, 0.14 / width, 1]),
+                               extend=figure.extension(values, low, high))
+    if height < 1.8:
+        bar.set_label("\n".join(textwrap.wrap(label, 16)), rotation=0, ha="left", va="center")
+    else:
+        bar.set_label("\n".join(textwrap.wrap(label, int(16 * height))))
 
 
 def draw_displacement(file, state, section, axes, since_reset, limits):
@@ -208,7 +214,7 @@ def draw_stress(file, state, section, axes, component, limits):
         low, high = low - 0.5, high + 0.5
     colored = axes.tripcolor(section.triangles, facecolors=value, cmap=figure.SHADES, vmin=low, vmax=high,
                              edgecolors="face", linewidth=0.1, rasterized=True)
-    add_scale(axes, colored, f"{COMPONENTS[component]},\ncompressive (MPa)", low, high, value)
+    add_scale(axes, colored, f"{COMPONENTS[component]}, compressive (MPa)", low, high, value)
     draw_borders(section, axes)
     return draw_crosses(section, stress, axes) if component in ("major", "minor") else []
 
@@ -246,39 +252,46 @@ def contact_lines(file, section):
 
 def draw_contacts(file, state, section, axes):
     status = figure.array(file, "/states/contact_status")[state]
-    opening, shear = 1e3 * np.abs(figure.array(file, "/states/relative_displacement")[state].T)  # [mm]
+    opening, shear = np.abs(figure.array(file, "/states/relative_displacement")[state].T)  # since the in-situ state
     lines, of_contact = contact_lines(file, section)
     draw_borders(section, axes, joints=False)
 
     slip = np.abs(figure.array(file, "/states/slip")[state])
     slipped = (status == STUCK) & (slip > SLIPPED * slip.max(initial=0))
+    low, high = np.transpose([axes.get_xlim(), axes.get_ylim()])
+    centre = figure.array(file, "/mesh/contact_centre")
+    seen = np.all((low <= centre) & (centre <= high), axis=1) if section.window else np.full(len(status), True)
     entries = []
     for chosen, label, look in (((status == STUCK) & ~slipped, "contacts closed", {"color": "0.65", "linewidth": 0.5}),
                                 (slipped, "closed, slipped earlier", {"color": "#87a9cf", "linewidth": 1.2})):
         axes.add_collection(LineCollection(lines[chosen[of_contact]], zorder=2, **look))
         if label == "contacts closed" or np.any(chosen):
-            entries.append(matplotlib.lines.Line2D([], [], label=f"{np.sum(chosen)} {label}", **look))
+            entries.append(matplotlib.lines.Line2D([], [], label=f"{np.sum(chosen & seen)} {label}", **look))
+    if section.window:
+        entries[0].set_label(f"{entries[0].get_label()} (numbers: of the window)")
     thin, thick = 2.2, 4.8  # lines without and with the largest relative displacement of their kind [pt]
     for code, label, amount, color in ((SLIPPING, "slipping", shear, figure.COLORS[0]),
                                      (OPEN, "open", opening, figure.COLORS[1])):
-        count = np.sum(status == code)
-        largest = amount[status == code].max() if count else 0
+        count = np.sum((status == code) & seen)
+        largest = amount[(status == code) & seen].max(initial=0)
         chosen = status[of_contact] == code
-        width = thin + (thick - thin) * amount[of_contact[chosen]] / (largest or 1)
+        width = thin + (thick - thin) * np.minimum(1, amount[of_contact[chosen]] / (largest or 1))
         axes.add_collection(LineCollection(lines[chosen], color=color, linewidth=width, capstyle="round",
                                            zorder=code + 1))
         size = thick if largest > 0 else thin
         entry = matplotlib.lines.Line2D([], [], color=color, linewidth=size, label=f"{count} {label}")
-        if count:
-            entry.set_label(f"{count} {label}: {'shear' if code == SLIPPING else 'opening'} {largest:.2g} mm at this width")
+        if largest > 0:
+            kind = "shear displacement" if code == SLIPPING else "opening"
+            entry.set_label(f"{count} {label}; this width: {kind} {length_text(largest)}")
         if code == OPEN:  # two walls with a gap between them, in grey print too
             axes.add_collection(LineCollection(lines[chosen], color="w", linewidth=0.45 * width, capstyle="round",
                                                zorder=code + 1.5))
             entry.set(color="w", linewidth=0.45 * size, path_effects=[
                 matplotlib.patheffects.Stroke(linewidth=size, foreground=color), matplotlib.patheffects.Normal()])
         entries.append(entry)
-    if np.any(status > STUCK):
-        entries.append(matplotlib.lines.Line2D([], [], color="0.3", linewidth=thin, label="thinnest line: shear or opening 0 mm"))
+    if np.any((status > STUCK) & seen):
+        entries.append(matplotlib.lines.Line2D([], [], color="0.3", linewidth=thin,
+                                               label="thinnest: no displacement since the in-situ state"))
     return entries
 
 
@@ -370,10 +383,10 @@ def draw(file, state="last", field="displacement", component="major", since_rese
         entries = draw_contacts(file, state, section, axes)
     time, ending = figure.array(file, "/states/time"), figure.ending_of(file)
     is_end = bool(ending) and state == len(time) - 1
-    title = name_of(file, state)
-    if is_end and time[state] == figure.array(file, "/failure/time")[0]:
-        title = ending
-    elif ending:
+    title, stages = name_of(file, state), [name for name in figure.texts(file, "/states/event")[:state + 1] if name]
+    if is_end:
+        title = f"{figure.day_of(file, time[state])}, {'after ' + stages[-1] if stages else 'before the first stage'}"
+    if ending:
         title += f"; {ending}"
     if magnify:
         title += "; positions displaced" + (f" {magnify:g} times" if magnify != 1 else "")
@@ -383,10 +396,10 @@ def draw(file, state="last", field="displacement", component="major", since_rese
     if is_end:
         entries += draw_failure(file, section, axes)
         reason = figure.texts(file, "/failure/reason")[0].removeprefix("no equilibrium: ")
-        why = textwrap.wrap(reason, int(15 * plot.get_figwidth()))
-        title = "\n".join([title, *why])
-        plot.set_figheight(plot.get_figheight() + 0.13 * len(why))
-    axes.set_title(title, loc="left")
+        title += f"\n{reason}"
+    lines = [part for line in title.splitlines() for part in textwrap.wrap(line, int(15 * plot.get_figwidth()))]
+    plot.set_figheight(plot.get_figheight() + 0.13 * (len(lines) - 1))
+    axes.set_title("\n".join(lines), loc="left")
     if entries:
         figure.legend_below(axes, entries)
     return plot

@@ -333,9 +333,9 @@ class Plots(ChainTest):
         picture = plots.draw("state", result, field="contacts")
         drawn = [width for lines in picture.axes[0].collections for width in numpy.ravel(lines.get_linewidth())]
         said = {label: handle.get_linewidth() for label, handle in in_legends(picture).items()}
-        slips = next(width for label, width in said.items() if "slipping: shear" in label)
+        slips = next(width for label, width in said.items() if "slipping; this width: shear displacement" in label)
         self.assertEqual(slips, max(drawn))  # that of the largest slip
-        self.assertLess(said["thinnest line: shear or opening 0 mm"], slips)
+        self.assertLess(said["thinnest: no displacement since the in-situ state"], slips)
 
     def test_other_criteria_have_no_line(self):
         """Barton and Bandis's strength is no line of Coulomb's criterion."""

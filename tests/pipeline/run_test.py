@@ -195,8 +195,8 @@ class Run(ChainTest):
         self.assertIn(f"All strengths of this run are divided by {low:.4g}.", page)
         self.assertIn('alt="The run with the smallest factor without equilibrium: moving blocks."', page)
         self.assertEqual(plots.draw("histories", self.out / "result.h5")._suptitle.get_text(), f"strengths / {low:.4g}")
-        title = plots.draw("state", self.out / "result.failed.h5").axes[0].get_title(loc="left")
-        self.assertRegex(title, r'^Strengths / 0\.\d+: no equilibrium after stage "bench", day \S+\n')
+        title = plots.draw("state", self.out / "result.failed.h5").axes[0].get_title(loc="left").replace("\n", " ")
+        self.assertRegex(title, r'^Strengths / 0\.\d+: day \S+, before the first stage; stage "bench" found no equilibrium on day ')
         plots.figure.plt.close("all")
 
     def fakes(self, script):
