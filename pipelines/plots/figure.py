@@ -220,15 +220,6 @@ def add_strengths(file, figure):
     figure.suptitle(f"{above}strengths / {factor:.4g}", fontsize=8)
 
 
-def label_short_log(axis):
-    """Labels at 1, 2 and 5 times powers of ten on a logarithmic axis that is shorter than 1.5 decades."""
-    low, high = axis.get_view_interval()
-    if high < low * 10**1.5:
-        axis.set_major_locator(matplotlib.ticker.LogLocator(subs=(1, 2, 5)))
-        axis.set_major_formatter(matplotlib.ticker.StrMethodFormatter("{x:g}"))
-        axis.set_minor_formatter(matplotlib.ticker.NullFormatter())
-
-
 def name_index(names, wanted, what):
     """Row of a name, the first one if none is wanted."""
     if not names:

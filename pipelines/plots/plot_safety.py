@@ -2,17 +2,20 @@
 """The largest displacement over the strength reduction factor: stable runs, runs that fail, and the bracket
 of the factor of safety.
 
-Needs a result of demsolve --factor-of-safety. Where rock yields, the runs with zones twice as large are drawn, too. A run that
-fails has the displacement at its end. The dashed line is the limit at which runs end: a multiple of the displacement of the
-run with nearly no slip.
+Needs a result of demsolve --factor-of-safety. Where rock yields, the runs with zones twice as large are drawn, too. A run without
+equilibrium has the displacement when it was ended: before later stages, it can be less than that of stable runs. The dashed line is
+the limit at which runs end: a multiple of the displacement of the run with nearly no slip.
 """
 
+import matplotlib.lines
+import matplotlib.patches
 import numpy as np
 
 import figure
 
 STANDS, FAILS, UNDECIDED = 1, 0, -1
-KINDS = [(STANDS, "o", "stable"), (FAILS, "x", "fails: ended there"), (UNDECIDED, "s", "undecided")]
+KINDS = [(STANDS, "o", "stable"), (FAILS, "x", "no equilibrium (displacement when the run was ended)"), (UNDECIDED, "s", "undecided")]
+DECADES = 2  # of displacements on a linear axis at most
 
 
 def bracket(factor, stands):
@@ -23,46 +26,57 @@ def bracket(factor, stands):
     return (low if np.isfinite(low) else None), (high if np.isfinite(high) else None)
 
 
-def draw_runs(axes, factor, stands, displacement, color, label):
-    """The runs of a search in the order of their factors, but for the first one, whose strengths are so large that hardly any contact
-    slips."""
-    order = np.argsort(factor)[1:]
-    factor, stands, displacement = factor[order], stands[order], 1e3 * displacement[order]
-    stood = stands == STANDS
-    axes.plot(factor[stood], displacement[stood], color=color, linewidth=0.8, label=label)
+def draw_runs(axes, factor, stands, displacement, color):
+    """The runs of a search."""
     for kind, marker, _ in KINDS:
-        some = stands == kind
-        axes.plot(factor[some], displacement[some], color=color, linestyle="none", marker=marker, markersize=4)
+        some = np.flatnonzero(stands == kind)[np.argsort(factor[stands == kind])]
+        axes.plot(factor[some], displacement[some], color=color, linestyle="-" if kind == STANDS else "none", linewidth=1, marker=marker,
+                  markersize=4 if kind == STANDS else 5, zorder=3)
 
 
 def draw(file, safety_displacement=10):
     """Figure of the displacement over the strength reduction factor. safety_displacement: the same option of demsolve."""
     if "/safety" not in file:
         raise figure.NotWanted("this file has no runs of a factor of safety; demsolve --factor-of-safety writes them")
-    plot, axes = figure.plt.subplots(figsize=(figure.ONE_COLUMN * 1.2, 2.8))
+    plot, axes = figure.plt.subplots(figsize=(figure.ONE_COLUMN * 1.2, 2.6))
     plot.says_factor = True
-    seen, has_coarse = set(), len(figure.array(file, "/safety/coarse_factor")) > 1
-    for prefix, color, label in ("", "k", "zones of the scene"), ("coarse_", figure.COLORS[1], "zones twice as large"):
-        if f"/safety/{prefix}factor" in file and len(factor := figure.array(file, f"/safety/{prefix}factor")) > 1:
-            stands = figure.array(file, f"/safety/{prefix}stands")
-            seen |= set(stands)
-            displacement = figure.array(file, f"/safety/{prefix}largest_displacement")
-            draw_runs(axes, factor, stands, displacement, color, label if has_coarse else None)
-            limit = safety_displacement * displacement[np.argmin(factor)]
-            if np.any((displacement >= limit) & (displacement < 1.5 * limit)):  # a run was ended there; else the option was another
-                axes.axhline(1e3 * limit, color=color, linewidth=0.6, linestyle="--",
-                             label=None if prefix else f"limit: --safety-displacement {safety_displacement:g}")
-            low, high = bracket(factor, stands)
-            if low is not None and high is not None:
-                axes.axvspan(low, high, color=color, alpha=0.15, linewidth=0)
-    for kind, marker, label in KINDS:
-        if kind in seen:
-            axes.plot([], [], color="0.4", linestyle="none", marker=marker, markersize=4, label=label)
-    axes.set_yscale("log")
-    figure.label_short_log(axes.yaxis)
+    entries, brackets, drawn = {}, [], []
+    for prefix, color, what in ("", "k", "factor of safety"), ("coarse_", figure.COLORS[2], "with zones twice as large"):
+        factor = figure.array(file, f"/safety/{prefix}factor")
+        if len(factor) < 2:
+            continue
+        stands = figure.array(file, f"/safety/{prefix}stands")
+        displacement = 1e3 * figure.array(file, f"/safety/{prefix}largest_displacement")
+        limit = safety_displacement * displacement[np.argmin(factor)]
+        shown = np.arange(len(factor)) != np.argmin(factor)  # the first run has strengths so large that hardly any contact slips
+        draw_runs(axes, factor[shown], stands[shown], displacement[shown], color)
+        drawn += displacement[shown].tolist()
+        if np.any((displacement >= limit) & (displacement < 1.5 * limit)):  # a run was ended there; else the option was another
+            line = axes.axhline(limit, color=color, linewidth=0.6, linestyle="--", label=f"limit: --safety-displacement {safety_displacement:g}")
+            entries.setdefault("limit", line)
+        low, high = bracket(factor, stands)
+        if low is not None and high is not None:
+            axes.axvspan(low, high, color=color, alpha=0.15, linewidth=0)
+            brackets.append(f"{what} between {low:.4g} and {high:.4g}")
+        for kind, marker, label in KINDS:
+            if kind in stands[shown]:
+                entries.setdefault(kind, matplotlib.lines.Line2D([], [], color="k", linestyle="-" if kind == STANDS else "none", linewidth=1,
+                                                                 marker=marker, markersize=4, label=label))
+        if prefix:
+            entries["zones"] = matplotlib.patches.Patch(color=color, label="zones twice as large")
+        else:
+            for one in factor[stands == FAILS]:
+                axes.axvline(one, color=color, linewidth=0.5, linestyle=":", zorder=1)
+    if not drawn:
+        raise figure.NotWanted("its search for the factor of safety has only the first run")
+    axes.set_title("\n".join(brackets))
+    if 0 < 10**DECADES * min(drawn) < max(drawn):
+        axes.set_yscale("log")
+    else:
+        axes.set_ylim(0, 1.08 * max(drawn) or 1)
     axes.set_xlabel("strength reduction factor")
     axes.set_ylabel("largest displacement (mm)")
-    axes.legend(fontsize=6)
+    figure.legend_below(axes, [entries[key] for key in (STANDS, FAILS, UNDECIDED, "limit", "zones") if key in entries])
     return plot
 
 
