@@ -10,9 +10,10 @@ from matplotlib.collections import LineCollection
 import figure
 
 STAGE_BORDER = {"edgecolor": "0.25", "linewidth": 0.8, "linestyle": (0, (6, 2, 1, 2))}
-# Of a point, where its name can be [pt].
-SIDES = [(4, 3, "left", "bottom"), (-4, 3, "right", "bottom"), (4, -3, "left", "top"), (-4, -3, "right", "top")]
+SIDES = [(1, 1), (-1, 1), (1, -1), (-1, -1)]  # of a place, where its name can be
+AWAY = 11  # a name that has no room beside its place is this much farther off, or a multiple [pt]
 LETTER, LINE = 4.4, 9  # width of a letter and height of a line [pt]
+TICKS = 3  # smallest distance of ticks on a monitoring line [pt]
 FEW = 8  # entries of one kind in the legend; of more there is one for all
 
 
@@ -58,21 +59,25 @@ def draw_joints(file, axes, inside):
     return entries
 
 
-def number_place(corners, points, size):
-    """Where a stage's number goes: in the middle, or aside of it where a monitoring point is there already."""
+def draw_number(number, corners, axes, taken, font):
+    """Writes a stage's number in its middle, or where nothing is written yet; taken as in free_box()."""
     corners = np.array(corners, float)
-    middle = corners.mean(axis=0)
-    for place in [middle, *(middle + corners) / 2]:
-        if all(np.linalg.norm(place - point) > 0.06 * size for point in points):
-            return place
-    return middle
+    middle, radius = corners.mean(axis=0), font - 0.5
+    places = [middle, *(middle + corners) / 2]
+    boxes = [(points_of(place, axes) - radius, points_of(place, axes) + radius) for place in places]
+    free = next((i for i, box in enumerate(boxes) if is_free(box, taken)), None)
+    look = {"ha": "center", "va": "center", "zorder": 4, "fontsize": font,
+            "bbox": {"boxstyle": "circle,pad=0.2", "facecolor": "white", "linewidth": 0.5}}
+    if free is None:
+        write(str(number), middle, axes, free_box(points_of(middle, axes), np.full(2, 2 * radius), taken)[0], True, **look)
+    else:
+        taken.append(boxes[free])
+        axes.annotate(str(number), places[free], **look)
 
 
-def draw_stages(scene, axes, inside):
-    """Few in shades of grey, with their names below; many in outline, where joints and rocks stay visible."""
+def draw_stages(scene, axes, inside, taken):
+    """Few in shades of grey, with their names below; many in outline, where joints and rocks stay visible. taken as in free_box()."""
     entries = []
-    points = [np.array(point["at_m"], float) for point in scene.get("point", [])]
-    size = max(np.ptp(axes.get_xlim()), np.ptp(axes.get_ylim()))
     stages = scene.get("stage", [])
     few = len(stages) <= FEW
     for number, stage in enumerate(stages, 1):
@@ -85,9 +90,8 @@ def draw_stages(scene, axes, inside):
             seen = figure.part_in(axes, corners)
             if len(seen) == 0:
                 continue
-            shown, place = True, number_place(seen, points, size)
-            axes.annotate(str(number), place, ha="center", va="center", zorder=4, fontsize=8 if few else 5.5,
-                          bbox={"boxstyle": "circle,pad=0.2", "facecolor": "white", "linewidth": 0.5})
+            shown = True
+            draw_number(number, seen, axes, taken, 8 if few else 5.5)
         if not shown:
             continue
         when = f"day {stage['date']}" if isinstance(stage["date"], (int, float)) else str(stage["date"])
@@ -130,50 +134,68 @@ def draw_boundaries(scene, outline, axes):
     return list(entries.values())
 
 
-def side_of(place, name, taken):
-    """The side of a place [pt] on which its name overlaps no other; the first if there is none. taken: corners of the boxes [pt] of the
-    names so far, to which this one is added."""
+def points_of(place, axes):
+    """A place in the section [m] in the picture [pt], from where x and y are 0."""
+    return 72 * (axes.figure.get_figwidth() - 0.8) / np.ptp(axes.get_xlim()) * np.array(place, float)
+
+
+def is_free(box, taken):
+    """Whether a box {low, high} overlaps no other."""
+    return not any(np.all(box[0] < high) and np.all(low < box[1]) for low, high in taken)
+
+
+def free_box(place, size, taken):
+    """The box {low, high} of this size beside a place that overlaps none of `taken`, to which it is added, and whether it is farther off.
+    All in pt. The first box if there is none."""
     boxes = []
-    for dx, dy, across, _ in SIDES:
-        width = LETTER * len(name)
-        low = np.array([place[0] + dx - (width if across == "right" else 0), place[1] + dy - (LINE if dy < 0 else 0)])
-        boxes.append((low, low + [width, LINE]))
-    free = [i for i, (low, high) in enumerate(boxes) if not any(np.all(low < other[1]) and np.all(other[0] < high) for other in taken)]
-    chosen = free[0] if free else 0
+    for away in range(5):
+        for side in SIDES:
+            gap = np.array([4, 3]) + AWAY * away
+            low = np.where(np.array(side) > 0, place + gap, place - gap - size)
+            boxes.append((low, low + size))
+    chosen = next((i for i, box in enumerate(boxes) if is_free(box, taken)), 0)
     taken.append(boxes[chosen])
-    return SIDES[chosen]
+    return boxes[chosen], chosen >= len(SIDES)
+
+
+def write(text, place, axes, box, is_far, **look):
+    """Text in a box of free_box(); with a line to its place if it is farther off."""
+    line = {"arrowprops": {"arrowstyle": "-", "linewidth": 0.4, "shrinkA": 0, "shrinkB": 2}} if is_far else {}
+    axes.annotate(text, place, xytext=np.mean(box, axis=0) - points_of(place, axes), textcoords="offset points", **look, **line)
 
 
 def annotate(name, place, axes, taken):
-    """Writes the name of a place beside it; taken as in side_of()."""
-    scale = 72 * (axes.figure.get_figwidth() - 0.8) / np.ptp(axes.get_xlim())  # [pt/m]
-    dx, dy, across, up = side_of(scale * np.array(place, float), name, taken)
-    axes.annotate(name, place, xytext=(dx, dy), textcoords="offset points", zorder=6, path_effects=figure.HALO, ha=across,
-                  va="baseline" if dy > 0 else up)
+    """Writes the name of a place beside it; taken as in free_box()."""
+    box = free_box(points_of(place, axes), np.array([LETTER * len(name), LINE]), taken)
+    write(name, place, axes, *box, ha="center", va="center", zorder=6, path_effects=figure.HALO)
 
 
 def draw_places(scene, key, label, marker, axes, taken):
-    """Monitoring points, or gauges, with their names; taken as in side_of()."""
-    places = {place["name"]: place["at_m"] for place in scene.get(key, [])}
+    """Monitoring points, or gauges. Returns legend entries, and names with their places."""
+    places = [(place["name"], place["at_m"]) for place in scene.get(key, []) if figure.is_in(axes, place["at_m"])]
     look = {"linestyle": "none", "marker": marker, "color": "k", "markersize": 3.5}
-    for name, place in places.items():
-        if not figure.is_in(axes, place):
-            continue
+    for _, place in places:
         axes.plot(*place, zorder=5, path_effects=figure.HALO, **look)
-        annotate(name, place, axes, taken)
-    return [matplotlib.lines.Line2D([], [], label=label, **look)] if places else []
+        taken.append((points_of(place, axes) - 2, points_of(place, axes) + 2))
+    return [matplotlib.lines.Line2D([], [], label=label, **look)] if places else [], places
 
 
 def draw_lines(scene, axes, taken):
-    """Monitoring lines, with their names; taken as in side_of()."""
+    """Monitoring lines, with ticks at their points, or at some if these are dense. Returns as draw_places()."""
     lines = scene.get("monitoring_line", [])
-    look = {"color": "k", "linewidth": 0.8, "marker": "|", "markersize": 4}
+    look = {"color": "k", "linewidth": 0.6}
+    tick = 0.006 * max(np.ptp(axes.get_xlim()), np.ptp(axes.get_ylim()))  # half of its length
     for line in lines:
         ends = np.array([line["from_m"], line["to_m"]], float)
-        places = ends[0] + np.linspace(0, 1, line["points"])[:, None] * (ends[1] - ends[0])
-        axes.plot(*places.T, zorder=5, **look)
-        annotate(line["name"], ends[0], axes, taken)
-    return [matplotlib.lines.Line2D([], [], label="monitoring line", **look)] if lines else []
+        along = ends[1] - ends[0]
+        places = ends[0] + np.linspace(0, 1, line["points"])[:, None] * along
+        spacing = np.linalg.norm(points_of(along, axes)) / (line["points"] - 1)
+        some = places[::int(np.ceil(TICKS / spacing))]
+        across = tick * np.array([-along[1], along[0]]) / np.linalg.norm(along)
+        axes.add_collection(LineCollection([ends, *np.stack([some - across, some + across], axis=1)], zorder=5, **look))
+        taken += [(points_of(place, axes) - 2, points_of(place, axes) + 2) for place in places]
+    entry = matplotlib.lines.Line2D([], [], label="monitoring line", marker="|", markersize=4, markeredgewidth=0.6, **look)
+    return [entry] if lines else [], [(line["name"], line["from_m"]) for line in lines if figure.is_in(axes, line["from_m"])]
 
 
 def draw(file, window=None):
@@ -187,13 +209,16 @@ def draw(file, window=None):
     axes.add_patch(inside)
 
     joints = draw_joints(file, axes, inside)
-    stages = draw_stages(scene, axes, inside)
     others = figure.draw_rocks(scene, axes) if "region" in scene else []
     others += draw_boundaries(scene, outline, axes)
-    taken = []
-    others += draw_places(scene, "point", "monitoring point", "o", axes, taken)
-    others += draw_lines(scene, axes, taken)
-    others += draw_places(scene, "gauge", "gauge on a joint", "D", axes, taken)
+    taken, names = [], []
+    for entries, more in (draw_places(scene, "point", "monitoring point", "o", axes, taken), draw_lines(scene, axes, taken),
+                          draw_places(scene, "gauge", "gauge on a joint", "D", axes, taken)):
+        others += entries
+        names += more
+    for name, place in names:
+        annotate(name, place, axes, taken)
+    stages = draw_stages(scene, axes, inside, taken)
     if len(stages) == 1:  # no column of its own
         stages, others = [], stages + others
     figure.legend_below(axes, joints, stages, others)

@@ -258,9 +258,12 @@ class Plots(ChainTest):
 
     def test_names_of_points_do_not_overlap(self):
         import plot_section
-        taken = []
-        sides = [plot_section.side_of(numpy.array(place, float), "crest", taken) for place in ((100, 0), (90, 0), (300, 0))]
-        self.assertEqual([side[2] for side in sides], ["left", "right", "left"])
+        taken, size = [], numpy.array([22, 9])
+        boxes = [plot_section.free_box(numpy.array(place, float), size, taken) for place in [(100, 0), (90, 0), (300, 0)] + 3 * [(100, 0)]]
+        self.assertEqual([low[0] > place for (low, _), place in zip([box for box, _ in boxes], (100, 90, 300))], [True, False, True])
+        self.assertEqual([is_far for _, is_far in boxes], [False] * 5 + [True])
+        for i, box in enumerate(taken):
+            self.assertTrue(plot_section.is_free(box, taken[:i]))
 
     def test_pictures_of_joint_sets(self):
         import plot_rose
@@ -453,7 +456,7 @@ class Plots(ChainTest):
                       for i in range(count)]
             _, axes = figure.section_axes(None, (0, 0, 5, 9))
             inside = axes.add_patch(figure.matplotlib.patches.Polygon([[0, 0], [5, 0], [5, 9], [0, 9]]))
-            self.assertEqual(len(plot_section.draw_stages({"stage": stages}, axes, inside)), entries)
+            self.assertEqual(len(plot_section.draw_stages({"stage": stages}, axes, inside, [])), entries)
             self.assertEqual([text.get_text() for text in axes.texts], [str(i + 1) for i in range(count)])
 
 
