@@ -128,7 +128,7 @@ def bars(axes, rows):
 
 
 def of_histories(out):
-    """Draws ensemble.png and ensemble-y.png, the histories of all points over time."""
+    """Draws ensemble.png and ensemble-y.png, the histories of the points over time."""
     for component, name in (("x", "ensemble.png"), ("y", "ensemble-y.png")):
         plots.save("ensemble", out / "ensemble.h5", out / name, component=component)
 

@@ -112,23 +112,20 @@ def draw(file):
     grid = plot.add_gridspec(count + 1, 2, height_ratios=[1] * count + [1.1])
     for line, i in enumerate(drawn):
         joint_set = joints.sets[i]
-        left, right = plot.add_subplot(grid[line, 0]), plot.add_subplot(grid[line, 1])
-        values = spacings(joints, i)
-        if "spacing" in joint_set:
+        has_spacing, has_length = "spacing" in joint_set, "length" in joint_set or "diameter" in joint_set
+        panels = [plot.add_subplot(grid[line, place]) for place in ((0, 1) if has_spacing and has_length else (slice(None),))]
+        if has_spacing:
+            values = spacings(joints, i)
             law = None if "density" in joint_set else joint_set["spacing"]  # else its mean follows from the density
-            draw_law(left, law, values, np.full(len(values), 1 / max(1, len(values))), "spacing", figure.set_color(i))
-        else:
-            left.axis("off")
-        left.set_title(joint_set["name"], loc="left")
-        if "length" in joint_set or "diameter" in joint_set:
+            draw_law(panels[0], law, values, np.full(len(values), 1 / max(1, len(values))), "spacing", figure.set_color(i))
+        if has_length:
             law = None if joint_set.get("terminates_at") else joint_set.get("length")
-            draw_law(right, law, *lengths(joints, i), "trace length", figure.set_color(i))
-        else:
-            right.axis("off")
+            draw_law(panels[-1], law, *lengths(joints, i), "trace length", figure.set_color(i))
+        panels[0].set_title(joint_set["name"], loc="left")
         if line == 0:
-            right.legend(handles=[matplotlib.patches.Patch(label="in the section", **BARS),
-                                  matplotlib.lines.Line2D([], [], label="law of the scene", **LAW)],
-                         loc="lower right", bbox_to_anchor=(1, 0.98), ncol=2)
+            panels[-1].legend(handles=[matplotlib.patches.Patch(label="in the section", **BARS),
+                                       matplotlib.lines.Line2D([], [], label="law of the scene", **LAW)],
+                              loc="lower right", bbox_to_anchor=(1, 0.98), ncol=2)
     draw_areas(plot.add_subplot(grid[count, :]), area)
     return plot
 

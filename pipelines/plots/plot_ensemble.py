@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Displacement histories of many realizations: bands of quantiles, the median, and the mean with its confidence.
 
-One panel a monitoring point. Needs ensemble.h5, which jointcreep study writes.
+One panel a monitoring point; those of monitoring lines only if there are no others. Needs ensemble.h5, which jointcreep study writes.
 """
 
 import matplotlib.lines
@@ -9,6 +9,7 @@ import matplotlib.patches
 import numpy as np
 
 import figure
+from plot_histories import of_no_line
 
 LABELS = {"x": "horizontal displacement, to the right (mm)", "y": "vertical displacement, upward (mm)"}
 BANDS = [(0.05, 0.95, "#c9d8ea"), (0.25, 0.75, "#87a9cf")]
@@ -31,12 +32,12 @@ def draw_point(axes, time, statistics, probabilities, there, every):
 
 
 def draw(file, component="x", point=(), since_first_reading=False):
-    """A figure of an open ensemble.h5: one component ("x", "y"), of all points or those that are named."""
+    """A figure of an open ensemble.h5: one component ("x", "y"), of the points that are named, else of all that are not on lines."""
     kind = "/displacement_since_first_reading" if since_first_reading else "/displacement"
     time = figure.array(file, "/history/time")
     event = figure.texts(file, "/history/event")
     names = figure.texts(file, "/history/point")
-    chosen = [figure.name_index(names, name, "point") for name in point] or list(range(len(names)))
+    chosen = [figure.name_index(names, name, "point") for name in point] or of_no_line(file, names)
     if not chosen:
         raise figure.NotWanted("there is no monitoring point in this file")
     probabilities = figure.array(file, "/probability")

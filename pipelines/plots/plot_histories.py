@@ -138,8 +138,9 @@ def draw(file, component="y", point=(), readings=False, since_reset=False, witho
         raise figure.NotWanted("wanted either --readings or --since-reset, not both")
     figure.label_time(file, axes, figure.ending_of(file))
     axes.set_ylabel(f"{LABELS[component]},\n{since} (mm)")
-    place = {"loc": "best"}
-    if len(entries) > 4:  # too many to find room among the curves
+    if exact:  # its title is long
+        place = {"loc": "best", "frameon": True, "framealpha": 1, "edgecolor": "none"}
+    else:
         plot.set_figwidth(figure.TWO_COLUMNS)
         place = {"loc": "upper left", "bbox_to_anchor": (1.01, 1), "borderaxespad": 0}
     axes.legend(handles=entries, title=title, title_fontsize=7, alignment="left", **place)

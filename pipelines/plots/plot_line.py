@@ -81,7 +81,8 @@ def draw(file, line=(), readings=False, anchor=False):
             ax.axvline(0, color="0.6", linewidth=0.5, zorder=0)
             ax.xaxis.set_major_locator(matplotlib.ticker.MaxNLocator(5))
             ax.set_xlabel(f"{('across', 'along')[i]} the line (mm)")
-        pair[0].set_ylabel(f"{one['name']}:\ndistance from its first end (m)")
+        pair[0].set_title(one["name"], loc="left")
+        pair[0].set_ylabel("distance from the first end (m)")
         if one["to_m"][1] - one["from_m"][1] < -abs(one["to_m"][0] - one["from_m"][0]):  # as it goes down
             pair[0].invert_yaxis()
     plot.suptitle(f"displacements {'relative to the last point, ' if anchor else ''}{since}", fontsize=8)

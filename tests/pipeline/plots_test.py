@@ -224,6 +224,7 @@ class Plots(ChainTest):
                          "displacements relative to the last point, since the in-situ equilibrium")
         with unittest.mock.patch.object(plot_line, "first_reading", return_value=len(moved) - 1):
             self.assertEqual(len(plots.draw("line", result, readings=True).axes[0].lines), 2)  # the last row, and the line at 0
+        self.assertEqual(drawn.axes[0].get_ylabel(), "distance from the first end (m)")
         figure.plt.close("all")
         done = self.plot("line", self.column(), result.with_name("none.png"))
         self.assertEqual(done.returncode, 2)
