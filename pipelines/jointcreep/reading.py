@@ -214,8 +214,8 @@ class File:
         return table
 
     def state(self, stage=None):
-        """Number of the state after a stage; of the last state without a name."""
-        return len(self["/states/time"]) - 1 if stage is None else place_of(self["/states/event"], stage, "stage")
+        """Number of the state after a stage; of the last state without a name, or by "last"."""
+        return len(self["/states/time"]) - 1 if stage in (None, "last") else place_of(self["/states/event"], stage, "stage")
 
     def of_state(self, dataset, stage):
         """The row of a dataset [state, ...] after a stage."""

@@ -62,6 +62,9 @@ class Files(ChainTest):
         self.assertTrue((zones["block"][~zones["present"]] != zones["block"][zones["present"]][0]).all())
         moved = run.gridpoints()
         self.assertTrue((moved["displacement x"] == wanted["/states/displacement"][-1, :, 0]).all())
+        for table in run.contacts, run.zones, run.gridpoints:
+            for name, values in table("last").items():
+                np.testing.assert_array_equal(values, table()[name])
         self.assertEqual(run.equilibria().rows(), len(wanted["/equilibria/steps"]))
         joints = run.joints()
         self.assertEqual(joints.rows(), len(wanted["/joints/set"]))
