@@ -21,6 +21,7 @@ Options:
   -o [ --output ] OUT       the folder of a run or study, or the report or sets to write; - is standard output
   -j [ --jobs ] N           study: runs at a time (default 1)
   --snakemake PROFILE       study: make runs by Snakemake with this profile, a folder with config.yaml, in place of Make
+  --realization R           run: which of the seed's networks (default 0)
   --makefile                run: write OUT/Makefile with these commands, and make nothing else
   --programs FOLDER         where jointgen, strength-averaging and demsolve are (default: beside jointcreep, then PATH)
   -q [ --quiet ]            run, study, fit: no commands, no progress and no summary
@@ -191,7 +192,7 @@ def fit(source, options, beside):
 
 
 SUBCOMMANDS = {
-    "run": Subcommand(run, {"--makefile": "makefile", "-q": "quiet", "--quiet": "quiet"}, passes_on=True),
+    "run": Subcommand(run, {"--realization": "realization", "--makefile": "makefile", "-q": "quiet", "--quiet": "quiet"}, passes_on=True),
     "study": Subcommand(study, {"-j": "jobs", "--jobs": "jobs", "--snakemake": "snakemake", "-q": "quiet", "--quiet": "quiet"}),
     "report": Subcommand(report, {}, writes_text=True),
     "fit": Subcommand(fit, {"-q": "quiet", "--quiet": "quiet", **{f"--{name}": name for name in FIT_OPTIONS}}, writes_text=True),

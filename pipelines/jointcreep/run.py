@@ -90,24 +90,30 @@ def is_before(date, until, start):
 
 class Plan:
     """The steps of a scene in their order. scene: as tomllib reads it; source: its path; options: of demsolve; programs: their folder;
-    launcher: path of jointcreep."""
+    launcher: path of jointcreep; realization: of the network, None for jointgen's default."""
 
-    def __init__(self, scene, source, options, programs, launcher):
+    def __init__(self, scene, source, options, programs, launcher, realization):
         self.scene, self.source, self.programs, self.launcher = scene, source, programs, launcher
+        self.of_network = [] if realization is None else ["--realization", realization]
         self.options, self.harmless = without(options, NO_CHANGE)
 
     def chain(self):
         scene, network, joints, result = self.source, *map(pathlib.Path, ("network.h5", "joints.h5", RESULT))
         by_error = "increments_tolerance" in self.scene.get("equilibrium", {}) or value_of(self.options, "--increments-tolerance")
         keeps = [] if by_error else ["--checkpoint", CHECKPOINTS[0]]  # demsolve keeps none of runs that it makes again
-        return [Step("network.h5", [self.programs / "jointgen", scene, "-o", network], named_files(self.scene, scene.parent)),
+        return [Step("network.h5", [self.programs / "jointgen", scene, *self.of_network, "-o", network], named_files(self.scene, scene.parent)),
                 Step("joints.h5", [self.programs / "strength-averaging", network, "-o", joints]),
                 Step(RESULT, [self.programs / "demsolve", joints, *self.options, *keeps, "-o", result],
                      options=self.harmless, solves=True)]
 
+    def changes_between_stages(self):
+        """Whether rock moves other than at stages: by creep, or by loads over time."""
+        creeps = "creep" in self.scene and "--no-creep" not in self.options
+        return creeps or any("load_history" in one for one in tables(self.scene, "boundary"))
+
     def states(self, failed):
-        """States that are drawn, as the word in names of files and the one for --state: those after each stage, and the last one.
-        failed: the events of the states of a run without equilibrium; None for others."""
+        """States that are drawn, as the word in names of files and the one for --state: those after each stage, and the last one. The
+        state after the last stage is left out if it is the last one. failed: the events of the states of a run without equilibrium; None for others."""
         from stage_names import plain
         stages = self.scene.get("stage", [])
         names = [str(stage.get("name", "")) for stage in stages]
@@ -120,7 +126,8 @@ class Plan:
             until = None if until is None else float(until)
         except ValueError:  # demsolve says it
             until = None
-        return [(word, word) for word, stage in zip(words, stages) if is_before(stage.get("date", 0), until, start)] + [("last", "last")]
+        reached = [(word, word) for word, stage in zip(words, stages) if is_before(stage.get("date", 0), until, start)]
+        return (reached if self.changes_between_stages() else reached[:-1]) + [("last", "last")]
 
     def pictures(self, failed=None):
         from suited import detail, state_fields, suited
@@ -413,7 +420,7 @@ def run(source, options, programs, launcher):
             raise NotWanted(f"{read}: is read, and is in the folder of the run; expected another folder")
     with runs.locked(out, "run") as lock:
         folder = Folder(out, source, path, quiet, lock)
-        of_scene = Plan(scene, path, options["rest"], programs, launcher)
+        of_scene = Plan(scene, path, options["rest"], programs, launcher, options.get("realization"))
         if options.get("makefile"):
             plan.answer_of(programs / "jointgen", typed(source), "--check")
             write_makefile(folder, [*of_scene.chain(), *of_scene.rest()], quiet)

@@ -9,6 +9,7 @@ import subprocess
 import time
 import tomllib
 
+import h5py
 import matplotlib.quiver
 import numpy as np
 from matplotlib.collections import PolyCollection
@@ -22,6 +23,7 @@ ODD = "it's a `touch x` $(touch y) \"$z\" #%&"  # of a folder, and of a stage
 OF_SMALL = {"network.h5", "joints.h5", "result.h5", "section.png", "blocks.png", "rose.png", "distributions.png", "histories-x.png",
             "histories-y.png", "histories.csv", "states.xdmf2", "report.html",
             *(f"{state}-{field}.png" for state in ("bench", "last") for field in ("displacement", "stress", "contacts"))}
+OF_LAST = {name for name in OF_SMALL if not name.startswith("bench-")}  # where nothing changes after the last stage
 OF_RUN = {"run.json", "run.lock"}
 OF_NETWORK = {"network.h5", "joints.h5", "section.png", "blocks.png", "rose.png", "distributions.png"}
 
@@ -67,7 +69,11 @@ end = 2
 [[stage]]
 name = {json.dumps(stage)}
 date = 1
-remove_m = [[[0, 5], [10, 5], [10, 10], [0, 10]]]
+remove_m = [[[0, 7], [10, 7], [10, 10], [0, 10]]]
+[[stage]]
+name = "after it"
+date = 2
+remove_m = [[[0, 5], [10, 5], [10, 7], [0, 7]]]
 [zones]
 size_m = 5
 """
@@ -127,11 +133,17 @@ class Run(ChainTest):
         self.assertEqual(self.made(), {"blocks.png", "histories.csv"})
 
         # Other options. Pictures of a stage that is not reached go.
-        self.assertEqual(self.made("--", "--no-creep", "--until", "1"), {name for name in OF_SMALL - OF_NETWORK if not name.startswith("bench-")})
-        self.assertEqual(self.names(), {name for name in OF_SMALL if not name.startswith("bench-")} | OF_RUN)
+        self.assertEqual(self.made("--", "--no-creep", "--until", "1"), OF_LAST - OF_NETWORK)
+        self.assertEqual(self.names(), OF_LAST | OF_RUN)
         self.assertEqual(max(datasets(self.out / "result.h5")["/history/time"]), 1)
         self.assertTrue(of_scene.is_before(7, 3, 5))  # days count from the start
         self.assertFalse(of_scene.is_before(9, 3, 5))
+
+        # Another realization of the joints: all is made again.
+        self.assertEqual(self.made("--realization", "3", "--", "--no-creep", "--until", "1"), OF_LAST)
+        with h5py.File(self.out / "result.h5") as file:
+            self.assertEqual(file.attrs["realization"], 3)
+        self.assertEqual(self.made("--realization=3", "--", "--no-creep", "--until", "1"), set())
 
         # Increments chosen by error go without checkpoints.
         self.assertIn("result.h5", self.made("--", "--no-creep", "--until", "1", "--increments-tolerance", "0.5"))
@@ -150,7 +162,7 @@ class Run(ChainTest):
         self.scene.write_text(self.failing())
         done = self.called()
         self.assertEqual(done.returncode, 3, done.stderr)
-        wanted = {name for name in OF_SMALL if not name.startswith("bench-")} - {"result.h5"} | {"result.failed.h5", "failure.png"}
+        wanted = OF_LAST - {"result.h5"} | {"result.failed.h5", "failure.png"}
         self.assertEqual(self.names(), wanted | OF_RUN)
         failure = datasets(self.out / "result.failed.h5")
         reason = failure["/failure/reason"][0]
@@ -186,8 +198,8 @@ class Run(ChainTest):
         self.assertEqual(self.made(code=3), set())
 
         # A factor of safety below 1: the result is that of the largest factor with equilibrium, and the other run has a picture.
-        self.assertEqual(self.made("--", "--factor-of-safety", "--no-creep"), OF_SMALL - OF_NETWORK | {"failure.png", "safety.png"})
-        self.assertEqual(self.names(), OF_SMALL | OF_RUN | {"failure.png", "result.failed.h5", "safety.png"})
+        self.assertEqual(self.made("--", "--factor-of-safety", "--no-creep"), OF_LAST - OF_NETWORK | {"failure.png", "safety.png"})
+        self.assertEqual(self.names(), OF_LAST | OF_RUN | {"failure.png", "result.failed.h5", "safety.png"})
         safety = datasets(self.out / "result.h5")
         low = safety["/safety/factor"][safety["/safety/stands"] == 1].max()
         page = (self.out / "report.html").read_text()
