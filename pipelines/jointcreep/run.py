@@ -281,6 +281,7 @@ class Folder:
             print(shlex.join(self.line(step)), file=sys.stderr, flush=True)
         code, said, makes = 0, "", [step.makes]
         if step.draw:
+            load_plots()
             try:
                 step.draw(self.out)
             except NotWanted as error:
@@ -363,6 +364,15 @@ def until_ended(words, lock):
     finally:
         for number, handler in before.items():
             signal.signal(number, handler)
+
+
+def load_plots():
+    """Loads matplotlib. Ctrl-C waits until it is loaded: inside, it may be taken for an error of a file, or be lost."""
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT])
+    try:
+        from . import plots  # noqa: F401
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 def in_make(path):
