@@ -52,8 +52,8 @@ def draw(file, safety_displacement=10):
         draw_runs(axes, factor[shown], stands[shown], displacement[shown], color)
         drawn += displacement[shown].tolist()
         if np.any((displacement >= limit) & (displacement < 1.5 * limit)):  # a run was ended there; else the option was another
-            line = axes.axhline(limit, color=color, linewidth=0.6, linestyle="--", label=f"limit: --safety-displacement {safety_displacement:g}")
-            entries.setdefault("limit", line)
+            entries.setdefault("limit", axes.axhline(limit, color=color, linewidth=0.6, linestyle="--",
+                                                     label=f"limit: --safety-displacement {safety_displacement:g}"))
         low, high = bracket(factor, stands)
         if low is not None and high is not None:
             axes.axvspan(low, high, color=color, alpha=0.15, linewidth=0)

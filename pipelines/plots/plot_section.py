@@ -63,7 +63,7 @@ def draw_number(number, corners, axes, taken, font):
     """Writes a stage's number in its middle, or where nothing is written yet; taken as in free_box()."""
     corners = np.array(corners, float)
     middle, radius = corners.mean(axis=0), font - 0.5
-    places = [middle, *(middle + corners) / 2]
+    places = [middle, *(middle + corners) / 2, *(middle + 2 * corners) / 3]
     boxes = [(points_of(place, axes) - radius, points_of(place, axes) + radius) for place in places]
     free = next((i for i, box in enumerate(boxes) if is_free(box, taken)), None)
     look = {"ha": "center", "va": "center", "zorder": 4, "fontsize": font,
