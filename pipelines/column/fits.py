@@ -355,12 +355,17 @@ def compare(given, table, site, joints, trials, n):
 
 
 def add_difference(table, site, ours, exact):
+    """In standard errors, of factors whose intervals have two ends. An end that is there once only is infinitely far off."""
     off = 0
     for number, group in exact.items():
         for factor, row in group.items():
-            value, low, high = (math.log(float(row[name])) for name in ("value", "low_95", "high_95"))
-            off = max(off, *(abs(math.log(float(ours[number][factor][name])) - end) / ((high - low) / 3.92)
-                             for name, end in (("value", value), ("low_95", low), ("high_95", high))))
+            value, *ends = ([float(one[name] or math.inf) for one in (row, ours[number][factor])] for name in ("value", "low_95", "high_95"))
+            (low, our_low), (high, our_high) = ends
+            if math.isinf(low) != math.isinf(our_low) or math.isinf(high) != math.isinf(our_high):
+                off = math.inf
+            elif not math.isinf(low) and not math.isinf(high):
+                error = math.log(high / low) / 3.92
+                off = max(off, *(abs(math.log(our / end)) / error for end, our in (value, (low, our_low), (high, our_high))))
     table.add(site, len(exact), f"{off:.3f}")
 
 

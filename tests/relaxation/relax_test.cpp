@@ -200,12 +200,14 @@ TEST_P(relax_with, a_small_load_on_a_tall_stack)
               1.01e-3 * farthest); // its farthest gridpoint is above a middle
 }
 
-// A stack of 60 cubes that gets all of its weight at once, and another one, at rest under it, that is pushed
-// sideways at its top: slow ways to rest, on which local damping keeps the cubes trembling. Neither slides.
+// A stack of 60 cubes that gets all of its weight at once, also on soft joints, where its top goes down by a metre, and another one, at
+// rest under it, that is pushed sideways at its top: slow ways to rest, on which local damping keeps the cubes trembling. None slides.
 TEST_P(relax_with, a_tall_stack_that_comes_to_rest_slowly_is_not_said_to_slide)
 {
     const Index n = 60;
-    for (const bool pushed : {false, true}) {
+    for (const auto& [pushed, K] : {std::pair(false, 5e9), {false, 5e7}, {true, 5e9}}) {
+        if (K < 1e9 && GetParam().first != Damping::mass)
+            continue; // faster to rest
         Scene scene = section({{0, 0}, {1, 0}, {1, double(n)}, {0, double(n)}}, 0.01);
         scene.rocks = {{"rock", 2700, 2e10, 0, std::nullopt}};
         scene.zone_size = 2;
@@ -214,7 +216,7 @@ TEST_P(relax_with, a_tall_stack_that_comes_to_rest_slowly_is_not_said_to_slide)
         Joints joints;
         for (Index i = 1; i < n; ++i)
             add_joint(joints, {0, double(i)}, {1, double(i)});
-        Section s = assembled(std::move(scene), joints, 5e9, 2e9);
+        Section s = assembled(std::move(scene), joints, K, 2e9);
         if (pushed)
             for (std::size_t g = 0; g < s.assembly.position.size(); ++g)
                 if (s.assembly.position[g].y() > n - 1e-6)
