@@ -33,15 +33,23 @@ std::string in_words(const Bracket& bracket)
     return words;
 }
 
-// "run 4, strengths / 1.5: fails; factor of safety at least 1, below 1.5"
+// "strengths / 1.5", "strengths x 64".
+std::string strengths_by(double factor)
+{
+    return factor < 1 ? "strengths x " + rounded(1 / factor) : "strengths / " + shown(factor);
+}
+
+// "run 4, strengths / 1.5: fails; factor of safety at least 1, below 1.5". The first run is the reference of displacements.
 std::string last_run_in_words(const Safety& so_far)
 {
     const Index stands = so_far.stands.back();
-    return "run " + std::to_string(so_far.factor.size()) + ", strengths / " + shown(so_far.factor.back()) +
+    const bool is_reference = so_far.factor.size() == 1 && so_far.factor[0] < 1 && stands > 0;
+    return "run " + std::to_string(so_far.factor.size()) + ", " + strengths_by(so_far.factor.back()) +
            (stands > 0    ? ": stable"
             : stands == 0 ? ": fails"
                           : ": undecided") +
-           "; factor of safety " + in_words(analysis::bracket_of(so_far));
+           (is_reference ? ", for comparison"
+                         : "; factor of safety " + in_words(analysis::bracket_of(so_far)));
 }
 
 // The runs of a search. The progress of the next one is shown.
@@ -101,7 +109,7 @@ protected:
                     if (next_ != factor)
                         return std::nullopt;
                     const std::string known = in_words(analysis::bracket_of(before_));
-                    return of_what_ + "strengths / " + shown(factor) +
+                    return of_what_ + strengths_by(factor) +
                            (known.empty() ? "" : " (factor of safety " + known + ")") + ", ";
                 }};
     }

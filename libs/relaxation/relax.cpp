@@ -35,6 +35,11 @@ std::string shown_length(double length)
     return rounded(length, 3) + " m";
 }
 
+std::string shown_place(const Vector2d& place)
+{
+    return '[' + rounded(place.x()) + ", " + rounded(place.y()) + "] m";
+}
+
 // Patience with the remaining displacement, once forces are in balance. It ends where the remaining displacement
 // has not shrunk by a tenth in a third of all steps, and in 5000. What is left then is rounding.
 class Patience
@@ -167,19 +172,19 @@ public:
     {
         const auto [moved, g] = mechanics::largest_move(start_, a_.displacement);
         if (!std::isfinite(moved))
-            throw no_equilibrium("the rock at " + shown(a_.position[g]) +
+            throw no_equilibrium("the rock at " + shown_place(a_.position[g]) +
                                  " has moved without bound; does anything support it?");
         if (moved > too_far_)
-            give_up("the rock at " + shown(a_.position[g]) + " has moved " + shown_length(moved) +
+            give_up("the rock at " + shown_place(a_.position[g]) + " has moved " + shown_length(moved) +
                         " and is still moving; does anything support it?",
                     true, steps);
         const auto [in_all, h] = largest_displacement(a_);
         if (in_all > settings_.largest_displacement)
-            give_up("the displacement of the rock at " + shown(a_.position[h]) + " exceeds the limit of " +
-                        shown_length(settings_.largest_displacement),
+            give_up("the displacement of the rock at " + shown_place(a_.position[h]) +
+                        " exceeds the limit of " + shown_length(settings_.largest_displacement),
                     true, steps);
         if (in_all > too_far_)
-            give_up("the rock at " + shown(a_.position[h]) + " has moved " + shown_length(in_all) +
+            give_up("the rock at " + shown_place(a_.position[h]) + " has moved " + shown_length(in_all) +
                         " since the in-situ state, by more than a tenth of the section: too far for small "
                         "displacements",
                     false, steps);
@@ -188,7 +193,7 @@ public:
         const auto [lately, k] = mechanics::largest_move(patience_ago_, a_.displacement);
         checks_in_movement_ = blocks_are_moving() ? checks_in_movement_ + 1 : 0;
         if (checks_in_movement_ == looks_enough)
-            give_up("the rock at " + shown(a_.position[k]) + " is moving: " + shown_length(lately) +
+            give_up("the rock at " + shown_place(a_.position[k]) + " is moving: " + shown_length(lately) +
                         " in the last " + std::to_string(patience) +
                         " steps, and the unbalanced forces do not decrease enough "
                         "to stop it",

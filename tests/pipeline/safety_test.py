@@ -181,8 +181,9 @@ class Safety(ChainTest):
             for at_once in "2", "3":
                 self.assertTrue(files[at_once] == files["1"], (path, options, at_once))
             data = datasets(path.with_name("result.h5"))
+            self.assertIn("demsolve: run 1, strengths x 64: stable, for comparison\n", done.stderr)
             said = re.findall(r"^demsolve: run (\d+), strengths / (\S+): (\w+); factor of safety at least (.*)$", done.stderr, re.MULTILINE)
-            self.assertEqual([[int(number), float(factor), stands] for number, factor, stands, _ in said],
+            self.assertEqual([[1, 1 / 64, "stable"], *([int(number), float(factor), stands] for number, factor, stands, _ in said)],
                              [[number, factor, "stable" if stands else "fails"] for number, (factor, stands) in
                               enumerate(zip(data["/safety/factor"], data["/safety/stands"]), start=1)])
             low, high = said[-1][3].split(", below ")
