@@ -2,6 +2,7 @@
 
 #include "section.hpp"
 
+#include "blocks/extend.hpp"
 #include "model/polygon.hpp"
 
 #include <gtest/gtest.h>
@@ -9,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <random>
 
 namespace cut_test
 {
@@ -40,6 +42,19 @@ TEST(cut, a_section_without_joints_is_one_block)
     ASSERT_EQ(blocks.block_area.size(), 1u);
     EXPECT_EQ(blocks.block_area[0], 100);
     EXPECT_EQ(blocks.edge_vertex.size(), 4u);
+}
+
+// As they are equal, files of the same section would differ.
+TEST(cut, minus_zero_becomes_zero)
+{
+    const Scene scene = section({{-0.0, -0.0}, {10, -0.0}, {10, 10}, {-0.0, 10}}, 0.1);
+    Joints joints;
+    add_joint(joints, {-0.0, 4}, {10, 4});
+    const Blocks blocks = blocks::cut(scene, joints);
+    EXPECT_EQ(faults(scene, blocks), "");
+    for (const Vector2d& v : blocks.vertex)
+        for (const double x : v)
+            EXPECT_FALSE(x == 0 && std::signbit(x));
 }
 
 TEST(cut, a_clockwise_outline_gives_the_same_blocks)
@@ -460,6 +475,41 @@ TEST(cut, a_block_that_touches_the_border_of_another_in_one_corner_is_a_hole_in_
             with_hole = b;
     ASSERT_GE(with_hole, 0);
     EXPECT_NEAR(blocks.block_area[with_hole], 50 - 4.5, 0.1);
+}
+
+// Beside the nearest of all lines, one after another.
+TEST(cut, extensions_end_at_the_nearest_line)
+{
+    std::mt19937 random(11);
+    std::uniform_real_distribution<double> place(0, 100), length(1, 12), turn(0, 2 * std::numbers::pi);
+    std::vector<blocks::Segment> lines;
+    for (int i = 0; i < 500; ++i) {
+        const double angle = turn(random);
+        const Vector2d from(place(random), place(random));
+        lines.push_back({from, from + length(random) * Vector2d(std::cos(angle), std::sin(angle))});
+    }
+    const double reach = 0.01;
+    const auto extended = blocks::extensions_to_next(lines, 0, reach, [](const Vector2d&) { return true; });
+    int far = 0;
+    for (std::size_t i = 0; i < lines.size(); ++i)
+        for (const bool beyond : {false, true}) {
+            const Vector2d end = beyond ? lines[i].to : lines[i].from,
+                           along = (end - (beyond ? lines[i].from : lines[i].to)).normalized();
+            const Vector2d start = end - 2 * reach * along;
+            double nearest = 1e9;
+            for (std::size_t j = 0; j < lines.size(); ++j) {
+                const Vector2d d = lines[j].to - lines[j].from, o = lines[j].from - start;
+                const double below = along.x() * d.y() - along.y() * d.x();
+                const double ahead = (o.x() * d.y() - o.y() * d.x()) / below,
+                             on_line = (o.x() * along.y() - o.y() * along.x()) / below;
+                if (j != i && ahead >= 0 && on_line >= 0 && on_line <= 1)
+                    nearest = std::min(nearest, ahead);
+            }
+            const double wanted = nearest > 1e8 || nearest <= 2 * reach ? 0 : nearest - reach;
+            ASSERT_NEAR(beyond ? extended[i].beyond : extended[i].before, wanted, 1e-9) << i;
+            far += wanted > 10;
+        }
+    EXPECT_GT(far, 50);
 }
 
 } // namespace cut_test

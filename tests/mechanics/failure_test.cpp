@@ -78,6 +78,27 @@ TEST(failure_of_unsupported, looks_at_each_direction)
     EXPECT_EQ(without_contacts(stack(0, {wind, against})).block.size(), 0U) << "pushes that cancel";
 }
 
+// On rollers that slope, the block is pushed along them; on level ones, or on two kinds of them, it is not.
+TEST(failure_of_unsupported, on_rollers_is_what_is_pushed_along_them)
+{
+    const auto on = [](const std::vector<Boundary>& boundaries) {
+        Scene scene = section({{0, 0}, {10, 2}, {10, 10}, {0, 10}}, 0.1);
+        scene.zone_size = 3;
+        scene.gravity = 9.81;
+        scene.boundaries = boundaries;
+        Section s = assembled(std::move(scene), {}, 1e9, 1e9, 0.5);
+        mechanics::Loading(s.scene, s.mesh).apply(s.assembly, 0);
+        return failure_of_unsupported(s.mesh, s.assembly).block.size();
+    };
+    const Boundary base{.from = {0, 0}, .to = {10, 2}, .fix_normal = true},
+        side{.from = {0, 0}, .to = {0, 10}, .fix_normal = true},
+        top{.from = {0, 10}, .to = {10, 10}, .fix_normal = true};
+    EXPECT_EQ(on({base}), 1U);
+    EXPECT_EQ(on({base, side}), 0U);
+    EXPECT_EQ(on({top}), 0U) << "nothing pushes it sideways";
+    EXPECT_EQ(on({side}), 1U) << "it may slide down the side";
+}
+
 TEST(failure_of, names_what_moves_the_fastest_first)
 {
     const Section s = stack(9.81);

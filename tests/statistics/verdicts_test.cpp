@@ -296,6 +296,29 @@ TEST(Verdicts, OfALawNeedTen)
     EXPECT_GE(sizes.size(), 4u);
 }
 
+// The interval of the mean pole's angle off its target contains 0 where the p-value of the target is above 1 less the confidence, 0.05.
+TEST(Verdicts, OfTheMeanPoleAgreeWithItsInterval)
+{
+    const Scene drawn_from = examples()[3].scene; // some 20 poles
+    Scene held_against = drawn_from;
+    held_against.joint_sets[0].orientation->dip += 4 * deg;
+    int contain = 0, all = 0;
+    for (int r = 0; r < 300; ++r) {
+        const Statistics rows = report_of(drawn_from, held_against, r);
+        const auto row = static_cast<std::size_t>(
+            std::find(rows.quantity.begin(), rows.quantity.end(), "mean pole, off its target") -
+            rows.quantity.begin());
+        ASSERT_LT(row, rows.quantity.size());
+        if (rows.is_tested[row] == 0)
+            continue; // fewer than ten
+        EXPECT_EQ(rows.low[row] == 0, rows.p_value[row] >= .05) << rows.p_value[row];
+        contain += rows.low[row] == 0;
+        ++all;
+    }
+    EXPECT_GT(contain, all / 10);
+    EXPECT_LT(contain, all * 9 / 10);
+}
+
 // Constants leave nothing to chance.
 TEST(Verdicts, OfConstantsAreExact)
 {
