@@ -42,6 +42,10 @@ back_analysis::Settings settings_of(const Arguments& arguments)
         for (const char* option : {"robust", "correlated-noise", "profile-intervals", "runs"})
             if (arguments.has(option))
                 throw input_error("--ensemble does not go with --" + std::string(option));
+        const std::size_t least = 2 * factors_in(*arguments.text("fit")).size() + 2;
+        if (static_cast<std::size_t>(*members) < least)
+            throw input_error("--ensemble is " + std::to_string(*members) + "; wanted at least " +
+                              std::to_string(least) + ": twice the number of factors and 2 more");
         ensemble = {.members = static_cast<int>(*members)};
     }
     return {.factors = factors_in(*arguments.text("fit")),

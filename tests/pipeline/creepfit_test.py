@@ -123,6 +123,19 @@ class Creepfit(ChainTest):
         self.assertNotIn("In the scene", done.stdout)
         self.assertEqual([row["resolved"] for row in table(folder / "f.csv")], ["yes", "yes", "yes", "no"])
 
+    def test_profile_intervals_and_an_ensemble(self):
+        """Both are near the intervals by standard errors: readings determine the factors."""
+        readings = self.readings("--sigma-mm", "1e-3")
+        names = "kelvin-stiffness=0.5:2,joint-stiffness=0.5:2"
+        exact, _, _ = self.found(readings, fit=names)
+        for option, said in ("--profile-intervals", "runs of profile intervals"), ("--ensemble=6", ", by an ensemble of 6"):
+            rows, text, _ = self.found(readings, option, fit=names)
+            self.assertIn(said, text)
+            for name, row in rows.items():
+                width = math.log(float(exact[name]["high_95"]) / float(exact[name]["low_95"]))
+                for column in "value", "low_95", "high_95":
+                    self.assertLess(abs(math.log(float(row[column]) / float(exact[name][column]))), 0.1 * width, (option, name, column))
+
     def test_constants_of_a_material(self):
         """The closed form with another E of the base joint."""
         text = self.chain.text("data/column/scene.toml")
@@ -407,6 +420,20 @@ class Creepfit(ChainTest):
         self.refused([self.joints, "--measurements", curve.with_name("none.csv"), "--fit", "joint-stiffness"],
                      "none.csv", code=4)
         self.refused([self.joints], "--measurements is not given", "is no curve")
+
+    def test_refusals_of_an_ensemble(self):
+        readings = self.readings("--sigma-mm", "0.1")
+        bare = self.chain.new_folder() / "bare.csv"
+        with open(readings) as file, open(bare, "w") as other:
+            other.writelines(",".join(line.rstrip("\n").split(",")[:4]) + "\n" for line in file)
+        for path, options, wanted in ((readings, ["--ensemble", "5"], "--ensemble is 5; wanted at least 6"),
+                                      (readings, ["--ensemble", "8", "--robust"], "does not go with --robust"),
+                                      (bare, ["--ensemble", "8"], "bare.csv: no sigma_mm")):
+            done = self.chain.answer("creepfit", self.joints, "--measurements", path, "--fit", "kelvin-stiffness,joint-stiffness", *options,
+                                     "-o", bare.with_name("f.csv"))
+            self.assertEqual(done.returncode, 2, done.stderr)
+            self.assertIn(wanted, done.stderr)
+            self.assertFalse(bare.with_name("f.csv").exists())
 
     def test_nothing_to_fit(self):
         """Before the first removal, on day 1, nothing moves. Spaces after commas and plus signs are read."""
