@@ -106,8 +106,11 @@ std::string shown_factor(const Found& found, std::size_t i)
                       intervals =
                           " (95 %: " + shown_range(false) + "; all together: " + shown_range(true) + ")";
     if (const AtBound at = found.minimum.at_bound[i]; at != AtBound::no)
-        return value + ": at its " + (at == AtBound::low ? "lower" : "upper") +
-               " bound; the readings fit better beyond it" + (found.profiles.empty() ? "" : intervals);
+        return value + (found.members > 0 ? ": beyond its " : ": at its ") +
+               (at == AtBound::low ? "lower" : "upper") +
+               (found.members > 0 ? " bound: the readings and the bounds do not agree"
+                                  : " bound; the readings fit better beyond it") +
+               (found.profiles.empty() ? "" : intervals);
     if (found.confidence.is_fixed[i])
         return rounded(found.factors[i]) + ": not resolved: it does not change these readings";
     return value + intervals;

@@ -306,11 +306,17 @@ estimation::InstrumentFit by_members(Runs& runs, const estimation::Instruments& 
                       .left = inversion.step,
                       .evaluations = runs.count(),
                       .is_converged = inversion.is_converged};
+    for (Eigen::Index i = 0; i < inversion.mean.size();
+         ++i) // the readings want it beyond the prior's interval
+        if (inversion.mean[i] < bounds.low[i])
+            fitted.minimum.at_bound[static_cast<std::size_t>(i)] = estimation::AtBound::low;
+        else if (inversion.mean[i] > bounds.high[i])
+            fitted.minimum.at_bound[static_cast<std::size_t>(i)] = estimation::AtBound::high;
     fitted.raw = std::move(inversion.raw);
     return fitted;
 }
 
-// A factor is known where both ends are within a factor of 10.
+// A factor is known where both ends are within a factor of 10, and its standard error, which knows no bounds of the others, too.
 void add_profiles(Found& found, Runs& runs, const estimation::Instruments& instruments,
                   const estimation::Bounds& bounds)
 {
@@ -325,7 +331,7 @@ void add_profiles(Found& found, Runs& runs, const estimation::Instruments& instr
     for (std::size_t i = 0; i < found.profiles.size(); ++i) {
         const auto [low, high] = found.profiles[i].interval;
         const double at = found.minimum.parameters[static_cast<Eigen::Index>(i)];
-        found.is_resolved[i] = std::max(at - low, high - at) < std::log(10.0);
+        found.is_resolved[i] = found.is_resolved[i] && std::max(at - low, high - at) < std::log(10.0);
     }
 }
 

@@ -44,12 +44,16 @@ double profile_end(const Model& model, const VectorXd& minimum, double least_sum
                 return first ? std::exchange(first, std::nullopt) : model(parameters);
             },
             start, fixed.low, fixed.high, most_evaluations, gain);
+        if (least.sum_of_squares() > limit && !least.is_converged)
+            return infinity; // perhaps it is less
         last = least.parameters;
         return std::sqrt(std::max(0.0, least.sum_of_squares() - least_sum));
     };
 
     if (!(reach > 0))
         return side * infinity;
+    if (!(wanted > 0))
+        return minimum[i]; // exact
     double within = 0, beyond = infinity, at_within = 0, at_beyond = infinity;
     double distance = std::min(std::abs(guess[i] - minimum[i]), reach);
     for (int n = 0; n < most_values; ++n) {
@@ -79,21 +83,30 @@ double profile_end(const Model& model, const VectorXd& minimum, double least_sum
                                           std::clamp((wanted - at_within) / (at_beyond - at_within), 0.1, 0.9)
                            : (within + beyond) / 2;
     }
-    return minimum[i] + side * (within + beyond) / 2;
+    return std::isfinite(at_beyond) ? minimum[i] + side * (within + beyond) / 2 : side * infinity;
 }
 
 std::vector<Profile> profiles(const Model& model, const Minimum& minimum, const Confidence& confidence,
                               const Bounds& bounds)
 {
+    constexpr double singular = 1e-10;
     const MatrixXd& J = minimum.there.jacobian;
-    const MatrixXd inverse = (J.transpose() * J).completeOrthogonalDecomposition().pseudoInverse();
+    const VectorXd scale =
+        J.colwise().norm().unaryExpr([](double length) { return length > 0 ? 1 / length : 0.0; });
+    const MatrixXd scaled = J * scale.asDiagonal();
+    const MatrixXd inverse =
+        scale.asDiagonal() *
+        MatrixXd((scaled.transpose() * scaled).completeOrthogonalDecomposition().pseudoInverse()) *
+        scale.asDiagonal();
     std::vector<Profile> found;
     for (Eigen::Index i = 0; i < J.cols(); ++i) {
         Profile& profile = found.emplace_back(Profile{{-infinity, infinity}, {-infinity, infinity}});
         if (!(inverse(i, i) > 0))
             continue;
-        const double unit_error = std::sqrt(inverse(i, i)), error = confidence.standard_error(i),
-                     noise = error > 0 ? error / unit_error : confidence.noise_factor; // none at a bound
+        const double unit_error = std::sqrt(inverse(i, i)), error = confidence.standard_error(i);
+        // An error may have more than the noise: that weights or a correlation are not known. None at a bound.
+        const double noise = error > 0 && confidence.smallest_eigenvalue > singular ? error / unit_error
+                                                                                    : confidence.noise_factor;
         const VectorXd along = inverse.col(i) / inverse(i, i); // where the others are best, of a linear model
         // An end from the guess of its distance.
         const auto end = [&](int side, double quantile, double distance) {

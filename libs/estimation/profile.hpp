@@ -22,8 +22,9 @@ struct ProfileSearch {
     double least_gain = 1e-3; // steps of the other parameters that gain less of (q s)^2 are not taken [-]
 };
 
-// One end of an interval: where the profile of parameter i reaches `limit`, on that side of the minimum on which the guess is. It is
-// infinite where the profile is below the limit up to the parameter's bound. Values at which the model has no answer are outside.
+// One end of an interval: where the profile of parameter i, over the others within their bounds, reaches `limit`, on that side of the
+// minimum on which the guess is. It is infinite where the profile is below the limit up to the parameter's bound or to `widest`, and where
+// the model has no answer, or no minimum over the others is found, before it reaches the limit.
 double profile_end(const Model& model, const VectorXd& minimum, double least_sum, double limit,
                    Eigen::Index i, const VectorXd& guess, const Bounds& bounds, const ProfileSearch& search);
 

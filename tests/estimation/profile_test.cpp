@@ -122,7 +122,9 @@ TEST(profile, ends_at_bounds_and_where_there_is_no_answer)
     EXPECT_EQ(end(2.9), infinity);
     EXPECT_EQ(end(1), infinity);
     last = 1.3;
-    EXPECT_NEAR(end(10), 1.3, .014);
+    EXPECT_EQ(end(10), infinity);
+    last = 3.5;
+    EXPECT_NEAR(end(10), 3, .03);
     guess << -2;
     EXPECT_NEAR(end(10), -3, .03);
 }
