@@ -20,8 +20,8 @@ def openturns():
     """The library, which a study without laws does without."""
     try:
         import openturns
-    except ImportError:
-        raise NotWanted("Python's module openturns is not installed. It draws [[vary]] with a law, and the designs sobol sequence and "
+    except ImportError as error:
+        raise NotWanted(f"Python's module openturns cannot be loaded ({error}). It draws [[vary]] with a law, and the designs sobol sequence and "
                         "sobol indices; [[vary]] with a list of values does not need it. First run: apt install python3-openturns "
                         "(in the sources: sh pipelines/setup.sh studies)") from None
     openturns.Log.Show(openturns.Log.NONE)

@@ -66,6 +66,9 @@ def check_keys(study, scene):
             except NotWanted as error:
                 raise NotWanted(f"{one.place}key {error}") from None
             parts = tuple(scene_keys.parts_of(key))
+            if parts[0] == "variables":  # the scene has their numbers by now
+                raise NotWanted(f'{one.place}"{key}" is a name of [variables], which cannot vary; expected the keys that use it, as a list '
+                                "in key; with multiplies = true they have one factor")
             if parts in taken:
                 raise NotWanted(f'{one.place}"{key}" varies in "{taken[parts]}", too; expected it once')
             taken[parts] = one.name

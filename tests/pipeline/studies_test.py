@@ -976,6 +976,13 @@ class StudyFile(Studies):
                 key = line.split()[0]
                 self.refused(good + re.sub(rf"(?m)^{key} = .*\n", "", FRICTION) + line, expected)
 
+    def test_names_of_numbers_cannot_vary(self):
+        """The scene has their numbers already: nothing would change."""
+        (self.folder / "named.toml").write_text(f"{self.chain.small()}\n[variables]\nfriction = 30\n")
+        study = re.sub(r'(?m)^scene = .*$', 'scene = "named.toml"', NETWORKS.format(runs=3))
+        self.refused(study + FRICTION.replace("joint_material.joint.friction_angle_deg", "variables.friction"),
+                     r'"variables.friction" is a name of \[variables\], which cannot vary; expected the keys that use it')
+
     def test_the_folder_stays_clean(self):
         self.refused(NETWORKS.format(runs=1), "runs is 1")
         self.assertFalse((self.folder / "refused").exists())
