@@ -17,6 +17,7 @@
 #include <cmath>
 #include <optional>
 #include <string>
+#include <utility>
 
 namespace jointcreep::creepfit
 {
@@ -37,18 +38,19 @@ back_analysis::Settings settings_of(const Arguments& arguments)
                           (errors.offset   ? "offset, which contains it"
                            : errors.robust ? "robust; wanted --offset in its place"
                                            : "correlated-noise; wanted --offset in its place"));
+    Factors factors = factors_in(*arguments.text("fit"));
     std::optional<estimation::EnsembleSearch> ensemble;
     if (const auto members = arguments.whole_number("ensemble", 4, 100000)) {
         for (const char* option : {"robust", "correlated-noise", "profile-intervals", "runs"})
             if (arguments.has(option))
                 throw input_error("--ensemble does not go with --" + std::string(option));
-        const std::size_t least = 2 * factors_in(*arguments.text("fit")).size() + 2;
-        if (static_cast<std::size_t>(*members) < least)
+        const Eigen::Index least = estimation::least_members(static_cast<Eigen::Index>(factors.size()));
+        if (static_cast<Eigen::Index>(*members) < least)
             throw input_error("--ensemble is " + std::to_string(*members) + "; wanted at least " +
                               std::to_string(least) + ": twice the number of factors and 2 more");
         ensemble = {.members = static_cast<int>(*members)};
     }
-    return {.factors = factors_in(*arguments.text("fit")),
+    return {.factors = std::move(factors),
             .since_first_reading = arguments.has("since-first-reading"),
             .errors = errors,
             .threads = arguments.threads(),

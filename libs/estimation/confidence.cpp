@@ -111,15 +111,21 @@ Confidence confidence_of(const Minimum& minimum, bool deviations_are_known)
     found.smallest_eigenvalue = std::max(parts.values[0], 1e-15);
     found.condition_number = std::sqrt(parts.values[parts.values.size() - 1] / found.smallest_eigenvalue);
     // A parameter at a bound is not known. The others have the covariance that they have when it is free.
-    const std::vector<Eigen::Index> moving = free_of(without_effect(J));
-    const MatrixXd all = found.noise_factor * found.noise_factor * inverse_of(parts_of(J, moving));
-    MatrixXd covariance = MatrixXd::Zero(n, n);
-    covariance(moving, moving) = all;
+    const MatrixXd covariance = found.noise_factor * found.noise_factor * unit_covariance(J);
     found.covariance(free, free) = MatrixXd(covariance(free, free));
     const VectorXd error = found.covariance(free, free).diagonal().cwiseSqrt();
     found.correlation(free, free) = error.cwiseInverse().asDiagonal() * MatrixXd(covariance(free, free)) *
                                     error.cwiseInverse().asDiagonal();
     return found;
+}
+
+MatrixXd unit_covariance(const MatrixXd& jacobian)
+{
+    const std::vector<Eigen::Index> moving = free_of(without_effect(jacobian));
+    MatrixXd covariance = MatrixXd::Zero(jacobian.cols(), jacobian.cols());
+    if (!moving.empty())
+        covariance(moving, moving) = inverse_of(parts_of(jacobian, moving));
+    return covariance;
 }
 
 Confidence with_prior(Confidence confidence, const Minimum& minimum, const VectorXd& deviations)
@@ -161,14 +167,13 @@ std::vector<bool> resolved(const Minimum& minimum, const Confidence& confidence)
     found.flip();
     if (some.empty())
         return found;
-    const VectorXd variance = inverse_of(parts_of(J, some)).diagonal();
-    for (std::size_t k = 0; k < some.size(); ++k) {
-        const auto i = static_cast<Eigen::Index>(k);
+    const VectorXd variance = unit_covariance(J).diagonal();
+    for (const Eigen::Index i : some) {
         const double alone = confidence.noise_factor * std::sqrt(variance[i]),
-                     error = confidence.is_fixed[static_cast<std::size_t>(some[k])]
+                     error = confidence.is_fixed[static_cast<std::size_t>(i)]
                                  ? alone
-                                 : std::max(alone, confidence.standard_error(some[k]));
-        found[static_cast<std::size_t>(some[k])] = confidence.quantile * error < std::log(10.0);
+                                 : std::max(alone, confidence.standard_error(i));
+        found[static_cast<std::size_t>(i)] = confidence.quantile * error < std::log(10.0);
     }
     return found;
 }

@@ -47,6 +47,8 @@ struct Confidence {
 };
 
 Confidence confidence_of(const Minimum& minimum, bool deviations_are_known);
+// (J^T J)^-1, the covariance where residuals have unit variance. Rows and columns of parameters without effect are 0.
+MatrixXd unit_covariance(const MatrixXd& jacobian);
 // The same with normal priors of these deviations: no parameter is without an interval.
 Confidence with_prior(Confidence confidence, const Minimum& minimum, const VectorXd& deviations);
 

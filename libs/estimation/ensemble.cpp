@@ -45,7 +45,7 @@ Inversion invert(const Residuals& model, const Independent& independent, const P
 {
     constexpr int tempered = 4;
     constexpr double small_step = 0.1, smallest_step = 1e-5;
-    const Eigen::Index n = prior.mean.size(), least = 2 * n + 2, members = search.members;
+    const Eigen::Index n = prior.mean.size(), least = least_members(n), members = search.members;
     if (members < least)
         throw input_error(std::to_string(members) + " members for " + std::to_string(n) +
                           " parameters; wanted " + std::to_string(least) + " or more");

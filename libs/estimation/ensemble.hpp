@@ -21,6 +21,12 @@ struct Prior {
     VectorXd mean, deviation; // of each parameter
 };
 
+// The fewest members for so many parameters.
+constexpr Eigen::Index least_members(Eigen::Index parameters)
+{
+    return 2 * parameters + 2;
+}
+
 struct EnsembleSearch {
     int members;
     std::uint64_t seed = 1;
@@ -42,7 +48,7 @@ struct Inversion {
         false; // what is left is within a tenth of a standard error in every direction, or 1e-5
 };
 
-// Throws input_error where members are fewer than twice the parameters and 2 more, and where so few have an answer.
+// Throws input_error where members are fewer than least_members(), and where so few have an answer.
 Inversion invert(const Residuals& model, const Independent& independent, const Prior& prior,
                  const EnsembleSearch& search);
 

@@ -1,7 +1,5 @@
 #include "estimation/profile.hpp"
 
-#include <Eigen/QR>
-
 #include <algorithm>
 #include <cmath>
 #include <tuple>
@@ -89,24 +87,15 @@ double profile_end(const Model& model, const VectorXd& minimum, double least_sum
 std::vector<Profile> profiles(const Model& model, const Minimum& minimum, const Confidence& confidence,
                               const Bounds& bounds)
 {
-    constexpr double singular = 1e-10;
-    const MatrixXd& J = minimum.there.jacobian;
-    const VectorXd scale =
-        J.colwise().norm().unaryExpr([](double length) { return length > 0 ? 1 / length : 0.0; });
-    const MatrixXd scaled = J * scale.asDiagonal();
-    const MatrixXd inverse =
-        scale.asDiagonal() *
-        MatrixXd((scaled.transpose() * scaled).completeOrthogonalDecomposition().pseudoInverse()) *
-        scale.asDiagonal();
+    const MatrixXd inverse = unit_covariance(minimum.there.jacobian);
     std::vector<Profile> found;
-    for (Eigen::Index i = 0; i < J.cols(); ++i) {
+    for (Eigen::Index i = 0; i < inverse.cols(); ++i) {
         Profile& profile = found.emplace_back(Profile{{-infinity, infinity}, {-infinity, infinity}});
         if (!(inverse(i, i) > 0))
             continue;
         const double unit_error = std::sqrt(inverse(i, i)), error = confidence.standard_error(i);
         // An error may have more than the noise: that weights or a correlation are not known. None at a bound.
-        const double noise = error > 0 && confidence.smallest_eigenvalue > singular ? error / unit_error
-                                                                                    : confidence.noise_factor;
+        const double noise = error > 0 ? error / unit_error : confidence.noise_factor;
         const VectorXd along = inverse.col(i) / inverse(i, i); // where the others are best, of a linear model
         // An end from the guess of its distance.
         const auto end = [&](int side, double quantile, double distance) {

@@ -23,7 +23,7 @@ struct Overlap {
     std::array<double, 2> gap;   // along the normal from a to b [m]
     std::array<double, 2> inset; // at each end: how far the end of a is inside b; below 0: of b inside a [m]
     double length;               // [m]
-    // Length and smallest depth before the overlap is shortened, which happens only where two corners just meet [m].
+    // Length and smallest depth of the complete overlap [m]. Where two corners just meet, `length` and `gap` are of a part of it.
     double whole, least_sunk;
 
     Vector2d normal() const { return {tangent.y(), -tangent.x()}; }

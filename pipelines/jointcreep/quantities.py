@@ -88,8 +88,8 @@ def blocks(file, statistic):
 
 
 def factor_of_safety(file, end):
-    """The "lower end" of the bracket: the largest factor with which the run stands; or its "upper end": the smallest one with which it
-    does not, None if it stands with all."""
+    """An end of the bracket. "lower end": the largest factor of a stable run. "upper end": the smallest factor of an unstable run, or
+    None if all runs are stable."""
     factor, stands = file["/safety/factor"][()], file["/safety/stands"][()]
     if end == "lower end":
         return float(factor[stands == 1].max())

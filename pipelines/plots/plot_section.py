@@ -13,7 +13,7 @@ STAGE_BORDER = {"edgecolor": "0.25", "linewidth": 0.8, "linestyle": (0, (6, 2, 1
 SIDES = [(1, 1), (-1, 1), (1, -1), (-1, -1)]  # of a place, where its name can be
 AWAY = 11  # a name that has no room beside its place is this much farther off, or a multiple [pt]
 LETTER, LINE = 4.4, 9  # width of a letter and height of a line [pt]
-TICKS = 3  # smallest distance of ticks on a monitoring line [pt]
+TICKS = 3  # ticks on a monitoring line are not closer than this [pt]
 FEW = 8  # entries of one kind in the legend; of more there is one for all
 
 
