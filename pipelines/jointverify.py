@@ -46,7 +46,7 @@ VERSION = "@PROJECT_VERSION@"  # CMake knows it
 MAJOR, MINOR = 2, 3  # of the format; older files lack what is checked
 BEST_COMPRESSION = 1100  # deflating stores a byte for up to 1032
 ROUNDING = 1e-12
-ENERGY_OF_DYNAMICS = 0.01  # demsolve warns above this
+ENERGY_OF_DYNAMICS = 0.01  # where the scene does not say
 ENERGY = 1e-8  # of other searches, with which only rounding is missing
 AT_STRENGTH = 1e-6  # a contact this near its strength counts as slipping
 REMOVED, STUCK, SLIPPING, OPEN = range(4)
@@ -201,7 +201,8 @@ class Scene:
         self.divisor = self.option("--strength-factor", 1.0)
         self.has_dashpots = "stiffness_damping_s" in equilibrium  # which the report's forces have, too
         self.large_displacements = "large_displacements" in self.tables
-        self.stop = self.tables.get("large_displacements", {}).get("stop_s")
+        large = self.tables.get("large_displacements", {})
+        self.stop, self.energy_tolerance = large.get("stop_s"), large.get("energy_tolerance", ENERGY_OF_DYNAMICS)
         creep = self.table("creep", {})
         self.creeps = "creep" in self.tables and "--no-creep" not in self.options
         self.scheme = self.options.get("--creep-scheme", str(creep.get("scheme", "auto"))).replace("-", " ")
@@ -1167,7 +1168,7 @@ class Verification:
         whole = self.stored_energy()
         chosen = np.flatnonzero(~self.ends_creep_step())
         self.checks.see("report: work of loads is stored, dissipated or damped", "J/m", np.abs(e["work_of_loads"] - sum(parts))[chosen],
-                        ((ENERGY_OF_DYNAMICS if self.scene.large_displacements else ENERGY) * size + ROUNDING * whole)[chosen],
+                        ((self.scene.energy_tolerance if self.scene.large_displacements else ENERGY) * size + ROUNDING * whole)[chosen],
                         lambda i: f"/equilibria/work_of_loads[{chosen[i]}], day {e['time'][chosen[i]]:.6g}")
         if len(chosen) < len(size):
             self.checks.leave_out(f"energy of {len(size) - len(chosen)} creep steps at large displacements")
@@ -1215,7 +1216,7 @@ class Verification:
                                       "than 0.01 m/s")
                 continue
             self.checks.see("dynamics: work of loads is kinetic, stored, lost or damped", "J/m",
-                            np.abs(parts[0] - sum(parts[1:])), ENERGY_OF_DYNAMICS * largest,
+                            np.abs(parts[0] - sum(parts[1:])), self.scene.energy_tolerance * largest,
                             lambda i, first=first: f"/dynamics/work_of_loads[{first + i}], day {time[first + i]:.6g}, "
                             f"{dynamic_time[first + i]:.3g} s")
         n = file.array("/dynamics/first_contact", "i", "moment+1")

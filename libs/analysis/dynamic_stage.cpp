@@ -27,8 +27,9 @@ std::string day_of(double time)
     return "day " + shown(std::round(1e4 * time / unit::day) / 1e4);
 }
 
-// Largest error of the energy balance of a dynamic analysis, relative to its largest term [-].
-constexpr double energy_closes = 0.01;
+// A larger error of the energy balance of a dynamic analysis, over its largest energy, is told, also where the scene
+// allows it [-].
+constexpr double error_to_tell = 0.01;
 
 std::vector<char> rigid_zones(const Section& section)
 {
@@ -260,7 +261,7 @@ void DynamicStage::give_up(const mechanics::no_equilibrium& error)
     dynamics_.put_back();
     watchers_.row_and_state_are_due("");
     record();
-    check_energy();
+    energy_error();
     fail(section_, failure_of(error, section_.mesh(), section_.assembly), section_.now);
 }
 
@@ -317,17 +318,32 @@ void DynamicStage::record_energy()
     largest_error_ = std::max(largest_error_, std::abs(energy.error()));
 }
 
-// Checks the energy balance of the dynamic analysis that has ended. Where rock only settles, all energies are
-// small. The error of the first step, which is proportional to the square of its length, is then not small beside
-// them.
+// Error of the energy balance of the dynamic analysis that has ended, over its largest energy [-]; told if it is large.
+// Where rock only settles, all energies are small. The error of the first step, which is proportional to the square of
+// its length, is then not small beside them, and 0 is returned.
+double DynamicStage::energy_error()
+{
+    if (!dynamics_.has_moved())
+        return 0;
+    const double off = largest_error_ / largest_energy_;
+    const bool is_creep = section_.stage.empty() && section_.now > 0;
+    if (!(off <= error_to_tell))
+        section_.findings.energy_off[is_creep ? "creep to " + day_of(section_.now) : section_.stage] =
+            static_cast<Index>(std::lround(100 * std::min(off, 1e6)));
+    return off;
+}
+
+// The guard of dynamic analyses, see analysis/guards.hpp.
 void DynamicStage::check_energy()
 {
-    const double off = largest_error_ / largest_energy_;
-    if (!dynamics_.has_moved() || off <= energy_closes)
-        return;
-    const bool is_creep = section_.stage.empty() && section_.now > 0;
-    section_.findings.energy_off[is_creep ? "creep to " + day_of(section_.now) : section_.stage] =
-        static_cast<Index>(std::lround(100 * std::min(off, 1e6)));
+    const double off = energy_error(), tolerance = section_.scene.large_displacements->energy_tolerance;
+    if (!(off <= tolerance))
+        fail(section_,
+             {.reason = "the energy balance of the dynamic analysis is off by " + rounded(100 * off) +
+                        " percent of its largest energy; allowed: " + rounded(100 * tolerance) +
+                        ". Smaller zones ([zones] size_m), or more stiffness damping, reduce the error; "
+                        "[large_displacements] energy_tolerance allows it"},
+             section_.now);
 }
 
 } // namespace jointcreep::analysis

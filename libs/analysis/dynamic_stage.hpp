@@ -49,6 +49,7 @@ private:
     void begin_creep(CreepScheme scheme, double duration);
     void record();
     void record_energy();
+    double energy_error();
     void check_energy();
 
     Section& section_;

@@ -11,7 +11,7 @@ namespace jointcreep::analysis
 namespace
 {
 
-constexpr double rounding = 1e-9; // over what it is of
+constexpr double rounding = 1e-9;          // over what it is of
 constexpr double most_energy_error = 1e-6; // of the energy balance, over its terms
 
 // Of the blocks with present zones, the largest.
@@ -97,8 +97,8 @@ std::string broken_guard(double unbalanced_force_ratio, double energy_error, dou
     return "";
 }
 
-// That of the implicit engine holds by definition; that of a dynamic analysis is checked over its whole length
-// (analysis/dynamic_stage.hpp).
+// The energy balance of the implicit engine holds by definition; that of a dynamic analysis is checked over its whole
+// length, by DynamicStage.
 void Guards::check_equilibrium()
 {
     const mechanics::Convergence& found = section_.settled.convergence;

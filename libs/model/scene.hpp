@@ -321,6 +321,7 @@ struct LargeDisplacements {
     double longest = 0;                     // of one dynamic analysis [s]
     std::optional<double> stop{};           // that of the last stage ends then, at rest or not [s]
     double record_every = 0;                // [s]
+    double energy_tolerance = 0.01;         // error of the energy balance, over its largest energy [-]
 };
 
 // Over what the joint fraction is taken that strengths and stiffnesses are averaged with.

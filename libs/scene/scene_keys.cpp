@@ -911,7 +911,12 @@ Table<LargeDisplacements> large_displacements()
              .optional(),
          number("record_every_s", &LargeDisplacements::record_every, seconds, above(0).to(1e6),
                 "The section and the balance of energy are recorded that often.")
-             .or_else(1.0)}};
+             .or_else(1.0),
+         number(
+             "energy_tolerance", &LargeDisplacements::energy_tolerance, no_unit, from(1e-6).to(1),
+             "Largest error of the energy balance of a dynamic analysis in which rock moves, over its largest "
+             "energy. A larger error is exit code 3. Smaller zones and more stiffness damping reduce it.")
+             .or_else(0.01)}};
 }
 
 Table<Scene> random_numbers()
