@@ -29,14 +29,13 @@ public:
     {
     }
 
-    // Names, then shapes, then all else: a step may rely on those before it. Faults of one step are told together, the first
-    // of each of its checks.
+    // Names and shapes, then all else, which may rely on them. Faults of one step are told together, the first of each of
+    // its checks.
     void check() const
     {
         using C = Checker;
         for (const std::vector<void (C::*)() const>& step :
-             {std::vector{&C::check_names, &C::check_references},
-              {&C::check_polygons},
+             {std::vector{&C::check_names, &C::check_references, &C::check_polygons},
               {&C::check_joints, &C::check_values_of_materials, &C::check_joint_sets,
                &C::check_values_of_loads, &C::check_times, &C::check_places, &C::check_cutting,
                &C::check_zones, &C::check_equilibrium, &C::check_creep, &C::check_large_displacements}}) {

@@ -10,8 +10,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -27,13 +29,17 @@ constexpr double least_density = 1500, most_density = 4000;          // [kg/m3]:
 constexpr double least_modulus = 0.01, most_modulus = 200;           // [GPa]
 constexpr double most_rock_cohesion = 100, most_joint_cohesion = 10; // [MPa]
 constexpr double most_rock_tension = 50, most_joint_tension = 10;    // [MPa]
-constexpr double least_friction = 3;                                 // [deg]
-constexpr double least_ratio = 0.2, most_ratio = 4;                  // of horizontal to vertical stress
-constexpr double least_gravity = 9.5, most_gravity = 10.1;           // [m/s2]
-constexpr double least_of_weight = 0.75, most_of_weight = 1.25;      // vertical stress over the weight above
-constexpr double much_cover = 5;         // of rock, whose weight on a free surface is too much [m]
-constexpr double most_of_duration = 100; // retardation time over the duration of the scene
-constexpr double most_creep_error = 10;  // of a creep step [mm]
+constexpr double least_friction = 3, most_friction = 70;             // [deg]
+constexpr double least_stiffness = 10,
+                 most_stiffness = 1e6; // of joints [MPa/m]: clay filling to tight joints
+constexpr double least_persistence = 0.02;
+constexpr double least_ratio = 0.2, most_ratio = 4;             // of horizontal to vertical stress
+constexpr double least_gravity = 9.5, most_gravity = 10.1;      // [m/s2]
+constexpr double least_of_weight = 0.75, most_of_weight = 1.25; // vertical stress over the weight above
+constexpr double much_cover = 5; // of rock, whose weight on a free surface is too much [m]
+constexpr double most_of_duration = 100,
+                 least_of_duration = 1e-4; // retardation time over the duration of the scene
+constexpr double most_creep_error = 10;    // of a creep step [mm]
 
 class Doubts
 {
@@ -46,8 +52,9 @@ public:
             look_at(scene_.rocks[i], source_.in_list("rock", i));
         for (std::size_t i = 0; i < scene_.joint_materials.size(); ++i)
             look_at(scene_.joint_materials[i], source_.in_list("joint_material", i));
-        if (scene_.gravity > 0 && !usual(scene_.gravity, least_gravity, most_gravity))
-            add(source_.once("section"), "gravity_m_per_s2", "on Earth it is 9.81 m/s2");
+        look_at_section();
+        for (std::size_t i = 0; i < scene_.joint_sets.size(); ++i)
+            look_at(scene_.joint_sets[i], source_.in_list("joint_set", i));
         look_at_datum();
         look_at_stress();
         look_at_outline();
@@ -75,6 +82,46 @@ private:
             add(given, key,
                 "the angle is in degrees, and usually above " + shown(least_friction) +
                     " deg; it looks like radians or a tangent");
+        if (angle > most_friction * unit::deg)
+            add(given, key, "friction angles are usually at most " + shown(most_friction) + " deg");
+    }
+
+    // An angle that is not a whole number of degrees, and not above a full circle in radians.
+    static bool looks_like_radians(double angle, double most)
+    {
+        const double degrees = angle / unit::deg;
+        return degrees > 0 && degrees <= most && std::abs(degrees - std::round(degrees)) > 1e-6;
+    }
+
+    void look_at_section()
+    {
+        const Given section = source_.once("section");
+        if (scene_.gravity > 0 && !usual(scene_.gravity, least_gravity, most_gravity))
+            add(section, "gravity_m_per_s2", "on Earth it is 9.81 m/s2");
+        if (scene_.gravity == 0 && scene_.in_situ_stress.gradient_yy != 0)
+            add(section, "gravity_m_per_s2", "rock has no weight, but the in-situ stress grows with depth");
+        if (scene_.azimuth && looks_like_radians(*scene_.azimuth, 2 * std::numbers::pi))
+            add(section, "azimuth_deg", "the bearing is in degrees; it looks like radians");
+    }
+
+    void look_at(const JointSet& set, const Given& given)
+    {
+        if (set.dip && looks_like_radians(set.dip->mean, std::numbers::pi / 2))
+            add(given, "dip", "the mean dip is in degrees; it looks like radians");
+        if (given.find("persistence") && set.persistence > 0 && set.persistence < least_persistence)
+            add(given, "persistence",
+                "it is the part of the line that is joint, from 0 to 1, and usually above " +
+                    shown(least_persistence));
+    }
+
+    // Of a joint [Pa/m].
+    void look_at_stiffness(double stiffness, const Given& given, const std::string& key)
+    {
+        const bool is_given = given.find(key) && stiffness > 0; // 0 is a joint without a spring
+        if (is_given && !usual(stiffness / (unit::MPa / unit::m), least_stiffness, most_stiffness))
+            add(given, key,
+                "joints usually have " + shown(least_stiffness) + " to " + shown(most_stiffness) +
+                    " MPa/m; is it in the unit of its key?");
     }
 
     void look_at(const Rock& rock, const Given& given)
@@ -115,6 +162,8 @@ private:
             look_at_retardation(unit.shear_viscosity / unit.shear_stiffness, given,
                                 is_chain ? "kelvin_chain" : "shear_kelvin_viscosity_MPa_day_per_m");
         }
+        look_at_stiffness(material.normal_stiffness, given, "normal_stiffness_MPa_per_m");
+        look_at_stiffness(material.shear_stiffness, given, "shear_stiffness_MPa_per_m");
         if (material.normal_stiffness > 0 && material.shear_stiffness > 2 * material.normal_stiffness)
             add(given, "shear_stiffness_MPa_per_m",
                 "a joint is usually softer in shear than across, normal_stiffness_MPa_per_m = " +
@@ -129,6 +178,11 @@ private:
                 "the retardation time, viscosity over stiffness, is " + shown(rounded(time / unit::day)) +
                     " days, and the scene lasts " + shown(rounded(scene_.end / unit::day)) +
                     ": this unit hardly creeps; is the viscosity in the unit of its key?");
+        if (scene_.creep && time < least_of_duration * scene_.end)
+            add(given, key,
+                "the retardation time, viscosity over stiffness, is " + shown(rounded(time / unit::day)) +
+                    " days, and the scene lasts " + shown(rounded(scene_.end / unit::day)) +
+                    ": this unit creeps at once; is the viscosity in the unit of its key?");
     }
 
     // Above the datum a stress that grows with depth is tension.
@@ -164,8 +218,19 @@ private:
                 "the vertical compression grows by " + shown(rounded(vertical / unit::MPa)) + " MPa" + where +
                     ", and the weight of the rock above is " + shown(rounded(least / unit::MPa)) +
                     (most > least ? " to " + shown(rounded(most / unit::MPa)) : "") + " MPa");
+        const auto of_key = [&](const char* direction) {
+            const std::string at_datum = std::string("compression_") + direction + "_MPa",
+                              gradient = std::string("compression_") + direction + "_gradient_MPa_per_m";
+            // The gradient, unless it is compression and the stress at the datum is not.
+            const TomlValue* const value = given.find(at_datum);
+            const double grows = std::string(direction) == "xx" ? stress.gradient_xx : stress.gradient_yy;
+            return given.find(gradient) == nullptr ? key : value && grows >= 0 ? at_datum : gradient;
+        };
         if (at[0] > 0 || at[1] > 0)
-            add(given, key, "the stress" + where + " is tension; compression is positive here");
+            add(given, of_key(at[1] > 0 ? "yy" : "xx"),
+                std::string("the ") + (at[1] > 0 ? "vertical" : "horizontal") + " stress" + where +
+                    " is tension, " + shown(rounded(std::max(at[0], at[1]) / unit::MPa)) +
+                    " MPa; compression is positive here, expected a positive number");
         else if (at[1] < 0 && !usual(at[0] / at[1], least_ratio, most_ratio))
             add(given,
                 given.find("compression_xx_gradient_MPa_per_m") ? "compression_xx_gradient_MPa_per_m" : key,
@@ -253,23 +318,35 @@ private:
         return std::strtod(text.data(), nullptr);
     }
 
+    // The stage that excavates the rock of a place, if any.
+    const Stage* excavated_by(const Eigen::Vector2d& place) const
+    {
+        const double tolerance = outline_tolerance(scene_.outline);
+        for (const Stage& stage : scene_.stages)
+            for (const Polygon& removed : stage.remove)
+                if (covers(removed, place, 0) && distance_to_sides(removed, place) > tolerance)
+                    return &stage;
+        return nullptr;
+    }
+
+    // Points that are given one by one, and then those of the lines.
     void look_at_points()
     {
         const TomlValue* const list = source_.root.find("point");
-        const std::size_t count = list ? std::get<TomlValue::List>(list->content).size() : 0;
-        const double tolerance = outline_tolerance(scene_.outline);
-        for (std::size_t i = 0; i < scene_.points.size(); ++i)
-            for (const Stage& stage : scene_.stages)
-                for (const Polygon& removed : stage.remove)
-                    if (covers(removed, scene_.points[i].at, 0) &&
-                        distance_to_sides(removed, scene_.points[i].at) > tolerance) {
-                        const std::string what = "it is in rock that stage \"" + stage.name +
-                                                 "\" excavates; its history ends there";
-                        if (i < count)
-                            add(source_.in_list("point", i), "at_m", what);
-                        else
-                            found_.push_back("scene: point \"" + scene_.points[i].name + "\": " + what);
-                    }
+        std::size_t point = 0;
+        for (; list && point < std::get<TomlValue::List>(list->content).size(); ++point)
+            if (const Stage* const stage = excavated_by(scene_.points[point].at))
+                add(source_.in_list("point", point), "at_m",
+                    "it is in rock that stage \"" + stage->name + "\" excavates; its history ends there");
+        for (std::size_t line = 0; line < scene_.lines.size(); ++line) {
+            Index excavated = 0;
+            for (Index i = 0; i < scene_.lines[line].points; ++i, ++point)
+                excavated += excavated_by(scene_.points[point].at) ? 1 : 0;
+            if (excavated > 0)
+                add(source_.in_list("monitoring_line", line), "from_m",
+                    std::to_string(excavated) + " of its " + std::to_string(scene_.lines[line].points) +
+                        " points are in rock that is excavated; their histories end there");
+        }
     }
 };
 

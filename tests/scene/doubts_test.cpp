@@ -96,6 +96,14 @@ TEST(doubts, units_of_rock_and_joints)
                  "it looks like radians or a tangent");
     expect_doubt("friction_angle_deg = 32", "friction_angle_deg = 0.62",
                  "it looks like radians or a tangent");
+    expect_doubt("friction_angle_deg = 32", "friction_angle_deg = 80", "usually at most 70 deg");
+    expect_doubt("normal_stiffness_MPa_per_m = 5000\nshear_stiffness_MPa_per_m = 2000",
+                 "normal_stiffness_MPa_per_m = 5\nshear_stiffness_MPa_per_m = 10",
+                 "usually have 10 to 1e+06 MPa/m");
+    expect_doubt("shear_stiffness_MPa_per_m = 2000", "shear_stiffness_MPa_per_m = 2",
+                 "usually have 10 to 1e+06 MPa/m");
+    expect_doubt("normal_stiffness_MPa_per_m = 5000", "normal_stiffness_MPa_per_m = 5e6",
+                 "usually have 10 to 1e+06 MPa/m");
     expect_doubt("cohesion_MPa = 1.5", "cohesion_MPa = 1500", "at most 100 MPa");
     expect_doubt("cohesion_MPa = 0.1", "cohesion_MPa = 100", "at most 10 MPa");
     expect_doubt("shear_stiffness_MPa_per_m = 2000", "shear_stiffness_MPa_per_m = 20000",
@@ -117,11 +125,21 @@ TEST(doubts, gravity_and_stress)
                  "is 0.151 times the vertical one");
     const auto tension = doubts_of(replaced(sound, yy, "compression_yy_gradient_MPa_per_m = -0.026487"));
     ASSERT_EQ(tension.size(), 2u);
-    expect_part(tension[1], "is tension; compression is positive here");
+    expect_part(tension[1], "compression_yy_gradient_MPa_per_m = -0.026487: the vertical stress");
+    expect_part(tension[1], "is tension, 1.06 MPa; compression is positive here, expected a positive number");
+    const auto datum = doubts_of(replaced(sound, "compression_xx_MPa = 0", "compression_xx_MPa = -3"));
+    ASSERT_EQ(datum.size(), 1u);
+    expect_part(datum[0],
+                "compression_xx_MPa = -3: the horizontal stress at 40 m of depth is tension, 2.2 MPa");
     const auto gravity = doubts_of(replaced(sound, "gravity_m_per_s2 = 9.81", "gravity_m_per_s2 = 0.981"));
     ASSERT_EQ(gravity.size(), 2u);
     expect_part(gravity[0], "on Earth it is 9.81 m/s2");
-    EXPECT_TRUE(doubts_of(replaced(sound, "gravity_m_per_s2 = 9.81", "gravity_m_per_s2 = 0")).empty())
+    const std::string weightless = replaced(sound, "gravity_m_per_s2 = 9.81", "gravity_m_per_s2 = 0");
+    const auto grows = doubts_of(weightless);
+    ASSERT_EQ(grows.size(), 1u);
+    expect_part(grows[0],
+                "gravity_m_per_s2 = 0: rock has no weight, but the in-situ stress grows with depth");
+    EXPECT_TRUE(doubts_of(replaced(weightless, yy, "compression_yy_gradient_MPa_per_m = 0")).empty())
         << "a test of loads";
 }
 
@@ -164,6 +182,9 @@ TEST(doubts, tensile_strength_zones_and_creep)
     const auto slow = doubts_of(replaced(creeping, "VISCOSITY", "8.64e10"));
     ASSERT_EQ(slow.size(), 1u);
     expect_part(slow[0], "is 43200000 days, and the scene lasts 10: this unit hardly creeps");
+    const auto fast = doubts_of(replaced(creeping, "VISCOSITY", "1"));
+    ASSERT_EQ(fast.size(), 1u);
+    expect_part(fast[0], "is 5e-04 days, and the scene lasts 10: this unit creeps at once");
 }
 
 TEST(doubts, points_in_rock_that_is_excavated)
@@ -175,7 +196,39 @@ TEST(doubts, points_in_rock_that_is_excavated)
         "[[monitoring_line]]\nname = \"L\"\nfrom_m = [30, 35]\nto_m = [50, 35]\npoints = 3\n[zones]";
     const auto doubts = doubts_of(replaced(sound, "[zones]", line));
     ASSERT_EQ(doubts.size(), 1u);
-    expect_part(doubts[0], "point \"L 3\": it is in rock that stage \"cut\" excavates");
+    expect_part(
+        doubts[0],
+        "[[monitoring_line]] \"L\" from_m = [30, 35]: 1 of its 3 points are in rock that is excavated");
+}
+
+TEST(doubts, angles_in_radians_and_shares)
+{
+    const std::string azimuth = "gravity_m_per_s2 = 9.81\nazimuth_deg = ", set = R"([[joint_set]]
+name = "S"
+material = "joint"
+dip = { law = "constant", mean_deg = DIP }
+dip_direction = { law = "constant", mean_deg = 90 }
+spacing = { law = "constant", mean_m = 5 }
+length = { law = "constant", mean_m = 5 }
+persistence = SHARE
+[random]
+seed = 1
+[in_situ_stress])";
+    const std::string joints = replaced(sound, "[in_situ_stress]", set);
+    const auto doubts = [&](const std::string& bearing, const std::string& dip, const std::string& share) {
+        return doubts_of(
+            replaced(replaced(replaced(joints, "gravity_m_per_s2 = 9.81", azimuth + bearing), "DIP", dip),
+                     "SHARE", share));
+    };
+    EXPECT_TRUE(doubts("90", "55", "0.7").empty());
+    EXPECT_TRUE(doubts("5", "1", "0.7").empty());
+    for (const auto& [found, part] :
+         {std::pair{doubts("1.5708", "55", "0.7"), "azimuth_deg = 1.5708: the bearing is in degrees"},
+          {doubts("90", "0.96", "0.7"), "the mean dip is in degrees; it looks like radians"},
+          {doubts("90", "55", "0.007"), "the part of the line that is joint"}}) {
+        ASSERT_EQ(found.size(), 1u) << part;
+        expect_part(found[0], part);
+    }
 }
 
 } // namespace
