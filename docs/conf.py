@@ -4,16 +4,21 @@ Everything on the site is local, formulas too: KaTeX and its fonts are Debian's 
 """
 
 import re
+import sys
 from pathlib import Path
 
 from docutils import nodes
 
+sys.path.insert(0, str(Path(__file__).parents[1] / "pipelines"))  # the package of api.md
+
 project = "jointcreep"
 release = re.search(r"VERSION (\S+)", (Path(__file__).parents[1] / "CMakeLists.txt").read_text().split("project(")[1])[1]
-extensions = ["myst_parser"]
+extensions = ["myst_parser", "sphinx.ext.autodoc"]
+autodoc_member_order = "bysource"
 myst_enable_extensions = ["dollarmath"]
 myst_heading_anchors = 3
 nitpicky = True
+nitpick_ignore = [("py:class", "numpy.ndarray")]  # types of fields
 smartquotes_action = "qe"  # two hyphens are an option of a program, no dash
 
 html_theme = "furo"
