@@ -116,7 +116,7 @@ void fail(Section& section, Failure failure, double time)
 {
     failure.time = time / unit::day;
     failure.stage = section.stage;
-    std::string message = failure.reason + "\non day " + shown(failure.time);
+    std::string message = failure.reason + "\non day " + rounded(failure.time, 7);
     if (!failure.stage.empty())
         message += ", stage \"" + failure.stage + "\"";
     if (!failure.block.empty())

@@ -90,7 +90,7 @@ void Sensitivity::settle(const Assembly& assembly, implicit::Solver& engine, dou
         const implicit::VectorXd x =
             engine.solve_linear(assembly, tangents, stiffness.gathered(assembly, force));
         if (x.size() != stiffness.size())
-            throw equilibrium_error("no sensitivities on day " + shown(time / unit::day) +
+            throw equilibrium_error("no sensitivities on day " + rounded(time / unit::day, 7) +
                                     ": some rock is held by slipping joints only");
         change.displacement.assign(force.size(), Vector2d::Zero());
         stiffness.add_to(change.displacement, x, 1);
