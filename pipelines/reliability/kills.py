@@ -1,10 +1,12 @@
 """Kills programs at random moments and runs them again.
 
 After a kill no file may be there under a name of an output but the one from before, or the whole new one; and no input may
-have changed. The same command then has to give the bytes of a run that was never disturbed, and leave no file besides. Half of
-the moments are any in a run's time, half are while a file is written. Several kills may precede the run that ends.
+have changed. The same command then has to give the bytes of a run that was never disturbed, and leave no file besides; it goes
+on from a checkpoint if there is one. Half of the kills are at any time of a run, half at a system call that writes, of those of
+a run undisturbed (strace). Several kills may precede the run that ends. With fewer kills than programs only some are killed.
 """
 
+import collections
 import os
 import re
 import shutil
@@ -14,11 +16,15 @@ import time
 
 import h5py
 from campaign import LONGEST, ROOT, Campaign, contents, ended
+from large_displacements_test import incline
 
 SMALL = "data/verification/two-pillars/scene.toml"  # for what runs many times: a factor of safety, a fit
 FIT = "kelvin-stiffness,joint-stiffness"
 OLD = b"a file from before"
-OF_A_STUDY = re.compile(r"/out/(groups/|work/|Makefile$|study\.lock$|times\.csv$)")  # differ between runs
+OF_A_STUDY = re.compile(r"/out/(realizations/)?(groups/|work/|Makefile$|study\.lock$|times\.csv$)")  # differ between runs
+OF_A_FILE = ["write", "pwrite64", "ftruncate", "fsync"]  # system calls that write: with the number of a file, or with its name
+OF_A_NAME = ["openat", "rename", "unlink", "unlinkat", "link"]
+AT_A_WRITE, AT_A_TIME = "same bytes, killed at a write", "same bytes, killed at a time"  # what came of a kill
 STUDY = """
 scene = "slope.toml"
 histories = true
@@ -45,37 +51,51 @@ class Job:
         for path in self.inputs:
             shutil.copyfile(path, folder / path.name)
 
-    def run(self, folder):
+    def run(self, folder, behind=()):
         begin = time.monotonic()
-        done = ended(self.command, LONGEST, cwd=folder)
+        done = ended([*behind, *self.command], LONGEST, cwd=folder)
         self.seconds = min(self.seconds, time.monotonic() - begin)
         return done
 
-    def undisturbed(self, folder):
-        """Runs it, and notes its files and its time."""
+    def undisturbed(self, folder, log=None):
+        """Runs it, and notes its files and its time; and its system calls that write, if they are to be logged."""
         self.fill(folder)
         given = contents(folder)
-        done = self.run(folder)
+        done = self.run(folder, traced(log) if log else [])
+        self.calls = calls(log, folder) if log else []
         self.code = done.code
         if done.code not in (0, 3):
             raise SystemExit(f"{self.name} {done}")
         self.given, self.whole = given, files(folder)
 
-    def killed(self, folder, moment, while_writing=False, alone=False):
-        """Kills it after these seconds, or so long after it began to write a file; `alone`: not its children. Says whether
-        it still ran."""
-        running = subprocess.Popen(self.command, cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
-                                   start_new_session=True)
-        while while_writing and running.poll() is None and not writes(folder):
-            pass
+    def started(self, folder, behind=()):
+        return subprocess.Popen([*behind, *self.command], cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+                                start_new_session=True)
+
+    def killed(self, folder, moment, alone=False):
+        """Kills it after these seconds; `alone`: not its children. Says whether it still ran."""
+        running = self.started(folder)
         try:
             running.wait(moment)
         except subprocess.TimeoutExpired:
             os.kill(running.pid, signal.SIGKILL) if alone else os.killpg(running.pid, signal.SIGKILL)
-        is_killed = running.wait() == -signal.SIGKILL
-        while is_killed and runs(running.pid):  # its children end with it
-            time.sleep(0.01)
-        return is_killed
+        return is_killed(running)
+
+    def killed_at_a_write(self, folder, log, random, alone=False):
+        """Kills it at one of the system calls that write; `alone`: one of its own, and not its children. Says whether it came
+        to that, and whether what was killed wrote then: the other processes of a study make as many calls, too."""
+        call, number, _ = random.choice([one for one in self.calls if one[2] or not alone])
+        running = self.started(folder, traced(log, alone) + [f"--inject={call}:signal=KILL:when={number}"])
+        while running.poll() is None:
+            if not alone and log.exists() and b"+++ killed by SIGKILL" in log.read_bytes():
+                os.killpg(running.pid, signal.SIGKILL)
+                break
+            time.sleep(0.001)
+        return is_killed(running), any(calls(log, folder, of_the_killed=True))
+
+    def is_checkpoint(self, name):
+        """Also of that of the last factor with equilibrium."""
+        return bool(self.checkpoint) and name in (self.checkpoint, self.checkpoint.replace(".h5", ".stands.h5"))
 
     def lost(self, folder, old):
         """What is not whole after a kill."""
@@ -83,7 +103,7 @@ class Job:
             if name in self.given:
                 if content != self.given[name]:
                     return f"{name}, an input, has changed"
-            elif name == self.checkpoint:
+            elif self.is_checkpoint(name):
                 with h5py.File(folder / name) as file:
                     if file.attrs["complete"] != 1:
                         return f"{name} is not complete"
@@ -97,20 +117,56 @@ class Job:
 
     def different(self, folder):
         """What the run after it gives otherwise."""
+        kept = self.checkpoint and (folder / self.checkpoint).exists()
         done = self.run(folder)
         if done.code != self.code:
             return str(done)
+        if kept and "continued from" not in done.out:
+            return "it did not go on from its checkpoint"
         found = files(folder)
         names = [name for name in sorted(found.keys() | self.whole.keys()) if found.get(name) != self.whole.get(name)]
+        if "--checkpoint-every" in self.command:  # when they were written last is a matter of time
+            names = [name for name in names if not self.is_checkpoint(name)]
         return f"not as in a run undisturbed: {', '.join(names)}" if names else ""
 
 
-def writes(folder):
-    """Whether a program writes a file there."""
-    try:
-        return any(folder.rglob("*.partial-*"))
-    except FileNotFoundError:  # a folder below is gone already
+def traced(log, alone=False):
+    """What a command stands behind whose system calls are logged; `alone`: not those of its children."""
+    return ["strace", *([] if alone else ["-f"]), "-y", "-s", "0", "-o", str(log),
+            "-e", f"trace={','.join(OF_A_FILE + OF_A_NAME)}"]
+
+
+def calls(log, folder, of_the_killed=False):
+    """The system calls of a log that write in a folder: name, number among the process's calls of that name, and whether it is the
+    first process. `of_the_killed`: of these only the last call of the process that was killed."""
+    numbers, found, last, first = collections.Counter(), [], {}, None
+    for line in log.read_text(errors="replace").splitlines():
+        process, call, arguments = re.match(r"(\d*) *(?:(\w+)\((.*))?", line).groups()
+        if of_the_killed and "+++ killed by SIGKILL" in line:
+            return [last.get(process)]
+        if call:
+            first = first or process
+            numbers[process, call] += 1
+            last[process] = (call, numbers[process, call], process == first) if writes(call, arguments, folder) else None
+            found += [last[process]] if last[process] else []
+    return [] if of_the_killed else found
+
+
+def writes(call, arguments, folder):
+    """Whether a system call writes in a folder."""
+    at, name = re.match(r'[^"<,]*<([^>]*)>', arguments), re.search(r'"([^"]*)"', arguments)
+    if call == "openat" and not re.search("O_WRONLY|O_CREAT|O_TRUNC", arguments):
         return False
+    path = os.path.join(at[1] if at else folder, name[1] if call in OF_A_NAME and name else "")
+    return path.startswith(f"{folder}/")
+
+
+def is_killed(running):
+    """Waits for it and its children; whether it was killed."""
+    killed = running.wait() == -signal.SIGKILL
+    while killed and runs(running.pid):  # its children end with it
+        time.sleep(0.01)
+    return killed
 
 
 def runs(group):
@@ -128,28 +184,48 @@ def files(folder):
             if path.is_file() and path.suffix != ".png" and not OF_A_STUDY.search(str(path))}
 
 
-def jobs(chain):
-    """Every program of the chain, and a study, in scenes that take it some tenths of a second."""
+def jobs(chain, every=False):
+    """Every program of the chain, in scenes that take it some tenths of a second. `every`: and what writes several times, and studies."""
     folder = chain.new_folder()
     network = chain.run("jointgen", ROOT / "tests/pipeline/benches.toml", folder / "network.h5")
     joints = chain.run("strength-averaging", network, folder / "joints.h5")
     result = chain.run("demsolve", joints, folder / "result.h5")
     small = chain.joints(chain.text(SMALL))
+    slides = chain.joints(incline(30, 25, length=9, more='rigid_rocks = ["rock"]'))
+    slides = slides.rename(slides.with_name("slides.h5"))
     readings = chain.run("jointexport", chain.run("demsolve", small, small.with_name("r.h5")), small.with_name("readings.csv"))
+    head, *rows = readings.read_text().splitlines()
+    readings.write_text("\n".join([f"{head},cap_x_sigma_m,cap_y_sigma_m", *(f"{row},1e-5,1e-5" for row in rows)]) + "\n")
     slope = folder / "slope.toml"
     shutil.copyfile(ROOT / "tests/pipeline/random_slope.toml", slope)
     programs = chain.programs
     solve = [programs / "demsolve", "joints.h5", "-o", "result.h5"]
+    often = ["--checkpoint", "kept.h5", "--checkpoint-every", "0.0005"]  # minutes
+    safety = ["--factor-of-safety", "--safety-width", "0.1"]
+    fit = [programs / "creepfit", "joints.h5", "--measurements", "readings.csv", "--fit", FIT, "-o", "factors.csv"]
+    result_only, fitted = ["result.h5"], ["factors.csv", "fitted.csv"]
     yield Job("jointgen", [programs / "jointgen", "slope.toml", "-o", "out.h5"], [slope], ["out.h5"])
     yield Job("strength-averaging", [programs / "strength-averaging", "network.h5", "-o", "out.h5"], [network], ["out.h5"])
-    yield Job("demsolve", solve, [joints], ["result.h5"])
-    yield Job("demsolve --checkpoint", [*solve, "--checkpoint", "kept.h5"], [joints], ["result.h5"], "kept.h5")
-    yield Job("demsolve --factor-of-safety", [*solve, "--factor-of-safety", "--safety-width", "0.1"], [small], ["result.h5"])
-    yield Job("creepfit", [programs / "creepfit", "joints.h5", "--measurements", "readings.csv", "--fit", FIT, "-o",
-                           "factors.csv", "--readings", "fitted.csv"], [small, readings], ["factors.csv", "fitted.csv"])
+    yield Job("demsolve", solve, [joints], result_only)
+    yield Job("demsolve --checkpoint", [*solve, "--checkpoint", "kept.h5"], [joints], result_only, "kept.h5")
+    yield Job("demsolve --factor-of-safety", [*solve, *safety], [small], result_only)
+    yield Job("creepfit", [*fit, "--readings", "fitted.csv"], [small, readings], fitted)
     yield Job("jointexport", [programs / "jointexport", "result.h5", "-o", "zones.vtu"], [result], ["zones.vtu"])
+    if not every:
+        return
+    yield Job("demsolve, relaxation, checkpoints", [*solve, *often, "--engine", "relaxation", "--zone-size", "8"], [joints],
+              result_only, "kept.h5")
+    yield Job("demsolve, large displacements, checkpoints", [programs / "demsolve", "slides.h5", "-o", "result.h5", *often],
+              [slides], result_only, "kept.h5")
+    yield Job("demsolve, factor of safety, checkpoints", [*solve, *safety, *often], [small], result_only, "kept.h5")
+    yield Job("creepfit --ensemble", [*fit, "--ensemble", "10"], [small, readings], fitted[:1])
+    yield Job("creepfit --profile-intervals", [*fit, "--profile-intervals"], [small, readings], fitted[:1])
     (folder / "study.toml").write_text(STUDY)
-    yield Job("jointcreep study", [programs / "jointcreep", "study", "study.toml", "-o", "out", "--quiet"], [slope, folder / "study.toml"], [])
+    yield Job("jointcreep study", [programs / "jointcreep", "study", "study.toml", "-o", "out", "--quiet"],
+              [slope, folder / "study.toml"], [])
+    make = ["sh", "-c", 'exec make OUT="$PWD/out" "$@"', "make", "-s", "-C", ROOT / "pipelines/slope", "realizations", "N=3",
+            f"BIN={programs}", f"SCENE={slope}", "SOLVE=--no-creep --zone-size 8"]
+    yield Job("make realizations", make, [], [])
 
 
 def trial(campaign, job, case):
@@ -159,32 +235,34 @@ def trial(campaign, job, case):
     old = {name: OLD for name in job.outputs} if random.random() < 0.5 else {}
     for name, content in old.items():
         (folder / name).write_bytes(content)
-    hit, wrong = 0, ""
-    while not wrong and (hit == 0 or random.random() < 0.3):
-        writing = random.random() < 0.5
-        moment = random.uniform(0, 0.002) if writing else random.uniform(0, job.seconds)
-        if job.killed(folder, moment, writing, "study" in job.name and random.random() < 0.5):
-            hit += 1
-            wrong = job.lost(folder, old)
-            if wrong:
-                campaign.count(job.name, "lost", case, wrong, folder)
-            elif hit > 1:
-                campaign.count(job.name, "same bytes", case, "killed again")
+    kills, wrong, has_children = [], "", "jointcreep" in job.name
+    while not wrong and (not kills or random.random() < 0.3):
+        alone = has_children and random.random() < 0.5
+        if random.random() < 0.5:
+            hit, writing = job.killed_at_a_write(folder, campaign.chain.new_folder() / "log", random, alone)
         else:
+            hit, writing = job.killed(folder, random.uniform(0, job.seconds), alone), False
+        if not hit:
             campaign.count(job.name, "ended before", case)
             break
-    if not wrong:
+        kills.append(AT_A_WRITE if writing else AT_A_TIME)
+        wrong = job.lost(folder, old)
+    if wrong:
+        campaign.count(job.name, "lost", case, f"{wrong}; killed {kills[-1]}", folder)
+    else:
         wrong = job.different(folder)
-        if hit or wrong:
-            campaign.count(job.name, "different" if wrong else "same bytes", case, wrong, folder)
+        if wrong:
+            campaign.count(job.name, "different", case, f"{wrong}; killed {', '.join(kills)}", folder)
+    for kill in kills[:-1] if wrong else kills:
+        campaign.count(job.name, kill, case)
     shutil.rmtree(folder)
-    return hit
+    return len(kills)
 
 
 def body(campaign):
-    every = list(jobs(campaign.chain))
-    for job in every:
-        job.undisturbed(campaign.chain.new_folder())
+    every = list(jobs(campaign.chain, every=True))
+    for job in every if campaign.n >= len(every) else campaign.random("programs").sample(every, campaign.n):
+        job.undisturbed(campaign.chain.new_folder(), campaign.chain.new_folder() / "log")
         kills = case = 0
         while kills < campaign.n / len(every):
             kills += trial(campaign, job, case)
@@ -192,5 +270,5 @@ def body(campaign):
 
 
 if __name__ == "__main__":
-    OUTCOMES = ["same bytes", "ended before", "lost", "different"]
-    Campaign("kills of", OUTCOMES, OUTCOMES[2:], 1000).run(body)
+    OUTCOMES = [AT_A_WRITE, AT_A_TIME, "ended before", "lost", "different"]
+    Campaign("kills of", OUTCOMES, OUTCOMES[3:], 1000).run(body)
