@@ -39,25 +39,29 @@ def outcome(job, done, folder, old):
     return "refused", str(done)
 
 
-def trials(campaign, job):
-    """Limits, each as what it is called, what sets it, and what the command stands behind."""
-    written = [len(content) for name, content in job.whole.items() if name not in job.given]
-    largest, room = max(written) + 1, sum(written) + max(written)
+def pages(sizes):
+    """What files of these sizes take on a disk in memory [bytes]."""
     page = resource.getpagesize()
+    return sum(-(-size // page) * page for size in sizes)
+
+
+def trials(campaign, job):
+    """Limits, each as what it is called, its number, what sets it, and the room on the disk besides what is there. A disk
+    with twice the room of what is written is enough, one with less room than that is not."""
+    written = [len(content) for name, content in job.whole.items() if name not in job.given]
+    largest, room = max(written) + 1, 2 * pages(written)
     for step in range(campaign.n):
         size = largest * step // max(1, campaign.n - 1)
         yield "size of files", size, lambda size=size: resource.setrlimit(resource.RLIMIT_FSIZE, (size, size)), None
         count = MOST_FILES * step // max(1, campaign.n - 1)
         yield "open files", count, lambda count=count: resource.setrlimit(resource.RLIMIT_NOFILE, (count, count)), None
-        size = sum(map(len, job.given.values())) + page * 4 + room * step // max(1, campaign.n - 1)
+        size = room * step // max(1, campaign.n - 1)
         yield "disk", size, lambda: None, size
 
 
 def body(campaign):
     alone = private_mounts()
     for job in jobs(campaign.chain):
-        if "study" in job.name:
-            continue
         folder = campaign.chain.new_folder()
         job.undisturbed(folder)
         for what, number, limit, disk in trials(campaign, job):
@@ -70,6 +74,7 @@ def body(campaign):
                 done = ended(job.command, LONGEST, limit, cwd=folder)
             else:
                 mounted = campaign.chain.new_folder()
+                disk += pages(map(len, contents(folder).values()))
                 done = ended([*alone, *ON_DISK, disk, mounted, folder, *job.command], LONGEST, cwd=folder) if alone else None
             came, why = outcome(job, done, folder, old) if done else ("not possible", "")
             campaign.count(f"{what}, {job.name}", came, number, why, folder)
