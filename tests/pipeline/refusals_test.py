@@ -352,6 +352,33 @@ class Refusals(ChainTest):
         joints = self.chain.joints(text)
         self.assert_refuses(BAD_INPUT, "demsolve", joints, says=f"demsolve: {joints}: creep step of 1e-06 day")
 
+    def test_a_stage_whose_name_is_there_twice(self):
+        """Every program that reads a file refuses it, and writes nothing."""
+        folder = self.chain.new_folder()
+        network = self.chain.run("jointgen", self.chain.source / "pipelines/reliability/small.toml", folder / "network.h5")
+        joints, kept = self.chain.run("strength-averaging", network, folder / "joints.h5"), folder / "kept.h5"
+        result = self.chain.run("demsolve", joints, folder / "result.h5", "--no-creep", "--checkpoint", kept)
+        readings = self.chain.run("jointexport", result, folder / "readings.csv")
+        for path in (network, joints, result, kept):
+            path.with_suffix(".whole").write_bytes(path.read_bytes())
+            with h5py.File(path, "r+", libver=("v110", "v110")) as file:
+                file["names/stage"][1] = file["names/stage"][0]
+        undamaged = folder / "undamaged.h5"
+        joints.with_suffix(".whole").rename(undamaged)
+        for damaged, program, *arguments in (
+                (network, "strength-averaging", network, "-o", "out.h5"),
+                (joints, "demsolve", joints, "-o", "out.h5"),
+                (joints, "creepfit", joints, "--measurements", readings, "--fit", "joint-stiffness", "-o", "out.csv"),
+                (kept, "demsolve", undamaged, "--no-creep", "--checkpoint", kept, "-o", "out.h5"),
+                (joints, "jointexport", joints, "-o", "out.geojson"),
+                (result, "jointexport", result, "-o", "out.csv"),
+                (result, "jointexport", result, "-o", "out.vtu")):
+            with self.subTest(program=program, damaged=damaged.name):
+                done = self.chain.answer(program, *arguments)
+                self.assertEqual(done.returncode, 2, done.stderr)
+                self.assertIn(f"{damaged.name}: /names/stage, row 1: it must hold that all names differ", done.stderr)
+                self.assertEqual([*self.chain.folder.glob("out.*")], [])
+
     def test_too_few_steps(self):
         text = changed(self.chain.text(COLUMN), '^damping = "mass"', 'damping = "mass"\nmost_steps = 50')
         says = ["after 50 steps", "the largest unbalanced force is at ["]
