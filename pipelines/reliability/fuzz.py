@@ -1,7 +1,7 @@
 """Fuzzes what reads scenes, field data, measurements and HDF5 files, with sanitizers (libFuzzer, tests/fuzz).
 
-Each reader gets N inputs, or S seconds of the processor. The corpus begins with the files of data and tests that it reads, and is kept in
-OUT/corpus; inputs that end a reader otherwise than by a refusal are kept in OUT/faults.
+Each reader gets N inputs, or S seconds of the processor. The corpus begins with the files of data and tests that it reads, and with
+what earlier runs found (the archives in pipelines/reliability/corpus, corpus.py), and is kept in OUT/corpus; inputs that end a reader otherwise than by a refusal are kept in OUT/faults.
 """
 
 import itertools
@@ -14,6 +14,7 @@ import subprocess
 import tempfile
 
 from campaign import ROOT, Campaign
+from corpus import unpack
 
 LONGEST = 20  # s, that one input may take
 MOST_MEMORY = 4096  # MB; what a reader leaves behind where it cannot throw adds up
@@ -27,13 +28,14 @@ READERS = {  # and the longest input: short ones are read some thousand times a 
     "scene": (["data/**/*.toml", "tests/pipeline/**/*.toml"], 2048),
     "field_data": (["tests/pipeline/kinds/*.csv", "tests/pipeline/kinds/*.geojson", "tests/fuzz/*.csv"], 4096),
     "measurements": (["tests/fuzz/*.csv", "data/**/*.csv"], 4096),
-    "store": ([], 65536),
+    "store": ([], 262144),  # a small result has 110 kB
 }
 
 
 def begun(campaign, reader, corpus):
     """The corpus, with what is there to begin with."""
     corpus.mkdir(parents=True, exist_ok=True)
+    unpack(ROOT / f"pipelines/reliability/corpus/{reader}.tar.xz", corpus)
     patterns, longest = READERS[reader]
     for path in (path for pattern in patterns for path in ROOT.glob(pattern)):
         content, name = path.read_bytes(), str(path.relative_to(ROOT)).replace("/", "-")
