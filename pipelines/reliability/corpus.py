@@ -39,11 +39,13 @@ def merge(fuzzer, corpus, archive):
         before.mkdir()
         least.mkdir()
         unpack(archive, before)
-        done = subprocess.run([fuzzer, "-merge=1", f"-timeout={SECONDS}", "-rss_limit_mb=4096", "-max_len=262144", least, before, corpus], check=False,
-                              stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, env=dict(os.environ, ASAN_OPTIONS=SANITIZERS))
+        options = ["-merge=1", f"-timeout={SECONDS}", "-rss_limit_mb=4096", "-max_len=262144"]
+        done = subprocess.run([fuzzer, *options, least, before, corpus], check=False, stdout=subprocess.DEVNULL,
+                              stderr=subprocess.PIPE, env=dict(os.environ, ASAN_OPTIONS=SANITIZERS))
         paths = sorted(least.iterdir())
         if done.returncode or not paths:
-            raise SystemExit(f"corpus: {fuzzer} -merge=1 ended with exit code {done.returncode}: {done.stderr[-500:].decode(errors='replace')}")
+            said = done.stderr[-500:].decode(errors="replace")
+            raise SystemExit(f"corpus: {fuzzer} -merge=1 ended with exit code {done.returncode}: {said}")
         archive.parent.mkdir(parents=True, exist_ok=True)
         partial = archive.with_name(f"{archive.name}.partial")
         with tarfile.open(partial, "w:xz", preset=9) as files:

@@ -1,7 +1,8 @@
 """Fuzzes what reads scenes, field data, measurements and HDF5 files, with sanitizers (libFuzzer, tests/fuzz).
 
-Each reader gets N inputs, or S seconds of the processor. The corpus begins with the files of data and tests that it reads, and with
-what earlier runs found (the archives in pipelines/reliability/corpus, corpus.py), and is kept in OUT/corpus; inputs that end a reader otherwise than by a refusal are kept in OUT/faults.
+Each reader gets N inputs, or S seconds of the processor. The corpus begins with the files of data and tests that it reads, and
+with what earlier runs found (the archives in pipelines/reliability/corpus, which corpus.py makes), and is kept in OUT/corpus;
+inputs that end a reader otherwise than by a refusal are kept in OUT/faults.
 """
 
 import itertools

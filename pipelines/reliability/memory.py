@@ -61,7 +61,7 @@ def sweep(campaign, subject, program, source, name, *options):
 def study(campaign, job):
     """Sweeps a study. It may leave what it goes on from."""
     job.undisturbed(campaign.chain.new_folder())
-    low = least(["/usr/bin/python3", "-c", IMPORTS], 0, 2000 * MB, MB)
+    low = least(["/usr/bin/python3", "-c", IMPORTS], 0, ENOUGH, 16 * MB)
     for step in range(campaign.n):
         size, folder = low + (ENOUGH - low) * step // max(1, campaign.n - 1), campaign.chain.new_folder()
         job.fill(folder)
