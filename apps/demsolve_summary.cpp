@@ -104,7 +104,7 @@ void add_contacts(Summary& summary, const std::vector<ContactStatus>& status)
     const auto number = [&](ContactStatus wanted) {
         return static_cast<Index>(std::count(status.begin(), status.end(), wanted));
     };
-    summary.add("contacts stuck", number(ContactStatus::stuck));
+    summary.add("contacts sticking", number(ContactStatus::stuck));
     summary.add("contacts slipping", number(ContactStatus::slipping));
     summary.add("contacts open", number(ContactStatus::open));
 }

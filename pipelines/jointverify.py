@@ -849,7 +849,7 @@ class Verification:
             at("/states/traction", closed, "/states/bond_broken"))
         known = m.law != YIELDING  # whose strength is between two bounds
         stuck = (status == STUCK) & known & (traction[:, 1] != 0)
-        see("stuck contacts are below their strength", "Pa", (tau - (1 - AT_STRENGTH) * limit)[stuck], rounding[stuck],
+        see("sticking contacts are below their strength", "Pa", (tau - (1 - AT_STRENGTH) * limit)[stuck], rounding[stuck],
             at("/states/contact_status", stuck, "/states/traction"))
         slips = status == SLIPPING
         least = np.where(known, (1 - AT_STRENGTH) * limit, 0.999 * p * m.tan_phi)

@@ -88,7 +88,7 @@ DynamicStage::DynamicStage(Section& section, const Watchers& watchers)
                        {joint::chain_of(material, number, 0), joint::chain_of(material, number, 1)});
 }
 
-// Whether this analysis goes on from where an earlier run was.
+// Whether this analysis continues an earlier run from its checkpoint.
 bool DynamicStage::goes_on()
 {
     return section_.keeper != nullptr && section_.keeper->search_begins([this](Tape& tape) { pass(tape); });

@@ -24,17 +24,18 @@ public:
     // equilibrium_error where there is no equilibrium; the result has the last state.
     void run(bool is_last);
 
-    // A creep step from now: what creeps is added, and rock comes to rest. False if it slides, or finds no rest; then
-    // everything is as before. After it, end_creep() returns an estimate of the error [m]; then accept_creep() keeps the
-    // step, or undo_creep() goes back.
+    // A creep step of that duration [s]: adds the creep displacements and finds the next equilibrium. False if blocks slide
+    // or there is no equilibrium; then everything is as before. After it, end_creep() returns an estimate of the error [m];
+    // then accept_creep() keeps the step, or undo_creep() goes back.
     bool creeps_to_rest(CreepScheme scheme, double duration);
     double end_creep();
     void accept_creep();
     void undo_creep();
-    // The same to `end` [s], whatever moves, recorded as a stage is. Throws equilibrium_error where there is no rest.
+    // The same until the time `end` [s], also if blocks slide. Records like a stage. Throws equilibrium_error if there is
+    // no equilibrium.
     void creep_and_slide(CreepScheme scheme, double end);
 
-    // What a checkpoint keeps of it.
+    // Its part of a checkpoint.
     void transfer(const Transfer& to, Checkpoint& kept) { dynamics_.transfer(to, kept.dynamics); }
 
 private:

@@ -84,7 +84,8 @@ public:
     // A run, which fails if its displacement is more than that [m]. Where several are made at once, each has a thread of
     // its own. Once it is asked to stop, its outcome is of no use: it may throw anything.
     virtual Outcome run(double factor, double most_displacement, const std::stop_token& stop) = 0;
-    // The search will use its outcome: it is the run after these. It has not begun, or goes on, or has ended.
+    // The search will use the outcome of this run, which comes after those of `before`. The run may be waiting, running or
+    // finished.
     virtual void is_next(double /*factor*/, const Safety& /*before*/) {}
     // The last of these runs has ended.
     virtual void has_ended(const Safety& /*so_far*/) {}

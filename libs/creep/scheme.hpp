@@ -6,13 +6,13 @@
 //     F(t) = F_0 + (F_1 - F_0) phi(t / dT),
 //     published      phi = 0                      first order, stable below longest_stable_step only
 //     backward       phi = 1                      first order
-//     linear force   phi = s                      second order; rings where creep is soft beside the spring
-//     fitted         phi = (1 - exp(-rho dT s)) / (1 - exp(-rho dT))      second order, does not ring
+//     linear force   phi = s                      second order; the force can oscillate if K is much larger than E
+//     fitted         phi = (1 - exp(-rho dT s)) / (1 - exp(-rho dT))      second order, no oscillation
 //     automatic      fitted, or linear force where loads change during the step
 // so that
 //     d_1 = a d_0 + c_0 F_0 + c_1 F_1 .
-// rho is the rate at which the force on the spring between fixed walls falls at first. With one unit it
-// falls so for good, and the fitted scheme is exact there, as every scheme is where the force is constant.
+// rho is the initial rate at which the force between fixed walls decreases. With one unit the rate stays the same, so the
+// fitted scheme is exact between fixed walls. Every scheme is exact at constant force.
 
 #pragma once
 

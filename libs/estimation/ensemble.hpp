@@ -4,9 +4,10 @@
 // over their deviations. In each round the model is called at members x + P^(1/2) z_j. The z_j are normal draws with the mean 0 and the
 // covariance 1 exactly. By least squares over the members, r = r_0 + J (x_j - x). Then
 //     P = (t J^T J + P_0^-1)^-1 ,     x <- x - P (t J^T r_0 + P_0^-1 (x - m_0)) .
-// t grows from 1/4 to 1 in the first four rounds, so that the first derivatives, which are means over the wide prior, do not
-// lead too far. Raanes, Stordal and Evensen, Nonlinear Processes in Geophysics 26 (2019), with the tempering of Emerick and Reynolds,
-// Computers & Geosciences 55 (2013). For a linear model mean and covariance are exact. P tells what the readings and the prior know together.
+// t grows from 1/4 to 1 in the first four rounds. The first derivatives are inaccurate, because they are means over the wide
+// prior. A small t shortens these steps. Raanes, Stordal and Evensen, Nonlinear Processes in Geophysics 26 (2019), with the
+// tempering of Emerick and Reynolds, Computers & Geosciences 55 (2013). For a linear model mean and covariance are exact.
+// P is the covariance by readings and prior together.
 
 #pragma once
 

@@ -1,18 +1,17 @@
 // Implicit equilibrium: Newton's method over the contacts' states, in place of dynamic relaxation.
 //
-// Between changes of contact state the assembly is linear, so one factor of its stiffness serves one equilibrium
-// after another. Each correction solves K du = unbalanced force by GCR, preconditioned with the last factor. The
-// factor is renewed when that costs less than going on with the old one. Contacts open, close, stick and slip by
-// the same law as in dynamic relaxation, each from its state at the start of the equilibrium straight to the one at
-// its end (backward Euler; joint/active_contacts.hpp).
+// As long as no contact changes its state, the assembly is linear: one factor of its stiffness K serves many equilibria.
+// Each correction solves K du = unbalanced force by GCR, preconditioned with the last factor. The factor is renewed when
+// that costs less than more iterations with the old one. Contacts follow the same law as in dynamic relaxation. Each
+// correction computes them from their state at the start of the equilibrium (backward Euler; joint/active_contacts.hpp).
 //
-// Rock that yields goes straight from its state at the start to that at the end, too. Then K has the consistent
-// tangents of zones, is not symmetric where flow is not associated, and is factorised for each correction. Where
-// Newton's method finds no equilibrium, gridpoints move against dashpots: to an equilibrium, or until displacements
-// are too large (implicit/flow.cpp).
+// Rock that yields is also computed from its state at the start. Then K has the consistent tangents of zones. It is not
+// symmetric if the flow rule is not associated, and it is factorised for each correction. If Newton's method finds no
+// equilibrium, gridpoints move against dashpots: to an equilibrium, or until displacements are too large
+// (implicit/flow.cpp).
 //
-// The energy balance is that of backward Euler, too: a contact slips under the traction it ends with. What is
-// neither stored nor dissipated so counts as damped.
+// The energy balance is that of backward Euler, too: slip is at the final traction. Energy that is neither stored nor
+// dissipated counts as damped.
 
 #pragma once
 

@@ -1,10 +1,10 @@
-// What contacts do in a search for equilibrium that goes by tangents: stick, slip forward or backward, or open.
-// rock/active_zones.hpp has the same functions.
+// The status of each contact during a search of the implicit engine: sticking, slipping forward or backward, or open.
+// Each status has its tangent stiffness. rock/active_zones.hpp has the same functions for rock that yields.
 //
-// Contacts go straight from their states at the start of the search to those at its end. A contact changes its
-// direction of slip only through sticking. Bonds that break in the search stay broken during it, once they have broken
-// twice or hinder it: with cohesion that comes and goes there may be no equilibrium. A contact that opened, or
-// weakened, without need gets its bond back.
+// Every correction computes contacts from their states at the start of the search (backward Euler). A contact that slips
+// forward can slip backward only after a correction in which it sticks. A bond that breaks for the second time in a search
+// stays broken until its end, and so does a bond that prevents convergence. (If bonds broke and healed again and again,
+// the search might not converge.) After the search, contacts that are closed in equilibrium get their bonds back.
 
 #pragma once
 
@@ -24,11 +24,12 @@ public:
     // Sets the contacts to their states at the start, but for bonds that have broken in the search.
     void restart(Contacts& contacts, const ContactsState& start) const;
 
-    // Takes over what contacts do now. A contact slides back only after it has stuck, unless this is the `first` time.
+    // Takes over the present status of contacts. Unless this is the `first` time, a contact that reverses its slip sticks
+    // first.
     void take(const Contacts& contacts, const ContactsState& start, bool first);
 
-    // Tangents for what they do. Open and slipping contacts keep the share `soft` of their springs. Contacts know
-    // how far they are displaced.
+    // Tangents for the status of contacts. Open and slipping contacts keep the share `soft` of their springs. The
+    // displacement is not used: contacts have their own.
     std::vector<Tangent> tangents(const Contacts& contacts, std::span<const Vector2d> displacement,
                                   const ContactsState& start, double soft) const;
 

@@ -31,8 +31,8 @@ inline const Parameter roughness{
     WithBridges::refused,
     WithStrengthDivided::same,
     "JRC, the roughness of the joint. JRC, JCS and V_m together select Barton and Bandis's law. The normal "
-    "stiffness is then that without pressure, and the friction angle is the residual one. Cohesion, tensile "
-    "strength and dilation angle are 0."};
+    "stiffness is then the initial one, at zero normal stress, and the friction angle is the residual one. "
+    "Cohesion, tensile strength and dilation angle are 0."};
 inline const Parameter wall_strength{"wall_strength",
                                      "joint_wall_strength_MPa",
                                      MPa,

@@ -66,7 +66,8 @@ void find_incidence(Contacts& contacts, std::size_t n_gridpoints);
 
 // Tractions and forces at the displacements of all gridpoints [m]. Call it from every thread of an OpenMP parallel
 // region; the forces are complete after a barrier. Slip and breaking are updated in the states; a second call changes
-// nothing. `damping` is the rate of stiffness damping over the step [-]. Forces alone are found as all are.
+// nothing. `damping` is the rate of stiffness damping over the step [-]. `forces_alone` is not used: everything is
+// computed in any case.
 void find_forces_in_team(Contacts& contacts, std::span<const Vector2d> displacement, double damping,
                          bool forces_alone);
 

@@ -155,7 +155,7 @@ std::vector<Field> fields_of(States& states)
         {"/states/relative_displacement", &states.relative_displacement, {"state", "contact"}, "m", any(),
          "Displacement of side b minus that of side a {normal, shear}, opening positive."},
         {"/states/contact_status", &states.contact_status, {"state", "contact"}, "1", between(0, 3),
-         "0 removed (a side has been excavated), 1 stuck, 2 slipping, 3 open."},
+         "0 removed (a side has been excavated), 1 sticking, 2 slipping, 3 open."},
         {"/states/slip", &states.slip, {"state", "contact"}, "m", any(),
          "Slip since the in-situ equilibrium: shear_stiffness times (relative_displacement - crept - slip) "
          "is the change of shear traction since then. In a dynamic analysis with large displacements slip is "
@@ -219,7 +219,7 @@ std::vector<Field> fields_of(Checkpoint& checkpoint)
     // clang-format off
     return {
         {"/checkpoint/contact_status", &checkpoint.contact_status, contact, "1", between(0, 3),
-         "0 removed, 1 stuck, 2 slipping, 3 open."},
+         "0 removed, 1 sticking, 2 slipping, 3 open."},
         {"/checkpoint/traction", &checkpoint.traction, contact, "Pa", any(), "Traction {normal, shear}, tension positive."},
         {"/checkpoint/initial_traction", &checkpoint.initial_traction, contact, "Pa", any(),
          "Traction {normal, shear} at zero displacement. Of an open contact: the traction that its springs "

@@ -17,7 +17,7 @@
 namespace jointcreep::joint
 {
 
-// The parameter's value on an edge with rock bridges, of which the share k is joint (joint/equivalent.hpp).
+// The parameter's value on an edge with rock bridges. The share k of the edge is joint (joint/equivalent.hpp).
 enum class WithBridges {
     spring,  // a stiffness: by the scene's stiffness rule; of parameters of all joints only
     mean,    // k times the joint's and 1 - k times the rock's, for an angle of its tangent; of parameters of all joints only

@@ -14,7 +14,7 @@ namespace jointcreep::joint
 // creep and averages do not change.
 EquivalentJoints with_strength_divided(EquivalentJoints joints, double factor);
 
-// The same of joint materials, of which a dynamic analysis makes new contacts.
+// The same of joint materials. A dynamic analysis makes new contacts of them.
 std::vector<JointMaterial> with_strength_divided(std::vector<JointMaterial> materials, double factor);
 
 } // namespace jointcreep::joint

@@ -186,8 +186,8 @@ public:
 
 private:
     struct Sum;
-    // Result for a pair in a step: done, overlap too deep for a valid force, or, which other pairs decide: whether it comes
-    // to touch, and whether it goes on to touch though its faces lie behind each other.
+    // Result for a pair in a step: done; overlap too deep for a valid force; or undecided, which depends on other pairs:
+    // the pair may begin to touch, or its contact may end because its faces lie behind each other.
     enum class Touch { settled, too_deep, comes_about, may_end };
     enum class Decision { none, touches, ends };
 

@@ -88,7 +88,7 @@ struct JointMaterial {
 
 // What the joints of a set are (libs/sampling/joint_sets.hpp).
 enum class SetKind {
-    lines,    // lines through the whole section, along each of which joint traces and rock bridges alternate
+    lines,    // lines through the whole section: joint traces and rock bridges alternate along each line
     segments, // traces about Poisson points of the section
     discs     // the traces of Poisson discs in space
 };

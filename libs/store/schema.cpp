@@ -193,7 +193,7 @@ std::vector<Field> fields_of(History& history)
         {"/history/time", &history.time, {"time"}, "day", ascending(),
          "Time since the start; two rows at a stage's time, before and after it."},
         {"/history/event", &history.event, {"time"}, "1", any(),
-         "Name of the stage before, in the first row after a stage; else an empty text."},
+         "Name of the stage in the first row after it; otherwise empty."},
         {"/history/point", &history.point, {"point"}, "1", any(), "Names of the monitoring points."},
         {"/history/point_position", &history.point_position, {"point"}, "m", any(),
          "Position of the monitoring point {x, y}."},
@@ -217,7 +217,7 @@ std::vector<Field> fields_of(States& states)
     std::vector<Field> all = {
         {"/states/time", &states.time, {"state"}, "day", ascending(), "Time since the start."},
         {"/states/event", &states.event, {"state"}, "1", any(),
-         "Name of the stage before, in the first state after a stage; else an empty text."},
+         "Name of the stage in the first state after it; otherwise empty."},
         {"/states/displacement", &states.displacement, {"state", "gridpoint"}, "m", any(),
          "Displacement {x, y} since the in-situ equilibrium."},
         {"/states/reaction", &states.reaction, {"state", "gridpoint"}, "N/m", any(),

@@ -573,8 +573,8 @@ def p_wave(young, nu, density):
 def step_through_a_joint(times, pressure, impedance, stiffness):
     """Displacement behind a joint after the arrival of a step of stress, at times since then [s].
 
-    A jump of stress goes on as p (1 - exp(-t / T)), T = z / (2 K_n): the transmitted share of a harmonic wave is
-    1 / (1 + i w T) (Schoenberg 1980). Rock moves with the stress over z.
+    Behind the joint a step p of stress is p (1 - exp(-t / T)), T = z / (2 K_n): the transmitted share of a harmonic wave is
+    1 / (1 + i w T) (Schoenberg 1980). The velocity of the rock is the stress over the impedance z.
     """
     lag = impedance / (2 * stiffness)
     t = np.maximum(times, 0)

@@ -5,7 +5,7 @@
 
 runs demsolve of the folder BIN on the bench slope and the paper's column of the folder DATA, with 2e4 and 2e5 zones,
 and writes OUT/damping.csv, OUT/tables/damping.md and OUT/tables/damping-slip.md. Loads are put on at once: the weight
-of rock without any stress in situ, and rock taken away from the stress in situ (the first bench, the first block), both
+of rock without any stress in situ, and rock excavated under the in-situ stress (the first bench, the first block), both
 on joints that hold whatever comes, so that all is linear; and the bench with the scene's joints, which slip and open.
 There the displacements of the points by the bench are compared with those of the implicit engine.
 

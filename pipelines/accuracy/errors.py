@@ -27,7 +27,7 @@ class Result:
     contacts: closed_forms.Contacts
     traction: np.ndarray  # [state, contact, {normal, shear}] [Pa]
     relative_displacement: np.ndarray  # the same [m]
-    status: np.ndarray  # [state, contact]: 0 removed, 1 stuck, 2 slipping, 3 open
+    status: np.ndarray  # [state, contact]: 0 removed, 1 sticking, 2 slipping, 3 open
     stiffness: np.ndarray  # [contact, {normal, shear}] [Pa/m]
     zones: int
     equilibria: int  # sought in all, also with creep steps that were too long

@@ -1,8 +1,8 @@
 """Two pillars under a rigid level cap: the published creep step beside the fitted one, at equally many equilibria.
 
 A state-space version of data/verification/two-pillars, without zones: joints F_i = K_i (w - d_i) of equal area under
-the weight  F_1 + F_2 = W, put on at T = 0. It tells what a scheme does apart from all else, also where demsolve refuses
-the published step, and how much hangs on the pair of joints.
+the weight  F_1 + F_2 = W, put on at T = 0. It shows the error of a scheme alone, also where demsolve refuses the
+published step, and how much the error depends on the pair of joints.
 """
 
 from dataclasses import dataclass

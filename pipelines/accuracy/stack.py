@@ -3,7 +3,7 @@
 
     stack.py BIN OUT
 
-Cubes of 1 m on joints, the lowest one on fixed ground, under their weight. The top one is taken away, and the others
+Cubes of 1 m on joints, the lowest one on fixed ground, under their weight. The top one is removed, and the others
 rise: block i by i times the weight over the joints' stiffness. Both programs have real masses and rigid blocks,
 demsolve by [large_displacements] with rigid rock; beside it its two engines of small displacements, where blocks deform, with their
 closed form. Writes OUT/stack.csv and OUT/tables/stack.md. On two threads it measures wall time, so it wants an idle

@@ -6,4 +6,4 @@ class NotWanted(Exception):
 
 
 class NotDone(Exception):
-    """Runs could not be made, though the study is right: exit code 4. The same command goes on."""
+    """Runs could not be made, though the study is right: exit code 4. The same command makes those that are missing."""

@@ -2,12 +2,12 @@
 
 A run is the chain of programs with one network and one set of parameters. Its line of results is appended to
 groups/NUMBER.rows.part as soon as it has ended, and the file is called groups/NUMBER.rows once the group is complete. So a
-group that was killed goes on after its last whole line. Files of a run are in a folder of the group, which goes with it.
+group that was killed continues after its last whole line. Files of a run are in a folder of the group, which goes with it.
 
 A run that fails is made once more, unless it is asked for whether it finds an equilibrium, and it does not. If it fails again, that is
 its result: exit code, program and message. If a program was
 stopped from outside (by a signal of those that users and systems send), or could not read or write (exit code 4), that is no
-result: the run is made when the study goes on, and the exit code of the group is 4.
+result: the run is made when the study is continued, and the exit code of the group is 4.
 """
 
 import ctypes

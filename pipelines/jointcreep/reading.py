@@ -31,7 +31,7 @@ IN_PLANE, IN_SPACE, ALONG_JOINT = ["x", "y"], ["x", "y", "z"], ["normal", "shear
 COMPONENTS = {"displacement": IN_PLANE, "reaction": IN_PLANE, "point_position": IN_PLANE, "gridpoint_position": IN_PLANE,
               "pole": IN_SPACE, "centre": IN_SPACE, "stress": AXES[3], "traction": ALONG_JOINT,
               "relative_displacement": ALONG_JOINT}  # of datasets of these names
-STATUS = ["removed", "stuck", "slipping", "open"]  # of contacts, by number
+STATUS = ["removed", "sticking", "slipping", "open"]  # of contacts, by number
 
 
 class Table(dict):
@@ -191,8 +191,8 @@ class File:
         return self.table("/equilibria", len(self["/equilibria/steps"]))
 
     def moving_blocks(self):
-        """Table of the blocks that move in the end of a run without equilibrium (NAME.failed.h5): block, its middle (m), motion in the
-        last steps (m), the fastest first."""
+        """Table of the blocks that move in the end of a run without equilibrium (NAME.failed.h5): block, its middle (m), motion (m), that
+        is the displacement in the last steps of the solver, the fastest first."""
         table = Table()
         order = np.argsort(-np.linalg.norm(self["/failure/motion"], axis=1), kind="stable")
         table.put("block", self["/failure/block"][order])

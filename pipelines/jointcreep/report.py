@@ -120,8 +120,9 @@ def factor_of_safety(source, folder):
         parts.append(drawn("state", failed, folder, "The run with the smallest factor without equilibrium: moving blocks.",
                            around_failure=True))
         moving = reading.File(failed).moving_blocks()
-        parts.append(table(["moving block", "x (m)", "y (m)", "motion x (mm)", "motion y (mm)"],
+        parts.append(table(["moving block", "x (m)", "y (m)", "displacement x (mm)", "displacement y (mm)"],
                            [(int(block), x, y, 1e3 * by_x, 1e3 * by_y) for block, x, y, by_x, by_y in zip(*moving.values())][:MOST_BLOCKS]))
+        parts.append("<p>Displacements in the last steps of the solver.</p>")
         parts += [f"<p>The fastest {MOST_BLOCKS} of {moving.rows()} moving blocks.</p>"] * (moving.rows() > MOST_BLOCKS)
     return parts
 

@@ -1,7 +1,7 @@
 """Makes the runs of a study, group by group, by GNU Make on this machine or by Snakemake wherever its profile says.
 
 The folder is locked while a study works there; the lock is held by all processes that work for it, so that it ends with the
-last of them. Whatever has ended stays, and the same command goes on from there.
+last of them. Whatever has ended stays, and the same command continues from there.
 """
 
 import contextlib
@@ -203,7 +203,7 @@ def make_groups(out, programs, names, jobs, profile, lock, deadline, tell):
     missing = [name for name in names if not (out / "groups" / f"{name}.rows").exists()]
     if missing:
         raise NotDone(f"{len(missing)} of {len(names)} groups of runs in {out / 'groups'} could not be made; messages above say "
-                      "why. The same command goes on")
+                      "why. The same command makes those that are missing")
     return ""
 
 

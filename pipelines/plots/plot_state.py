@@ -262,10 +262,10 @@ def draw_contacts(file, state, section, axes):
     centre = figure.array(file, "/mesh/contact_centre")
     seen = np.all((low <= centre) & (centre <= high), axis=1) if section.window else np.full(len(status), True)
     entries = []
-    for chosen, label, look in (((status == STUCK) & ~slipped, "contacts closed", {"color": "0.65", "linewidth": 0.5}),
-                                (slipped, "closed, slipped earlier", {"color": "#87a9cf", "linewidth": 1.2})):
+    for chosen, label, look in (((status == STUCK) & ~slipped, "contacts sticking", {"color": "0.65", "linewidth": 0.5}),
+                                (slipped, "sticking, slipped earlier", {"color": "#87a9cf", "linewidth": 1.2})):
         axes.add_collection(LineCollection(lines[chosen[of_contact]], zorder=2, **look))
-        if label == "contacts closed" or np.any(chosen):
+        if label == "contacts sticking" or np.any(chosen):
             entries.append(matplotlib.lines.Line2D([], [], label=f"{np.sum(chosen & seen)} {label}", **look))
     if section.window:
         entries[0].set_label(f"{entries[0].get_label()} (numbers: of the window)")

@@ -22,11 +22,12 @@ from campaign import ROOT, Campaign, chance
 
 GROUPS = {  # sources
     "laws": ["libs/joint/*.hpp", "libs/rock/mohr_coulomb.cpp", "libs/rock/mohr_coulomb.hpp"],
-    "certificate": ["libs/mechanics/assembly.cpp", "libs/mechanics/rest.cpp", "libs/mechanics/failure.cpp",
-                    "libs/relaxation/relax.cpp", "libs/analysis/guards.cpp"],
+    "convergence criteria": ["libs/mechanics/assembly.cpp", "libs/mechanics/rest.cpp", "libs/mechanics/failure.cpp",
+                             "libs/relaxation/relax.cpp", "libs/analysis/guards.cpp"],
     "subdivision": ["libs/blocks/*.cpp"],
     "statistics": ["libs/statistics/*.cpp"],
 }
+DRAWN_AS = {"convergence criteria": "certificate"}  # the name by which a seed draws places: seeds keep their places
 WHOLE = ["figures", "verification", "literature", "statistics", "joint_laws", "blocks", "bridges", "boundaries", "restart"]
 NEAR = ("blocks/", "statistics/", "sampling/", "zoning/", "exchange/", "pipeline/figures", "pipeline/statistics", "pipeline/blocks")
 LONGEST = 600  # s of the processor, of a test without a mutant
@@ -100,7 +101,7 @@ class Mutants:
         for group, patterns in GROUPS.items():
             found = [(path, *place) for pattern in patterns for path in sorted(ROOT.glob(pattern))
                      for place in places(path.read_text())]
-            for path, *place in chance("mutants", campaign.seed, group).sample(found, min(2 * share, len(found))):
+            for path, *place in chance("mutants", campaign.seed, DRAWN_AS.get(group, group)).sample(found, min(2 * share, len(found))):
                 self.chosen.append((len(self.chosen) + 1, group, path.relative_to(ROOT), *place))
         # Of the sources, by path: they may change while the campaign runs.
         self.text = {path: (ROOT / path).read_text() for _, _, path, *_ in self.chosen}
@@ -154,7 +155,7 @@ class Mutants:
 def found_by(number, group, tests):
     """The name of the first test that finds a mutant, or None."""
     return next((test.name for test in tests if number in test.reached
-                 and (group in ("laws", "certificate") or test.name.startswith(NEAR))
+                 and (group in ("laws", "convergence criteria") or test.name.startswith(NEAR))
                  and test.fails(number, int(SLOWER * test.seconds + MARGIN))), None)
 
 

@@ -5,7 +5,7 @@
 
 Each choice is changed alone, on the same NETWORKS networks (realizations 0, 1, ...) as the scene's own run. In OUT it
 writes study.md, study.csv and tornado.png. Every run leaves OUT/runs/CHOICE-NUMBER.json and is not made again until scene
-or programs are newer: stopped at any time, the study goes on from there.
+or programs are newer: stopped at any time, the study continues from there.
 
 The numbers are of the points below the crest: for every point the median over networks, and of these the mean. First
 readings and the network itself change without further runs: the former by reading the same histories on other days, the
@@ -103,7 +103,7 @@ def read(path):
 
 
 def result_of(programs, scene, out, name, options, number):
-    """One run, from its file if that is newer than all that it hangs on."""
+    """One run, from its file if that is newer than all that it depends on."""
     path = out / "runs" / f"{name}-{number:02d}.json"
     sources = [scene, HERE / "variant.py", *(programs / name for name in ("jointgen", "strength-averaging", "demsolve"))]
     if path.exists() and all(path.stat().st_mtime >= source.stat().st_mtime for source in sources):

@@ -56,7 +56,7 @@ def shown(value):
 
 
 def line_of(key, value, comment):
-    """`key = value  # comment`; a list too long for a line goes on in further ones."""
+    """`key = value  # comment`; a list too long for a line has several lines."""
     line = f"{key} = {shown(value)}"
     if len(line) + 2 + len(comment) <= WIDTH or not isinstance(value, list):
         return f"{line:<46} {comment}".rstrip()
@@ -209,7 +209,7 @@ def box(scene, half, bottom):
 
 
 def domain(scene, half, bottom):
-    """Sides and base of the section elsewhere; the ground goes on level."""
+    """Sides and base of the section elsewhere; the ground is level there."""
     left = min(x for x, _ in scene["section"]["outline_m"])
     lowest = min(y for _, y in scene["section"]["outline_m"])
 

@@ -71,7 +71,7 @@ class Plots(ChainTest):
         self.assertTrue((status[drawn] != 0).all())
 
     def test_contacts_that_slipped_earlier(self):
-        """They are closed again, and drawn apart from those that never slipped."""
+        """They stick again, and are drawn apart from those that never slipped."""
         import h5py
         from jointcreep import plots
         result = self.chain.result(self.chain.small())
@@ -82,7 +82,7 @@ class Plots(ChainTest):
             slip[-1, closed[:3]] = (0.001, -0.002, 0.003)
         legend = plots.draw("state", result, field="contacts").axes[0].get_legend()
         labels = [text.get_text() for text in legend.get_texts()]
-        self.assertEqual(labels[:2], [f"{len(closed) - 3} contacts closed", "3 closed, slipped earlier"])
+        self.assertEqual(labels[:2], [f"{len(closed) - 3} contacts sticking", "3 sticking, slipped earlier"])
 
     def test_functions(self):
         """What the functions draw is what the scripts draw, also one after another; what a file lacks is an exception."""

@@ -245,7 +245,7 @@ class Verify(ChainTest):
             ("nothing has slipped, dilated or crept at the in-situ equilibrium", "dilation", s + "slip", at(0, 0), put(1e-6)),
             ("shear traction is within the strength", "slope", s + "traction", y(last(s, slips)), times(1.001)),
             ("normal traction is within the tensile strength", "slope", s + "traction", x(last(s, touching)), put(1e4)),
-            ("stuck contacts are below their strength", "slope", s + "contact_status", last(s, slips), put(STUCK)),
+            ("sticking contacts are below their strength", "slope", s + "contact_status", last(s, slips), put(STUCK)),
             ("slipping contacts are at their strength", "slope", s + "contact_status", last(s, stuck), put(SLIPPING)),
             ("bonds of contacts that opened, or slipped with a residual strength, are broken", "residual",
              s + "bond_broken", at(-1, 0), put(0)),
