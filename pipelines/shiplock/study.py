@@ -192,8 +192,8 @@ def markdown(own, rows, networks, points):
         cells.insert(4, largest_change(own, found))
         cells.append(misfit_of(found))
         lines.append("| " + " | ".join(cells) + " |")
-    lines += ["", f"Horizontal, toward the lock, at the end of 1999: the mean over {points} of the medians over "
-                  f"{own['networks']} network{'s' if own['networks'] > 1 else ''}, or as many as are said to have equilibrium."]
+    lines += ["", "Horizontal, toward the lock, at the end of 1999. Each point has its median over the networks with an equilibrium "
+                  f"({own['networks']}, or the number in the row). The table has the mean of these medians over {points}."]
     if any(what.startswith("network") for what, *_ in rows):
         lines.append(f"Rows of the network: {networks} networks.")
     return "\n".join(lines) + "\n"
