@@ -537,7 +537,8 @@ Joints sample_joints(const Scene& scene, std::uint64_t seed, std::int32_t realiz
         for (const std::string& name : set.terminates_at) {
             const auto found = std::find(names.joint_set.begin(), names.joint_set.end(), name);
             if (found == names.joint_set.end())
-                throw input_error(quoted(set) + ": terminates_at has \"" + name + "\"; expected the name of a joint set");
+                throw input_error(quoted(set) + ": terminates_at has \"" + name +
+                                  "\"; expected the name of a joint set");
             stops.push_back(&of_set[static_cast<std::size_t>(found - names.joint_set.begin())]);
         }
         sample(i, set, TraceIndex(stops));

@@ -515,7 +515,7 @@ def curve(given, tables, failed):
 
 
 TABLES = {
-    "apart": ["section", "sigma, mm", "factor", "truth", "fits", "intervals that hold it", "median interval", "named as not resolved", "no fit"],
+    "apart": ["section", "sigma, mm", "factor", "truth", "fits", "intervals that contain it", "median interval", "named as not resolved", "no fit"],
     "curve": ["drift, mm/day", "distance from the nearest curve without drift, sigma", "no test warns more often than", "fits", "warned of"],
     "networks": ["readings a day", "networks", "sites", *TRUTH, "half of eta within x/", "interval of eta, high over low", "no fit"],
     "fits": ["section", "readings", "options", "fits", *TRUTH, "warned of", "no fit"],

@@ -1,7 +1,7 @@
 """Are laws found back from windows that cut their traces?  fits.py PROGRAMS OUT [--n WINDOWS]
 
 jointgen makes many sections of each of some sets, whose traces the section cuts. Each is fitted as `jointcreep fit` does. A row a constant: the
-truth, the median fit, the share of 95 percent intervals that hold the truth, and the same of the naive fit, which takes every length
+truth, the median fit, the share of 95 percent intervals that contain the truth, and the same of the naive fit, which takes every length
 seen as whole and every trace as met alike. Ends with exit code 1 where the share is off by more than three binomial standard errors.
 """
 
@@ -112,7 +112,7 @@ def main():
     parser.add_argument("--n", type=int, default=500)
     given = parser.parse_args()
     given.out.mkdir(parents=True, exist_ok=True)
-    lines = ["| law | shortest mapped, m | traces seen, whole | constant | truth | median fit | intervals that hold it | naive fit | its intervals "
+    lines = ["| law | shortest mapped, m | traces seen, whole | constant | truth | median fit | intervals that contain it | naive fit | its intervals "
              "| |", "|---|---|---|---|---|---|---|---|---|---|"]
     failed = False
     for law, constants, shortest in SETS:
