@@ -378,7 +378,7 @@ def toppling(programs):
         off = max(abs(computed[i] - forces[i]) for i in range(sliding, 15)) / most
         rows.append(Row(name, f"forces between columns that topple, tan(phi) = {tan_phi}: largest difference, over the "
                         "largest force", "1", 0, off, 1e-4, why, 1))
-    # From 0.784 on columns come to rest behind a toe that goes away: friction holds them in more than one way.
+    # From 0.784 on columns stop behind a toe that moves away: more than one distribution of friction is in equilibrium.
     last = list(toes.items())[1:]
     parabola = np.polyfit([force for _, force in last], [tan_phi for tan_phi, _ in last], 2)
     rows.append(Row(name, "tan(phi) with which the toe needs no force (published: 0.7855)", "1", columns_limit(),

@@ -179,7 +179,7 @@ def runs(group):
 
 
 def files(folder):
-    """Bytes of every file below, by name; not what a study goes on from, nor its times, nor pictures, which come last."""
+    """Bytes of every file below, by name; without the state from which a study continues, its times, and pictures, which come last."""
     return {str(path.relative_to(folder)): path.read_bytes() for path in sorted(folder.rglob("*"))
             if path.is_file() and path.suffix != ".png" and not OF_A_STUDY.search(str(path))}
 
