@@ -22,6 +22,7 @@ Options:
   -j [ --jobs ] N           study: runs at a time (default 1)
   --snakemake PROFILE       study: make runs by Snakemake with this profile, a folder with config.yaml, in place of Make
   --realization R           run: which of the seed's networks (default 0)
+  --pairs PAIRS             report: pairs of points for closures: "left wall,right wall; crown,floor" (default: all)
   --makefile                run: write OUT/Makefile with these commands, and make nothing else
   --programs FOLDER         where jointgen, strength-averaging and demsolve are (default: beside jointcreep, then PATH)
   -q [ --quiet ]            run, study, fit: no commands, no progress and no summary
@@ -181,7 +182,8 @@ def report(source, options, beside):
     """Writes a report."""
     from . import report as page
     output = options["output"]
-    page.write(source, output if output == files.STANDARD_OUTPUT else pathlib.Path(output), programs_in(options.get("programs"), beside))
+    page.write(source, output if output == files.STANDARD_OUTPUT else pathlib.Path(output), programs_in(options.get("programs"), beside),
+               options.get("pairs"))
     return 0
 
 
@@ -194,7 +196,7 @@ def fit(source, options, beside):
 SUBCOMMANDS = {
     "run": Subcommand(run, {"--realization": "realization", "--makefile": "makefile", "-q": "quiet", "--quiet": "quiet"}, passes_on=True),
     "study": Subcommand(study, {"-j": "jobs", "--jobs": "jobs", "--snakemake": "snakemake", "-q": "quiet", "--quiet": "quiet"}),
-    "report": Subcommand(report, {}, writes_text=True),
+    "report": Subcommand(report, {"--pairs": "pairs"}, writes_text=True),
     "fit": Subcommand(fit, {"-q": "quiet", "--quiet": "quiet", **{f"--{name}": name for name in FIT_OPTIONS}}, writes_text=True),
 }
 

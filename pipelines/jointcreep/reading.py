@@ -82,6 +82,17 @@ class History:
         """Displacement of a point [time, {x, y}] [m]. Raises NotWanted if there is none of that name."""
         return self.displacement[:, place_of(self.point, point, "point")]
 
+    def relative(self, point, to):
+        """Displacement of a point relative to another one [time, {x, y}] [m]; nan where one of them is not there any more."""
+        of_both = [place_of(self.point, name, "point") for name in (point, to)]
+        there = self.present[:, of_both].all(axis=1)
+        return np.where(there[:, None], self.of(point) - self.of(to), np.nan)
+
+    def closure(self, point, other):
+        """By how much the distance of two points has become smaller [time] [m], as a tape measures it: positive where they approach."""
+        apart = self.position[place_of(self.point, other, "point")] - self.position[place_of(self.point, point, "point")]
+        return np.linalg.norm(apart) - np.linalg.norm(apart + self.relative(other, point), axis=1)
+
     def since_first_reading(self):
         """Displacement since each point's first reading [time, point, {x, y}] [m]; before it, it is minus what came before."""
         return self.displacement - self.displacement[self.first_reading_row, np.arange(len(self.point))]
@@ -191,11 +202,13 @@ class File:
         return self.table("/equilibria", len(self["/equilibria/steps"]))
 
     def moving_blocks(self):
-        """Table of the blocks that move in the end of a run without equilibrium (NAME.failed.h5): block, its middle (m), motion (m), that
-        is the displacement in the last steps of the solver, the fastest first."""
+        """Table of the blocks that move in the end of a run without equilibrium (NAME.failed.h5): block, its area (m2; the volume in m3 of
+        each metre of the section's thickness), its middle (m), motion (m), that is the displacement in the last steps of the solver, the
+        fastest first."""
         table = Table()
         order = np.argsort(-np.linalg.norm(self["/failure/motion"], axis=1), kind="stable")
         table.put("block", self["/failure/block"][order])
+        table.put("area", self["/blocks/area"][table["block"]], "m2")
         table.put("place", self["/failure/place"][order], "m")
         table.put("motion", self["/failure/motion"][order], "m")
         return table

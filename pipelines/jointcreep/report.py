@@ -3,6 +3,7 @@
 import base64
 import csv
 import html
+import itertools
 import os
 import pathlib
 import subprocess
@@ -27,6 +28,8 @@ pre { background: #f4f5f8; padding: .8em; overflow-x: auto; font-size: 85%; whit
 """
 MOST_ROWS = 50  # of a table of runs that have no value
 MOST_BLOCKS = 10  # of the table of moving blocks
+MOST_PAIRS = 15  # of points, in the table of relative displacements
+DRAWN_PAIRS = 6  # of them, in its picture
 CAPTIONS = {
     "distribution": "Share of runs up to a value.",
     "convergence": "Statistics over the number of runs.",
@@ -92,14 +95,32 @@ def settings(scene):
     return "<p>Keys of the scene; all others have their defaults.</p>" + table(["table", "key", "value"], rows)
 
 
+def failed_name(source):
+    """Name of the file that demsolve --factor-of-safety writes beside a result, of the run without equilibrium."""
+    return f"{source.stem}.failed{source.suffix}"
+
+
 def failed_run(source):
     """The result of the run without equilibrium that demsolve --factor-of-safety writes beside a result; None if there is none."""
-    path = source.with_name(f"{source.stem}.failed{source.suffix}")
+    path = source.with_name(failed_name(source))
     if not path.exists():
         return None
     with h5py.File(source) as file, h5py.File(path) as other:
         of_same = "/safety" in other and np.array_equal(file["/safety/factor"], other["/safety/factor"])
         return path if of_same and "/failure" in other else None
+
+
+def moving_blocks(failed):
+    """Parts of the page about the blocks that move in the end of a run without equilibrium: where they are, how large and how fast."""
+    moving = reading.File(failed).moving_blocks()
+    if not moving.rows():
+        return []
+    rows = [(int(block), area, x, y, 1e3 * by_x, 1e3 * by_y) for block, area, x, y, by_x, by_y in zip(*moving.values())]
+    count = f"the fastest {MOST_BLOCKS} of {len(rows)} moving blocks" if len(rows) > MOST_BLOCKS else "all of them"
+    area = moving["area"].sum()
+    return [f"<p>{len(rows)} moving block{'s' * (len(rows) > 1)}, area {area:.4g} m2 in all: {area:.4g} m3 for each metre along the "
+            f"strike. The table has {count}; the motion is that of the last steps of the solver.</p>",
+            table(["moving block", "area (m2)", "x (m)", "y (m)", "motion x (mm)", "motion y (mm)"], rows[:MOST_BLOCKS])]
 
 
 def factor_of_safety(source, folder):
@@ -117,18 +138,18 @@ def factor_of_safety(source, folder):
     parts.append(drawn("safety", source, folder, "The largest displacement over the strength reduction factor."))
     failed = failed_run(source)
     if failed:
+        parts.append("<h3>What moves at failure</h3>")
         parts.append(drawn("state", failed, folder, "The run with the smallest factor without equilibrium: moving blocks.",
                            around_failure=True))
-        moving = reading.File(failed).moving_blocks()
-        parts.append(table(["moving block", "x (m)", "y (m)", "displacement x (mm)", "displacement y (mm)"],
-                           [(int(block), x, y, 1e3 * by_x, 1e3 * by_y) for block, x, y, by_x, by_y in zip(*moving.values())][:MOST_BLOCKS]))
-        parts.append("<p>Displacements in the last steps of the solver.</p>")
-        parts += [f"<p>The fastest {MOST_BLOCKS} of {moving.rows()} moving blocks.</p>"] * (moving.rows() > MOST_BLOCKS)
+        parts += moving_blocks(failed)
+    elif high:
+        parts.append(f"<p>What moves at failure is in {escaped(failed_name(source))}, which is not beside this result, or is of another "
+                     "search: no picture of it.</p>")
     return parts
 
 
-def of_run(source, programs, folder):
-    """Title and parts of the page of a result file."""
+def of_run(source, programs, folder, pairs=None):
+    """Title and parts of the page of a result file. pairs: of points, as relative_displacements()."""
     import figure  # matplotlib takes long to load
     from suited import detail
     with h5py.File(source) as file:
@@ -157,12 +178,16 @@ def of_run(source, programs, folder):
         parts.append(table(["point", f"x on day {time[-1]:g} (mm)", "y (mm)", ""],
                            [(name, 1e3 * x, 1e3 * y, "" if there else "excavated; its last displacement")
                             for name, (x, y), there in zip(points, last, present)]))
+        parts += relative_displacements(source, folder, pairs)
+    elif pairs:
+        raise NotWanted(f"--pairs: {source.name} has no monitoring points")
     if "monitoring_line" in scene:
         parts.append(drawn("line", source, folder, "Displacements along monitoring lines."))
     parts.append("<h2>Last state before the run ended early</h2>" if failure else "<h2>State at the end</h2>")
     if failure:
         parts.append(drawn("state", source, folder, "Moving blocks.", around_failure=True,
                            magnify=1 if "large_displacements" in scene else 0))
+        parts += moving_blocks(source)
     for field, caption in (("displacement", "Displacements."), ("stress", "Stresses."), ("contacts", "Contacts that slip or open.")):
         parts.append(drawn("state", source, folder, caption, field=field, window=window))
     parts += ["<h2>Numbers</h2>", table(["", ""], numbers), "<h2>Settings</h2>", settings(scene), "<h2>Warnings</h2>",
@@ -171,6 +196,54 @@ def of_run(source, programs, folder):
               "<h2>Versions</h2>", table(["program", "version", "options"], chain),
               "<h2>Scene</h2>", f"<pre>{escaped(scene_text)}</pre>"]
     return scene.get("title") or source.name, parts
+
+
+def pairs_of(text, points):
+    """Pairs of names from --pairs "left wall,right wall; crown,floor". A name may have commas."""
+    pairs = []
+    for part in filter(None, (one.strip() for one in text.split(";"))):
+        words = part.split(",")
+        cuts = [(",".join(words[:at]).strip(), ",".join(words[at:]).strip()) for at in range(1, len(words))]
+        fitting = [cut for cut in cuts if cut[0] in points and cut[1] in points and cut[0] != cut[1]]
+        if not fitting:
+            raise NotWanted(f'--pairs: "{part}" is not two points of the result, with a comma between; there are: {", ".join(points)}')
+        pairs.append(fitting[0])
+    if not pairs:
+        raise NotWanted('--pairs has no pair; expected such as "left wall,right wall; crown,floor"')
+    return pairs
+
+
+def relative_displacements(source, folder, wanted):
+    """Parts of the page about pairs of monitoring points: closure, and displacement of the first relative to the second. wanted: pairs in
+    words, as pairs_of() reads them; None: pairs of all points that are not on monitoring lines, those that move most against each other."""
+    from plot_histories import of_no_line
+    result = reading.File(source)
+    history = result.history()
+    with h5py.File(source) as file:
+        names = [history.point[at] for at in of_no_line(file, history.point)]
+    pairs = pairs_of(wanted, history.point) if wanted else list(itertools.combinations(names, 2)) if names else []
+    place, rows = dict(zip(history.point, history.position)), []
+    for one, other in pairs:
+        relative = history.relative(one, other)
+        there = np.flatnonzero(np.isfinite(relative[:, 0]))
+        if len(there):
+            last = there[-1]
+            rows.append((one, other, float(np.linalg.norm(place[one] - place[other])), *(1e3 * float(value) for value in (
+                history.closure(one, other)[last], *relative[last])), "" if last == len(history.time) - 1 else
+                f"until day {history.time[last]:.12g}: one of them is excavated"))
+    if not rows:
+        return []
+    count = len(rows)
+    if not wanted and count > MOST_PAIRS:
+        rows = sorted(rows, key=lambda row: -np.hypot(*row[4:6]))[:MOST_PAIRS]
+    largest = sorted(rows, key=lambda row: -np.hypot(*row[4:6]))[:DRAWN_PAIRS] if not wanted else rows[:DRAWN_PAIRS]
+    which = f" The {MOST_PAIRS} of {count} pairs that move most against each other; --pairs of jointcreep report chooses others." \
+        if len(rows) < count else "" if wanted else " --pairs of jointcreep report chooses pairs."
+    return ["<h3>Relative displacements</h3>",
+            "<p>Closure: by how much the distance of two points has become smaller, as a tape measures it; negative where they move apart. "
+            f"Relative x, y: displacement of the first point less that of the second.{escaped(which)}</p>",
+            table(["point", "other point", "distance (m)", "closure (mm)", "relative x (mm)", "relative y (mm)", ""], rows),
+            drawn("histories", source, folder, "Closure of pairs of points.", pair=[row[:2] for row in largest])]
 
 
 def checks(source, programs):
@@ -264,9 +337,12 @@ def of_study(out, programs, folder):
     return study.title or f"Study of {scene.get('title', out.name)}", parts
 
 
-def write(source, output, programs):
-    """Writes the page of a result file or of a study's folder. output: a Path, or "-": standard output."""
+def write(source, output, programs, pairs=None):
+    """Writes the page of a result file or of a study's folder. output: a Path, or "-": standard output. pairs: of the points of a result,
+    as relative_displacements()."""
     is_study = source.is_dir()
+    if is_study and pairs:
+        raise NotWanted("--pairs is for result files; a study collects a displacement with relative_to")
     if is_study and not all((source / name).exists() for name in ("plan.json", "runs.csv", "summary.txt", "pictures.json")):
         raise NotWanted(f"{source}: is not the folder of a study that has ended; first run: jointcreep study STUDY.toml -o {source}")
     if not is_study:
@@ -283,5 +359,6 @@ def write(source, output, programs):
     if output != files.STANDARD_OUTPUT and output.exists() and (output.is_dir() or not is_study and os.path.samefile(output, source)):
         raise NotWanted(f"{output}: is a folder, or the file that is read; expected the name of a report, such as report.html")
     with tempfile.TemporaryDirectory(prefix="jointcreep-") as folder:
-        title, parts = (of_study if is_study else of_run)(source.resolve(), programs, pathlib.Path(folder))
+        path, folder = source.resolve(), pathlib.Path(folder)
+        title, parts = of_study(path, programs, folder) if is_study else of_run(path, programs, folder, pairs)
     files.write_output(output, page(title, parts))

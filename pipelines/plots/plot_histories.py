@@ -4,6 +4,8 @@
 All points that are not on monitoring lines are drawn; if all are on lines,
 these (plot_line.py). A point's history ends when it is removed. Displacements count from the in-situ equilibrium, or with --readings from
 each point's own first reading, where its curve begins.
+
+With --pair the curves are of pairs of points: the closure, or a component of the displacement of the first point relative to the second.
 """
 
 import matplotlib.lines
@@ -17,6 +19,11 @@ LABELS = {
     "x": "horizontal displacement, to the right",
     "y": "vertical displacement, upward",
     "toward": "horizontal displacement, toward the excavation",
+}
+OF_PAIRS = {
+    "closure": "closure: decrease of the distance",
+    "x": "displacement relative to the second point, to the right",
+    "y": "displacement relative to the second point, upward",
 }
 
 
@@ -41,6 +48,30 @@ class Histories:
         self.shown = figure.array(file, "/history/present")[:, chosen] == 1
         if readings:
             self.shown &= np.arange(len(self.time))[:, None] >= first[chosen]
+
+
+class OfPairs:
+    """The same of pairs of points: their closure, or the displacement of the first relative to the second, where both are there."""
+
+    def __init__(self, file, component, pairs):
+        self.time = figure.array(file, "/history/time")
+        self.event = figure.texts(file, "/history/event")
+        names = figure.texts(file, "/history/point")
+        place = figure.array(file, "/history/point_position")
+        moves = figure.array(file, "/history/displacement")
+        present = figure.array(file, "/history/present") == 1
+        self.names, values, shown = [], [], []
+        for pair in pairs:
+            one, other = (figure.name_index(names, name, "point") for name in pair)
+            if one == other:
+                raise figure.NotWanted(f"--pair: '{pair[0]}' is there twice; wanted two points")
+            relative = moves[:, one] - moves[:, other]
+            apart = place[one] - place[other]
+            values.append(np.linalg.norm(apart) - np.linalg.norm(apart + relative, axis=1) if component == "closure" else
+                          relative[:, "xy".index(component)])
+            shown.append(present[:, one] & present[:, other])
+            self.names.append(f"{pair[0]} - {pair[1]}")
+        self.values, self.shown = 1e3 * np.transpose(values), np.transpose(shown)  # [mm]
 
 
 def of_no_line(file, names):
@@ -93,17 +124,24 @@ def histories_without(path, file, *options):
         return Histories(other, *options)
 
 
-def draw(file, component="y", point=(), readings=False, since_reset=False, without=None, closed_form=None):
-    """Figure of histories: component "x", "y" or "toward"; of all points, or those that are named; readings: since each point's first;
-    without: path of a result of the same scene without creep."""
+def draw(file, component=None, point=(), readings=False, since_reset=False, without=None, closed_form=None, pair=()):
+    """Figure of histories: component "x", "y" (the default) or "toward"; of all points, or those that are named; readings: since each
+    point's first; without: path of a result of the same scene without creep. pair: pairs of points in their place, component "closure"
+    (the default), "x" or "y"."""
+    component = component or ("closure" if pair else "y")
+    if component not in (OF_PAIRS if pair else LABELS):
+        raise figure.NotWanted(f"--component {component} is not of {'pairs' if pair else 'single points'}; wanted "
+                               f"{', '.join(OF_PAIRS if pair else LABELS)}")
+    if pair and (point or readings or since_reset or without or closed_form):
+        raise figure.NotWanted("--pair goes with --component only")
     options = component, point, readings, since_reset
-    histories = Histories(file, *options)
+    histories = OfPairs(file, component, pair) if pair else Histories(file, *options)
     names = histories.names
     plot, axes = figure.plt.subplots(figsize=(figure.TWO_COLUMNS * 0.8, 3.4))
     looks = [{"color": figure.COLORS[i % 6], "marker": figure.MARKERS[i % 6], "markerfacecolor": "white",
               "markeredgewidth": 0.8, "linewidth": 1.0,
               "linestyle": "-" if without else figure.LINES[i % 6]} for i in range(len(names))]
-    exact, title = closed_form == "column", "monitoring point"
+    exact, title = closed_form == "column", "pair of points" if pair else "monitoring point"
     if exact:
         if component != "y" or readings or since_reset or without:
             raise figure.NotWanted("the column's closed form is vertical, with creep and since the in-situ "
@@ -137,7 +175,7 @@ def draw(file, component="y", point=(), readings=False, since_reset=False, witho
     if readings and since_reset:
         raise figure.NotWanted("wanted either --readings or --since-reset, not both")
     figure.label_time(file, axes, figure.ending_of(file))
-    axes.set_ylabel(f"{LABELS[component]},\n{since} (mm)")
+    axes.set_ylabel(f"{(OF_PAIRS if pair else LABELS)[component]},\n{since} (mm)")
     if exact:  # its title is long
         place = {"loc": "best", "frameon": True, "framealpha": 1, "edgecolor": "none"}
     else:
@@ -150,8 +188,11 @@ def draw(file, component="y", point=(), readings=False, since_reset=False, witho
 if __name__ == "__main__":
     figure.run(draw, figure.arguments_of(
         __doc__,
-        (["--component"], {"choices": list(LABELS), "default": "y", "help": "toward: horizontal, toward the middle of what is removed; default: y"}),
+        (["--component"], {"choices": [*LABELS, "closure"],
+                           "help": "toward: horizontal, toward the middle of what is removed; closure: of pairs; default: y, of pairs closure"}),
         (["--point"], {"action": "append", "default": [], "help": "only this point; may be given several times"}),
+        (["--pair"], {"action": "append", "nargs": 2, "default": [], "metavar": ("POINT", "OTHER"),
+                      "help": "two points in place of one: closure, or displacement of POINT relative to OTHER; may be given several times"}),
         (["--readings"], {"action": "store_true", "help": "displacements since each point's own first reading"}),
         (["--since-reset"], {"action": "store_true", "help": "displacements since the last stage that resets them"}),
         (["--without"], {"metavar": "RESULT.h5", "help": "the same scene without creep, drawn thin and dashed"}),

@@ -305,6 +305,8 @@ class Documentation(ChainTest):
                   "assert [path for path in sys.path if path.endswith('/plots')] == [str(pathlib.Path('pipelines/plots').resolve())]\n"
                   "file = h5py.File('out/slope/result.h5')\n"
                   "assert (history.displacement == file['/history/displacement'][()]).all() and table.units['displacement x'] == 'm'\n"
+                  "place = dict(zip(history.point, history.position))\n"
+                  "apart = place['crest'] - place['toe']\n"
                   "assert closure[0] == 0 and abs(closure[-1] + relative[-1] @ apart / numpy.linalg.norm(apart)) < 1e-6 < abs(closure[-1])\n"
                   "assert abs(network.blocks()['area'].sum() - 120 * 70) < 1e-6\n"
                   "assert 'frame' not in globals() or frame.attrs['units']['length'] == 'm' and len(frame) == contacts.rows()\n"

@@ -24,7 +24,7 @@ import numpy as np
 
 from chain import LONGEST_RUN, ChainTest, alive, datasets, main
 
-from jointcreep import answers, failure, intervals, plan, runs, scene_keys, study_file
+from jointcreep import answers, failure, intervals, plan, plots, runs, scene_keys, study_file
 from jointcreep import design as draw_design
 from jointcreep.errors import NotWanted
 
@@ -901,6 +901,33 @@ class Reports(Studies):
         self.assertRegex(page, r"jointverify: verified: (\d+) checks of \1<")
         self.assertGreaterEqual(page.count("<img"), 7)
         self.assertIn("excavated; its last displacement", page)
+
+    def test_relative_displacements(self):
+        """Closure and relative displacement of pairs of points: of all, or of those that are asked for."""
+        joints = self.chain.joints(SCENE)
+        result = self.chain.run("demsolve", joints, joints.with_name("r.h5"))
+        data = datasets(result)
+        names, moves = list(data["/history/point"]), data["/history/displacement"]
+        one, other = names.index("crest"), names.index("floor")
+        before = data["/history/point_position"][one] - data["/history/point_position"][other]
+        relative = (moves[:, one] - moves[:, other])[-1]
+        closure = np.linalg.norm(before) - np.linalg.norm(before + relative)
+        row = "".join(f'<td class="number">{value:.4g}</td>' for value in (1e3 * closure, *1e3 * relative))
+        page = self.report(result)
+        self.assertIn("<td>crest</td><td>floor</td>", page)
+        self.assertIn(row, page)
+        self.assertIn('alt="Closure of pairs of points."', page)
+        self.assertIn(">until day 2: one of them is excavated<", page[page.index("Relative displacements"):][:3000])
+        drawn = plots.draw("histories", result, pair=[("crest", "floor")]).axes[0].lines[0].get_ydata()
+        self.assertAlmostEqual(drawn[-1], 1e3 * closure, places=12)
+        self.report(result, "x.html")
+        for pairs, code in (("floor,crest", 0), ("floor,none", 2), ("floor", 2), (" ; ", 2), ("floor,floor", 2)):
+            done = subprocess.run([self.chain.programs / "jointcreep", "report", result, "--pairs", pairs, "-o", self.folder / "p.html"],
+                                  capture_output=True, text=True)
+            self.assertEqual(done.returncode, code, done.stderr)
+        page = (self.folder / "p.html").read_text()
+        self.assertIn("<td>floor</td><td>crest</td>", page)
+        self.assertNotIn("<td>crest</td><td>floor</td>", page)
 
     def test_of_a_study(self):
         out = self.made(self.written(NETWORKS.format(runs=12)), self.folder / "out")
