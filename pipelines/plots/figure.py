@@ -288,6 +288,26 @@ def draw_rocks(scene, axes, names=None):
     return [matplotlib.patches.Patch(facecolor=color[rock], label=(names or {}).get(rock, rock)) for rock in rocks]
 
 
+BORDER = {"color": "0.4", "linewidth": 0.7, "linestyle": (0, (5, 3))}  # of what joint sets are generated in
+
+
+def draw_region_borders(scene, axes):
+    """Borders of the regions that joint sets are generated in (region_m), each once: joints end there. Returns a legend entry, if the
+    axes show one."""
+    regions = {tuple(map(tuple, one["region_m"])): one["name"] for one in reversed(scene.get("joint_set", [])) if "region_m" in one}
+    inside, seen = matplotlib.patches.Polygon(scene["section"]["outline_m"], transform=axes.transData), False
+    for corners in regions:
+        closed = np.array([*corners, corners[0]], float)
+        (line,) = axes.plot(*closed.T, zorder=2.4, **BORDER)  # under the outline, which it may follow
+        line.set_clip_path(inside)
+        line.set_in_layout(False)
+        low, high = np.transpose([axes.get_xlim(), axes.get_ylim()])
+        for start, end in zip(closed, closed[1:]):
+            places = start + np.linspace(0, 1, 50)[:, None] * (end - start)
+            seen |= bool(np.any(np.all((low < places) & (places < high), axis=1)))
+    return [matplotlib.lines.Line2D([], [], label="border of joint sets (region_m): no joints beyond", **BORDER)] if seen else []
+
+
 def legend_below(axes, *groups):
     """A legend under the axes, a column for each group of entries if there is room; the figure grows by its height."""
     width, height = axes.figure.get_size_inches()

@@ -292,7 +292,7 @@ def draw_contacts(file, state, section, axes):
     if np.any((status > STUCK) & seen):
         entries.append(matplotlib.lines.Line2D([], [], color="0.3", linewidth=thin,
                                                label="thinnest: no displacement since the in-situ state"))
-    return entries
+    return entries + figure.draw_region_borders(figure.scene_of(file), axes)
 
 
 def draw_blocks(section, of_block, axes, zorder, facecolor, **look):

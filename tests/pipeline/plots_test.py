@@ -84,6 +84,23 @@ class Plots(ChainTest):
         labels = [text.get_text() for text in legend.get_texts()]
         self.assertEqual(labels[:2], [f"{len(closed) - 3} contacts sticking", "3 sticking, slipped earlier"])
 
+    def test_borders_of_joint_sets(self):
+        """Pictures of contacts have the borders of region_m as one dashed line, if the window shows a part of it."""
+        import figure
+        from jointcreep import plots
+        region = [[2, 2], [28, 2], [28, 18], [2, 18]]
+        text = changed(self.chain.small(), "^persistence = 1$", f"persistence = 1\nregion_m = {region}", 2)
+        result = self.chain.result(text, "--no-creep")
+        for window, count in ((None, 1), ((1, 1, 10, 10), 1), ((5, 5, 25, 15), 0)):
+            axes = plots.draw("state", result, field="contacts", window=window).axes[0]
+            labels = [one.get_text() for one in axes.get_legend().get_texts()]
+            self.assertEqual(sum("region_m" in label for label in labels), count, labels)
+            dashed = [line for line in axes.lines if line.get_color() == figure.BORDER["color"]]
+            self.assertEqual([line.get_xydata().tolist() for line in dashed], [[*region, region[0]]])
+        axes = plots.draw("state", self.chain.result(self.chain.small(), "--no-creep"), field="contacts").axes[0]
+        self.assertFalse([line for line in axes.lines if line.get_color() == figure.BORDER["color"]])
+        figure.plt.close("all")
+
     def test_functions(self):
         """What the functions draw is what the scripts draw, also one after another; what a file lacks is an exception."""
         from jointcreep import NotWanted, plots
