@@ -14,6 +14,8 @@ SIDES = [(1, 1), (-1, 1), (1, -1), (-1, -1)]  # of a place, where its name can b
 AWAY = 11  # a name that has no room beside its place is this much farther off, or a multiple [pt]
 LETTER, LINE = 4.4, 9  # width of a letter and height of a line [pt]
 TICKS = 3  # ticks on a monitoring line are not closer than this [pt]
+CLOSE = 16  # names of places that are closer can be taken for each other's: letters stand for all names then [pt]
+LETTERS = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz"
 FEW = 8  # entries of one kind in the legend; of more there is one for all
 
 
@@ -59,24 +61,46 @@ def draw_joints(file, axes, inside):
     return entries
 
 
-def draw_number(number, corners, axes, taken, font):
-    """Writes a stage's number in its middle, or where nothing is written yet; taken as in free_box()."""
+def draw_number(number, corners, axes, taken, font, crowded=False):
+    """Writes a stage's number in its middle, or where nothing is written yet; taken as in free_box(). crowded: smaller, anywhere inside
+    where it fits, else beside with a line."""
     corners = np.array(corners, float)
+    font = min(font, 5.5) if crowded else font
     middle, radius = corners.mean(axis=0), font - 0.5
     places = [middle, *(middle + corners) / 2, *(middle + 2 * corners) / 3]
+    if crowded:
+        places = [place for place in [middle, *inside_of(corners)] if holds(corners, place, radius - 1, axes)]
     boxes = [(points_of(place, axes) - radius, points_of(place, axes) + radius) for place in places]
     free = next((i for i, box in enumerate(boxes) if is_free(box, taken)), None)
     look = {"ha": "center", "va": "center", "zorder": 4, "fontsize": font,
             "bbox": {"boxstyle": "circle,pad=0.2", "facecolor": "white", "linewidth": 0.5}}
-    if free is None:
+    if free is None and crowded:
+        write_around(str(number), middle, axes, np.full(2, 2 * radius), taken, **look)
+    elif free is None:
         write(str(number), middle, axes, free_box(points_of(middle, axes), np.full(2, 2 * radius), taken)[0], True, **look)
     else:
         taken.append(boxes[free])
         axes.annotate(str(number), places[free], **look)
 
 
-def draw_stages(scene, axes, inside, taken):
-    """Few in shades of grey, with their names below; many in outline, where joints and rocks stay visible. taken as in free_box()."""
+def inside_of(corners):
+    """Places of a grid in a polygon [m], those near its middle first."""
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    grid = np.stack(np.meshgrid(*(np.linspace(*ends, 25)[1:-1] for ends in zip(low, high))), axis=-1).reshape(-1, 2)
+    grid = grid[matplotlib.path.Path(corners).contains_points(grid)]
+    return grid[np.argsort(np.linalg.norm((grid - corners.mean(axis=0)) / (high - low), axis=1), kind="stable")]
+
+
+def holds(corners, place, radius, axes):
+    """Whether a polygon holds a circle [pt] around a place, as far as its upper, lower and lateral ends say."""
+    scale = radius / (points_of([1, 0], axes) - points_of([0, 0], axes))[0]
+    ends = np.array(place) + scale * np.array([(1, 0), (-1, 0), (0, 1), (0, -1)])
+    return bool(matplotlib.path.Path(corners).contains_points(ends).all())
+
+
+def draw_stages(scene, axes, inside, taken, crowded=False):
+    """Few in shades of grey, with their names below; many in outline, where joints and rocks stay visible. taken as in free_box(); crowded
+    as in draw_number()."""
     entries = []
     stages = scene.get("stage", [])
     few = len(stages) <= FEW
@@ -91,7 +115,7 @@ def draw_stages(scene, axes, inside, taken):
             if len(seen) == 0:
                 continue
             shown = True
-            draw_number(number, seen, axes, taken, 8 if few else 5.5)
+            draw_number(number, seen, axes, taken, 8 if few else 5.5, crowded)
         if not shown:
             continue
         when = f"day {stage['date']}" if isinstance(stage["date"], (int, float)) else str(stage["date"])
@@ -164,6 +188,50 @@ def write(text, place, axes, box, is_far, **look):
     axes.annotate(text, place, xytext=np.mean(box, axis=0) - points_of(place, axes), textcoords="offset points", **look, **line)
 
 
+def write_around(text, place, axes, size, taken, others=(), **look):
+    """Text near a place, where its box of this size [pt] overlaps none of `taken`, to which it is added, and is far from other places [pt];
+    with a line to the place if it is farther off."""
+    middle = points_of(place, axes)
+    ends = points_of(np.transpose([axes.get_xlim(), axes.get_ylim()]), axes)
+    for away in (0, 6, 12, 20, 30, 42, 56):
+        free = []
+        for angle in np.radians([45, 135, -45, -135, 0, 180, 90, -90, 22, 158, -22, -158, 68, 112, -68, -112]):
+            direction = np.array([np.cos(angle), np.sin(angle)])
+            centre = middle + direction * (4 + away + np.abs(direction) @ size / 2)
+            box = centre - size / 2, centre + size / 2
+            if is_free(box, taken) and np.all(box[0] > ends[0]) and np.all(box[1] < ends[1]):
+                free.append((min([20.0, *(np.linalg.norm(centre - other) for other in others)]), box))
+        if free:
+            box = max(free, key=lambda one: one[0])[1]  # the first of equal ones
+            break
+    else:
+        away, box = 0, (middle + 4, middle + 4 + size)
+    taken.append(box)
+    write(text, place, axes, box, away > 0, **look)
+
+
+def is_crowded(names, axes, taken):
+    """Whether names of places cannot all stand beside their places, or could be taken for those of others. taken stays as it is."""
+    places = np.array([points_of(place, axes) for _, place in names]).reshape(-1, 2)
+    apart = np.linalg.norm(places[:, None] - places, axis=2)[np.triu_indices(len(places), 1)]
+    if np.any(apart < CLOSE):
+        return True
+    trial = list(taken)
+    return any(free_box(points_of(place, axes), np.array([LETTER * len(name), LINE]), trial)[1] for name, place in names)
+
+
+def draw_letters(names, axes, taken):
+    """Letters in place of the names of places. Returns legend entries that say what they stand for."""
+    entries = []
+    for letter, (name, place) in zip(LETTERS, names):
+        others = [points_of(other, axes) for _, other in names if tuple(other) != tuple(place)]
+        write_around(letter, place, axes, np.array([6, 8]), taken, others, ha="center", va="center", zorder=6, fontsize=7,
+                     path_effects=figure.HALO)
+        entries.append(matplotlib.lines.Line2D([], [], linestyle="none", marker=f"$\\mathrm{{{letter}}}$", color="k", markeredgewidth=0,
+                                               markersize=5, label=name))
+    return entries
+
+
 def annotate(name, place, axes, taken):
     """Writes the name of a place beside it; taken as in free_box()."""
     box = free_box(points_of(place, axes), np.array([LETTER * len(name), LINE]), taken)
@@ -216,12 +284,16 @@ def draw(file, window=None):
                           draw_places(scene, "gauge", "gauge on a joint", "D", axes, taken)):
         others += entries
         names += more
-    for name, place in names:
-        annotate(name, place, axes, taken)
-    stages = draw_stages(scene, axes, inside, taken)
+    crowded, letters = is_crowded(names, axes, taken), []
+    if crowded:
+        letters = draw_letters(names, axes, taken)
+    else:
+        for name, place in names:
+            annotate(name, place, axes, taken)
+    stages = draw_stages(scene, axes, inside, taken, crowded)
     if len(stages) == 1:  # no column of its own
         stages, others = [], stages + others
-    figure.legend_below(axes, joints, stages, others)
+    figure.legend_below(axes, joints, stages, letters, others)
     return plot
 
 

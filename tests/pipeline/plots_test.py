@@ -84,6 +84,36 @@ class Plots(ChainTest):
         labels = [text.get_text() for text in legend.get_texts()]
         self.assertEqual(labels[:2], [f"{len(closed) - 3} contacts sticking", "3 sticking, slipped earlier"])
 
+    def test_labels_of_a_small_cut(self):
+        """Names of points that are close are letters with a key, and no two texts in the section overlap; in a window names stay."""
+        import figure
+        from jointcreep import plots
+        text = self.chain.small()
+        for pattern, new in ((r"\[\[0, 0\], \[30, 0\], \[30, 20\], \[0, 20\]\]", "[[0, 0], [120, 0], [120, 70], [0, 70]]"),
+                             (r"\[30, 0\]$", "[120, 0]"), (r"\[30, 20\]$", "[120, 70]"), (r"\[0, 20\]$", "[0, 70]")):
+            text = changed(text, pattern, new, len(re.findall(pattern, text, flags=re.MULTILINE)))
+        bench = '[[stage]]\nname = "bench {}"\ndate = {}\nremove_m = [[[{}, {}], [70, {}], [70, {}], [{}, {}]]]\n'
+        places = {"crest": (49.5, 69.9), "behind": (47, 69.9), "toe 1": (51, 67.2), "toe 2": (52.3, 64.8), "toe 3": (53.5, 62.3),
+                  "toe": (54.7, 59.7), "floor": (57, 59.7), "floor middle": (60, 59.7)}
+        schedule = "[schedule]\nstart = 0\nend = 10\n" + "".join(
+            bench.format(n, n, 50 + 1.2 * n, 72.5 - 2.5 * n, 72.5 - 2.5 * n, 70 - 2.5 * n, 51.2 + 1.2 * n, 70 - 2.5 * n)
+            for n in range(1, 5)) + "".join(f'[[point]]\nname = "{name}"\nat_m = [{x}, {y}]\n' for name, (x, y) in places.items())
+        before, rest = text.split("[schedule]")
+        network = self.chain.network(before + schedule + rest[rest.index("[creep]"):])
+        picture = plots.draw("section", network)
+        picture.canvas.draw()
+        axes = picture.axes[0]
+        boxes = {text.get_text(): text.get_window_extent() for text in axes.texts}
+        self.assertEqual(sorted(boxes), sorted([*"ABCDEFGH", *"1234"]))
+        for one in boxes:
+            for other in boxes:
+                self.assertFalse(one < other and boxes[one].overlaps(boxes[other]), (one, other))
+        labels = [text.get_text() for text in axes.get_legend().get_texts()]
+        self.assertLessEqual(set(places), set(labels))
+        axes = plots.draw("section", network, window=(45, 55, 65, 72)).axes[0]
+        self.assertLessEqual(set(places), {text.get_text() for text in axes.texts})
+        figure.plt.close("all")
+
     def test_borders_of_joint_sets(self):
         """Pictures of contacts have the borders of region_m as one dashed line, if the window shows a part of it."""
         import figure
