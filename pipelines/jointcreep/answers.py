@@ -1,5 +1,7 @@
 """What a study answers: means, quantiles and probabilities with confidence, how they converge, and shares of the variance.
 
+A factor of safety that is only known to be 64 or more is not in means; see is_beyond().
+
 Only runs that have a value count: a run without an equilibrium, or whose point an excavation has taken, is named in the summary.
 Probabilities "or no equilibrium" and that to fail also count the runs that were found to have none.
 """
@@ -15,7 +17,7 @@ from . import failure, files, intervals
 from .design import openturns
 from .intervals import CONFIDENCE
 from .quantities import NO_EQUILIBRIUM
-from .study_file import EXTENSIBLE, NETWORK
+from .study_file import ENDS, EXTENSIBLE, NETWORK
 
 QUANTILES = [0.05, 0.25, 0.50, 0.75, 0.95]
 CORRELATION = "rank correlation"  # a measure in shares.csv
@@ -25,13 +27,26 @@ FEWEST = 10  # values from which convergence is shown
 STEPS = 30  # numbers of runs at which it is shown, at most
 NAMED = 10  # failed runs that the summary lists
 SHORT = 90  # characters of a reason there
+LARGEST_FACTOR = 64  # that the search of a factor of safety tries
+
+
+def is_beyond(study, row, at):
+    """Whether a quantity is the factor of safety of a run that is stable at the largest factor: it is that or more, so it is not a value."""
+    one = study.quantities[at]
+    return one.what == "factor of safety" and one.statistic == ENDS[0] and row["values"][at] is not None and \
+        row["values"][at] >= LARGEST_FACTOR and row["values"][at + 1] is None
+
+
+def value_of(study, row, at):
+    """Value of a quantity of a run; None where there is none, or only a bound."""
+    return None if is_beyond(study, row, at) else row["values"][at]
 
 
 def values_of(study, rows, at):
     """Values of a quantity and the numbers of their runs, as arrays; of runs that are independent of each other, as far as the
     design has such. Sobol indices: the first two of its matrices are. Two levels: the fine runs of whole blocks whose coarse run on
     the same network has a value too."""
-    value = {row["run"]: row["values"][at] for row in rows if row["values"][at] is not None}
+    value = {row["run"]: value_of(study, row, at) for row in rows if value_of(study, row, at) is not None}
     there = sorted(value)
     if study.design.fine_runs:
         last = rows[-1]["run"] if rows else -1
@@ -47,18 +62,37 @@ def coarse_of(study, rows, at, run):
     block, [run, 2]. None for other designs."""
     if not study.design.fine_runs:
         return None
-    value = {row["run"]: row["values"][at] for row in rows}
+    value = {row["run"]: value_of(study, row, at) for row in rows}
     blocks = [[value[one + place] for place in range(1, study.design.block())] for one in run]
     return np.array([[block[0], np.mean([one for one in block if one is not None])] for block in blocks]).reshape(-1, 2)
 
 
-def without_equilibrium(study, rows, at):
-    """Numbers of the runs that have no equilibrium, and so no value of a quantity, of those that values_of() may have."""
+def counted_runs(study, rows, is_one):
+    """Numbers of runs for which is_one(row) holds, of those that values_of() may have."""
     last = 2 * study.design.points if study.design.kind == "sobol indices" else study.design.runs
     if study.design.fine_runs and rows:
         last = (rows[-1]["run"] + 1) // study.design.block() * study.design.block()
-    return np.array([row["run"] for row in rows if row["values"][at] is None and row["exit_code"] == NO_EQUILIBRIUM and row["run"] < last and
-                     study.design.level(row["run"]) != "coarse"], int)
+    return np.array([row["run"] for row in rows if is_one(row) and row["run"] < last and study.design.level(row["run"]) != "coarse"], int)
+
+
+def without_equilibrium(study, rows, at):
+    """Numbers of the runs that have no equilibrium, and so no value of a quantity, of those that values_of() may have."""
+    return counted_runs(study, rows, lambda row: row["values"][at] is None and row["exit_code"] == NO_EQUILIBRIUM)
+
+
+def beyond_search(study, rows, at):
+    """Numbers of the runs of which a factor of safety is known to be LARGEST_FACTOR or more, and nothing else."""
+    return counted_runs(study, rows, lambda row: is_beyond(study, row, at))
+
+
+def bracket_width(study, rows, at):
+    """The largest width of the brackets that a factor of safety is known by; None for other quantities."""
+    one = study.quantities[at]
+    if one.what != "factor of safety":
+        return None
+    ends = at if one.statistic == ENDS[0] else at - 1
+    return max((row["values"][ends + 1] - row["values"][ends] for row in rows
+                if row["values"][ends] is not None and row["values"][ends + 1] is not None), default=None)
 
 
 def crossed_table(study, values, run):
@@ -113,13 +147,13 @@ def share_with_interval(study, hits, run):
     return intervals.probability_of_crossed(table) if table is not None else (float(np.mean(hits)), None, None)
 
 
-def shares_of_limits(study, quantity, values, run, without):
-    """Probabilities of the limits of a quantity: name, number of runs, value, low, high."""
+def shares_of_limits(study, quantity, values, run, without, beyond=()):
+    """Probabilities of the limits of a quantity: name, number of runs, value, low, high. beyond: as beyond_search()."""
     found = []
     for name, hit, of_failed in limits_of(quantity):
-        hits, of = hit(values), run
+        hits, of = np.append(hit(values), hit(np.full(len(beyond), float(LARGEST_FACTOR)))), np.append(run, beyond).astype(int)
         if of_failed is not None:
-            hits, of = np.append(hits, np.full(len(without), of_failed)), np.append(run, without)
+            hits, of = np.append(hits, np.full(len(without), of_failed)), np.append(of, without).astype(int)
         found.append((name, len(of), *share_with_interval(study, hits, of)))
     return found
 
@@ -129,29 +163,41 @@ def correlation(values, others):
     return float(np.corrcoef(values, others)[0, 1]) if len(values) > 2 and np.ptp(values) > 0 and np.ptp(others) > 0 else None
 
 
-def statistics(study, quantity, values, run, coarse=None, without=()):
+def quantile(values, beyond, part):
+    """Quantile with its interval, of values and of as many more that are larger than all of them; None what depends on these."""
+    with np.errstate(invalid="ignore"):
+        found = intervals.quantile(np.append(values, np.full(beyond, np.inf)), part)
+    return [one if one is not None and math.isfinite(one) else None for one in found]
+
+
+def statistics(study, quantity, values, run, coarse=None, without=(), beyond=(), width=None):
     """Statistics of a quantity: name, number of runs, value, low, high. coarse [value, 2]: as coarse_of(); without: as
-    without_equilibrium()."""
+    without_equilibrium(); beyond: as beyond_search(); width: as bracket_width(). Where all brackets of a factor of safety are the same,
+    its scatter is only known to be less than their width."""
     found, n = [], len(values)
-    if quantity.what != "failed":
+    if quantity.what != "failed" and n > 0:
         *mean, error = mean_with_interval(study, values, run, coarse)
-        found += [("mean", n, *mean), ("standard error of the mean", n, error, None, None)]
+        only_bound = n > 1 and bool(width) and np.ptp(values) == 0
+        found += [("mean", n, mean[0], None, None), ("standard error of the mean, less than", n, width, None, None)] if only_bound else \
+            [("mean", n, *mean), ("standard error of the mean", n, error, None, None)]
         if coarse is not None:
             found.append(("mean of fine runs alone", n, *intervals.mean(values)[:3]))
             found.append(("fine less coarse", n, *intervals.mean(values - coarse[:, 0])[:3]))
             found.append(("correlation of fine and coarse", n, correlation(values, coarse[:, 0]), None, None))
         deviation = float(np.std(values, ddof=1)) if n > 1 else None
-        found.append(("standard deviation", n, deviation, None, None))
+        found.append(("standard deviation, less than", n, width, None, None) if only_bound else
+                     ("standard deviation", n, deviation, None, None))
+    if quantity.what != "failed":
         for part in QUANTILES:
-            value, low, high = intervals.quantile(values, part)
+            value, low, high = quantile(values, len(beyond), part)
             dependent = study.design.kind == "networks x parameters"  # order statistics are of independent values
-            found.append((f"quantile {part:g}", n, value, *((None, None) if dependent else (low, high))))
-    return found + shares_of_limits(study, quantity, values, run, without)
+            found.append((f"quantile {part:g}", n + len(beyond), value, *((None, None) if dependent else (low, high))))
+    return found + shares_of_limits(study, quantity, values, run, without, beyond)
 
 
-def first_of(quantity, study, values, run, coarse=None, without=()):
+def first_of(quantity, study, values, run, coarse=None, without=(), beyond=()):
     """The statistics whose convergence is shown: mean, or probability of failure; and the probabilities of limits."""
-    found = shares_of_limits(study, quantity, values, run, without)
+    found = shares_of_limits(study, quantity, values, run, without, beyond)
     if quantity.what == "failed":
         return found
     return [("mean", len(values), *mean_with_interval(study, values, run, coarse)[:3])] + found
@@ -168,11 +214,12 @@ def convergence(study, rows, at):
     """Rows (statistic, runs, value, low, high) over a growing number of runs with a value; designs that are made as a whole have one."""
     quantity = study.quantities[at]
     values, run = values_of(study, rows, at)
-    coarse, without = coarse_of(study, rows, at, run), without_equilibrium(study, rows, at)
+    coarse = coarse_of(study, rows, at, run)
+    others = without_equilibrium(study, rows, at), beyond_search(study, rows, at)
     found = []
-    for count in counts_shown(len(values)) if study.design.kind in EXTENSIBLE else [len(values)]:
-        before = without if count == len(values) else without[without < run[count]]
-        found += first_of(quantity, study, values[:count], run[:count], None if coarse is None else coarse[:count], before)
+    for count in [] if len(values) == 0 else counts_shown(len(values)) if study.design.kind in EXTENSIBLE else [len(values)]:
+        before = others if count == len(values) else [one[one < run[count]] for one in others]
+        found += first_of(quantity, study, values[:count], run[:count], None if coarse is None else coarse[:count], *before)
     return found
 
 
@@ -184,7 +231,7 @@ def enough(study, rows):
     if len(values) < (FEWEST if study.design.fine_runs else 2):
         return False
     for name, _, value, low, high in first_of(quantity, study, values, run, coarse_of(study, rows, at, run),
-                                              without_equilibrium(study, rows, at)):
+                                              without_equilibrium(study, rows, at), beyond_search(study, rows, at)):
         half = (high - low) / 2
         if name == "mean":
             if stop.half_width and half > stop.half_width:
@@ -296,7 +343,7 @@ def sobol_indices(study, rows, at):
     ot = openturns()
     points = study.design.points
     names = [one.name for one in study.parameters] + ([NETWORK] if study.varies_network else [])
-    value = {row["run"]: row["values"][at] for row in rows}
+    value = {row["run"]: value_of(study, row, at) for row in rows}
     parts = len(names) + 2
     kept = [point for point in range(points) if all(value.get(point + part * points) is not None for part in range(parts))]
     outputs = np.array([value[point + part * points] for part in range(parts) for point in kept], float)
@@ -378,6 +425,10 @@ def missing_words(study, rows):
     if len(lines) > NAMED:
         lines[NAMED:] = [f"and {len(lines) - NAMED} more in runs.csv"]
     for at, one in enumerate(study.quantities):
+        beyond = [row["run"] for row in rows if is_beyond(study, row, at)]
+        if beyond:
+            lines.append(f"{one.title()}: at least {LARGEST_FACTOR}, the largest factor that is tried, in {len(beyond)} of {len(rows)} runs: "
+                         f"{files.listed(beyond)}; they are not in mean and deviation, and count as larger in quantiles and probabilities")
         runs = [row["run"] for row in rows if row["values"][at] is None and row["exit_code"] == 0]
         if runs and one.what == "displacement":
             lines.append(f'{one.title()}: an excavation takes the point "{one.point}" before, or it is not read yet, in '
@@ -391,7 +442,7 @@ def incomplete_words(study, rows):
     """Warnings of the quantities of networks x parameters that some runs of a network have and others do not."""
     lines = []
     for at, one in enumerate(study.quantities if study.design.kind == "networks x parameters" else []):
-        of_network = collections.Counter(row["run"] // study.design.parameters for row in rows if row["values"][at] is None)
+        of_network = collections.Counter(row["run"] // study.design.parameters for row in rows if value_of(study, row, at) is None)
         if of_network:
             lines.append(f"warning: {one.title()}: {sum(of_network.values())} of {len(rows)} runs, of {len(of_network)} networks, have no "
                          "value; answers are of the other runs")
@@ -426,7 +477,8 @@ def summary(study, rows, why, of_each, of_histories):
               f"  undecided          {len(without) - sum(map(is_moving, without))}"] * bool(without)
     lines.append(f"other failures       {other}")
     for quantity, found, of_shares in of_each:
-        lines += ["", f"{quantity.title()}, {found['statistics'][0][1]} {study.design.counted()} with a value"]
+        lines += ["", f"{quantity.title()}, {found.get('values', found['statistics'][0][1])} {study.design.counted()} with a value" +
+                  (f", and {found['beyond']} at least {LARGEST_FACTOR}" if found.get("beyond") else "")]
         lines += in_columns([["", study.design.counted(), "value", "from", "to"],
                              *([with_unit(name, quantity), str(n), *map(number_text, numbers)] for name, n, *numbers in found["statistics"])])
         if of_shares:
@@ -457,9 +509,11 @@ def write(study, rows, given, why, estimates, of_histories, out):
         found.append(of_failure(study, rows, estimates))
     for at, quantity in enumerate([] if by_direction else study.quantities):
         values, run = values_of(study, rows, at)
-        if len(values):
-            of = statistics(study, quantity, values, run, coarse_of(study, rows, at, run), without_equilibrium(study, rows, at))
-            found.append((quantity, {"at": at, "statistics": of}, shares(study, rows, given, at)))
+        beyond = beyond_search(study, rows, at)
+        if len(values) or len(beyond):
+            of = statistics(study, quantity, values, run, coarse_of(study, rows, at, run), without_equilibrium(study, rows, at), beyond,
+                            bracket_width(study, rows, at))
+            found.append((quantity, {"at": at, "statistics": of, "beyond": len(beyond), "values": len(values)}, shares(study, rows, given, at)))
     files.write_text(out / "answers.csv", files.csv_text(
         ["quantity", "unit", "statistic", "runs", "value", "low", "high"],
         [(one.name, one.unit, *row) for one, of, _ in found for row in of["statistics"]]))

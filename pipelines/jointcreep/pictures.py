@@ -24,16 +24,18 @@ FEWEST_BARS = 3  # that a panel has room for, so that one is not broad
 CLASSES = 5  # of a parameter, for the share of failed runs
 
 
-def distribution(quantity, study, values):
-    """Share of runs up to a value, with the interval of each share."""
+def distribution(quantity, study, values, beyond=0):
+    """Share of runs up to a value, with the interval of each share. beyond: how many runs more have a larger value, which is not known."""
     plot, axes = figure.plt.subplots(figsize=(figure.ONE_COLUMN, 2.6))
-    ordered, n = np.sort(values), len(values)
+    ordered, n = np.sort(values), len(values) + beyond
     if study.design.kind != "networks x parameters":
-        counts = np.unique(np.linspace(1, n, min(n, BAND_POINTS)).astype(int))
+        counts = np.unique(np.linspace(1, len(values), min(len(values), BAND_POINTS)).astype(int))
         ends = np.array([intervals.probability(int(count), n)[1:] for count in counts])
         axes.fill_between(ordered[counts - 1], 100 * ends[:, 0], 100 * ends[:, 1], step="post", facecolor=BAND,
                           linewidth=0, label="95 % confidence")
-    axes.step(ordered, 100 * np.arange(1, n + 1) / n, where="post", color=figure.COLORS[0], label=f"{n} {study.design.counted()}")
+    more = f" ({beyond} at least {answers.LARGEST_FACTOR})" if beyond else ""
+    axes.step(ordered, 100 * np.arange(1, len(values) + 1) / n, where="post", color=figure.COLORS[0],
+              label=f"{n} {study.design.counted()}{more}")
     for place, limit in enumerate([*quantity.above, *quantity.below]):
         axes.axvline(limit, color=figure.COLORS[1], linewidth=0.8, linestyle="--", label="limit" if place == 0 else None)
     axes.set_xlabel(quantity.title())
@@ -140,9 +142,11 @@ def write(study, rows, given, found, out):
         of_histories(out)
     for word, (quantity, of, of_shares) in zip(words, found if not study.design.directions else []):
         values, run = answers.values_of(study, rows, of["at"])
+        if len(values) == 0:  # only bounds of it are known
+            continue
         drawn = {}
         if quantity.what != "failed":
-            drawn["distribution"] = distribution(quantity, study, values)
+            drawn["distribution"] = distribution(quantity, study, values, of.get("beyond", 0))
         over_runs = answers.convergence(study, rows, of["at"])
         if len({runs for name, runs, *_ in over_runs if name == over_runs[0][0]}) > 1:
             drawn["convergence"] = convergence(quantity, over_runs, study.stop, study.design.counted())

@@ -949,6 +949,57 @@ class Reports(Studies):
             self.assertFalse((self.folder / "r.html").exists())
 
 
+class FactorsOfSafety(Studies):
+    """Answers of factors of safety, which are known by brackets and bounds only."""
+
+    def answers_of(self, brackets, **more):
+        """Answers of a study of these brackets {lower end, upper end}, by statistic of the lower end; and its folder."""
+        text = NETWORKS.split("[[collect]]")[0].format(runs=len(brackets)) + '[[collect]]\nname = "F"\nwhat = "factor of safety"\n' \
+            'above = [2]\nbelow = [1.4]\n'
+        study, out = study_file.read(self.written(text)), self.chain.new_folder()
+        rows = [{"run": run, "network": run, "exit_code": 0, "program": "", "reason": "", "values": list(ends), "warnings": []}
+                for run, ends in enumerate(brackets)]
+        given = {row["run"]: {"run": row["run"], "network": row["run"], "given": []} for row in rows}
+        found = answers.write(study, rows, given, "", [], [], out)
+        from jointcreep import pictures
+        pictures.write(study, rows, given, found, out)
+        with open(out / "answers.csv", encoding="utf-8") as file:
+            return {row["statistic"]: row for row in csv.DictReader(file) if row["quantity"] == "F"}, out
+
+    def test_equal_brackets(self):
+        """The scatter is only known to be less than the width of the brackets."""
+        found, out = self.answers_of([(1.5, 1.53125)] * 12)
+        self.assertNotIn("standard deviation", found)
+        for name in "standard deviation, less than", "standard error of the mean, less than":
+            self.assertEqual((found[name]["value"], found[name]["low"]), ("0.03125", ""))
+        self.assertEqual((found["mean"]["value"], found["mean"]["low"], found["mean"]["high"]), ("1.5", "", ""))
+        self.assertRegex((out / "summary.txt").read_text(), "standard deviation, less than +12 +0.03125\n")
+        self.assertEqual(found["probability below 1.4"]["value"], "0.0")
+        found, _ = self.answers_of([(1.5, 1.53125)] * 11 + [(1.53125, 1.5625)])
+        self.assertGreater(float(found["standard deviation"]["value"]), 0)
+
+    def test_bounds(self):
+        """A run that is stable at 64 is in no mean; it is above all limits, and above all other values."""
+        brackets = [(1 + 0.1 * n, 1.05 + 0.1 * n) for n in range(10)]
+        found, out = self.answers_of([*brackets, (64.0, None), (64.0, None)])
+        lower = [low for low, _ in brackets]
+        self.assertAlmostEqual(float(found["mean"]["value"]), np.mean(lower), places=12)
+        self.assertAlmostEqual(float(found["standard deviation"]["value"]), np.std(lower, ddof=1), places=12)
+        self.assertEqual((found["mean"]["runs"], found["quantile 0.5"]["runs"]), ("10", "12"))
+        self.assertAlmostEqual(float(found["quantile 0.5"]["value"]), 1.55, places=12)
+        self.assertEqual(found["quantile 0.95"]["value"], "")
+        for name, count in (("probability above 2", 2), ("probability below 1.4", sum(low < 1.4 for low in lower))):
+            self.assertEqual((found[name]["runs"], float(found[name]["value"])), ("12", count / 12))
+        summary = (out / "summary.txt").read_text()
+        self.assertIn("F, lower end, 10 runs with a value, and 2 at least 64\n", summary)
+        self.assertIn("F, lower end: at least 64, the largest factor that is tried, in 2 of 12 runs: 10, 11; they are not in mean", summary)
+        self.assertTrue((out / "F-distribution.png").exists())
+        found, out = self.answers_of([(64.0, None)] * 3)
+        self.assertEqual((found["probability below 1.4"]["value"], found["quantile 0.5"]["value"]), ("0.0", ""))
+        self.assertNotIn("mean", found)
+        self.assertIn("F, lower end, 0 runs with a value, and 3 at least 64\n", (out / "summary.txt").read_text())
+
+
 class StudyFile(Studies):
     def test_messages(self):
         """What is wrong is refused by file, line, key and value."""
