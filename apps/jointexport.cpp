@@ -112,7 +112,7 @@ std::size_t chosen_state(const Arguments& arguments, const States& states)
         return static_cast<std::size_t>(stage - states.event.begin());
     std::string message = "--state is '" + wanted + "'; the states are:";
     for (row = 0; row < count; ++row) {
-        message += '\n' + std::to_string(row) + ", day " + shown(states.time[row]);
+        message += '\n' + std::to_string(row) + ", day " + shown_time(states.time[row]);
         if (!states.event[row].empty())
             message += ", after " + states.event[row];
     }

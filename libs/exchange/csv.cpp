@@ -133,7 +133,7 @@ std::string histories_csv(const History& history)
                 table.append(",").append(csv_field(point + column));
     table += '\n';
     for (std::size_t row = 0; row < history.time.size(); ++row) {
-        table.append(field(history.time[row])).append(",").append(csv_field(history.event[row]));
+        table.append(shown_time(history.time[row])).append(",").append(csv_field(history.event[row]));
         for (std::size_t at = row * points; at < (row + 1) * points; ++at)
             table.append(",")
                 .append(field(history.displacement[at]))

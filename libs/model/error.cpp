@@ -2,6 +2,7 @@
 
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <cstdio>
 
 namespace jointcreep
@@ -28,6 +29,19 @@ std::string rounded(double value, int digits)
     std::array<char, 32> text{};
     std::snprintf(text.data(), text.size(), "%.*g", digits, value);
     return text.data();
+}
+
+std::string shown_time(double days)
+{
+    constexpr double same_time = 1e-12;
+    for (int digits = 1; digits < 17; ++digits) {
+        const std::string text = rounded(days, digits);
+        double near = 0;
+        std::from_chars(text.data(), text.data() + text.size(), near);
+        if (std::abs(near - days) <= same_time * std::abs(days))
+            return shown(near);
+    }
+    return shown(days);
 }
 
 std::string shown(const Eigen::Vector2d& place)

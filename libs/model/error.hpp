@@ -35,6 +35,9 @@ std::string shown(const Eigen::Vector2d& place);
 // A number as it is shown in messages: the shortest text that reads back as the same double.
 std::string shown(double value);
 
+// A time without the digits that rounding leaves, 3 for 3.0000000000000004: the shortest decimal within 1e-12 of it.
+std::string shown_time(double days);
+
 // A computed number as it is shown in messages: rounded to so many digits.
 std::string rounded(double value, int digits = 4);
 

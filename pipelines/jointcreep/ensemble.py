@@ -230,7 +230,7 @@ def table(first, statistics):
             for component in (0, 1):
                 for row in np.flatnonzero(arrays["count"][:, point] > 1):
                     at = row, point, component
-                    rows.append([since, name, "xy"[component], first["time"][row], first["event"][row], arrays["count"][row, point],
+                    rows.append([since, name, "xy"[component], files.day_text(first["time"][row]), first["event"][row], arrays["count"][row, point],
                                  *(float(arrays[name][at]) for name in names),
                                  *(float(value) for value in arrays["quantile"][(slice(None), *at)])])
     return heads, rows

@@ -92,6 +92,16 @@ def csv_text(heads, rows):
     return text.getvalue()
 
 
+SAME_TIME = 1e-12  # relative
+
+
+def day_text(days):
+    """A time without the digits that rounding leaves, 3 for 3.0000000000000004: the shortest decimal within SAME_TIME of it."""
+    days = float(days)
+    near = next((near for near in (float(f"{days:.{digits}g}") for digits in range(1, 17)) if abs(near - days) <= SAME_TIME * abs(days)), days)
+    return repr(int(near)) if near == int(near) and abs(near) < 1e15 else repr(near)
+
+
 def listed(numbers):
     """Numbers in words, the first of them if there are many."""
     return ", ".join(map(str, numbers[:NAMED])) + (f" and {len(numbers) - NAMED} more" if len(numbers) > NAMED else "")
