@@ -10,6 +10,7 @@ import itertools
 import os
 import pathlib
 import signal
+import statistics
 import subprocess
 import sys
 import time
@@ -103,22 +104,52 @@ def count_ended(out, names, size, in_groups):
     return count
 
 
-class Progress:
-    """Tells how many runs have ended and how long the rest takes; on a terminal in one line that changes. The time left is by the pace of
-    the last half of the runs that have ended: the first ones may take longer than others, for example all of a network that fails."""
+class Ended:
+    """How long the runs took that have ended, of a study's folder; what is new in the groups' files is read at each look."""
 
-    def __init__(self, total, what, quiet):
-        self.total, self.what, self.quiet = total, what, quiet
+    def __init__(self, out):
+        self.folder, self.read_to, self.seconds = out / "groups", {}, {}
+
+    def look(self, names):
+        """[(seconds, exit code)] of the runs that have ended."""
+        for name in names:
+            for path in (self.folder / f"{name}.rows", self.folder / f"{name}.rows.part"):  # the same file, before and after
+                with contextlib.suppress(OSError), open(path, "rb") as file:
+                    file.seek(self.read_to.get(name, 0))
+                    new = file.read()
+                    whole = new[:new.rfind(b"\n") + 1]
+                    for row in (plan.parsed(line, path) for line in whole.splitlines()):
+                        if "seconds" in row:
+                            self.seconds[row["run"]] = row["seconds"], row["exit_code"]
+                    self.read_to[name] = self.read_to.get(name, 0) + len(whole)
+                    break
+        return list(self.seconds.values())
+
+
+class Progress:
+    """Tells how many runs have ended and how long the rest takes; on a terminal in one line that changes. The time left is by the median
+    of the runs that ended with a result, and by how many are made at once: one that fails soon is no sign that others are as fast. Where
+    times of runs are not known, it is by the pace of the last half of what has ended."""
+
+    def __init__(self, total, what, quiet, at_once=1):
+        self.total, self.what, self.quiet, self.at_once = total, what, quiet, at_once
         self.ended, self.told = [], 0  # time and number of runs, at each change
+        self.seconds = []  # of each run that has ended, and its exit code
         self.spoke = time.monotonic()
 
     def seconds_left(self):
         """None as long as no run has ended."""
         (_, first), (now, done) = self.ended[0], self.ended[-1]
+        if self.seconds and done < self.total:
+            each = statistics.median([took for took, code in self.seconds if code == 0] or [took for took, _ in self.seconds])
+            left = self.total - done
+            return max(0.0, each * max(1.0, left / self.at_once) - min(each, time.monotonic() - now))
         since, before = [one for one in self.ended if one[1] <= (first + done) / 2][-1]
         return (now - since) / (done - before) * (self.total - done) if done > first else None
 
-    def tell(self, done):
+    def tell(self, done, seconds=()):
+        """done: how many have ended; seconds: as Ended.look() has them."""
+        self.seconds = seconds
         if not self.ended:
             self.told = done
         if not self.ended or done != self.ended[-1][1]:
@@ -216,14 +247,16 @@ def make(study, out, programs, jobs, profile, quiet, enough, lock):
     total = study.design.runs
     deadline = time.monotonic() + 3600 * study.stop.hours
     in_groups = study.design.directions > 0
-    progress = Progress(total, "replicates" if in_groups else "runs", quiet)
+    progress = Progress(total, "replicates" if in_groups else "runs", quiet, jobs)
+    durations = Ended(out)
     batch = plan.BATCH if study.stop.of else total
     for end in [*range(batch, total, batch), total]:
         before = end - batch if end < total else 0
         names = plan.groups_of(before, end, size)
         ended = make_groups(out, programs, names, jobs, profile, lock, deadline,
                             lambda before=before, names=names, end=end: progress.tell(
-                                min(end, before + count_ended(out, names, size, in_groups))))
+                                min(end, before + count_ended(out, names, size, in_groups)),
+                                [] if in_groups else durations.look(names)))
         rows = read_rows(out)
         if in_groups:
             prefix = [rows[run] for run in sorted(rows)]

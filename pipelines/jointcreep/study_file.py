@@ -37,7 +37,7 @@ WHAT = ["displacement", "blocks", "factor of safety", "failed"]
 NETWORK = "network"  # name of the column of the network's number
 LEVEL = "level"  # name of the column that says whether a run of "two levels" is fine or coarse
 RESERVED = {"run", NETWORK, LEVEL, "exit code", "program", "reason"}
-KEPT = ["network.h5", "joints.h5", "result.h5", "result.failed.h5", "safety.h5"]  # files of a run that may be kept
+KEPT = ["network.h5", "joints.h5", "result.h5", "result.failed.h5", "safety.h5", "safety.failed.h5"]  # files of a run that may be kept
 MOST_RUNS = 1_000_000
 LIKE = 0.75  # of two keys, by difflib: more than of any two that are known, such as fine_runs and fine_options (0.67)
 
@@ -273,8 +273,9 @@ def read(path):
     if not quantities and not with_histories:
         raise NotWanted(f'{path}: nothing is collected; expected a [[collect]], for example with what = "failed"')
     unique([*parameters, *quantities], path)
-    if "safety.h5" in kept and all(one.what != "factor of safety" for one in quantities):
-        top.wrong("keep", 'a [[collect]] with what = "factor of safety" for safety.h5')
+    for name in ("safety.h5", "safety.failed.h5"):
+        if name in kept and all(one.what != "factor of safety" for one in quantities):
+            top.wrong("keep", f'a [[collect]] with what = "factor of safety" for {name}')
     design = design_of(Table(path, text, "[design]", tables.get("design", {})), varies_network, parameters, correlations, quantities)
     stop = stop_of(Table(path, text, "[stop]", tables.get("stop", {})), quantities, design)
     if with_histories and design.kind != "plain":

@@ -387,16 +387,56 @@ class Failures(Studies):
         self.assertIn("<li>warning in 2 of 2 runs: jointgen: 7 percent are gone</li>", (self.folder / "r.html").read_text())
 
     def test_time_left(self):
-        """By the pace of the last half: the first 10 of 100 runs take 20 s each, the others 1 s."""
+        """By the median of the runs with a result, and how many are made at once; failed runs are no fast ones."""
         now = [0.0]
         with unittest.mock.patch.object(runs.time, "monotonic", lambda: now[0]):
-            progress = runs.Progress(100, "runs", True)
+            progress = runs.Progress(100, "runs", True, 4)
             progress.tell(0)
             self.assertIsNone(progress.seconds_left())
+            ended = [(20.0, 0)] * 11 + [(40.0, 0)] * 5 + [(0.1, 3)] * 24
+            progress.tell(40, ended)
+            self.assertAlmostEqual(progress.seconds_left(), 60 / 4 * 20)
+            now[0] = 5.0  # nothing has ended since
+            progress.tell(40, ended)
+            self.assertAlmostEqual(progress.seconds_left(), 60 / 4 * 20 - 5)
+            progress.tell(99, ended)  # one is not made in a quarter of its time
+            self.assertAlmostEqual(progress.seconds_left(), 20)
+            progress = runs.Progress(4, "runs", True)  # all have failed so far
+            progress.tell(2, [(3.0, 3), (5.0, 3)])
+            self.assertAlmostEqual(progress.seconds_left(), 8)
+            progress = runs.Progress(100, "replicates", True)  # by the pace of the last half
+            progress.tell(0)
             for done in range(1, 41):
                 now[0] += 20 if done <= 10 else 1
                 progress.tell(done)
-        self.assertAlmostEqual(progress.seconds_left(), 60)
+            self.assertAlmostEqual(progress.seconds_left(), 60)
+
+    def test_times_of_runs(self):
+        """They are read as they come, each once, also where the file of a group gets its final name."""
+        out = self.chain.new_folder()
+        (out / "groups").mkdir()
+        part, line = out / "groups" / "000000.rows.part", '{{"run": {0}, "seconds": {0}.5, "exit_code": 0}}\n'
+        ended = runs.Ended(out)
+        self.assertEqual(ended.look(["000000", "000001"]), [])
+        part.write_text(line.format(0) + line.format(1)[:9])
+        self.assertEqual(ended.look(["000000", "000001"]), [(0.5, 0)])
+        part.write_text(line.format(0) + line.format(1))
+        part.rename(out / "groups" / "000000.rows")
+        self.assertEqual(ended.look(["000000", "000001"]), [(0.5, 0), (1.5, 0)])
+
+    def test_a_failed_search(self):
+        """Its message is in the table, and the state of its failed run can be kept."""
+        case = 'case "$*" in *--factor-of-safety*) echo "demsolve: with strengths 64 times as large there is still no equilibrium: on ' \
+               'purpose" >&2; echo "demsolve: the run up to there is in safety.failed.h5" >&2; touch safety.failed.h5; exit 3 ;; esac'
+        text = NETWORKS.split("[[collect]]")[0].format(runs=2) + '[[collect]]\nwhat = "blocks"\nstatistic = "number"\n' \
+            '[[collect]]\nname = "F"\nwhat = "factor of safety"\n'
+        out = self.made(self.written('keep = ["safety.failed.h5"]\n' + text), self.folder / "out", programs=self.programs(case))
+        self.assertEqual(sorted(path.name for path in (out / "kept").iterdir()), ["000000-safety.failed.h5", "000001-safety.failed.h5"])
+        for row in rows_of(out):
+            self.assertEqual((row["exit code"], row["program"], row["F, lower end"]), ("3", "demsolve", ""))
+            self.assertEqual(row["reason"], "demsolve: with strengths 64 times as large there is still no equilibrium: on purpose")
+        self.assertIn("run 1 failed: demsolve: with strengths 64 times as large", (out / "summary.txt").read_text())
+        self.refused('keep = ["safety.failed.h5"]\n' + NETWORKS.format(runs=2), "for safety.failed.h5")
 
     def test_what_is_no_result(self):
         """A full disk, or a program that is killed: the run is made when the study goes on."""
