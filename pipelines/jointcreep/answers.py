@@ -7,6 +7,7 @@ Probabilities "or no equilibrium" and that to fail also count the runs that were
 """
 
 import collections
+import itertools
 import math
 import re
 import textwrap
@@ -279,6 +280,36 @@ def rank_correlations(study, rows, given, at):
     return rows
 
 
+def chance_correlation(study, rows, given):
+    """The largest rank correlation, without its sign, of two parameters that vary and for which the study has no [[correlation]]: their
+    names, correlation, and number of sets of values. None if there are not two, or fewer than three sets."""
+    if study.design.kind in ("sobol indices", "directional sampling"):
+        return None
+    run = [row["run"] for row in rows if study.design.level(row["run"]) != "fine"]
+    if study.design.kind == "networks x parameters":
+        run = [one for one in run if one < study.design.parameters]
+    from scipy import stats  # takes long to load
+    columns = [(study.parameters[column].name, stats.rankdata([given[one]["given"][column] for one in run]))
+               for column in numeric_columns(study)] if len(run) > 2 else []
+    wanted = [{one, other} for one, other, _ in study.correlations]
+    found = [((name, other), correlation(values, others)) for (name, values), (other, others) in itertools.combinations(columns, 2)
+             if {name, other} not in wanted]
+    found = [(pair, r) for pair, r in found if r is not None]
+    return (*max(found, key=lambda one: abs(one[1])), len(run)) if found else None
+
+
+def chance_words(found):
+    """Lines of the summary about chance_correlation(): what it is, and a warning if it is larger than usual."""
+    if found is None:
+        return [], []
+    (one, other), r, n = found
+    bound = 2 / math.sqrt(n)
+    warning = (f'warning: by chance "{one}" and "{other}" have a rank correlation of {r:.2f} in {n} sets of values, more than the usual bound '
+               f"of 2 / sqrt({n}) = {bound:.2f}: what one of them does can be taken for the other's; more sets, or a Latin hypercube, have less")
+    return [f"chance correlation   {r:.2f}, the largest of two parameters ({one}; {other}); usual bound {bound:.2f}"], \
+        [warning] * (abs(r) > bound)
+
+
 def sets_of(study, run):
     """Numbers of the sets of parameters that these runs of networks x parameters have; they are those of the first network's runs."""
     return np.unique(run % study.design.parameters)
@@ -464,8 +495,9 @@ def with_unit(name, quantity):
     return name if quantity.unit == "1" else re.sub(r"^(probability (?:above|below) [^ ,]+)", rf"\1 {quantity.unit}", name)
 
 
-def summary(study, rows, why, of_each, of_histories):
-    """What a person reads first."""
+def summary(study, rows, why, of_each, of_histories, of_chance=None):
+    """What a person reads first. of_chance: as chance_correlation()."""
+    chance, too_large = chance_words(of_chance)
     without = [row for row in rows if row["exit_code"] == NO_EQUILIBRIUM]
     other = sum(row["exit_code"] not in (0, NO_EQUILIBRIUM) for row in rows)
     lines = [study.title] * bool(study.title)
@@ -475,7 +507,7 @@ def summary(study, rows, why, of_each, of_histories):
               f"without equilibrium  {len(without)}"]
     lines += [f"  blocks move        {sum(map(is_moving, without))}",
               f"  undecided          {len(without) - sum(map(is_moving, without))}"] * bool(without)
-    lines.append(f"other failures       {other}")
+    lines += [f"other failures       {other}", *chance]
     for quantity, found, of_shares in of_each:
         lines += ["", f"{quantity.title()}, {found.get('values', found['statistics'][0][1])} {study.design.counted()} with a value" +
                   (f", and {found['beyond']} at least {LARGEST_FACTOR}" if found.get("beyond") else "")]
@@ -486,7 +518,7 @@ def summary(study, rows, why, of_each, of_histories):
                                  *([f"{measure}, {name}", *map(number_text, numbers)] for name, measure, *numbers in of_shares)])
     lines += ["", f"from, to: {CONFIDENCE:.0%} confidence interval; empty where the runs are too few or the design has none"]
     lines += [""] * bool(of_histories) + of_histories
-    notes = warning_words(rows)
+    notes = too_large + warning_words(rows)
     if not study.design.directions:
         notes = incomplete_words(study, rows) + notes + missing_words(study, rows)
     return "\n".join(lines + [""] * bool(notes) + notes) + "\n"
@@ -523,7 +555,7 @@ def write(study, rows, given, why, estimates, of_histories, out):
     files.write_text(out / "shares.csv", files.csv_text(
         ["quantity", "input", "measure", "value", "low", "high"],
         [(one.name, *row) for one, _, of_shares in found for row in of_shares]))
-    files.write_text(out / "summary.txt", summary(study, rows, why, found, of_histories))
+    files.write_text(out / "summary.txt", summary(study, rows, why, found, of_histories, chance_correlation(study, rows, given)))
     return found
 
 

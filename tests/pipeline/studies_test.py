@@ -378,6 +378,25 @@ class Failures(Studies):
         many = answers.failure_words({**rows[0], "reason": "demsolve: " + "word " * 300})
         self.assertLess(len(many), 130)
 
+    def test_chance_correlation(self):
+        """Of few sets of values; more than 2 / sqrt(N) is a warning. Pairs with a [[correlation]] do not count."""
+        vary = "".join(f'[[vary]]\nname = "{name}"\nkey = "{key}"\nvalues = [1, 2, 3, 4, 5, 6]\n' for name, key in (
+            ("a", "joint_material.joint.cohesion_MPa"), ("b", "rock.rock.youngs_modulus_GPa"), ("c", "joint_material.joint.tensile_strength_MPa")))
+        study = study_file.read(self.written(NETWORKS.format(runs=8) + vary))
+        values = [(1, 1, 3), (2, 2, 1), (3, 3, 6), (4, 4, 2), (5, 5, 5), (6, 6, 4), (1, 2, 3), (4, 3, 1)]
+        given = {run: {"run": run, "network": run, "given": list(of)} for run, of in enumerate(values)}
+        rows = [{"run": run, "exit_code": 0, "program": "", "reason": "", "values": [0.1, 0.2, 0.3, 9, 0], "warnings": []} for run in given]
+        pair, r, n = answers.chance_correlation(study, rows, given)
+        self.assertEqual((pair, n), (("a", "b"), 8))
+        self.assertGreater(r, 0.9)
+        text = answers.summary(study, rows, "", [], [], (pair, r, n))
+        self.assertIn(f"chance correlation   {r:.2f}, the largest of two parameters (a; b); usual bound 0.71\n", text)
+        self.assertIn(f'\nwarning: by chance "a" and "b" have a rank correlation of {r:.2f} in 8 sets of values, more than the usual', text)
+        self.assertNotIn("by chance", answers.summary(study, rows, "", [], [], (pair, 0.7, n)))
+        study.correlations = [("b", "a", 0.9)]
+        self.assertNotEqual(answers.chance_correlation(study, rows, given)[0], ("a", "b"))
+        self.assertIsNone(answers.chance_correlation(study_file.read(self.written(NETWORKS.format(runs=8))), rows, given))
+
     def test_warnings_of_the_programs(self):
         """A warning that the programs print is in the summary and in the report, with the number of runs."""
         case = 'case "$PWD" in *work/*) echo "jointgen: warning: 7 percent are gone" >&2 ;; esac'
