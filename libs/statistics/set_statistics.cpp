@@ -870,6 +870,24 @@ void add_whole_lengths(Statistics& statistics, const JointSet& set, const std::v
     add(statistics, set.name, of_law);
 }
 
+// Of traces that a region or other sets cut off: what is there of them, which no law says. Not judged.
+void add_visible_lengths(Statistics& statistics, const JointSet& set, const SeenTraces& seen)
+{
+    double total = 0;
+    std::size_t count = 0;
+    for (const auto& [number, length] : seen.inside)
+        if (length > 0) {
+            total += length;
+            ++count;
+        }
+    if (count > 0)
+        add(statistics, set.name,
+            {.quantity = "trace length inside, mean",
+             .unit = "m",
+             .achieved = total / static_cast<double>(count),
+             .sample_size = count});
+}
+
 // A set of segments or discs: traces about Poisson points, /joints/point. Those whose point is inside are a
 // fair sample of orientations and lengths, however far they reach.
 void add_traces(Statistics& statistics, const Scene& scene, const JointSet& set, const MeanTrace& mean,
@@ -885,6 +903,8 @@ void add_traces(Statistics& statistics, const Scene& scene, const JointSet& set,
     const bool are_ended = !set.terminates_at.empty();
     if (!set.region && !are_ended)
         add_whole_lengths(statistics, set, seen.lengths);
+    else
+        add_visible_lengths(statistics, set, seen);
     if (circle.radius <= 0 || are_ended)
         return;
     const sampling::SetDensity wanted = sampling::density_of(set, scene);
