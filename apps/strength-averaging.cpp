@@ -31,13 +31,15 @@ const Program program{
     .example = "strength-averaging network.h5 -o joints.h5",
 };
 
-// "0.1 joint, 2 bridges, 1.2 equivalent"; without bridges "0.1".
-std::string beside(double joint, std::optional<double> bridges, double equivalent, double unit)
+// "0.1 joint, 2 bridges, 1.2 equivalent"; without bridges "0.1". `called` is "bridges" or what they are.
+std::string beside(double joint, std::optional<double> bridges, double equivalent, double unit,
+                   const std::string& called = "")
 {
     if (joint == equivalent)
         return rounded(joint / unit);
-    return rounded(joint / unit) + " joint, " + (bridges ? rounded(*bridges / unit) + " bridges, " : "") +
-           rounded(equivalent / unit) + " equivalent";
+    return rounded(joint / unit) + " joint, " +
+           (bridges ? rounded(*bridges / unit) + " " + called + ", " : "") + rounded(equivalent / unit) +
+           " equivalent";
 }
 
 // For each set: persistence, target and achieved; and the properties of joints, bridges and their averages.
@@ -46,7 +48,7 @@ void report(const Arguments& arguments, const Network& network, const Equivalent
     const SetAverages& sets = joints.sets;
     Summary summary;
     summary.add("joint traces in the section", joints.pieces.joint.size() - joints.pieces.bridge.size());
-    summary.add("rock bridges", joints.pieces.bridge.size());
+    summary.add("rock bridges on joint lines", joints.pieces.bridge.size());
     for (std::size_t set = 0; set < network.names.joint_set.size(); ++set) {
         const std::string& name = network.names.joint_set[set];
         summary.add(name + ": length on edges", sets.edge_length[set], "m");
@@ -54,26 +56,34 @@ void report(const Arguments& arguments, const Network& network, const Equivalent
             summary.add(name + ": persistence", "1, all joint");
         if (sets.edge_length[set] == 0 || sets.edge_persistence[set] == 1)
             continue;
-        summary.add(name + ": persistence", rounded(sets.target_persistence[set]) + " wanted, " +
-                                                rounded(sets.line_persistence[set]) + " on lines (error " +
-                                                rounded(sets.persistence_error[set]) + "), " +
-                                                rounded(sets.edge_persistence[set]) + " on edges");
-        summary.add(
-            name + ": cohesion",
-            beside(sets.joint_cohesion[set], sets.bridge_cohesion[set], sets.cohesion[set], unit::MPa),
-            "MPa");
+        // Of segments nothing is bridged on their lines, but extensions to the border of a block are rock.
+        const bool are_extensions = sets.target_persistence[set] == 1;
+        const std::string bridges = are_extensions ? "extensions" : "bridges";
+        if (are_extensions)
+            summary.add(name + ": joint on edges", rounded(sets.edge_persistence[set]) +
+                                                       " of the length; the rest: extensions through rock");
+        else
+            summary.add(name + ": persistence", rounded(sets.target_persistence[set]) + " in the scene, " +
+                                                    rounded(sets.line_persistence[set]) +
+                                                    " on lines (error " +
+                                                    rounded(sets.persistence_error[set]) + "), " +
+                                                    rounded(sets.edge_persistence[set]) + " on edges");
+        summary.add(name + ": cohesion",
+                    beside(sets.joint_cohesion[set], sets.bridge_cohesion[set], sets.cohesion[set], unit::MPa,
+                           bridges),
+                    "MPa");
         summary.add(name + ": friction angle",
                     beside(sets.joint_friction_angle[set], sets.bridge_friction_angle[set],
-                           sets.friction_angle[set], unit::deg),
+                           sets.friction_angle[set], unit::deg, bridges),
                     "deg");
         summary.add(name + ": tensile strength",
                     beside(sets.joint_tensile_strength[set], sets.bridge_tensile_strength[set],
-                           sets.tensile_strength[set], unit::MPa),
+                           sets.tensile_strength[set], unit::MPa, bridges),
                     "MPa");
         if (sets.dilation_angle[set] > 0)
             summary.add(name + ": dilation angle",
                         beside(sets.joint_dilation_angle[set], sets.bridge_dilation_angle[set],
-                               sets.dilation_angle[set], unit::deg),
+                               sets.dilation_angle[set], unit::deg, bridges),
                         "deg");
         summary.add(name + ": normal stiffness",
                     beside(sets.joint_normal_stiffness[set], {}, sets.normal_stiffness[set], unit::MPa),
