@@ -32,10 +32,17 @@ LARGEST_FACTOR = 64  # that the search of a factor of safety tries
 
 
 def is_beyond(study, row, at):
-    """Whether a quantity is the factor of safety of a run that is stable at the largest factor: it is that or more, so it is not a value."""
-    one = study.quantities[at]
-    return one.what == "factor of safety" and one.statistic == ENDS[0] and row["values"][at] is not None and \
-        row["values"][at] >= LARGEST_FACTOR and row["values"][at + 1] is None
+    """Whether a quantity is an end of the factor of safety of a run that is stable at the largest factor: it is that or more, which is no
+    value."""
+    if study.quantities[at].what != "factor of safety":
+        return False
+    low, high = row["values"][lower_end(study, at):][:2]
+    return low is not None and low >= LARGEST_FACTOR and high is None
+
+
+def lower_end(study, at):
+    """The place of the lower end of a factor of safety, of which this is one end; the upper end follows."""
+    return at if study.quantities[at].statistic == ENDS[0] else at - 1
 
 
 def value_of(study, row, at):
@@ -88,10 +95,9 @@ def beyond_search(study, rows, at):
 
 def bracket_width(study, rows, at):
     """The largest width of the brackets that a factor of safety is known by; None for other quantities."""
-    one = study.quantities[at]
-    if one.what != "factor of safety":
+    if study.quantities[at].what != "factor of safety":
         return None
-    ends = at if one.statistic == ENDS[0] else at - 1
+    ends = lower_end(study, at)
     return max((row["values"][ends + 1] - row["values"][ends] for row in rows
                 if row["values"][ends] is not None and row["values"][ends + 1] is not None), default=None)
 
@@ -460,7 +466,7 @@ def missing_words(study, rows):
         if beyond:
             lines.append(f"{one.title()}: at least {LARGEST_FACTOR}, the largest factor that is tried, in {len(beyond)} of {len(rows)} runs: "
                          f"{files.listed(beyond)}; they are not in mean and deviation, and count as larger in quantiles and probabilities")
-        runs = [row["run"] for row in rows if row["values"][at] is None and row["exit_code"] == 0]
+        runs = [row["run"] for row in rows if row["values"][at] is None and row["exit_code"] == 0 and not is_beyond(study, row, at)]
         if runs and one.what == "displacement":
             lines.append(f'{one.title()}: an excavation takes the point "{one.point}" before, or it is not read yet, in '
                          f"{len(runs)} of {len(rows)} runs: {files.listed(runs)}")

@@ -1052,6 +1052,8 @@ class FactorsOfSafety(Studies):
         summary = (out / "summary.txt").read_text()
         self.assertIn("F, lower end, 10 runs with a value, and 2 at least 64\n", summary)
         self.assertIn("F, lower end: at least 64, the largest factor that is tried, in 2 of 12 runs: 10, 11; they are not in mean", summary)
+        self.assertIn("F, upper end: at least 64, the largest factor that is tried, in 2 of 12 runs", summary)
+        self.assertEqual(len(re.findall("probability above 2 +12 ", summary)), 2)
         self.assertTrue((out / "F-distribution.png").exists())
         found, out = self.answers_of([(64.0, None)] * 3)
         self.assertEqual((found["probability below 1.4"]["value"], found["quantile 0.5"]["value"]), ("0.0", ""))
