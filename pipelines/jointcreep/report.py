@@ -119,8 +119,8 @@ def moving_blocks(failed):
     count = f"the fastest {MOST_BLOCKS} of {len(rows)} moving blocks" if len(rows) > MOST_BLOCKS else "all of them"
     area = moving["area"].sum()
     return [f"<p>{len(rows)} moving block{'s' * (len(rows) > 1)}, area {area:.4g} m2 in all: {area:.4g} m3 for each metre along the "
-            f"strike. The table has {count}; the motion is that of the last steps of the solver.</p>",
-            table(["moving block", "area (m2)", "x (m)", "y (m)", "motion x (mm)", "motion y (mm)"], rows[:MOST_BLOCKS])]
+            f"strike. The table has {count}; displacements are those of the last steps of the solver.</p>",
+            table(["moving block", "area (m2)", "x (m)", "y (m)", "displacement x (mm)", "displacement y (mm)"], rows[:MOST_BLOCKS])]
 
 
 def factor_of_safety(source, folder):
