@@ -31,6 +31,12 @@ std::string day_of(double time)
 // allows it [-].
 constexpr double error_to_tell = 0.01;
 
+std::string energy_said(double off)
+{
+    return "the energy balance of the dynamic analysis is off by " + rounded(100 * off) +
+           " percent of its largest energy";
+}
+
 std::vector<char> rigid_zones(const Section& section)
 {
     const std::vector<std::string>& rigid = section.scene.large_displacements->rigid_rocks;
@@ -261,8 +267,10 @@ void DynamicStage::give_up(const mechanics::no_equilibrium& error)
     dynamics_.put_back();
     watchers_.row_and_state_are_due("");
     record();
-    energy_error();
-    fail(section_, failure_of(error, section_.mesh(), section_.assembly), section_.now);
+    Failure failure = failure_of(error, section_.mesh(), section_.assembly);
+    if (const double off = energy_error(); !(off <= section_.scene.large_displacements->energy_tolerance))
+        failure.reason += "; " + energy_said(off);
+    fail(section_, std::move(failure), section_.now);
 }
 
 // The convergence report of the equilibrium at rest.
@@ -339,8 +347,7 @@ void DynamicStage::check_energy()
     const double off = energy_error(), tolerance = section_.scene.large_displacements->energy_tolerance;
     if (!(off <= tolerance))
         fail(section_,
-             {.reason = "the energy balance of the dynamic analysis is off by " + rounded(100 * off) +
-                        " percent of its largest energy; allowed: " + rounded(100 * tolerance) +
+             {.reason = energy_said(off) + "; allowed: " + rounded(100 * tolerance) +
                         ". Smaller zones ([zones] size_m), or more stiffness damping, reduce the error; "
                         "[large_displacements] energy_tolerance allows it"},
              section_.now);

@@ -4,6 +4,8 @@
     suited.py SCENE.toml      prints the names NAME of their scripts plot_NAME.py
 """
 
+import ast
+import operator
 import sys
 import tomllib
 
@@ -42,19 +44,46 @@ def state_fields(scene):
 SMALL = 0.25  # a part of the section up to this share of its area has pictures of its own
 
 
-def places_of(value):
-    """All {x, y} and circles in nested lists and tables of a scene, as places; None where something is a name or a sum."""
+def number(value, variables):
+    """A number of a scene, or of a text such as "2 * H / 3" with names of its table [variables]; None of anything else."""
+    if isinstance(value, str):
+        try:
+            return computed(ast.parse(value.strip(), mode="eval").body, variables)
+        except (SyntaxError, ZeroDivisionError, RecursionError):
+            return None
+    return value if isinstance(value, (int, float)) and not isinstance(value, bool) else None
+
+
+def computed(node, variables):
+    """The value of a parsed sum of names and numbers; None if it is something else."""
+    signs = {ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul, ast.Div: operator.truediv}
+    if isinstance(node, ast.Constant):
+        return number(node.value, {}) if not isinstance(node.value, str) else None
+    if isinstance(node, ast.Name):  # a variable may be a text of others, not of itself
+        return number(variables.get(node.id), {name: other for name, other in variables.items() if name != node.id})
+    if isinstance(node, ast.UnaryOp) and isinstance(node.op, (ast.USub, ast.UAdd)):
+        value = computed(node.operand, variables)
+        return -value if value is not None and isinstance(node.op, ast.USub) else value
+    if isinstance(node, ast.BinOp) and type(node.op) in signs:
+        sides = [computed(side, variables) for side in (node.left, node.right)]
+        return None if None in sides else signs[type(node.op)](*sides)
+    return None
+
+
+def places_of(value, variables):
+    """All {x, y} and circles in nested lists and tables of a scene, as places; None where a number is missing."""
     if isinstance(value, dict):
         if "radius_m" in value and "center_m" in value:
-            (x, y), radius = value["center_m"], value["radius_m"]
-            return [(x - radius, y - radius), (x + radius, y + radius)]
-        return places_of(list(value.values()))
+            radius, *centre = (number(one, variables) for one in (value["radius_m"], *value["center_m"]))
+            return None if None in (radius, *centre) else [tuple(one - radius for one in centre), tuple(one + radius for one in centre)]
+        return places_of([one for one in value.values() if isinstance(one, (list, dict))], variables)
     if isinstance(value, list):
-        if len(value) == 2 and all(isinstance(one, (int, float)) for one in value):
-            return [tuple(value)]
-        found = [places_of(one) for one in value]
+        if len(value) == 2 and not any(isinstance(one, (list, dict)) for one in value):
+            place = tuple(number(one, variables) for one in value)
+            return None if None in place else [place]
+        found = [places_of(one, variables) for one in value]
         return None if None in found else [place for one in found for place in one]
-    return None if isinstance(value, str) else []
+    return None
 
 
 def surroundings(places, section):
@@ -71,8 +100,10 @@ def surroundings(places, section):
 def detail(scene):
     """The surroundings of the stages and monitoring points. None if they are large, or not known before jointgen has read the scene."""
     try:
-        places = places_of([stage["remove_m"] for stage in scene.get("stage", [])] + [point["at_m"] for point in scene.get("point", [])])
-        return surroundings(places, places_of(scene["section"]["outline_m"]))
+        variables = scene.get("variables", {})
+        places = places_of([stage["remove_m"] for stage in scene.get("stage", [])] + [point["at_m"] for point in scene.get("point", [])],
+                           variables)
+        return surroundings(places, places_of(scene["section"]["outline_m"], variables))
     except (KeyError, TypeError, ValueError):  # a scene that nobody has checked; jointgen says it
         return None
 

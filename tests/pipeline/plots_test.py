@@ -508,5 +508,18 @@ class Plots(ChainTest):
             self.assertEqual([text.get_text() for text in axes.texts], [str(i + 1) for i in range(count)])
 
 
+
+class Suited(ChainTest):
+    def test_the_part_of_a_large_section_is_found_by_names_of_numbers(self):
+        sys.path.append(str(self.chain.source / "pipelines/plots"))
+        from suited import detail, number
+        stage = {"remove_m": [[["-B", 0], ["B", 0], {"through_m": [0, "H"], "to_m": ["-B", "2*H/3"], "sides": 12}]]}
+        scene = {"variables": {"B": 10, "H": "3 * B"}, "section": {"outline_m": [[-300, -300], [300, -300], [300, 300], [-300, 300]]},
+                 "stage": [stage], "point": [{"at_m": ["B", "H / 2"]}]}
+        self.assertEqual(detail(scene), [-40, -30, 40, 60])
+        for text in ("H", "x", "a b", "1 / 0", "'a'", "H.real", "[1]", "2 ** 9", ""):
+            self.assertIsNone(number(text, {"H": "H"}), text)
+
+
 if __name__ == "__main__":
     main()
