@@ -152,6 +152,7 @@ void solve(const Arguments& arguments)
             ? demsolve::bracket_safety(reduction, scene, run_with, files, std::move(kept), summary)
             : run_once(reduction, scene, run_with, files, std::move(kept), summary);
     demsolve::add_run(summary, file.network, *run);
+    summary.count_warnings(files.warnings_said(), file.provenance.warnings.text.size());
     summary.print(arguments);
 }
 

@@ -27,6 +27,11 @@ public:
     void say(const std::string& text) const;
     // Says a warning at once, and writes it into all files from now on.
     void warn(const std::string& text);
+    // How many.
+    std::size_t warnings_said() const
+    {
+        return provenance_.warnings.text.size() - file_.provenance.warnings.text.size();
+    }
 
     void write_result(const analysis::Trial& run, const Safety& safety = {}) const;
 

@@ -230,6 +230,9 @@ std::unique_ptr<Trial> bracket_safety(const StrengthReduction& reduction, const 
                                 " times as large there is still " + failed->message() + '\n' +
                                 files.write_failed(*failed, bracket.trials));
     add_safety(summary, bracket, failed ? failed->message() : "");
+    if (failed && failed->outcome().ending == analysis::Ending::undecided)
+        files.warn("undecided with strengths divided by " + shown(*bracket.not_above) +
+                   ": the factor of safety may be above " + shown(*bracket.stands));
     const auto estimate = estimate_mesh(scene, run_with, files, *reduction.search, bracket,
                                         run->analysis().result().mesh.zone_gridpoint.size());
     if (estimate) {

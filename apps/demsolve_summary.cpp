@@ -182,9 +182,6 @@ void add_safety(Summary& summary, const analysis::Bracket& bracket, const std::s
     const bool fails = trials.stands[upper] == 0;
     summary.add(fails ? "factor of safety, below" : "undecided at", shown(*bracket.not_above));
     add_lines(summary, "  at this factor", what_moves);
-    if (!fails)
-        summary.warn("undecided with strengths divided by " + shown(*bracket.not_above) +
-                     ": the factor of safety may be above " + shown(*bracket.stands));
     if (fails)
         return;
     if (const double factor = smallest_that_fails(trials); std::isfinite(factor)) // known all the same

@@ -145,6 +145,7 @@ void report(const Arguments& arguments, const Network& network, const Warnings& 
                 std::count(fates.fate.begin(), fates.fate.end(), static_cast<Index>(JointFate::dropped)));
     for (const std::string& warning : warnings.text)
         summary.warn(warning);
+    summary.count_warnings(0, 0);
     summary.print(arguments);
 }
 

@@ -542,6 +542,12 @@ void Summary::add(std::string label, std::int32_t value, const std::string& unit
     add(std::move(label), std::to_string(value), unit);
 }
 
+void Summary::count_warnings(std::size_t said, std::size_t inherited)
+{
+    add("warnings", std::to_string(said + warnings_.size()) +
+                        (inherited > 0 ? ", and " + std::to_string(inherited) + " of earlier programs" : ""));
+}
+
 void print_line(const std::string& program, const std::string& text)
 {
     std::cerr << program + ": " + text + '\n' << std::flush;

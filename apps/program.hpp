@@ -193,6 +193,8 @@ public:
     void add(std::string label, std::size_t value, const std::string& unit = "");
     void add(std::string label, std::int32_t value, const std::string& unit = "");
     void warn(const std::string& text) { warnings_.push_back(text); }
+    // A last line: how many warnings there were. `said` before, by this program, and those of the input file.
+    void count_warnings(std::size_t said, std::size_t inherited);
     // Lines to stdout, unless --quiet. Warnings to stderr, also with --quiet: "demsolve: warning: ...".
     void print(const Arguments& arguments) const;
 

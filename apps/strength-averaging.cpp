@@ -43,7 +43,8 @@ std::string beside(double joint, std::optional<double> bridges, double equivalen
 }
 
 // For each set: persistence, target and achieved; and the properties of joints, bridges and their averages.
-void report(const Arguments& arguments, const Network& network, const EquivalentJoints& joints)
+void report(const Arguments& arguments, const Network& network, const EquivalentJoints& joints,
+            const Warnings& earlier)
 {
     const SetAverages& sets = joints.sets;
     Summary summary;
@@ -94,6 +95,7 @@ void report(const Arguments& arguments, const Network& network, const Equivalent
         if (sets.limited_length[set] > 0)
             summary.add(name + ": stiffness limited on", sets.limited_length[set], "m");
     }
+    summary.count_warnings(0, earlier.text.size());
     summary.print(arguments);
 }
 
@@ -116,7 +118,7 @@ void average_and_write(const Arguments& arguments)
     provenance.input_sha256.push_back(store::sha256_of(input));
     provenance.options.emplace_back();
     store::write_joints(arguments.output(), provenance, file.network, joints);
-    report(arguments, file.network, joints);
+    report(arguments, file.network, joints, file.provenance.warnings);
 }
 
 } // namespace

@@ -4,6 +4,7 @@ A step is one command. It is made if what it made is not there as it was, or if 
 changed; run.json in the folder keeps digests of them. So what is there already is not computed again, and the same command continues an interrupted run.
 """
 
+import collections
 import dataclasses
 import datetime
 import glob
@@ -438,6 +439,14 @@ def run(source, options, programs, launcher):
         return make(folder, of_scene, why)
 
 
+def warnings_in(path):
+    """How many warnings a file has, and of which programs: "3, of jointgen 2, demsolve 1; the report lists them"."""
+    with h5py.File(path) as file:
+        count = collections.Counter(files.texts(file, "/warnings/program") if "warnings" in file else [])
+    words = ", ".join(f"{program} {number}" for program, number in count.items())
+    return f"{count.total()}, of {words}; the report lists them" if count else "none"
+
+
 def make(folder, of_scene, why):
     """Makes the steps of a plan. why: the scene cannot be read, of which jointgen says more."""
     chain = of_scene.chain()
@@ -460,6 +469,7 @@ def make(folder, of_scene, why):
     if not folder.quiet:
         print(f"{folder.out}: {len(folder.made)} files made, {len(folder.kept)} were there; report: {folder.out / 'report.html'}",
               flush=True)
+        print(f"warnings: {warnings_in(folder.out / (RESULT if events is None else FAILED))}", flush=True)
     if reason:
         folder.say(f"{folder.out / FAILED}: {reason}")
     return code

@@ -106,6 +106,7 @@ class Run(ChainTest):
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertEqual(self.names(), OF_SMALL | OF_RUN)
         self.assertIn("largest unbalanced force ratio", done.stdout)  # the summary of demsolve
+        self.assertTrue(done.stdout.endswith("report: out/report.html\nwarnings: 1, of jointgen 1; the report lists them\n"), done.stdout)
         for name in OF_SMALL:
             self.assertIn(f"-o out/{name}\n", done.stderr)
 
@@ -194,7 +195,10 @@ class Run(ChainTest):
         self.assertIn(f"1 moving block (red arrows, on a scale of their own; the longest is {longest})", labels)
         plots.figure.plt.close(picture)
 
-        # The answer is known the next time.
+        # The answer is known the next time, and how many warnings there were.
+        count = len(failure["/warnings/program"])
+        self.assertTrue((failure["/warnings/program"] == "jointgen").all())
+        self.assertIn(f"\nwarnings: {count}, of jointgen {count}; the report lists them\n", self.called().stdout)
         self.assertEqual(self.made(code=3), set())
 
         # A factor of safety below 1: the result is that of the largest factor with equilibrium, and the other run has a picture.

@@ -208,6 +208,22 @@ class Safety(ChainTest):
         quiet = self.chain.run("demsolve", joints, joints.with_name("quiet.h5"), "-q")
         self.assertNotIn("/warnings/text", datasets(quiet))
 
+    def test_warnings_are_counted(self):
+        """At the end of each summary, those of earlier programs apart; the file has both."""
+        text = changed(self.chain.text("data/verification/incline/scene.toml"), "^.*_kelvin_.*\n", "", count=4)  # nothing creeps
+        folder = self.chain.new_folder()
+        (folder / "scene.toml").write_text(text)
+        last = None
+        for program, source, output, count in (("jointgen", "scene.toml", "network.h5", "1"),
+                                               ("strength-averaging", "network.h5", "joints.h5", "0, and 1 of earlier programs"),
+                                               ("demsolve", "joints.h5", "result.h5", "1, and 1 of earlier programs")):
+            done = self.chain.answer(program, folder / source, "-o", folder / output)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertRegex(done.stdout.splitlines()[-1], f"^warnings +{count}$")
+            self.assertEqual(done.stderr.count(": warning: "), int(count[0]))
+            last = datasets(folder / output)
+        self.assertEqual(last["/warnings/program"].tolist(), ["jointgen", "demsolve"])
+
     def test_two_blocks_on_an_incline(self):
         """The upper one pushes the lower one where it is the weaker of the two; it cannot pull it."""
         for upper, lower in ("joint", "firm"), ("firm", "joint"):
