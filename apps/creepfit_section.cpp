@@ -81,12 +81,13 @@ Found search(const Arguments& arguments, const store::JointsFile& file, const Sc
     return of_lines_of_file(*arguments.text("measurements"), [&] {
         return back_analysis::fit(scene, file.network, file.equivalent, measurements, settings,
                                   [&](int run, const std::vector<double>& factors) {
-                                      progress.show(0, [&] { // nobody knows how many runs there will be
-                                          std::string words = "run " + std::to_string(run + 1) + ":";
-                                          for (const double factor : factors)
-                                              words += ' ' + rounded(factor, 3);
-                                          return words;
-                                      });
+                                      progress.show(
+                                          0, [&](std::size_t) { // nobody knows how many runs there will be
+                                              std::string words = "run " + std::to_string(run + 1) + ":";
+                                              for (const double factor : factors)
+                                                  words += ' ' + rounded(factor, 3);
+                                              return words;
+                                          });
                                   });
     });
 }

@@ -89,6 +89,9 @@ std::unique_ptr<Trial> run_once(const demsolve::StrengthReduction& reduction, co
     std::unique_ptr<Trial> run = scene.equilibrium.increments_tolerance
                                      ? run_by_increments(reduction.factor, scene, run_with, files, summary)
                                      : run_with(std::move(of));
+    if (run->is_stopped())
+        files.stop("stopped; " + files.write_failed(*run) +
+                   ". With --checkpoint FILE a stopped run can continue");
     if (run->outcome().ending != Ending::stands)
         throw equilibrium_error(run->message() + '\n' + files.write_failed(*run) +
                                 demsolve::warning_lines(*run));
@@ -133,8 +136,12 @@ void solve(const Arguments& arguments)
                 with_checkpoints, [&](const analysis::Progress& now) {
                     if (of.stop.stop_requested())
                         throw demsolve::Dropped();
+                    if (is_asked_to_stop() && !of.keep)
+                        throw analysis::Stopped();
                     if (const auto which = of.which())
-                        progress.show(now.fraction, [&] { return *which + demsolve::what_is_done(now); });
+                        progress.show(now.fraction, [&](std::size_t most) {
+                            return demsolve::what_is_done(*which, now, scene.end > 0, most);
+                        });
                 });
         });
         of_file(of.from ? files.checkpoint() : input, [&] {

@@ -25,6 +25,8 @@ public:
 
     // Says a line at once, unless --quiet.
     void say(const std::string& text) const;
+    // Ends the program by the signal that has asked it to stop, if one has, with this line.
+    void stop(const std::string& text) const { stop_if_asked(provenance_.program.back(), text); }
     // Says a warning at once, and writes it into all files from now on.
     void warn(const std::string& text);
     // How many.

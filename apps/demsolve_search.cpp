@@ -1,7 +1,5 @@
 #include "demsolve_search.hpp"
 
-#include "demsolve_summary.hpp"
-
 #include "model/error.hpp"
 
 #include <algorithm>
@@ -39,17 +37,37 @@ std::string strengths_by(double factor)
     return factor < 1 ? "strengths x " + rounded(1 / factor) : "strengths / " + shown(factor);
 }
 
+// Whether these are no more than the reference of displacements, a run whose factor nobody asks for.
+bool is_reference_only(const Safety& trials)
+{
+    return trials.factor.size() == 1 && trials.factor[0] < 1 && trials.stands[0] > 0;
+}
+
+// " (at least 1)", " (1 to 1.5)", "?" where the upper end is undecided; "" as long as no run has said anything.
+std::string in_brief(const Safety& trials)
+{
+    const Bracket bracket = analysis::bracket_of(trials);
+    const bool has_lower = bracket.stands && *bracket.stands != trials.factor[0];
+    const std::string lower = has_lower ? rounded(*bracket.stands) : "";
+    if (!bracket.not_above)
+        return has_lower ? " (at least " + lower + ')' : "";
+    const bool fails =
+        trials.stands[std::find(trials.factor.begin(), trials.factor.end(), *bracket.not_above) -
+                      trials.factor.begin()] == 0;
+    return " (" + (has_lower ? lower + " to " : std::string("below ")) + rounded(*bracket.not_above) +
+           (fails ? ")" : "?)");
+}
+
 // "run 4, strengths / 1.5: fails; factor of safety at least 1, below 1.5". The first run is the reference of displacements.
 std::string last_run_in_words(const Safety& so_far)
 {
     const Index stands = so_far.stands.back();
-    const bool is_reference = so_far.factor.size() == 1 && so_far.factor[0] < 1 && stands > 0;
     return "run " + std::to_string(so_far.factor.size()) + ", " + strengths_by(so_far.factor.back()) +
            (stands > 0    ? ": stable"
             : stands == 0 ? ": fails"
                           : ": undecided") +
-           (is_reference ? ", for comparison"
-                         : "; factor of safety " + in_words(analysis::bracket_of(so_far)));
+           (is_reference_only(so_far) ? ", for comparison"
+                                      : "; factor of safety " + in_words(analysis::bracket_of(so_far)));
 }
 
 // The runs of a search. The progress of the next one is shown.
@@ -66,6 +84,8 @@ public:
         RunOf of = wanted(factor, most_displacement);
         of.stop = stop;
         auto run = run_with_(std::move(of));
+        if (run->is_stopped())
+            throw analysis::Stopped();
         const Outcome outcome = run->outcome();
         const std::lock_guard lock(mutex_);
         run_[factor] = std::move(run);
@@ -95,6 +115,12 @@ public:
         run_.erase(factor);
     }
 
+    // The bracket by the runs that have ended; "" as long as these say nothing.
+    std::string known_so_far() const
+    {
+        return is_reference_only(before_) ? "" : in_words(analysis::bracket_of(before_));
+    }
+
     // The run at an end of the bracket; none: an earlier search made it.
     std::unique_ptr<Trial> run_of(double factor) { return std::move(run_[factor]); }
 
@@ -104,13 +130,17 @@ protected:
         return {.scene = scene_,
                 .factor = factor,
                 .most_displacement = most_displacement,
-                .which = [this, factor]() -> std::optional<std::string> {
+                .which = [this, factor]() -> std::optional<Which> {
                     const std::lock_guard lock(mutex_);
                     if (next_ != factor)
                         return std::nullopt;
-                    const std::string known = in_words(analysis::bracket_of(before_));
-                    return of_what_ + strengths_by(factor) +
-                           (known.empty() ? "" : " (factor of safety " + known + ")") + ", ";
+                    const std::string known = known_so_far();
+                    return Which{of_what_ + strengths_by(factor) +
+                                     (known.empty() ? "" : " (factor of safety " + known + ")") + ", ",
+                                 (of_what_.empty() ? "" : "coarse, ") +
+                                     (factor < 1 && before_.factor.empty() ? strengths_by(factor)
+                                                                           : "F " + rounded(factor)) +
+                                     in_brief(before_) + ", "};
                 }};
     }
 
@@ -209,7 +239,16 @@ std::unique_ptr<Trial> bracket_safety(const StrengthReduction& reduction, const 
     if (!made_before.factor.empty())
         files.say("from " + files.checkpoint() + ": " + last_run_in_words(made_before));
     KeptRuns runs(reduction, scene, run_with, files, std::move(kept));
-    Bracket bracket = analysis::bracket_by(search, runs, reduction.search->at_once, made_before);
+    Bracket bracket;
+    try {
+        bracket = analysis::bracket_by(search, runs, reduction.search->at_once, made_before);
+    } catch (const analysis::Stopped&) {
+        const std::string known = runs.known_so_far();
+        files.stop("stopped; " +
+                   (known.empty() ? "nothing is known of the factor of safety yet"
+                                  : "the factor of safety is " + known) +
+                   ". With --checkpoint FILE a stopped search can continue");
+    }
     const auto run_of = [&](std::optional<double> factor, bool stood) -> std::unique_ptr<Trial> {
         if (!factor)
             return nullptr;
@@ -218,11 +257,15 @@ std::unique_ptr<Trial> bracket_safety(const StrengthReduction& reduction, const 
         const auto& all = bracket.trials.factor;
         const auto number =
             static_cast<std::size_t>(std::find(all.begin(), all.end(), *factor) - all.begin());
-        return run_with(
-            {.scene = scene,
-             .factor = *factor,
-             .most_displacement = search.most_displacement(number == 0 ? Safety{} : bracket.trials),
-             .from = files.kept_run(stood, number, scene, reduction)});
+        auto again =
+            run_with({.scene = scene,
+                      .factor = *factor,
+                      .most_displacement = search.most_displacement(number == 0 ? Safety{} : bracket.trials),
+                      .from = files.kept_run(stood, number, scene, reduction)});
+        if (again->is_stopped())
+            files.stop("stopped; the factor of safety is " + in_words(bracket) +
+                       ". The same command continues from " + files.checkpoint());
+        return again;
     };
     std::unique_ptr<Trial> run = run_of(bracket.stands, true), failed = run_of(bracket.not_above, false);
     if (!run)
@@ -233,8 +276,13 @@ std::unique_ptr<Trial> bracket_safety(const StrengthReduction& reduction, const 
     if (failed && failed->outcome().ending == analysis::Ending::undecided)
         files.warn("undecided with strengths divided by " + shown(*bracket.not_above) +
                    ": the factor of safety may be above " + shown(*bracket.stands));
-    const auto estimate = estimate_mesh(scene, run_with, files, *reduction.search, bracket,
-                                        run->analysis().result().mesh.zone_gridpoint.size());
+    std::optional<MeshEstimate> estimate;
+    try {
+        estimate = estimate_mesh(scene, run_with, files, *reduction.search, bracket,
+                                 run->analysis().result().mesh.zone_gridpoint.size());
+    } catch (const analysis::Stopped&) {
+        files.warn("stopped before the mesh's share of the factor was known");
+    }
     if (estimate) {
         bracket.trials.coarse_factor = estimate->coarse.trials.factor;
         bracket.trials.coarse_stands = estimate->coarse.trials.stands;
@@ -249,6 +297,7 @@ std::unique_ptr<Trial> bracket_safety(const StrengthReduction& reduction, const 
     files.write_result(*run, bracket.trials);
     if (failed)
         summary.add("  at this factor", files.write_failed(*failed, bracket.trials));
+    files.stop("stopped; the factor of safety is " + in_words(bracket) + ", and its files are written");
     if (estimate)
         add_mesh_estimate(summary, bracket, *estimate);
     return run;

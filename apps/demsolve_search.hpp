@@ -4,6 +4,7 @@
 
 #include "demsolve_files.hpp"
 #include "demsolve_settings.hpp"
+#include "demsolve_summary.hpp"
 #include "program.hpp"
 
 #include "analysis/safety.hpp"
@@ -27,8 +28,8 @@ struct RunOf {
         std::numeric_limits<double>::infinity();                  // it fails where rock moves farther [m]
     std::optional<store::CheckpointFile> from{};                  // it continues from there
     std::function<void(const Result&, const Checkpoint&)> keep{}; // gets its checkpoints
-    std::function<std::optional<std::string>()> which = [] {
-        return "";
+    std::function<std::optional<Which>()> which = [] {
+        return Which{};
     };                      // before its progress; none: not shown
     std::stop_token stop{}; // then it ends by Dropped
 };

@@ -314,10 +314,11 @@ analysis::Recording recording(const Arguments& arguments)
     const double minutes = arguments.number("checkpoint-every", from(0).to(1e6), "min").value_or(10);
     if (!arguments.has("checkpoint") && arguments.has("checkpoint-every"))
         throw input_error("--checkpoint-every goes with --checkpoint only");
-    if (arguments.has("checkpoint")) {
-        stop_where_kept(arguments.program());
+    stop_when_asked(arguments.program(), arguments.has("checkpoint")
+                                             ? "when its state is kept in the checkpoint"
+                                             : "at the next possible moment");
+    if (arguments.has("checkpoint"))
         recording.keep_now = is_asked_to_stop;
-    }
     if (arguments.has("checkpoint") && minutes > 0)
         recording.keep_every = std::chrono::duration<double>(60 * minutes);
     return recording;

@@ -152,6 +152,31 @@ double smallest_that_fails(const Safety& trials)
     return fails;
 }
 
+// Of stages to a hundredth.
+std::string day_of(double time, bool is_creep)
+{
+    const double parts = is_creep ? 1 : 100;
+    return "day " + shown(std::round(parts * time / unit::day) / parts);
+}
+
+std::string in_digits(const char* format, double value)
+{
+    std::array<char, 32> text{};
+    std::snprintf(text.data(), text.size(), format, value);
+    return text.data();
+}
+
+// "3e-4", "1"
+std::string power_of_ten(double value)
+{
+    std::string text = in_digits("%.0e", value);
+    if (text.ends_with("e+00"))
+        return text.substr(0, text.size() - 4);
+    if (const std::size_t zero = text.find('e') + 2; zero < text.size() - 1 && text[zero] == '0')
+        text.erase(zero, 1);
+    return text;
+}
+
 } // namespace
 
 void add_run(Summary& summary, const Network& network, const analysis::Trial& trial)
@@ -248,15 +273,29 @@ std::string warning_lines(const analysis::Trial& run)
     return lines;
 }
 
-std::string what_is_done(const analysis::Progress& progress)
+std::string what_is_done(const Which& which, const analysis::Progress& progress, bool has_days,
+                         std::size_t most)
 {
-    if (progress.search == nullptr)
-        return progress.what;
-    std::array<char, 96> text{};
-    std::snprintf(text.data(), text.size(), ": %d steps, unbalanced force ratio %.1e (wanted %.0e)",
-                  static_cast<int>(progress.search->steps), progress.search->unbalanced_force_ratio,
-                  progress.tolerance);
-    return progress.what + text.data();
+    const bool is_brief = most != Progress::unlimited;
+    const std::string day = has_days && progress.time ? day_of(*progress.time, progress.what.empty()) : "";
+    std::string rest = progress.what.empty() || day.empty() ? day : ", " + day;
+    if (!progress.more.empty())
+        rest += ", " + progress.more;
+    if (progress.search != nullptr) {
+        const double ratio = progress.search->unbalanced_force_ratio;
+        rest += is_brief ? ", ratio " + power_of_ten(ratio) + " of " + power_of_ten(progress.tolerance)
+                         : ": " + std::to_string(progress.search->steps) + " steps, unbalanced force ratio " +
+                               in_digits("%.1e", ratio) + " (wanted " +
+                               in_digits("%.0e", progress.tolerance) + ')';
+    }
+    if (!is_brief)
+        return which.whole + progress.what + rest;
+    constexpr std::size_t shortest = 8; // name of a stage
+    const std::size_t taken = columns(which.brief) + columns(rest);
+    const std::size_t room = std::max(shortest, most - std::min(most, taken));
+    const bool is_long = columns(progress.what) > room;
+    return which.brief +
+           (is_long ? std::string(shortened(progress.what, room - 1)) + "\u2026" : progress.what) + rest;
 }
 
 std::string place_of(const Checkpoint& kept, const Scene& scene)

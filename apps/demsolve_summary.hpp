@@ -34,8 +34,16 @@ std::string mesh_warning(const analysis::Bracket& bracket, const MeshEstimate& e
 std::vector<std::string> warnings_of(const analysis::Trial& run);
 std::string warning_lines(const analysis::Trial& run);
 
-// What a run does at the moment: "bench 2, day 200: 400 steps, unbalanced force ratio 3e-04 (wanted 1e-06)".
-std::string what_is_done(const analysis::Progress& progress);
+// Which run is shown; both forms may be "".
+struct Which {
+    std::string whole; // "strengths / 1.5 (factor of safety at least 1, below 2), "
+    std::string brief; // "F 1.5 (1 to 2), "
+};
+
+// What a run does at the moment: "bench 2, day 200: 400 steps, unbalanced force ratio 3e-04 (wanted 1e-06)". On a terminal
+// "bench 2, day 200, ratio 3e-4 of 1e-6", with a shorter name of the stage where it is wider than `most` columns.
+std::string what_is_done(const Which& which, const analysis::Progress& progress, bool has_days,
+                         std::size_t most);
 
 // Where a checkpoint is in the analysis: stage "A", day 3.
 std::string place_of(const Checkpoint& kept, const Scene& scene);

@@ -154,24 +154,6 @@ void complain(const std::string& program, std::string_view message)
     std::_Exit(code);
 }
 
-// Columns that UTF-8 text takes, combining characters aside.
-std::size_t columns(std::string_view text)
-{
-    return static_cast<std::size_t>(
-        std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }));
-}
-
-// The beginning of a UTF-8 text, no wider than `most` columns.
-std::string_view shortened(std::string_view text, std::size_t most)
-{
-    std::size_t size = text.size();
-    while (columns(text.substr(0, size)) > most)
-        --size;
-    while (size < text.size() && (text[size] & 0xC0) == 0x80)
-        ++size;
-    return text.substr(0, size);
-}
-
 // Uses the stack that the work may need now. Where memory is limited, a stack that cannot grow later ends in a crash. A
 // small stack is left as it is. Throws std::bad_alloc where there is no room for it.
 [[gnu::noinline]] void reserve_stack()
@@ -220,6 +202,22 @@ void start_with_short_waits(char** argv)
 }
 
 } // namespace
+
+std::size_t columns(std::string_view text)
+{
+    return static_cast<std::size_t>(
+        std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }));
+}
+
+std::string_view shortened(std::string_view text, std::size_t most)
+{
+    std::size_t size = text.size();
+    while (columns(text.substr(0, size)) > most)
+        --size;
+    while (size < text.size() && (text[size] & 0xC0) == 0x80)
+        ++size;
+    return text.substr(0, size);
+}
 
 std::string name_beside(const std::string& name, const std::string& word)
 {
@@ -436,10 +434,10 @@ void ask_to_stop(int signal)
 
 } // namespace
 
-void stop_where_kept(const std::string& program)
+void stop_when_asked(const std::string& program, const std::string& when)
 {
-    asked_text =
-        program + ": stops when its state is kept in the checkpoint; a second signal stops it at once\n";
+    const std::string over_progress = isatty(STDERR_FILENO) != 0 ? "\r\x1b[K" : "";
+    asked_text = over_progress + program + ": stops " + when + "; a second signal stops it at once\n";
     for (const int signal : {SIGINT, SIGTERM})
         if (std::signal(signal, ask_to_stop) == SIG_IGN)
             std::signal(signal, SIG_IGN); // as in the background of a shell
@@ -480,14 +478,14 @@ std::string Progress::time_left(double fraction) const
     const double left = gone * (1 - fraction) / done;
     const bool in_minutes = left > 90, in_hours = left > 90 * 60;
     const double unit = in_hours ? 3600 : in_minutes ? 60 : 1;
-    return ", about " + std::to_string(std::llround(std::ceil(left / unit))) +
+    return ", " + std::to_string(std::llround(std::ceil(left / unit))) +
            (in_hours     ? " h"
             : in_minutes ? " min"
                          : " s") +
            " left";
 }
 
-void Progress::show(double fraction, const std::function<std::string()>& what)
+void Progress::show(double fraction, const What& what)
 {
     fraction = std::clamp(fraction, 0.0, 1.0);
     if (fraction > 0)
@@ -499,19 +497,25 @@ void Progress::show(double fraction, const std::function<std::string()>& what)
                      : "";
     if (!on_terminal_) {
         next_ = Clock::now() + std::chrono::minutes(1);
-        std::cerr << program_ + ": " + share + what() + "\n" << std::flush;
+        std::cerr << program_ + ": " + share + what(unlimited) + "\n" << std::flush;
         return;
     }
     next_ = Clock::now() + std::chrono::milliseconds(100);
     drawn_ = true;
-    constexpr std::size_t bar_width = 20;
+    constexpr std::size_t bar_width = 6;
     const auto full = static_cast<std::size_t>(fraction * bar_width);
     const std::string bar =
         fraction > 0 ? "[" + std::string(full, '#') + std::string(bar_width - full, ' ') + "] " : "";
     winsize window{};
     const bool has_width = ioctl(STDERR_FILENO, TIOCGWINSZ, &window) == 0 && window.ws_col > 0;
-    std::cerr << "\r" << shortened(bar + share + what(), (has_width ? window.ws_col : 80) - 1) << "\x1b[K"
-              << std::flush;
+    const std::size_t most = (has_width ? window.ws_col : 80) - 1;
+    const auto line_of = [&](const std::string& start) {
+        return start + what(most - std::min(most, columns(start)));
+    };
+    std::string line = line_of(bar + share);
+    if (columns(line) > most)
+        line = line_of(share);
+    std::cerr << "\r" << shortened(line, most) << "\x1b[K" << std::flush;
 }
 
 void Summary::add(std::string label, std::string value, const std::string& unit)

@@ -22,6 +22,7 @@
 #include <chrono>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <map>
 #include <optional>
 #include <stdexcept>
@@ -155,9 +156,14 @@ public:
     Progress(const Progress&) = delete;
     Progress& operator=(const Progress&) = delete;
 
+    // What is being done, in so many columns if it can be said in these; `unlimited`: not on a terminal.
+    using What = std::function<std::string(std::size_t most)>;
+    static constexpr std::size_t unlimited = std::numeric_limits<std::size_t>::max();
+
     // `fraction` done, from 0 (not known) to 1, and what is being done. Cheap to call often: asks for it 10 times a second at most.
-    // After some seconds the time left is shown, as if the rest went on at the same rate.
-    void show(double fraction, const std::function<std::string()>& what);
+    // After some seconds the time left is shown, as if the rest went on at the same rate. The bar goes where there is no
+    // room for it.
+    void show(double fraction, const What& what);
 
 private:
     using Clock = std::chrono::steady_clock;
@@ -175,11 +181,17 @@ void print_line(const std::string& program, const std::string& text);
 // Says a warning on stderr: "demsolve: warning: ...".
 void print_warning(const std::string& program, const std::string& text);
 
-// Where a program can keep its state: from here on a first SIGINT or SIGTERM only asks it to do that. A second one ends it.
-void stop_where_kept(const std::string& program);
+// Columns that UTF-8 text takes, combining characters aside.
+std::size_t columns(std::string_view text);
+// The beginning of a UTF-8 text, no wider than `most` columns.
+std::string_view shortened(std::string_view text, std::size_t most);
+
+// From here on a first SIGINT or SIGTERM only asks the program to stop, and says when it does: "at the next ...". A second one
+// ends it.
+void stop_when_asked(const std::string& program, const std::string& when);
 // Whether it was asked.
 bool is_asked_to_stop();
-// It has kept its state: if it was asked, it ends by that signal, with this line.
+// It can stop now: if it was asked, it ends by that signal, with this line.
 void stop_if_asked(const std::string& program, const std::string& text);
 
 // The summary at the end of a run: lines "label   value unit", their values aligned; and warnings: what a person should

@@ -182,8 +182,8 @@ void Analysis::excavate(const Stage& stage)
 // From where its rock is removed.
 void Analysis::complete(const Stage& stage)
 {
-    section_.say(stage.name);
     section_.stage = stage.name;
+    section_.say(stage.name);
     if (dynamics_) {
         dynamics_->run(&stage == &section_.scene.stages.back());
         creep_.start_afresh();

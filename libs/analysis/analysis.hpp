@@ -39,6 +39,10 @@ public:
     // moved from. Throws input_error where the sizes are not those of this section.
     void go_on(Result so_far, Checkpoint kept);
 
+    // After an observer has thrown Stopped: throws equilibrium_error, and result() has the failure, as where there is no
+    // equilibrium.
+    [[noreturn]] void give_up(const std::string& reason) { fail(section_, {.reason = reason}, section_.now); }
+
     const Result& result() const { return section_.result; }
     // Sensitivities of the histories' displacements, [parameter][time, point]: per unit of the parameter's
     // logarithm [m].

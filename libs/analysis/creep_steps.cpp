@@ -88,7 +88,7 @@ void CreepSteps::go_to(double last, double date, bool may_stop)
         check_number_of_steps(last, date, *section_.scene.creep);
     while (now < date && !end_) {
         forget_now_and_then();
-        section_.say("day " + std::to_string(std::lround(now / unit::day)));
+        section_.say("");
         const double target = next_target(date, longest);
         if (!creeps() && !is_loaded)
             now = target;

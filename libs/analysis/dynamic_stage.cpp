@@ -157,12 +157,12 @@ bool DynamicStage::moves_to_rest(double stop, bool is_recorded)
 void DynamicStage::say()
 {
     std::array<char, 64> text{};
-    std::snprintf(text.data(), text.size(), ", %.4g s, largest velocity %.2g m/s", dynamics_.time(),
+    std::snprintf(text.data(), text.size(), "%.4g s, largest velocity %.2g m/s", dynamics_.time(),
                   dynamics_.fastest());
     const std::string what = !section_.stage.empty() ? section_.stage
                              : section_.now > 0      ? "creep"
                                                      : "in situ";
-    section_.say(what + text.data());
+    section_.say(what, text.data());
 }
 
 // Steps until rock is at rest, or until a time has come [s].

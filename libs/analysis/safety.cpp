@@ -43,22 +43,28 @@ Trial::Trial(const Scene& scene, const Network& network, const EquivalentJoints&
 {
 }
 
-void Trial::run()
+void Trial::attempt(const std::function<void()>& work)
 {
     try {
-        analysis_.run();
+        try {
+            work();
+        } catch (const Stopped&) {
+            is_stopped_ = true;
+            analysis_.give_up("stopped by a signal");
+        }
     } catch (const equilibrium_error& error) {
         message_ = error.what();
     }
 }
 
+void Trial::run()
+{
+    attempt([&] { analysis_.run(); });
+}
+
 void Trial::go_on(Result so_far, Checkpoint kept)
 {
-    try {
-        analysis_.go_on(std::move(so_far), std::move(kept));
-    } catch (const equilibrium_error& error) {
-        message_ = error.what();
-    }
+    attempt([&] { analysis_.go_on(std::move(so_far), std::move(kept)); });
 }
 
 Outcome Trial::outcome() const

@@ -11,6 +11,7 @@
 #include "analysis/analysis.hpp"
 #include "model/result.hpp"
 
+#include <functional>
 #include <optional>
 #include <stop_token>
 #include <string>
@@ -35,22 +36,26 @@ public:
     Trial(const Scene& scene, const Network& network, const EquivalentJoints& joints, double factor,
           double most_displacement, int threads, const Recording& recording, const Observer& observe);
 
-    // The same as in Analysis, once. Without an equilibrium they end with a message.
+    // The same as in Analysis, once. Without an equilibrium they end with a message, also where the observer stops them.
     void run();
     void go_on(Result so_far, Checkpoint kept);
 
     Outcome outcome() const;
     const std::string& message() const { return message_; } // why it fails; empty: it stands
+    bool is_stopped() const { return is_stopped_; }         // by the observer
     const Scene& scene() const { return scene_; }
     double factor() const { return factor_; }
     const Analysis& analysis() const { return analysis_; }
 
 private:
+    void attempt(const std::function<void()>& work);
+
     double factor_;
     Scene scene_;
     EquivalentJoints joints_;
     Analysis analysis_;
     std::string message_;
+    bool is_stopped_ = false;
 };
 
 struct Bracket {

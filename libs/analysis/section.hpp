@@ -40,12 +40,16 @@ struct Recording {
 // Where an analysis is.
 struct Progress {
     double fraction = 0;                            // of the scene's time [-]
-    std::string what;                               // the stage, or the day of creep
+    std::string what;                               // the stage; "": creep between stages
+    std::string more;                               // about a dynamic analysis, or ""
+    std::optional<double> time{};                   // since start [s]; none: before it, in situ
     const mechanics::Convergence* search = nullptr; // for equilibrium, if one is going on
     double tolerance = 0;                           // of its unbalanced force ratio
 };
 
-// Called often.
+// Called often. It may throw Stopped to end the analysis.
+struct Stopped {
+};
 using Observer = std::function<void(const Progress&)>;
 
 // What the summary counts.
@@ -81,9 +85,15 @@ struct Section {
 
     const Mesh& mesh() const { return result.mesh; }
     // Tells the observer what is being done, and how far a search for equilibrium has come.
-    void say(const std::string& what)
+    void say(const std::string& what, const std::string& more = "")
     {
-        progress = {now / scene.end, what, nullptr, scene.equilibrium.tolerance};
+        const bool is_in_situ = stage.empty() && now == 0 && !what.empty();
+        progress = {now / scene.end,
+                    what,
+                    more,
+                    is_in_situ ? std::nullopt : std::optional(now),
+                    nullptr,
+                    scene.equilibrium.tolerance};
         observe(progress);
     }
     void say_search(const mechanics::Convergence& so_far)

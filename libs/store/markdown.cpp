@@ -142,8 +142,9 @@ with h5py.File("result.h5") as file:
         << "\nThe group `/guards` is there if a state was recorded and checked; what is allowed is on the page "
            "[programs](programs.md).\n";
     list(page, "Failure", schema::fields_of(result.failure));
-    page << "\nThe group `/failure` is there only in `NAME.failed.h5`, of a run that found no equilibrium. "
-            "All other data of such a file end with the last equilibrium.\n";
+    page
+        << "\nThe group `/failure` is there only in `NAME.failed.h5`, of a run that found no equilibrium, or that a signal "
+           "stopped. All other data of such a file end with the last equilibrium.\n";
     list(page, "Factor of safety", schema::fields_of(safety));
     page << "\nThe group `/safety` is there only if a factor of safety was asked for.\n";
     list(page, "Checkpoint", schema::fields_of(checkpoint));

@@ -274,6 +274,8 @@ class Folder:
             return old["code"]
         if step.solves:
             self.remove(FAILED)
+            if "begun" in self.record:  # then a run that was stopped may have left one
+                (self.out / FAILED).unlink(missing_ok=True)
             if self.record.get("begun") != identity:
                 self.remove_checkpoints()
             self.record["begun"] = identity

@@ -3,6 +3,7 @@
 #include "../mechanics/sections.hpp"
 
 #include "analysis/analysis.hpp"
+#include "analysis/safety.hpp"
 #include "model/error.hpp"
 #include "model/units.hpp"
 
@@ -285,12 +286,17 @@ TEST(analysis, tells_where_it_is_and_how_searches_go)
         study.scene.equilibrium.engine = engine;
         double fraction = 0;
         Index searches = 0;
-        std::string what;
+        std::string what, first;
+        std::optional<double> time;
         const auto look = [&](const analysis::Progress& now) {
             EXPECT_GE(now.fraction, fraction);
             EXPECT_LE(now.fraction, 1);
             fraction = now.fraction;
             what = now.what;
+            time = now.time;
+            if (first.empty())
+                first = now.what;
+            EXPECT_EQ(now.time.has_value(), now.what != "in-situ equilibrium");
             if (now.search == nullptr)
                 return;
             ++searches;
@@ -302,8 +308,26 @@ TEST(analysis, tells_where_it_is_and_how_searches_go)
         analysed.run();
         EXPECT_GT(searches, 2);
         EXPECT_GT(fraction, 0);
-        EXPECT_TRUE(what.starts_with("day ")) << what;
+        EXPECT_EQ(first, "in-situ equilibrium");
+        EXPECT_EQ(what, "") << "creep, at a time";
+        EXPECT_GT(time.value_or(0), 0);
     }
+}
+
+TEST(analysis, what_stops_keeps_the_states_so_far)
+{
+    const Study study;
+    analysis::Trial trial(study.scene, study.network, study.joints, 1,
+                          std::numeric_limits<double>::infinity(), 1, {}, [](const analysis::Progress& now) {
+                              if (now.time > 2 * day)
+                                  throw analysis::Stopped();
+                          });
+    EXPECT_FALSE(trial.is_stopped());
+    trial.run();
+    EXPECT_TRUE(trial.is_stopped());
+    EXPECT_EQ(trial.analysis().result().failure.reason, "stopped by a signal");
+    EXPECT_EQ(trial.outcome().ending, analysis::Ending::undecided);
+    EXPECT_GT(trial.analysis().result().states.time.size(), 1);
 }
 
 TEST(analysis, threads_do_not_change_the_result)
