@@ -3,6 +3,7 @@
 //   jointexport result.h5 -o result.xdmf2                     the zones at all states, for ParaView
 //   jointexport result.h5 -o result.vtu                       the zones at the last state
 //   jointexport result.h5 -o histories.csv                    the histories of the monitoring points
+//   jointexport result.failed.h5 --what failure -o why.csv    the blocks that move, and the reason
 //   jointexport result.h5 --format csv -o - | head            to standard output
 //   jointexport network.h5 -o joints.csv                      the joint traces inside the section
 //   jointexport network.h5 -o blocks.geo                      the blocks, for Gmsh
@@ -40,7 +41,7 @@ using exchange::Format;
 
 bool is_of_result(std::string_view what)
 {
-    return what == "zones" || what == "contacts" || what == "histories";
+    return what == "zones" || what == "contacts" || what == "histories" || what == "failure";
 }
 
 // What of the format's content the file can give.
@@ -132,6 +133,11 @@ std::string text_of_result(const Arguments& arguments, const Format& format, con
     const store::ResultFile file = store::read_result(input);
     if (what == "histories")
         return exchange::histories_csv(file.result.history);
+    if (what == "failure") {
+        if (file.result.failure.reason.empty())
+            throw input_error(input + ": this run did not end early; only NAME.failed.h5 has a failure");
+        return exchange::failure_csv(file.result.failure, file.network.blocks);
+    }
     if (format.name == "xdmf") {
         const std::string result_file = path_between(arguments.output(), input);
         return what == "zones" ? exchange::zones_xdmf(file.result, result_file)
@@ -330,7 +336,7 @@ void export_file(const Arguments& arguments)
     const bool of_result = is_of_result(what[0]);
     if (arguments.has("state") && format.name == "xdmf")
         throw input_error("--state does not go with .xdmf, which has all states");
-    if (arguments.has("state") && (!of_result || what[0] == "histories"))
+    if (arguments.has("state") && what[0] != "zones" && what[0] != "contacts")
         throw input_error("--state goes with --what zones or contacts, not with " + what[0]);
     if (of_result && arguments.inputs().size() > 1)
         throw input_error("--what " + what[0] + " is of one file, and several are given");
@@ -364,7 +370,7 @@ int main(int argc, char** argv)
               {"formats", "", "show the table of formats, tab separated, and nothing else"},
               {"what", "NAME",
                "joints (traces), bridges, edges, blocks, section, planes (joints in space); from a result file "
-               "also zones, contacts, histories. Several, separated by commas, where the format holds them. "
+               "also zones, contacts, histories, failure. Several, separated by commas, where the format holds them. "
                "Default: by format (docs/exchange.md)"},
               {"width", "M",
                "width across the section of joints that are not discs, and of blocks of 3dec and yade "

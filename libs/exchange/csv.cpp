@@ -148,4 +148,17 @@ std::string histories_csv(const History& history)
     return table;
 }
 
+std::string failure_csv(const Failure& failure, const Blocks& blocks)
+{
+    std::string table =
+        "block,x_m,y_m,area_m2,displacement_x_m,displacement_y_m,steps,moves_on,stage,time_day,reason\n";
+    const std::string of_run = ',' + field(failure.steps) + ',' + field(failure.moves_on) + ',' +
+                               csv_field(failure.stage) + ',' + field(failure.time) + ',' +
+                               csv_field(failure.reason) + '\n';
+    for (std::size_t i = 0; i < failure.block.size(); ++i)
+        table += field(failure.block[i]) + ',' + field(failure.place[i]) + ',' +
+                 field(blocks.block_area[failure.block[i]]) + ',' + field(failure.motion[i]) + of_run;
+    return failure.block.empty() ? table + ",,,,," + of_run : table;
+}
+
 } // namespace jointcreep::exchange

@@ -6,6 +6,7 @@
 #pragma once
 
 #include "exchange/layers.hpp"
+#include "model/network.hpp"
 #include "model/result.hpp"
 
 #include <string>
@@ -24,5 +25,10 @@ std::string layers_csv(std::span<const Layer> layers);
 // One row a recorded time: time_day, event, and for each point A: A_x_m, A_y_m (displacement since the
 // in-situ equilibrium), A_present (0 once removed).
 std::string histories_csv(const History& history);
+
+// Why a run ended early: one row a block that moves, the fastest first: block, x_m, y_m (its middle), area_m2,
+// displacement_x_m, displacement_y_m in the last `steps` steps of the solver, steps, moves_on (1 it slides or falls, 0
+// undecided), stage, time_day, reason. Without such blocks one row, which lacks the first columns.
+std::string failure_csv(const Failure& failure, const Blocks& blocks);
 
 } // namespace jointcreep::exchange

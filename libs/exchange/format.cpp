@@ -52,7 +52,7 @@ const std::vector<Format>& formats()
     static const std::vector<Format> all{
         {"csv",
          {".csv"},
-         {"joints", "bridges", "edges", "blocks", "section", "planes", "histories"},
+         {"joints", "bridges", "edges", "blocks", "section", "planes", "histories", "failure"},
          {"joints"},
          "histories",
          false,

@@ -35,7 +35,7 @@ struct File {
 struct Format {
     std::string_view name;
     std::vector<std::string_view> extensions; // ".csv"
-    std::vector<std::string_view> holds;      // layers, and zones, contacts, histories of a result
+    std::vector<std::string_view> holds;      // layers, and zones, contacts, histories, failure of a result
     std::vector<std::string_view> usual;      // of a network or joints file
     std::string_view usual_of_result;         // empty: the same
     bool holds_several = false;               // layers in one file

@@ -177,6 +177,12 @@ Grid zones_grid(const Network& network, const Result& result, std::size_t state)
     grid.cell_data = {array_of("zone", present), array_of("block", block),
                       array_of("rock", looked_up(network.blocks.block_rock, block)),
                       array_of("stage", looked_up(network.blocks.block_stage, block))};
+    if (!result.failure.block.empty()) {
+        std::vector<Index> is_moving(network.blocks.block_area.size(), 0);
+        for (const Index moving : result.failure.block)
+            is_moving[moving] = 1;
+        grid.cell_data.push_back(array_of("moving_block", looked_up(is_moving, block)));
+    }
     for (const Column& column : columns_of(&ForceColumns::of_zones, result, state))
         grid.cell_data.push_back(array_of(column, present));
     return grid;

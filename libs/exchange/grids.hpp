@@ -26,7 +26,8 @@ Grid layer_grid(const Layer& layer);
 // The zones present in a state, one triangle each, at their positions at the start. `state` is a row of
 // result.states; one that does not exist throws input_error. Its time [day] is the field data array
 // TimeValue. Points: gridpoint, displacement [m]; after a stage that resets displacements, displacement_since_reset
-// [m]. Cells: zone, block, rock, stage, then the columns of forces.
+// [m]. Cells: zone, block, rock, stage, where the run failed moving_block (1 in blocks of the failure), then the columns of
+// forces.
 Grid zones_grid(const Network& network, const Result& result, std::size_t state);
 
 // The contacts present in a state, one point each, at their centres at the start.

@@ -218,5 +218,26 @@ TEST(histories_csv, counts_anew_from_a_stage_that_resets)
     }
 }
 
+TEST(failure_csv, has_a_row_for_each_block_or_the_reason_alone)
+{
+    Blocks blocks;
+    blocks.block_area = {2, 3, 0.1 + 0.2};
+    Failure failure{
+        .reason = "blocks move, and fall", .stage = "dig", .time = 1.5, .moves_on = 1, .steps = 5000};
+    const Row alone{"", "", "", "", "", "", "5000", "1", "dig", "1.5", "blocks move, and fall"};
+    auto rows = rows_of(failure_csv(failure, blocks));
+    EXPECT_EQ(rows[0].size(), alone.size());
+    EXPECT_EQ(rows[1], alone);
+
+    failure.block = {2, 0};
+    failure.place = {{1, 2}, {3, 4}};
+    failure.motion = {{0, -0.5}, {0.25, 0}};
+    rows = rows_of(failure_csv(failure, blocks));
+    EXPECT_EQ(rows[1],
+              (Row{"2", "1", "2", shown(0.1 + 0.2), "0", "-0.5", "5000", "1", "dig", "1.5", failure.reason}));
+    EXPECT_EQ(rows[2][0], "0");
+    EXPECT_EQ(rows[2][3], "2");
+}
+
 } // namespace
 } // namespace jointcreep::exchange::csv_test

@@ -12,6 +12,7 @@ import numpy
 from chain import ChainTest, changed, datasets, main
 
 import joint_sets
+from safety_test import HANGING
 
 KINDS = ["boundary", "joint", "bonded"]
 FATES = ["kept", "clipped", "trimmed", "merged", "dropped"]
@@ -107,6 +108,31 @@ class Export(ChainTest):
                     self.assert_same(self.column(table, f"{point}_{letter}_m"), wanted)
                 self.assert_same(self.column(table, f"{point}_present"), data["/history/present"][:, p])
             self.assertEqual(len(table[0]), 2 + 3 * len(data["/history/point"]))
+
+    def test_failure(self):
+        """A table of the blocks that move, and a mark on their zones."""
+        joints = self.chain.joints(HANGING)
+        done = self.chain.answer("demsolve", joints, "-o", joints.with_name("result.h5"))
+        self.assertEqual(done.returncode, 3, done.stderr)
+        path = joints.with_name("result.failed.h5")
+        data, table = datasets(path), self.table(path, "failure")
+        self.assert_same(self.column(table, "block"), data["/failure/block"])
+        self.assertGreater(len(table), 0)
+        self.assert_same(self.column(table, "area_m2"), data["/blocks/area"][data["/failure/block"]])
+        for axis, letter in enumerate("xy"):
+            self.assert_same(self.column(table, f"{letter}_m"), data["/failure/place"][:, axis])
+            self.assert_same(self.column(table, f"displacement_{letter}_m"), data["/failure/motion"][:, axis])
+        for row in table:
+            self.assertEqual((row["stage"], float(row["time_day"]), row["reason"]),
+                             (data["/failure/stage"][0], data["/failure/time"][0], data["/failure/reason"][0]))
+        cells = Grid(self.export(path, "zones.vtu")).cell
+        self.assert_same(cells["moving_block"], numpy.isin(cells["block"], data["/failure/block"]))
+        self.assertEqual(set(cells["moving_block"]), {0, 1})
+        for whole, _ in self.results():
+            refused = self.chain.answer("jointexport", whole, "--what", "failure", "-o", joints.with_name("x.csv"))
+            self.assertEqual(refused.returncode, 2)
+            self.assertIn("did not end early", refused.stderr)
+            self.assertNotIn("moving_block", Grid(self.export(whole, "zones.vtu")).cell)
 
     def test_blocks_csv(self):
         for path, data in self.results():
