@@ -18,7 +18,12 @@ std::string text_of(const std::string& path)
     text << file.rdbuf();
     if (!file)
         throw file_error(path + ": cannot be read");
-    return text.str();
+    if (!text.view().starts_with("\x89HDF") && text.view().find("[section]") != std::string_view::npos)
+        throw input_error(
+            path +
+            ": this is a scene; wanted a table of readings (.csv). Run jointgen and strength-averaging "
+            "first, and give joints.h5 with --measurements READINGS.csv");
+    return std::move(text).str();
 }
 
 std::optional<std::string> readings_file(const Arguments& arguments, bool may_fail)

@@ -63,6 +63,8 @@ Measurements read_measurements(const std::string& path, const Scene& scene,
                                const back_analysis::Settings& settings)
 {
     const std::string text = text_of(path);
+    if (text.starts_with("\x89HDF"))
+        throw input_error(path + ": this is an HDF5 file; wanted a table of measurements (.csv)");
     Measurements measurements = of_file(path, [&] { return scene::measurements_in_csv(text, scene); });
     if (measurements.size() <= settings.factors.size())
         throw input_error(path + ": " + std::to_string(measurements.size()) + " readings for " +

@@ -1,5 +1,6 @@
 #include "program.hpp"
 
+#include "keys/keys.hpp"
 #include "model/error.hpp"
 #include "model/version.hpp"
 #include "store/save.hpp"
@@ -127,7 +128,13 @@ po::variables_map parsed(const Program& program, int argc, char** argv)
         refuse_renamed(program, name.substr(std::min<std::size_t>(2, name.size())));
         if (name == "-v")
             throw input_error("-v is no option; -V shows the version, -q is without the summary");
-        throw input_error(error.what());
+        std::vector<std::string> known{"output", "quiet", "help", "version"};
+        for (const Option& option : program.options)
+            known.push_back(option.name);
+        const bool is_long = name.starts_with("--");
+        const std::string meant = is_long ? keys::nearest(name.substr(2), known) : "";
+        throw input_error("there is no option " + name +
+                          (meant.empty() ? "; --help shows all" : "; did you mean --" + meant + "?"));
     } catch (const po::too_many_positional_options_error&) {
         throw input_error("more than one " + program.input + " is given");
     } catch (const po::error& error) {

@@ -244,11 +244,12 @@ std::vector<Polygon> read_polygons(const KeyInfo& key, const TomlValue& value, c
         place.refuse(entry.value.line, place.table + " has no key " + key + ": it is now called " +
                                            (*now)->name + ". Rename it in the " + place.reading.whole);
     const auto meant = nearest(entry.key, names);
-    const auto advice = meant.empty() ? "" : "; did you mean " + meant + "?";
     std::string all;
     for (const auto& name : names)
         all += (all.empty() ? "" : ", ") + name;
-    place.refuse(entry.value.line, place.table + " has no key " + key + advice + " (its keys: " + all + ")");
+    place.refuse(entry.value.line,
+                 place.table + " has no key " + key +
+                     (meant.empty() ? " (its keys: " + all + ")" : "; did you mean " + meant + "?"));
 }
 
 void check_keys(const TomlValue& value, const std::vector<const KeyInfo*>& known, const Place& place)

@@ -81,6 +81,8 @@ std::string read_text_file(const std::string& path, const std::string& wanted)
     std::array<char, 65536> part;
     while (const std::size_t count = std::fread(part.data(), 1, part.size(), file.get())) {
         text.append(part.data(), count);
+        if (text.starts_with("\x89HDF\r\n"))
+            throw input_error(path + ": this is an HDF5 file; wanted " + wanted + ", which is text");
         if (text.size() > largest_text)
             throw input_error(path + ": is larger than 16 MiB; wanted " + wanted);
     }
@@ -173,7 +175,7 @@ Scene parse_scene_of_file(std::string_view text, const std::string& path, const 
 
 SceneText read_scene(const std::string& path)
 {
-    SceneText scene{read_text_file(path, "a scene file"), {}};
+    SceneText scene{read_text_file(path, "a scene file (.toml)"), {}};
     if (scene.text.empty())
         throw input_error(path + ": is empty; wanted a scene");
     scene.text = written_out(scene.text, path);

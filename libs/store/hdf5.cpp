@@ -3,9 +3,11 @@
 #include "model/error.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstddef>
 #include <cstring>
+#include <fstream>
 #include <new>
 
 #include <sys/resource.h>
@@ -349,11 +351,24 @@ std::uint64_t size_of_file(const std::string& path)
     return static_cast<std::uint64_t>(status.st_size);
 }
 
+// Whether a file begins as text does.
+bool is_text(const std::string& path)
+{
+    std::array<char, 256> begin{};
+    std::ifstream file(path, std::ios::binary);
+    file.read(begin.data(), begin.size());
+    const auto of_text = [](char c) { return (c >= ' ' && c < 0x7f) || c == '\n' || c == '\r' || c == '\t'; };
+    return file.gcount() > 0 && std::all_of(begin.begin(), begin.begin() + file.gcount(), of_text);
+}
+
 Object open_for_reading(const std::string& path)
 {
     if (path.ends_with(".toml"))
         throw input_error("is a scene; wanted a file of the chain. First run: jointgen " + path +
                           " -o network.h5, then strength-averaging network.h5 -o joints.h5");
+    if (is_text(path))
+        throw file_error(
+            "this is a text file; wanted a file of the chain, which is HDF5 (network.h5, joints.h5, result.h5)");
     begin();
     const Object access = properties(H5P_FILE_ACCESS);
     ok(H5Pset_file_locking(access, false, true), "set up HDF5"); // files are never changed in place

@@ -55,6 +55,7 @@ Example:
 """
 
 import dataclasses
+import difflib
 import itertools
 import pathlib
 import shutil
@@ -111,7 +112,8 @@ def options_of(arguments):
             else:
                 raise NotWanted(f"{word} has no value")
         elif word.startswith("-") or source is not None:
-            raise NotWanted(f'unknown option or second input "{word}"\n{usage()}')
+            near = difflib.get_close_matches(word, known, 1) if word.startswith("--") else []
+            raise NotWanted(f'unknown option or second input "{word}"' + (f"; did you mean {near[0]}?" if near else "") + f"\n{usage()}")
         else:
             source = word
     if source is None or not found.get("output"):

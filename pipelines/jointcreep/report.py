@@ -352,6 +352,9 @@ def write(source, output, programs, pairs=None):
             with h5py.File(source) as file:
                 kind = file.attrs.get("filetype", b"")
         except OSError:
+            if source.suffix == ".toml":
+                raise NotWanted(f"{source}: is a scene; expected a result file of demsolve, or a study's folder. First run: jointcreep run "
+                                f"{source} -o FOLDER, which writes FOLDER/report.html") from None
             raise NotWanted(f"{source}: is no HDF5 file, or a damaged one; expected a result file of demsolve, or a study's folder") \
                 from None
         if kind not in (b"jointcreep result", "jointcreep result"):

@@ -153,6 +153,34 @@ class Refusals(ChainTest):
                 after = {path.name: path.read_bytes() for path in folder.iterdir() if path.is_file()}
                 self.assertEqual(after, before)
 
+    def test_a_file_of_another_program(self):
+        """The message says what the file is, what was wanted, and what to do."""
+        scene = self.chain.source / COLUMN
+        result = self.files["result"]
+        text = self.chain.new_folder() / "text.h5"
+        text.write_text("time_day,displacement_mm\n0,1\n")
+        self.assert_refuses(BAD_INPUT, "jointgen", result, says=f"{result}: this is an HDF5 file; wanted a scene file (.toml), which is text\n")
+        self.assert_refuses(BAD_INPUT, "creepfit", scene, output="out.csv",
+                            says=["scene.toml: this is a scene; wanted a table of readings (.csv). Run jointgen and strength-averaging first"])
+        self.assert_refuses(BAD_INPUT, "creepfit", self.files["demsolve"], "--fit", "joint-stiffness", "--measurements", result,
+                            output="out.csv", says="this is an HDF5 file; wanted a table of measurements (.csv)")
+        self.assert_refuses(BAD_FILE, "demsolve", text, says="text.h5: this is a text file; wanted a file of the chain, which is HDF5")
+        self.assert_refuses(BAD_INPUT, "demsolve", scene, says="is a scene; wanted a file of the chain. First run: jointgen ")
+        done = self.chain.answer("jointcreep", "report", scene, "-o", text.with_name("report.html"))
+        self.assertEqual(done.returncode, BAD_INPUT, done.stderr)
+        self.assertIn(f"is a scene; expected a result file of demsolve, or a study's folder. First run: jointcreep run {scene} -o FOLDER",
+                      done.stderr)
+
+    def test_options_that_are_misspelt(self):
+        for program, option, says in [("demsolve", "--tolerence=1", "there is no option --tolerence; did you mean --tolerance?\n"),
+                                      ("jointgen", "--realisation", "there is no option --realisation; did you mean --realization?\n"),
+                                      ("jointexport", "--outptu", "did you mean --output?\n"),
+                                      ("demsolve", "--no-such-option", "there is no option --no-such-option; --help shows all\n"),
+                                      ("demsolve", "-x", "there is no option -x; --help shows all\n")]:
+            self.assert_refuses(BAD_INPUT, program, self.files[program], option, says=says)
+        done = self.chain.answer("jointcreep", "run", "scene.toml", "--realisation", "3", "-o", "out")
+        self.assertIn('unknown option or second input "--realisation"; did you mean --realization?\n', done.stderr)
+
     def test_command_line(self):
         cases = [
             ("jointgen", ["--seed", "-1"], "--seed"),
