@@ -5,6 +5,7 @@ import signal
 import subprocess
 
 CANNOT_WRITE = 4  # exit code: a file could not be read or written
+FAILED_INSIDE = 5  # exit code: internal error, or out of memory
 STOPPING = {signal.SIGHUP, signal.SIGINT, signal.SIGKILL, signal.SIGTERM}  # sent by users and systems
 
 

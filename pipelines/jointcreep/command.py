@@ -64,7 +64,7 @@ import sys
 import traceback
 
 from . import files, plan, runs, study_file, table
-from .errors import NotDone, NotWanted
+from .errors import NotDone, NotWanted, have_linear_algebra, lacks_memory
 
 INTERRUPTED = 128 + signal.SIGINT
 FIT_OPTIONS = ("window", "layer", "property", "name", "material", "law", "shortest", "longest", "edge", "poles", "azimuth",
@@ -219,6 +219,7 @@ def main(arguments, version, beside):
         return 0
     try:
         subcommand, source, options = options_of(arguments)
+        have_linear_algebra()
         return subcommand.run(source, {**options, "version": version}, beside)
     except NotWanted as error:
         print(f"jointcreep: {error}", file=sys.stderr)
@@ -226,13 +227,13 @@ def main(arguments, version, beside):
     except NotDone as error:
         print(f"jointcreep: {error}", file=sys.stderr)
         return 4
-    except OSError as error:
-        print(f"jointcreep: {error.filename or options['output']}: {error.strerror or error}", file=sys.stderr)
-        return 4
-    except MemoryError:
-        print("jointcreep: out of memory", file=sys.stderr)
-        return 5
-    except Exception:  # what nobody thought of
+    except Exception as error:
+        if lacks_memory(error):
+            print("jointcreep: out of memory", file=sys.stderr)
+            return 5
+        if isinstance(error, OSError):
+            print(f"jointcreep: {error.filename or options['output']}: {error.strerror or error}", file=sys.stderr)
+            return 4
         traceback.print_exc()
         print("jointcreep: internal error", file=sys.stderr)
         return 5

@@ -6,7 +6,7 @@ group that was killed continues after its last whole line. Files of a run are in
 
 A run that fails is made once more, unless it is asked for whether it finds an equilibrium, and it does not. If it fails again, that is
 its result: exit code, program and message. If a program was
-stopped from outside (by a signal of those that users and systems send), or could not read or write (exit code 4), that is no
+stopped from outside (by a signal of those that users and systems send), could not read or write (exit code 4), or had too little memory, that is no
 result: the run is made when the study is continued, and the exit code of the group is 4.
 """
 
@@ -24,7 +24,7 @@ import sys
 import time
 
 from . import ensemble, plan, quantities, scene_keys, study_file
-from .chain import CANNOT_WRITE, was_stopped, without
+from .chain import CANNOT_WRITE, FAILED_INSIDE, was_stopped, without
 from .errors import NotDone, NotWanted
 
 LONGEST_REASON = 2000  # characters
@@ -96,7 +96,7 @@ def made(study, scene, text, run, programs, folder):
         code, message, warnings, took = called(programs / name, ["--quiet", *arguments] if name == "demsolve" else arguments, folder)
         seconds += took
         row["warnings"] += warnings
-        if was_stopped(code):
+        if was_stopped(code) or code == FAILED_INSIDE and "out of memory" in message:
             why = f"exit code {code}" if code > 0 else f"signal {-code}"
             raise Interrupted(f"run {run['run']}: {name} was stopped ({why}){': ' if message else ''}{message}")
         if "result.h5" in arguments:

@@ -19,7 +19,7 @@ def special():
     """Functions of scipy.special."""
     try:
         from scipy import special as functions
-    except ImportError:
+    except ModuleNotFoundError:
         raise NotWanted("Python's module scipy is not installed; first run: sh pipelines/setup.sh studies") from None
     return functions
 

@@ -1,8 +1,8 @@
 """Sweeps the address space of each program (ulimit -v) in N steps, from the least with which --version runs to enough.
 
 A run gives the bytes of the run without a limit, or ends with code 5, `PROGRAM: out of memory`, and no file. The last
-limit is enough, the first is too little. The limit of a study holds for jointcreep and for each program that it starts; the least
-is enough to import what it needs. Its runs whose program ran out of memory are failures, with that reason in runs.csv.
+limit is enough, the first is too little. The limit of a study holds for jointcreep and for each program that it starts; it ends with
+code 4 or 5 and the same message, and the same command continues it with enough memory.
 """
 
 import resource
@@ -17,7 +17,6 @@ SCENES = ["tests/pipeline/kinds/scene.toml", "data/column/scene.toml", "data/ver
 FEW = 10  # limits; with fewer only the first scene is used
 SAFETY = "data/verification/toppling-columns/scene.toml"
 ENOUGH = 1000 * MB  # for a study
-IMPORTS = "import h5py, matplotlib.pyplot, numpy, jointcreep.command"
 
 
 def limited(command, size, **options):
@@ -59,21 +58,17 @@ def sweep(campaign, subject, program, source, name, *options):
 
 
 def study(campaign, job):
-    """Sweeps a study. It may leave what it goes on from."""
+    """Sweeps a study. One that ends for lack of memory has to continue with enough."""
     job.undisturbed(campaign.chain.new_folder())
-    low = least(["/usr/bin/python3", "-c", IMPORTS], 0, ENOUGH, 16 * MB)
+    low = least(["/usr/bin/python3", "-c", ""], 0, ENOUGH, MB)
     for step in range(campaign.n):
         size, folder = low + (ENOUGH - low) * step // max(1, campaign.n - 1), campaign.chain.new_folder()
         job.fill(folder)
         done = limited(job.command, size, cwd=folder)
-        rows = (folder / "out/runs.csv").read_text().splitlines()[1:] if (folder / "out/runs.csv").exists() else []
-        short = [row for row in rows if row.endswith(": out of memory,")]
         if done.code == 0 and files(folder) == job.whole:
             outcome = "same bytes"
-        elif done.code == 5 and done.err.strip().endswith("jointcreep: out of memory"):
-            outcome = "code 5"
-        elif done.code in (0, 3) and short and all(row in short or row in job.whole["out/runs.csv"].decode() for row in rows):
-            outcome = "named in runs.csv"
+        elif done.code in (4, 5) and "out of memory" in done.err and not job.different(folder):
+            outcome = "continued"
         else:
             outcome = "other"
         campaign.count(job.name, outcome, f"{size // 1024} kB", str(done))
@@ -98,5 +93,5 @@ def body(campaign):
 
 
 if __name__ == "__main__":
-    OUTCOMES = ["same bytes", "code 5", "named in runs.csv", "other"]
+    OUTCOMES = ["same bytes", "code 5", "continued", "other"]
     Campaign("memory of programs in", OUTCOMES, OUTCOMES[3:], 100).run(body)
