@@ -51,6 +51,7 @@ release_s = 0.5
 longest_s = 20
 stop_s = 10
 record_every_s = 0.5
+energy_tolerance = 0.02
 """)
 OTHERWISE = {"large_displacements": WITH_LARGE_DISPLACEMENTS, "ground_m": WITH_GROUND, "profile": WITH_PROFILE,
              "in_situ_stress.profile": WITH_PROFILE, "horizontal_stress_ratio": WITH_RATIO,
