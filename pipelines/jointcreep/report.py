@@ -6,6 +6,7 @@ import html
 import itertools
 import os
 import pathlib
+import re
 import subprocess
 import tempfile
 import tomllib
@@ -13,7 +14,7 @@ import tomllib
 import h5py
 import numpy as np
 
-from . import files, intervals, plan, reading, study_file
+from . import files, intervals, materials, plan, reading, study_file
 from .errors import NotWanted
 
 STYLE = """
@@ -95,6 +96,52 @@ def settings(scene):
     return "<p>Keys of the scene; all others have their defaults.</p>" + table(["table", "key", "value"], rows)
 
 
+def materials_of(scene):
+    """Parts of the page about rocks and joints."""
+    parts = ["<h2>Materials and joint sets</h2>",
+             "<p>Strengths are those of the scene: a strength factor divides them. Tensile strengths are positive. A property without a value "
+             "has its default, or is not there.</p>"]
+    for heading, heads, rows in materials.tables(scene):
+        parts += [f"<h3>{heading}</h3>", table(heads, rows)]
+    return parts
+
+
+def failure_in_words(file):
+    """Stage, day and reason of a run without equilibrium, of an open result file."""
+    import figure
+    reason = texts(file, "/failure/reason")[0]
+    stage, day = texts(file, "/failure/stage")[0], figure.day_of(file, file["/failure/time"][0])
+    when = f'stage "{stage}", {day}' if stage else f"{day}, before the first stage" if not file["/failure/time"][0] else day
+    undecided = "" if file["/failure/moves_on"][0] else \
+        " It is not known whether there is an equilibrium: the search ended without an answer."
+    return f"<b>{escaped(when)}</b>: {escaped(reason)}.{undecided}"
+
+
+def by_stage(file):
+    """Parts of the page: displacements of the points after each stage, and in the end. Points of monitoring lines are in their picture."""
+    import figure
+    from plot_histories import of_no_line
+    names, events, time = texts(file, "/history/point"), texts(file, "/history/event"), file["/history/time"][()]
+    moves, present = 1e3 * file["/history/displacement"][()], file["/history/present"][()] == 1
+    chosen, rows, gone = of_no_line(file, names), [], set()
+    last = len(time) - 1
+    at_stages = [row for row in range(len(time)) if events[row]]
+    ends = [] if last in at_stages else [last]
+    for row in [*at_stages, *ends]:
+        for point in chosen:
+            if names[point] in gone:
+                continue
+            note = "" if present[row, point] else "excavated; its last displacement"
+            if note:
+                gone.add(names[point])
+            rows.append((events[row] or "end of the run", figure.day_of(file, time[row]), names[point],
+                         *(float(one) for one in moves[row, point]), note))
+    return ["<h3>Displacements of the points by stage</h3>",
+            "<p>Displacements just after the excavation of each stage, and at the end of the run. They count from the in-situ equilibrium; x is to "
+            "the right, y upward. Creep between two stages is a part of the rows of the later one.</p>",
+            table(["stage", "date", "point", "x (mm)", "y (mm)", ""], rows)]
+
+
 def failed_name(source):
     """Name of the file that demsolve --factor-of-safety writes beside a result, of the run without equilibrium."""
     return f"{source.stem}.failed{source.suffix}"
@@ -125,6 +172,7 @@ def moving_blocks(failed):
 
 def factor_of_safety(source, folder):
     """Parts of the page about a factor of safety, if the result has one."""
+    from figure import strength_factor_of
     from plot_safety import bracket
     with h5py.File(source) as file:
         if "/safety" not in file:
@@ -139,6 +187,9 @@ def factor_of_safety(source, folder):
     failed = failed_run(source)
     if failed:
         parts.append("<h3>What moves at failure</h3>")
+        with h5py.File(failed) as file:
+            parts.append(f"<p>With strengths / {strength_factor_of(file):.4g} the first failure is in {failure_in_words(file)} Later stages "
+                         "are not computed with this factor.</p>")
         parts.append(drawn("state", failed, folder, "The run with the smallest factor without equilibrium: moving blocks.",
                            around_failure=True))
         parts += moving_blocks(failed)
@@ -157,15 +208,15 @@ def of_run(source, programs, folder, pairs=None):
         scene = tomllib.loads(scene_text)
         chain = list(zip(texts(file, "/provenance/program"), texts(file, "/provenance/version"), texts(file, "/provenance/options")))
         warnings = list(zip(texts(file, "/warnings/program"), texts(file, "/warnings/text")))
-        failure = texts(file, "/failure/reason")
+        failure = failure_in_words(file) if "/failure" in file else ""
         factor = figure.strength_factor_of(file)
-        points, time = texts(file, "/history/point"), file["/history/time"][()]
-        last, present = file["/history/displacement"][-1], file["/history/present"][-1]
+        points = texts(file, "/history/point")
+        displacements = by_stage(file) if points else []
         numbers = [("blocks", len(file["/blocks/area"])), ("zones", len(file["/mesh/zone_block"])),
                    ("contacts", len(file["/mesh/contact_edge"])), ("equilibria", len(file["/equilibria/steps"])),
                    ("largest unbalanced force ratio", file["/equilibria/unbalanced_force_ratio"][()].max(initial=0)),
                    ("seed", int(file.attrs["seed"])), ("realization", int(file.attrs["realization"]))]
-    parts = [f'<p class="bad">The run ended early: {escaped(failure[0])}</p>'] if failure else []
+    parts = [f'<p class="bad">The run ended early: {failure}</p>'] if failure else []
     parts += [f'<p class="bad">All strengths of this run are divided by {factor:.4g}.</p>'] if factor != 1 else []
     parts += factor_of_safety(source, folder)
     window = detail(scene)
@@ -175,9 +226,7 @@ def of_run(source, programs, folder, pairs=None):
     if points:
         for component, caption in (("x", "Horizontal displacement of the points, to the right."), ("y", "Vertical displacement, upward.")):
             parts.append(drawn("histories", source, folder, caption, component=component))
-        parts.append(table(["point", f"x on day {time[-1]:g} (mm)", "y (mm)", ""],
-                           [(name, 1e3 * x, 1e3 * y, "" if there else "excavated; its last displacement")
-                            for name, (x, y), there in zip(points, last, present)]))
+        parts += displacements
         parts += relative_displacements(source, folder, pairs)
     elif pairs:
         raise NotWanted(f"--pairs: {source.name} has no monitoring points")
@@ -193,7 +242,7 @@ def of_run(source, programs, folder, pairs=None):
     parts += ["<h2>Numbers</h2>", table(["", ""], numbers), "<h2>Settings</h2>", settings(scene), "<h2>Warnings</h2>",
               table(["program", "warning"], warnings) if warnings else "<p>None.</p>",
               "<h2>Checks</h2>", checks(source, programs),
-              "<h2>Versions</h2>", table(["program", "version", "options"], chain),
+              "<h2>Versions</h2>", table(["program", "version", "options"], chain), *materials_of(scene),
               "<h2>Scene</h2>", f"<pre>{escaped(scene_text)}</pre>"]
     return scene.get("title") or source.name, parts
 
@@ -254,7 +303,12 @@ def checks(source, programs):
         return f'<p class="bad">jointverify cannot be started: {escaped(error.strerror)}</p>'
     lines = (done.stdout or done.stderr).strip().splitlines() or ["nothing said"]
     good = ' class="bad"' if done.returncode != 0 else ""
-    return f"<p{good}>jointverify: {escaped(lines[-1])}</p><pre>{escaped(chr(10).join(line[:118] for line in lines))}</pre>"
+    columns = [re.split(r"\s{2,}", line.strip(), maxsplit=5) for line in lines]  # names and values have single blanks
+    rows = [row for row in columns if len(row) >= 5]
+    notes = [line for row, line in zip(columns, lines) if len(row) < 5]
+    whole = table(["check", "values", "largest deviation", "allowed", "", "where"], [[*row, ""][:6] for row in rows[1:]]) \
+        if len(rows) > 1 else ""
+    return f"<p{good}>jointverify: {escaped(lines[-1])}</p>{whole}<pre>{escaped(chr(10).join(notes))}</pre>"
 
 
 def csv_rows(path):
@@ -331,7 +385,7 @@ def of_study(out, programs, folder):
     parts.append("<h2>Checks</h2><p>Each run that has an exit code of 0 satisfied the guards of demsolve in every state that it recorded: "
                  "finite values, areas, weight, penetration, energies, unbalanced forces.</p>")
     parts += ["<h2>Settings</h2>", settings(scene), "<h2>Versions</h2>",
-              table(["program", "version"], found["identity"]["the programs' versions"].items()),
+              table(["program", "version"], found["identity"]["the programs' versions"].items()), *materials_of(scene),
               "<h2>Study file</h2>", f"<pre>{escaped((out / 'study.toml').read_text('utf-8'))}</pre>",
               "<h2>Scene</h2>", f"<pre>{escaped((out / 'scene.toml').read_text('utf-8'))}</pre>"]
     return study.title or f"Study of {scene.get('title', out.name)}", parts

@@ -1,5 +1,6 @@
 """jointcreep run: what it makes of a scene, and what it does not make again."""
 
+import html
 import json
 import os
 import shlex
@@ -168,7 +169,9 @@ class Run(ChainTest):
         failure = datasets(self.out / "result.failed.h5")
         reason = failure["/failure/reason"][0]
         self.assertTrue(done.stderr.endswith(f"jointcreep: out/result.failed.h5: {reason}\n"))
-        self.assertIn(f"The run ended early: {reason}", (self.out / "report.html").read_text())
+        page = (self.out / "report.html").read_text()
+        day = f"day {failure['/failure/time'][0]:.5g}"
+        self.assertIn(f"The run ended early: <b>stage &quot;bench&quot;, {day}</b>: {html.escape(reason)}.", page)
 
         # The picture: moving blocks are filled, an arrow each from the middle of the block, and the reason is in the title.
         plots.save("state", self.out / "result.failed.h5", self.folder / "picture.png")
@@ -211,6 +214,8 @@ class Run(ChainTest):
         self.assertIn(f"All strengths of this run are divided by {low:.4g}.", page)
         self.assertIn('alt="The run with the smallest factor without equilibrium: moving blocks."', page)
         failed = datasets(self.out / "result.failed.h5")
+        self.assertIn(f"the first failure is in <b>stage &quot;bench&quot;, day {failed['/failure/time'][0]:.5g}</b>: "
+                      f"{html.escape(failed['/failure/reason'][0])}.", page)
         area = failed["/blocks/area"][failed["/failure/block"]]
         self.assertIn(f"area {area.sum():.4g} m2 in all: {area.sum():.4g} m3 for each metre along the strike", page)
         self.assertIn(f'<td class="number">{failed["/failure/block"][0]}</td><td class="number">{area[0]:.4g}</td>', page)

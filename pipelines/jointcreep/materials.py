@@ -1,0 +1,102 @@
+"""The rocks, joints and joint sets of a scene in words and with units, as tables of a report: (heading, heads, rows).
+
+A key of a scene ends with its unit: normal_stiffness_MPa_per_m becomes "normal stiffness" and "MPa/m".
+"""
+
+UNITS = {"MPa_day_per_m": "MPa day/m", "GPa_day": "GPa day", "MPa_per_m": "MPa/m", "kg_per_m3": "kg/m3", "m2_per_MJ": "m2/MJ",
+         "per_m3": "1/m3", "per_m2": "1/m2", "per_m": "1/m", "MPa": "MPa", "GPa": "GPa", "deg": "degrees", "mm": "mm", "m": "m"}
+NAMES = {"youngs_modulus": "Young's modulus E", "poissons_ratio": "Poisson's ratio",
+         "joint_roughness_coefficient": "joint roughness coefficient JRC",
+         "joint_wall_strength": "joint wall strength JCS"}
+LAW_WORDS = {"mean": "mean", "deviation": "standard deviation", "half_width": "half-width", "shortest": "at least", "longest": "at most",
+             "exponent": "exponent", "mean_dip": "mean dip", "mean_dip_direction": "mean dip direction", "concentration": "concentration"}
+
+
+def name_and_unit(key):
+    """Name in words and unit ("" if it has none) of a key."""
+    for ending, unit in UNITS.items():
+        if key.endswith(f"_{ending}"):
+            stem = key.removesuffix(f"_{ending}")
+            return NAMES.get(stem, stem.replace("_", " ").replace("kelvin", "Kelvin").replace("maxwell", "Maxwell")), unit
+    return NAMES.get(key, key.replace("_", " ")), ""
+
+
+def number(value):
+    return f"{value:.6g}" if isinstance(value, (int, float)) and not isinstance(value, bool) else str(value)
+
+
+def with_unit(value, unit):
+    return f"{number(value)} {unit}".rstrip()
+
+
+def law_in_words(law):
+    """ "lognormal, mean 12 m, standard deviation 6 m"."""
+    words = [law["law"]] if "law" in law else []
+    for key, value in law.items():
+        if key == "law":
+            continue
+        stem = next((key.removesuffix(f"_{ending}") for ending in UNITS if key.endswith(f"_{ending}")), key)
+        unit = name_and_unit(key)[1]
+        if isinstance(value, list):
+            words.append(f"{len(value)} {stem.replace('_', ' ')}")
+        else:
+            words.append(f"{LAW_WORDS.get(stem, stem.replace('_', ' '))} {with_unit(value, unit)}")
+    return ", ".join(words)
+
+
+def flat(table):
+    """The keys and values of a rock or joint material; each Kelvin unit of a chain has keys of its own."""
+    for key, value in table.items():
+        if key == "kelvin_chain":
+            for at, unit in enumerate(value, 1):
+                yield from ((f"Kelvin unit {at}: {name}", one) for name, one in unit.items())
+        elif key != "name":
+            yield key, value
+
+
+def of_materials(tables):
+    """Heads and rows of rocks or joint materials: a row for each property, a column for each material."""
+    values = [dict(flat(one)) for one in tables]
+    keys = list(dict.fromkeys(key for one in values for key in one))
+    return ["property", "unit", *(one["name"] for one in tables)], \
+        [(*name_and_unit(key), *(one.get(key, "") for one in values)) for key in keys]
+
+
+def density_in_words(density):
+    """ "P21 0.3 1/m"; its scanline, if it has one."""
+    return ", ".join(with_unit(value, unit) for key, value in density.items() for stem, unit in [name_and_unit(key)]
+                     for value in [f"{stem} {number(value)}"])
+
+
+def value_in_words(key, value, unit):
+    """The value of a key of a joint set."""
+    if isinstance(value, dict):
+        return density_in_words(value) if key == "density" else law_in_words(value)
+    if key.endswith("region_m"):
+        return ", ".join(f"({number(x)}, {number(y)})" for x, y in value) + " m"
+    if key == "material_in":
+        return ", ".join(f"{one['material']} in {one['rock']}" for one in value)
+    return ", ".join(map(str, value)) if isinstance(value, list) else with_unit(value, unit)
+
+
+def of_sets(sets):
+    """Heads and rows of joint sets, or of mapped sets: a row for each property, a column for each set."""
+    keys = list(dict.fromkeys(key for one in sets for key in one if key != "name"))
+    return ["", *(one["name"] for one in sets)], \
+        [(name, *(value_in_words(key, one[key], unit) if key in one else "" for one in sets))
+         for key in keys for name, unit in [name_and_unit(key)]]
+
+
+def tables(scene):
+    """The tables of a scene: (heading, heads, rows); those that have something."""
+    found = []
+    for key, heading in (("rock", "Rocks"), ("joint_material", "Joint materials")):
+        if scene.get(key):
+            found.append((heading, *of_materials(scene[key])))
+    for key, heading in (("joint_set", "Joint sets"), ("mapped", "Mapped joint sets")):
+        if scene.get(key):
+            found.append((heading, *of_sets(scene[key])))
+    if scene.get("joint"):
+        found.append(("Single joints", ["name", "joint material", "from x (m)", "y (m)", "to x (m)", "y (m)"],
+                      [(one["name"], one["material"], *one["from_m"], *one["to_m"]) for one in scene["joint"]]))
+    return found
