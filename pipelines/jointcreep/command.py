@@ -12,7 +12,7 @@ shows each command. Files are made only if they are missing, or if the scene, op
 command continues an interrupted run. A run without equilibrium has pictures of the moving blocks, and a report.
 study makes the runs of a study file, and writes their results and statistics: runs.csv and runs.h5 (a row a run),
 answers.csv (means, quantiles and probabilities with confidence), convergence.csv, shares.csv, summary.txt and pictures. The
-same command continues an interrupted study. Two studies never work in one folder at once.
+same command continues an interrupted study; runs.csv then has the runs that have ended. Two studies never work in one folder at once.
 report writes one page of HTML, with all pictures in it, for a study or for a result file of demsolve.
 fit finds the laws of joint sets from the traces in a convex window (GeoJSON, CSV, GeoPackage, Shapefile, DXF), and writes them as
 [[joint_set]]. Traces that the window cuts are censored. The laws are those of all joints, not of the traces in the window.
@@ -58,6 +58,7 @@ import dataclasses
 import difflib
 import itertools
 import pathlib
+import shlex
 import shutil
 import signal
 import sys
@@ -66,7 +67,6 @@ import traceback
 from . import files, plan, runs, study_file, table
 from .errors import NotDone, NotWanted, have_linear_algebra, lacks_memory
 
-INTERRUPTED = 128 + signal.SIGINT
 FIT_OPTIONS = ("window", "layer", "property", "name", "material", "law", "shortest", "longest", "edge", "poles", "azimuth",
                "scanline-trend", "scanline-plunge")
 OF_ALL = {"-o": "output", "--output": "output", "--programs": "programs"}  # options of every subcommand
@@ -159,9 +159,25 @@ def study(source, options, beside):
     with runs.locked(out) as lock:
         scene = plan.make(of_study, out, programs)
         from . import answers  # after the study is known to be right: it takes longer to load
-        rows, why = runs.make(of_study, out, programs, options["jobs"], profile and str(pathlib.Path(profile).resolve()),
-                              options.get("quiet", False), lambda rows: answers.enough(of_study, rows), lock)
+        try:
+            with runs.stoppable():
+                rows, why = runs.make(of_study, out, programs, options["jobs"], profile and str(pathlib.Path(profile).resolve()),
+                                      options.get("quiet", False), lambda rows: answers.enough(of_study, rows), lock)
+        except KeyboardInterrupt as error:
+            raise runs.Stopped(runs.exit_code_of(error), write_ended(of_study, out)) from None
         return finish(of_study, out, rows, why, scene, options.get("quiet", False))
+
+
+def write_ended(of_study, out):
+    """Writes the table of the runs that have ended in a study that was stopped; says how many."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # this takes a moment only, and then all ends
+    rows = [row for run, row in sorted(runs.read_rows(out).items()) if run >= 0]
+    if not rows:
+        return "no run has ended"
+    (out / "summary.txt").unlink(missing_ok=True)  # of fewer runs, from an earlier call: a report would mix the two
+    table.write(of_study, rows, plan.given(out, of_study, rows), (out / "scene.toml").read_text("utf-8"), out)
+    of = "" if of_study.design.directions else f" of {of_study.design.runs}"
+    return f"{len(rows)}{of} runs have ended; their results are in {out / 'runs.csv'}"
 
 
 def finish(of_study, out, rows, why, scene, quiet):
@@ -237,6 +253,8 @@ def main(arguments, version, beside):
         traceback.print_exc()
         print("jointcreep: internal error", file=sys.stderr)
         return 5
-    except KeyboardInterrupt:
-        print("jointcreep: interrupted; the same command continues", file=sys.stderr)
-        return INTERRUPTED
+    except KeyboardInterrupt as error:
+        what = f": {error.what}" if isinstance(error, runs.Stopped) and error.what else ""
+        print(f"jointcreep: interrupted{what}", f"jointcreep: to continue: {shlex.join(['jointcreep', *map(str, arguments)])}", sep="\n",
+              file=sys.stderr)
+        return runs.exit_code_of(error)

@@ -48,6 +48,34 @@ rule group:
 """
 
 
+class Stopped(KeyboardInterrupt):
+    """A signal that stops the study: its exit code, and what is to be said of it."""
+
+    def __init__(self, code, what=""):
+        super().__init__()
+        self.code, self.what = code, what
+
+
+def exit_code_of(interrupt):
+    """The exit code after a KeyboardInterrupt: 128 and the number of the signal."""
+    return interrupt.code if isinstance(interrupt, Stopped) else 128 + signal.SIGINT
+
+
+@contextlib.contextmanager
+def stoppable():
+    """SIGTERM and SIGHUP stop a study as Ctrl-C does. Signals that are ignored (nohup) stay so."""
+    def stop(number, _):
+        raise Stopped(128 + number)
+
+    before = {number: signal.signal(number, stop) for number in (signal.SIGTERM, signal.SIGHUP)
+              if signal.getsignal(number) is not signal.SIG_IGN}
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+
+
 @contextlib.contextmanager
 def locked(out, kind="study"):
     """Holds the lock of the folder of a "study" or a "run"; yields its file, which processes inherit. A folder that has something and

@@ -1,6 +1,7 @@
 """The table of a study: a row a run, as runs.csv and as /runs in runs.h5; times and retries in times.csv.
 
-The first two depend on nothing but the study, so they have the same bytes however the runs were made.
+The first two depend on nothing but the study, so they have the same bytes however the runs were made. Of a study that was stopped they
+have the runs that have ended.
 """
 
 import h5py

@@ -6,15 +6,18 @@ it is not installed.
 
 import base64
 import csv
+import html
 import importlib.util
 import os
 import pathlib
 import random
 import re
+import shlex
 import shutil
 import signal
 import subprocess
 import time
+import tomllib
 import types
 import unittest
 import unittest.mock
@@ -24,7 +27,7 @@ import numpy as np
 
 from chain import LONGEST_RUN, ChainTest, alive, datasets, main
 
-from jointcreep import answers, failure, intervals, plan, plots, runs, scene_keys, study_file
+from jointcreep import answers, failure, intervals, materials, plan, plots, runs, scene_keys, study_file
 from jointcreep import design as draw_design
 from jointcreep.errors import NotWanted
 
@@ -237,6 +240,41 @@ class Runs(Studies):
                 time.sleep(0.01)
         self.assertGreater(kills, 2)
         self.assert_same(whole, self.made(study, out, "-j2"))
+
+    def test_stopped(self):
+        """Ctrl-C or SIGTERM: runs.csv has the runs that have ended, and the message has the command that continues."""
+        study = self.written(NETWORKS.format(runs=12))
+        with open(self.made(study, self.folder / "whole") / "runs.csv", encoding="utf-8") as file:
+            whole = list(csv.reader(file))
+        for number in signal.SIGINT, signal.SIGTERM:
+            out = self.folder / f"out {number}"
+            programs = self.programs(f'[ "$1" = --version ] || [ "$(grep -c joints.h5 "{{folder}}/calls")" -lt 9 ] || '
+                                     f'[ -e "{{folder}}/go" ] || {{{{ touch "{{folder}}/hangs"; exec sleep {LONGEST_RUN}; }}}}')
+            command = [*map(str, self.command(study, out, "-j2", programs=programs))]
+            running = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True)
+            end = time.monotonic() + LONGEST_RUN
+            while not (programs / "hangs").exists():
+                self.assertLess(time.monotonic(), end)
+                time.sleep(0.01)
+            os.kill(running.pid, number)
+            _, said = running.communicate(timeout=LONGEST_RUN)
+            self.assertEqual(running.returncode, 128 + number, said)
+            with open(out / "runs.csv", encoding="utf-8") as file:
+                rows = list(csv.reader(file))
+            self.assertGreaterEqual(len(rows), 8)
+            self.assertEqual(rows[0], whole[0])
+            self.assertLess(len(rows), len(whole))
+            for row in rows[1:]:
+                self.assertIn(row, whole)
+            self.assertIn(f"{len(rows) - 1} of 12 runs have ended; their results are in {out / 'runs.csv'}\n", said)
+            continues = said.splitlines()[-1].removeprefix("jointcreep: to continue: ")
+            self.assertEqual(shlex.split(continues), ["jointcreep", *command[1:]])
+            refused = subprocess.run([self.chain.programs / "jointcreep", "report", out, "-o", self.folder / "r.html"],
+                                     capture_output=True, text=True)
+            self.assertEqual(refused.returncode, 2)
+            (programs / "go").touch()
+            subprocess.run(command, check=True, timeout=LONGEST_RUN, stdout=subprocess.DEVNULL)
+            self.assert_same(self.folder / "whole", out)
 
     def test_a_cut_off_line(self):
         """What a full disk leaves of a line of results is made again."""
@@ -960,6 +998,55 @@ class Reports(Studies):
         self.assertRegex(page, r"jointverify: verified: (\d+) checks of \1<")
         self.assertGreaterEqual(page.count("<img"), 7)
         self.assertIn("excavated; its last displacement", page)
+        self.check_displacements(page, joints.with_name("r.h5"))
+        for row in ("<td>normal stiffness</td><td>MPa/m</td>", "<td>Young&#x27;s modulus E</td><td>GPa</td>",
+                    "<td>spacing</td><td>", "<h3>Joint sets</h3>"):
+            self.assertIn(row, page)
+        self.assertLess(page.index("<h2>Materials and joint sets</h2>"), page.index("<h2>Scene</h2>"))
+        self.check_units(page, joints.with_name("r.h5"))
+
+    def check_displacements(self, page, result):
+        """The table by stage has the displacements [mm] of each point after each stage and in the end."""
+        data = datasets(result)
+        part = page[page.index("Displacements of the points by stage"):]
+        part = part[:part.index("</table>")]
+        names, events = list(data["/history/point"]), list(data["/history/event"])
+        point = names.index("floor")
+        for stage, row in [*((stage, at) for at, stage in enumerate(events) if stage), ("end of the run", -1)]:
+            x, y = 1e3 * data["/history/displacement"][row, point]
+            self.assertRegex(part, f"<td>{stage}</td><td>[^<]*</td><td>floor</td>" + re.escape(
+                f'<td class="number">{x:.4g}</td><td class="number">{y:.4g}</td><td></td>'))
+        self.assertEqual(part.count("<td>dug away</td>"), 1)
+
+    def check_units(self, page, result):
+        """The table of checks has whatever jointverify says, with whole units."""
+        done = subprocess.run([self.chain.programs / "jointverify", result], capture_output=True, text=True)
+        part = page[page.index("<h2>Checks</h2>"):]
+        part = html.unescape(part[:part.index("<h2>Versions</h2>")])
+        for unit in re.findall(r"\d (N/m|J/m|Pa|m2)\b", done.stdout):
+            self.assertIn(f" {unit}</td>", part)
+        for line in done.stdout.splitlines()[1:]:
+            for field in re.split(r"\s{2,}", line.strip(), maxsplit=5):
+                self.assertTrue(f">{field}<" in part or field in part, field)
+
+    def test_of_every_key(self):
+        """The tables of rocks and joints have all values of a scene that has every key."""
+        scene = tomllib.loads(self.chain.text("tests/pipeline/every_key.toml"))
+        found = {heading: (heads, rows) for heading, heads, rows in materials.tables(scene)}
+        self.assertEqual(list(found), ["Rocks", "Joint materials", "Joint sets", "Mapped joint sets", "Single joints"])
+        heads, rows = found["Joint materials"]
+        self.assertIn(("Kelvin unit 1: normal stiffness", "MPa/m", "", 900), [row[:4] for row in rows])
+        self.assertIn(("normal Kelvin viscosity", "MPa day/m", 1e5), [row[:3] for row in rows])
+        heads, rows = found["Joint sets"]
+        at = heads.index("flat")
+        wanted = {"trace angle": "normal, mean 10 degrees, standard deviation 2 degrees", "persistence": "0.8",
+                  "region": "(0, 5), (40, 5), (40, 20), (0, 20) m"}
+        self.assertEqual(wanted, {row[0]: row[at] for row in rows if row[0] in wanted})
+        for heads, rows in found.values():
+            for row in rows:
+                self.assertEqual(len(row), len(heads))
+                self.assertFalse([one for one in row if isinstance(one, (dict, list))], row)
+                self.assertNotRegex(" ".join(map(str, row)), r"_(m|deg|MPa|per|GPa|mm)\b|[{}\[\]]")
 
     def test_relative_displacements(self):
         """Closure and relative displacement of pairs of points: of all, or of those that are asked for."""
