@@ -12,7 +12,8 @@ shows each command. Files are made only if they are missing, or if the scene, op
 command continues an interrupted run. A run without equilibrium has pictures of the moving blocks, and a report.
 study makes the runs of a study file, and writes their results and statistics: runs.csv and runs.h5 (a row a run),
 answers.csv (means, quantiles and probabilities with confidence), convergence.csv, shares.csv, summary.txt and pictures. The
-same command continues an interrupted study; runs.csv then has the runs that have ended. Two studies never work in one folder at once.
+same command continues an interrupted study; until then runs.csv has the runs that have ended. Two studies never work in one
+folder at once.
 report writes one page of HTML, with all pictures in it, for a study or for a result file of demsolve.
 fit finds the laws of joint sets from the traces in a convex window (GeoJSON, CSV, GeoPackage, Shapefile, DXF), and writes them as
 [[joint_set]]. Traces that the window cuts are censored. The laws are those of all joints, not of the traces in the window.
