@@ -278,55 +278,60 @@ bool are_noisy(const Found& found, const std::vector<scene::Measurement>& measur
     return residual > 1e-4 * largest;
 }
 
+constexpr double in_95_percent = 1.959964; // standard errors, on each side
+
 // Bounds are the 95 percent interval of a normal law.
 estimation::Prior prior_of(const estimation::Bounds& bounds)
 {
-    constexpr double standard_errors = 1.959964;
-    return {(bounds.low + bounds.high) / 2, (bounds.high - bounds.low) / 2 / standard_errors};
+    return {(bounds.low + bounds.high) / 2, (bounds.high - bounds.low) / 2 / in_95_percent};
 }
 
-// The search by an ensemble, as a minimum that was found.
-estimation::InstrumentFit by_members(Runs& runs, const estimation::Instruments& instruments,
-                                     const estimation::Bounds& bounds,
-                                     const estimation::EnsembleSearch& search)
+// The search by an ensemble, as a minimum that was found: no bound stops a parameter.
+struct ByMembers {
+    estimation::InstrumentFit fitted;
+    std::vector<estimation::AtBound> disagrees; // with the prior: what the readings want is below or above it
+    std::string failure;
+};
+
+ByMembers by_members(Runs& runs, const estimation::Instruments& instruments, const estimation::Prior& prior,
+                     const estimation::EnsembleSearch& search)
 {
-    const estimation::Prior prior = prior_of(bounds);
-    runs.evaluate(prior.mean); // where there must be an equilibrium
+    using estimation::AtBound;
     estimation::Inversion inversion = estimation::invert(
         [&runs](const VectorXd& logarithms) -> std::optional<VectorXd> {
             const std::optional<Evaluation> at = runs.evaluate(logarithms);
             return at ? std::optional(at->residual) : std::nullopt;
         },
         [&instruments](const Evaluation& raw) { return instruments.independent(raw); }, prior, search);
-    estimation::InstrumentFit fitted;
-    fitted.minimum = {.parameters = inversion.mean,
-                      .there = instruments.independent(inversion.raw),
-                      .at_bound =
-                          std::vector(static_cast<std::size_t>(prior.mean.size()), estimation::AtBound::no),
-                      .left = inversion.step,
-                      .evaluations = runs.count(),
-                      .is_converged = inversion.is_converged};
-    for (Eigen::Index i = 0; i < inversion.mean.size();
-         ++i) // the readings want it beyond the prior's interval
-        if (inversion.mean[i] < bounds.low[i])
-            fitted.minimum.at_bound[static_cast<std::size_t>(i)] = estimation::AtBound::low;
-        else if (inversion.mean[i] > bounds.high[i])
-            fitted.minimum.at_bound[static_cast<std::size_t>(i)] = estimation::AtBound::high;
-    fitted.raw = std::move(inversion.raw);
-    return fitted;
+    ByMembers found;
+    found.fitted.minimum = {.parameters = inversion.mean,
+                            .there = instruments.independent(inversion.raw),
+                            .at_bound = std::vector(static_cast<std::size_t>(prior.mean.size()), AtBound::no),
+                            .left = inversion.step,
+                            .evaluations = runs.count(),
+                            .is_converged = inversion.is_converged};
+    for (const double by : estimation::disagreement(inversion, prior))
+        found.disagrees.push_back(by < -in_95_percent  ? AtBound::low
+                                  : by > in_95_percent ? AtBound::high
+                                                       : AtBound::no);
+    found.fitted.raw = std::move(inversion.raw);
+    found.failure = std::move(inversion.failure);
+    return found;
 }
 
 // A factor is known where both ends are within a factor of 10, and its standard error, which knows no bounds of the others, too.
 void add_profiles(Found& found, Runs& runs, const estimation::Instruments& instruments,
-                  const estimation::Bounds& bounds)
+                  const estimation::Bounds& bounds, int most_runs)
 {
     const int before = runs.count();
-    found.profiles = estimation::profiles(
+    estimation::Profiles profiles = estimation::profiles(
         [&](const VectorXd& logarithms) -> std::optional<Evaluation> {
             const std::optional<Evaluation> raw = runs.evaluate(logarithms);
             return raw ? std::optional(instruments.independent(*raw)) : std::nullopt;
         },
-        found.minimum, found.confidence, bounds);
+        found.minimum, found.confidence, bounds, most_runs);
+    found.profiles = std::move(profiles.of_each);
+    found.better = std::move(profiles.better);
     found.profile_runs = runs.count() - before;
     for (std::size_t i = 0; i < found.profiles.size(); ++i) {
         const auto [low, high] = found.profiles[i].interval;
@@ -408,25 +413,32 @@ Found fit(const Scene& scene, const Section& section, const std::vector<scene::M
                           std::to_string(instruments.unknowns()) +
                           " unknown errors of instruments; wanted more readings, or fewer of both");
     const estimation::Bounds bounds{low, high};
-    estimation::InstrumentFit fitted =
-        settings.ensemble
-            ? by_members(runs, instruments, bounds, *settings.ensemble)
-            // A step that would win a hundredth of a standard error is not worth a run.
-            : estimation::minimise([&runs](const VectorXd& logarithms) { return runs.evaluate(logarithms); },
-                                   instruments, start, low, high, settings.most_runs,
-                                   1e-4 / static_cast<double>(readings.measurement.size()));
+    estimation::InstrumentFit fitted;
+    std::optional<estimation::Prior> prior;
+    std::vector<estimation::AtBound> disagrees;
+    if (settings.ensemble) {
+        prior = prior_of(bounds);
+        ByMembers of = by_members(runs, instruments, *prior, *settings.ensemble);
+        fitted = std::move(of.fitted);
+        disagrees = std::move(of.disagrees);
+        found.failure = std::move(of.failure);
+        found.members = settings.ensemble->members;
+    } else {
+        // A step that would win a hundredth of a standard error is not worth a run.
+        fitted = estimation::minimise(
+            [&runs](const VectorXd& logarithms) { return runs.evaluate(logarithms); }, instruments, start,
+            low, high, settings.most_runs, 1e-4 / static_cast<double>(readings.measurement.size()));
+    }
     found.minimum = std::move(fitted.minimum);
     found.is_settled = fitted.is_settled;
     found.factors = factors_at(found.minimum.parameters);
     found.confidence = instruments.confidence(fitted.raw, found.minimum);
-    if (settings.ensemble) {
-        found.members = settings.ensemble->members;
+    if (prior)
         found.confidence =
-            estimation::with_prior(std::move(found.confidence), found.minimum, prior_of(bounds).deviation);
-    }
+            estimation::with_prior(std::move(found.confidence), found.minimum, prior->deviation);
     found.is_resolved = estimation::resolved(found.minimum, found.confidence);
     if (settings.profile_intervals && found.minimum.is_converged)
-        add_profiles(found, runs, instruments, bounds);
+        add_profiles(found, runs, instruments, bounds, settings.most_profile_runs);
     found.without_answer = runs.without_answer();
     found.series = readings.series;
     const Runs::Done& best = runs.at(found.minimum.parameters);
@@ -446,6 +458,13 @@ Found fit(const Scene& scene, const Section& section, const std::vector<scene::M
         found.doubts = instruments.doubts(fitted.raw, found.minimum);
     for (estimation::Doubt& doubt : found.doubts)
         doubt.reading = readings.measurement[doubt.reading];
+    if (prior) {
+        found.minimum.at_bound = std::move(disagrees);
+        for (Eigen::Index i = 0; i < n; ++i) {
+            const double alone = found.confidence.error_if_free[i]; // 0 without effect
+            found.is_by_bounds.push_back(!(alone > 0) || alone > prior->deviation[i]);
+        }
+    }
     return found;
 }
 

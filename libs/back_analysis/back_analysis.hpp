@@ -31,7 +31,8 @@ struct Settings {
     estimation::Errors errors{};
     int threads = 1;
     int most_runs = 60;             // of the search
-    bool profile_intervals = false; // by 10 to 90 more runs for each factor
+    bool profile_intervals = false; // by 10 to 90 more runs for each factor as a rule
+    int most_profile_runs = 60;     // for an end of an interval; a factor has four
     // By an ensemble. The factors' bounds are then the 95 percent interval of a normal prior of the logarithm. Measurements need
     // deviations; not with robust weights, lasting errors or profile intervals.
     std::optional<estimation::EnsembleSearch> ensemble{};
@@ -56,13 +57,18 @@ struct WithoutAnswer {
 struct Found {
     std::vector<double> factors;
     // Over logarithms; residuals over deviations, or over 1 mm where there are none, made independent where they
-    // share a first reading's error.
+    // share a first reading's error. With an ensemble `at_bound` is where readings and prior disagree: the readings shift the mean
+    // by more than the 95 percent that the prior allows (estimation::disagreement), to lower or higher values.
     estimation::Minimum minimum;
     estimation::Confidence confidence;
     // Of the factors' logarithms, where they are asked for and the search has converged; the runs that they took.
     std::vector<estimation::Profile> profiles;
     int profile_runs = 0;
+    // Where a profile has a smaller sum of squares than the minimum: the search has ended at another minimum. No factor then has an
+    // interval, and none is resolved.
+    std::optional<estimation::Better> better;
     int members = 0;                // of the ensemble, if it was searched by one
+    std::string failure;            // of the ensemble, why its search ended early; empty: it did not
     std::vector<Computed> computed; // of the measurements
     // Error of linear interpolation between the steps of the analysis, by estimate [m].
     std::vector<double> interpolation_error;
@@ -78,6 +84,8 @@ struct Found {
     std::vector<double> instrument; // what errors add to `computed`, of the measurements [m]
     std::vector<bool>
         is_resolved; // factors that the measurements know better than by a factor of 10 up and down
+    // With an ensemble: factors of which the measurements alone know less than the bounds; else empty.
+    std::vector<bool> is_by_bounds;
 
     // 95 percent of a factor's logarithm, by itself or with all: by its profile if there is one, else by its standard error.
     estimation::Interval interval(std::size_t factor, bool with_all = false) const;

@@ -68,6 +68,14 @@ double Confidence::standard_error(const VectorXd& gradient) const
     return std::sqrt(std::max(0.0, gradient.dot(covariance * gradient)));
 }
 
+double Confidence::quantile_of_all(Eigen::Index intervals) const
+{
+    const double degrees =
+        is_noise_from_residuals ? static_cast<double>(readings - parameters) : 1e6; // nearly normal
+    return statistics::student_quantile(
+        significance / 2 / std::max<double>(1, static_cast<double>(intervals)), degrees);
+}
+
 Interval Confidence::interval(double value, Eigen::Index i, bool all_together) const
 {
     if (is_fixed[static_cast<std::size_t>(i)])
@@ -100,10 +108,10 @@ Confidence confidence_of(const Minimum& minimum, bool deviations_are_known)
     found.is_noise_from_residuals = !deviations_are_known || found.p_value < significance;
     if (found.is_noise_from_residuals)
         found.noise_factor = std::sqrt(found.sum_of_squares / degrees);
-    const double t_degrees = found.is_noise_from_residuals ? degrees : 1e6; // nearly normal
-    const auto quantile = [&](double p) { return statistics::student_quantile(p, t_degrees); };
-    found.quantile = quantile(significance / 2);
-    found.quantile_all = quantile(significance / 2 / std::max<double>(1, static_cast<double>(free.size())));
+    found.quantile = found.quantile_of_all(1);
+    found.quantile_all = found.quantile_of_all(found.parameters);
+    const MatrixXd covariance = found.noise_factor * found.noise_factor * unit_covariance(J);
+    found.error_if_free = covariance.diagonal().cwiseSqrt();
     if (free.empty())
         return found;
 
@@ -111,7 +119,6 @@ Confidence confidence_of(const Minimum& minimum, bool deviations_are_known)
     found.smallest_eigenvalue = std::max(parts.values[0], 1e-15);
     found.condition_number = std::sqrt(parts.values[parts.values.size() - 1] / found.smallest_eigenvalue);
     // A parameter at a bound is not known. The others have the covariance that they have when it is free.
-    const MatrixXd covariance = found.noise_factor * found.noise_factor * unit_covariance(J);
     found.covariance(free, free) = MatrixXd(covariance(free, free));
     const VectorXd error = found.covariance(free, free).diagonal().cwiseSqrt();
     found.correlation(free, free) = error.cwiseInverse().asDiagonal() * MatrixXd(covariance(free, free)) *
@@ -137,6 +144,7 @@ Confidence with_prior(Confidence confidence, const Minimum& minimum, const Vecto
     const VectorXd inverse_error = confidence.covariance.diagonal().cwiseSqrt().cwiseInverse();
     confidence.correlation = inverse_error.asDiagonal() * confidence.covariance * inverse_error.asDiagonal();
     confidence.is_fixed.assign(confidence.is_fixed.size(), false);
+    confidence.quantile_all = confidence.quantile_of_all(J.cols());
     return confidence;
 }
 
@@ -170,9 +178,7 @@ std::vector<bool> resolved(const Minimum& minimum, const Confidence& confidence)
     const VectorXd variance = unit_covariance(J).diagonal();
     for (const Eigen::Index i : some) {
         const double alone = confidence.noise_factor * std::sqrt(variance[i]),
-                     error = confidence.is_fixed[static_cast<std::size_t>(i)]
-                                 ? alone
-                                 : std::max(alone, confidence.standard_error(i));
+                     error = std::max(alone, confidence.error_if_free[i]);
         found[static_cast<std::size_t>(i)] = confidence.quantile * error < std::log(10.0);
     }
     return found;

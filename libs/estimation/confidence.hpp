@@ -31,9 +31,13 @@ struct Confidence {
     MatrixXd covariance;  // of all parameters; those at a bound, or without effect, have none: 0
     MatrixXd correlation; // the same
     std::vector<bool> is_fixed;
+    VectorXd
+        error_if_free; // standard errors, also of parameters at a bound, as if they were free there; 0 without effect
 
-    double quantile = 0;     // standard errors on each side of one parameter's interval of 95 percent [-]
-    double quantile_all = 0; // of intervals that hold all together with 95 percent (Bonferroni) [-]
+    double quantile = 0; // standard errors on each side of one parameter's interval of 95 percent [-]
+    // Of intervals that hold all together with 95 percent: Bonferroni, over those that there are [-].
+    double quantile_all = 0;
+    double quantile_of_all(Eigen::Index intervals) const; // of so many intervals [-]
 
     // For J with its columns scaled to length 1: similar effects on the readings make it small.
     double smallest_eigenvalue = 1; // of their products with each other [-]
@@ -49,7 +53,7 @@ struct Confidence {
 Confidence confidence_of(const Minimum& minimum, bool deviations_are_known);
 // (J^T J)^-1, the covariance where residuals have unit variance. Rows and columns of parameters without effect are 0.
 MatrixXd unit_covariance(const MatrixXd& jacobian);
-// The same with normal priors of these deviations: no parameter is without an interval.
+// The same with normal priors of these deviations: no parameter is without an interval. All have been free.
 Confidence with_prior(Confidence confidence, const Minimum& minimum, const VectorXd& deviations);
 
 // The combination of free parameters that the data know least, if they know it badly: by less than a factor of 2 up

@@ -124,8 +124,13 @@ public:
         const auto end = [&](double side) {
             VectorXd guess = at;
             guess[i] += side * std::clamp(first_step, 1e-7, 0.5);
+            // The minimum is the least: it was found on a grid of tau.
             return profile_end(model(fixed == viscosity), at, least_sum, limit, i, guess, bounds,
-                               {.share = 1e-4, .least_gain = 1e-6});
+                               {.share = 1e-4,
+                                .least_gain = 1e-6,
+                                .tolerance = std::numeric_limits<double>::infinity(),
+                                .most_runs = 6000})
+                .at;
         };
         return {std::exp(end(-1)), std::exp(end(1))};
     }

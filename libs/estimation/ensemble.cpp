@@ -10,6 +10,7 @@
 #include <boost/random/normal_distribution.hpp>
 
 #include <algorithm>
+#include <limits>
 
 namespace jointcreep::estimation
 {
@@ -52,9 +53,38 @@ Inversion invert(const Residuals& model, const Independent& independent, const P
     const MatrixXd z = draws(n, members, search.seed);
     const MatrixXd information = prior.deviation.array().square().inverse().matrix().asDiagonal();
 
+    // The best of all that had an answer.
+    struct Best {
+        VectorXd at, residual;
+        double sum = std::numeric_limits<double>::infinity();
+    } best;
+    const auto answer = [&](const VectorXd& at) {
+        std::optional<VectorXd> residual = model(at);
+        if (!residual)
+            return residual;
+        const MatrixXd none(residual->size(), 0);
+        const double sum = independent({*residual, none}).residual.squaredNorm() +
+                           (at - prior.mean).cwiseQuotient(prior.deviation).squaredNorm();
+        if (sum < best.sum)
+            best = {at, *residual, sum};
+        return residual;
+    };
+
     Inversion found;
     found.mean = prior.mean;
     found.covariance = inverse_of(information);
+    found.step = VectorXd::Zero(n);
+    const auto fail = [&](std::string why) {
+        found.failure = std::move(why);
+        found.is_converged = false;
+        found.mean = best.at;
+        found.raw.residual = best.residual;
+        return found;
+    };
+    if (const auto residual = answer(prior.mean))
+        found.raw = {*residual, MatrixXd::Zero(residual->size(), n)};
+    else
+        throw input_error("the model has no answer at the mean of the prior");
     while (found.rounds < search.most_rounds && !found.is_converged) {
         ++found.rounds;
         const double t = std::min(1.0, static_cast<double>(found.rounds) / tempered);
@@ -64,16 +94,15 @@ Inversion invert(const Residuals& model, const Independent& independent, const P
         std::vector<Eigen::Index> answered;
         MatrixXd residuals; // [reading, member]
         for (Eigen::Index j = 0; j < members; ++j)
-            if (const auto residual = model(found.mean + spread.col(j))) {
+            if (const auto residual = answer(found.mean + spread.col(j))) {
                 residuals.conservativeResize(residual->size(),
                                              static_cast<Eigen::Index>(answered.size()) + 1);
                 residuals.rightCols(1) = *residual;
                 answered.push_back(j);
             }
         if (static_cast<Eigen::Index>(answered.size()) < least)
-            throw input_error("only " + std::to_string(answered.size()) + " of " + std::to_string(members) +
-                              " members have an answer; wanted " + std::to_string(least) +
-                              " or more: narrower bounds, or more members");
+            return fail("only " + std::to_string(answered.size()) + " of " + std::to_string(members) +
+                        " members have an answer; wanted " + std::to_string(least) + " or more");
 
         // 2. Residuals as a linear function of the parameters.
         MatrixXd terms(static_cast<Eigen::Index>(answered.size()), n + 1);
@@ -92,11 +121,23 @@ Inversion invert(const Residuals& model, const Independent& independent, const P
             t == 1 && (found.step.lpNorm<Eigen::Infinity>() <= smallest_step ||
                        found.step.dot(found.covariance.llt().solve(found.step)) <= small_step * small_step);
     }
-    const auto residual = model(found.mean);
+    const auto residual = answer(found.mean);
     if (!residual)
-        throw input_error("the model has no answer at the mean of the members; wanted narrower bounds");
+        return fail("the mean of the members has no answer");
     found.raw.residual = *residual;
     return found;
+}
+
+VectorXd disagreement(const Inversion& found, const Prior& prior)
+{
+    constexpr double smallest = 1e-6; // share of the variance
+    VectorXd by(prior.mean.size());
+    for (Eigen::Index i = 0; i < by.size(); ++i) {
+        const double variance = prior.deviation[i] * prior.deviation[i],
+                     less = variance - found.covariance(i, i);
+        by[i] = less > smallest * variance ? (found.mean[i] - prior.mean[i]) / std::sqrt(less) : 0.0;
+    }
+    return by;
 }
 
 } // namespace jointcreep::estimation

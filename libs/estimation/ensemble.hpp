@@ -14,6 +14,7 @@
 #include "estimation/least_squares.hpp"
 
 #include <cstdint>
+#include <string>
 
 namespace jointcreep::estimation
 {
@@ -46,11 +47,20 @@ struct Inversion {
     VectorXd step;       // the last one
     int rounds = 0;
     bool is_converged =
-        false; // what is left is within a tenth of a standard error in every direction, or 1e-5
+        false;             // what is left is within a tenth of a standard error in every direction, or 1e-5
+    std::string failure{}; // why the search ended without convergence before its most rounds
 };
 
-// Throws input_error where members are fewer than least_members(), and where so few have an answer.
+// Where fewer members than least_members() have an answer, or the mean has none, the search ends. The mean is then
+// the place with the least sum of squares, prior and all, that has an answer: the prior's mean, a member or a mean.
+// Throws input_error where members are fewer than least_members(), and where the prior's mean has no answer.
 Inversion invert(const Residuals& model, const Independent& independent, const Prior& prior,
                  const EnsembleSearch& search);
+
+// Of each parameter, the shift of its mean from the prior's over the deviation that this has if the prior is right: it has the variance
+// P_0 - P, without the readings' noise in P_0 + C of their own estimate. Beyond 1.96 prior and readings disagree with 95 percent, and the
+// mean is right for neither. With exact readings it is how far the mean is off the prior's, over the prior's deviation. For a
+// linear model exact. 0 where the readings know nothing. Evans and Moshonov, Bayesian Analysis 1 (2006): checking for prior-data conflict.
+VectorXd disagreement(const Inversion& found, const Prior& prior);
 
 } // namespace jointcreep::estimation

@@ -334,6 +334,39 @@ bool Instruments::update(const Evaluation& raw, const std::vector<AtBound>& at_b
     return std::abs(correlation_time_ - before) > 0.1 * correlation_time_;
 }
 
+// As if all that move were free, in the likelihood and in the noise, too. Between correlations it is about where they would be by the
+// most likely one.
+VectorXd Instruments::variance_if_free(const Evaluation& raw, const std::vector<bool>& is_moving) const
+{
+    const VectorXd shares = likelihood(raw, is_moving);
+    const MatrixXd all = beside(raw.residual, effects(raw, is_moving));
+    const Eigen::Index moving = std::ranges::count(is_moving, true);
+    Eigen::Index best = 0;
+    shares.maxCoeff(&best);
+    const auto step_and_variance = [&](Eigen::Index k) {
+        const MatrixXd white = whitened(all, times_[static_cast<std::size_t>(k)]),
+                       M = white.rightCols(white.cols() - 1);
+        const VectorXd shorter = M.colwise().norm().cwiseInverse();
+        const MatrixXd scaled = M * shorter.asDiagonal();
+        const VectorXd step = -(shorter.asDiagonal() * scaled.colPivHouseholderQr().solve(white.col(0)));
+        const double squares =
+            (white.col(0) + M * step).squaredNorm() / static_cast<double>(M.rows() - M.cols());
+        const MatrixXd inverse =
+            (scaled.transpose() * scaled).ldlt().solve(MatrixXd::Identity(M.cols(), M.cols()));
+        return std::pair<VectorXd, VectorXd>(
+            step.head(moving), squares * inverse.diagonal().cwiseProduct(shorter.cwiseAbs2()).head(moving));
+    };
+    const VectorXd there = step_and_variance(best).first;
+    VectorXd variance = VectorXd::Zero(moving);
+    for (Eigen::Index k = 0; k < shares.size(); ++k) {
+        if (shares[k] < 1e-6)
+            continue;
+        const auto [step, within] = step_and_variance(k);
+        variance += shares[k] * (within + (step - there).cwiseAbs2());
+    }
+    return variance;
+}
+
 Confidence Instruments::confidence(const Evaluation& raw, const Minimum& minimum) const
 {
     if (errors_.robust) {
@@ -368,7 +401,7 @@ Confidence Instruments::confidence(const Evaluation& raw, const Minimum& minimum
         return confidence_of(pseudo, false);
     }
     Confidence found = confidence_of(minimum, readings_.knows_deviations && !errors_.correlated);
-    if (!errors_.correlated || found.parameters == 0)
+    if (!errors_.correlated || minimum.there.jacobian.norm() == 0)
         return found;
     // The variance is that within each correlation and that between them. A parameter at a bound is not known: the others
     // have the variance that they have when it is free.
@@ -400,9 +433,10 @@ Confidence Instruments::confidence(const Evaluation& raw, const Minimum& minimum
         const MatrixXd white = whitened(all, times_[k]), M = white.rightCols(white.cols() - 1),
                        X = M(Eigen::all, known);
         const VectorXd length = X.colwise().norm();
-        const VectorXd step =
-            -(length.cwiseInverse().asDiagonal() *
-              (X * length.cwiseInverse().asDiagonal()).colPivHouseholderQr().solve(white.col(0)));
+        VectorXd step = VectorXd::Zero(X.cols());
+        if (X.cols() > 0)
+            step = -(length.cwiseInverse().asDiagonal() *
+                     (X * length.cwiseInverse().asDiagonal()).colPivHouseholderQr().solve(white.col(0)));
         const double squares =
             (white.col(0) + X * step).squaredNorm() / static_cast<double>(X.rows() - X.cols());
         const VectorXd shorter = M.colwise().norm().cwiseInverse();
@@ -413,6 +447,11 @@ Confidence Instruments::confidence(const Evaluation& raw, const Minimum& minimum
             shorter.asDiagonal();
         covariance += share * (squares * inverse(places, places) + step.head(p) * step.head(p).transpose());
     }
+    VectorXd variance = p < moving ? variance_if_free(raw, is_moving) : VectorXd(moving);
+    variance(places) = covariance.diagonal();
+    for (Eigen::Index i = 0, place = 0; i < found.error_if_free.size(); ++i)
+        if (is_moving[static_cast<std::size_t>(i)])
+            found.error_if_free[i] = std::sqrt(variance[place++]);
     const VectorXd error = covariance.diagonal().cwiseMax(1e-300).cwiseSqrt();
     found.covariance(free, free) = covariance;
     found.correlation(free, free) =

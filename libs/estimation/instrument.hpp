@@ -118,6 +118,8 @@ private:
     bool update_weights(const Evaluation& raw, const std::vector<bool>& is_free);
     // Of each correlation: its share of the likelihood.
     VectorXd likelihood(const Evaluation& raw, const std::vector<bool>& is_free) const;
+    // Of each parameter that moves, with lasting errors.
+    VectorXd variance_if_free(const Evaluation& raw, const std::vector<bool>& is_moving) const;
 
     Readings readings_;
     Errors errors_;

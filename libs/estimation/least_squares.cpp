@@ -62,11 +62,10 @@ VectorXd after(const VectorXd& parameters, const VectorXd& step, const VectorXd&
 // of the covariance's inverse, J^T J / s^2.
 bool is_small(const VectorXd& left, const Evaluation& there)
 {
-    constexpr double standard_errors = 0.1, smallest = 1e-5;
     const auto degrees = static_cast<double>(std::max<Eigen::Index>(1, there.residual.size() - left.size()));
-    return left.lpNorm<Eigen::Infinity>() <= smallest ||
+    return left.lpNorm<Eigen::Infinity>() <= converged_step ||
            (there.jacobian * left).squaredNorm() <=
-               standard_errors * standard_errors * there.residual.squaredNorm() / degrees;
+               converged_errors * converged_errors * there.residual.squaredNorm() / degrees;
 }
 
 } // namespace

@@ -30,6 +30,9 @@ using Model = std::function<std::optional<Evaluation>(const VectorXd& parameters
 
 enum class AtBound { no, low, high };
 
+// What a minimum may still be off: so many standard errors, or so much of a parameter.
+constexpr double converged_errors = 0.1, converged_step = 1e-5;
+
 struct Minimum {
     VectorXd parameters;
     Evaluation there;

@@ -4,10 +4,12 @@
 #include "../sensitivity/jointed_section.hpp"
 
 #include "back_analysis/back_analysis.hpp"
+#include "joint/law.hpp"
 #include "model/error.hpp"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -301,6 +303,199 @@ TEST(back_analysis, an_ensemble_needs_no_sensitivities)
         EXPECT_LT(low, std::log(three[i].factor));
         EXPECT_GT(high, std::log(three[i].factor));
         EXPECT_LT(high - low, 1);
+    }
+}
+
+// Nor have Barton-Bandis joints, which do not creep.
+TEST(back_analysis, an_ensemble_finds_the_stiffness_of_barton_bandis_joints)
+{
+    JointedSection section(.5);
+    section.scene.creep.reset();
+    EquivalentJoints& joints = section.joints;
+    const std::size_t edges = joints.normal_stiffness.size();
+    const auto law = std::ranges::find(joint::laws(), "Barton-Bandis", &joint::LawInfo::name);
+    ASSERT_NE(law, joint::laws().end());
+    joints.law.assign(edges, static_cast<Index>(law - joint::laws().begin()));
+    joints.own = {{"roughness", std::vector(edges, 8.)},
+                  {"wall_strength", std::vector(edges, 5e7)},
+                  {"largest_closure", std::vector(edges, 1e-3)}};
+    for (std::vector<double>* none :
+         {&joints.normal_kelvin_stiffness, &joints.shear_kelvin_stiffness, &joints.normal_kelvin_viscosity,
+          &joints.shear_kelvin_viscosity, &joints.cohesion, &joints.tensile_strength})
+        none->assign(edges, 0);
+    const std::vector<Truth> truth{{Scaled::joint_stiffness, 1.25}, {Scaled::horizontal_stress, .9}};
+    std::mt19937_64 random(3);
+    const std::vector<Measurement> readings = noisy(made(section, truth), 5e-7, random, true);
+    back_analysis::Settings settings = settings_for(truth);
+    const auto fit = [&] {
+        return back_analysis::fit(section.scene, section.network, section.joints, readings, settings);
+    };
+    EXPECT_THROW(fit(), input_error);
+    settings.ensemble = {.members = 12};
+    for (back_analysis::Factor& factor : settings.factors) {
+        factor.low = .5;
+        factor.high = 2;
+    }
+    const Found found = fit();
+    EXPECT_TRUE(found.minimum.is_converged);
+    EXPECT_TRUE(found.doubts.empty());
+    for (std::size_t i = 0; i < truth.size(); ++i) {
+        const auto [low, high] = found.interval(i);
+        EXPECT_LT(low, std::log(truth[i].factor)) << i;
+        EXPECT_GT(high, std::log(truth[i].factor)) << i;
+        EXPECT_LT(high - low, .3) << i;
+    }
+}
+
+// Readings that scatter three times as much as they say: intervals are as wide as if they said so.
+TEST(back_analysis, an_ensemble_has_wider_intervals_where_readings_scatter_more)
+{
+    const JointedSection section;
+    std::mt19937_64 random(6);
+    std::vector<Measurement> readings = noisy(made(section, three), 1e-6, random, true);
+    back_analysis::Settings settings = settings_for(three);
+    settings.ensemble = {.members = 16};
+    const auto fit = [&] {
+        return back_analysis::fit(section.scene, section.network, section.joints, readings, settings);
+    };
+    const Found told = fit();
+    EXPECT_EQ(told.confidence.noise_factor, 1);
+    for (Measurement& m : readings)
+        m.deviation = 1e-6 / 3;
+    const Found found = fit();
+    const auto degrees = static_cast<double>(told.confidence.readings - 3);
+    EXPECT_NEAR(found.confidence.noise_factor, 3 * std::sqrt(told.confidence.sum_of_squares / degrees), .05);
+    for (std::size_t i = 0; i < three.size(); ++i) {
+        const auto [low, high] = found.interval(i);
+        const auto [its_low, its_high] = told.interval(i);
+        EXPECT_NEAR((high - low) / (its_high - its_low), found.confidence.noise_factor / 3, .15) << i;
+        EXPECT_LT(low, std::log(three[i].factor)) << i;
+        EXPECT_GT(high, std::log(three[i].factor)) << i;
+    }
+}
+
+// K is 1.25. Bounds of 0.5:2 allow it, those of 0.95:1 do not. With little noise the mean is beyond them, and the fit is worse than the noise.
+// With ten times as much it is within them, the interval is wrong, and no residual tells: but the disagreement does. With much more,
+// nothing does, but that readings know less than the bounds, and that is said.
+TEST(back_analysis, an_ensemble_says_where_readings_and_bounds_do_not_agree)
+{
+    using estimation::AtBound;
+    const JointedSection section;
+    const std::vector<Truth> truth{{Scaled::joint_stiffness, 1.25}};
+    const std::vector<Measurement> exact = made(section, truth);
+    for (const double noise : {1e-6, 1e-5, 6e-5})
+        for (const bool is_right : {true, false}) {
+            std::mt19937_64 random(6);
+            back_analysis::Settings settings = settings_for(truth);
+            settings.ensemble = {.members = 12};
+            settings.factors[0].low = is_right ? .5 : .95;
+            settings.factors[0].high = is_right ? 2 : 1.;
+            const Found found = back_analysis::fit(section.scene, section.network, section.joints,
+                                                   noisy(exact, noise, random, true), settings);
+            EXPECT_TRUE(found.minimum.is_converged);
+            const auto [low, high] = found.interval(0);
+            const bool holds = low < std::log(1.25) && std::log(1.25) < high;
+            EXPECT_EQ(holds, is_right) << noise;
+            EXPECT_EQ(found.minimum.at_bound[0], is_right || noise > 5e-5 ? AtBound::no : AtBound::high)
+                << noise;
+            EXPECT_EQ(found.is_by_bounds[0], !is_right || noise > 5e-5) << noise;
+            if (!is_right) {
+                EXPECT_EQ(found.factors[0] > 1, noise < 5e-6) << noise << ' ' << found.factors[0];
+            }
+            EXPECT_EQ(found.confidence.p_value < .01, !is_right && noise < 5e-6) << noise;
+        }
+}
+
+// It keeps the best of the runs that it made.
+TEST(back_analysis, an_ensemble_without_enough_answers_keeps_the_best)
+{
+    const JointedSection section;
+    const std::vector<Measurement> readings = [&] {
+        std::mt19937_64 random(3);
+        return noisy(made(section, three), 1e-6, random, true);
+    }();
+    back_analysis::Settings settings = settings_for(three);
+    settings.ensemble = {.members = 12};
+    for (back_analysis::Factor& factor : settings.factors) {
+        factor.low = .02;
+        factor.high = 2;
+    }
+    const back_analysis::Section whole =
+        back_analysis::section_of(section.scene, section.network, section.joints, settings);
+    int runs = 0;
+    const back_analysis::Section hardly = [&](const std::vector<double>& factors) {
+        if (++runs > 13) // after the first round
+            throw equilibrium_error("no equilibrium");
+        return whole(factors);
+    };
+    const Found found = back_analysis::fit(section.scene, hardly, readings, settings);
+    EXPECT_FALSE(found.minimum.is_converged);
+    EXPECT_EQ(found.failure, "only 0 of 12 members have an answer; wanted 8 or more");
+    EXPECT_EQ(found.minimum.evaluations, 25);
+    EXPECT_EQ(found.without_answer.size(), 12U);
+    ASSERT_EQ(found.computed.size(), readings.size());
+    double at_start = 0, at_end = 0;
+    for (std::size_t m = 0; m < readings.size(); ++m) {
+        at_start += std::pow((found.computed[m].at_start - readings[m].displacement) / 1e-6, 2);
+        at_end += std::pow((found.computed[m].at_end - readings[m].displacement) / 1e-6, 2);
+    }
+    EXPECT_LT(at_end, .5 * at_start);
+    EXPECT_NEAR(found.minimum.sum_of_squares() / at_end, 1, 1e-9);
+}
+
+// By weights, and with a correlation that is not known, the sum of squares is that of the fit; one standard error of it is s. The factor
+// fixed at an end, with the others found again, is worse by (q s)^2. A factor at a bound has an end, with the same noise.
+TEST(back_analysis, profile_intervals_have_the_noise_of_robust_and_lasting_errors)
+{
+    const JointedSection section;
+    const std::vector<Truth> two{three[0], three[2]};
+    std::mt19937_64 random(7);
+    std::vector<Measurement> outlying = noisy(made(section, two), 5e-7, random, true);
+    for (const std::size_t m : {7, 20, 33})
+        outlying[m].displacement += 1e-5;
+    std::vector<Measurement> lasting = made(section, two);
+    {
+        std::normal_distribution<double> error(0, 5e-7);
+        std::vector<double> last(4, 0.0);
+        for (std::size_t m = 0; m < lasting.size(); ++m) {
+            double& e = last[m % 4];
+            e = .7 * e + std::sqrt(1 - .49) * error(random);
+            lasting[m].displacement += e;
+        }
+    }
+    for (const bool robust : {true, false}) {
+        back_analysis::Settings settings = settings_for(two);
+        settings.errors.robust = robust;
+        settings.errors.correlated = !robust;
+        settings.profile_intervals = true;
+        const auto fit = [&] {
+            return back_analysis::fit(section.scene, section.network, section.joints,
+                                      robust ? outlying : lasting, settings);
+        };
+        const Found found = fit();
+        ASSERT_TRUE(found.minimum.is_converged);
+        EXPECT_FALSE(found.better);
+        if (robust) {
+            EXPECT_EQ(found.outliers.size(), 3U);
+        }
+        // With so little noise the intervals are those by standard errors.
+        for (std::size_t i = 0; i < two.size(); ++i) {
+            const auto [low, high] = found.interval(i);
+            const double half =
+                found.confidence.quantile * found.confidence.standard_error(static_cast<Eigen::Index>(i));
+            EXPECT_NEAR((high - low) / 2, half, .05 * half) << robust << i;
+            EXPECT_LT(low, std::log(two[i].factor)) << robust << i;
+            EXPECT_GT(high, std::log(two[i].factor)) << robust << i;
+        }
+        settings.factors[1].high =
+            found.factors[1] * std::exp(-.1 * found.confidence.standard_error(Eigen::Index{1}));
+        const Found at_bound = fit();
+        ASSERT_EQ(at_bound.minimum.at_bound[1], estimation::AtBound::high);
+        EXPECT_NEAR((found.minimum.parameters[1] - at_bound.interval(1).low) /
+                        (found.minimum.parameters[1] - found.interval(1).low),
+                    1, .05)
+            << robust;
+        EXPECT_TRUE(std::isinf(at_bound.interval(1).high));
     }
 }
 

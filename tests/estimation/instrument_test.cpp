@@ -2,6 +2,7 @@
 // model without the error is doubted.
 
 #include "estimation/instrument.hpp"
+#include "estimation/profile.hpp"
 #include "model/error.hpp"
 
 #include <gtest/gtest.h>
@@ -213,6 +214,43 @@ TEST(instrument, a_parameter_at_a_bound_is_not_known_to_the_others)
         ASSERT_TRUE(at_bound.confidence.is_fixed[0]);
         EXPECT_NEAR(at_bound.confidence.standard_error(1) / within.confidence.standard_error(1), 1, 0.1)
             << errors.robust << errors.correlated;
+    }
+}
+
+// The same of a's profile: its end is that without the bound. The noise of the plain fit is another.
+TEST(instrument, the_profile_of_a_parameter_at_a_bound_has_the_noise_of_its_errors)
+{
+    for (const Errors& errors : {Errors{}, Errors{.robust = true}, Errors{.correlated = true}}) {
+        std::mt19937_64 random(3);
+        Line line(random, 1, errors.correlated ? 0.6 : 0.0);
+        if (errors.robust)
+            for (const std::size_t i : {3, 14, 22, 29, 37, 41})
+                line.values[i] += i % 2 == 0 ? 7 : -7;
+        const double best = fitted(line, errors).fit.minimum.parameters[0];
+        const auto half = [&](double most_a) {
+            Instruments instruments(line.readings, errors);
+            Bounds bounds{VectorXd::Constant(2, -1e3), VectorXd::Constant(2, 1e3)};
+            bounds.high[0] = most_a;
+            const InstrumentFit fit =
+                minimise(line.model(), instruments, VectorXd::Zero(2), bounds.low, bounds.high, 100, 1e-12);
+            const Model independent = [&](const VectorXd& p) -> std::optional<Evaluation> {
+                return instruments.independent(*line.model()(p));
+            };
+            const Confidence confidence = instruments.confidence(fit.raw, fit.minimum);
+            EXPECT_EQ(confidence.is_fixed[0], most_a < 1e3);
+            const double plain =
+                confidence.noise_factor * std::sqrt(unit_covariance(fit.minimum.there.jacobian)(0, 0));
+            if (errors.any()) {
+                EXPECT_GT(std::abs(confidence.error_if_free[0] / plain - 1), .04);
+            }
+            const Profiles found = profiles(independent, fit.minimum, confidence, bounds);
+            EXPECT_FALSE(found.better);
+            const double its =
+                (fit.minimum.parameters[0] - found.of_each.at(0).interval.low) / confidence.quantile;
+            EXPECT_NEAR(its / confidence.error_if_free[0], 1, .015) << errors.robust << errors.correlated;
+            return its;
+        };
+        EXPECT_NEAR(half(best - 1e-4) / half(1e3), 1, .04) << errors.robust << errors.correlated;
     }
 }
 

@@ -21,15 +21,18 @@ struct Fit {
     Minimum minimum;
     Confidence confidence;
     std::vector<Profile> profiles;
+    std::optional<Better> better{};
 };
 
 // Deviations are known, to be those that residuals were divided by.
-Fit fit(const Model& model, const VectorXd& start, double widest = 20)
+Fit fit(const Model& model, const VectorXd& start, double widest = 20, int most_runs = 60)
 {
     const Bounds bounds{VectorXd::Constant(start.size(), -widest), VectorXd::Constant(start.size(), widest)};
     Fit found{minimise(model, start, bounds.low, bounds.high), {}, {}};
     found.confidence = confidence_of(found.minimum, true);
-    found.profiles = profiles(model, found.minimum, found.confidence, bounds);
+    Profiles of = profiles(model, found.minimum, found.confidence, bounds, most_runs);
+    found.profiles = std::move(of.of_each);
+    found.better = std::move(of.better);
     return found;
 }
 
@@ -116,7 +119,7 @@ TEST(profile, ends_at_bounds_and_where_there_is_no_answer)
     guess << 2;
     const auto end = [&](double bound) {
         const Bounds bounds{VectorXd::Constant(1, -bound), VectorXd::Constant(1, bound)};
-        return profile_end(model, VectorXd::Zero(1), 0, 9, 0, guess, bounds, {});
+        return profile_end(model, VectorXd::Zero(1), 0, 9, 0, guess, bounds, {}).at;
     };
     EXPECT_NEAR(end(10), 3, .03);
     EXPECT_EQ(end(2.9), infinity);
@@ -139,11 +142,103 @@ TEST(profile, of_what_readings_do_not_determine_is_infinite)
         at.jacobian.leftCols(2).setOnes();
         return at;
     };
-    for (const auto& [interval, with_all] : fit(model, VectorXd::Zero(3)).profiles)
-        for (const Interval& one : {interval, with_all}) {
+    for (const Profile& profile : fit(model, VectorXd::Zero(3)).profiles)
+        for (const Interval& one : {profile.interval, profile.with_all}) {
             EXPECT_EQ(one.low, -infinity);
             EXPECT_EQ(one.high, infinity);
         }
+}
+
+// Valleys one beside the other, as deep as the first or deeper. The hills between them are within the limit.
+TEST(profile, of_a_minimum_that_is_not_the_least_says_where_less_is)
+{
+    for (const double tilt : {0., .3}) {
+        const Model model = [tilt](const VectorXd& p) -> std::optional<Evaluation> {
+            const double angle = std::numbers::pi * p[0];
+            Evaluation at{VectorXd(2), MatrixXd(2, 1)};
+            at.residual << 1.5 * std::sin(angle), 1 - tilt * p[0];
+            at.jacobian << 1.5 * std::numbers::pi * std::cos(angle), -tilt;
+            return at;
+        };
+        const Fit found = fit(model, VectorXd::Zero(1), 1.9);
+        EXPECT_NEAR(found.minimum.parameters[0], 0, .05);
+        EXPECT_EQ(found.better.has_value(), tilt > 0);
+        if (found.better) {
+            EXPECT_LT(found.better->sum_of_squares, found.minimum.sum_of_squares() - .01);
+            EXPECT_EQ(found.better->sum_of_squares, model(found.better->parameters)->residual.squaredNorm());
+            EXPECT_GT(std::abs(found.better->parameters[0]), .5);
+        }
+        for (const Interval& one : {found.profiles.at(0).interval, found.profiles.at(0).with_all}) {
+            EXPECT_EQ(one.low, -infinity);
+            EXPECT_EQ(one.high, infinity);
+        }
+    }
+}
+
+// Of one logarithm, as above: a few runs do not find an end, and say how far they came.
+TEST(profile, has_no_end_where_runs_are_too_few)
+{
+    int calls = 0;
+    const Model model = [&](const VectorXd& p) -> std::optional<Evaluation> {
+        ++calls;
+        return Evaluation{(std::exp(p[0]) - VectorXd::Constant(4, 2).array()) / 1.5,
+                          MatrixXd::Constant(4, 1, std::exp(p[0]) / 1.5)};
+    };
+    const Profile exact = fit(model, VectorXd::Zero(1)).profiles.at(0);
+    EXPECT_TRUE(exact.not_found.empty());
+    const Fit minimum = fit(model, VectorXd::Zero(1), 20, 1);
+    calls = 0;
+    const Fit few = fit(model, minimum.minimum.parameters, 20, 2);
+    EXPECT_LE(calls, 3 + 2 * 2);
+    const Profile& found = few.profiles.at(0);
+    EXPECT_EQ(found.interval.low, -infinity);
+    EXPECT_EQ(found.interval.high, infinity);
+    ASSERT_EQ(found.not_found.size(), 4U); // each by itself and with all: the same, of one parameter
+    for (std::size_t k = 0; k < 4; ++k) {
+        const NotFound& one = found.not_found[k];
+        EXPECT_EQ(one.is_high, k >= 2);
+        EXPECT_EQ(one.is_with_all, k % 2 == 1);
+        EXPECT_GT(one.beyond, exact.interval.low);
+        EXPECT_LT(one.beyond, exact.interval.high);
+    }
+    EXPECT_LT(found.not_found[0].beyond, few.minimum.parameters[0] - .5);
+}
+
+// Means a and b of m readings each, with known deviations; a is stopped by its upper bound c. Its interval is where
+// m (a - mean)^2 <= m (c - mean)^2 + q^2, and it is one of two that hold together: q is 2.2414 there (0.0125 on each side), for b, too. By
+// standard errors a has no interval, and that of b is alone.
+TEST(profile, of_a_parameter_at_its_bound_is_one_of_all)
+{
+    constexpr int m = 9;
+    constexpr double mean_a = 1, mean_b = 2, c = .8, two = 2.241402728;
+    const Model model = [](const VectorXd& p) -> std::optional<Evaluation> {
+        Evaluation at{VectorXd(2 * m), MatrixXd::Zero(2 * m, 2)};
+        at.residual.head(m).setConstant(p[0] - mean_a);
+        at.residual.tail(m).setConstant(p[1] - mean_b);
+        for (int k = 0; k < m - 1; ++k) { // means stay
+            at.residual[k] += k % 2 == 0 ? .5 : -.5;
+            at.residual[m + k] += k % 2 == 0 ? .5 : -.5;
+        }
+        at.jacobian.col(0).head(m).setOnes();
+        at.jacobian.col(1).tail(m).setOnes();
+        return at;
+    };
+    Bounds bounds{VectorXd::Constant(2, -20), VectorXd::Constant(2, 20)};
+    bounds.high[0] = c;
+    const Minimum minimum = minimise(model, VectorXd::Zero(2), bounds.low, bounds.high);
+    ASSERT_EQ(minimum.at_bound[0], AtBound::high);
+    const Confidence confidence = confidence_of(minimum, true);
+    EXPECT_EQ(confidence.readings - confidence.parameters, 2 * m - 1);
+    EXPECT_NEAR(confidence.quantile_all, z, 1e-4);
+    const Profiles found = profiles(model, minimum, confidence, bounds);
+    const auto low = [&](double q) { return mean_a - std::sqrt((c - mean_a) * (c - mean_a) + q * q / m); };
+    const Profile &a = found.of_each.at(0), &b = found.of_each.at(1);
+    EXPECT_NEAR(a.interval.low, low(z), .01);
+    EXPECT_NEAR(a.with_all.low, low(two), .01);
+    EXPECT_EQ(a.interval.high, infinity);
+    EXPECT_NEAR(b.interval.high, mean_b + z / 3, .01);
+    EXPECT_NEAR(b.with_all.high, mean_b + two / 3, .01);
+    EXPECT_NEAR(b.with_all.low, mean_b - two / 3, .01);
 }
 
 } // namespace profile_test
