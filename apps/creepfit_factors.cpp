@@ -63,22 +63,35 @@ back_analysis::Factor factor_by(const std::string& option)
     return factor;
 }
 
-// The search starts from 1, or from the geometric mean of the bounds if 1 is outside them.
+// "LOW:HIGH", or "LOW:START:HIGH".
 void set_bounds(back_analysis::Factor& factor, const std::string& option, const std::string& text)
 {
-    double low = 0, high = 0;
-    char colon = 0, rest = 0;
+    std::vector<double> numbers;
     std::istringstream bounds(text);
-    if (!(bounds >> low >> colon >> high) || colon != ':' || bounds >> rest || !(low > 0) || !(low < high) ||
-        low < 1e-6 || high > 1e6)
+    char colon = ':', rest = 0;
+    for (double number = 0; colon == ':' && numbers.size() < 3 && bounds >> number;) {
+        numbers.push_back(number);
+        if (!(bounds >> colon))
+            colon = 0;
+    }
+    const double low = numbers.empty() ? 0 : numbers.front(), high = numbers.empty() ? 0 : numbers.back();
+    if (numbers.size() < 2 || colon != 0 || bounds >> rest || !(low < high) || low < 1e-6 || high > 1e6)
         throw input_error("--fit: the bounds of " + option + " are \"" + text +
-                          "\"; wanted two factors LOW:HIGH with 1e-6 <= LOW < HIGH <= 1e6");
+                          "\"; wanted two factors LOW:HIGH with 1e-6 <= LOW < HIGH <= 1e6, perhaps "
+                          "LOW:START:HIGH");
     factor.low = low;
     factor.high = high;
-    factor.start = low <= 1 && 1 <= high ? 1 : std::sqrt(low * high);
+    factor.start = numbers.size() == 3 ? numbers[1] : usual_start(low, high);
+    if (factor.start < low || factor.start > high)
+        throw input_error("--fit: the start of " + option + " is outside its bounds, \"" + text + '"');
 }
 
 } // namespace
+
+double usual_start(double low, double high)
+{
+    return low <= 1 && 1 <= high ? 1 : std::sqrt(low * high);
+}
 
 std::string option_of(const back_analysis::Factor& factor)
 {

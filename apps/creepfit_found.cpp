@@ -105,12 +105,15 @@ std::string shown_factor(const Found& found, std::size_t i)
                               (found.is_resolved[i] ? "" : ": not resolved by these readings"),
                       intervals =
                           " (95 %: " + shown_range(false) + "; all together: " + shown_range(true) + ")";
-    if (const AtBound at = found.minimum.at_bound[i]; at != AtBound::no)
-        return value + (found.members > 0 ? ": beyond its " : ": at its ") +
-               (at == AtBound::low ? "lower" : "upper") +
-               (found.members > 0 ? " bound: the readings and the bounds do not agree"
-                                  : " bound; the readings fit better beyond it") +
-               (found.profiles.empty() ? "" : intervals);
+    if (found.better)
+        return rounded(found.factors[i]) + ": no intervals, because a better fit was found";
+    if (const AtBound at = found.minimum.at_bound[i]; at != AtBound::no) {
+        const std::string bound = at == AtBound::low ? "lower bound" : "upper bound";
+        return found.members > 0
+                   ? value + ": the readings and the bounds do not agree, they want it beyond its " + bound
+                   : value + ": at its " + bound + "; the readings fit better beyond it" +
+                         (found.profiles.empty() ? "" : intervals);
+    }
     if (found.confidence.is_fixed[i])
         return rounded(found.factors[i]) + ": not resolved: it does not change these readings";
     return value + intervals;
@@ -184,6 +187,72 @@ void warn_of_weak_combination(Summary& summary, const Found& found, const Factor
                  combination_in_words(weak->direction, half, factors) +
                  (weak->is_alike_effects ? " changes the readings by no more than their noise"
                                          : " is still within the readings' noise"));
+}
+
+// A profile search that found a smaller sum of squares.
+void warn_of_better(Summary& summary, const Found& found, const Factors& factors)
+{
+    if (!found.better)
+        return;
+    std::string from;
+    for (std::size_t i = 0; i < factors.size(); ++i)
+        from += (i > 0 ? "," : "") + option_of(factors[i]) + '=' + shown(factors[i].low) + ':' +
+                shown(std::clamp(std::exp(found.better->parameters[static_cast<Eigen::Index>(i)]),
+                                 factors[i].low, factors[i].high)) +
+                ':' + shown(factors[i].high);
+    summary.warn("this fit is not the best: its sum of squares is " +
+                 rounded(found.minimum.sum_of_squares()) + ", and the runs of profile intervals found " +
+                 rounded(found.better->sum_of_squares) +
+                 ". Factors have no intervals. Start from there: --fit \"" + from + '"');
+}
+
+void warn_of_ends_not_found(Summary& summary, const Found& found, const back_analysis::Settings& settings)
+{
+    for (std::size_t i = 0; i < found.profiles.size(); ++i)
+        for (const estimation::NotFound& end : found.profiles[i].not_found)
+            summary.warn(std::string("the ") + (end.is_high ? "upper" : "lower") +
+                         " end of the interval of " + option_of(settings.factors[i]) +
+                         (end.is_with_all ? ", all together," : "") + " was not found in " +
+                         std::to_string(settings.most_profile_runs) + " runs: it is " +
+                         (end.is_high ? "above " : "below ") + rounded(std::exp(end.beyond)) +
+                         ". The interval is shown without this end");
+}
+
+// Factors whose prior and readings disagree.
+void warn_of_disagreement(Summary& summary, const Found& found, const Factors& factors)
+{
+    std::string words;
+    for (std::size_t i = 0; i < factors.size(); ++i)
+        if (const AtBound at = found.minimum.at_bound[i]; found.members > 0 && at != AtBound::no)
+            words += (words.empty() ? "" : ", ") + option_of(factors[i]) +
+                     (at == AtBound::low ? " below" : " above");
+    if (!words.empty())
+        summary.warn(
+            "readings and bounds do not agree: the readings want " + words +
+            " its bounds. Values are between both, and the intervals may not contain the truth. Give wider bounds");
+}
+
+// Factors whose intervals are hardly more than what the bounds say.
+void warn_of_bounds(Summary& summary, const Found& found, const Factors& factors)
+{
+    std::string names;
+    for (std::size_t i = 0; i < found.is_by_bounds.size(); ++i)
+        if (found.is_by_bounds[i] && found.is_resolved[i])
+            names += (names.empty() ? "" : ", ") + option_of(factors[i]);
+    if (!names.empty())
+        summary.warn("the bounds determine more than the readings: " + names +
+                     ". The interval is right only if the bounds are");
+}
+
+// Names of the columns with ends that were not found: "low_95 low_95_all".
+std::string ends_not_found(const Found& found, std::size_t i)
+{
+    std::string names;
+    if (!found.profiles.empty())
+        for (const estimation::NotFound& end : found.profiles[i].not_found)
+            names += (names.empty() ? "" : " ") + std::string(end.is_high ? "high_95" : "low_95") +
+                     (end.is_with_all ? "_all" : "");
+    return names;
 }
 
 // Between creep steps the history is interpolated linearly.
@@ -287,7 +356,7 @@ std::string found_table(const Found& found, const Factors& factors, bool knows_d
     std::string table =
         "factor,value,low_95,high_95,low_95_all,high_95_all,standard_error_of_logarithm,at_bound,"
         "weak_combination_times,converged,runs,chi_squared,degrees_of_freedom,condition_number,resolved,doubt,"
-        "doubt_p_value";
+        "doubt_p_value,better_value,ends_not_found";
     for (const back_analysis::Factor& factor : factors)
         table += ',' + exchange::csv_field("correlation_" + option_of(factor));
     table += '\n';
@@ -304,7 +373,9 @@ std::string found_table(const Found& found, const Factors& factors, bool knows_d
                  ',' + of_fit + ',' + (found.is_resolved[i] ? "yes" : "no") + ',' +
                  (found.doubts.empty()
                       ? ","
-                      : word_of(found.doubts.front().kind) + ',' + shown(found.doubts.front().p_value));
+                      : word_of(found.doubts.front().kind) + ',' + shown(found.doubts.front().p_value)) +
+                 ',' + (found.better ? shown(std::exp(found.better->parameters[index])) : "") + ',' +
+                 ends_not_found(found, i);
         for (Eigen::Index j = 0; j < confidence.correlation.cols(); ++j)
             table += ',' + shown(confidence.correlation(index, j));
         table += '\n';
@@ -342,6 +413,13 @@ std::string why_not_converged(const Found& found, const Factors& factors)
     const estimation::Minimum& minimum = found.minimum;
     if (!found.is_settled)
         return "no fit was found: " + std::string(not_settled);
+    if (!found.failure.empty())
+        return "no fit was found in " + std::to_string(minimum.evaluations) + " runs: " + found.failure +
+               "; the best is " + in_words(factors, found.factors) +
+               (found.without_answer.empty()
+                    ? ""
+                    : "\nruns without an answer: " + shown_without_answer(found, factors)) +
+               "\nwanted narrower bounds in --fit, or a larger --ensemble";
     std::vector<double> wanted;
     for (std::size_t i = 0; i < factors.size(); ++i)
         wanted.push_back(found.factors[i] * std::exp(minimum.left[static_cast<Eigen::Index>(i)]));
@@ -384,8 +462,12 @@ void report(const Arguments& arguments, const Found& found, const Measurements& 
                     rounded(found.confidence.condition_number, 3));
     warn_of_weak_combination(summary, found, factors);
     warn_of_interpolation(summary, found, measurements);
+    warn_of_better(summary, found, factors);
+    warn_of_ends_not_found(summary, found, settings);
+    warn_of_disagreement(summary, found, factors);
+    warn_of_bounds(summary, found, factors);
     const std::string not_resolved = unresolved(found, factors);
-    if (!not_resolved.empty())
+    if (!not_resolved.empty() && !found.better)
         summary.warn(
             "not resolved by these readings: " + not_resolved +
             (found.profiles.empty()
@@ -396,8 +478,10 @@ void report(const Arguments& arguments, const Found& found, const Measurements& 
     // One without any effect stays as it is in the scene.
     bool may_advise = !is_doubtful(of_instruments);
     for (std::size_t i = 0; i < factors.size(); ++i)
-        may_advise = may_advise && (found.is_resolved[i] || (found.confidence.is_fixed[i] &&
-                                                             found.minimum.at_bound[i] == AtBound::no));
+        may_advise = may_advise &&
+                     (found.is_resolved[i] ||
+                      (found.confidence.is_fixed[i] && found.minimum.at_bound[i] == AtBound::no)) &&
+                     (found.members == 0 || found.minimum.at_bound[i] == AtBound::no);
     if (!may_advise)
         summary.add("values for the scene", "none, because of the warnings");
     summary.print(arguments);

@@ -48,6 +48,11 @@ back_analysis::Settings settings_of(const Arguments& arguments)
         if (static_cast<Eigen::Index>(*members) < least)
             throw input_error("--ensemble is " + std::to_string(*members) + "; wanted at least " +
                               std::to_string(least) + ": twice the number of factors and 2 more");
+        for (const back_analysis::Factor& factor : factors)
+            if (factor.start != usual_start(factor.low, factor.high))
+                throw input_error("--fit: " + option_of(factor) +
+                                  " has a start, and --ensemble starts from the middle of the bounds; wanted "
+                                  "LOW:HIGH");
         ensemble = {.members = static_cast<int>(*members)};
     }
     return {.factors = std::move(factors),
@@ -171,12 +176,13 @@ std::vector<Option> section_options()
              ", separated by commas. normal- or shear- before the name: for one direction of joints. "
              "@MATERIAL behind it: for one joint material. Bounds may follow: joint-stiffness=0.5:2 (default "
              "bounds: 0.05:20). kelvin-viscosity is that of Maxwell dashpots, too. The search starts from 1, "
-             "or from the geometric mean of the bounds if 1 is outside them"},
+             "or from the geometric mean of the bounds if 1 is outside them, or from START: "
+             "joint-stiffness=0.5:1.3:2"},
         {"since-first-reading", "",
          "through the solver: measurements count from each point's first reading, and share its error"},
         {"profile-intervals", "",
          "through the solver: 95 percent intervals by profiles of the sum of squares, in place of standard errors, which are wrong "
-         "where displacements are far from linear in the factors' logarithms. Each factor takes 10 to 90 more runs"},
+         "where displacements are far from linear in the factors' logarithms. Each factor takes 10 to 90 more runs, and 60 at most for each of four ends"},
         {"ensemble", "N",
          "through the solver: search by an ensemble of N runs a round, without sensitivities: for many factors, and where joints or rock have "
          "no sensitivities (Barton-Bandis joints, rock that yields). Bounds of a factor are then its 95 percent interval beforehand (default "

@@ -136,6 +136,55 @@ class Creepfit(ChainTest):
                 for column in "value", "low_95", "high_95":
                     self.assertLess(abs(math.log(float(row[column]) / float(exact[name][column]))), 0.1 * width, (option, name, column))
 
+    def two_valleys(self):
+        """Readings soon after the load that say that creep is over, and one late that says that it has not begun: eta has two minima. The
+        search from 1 goes to the upper one, which is the worse."""
+        path = self.chain.new_folder() / "readings.csv"
+        path.write_text("time_day,point,component,displacement_mm,sigma_mm\n"
+                        "2.9,C,y,0.815,0.1\n3.1,C,y,0.815,0.1\n9.9,C,y,0.423,0.08\n")
+        return path
+
+    def test_profiles_that_find_a_better_fit(self):
+        """Said also with -q; no intervals and no values for the scene; from where it says the fit is better."""
+        readings = self.two_valleys()
+        name, fit = "kelvin-viscosity", "kelvin-viscosity=0.01:100"
+        for more in [], ["-q"]:
+            found = self.chain.new_folder() / "f.csv"
+            done = self.chain.answer("creepfit", self.joints, "--measurements", readings, "--fit", fit, "--profile-intervals", "-o", found, *more)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertIn("this fit is not the best: its sum of squares is 28.25", done.stderr)
+            self.assertNotIn("In the scene", done.stdout)
+            row, = table(found)
+            self.assertEqual((row["low_95"], row["high_95"], row["low_95_all"], row["high_95_all"], row["resolved"]), ("", "", "", "", "no"))
+            self.assertGreater(float(row["value"]), 1)
+            self.assertLess(float(row["better_value"]), 0.5)
+            start = done.stderr.split('Start from there: --fit "')[1].split('"')[0]
+        rows, _, _ = self.found(readings, "--profile-intervals", fit=start)
+        self.assertLess(float(rows[name]["chi_squared"]), 0.9 * float(row["chi_squared"]))
+        self.assertEqual(rows[name]["better_value"], "")
+
+    def test_readings_and_bounds_of_an_ensemble_that_do_not_agree(self):
+        """K is 1.2; bounds of 0.8:0.9 do not contain it."""
+        folder = self.chain.new_folder()
+        done = self.chain.answer("creepfit", self.joints, "--measurements", self.readings(), "--fit",
+                                 "kelvin-stiffness,kelvin-viscosity,joint-stiffness=0.8:0.9", "--ensemble", "12", "-o", folder / "f.csv")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("readings and bounds do not agree: the readings want joint-stiffness above", done.stderr)
+        self.assertNotIn("In the scene", done.stdout)
+        self.assertEqual([row["at_bound"] for row in table(folder / "f.csv")][2], "high")
+
+    def test_an_ensemble_without_enough_answers(self):
+        """With low viscosities the scene's creep step is too long for its scheme: no fit, and the best run is kept."""
+        folder = self.chain.new_folder()
+        done = self.chain.answer("creepfit", self.joints, "--measurements", self.readings(), "--fit",
+                                 "kelvin-stiffness=0.05:0.2,kelvin-viscosity=0.01:2", "--ensemble", "6", "-o", folder / "f.csv", "--readings", folder / "r.csv")
+        self.assertEqual(done.returncode, 3, done.stderr)
+        self.assertIn("of 6 members have an answer; wanted 6 or more", done.stderr)
+        self.assertIn(str(folder / "f.failed.csv"), done.stderr)
+        self.assertEqual({path.name for path in folder.iterdir()}, {"f.failed.csv", "r.failed.csv"})
+        for row in table(folder / "f.failed.csv"):
+            self.assertEqual(row["converged"], "no")
+
     def test_constants_of_a_material(self):
         """The closed form with another E of the base joint."""
         text = self.chain.text("data/column/scene.toml")
@@ -396,7 +445,8 @@ class Creepfit(ChainTest):
         for options, wanted in [
             ([], "--fit is not given"), (["--fit", "stiffness"], '"stiffness" is none of'), (["--fit", ""], "--fit is empty"),
             (["--fit", "joint-stiffness,joint-stiffness"], "twice"), (["--fit", "joint-stiffness=2:1"], "LOW:HIGH"),
-            (["--fit", "joint-stiffness=1"], "LOW:HIGH"),
+            (["--fit", "joint-stiffness=1"], "LOW:HIGH"), (["--fit", "joint-stiffness=1:2:"], "LOW:START:HIGH"),
+            (["--fit", "joint-stiffness=1:2:3:4"], "LOW:START:HIGH"), (["--fit", "joint-stiffness=1:4:3"], "outside its bounds"),
             (["--fit", "joint-stiffness,"], "before or after a comma"), (["--fit", ",joint-stiffness"], "a comma"), (["--fit", "joint-stiffness=0:2"], "LOW:HIGH"),
             (["--fit", "joint-stiffness", "--stiffness", "3"], "--stiffness goes with"),
             (["--fit", "joint-stiffness@none"], 'no joint material "none"'), (["--fit", "joint-stiffness@"], "no joint material behind @"),
@@ -428,9 +478,10 @@ class Creepfit(ChainTest):
             other.writelines(",".join(line.rstrip("\n").split(",")[:4]) + "\n" for line in file)
         for path, options, wanted in ((readings, ["--ensemble", "5"], "--ensemble is 5; wanted at least 6"),
                                       (readings, ["--ensemble", "8", "--robust"], "does not go with --robust"),
+                                      (readings, ["--ensemble", "8", "--fit", "joint-stiffness=0.5:0.9:2"], "joint-stiffness has a start"),
                                       (bare, ["--ensemble", "8"], "bare.csv: no sigma_mm")):
-            done = self.chain.answer("creepfit", self.joints, "--measurements", path, "--fit", "kelvin-stiffness,joint-stiffness", *options,
-                                     "-o", bare.with_name("f.csv"))
+            fit = [] if "--fit" in options else ["--fit", "kelvin-stiffness,joint-stiffness"]
+            done = self.chain.answer("creepfit", self.joints, "--measurements", path, *fit, *options, "-o", bare.with_name("f.csv"))
             self.assertEqual(done.returncode, 2, done.stderr)
             self.assertIn(wanted, done.stderr)
             self.assertFalse(bare.with_name("f.csv").exists())
