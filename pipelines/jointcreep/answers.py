@@ -22,9 +22,11 @@ from .study_file import ENDS, EXTENSIBLE, NETWORK
 
 QUANTILES = [0.05, 0.25, 0.50, 0.75, 0.95]
 CORRELATION = "rank correlation"  # a measure in shares.csv
+ALL_PARAMETERS = "all parameters"  # an input in shares.csv
 NOT_LINEAR = "parameters, not linear or together"  # what no parameter explains alone
 SETS_EACH = 4  # sets of parameters for each parameter, so that their share is divided
 FEWEST = 10  # values from which convergence is shown
+FEWEST_NETWORKS = 4  # of networks x parameters from which it is shown
 STEPS = 30  # numbers of runs at which it is shown, at most
 NAMED = 10  # failed runs that the summary lists
 SHORT = 90  # characters of a reason there
@@ -218,12 +220,20 @@ def counts_shown(n):
 
 
 def convergence(study, rows, at):
-    """Rows (statistic, runs, value, low, high) over a growing number of runs with a value; designs that are made as a whole have one."""
+    """Rows (statistic, runs, value, low, high) over a growing number of runs with a value; of networks x parameters over a growing number
+    of networks with all sets of parameters. Other designs that are made as a whole have one."""
     quantity = study.quantities[at]
     values, run = values_of(study, rows, at)
     coarse = coarse_of(study, rows, at, run)
     others = without_equilibrium(study, rows, at), beyond_search(study, rows, at)
     found = []
+    if study.design.kind == "networks x parameters" and len(values):
+        ends = [run_of * study.design.parameters for run_of in range(FEWEST_NETWORKS, study.design.networks)]
+        for last in [*ends[::max(1, -(-len(ends) // STEPS))], study.design.runs]:
+            counts = run < last
+            if counts.any():
+                found += first_of(quantity, study, values[counts], run[counts], None, *(one[one < last] for one in others))
+        return found
     for count in [] if len(values) == 0 else counts_shown(len(values)) if study.design.kind in EXTENSIBLE else [len(values)]:
         before = others if count == len(values) else [one[one < run[count]] for one in others]
         found += first_of(quantity, study, values[:count], run[:count], None if coarse is None else coarse[:count], *before)
@@ -321,6 +331,17 @@ def sets_of(study, run):
     return np.unique(run % study.design.parameters)
 
 
+def with_parts(of_shares):
+    """Shares of the variance (input, measure, ...) in the order for a reader, each with whether it is a part of that of all parameters:
+    these parts follow it."""
+    main = [row for row in of_shares if row[1] != CORRELATION]
+    names = [row[0] for row in main]
+    if ALL_PARAMETERS not in names:
+        return [(row, False) for row in main]
+    last = names.index(ALL_PARAMETERS) + 2  # after it comes the interaction, and then the parts
+    return [*((row, False) for row in main[:last - 1]), *((row, True) for row in main[last:]), (main[last - 1], False)]
+
+
 def linear_parts(effects, inputs):
     """Of effects that depend on inputs [effect, input]: the part of their variance that each input explains linearly, and the rest. They
     add up to 1. Inputs are independent, so the part of each is in proportion to its squared standardized regression coefficient; all
@@ -367,7 +388,7 @@ def crossed_shares(study, rows, given, at):
     random = np.random.Generator(np.random.Philox(study.design.seed))
     drawn = (shares(*(random.integers(0, count, count) for count in table.shape)) for _ in range(1000))
     low, high = np.quantile([one for one in drawn if one is not None], [(1 - CONFIDENCE) / 2, (1 + CONFIDENCE) / 2], axis=0)
-    names = [NETWORK, "all parameters", f"{NETWORK} with parameters"]
+    names = [NETWORK, ALL_PARAMETERS, f"{NETWORK} with parameters"]
     if divided:
         names += [study.parameters[column].name for column in numeric] + [NOT_LINEAR]
     return [(name, "share of variance", float(share), float(of_low), float(of_high))
@@ -486,6 +507,17 @@ def incomplete_words(study, rows):
     return lines
 
 
+def reduced_words(study):
+    """A warning of displacements that are those of runs with reduced strengths."""
+    options = [*study.demsolve_options, *study.design.fine_options, *study.design.coarse_options]
+    factors = [options[place + 1] for place, one in enumerate(options[:-1]) if one == "--strength-factor"] + \
+        [one.partition("=")[2] for one in options if one.startswith("--strength-factor=")]
+    if not factors or all(one.what != "displacement" for one in study.quantities):
+        return []
+    return [f"warning: all strengths are divided by {', '.join(dict.fromkeys(factors))} (--strength-factor), so the displacements are not "
+            "those of the rock; collect them in a study without this option"]
+
+
 def warning_words(rows):
     """The warnings of the programs, with the number of runs that have each; numbers in a warning are those of the first such run."""
     texts, count = {}, collections.Counter()
@@ -497,7 +529,9 @@ def warning_words(rows):
 
 
 def with_unit(name, quantity):
-    """The name of a statistic, where it has a limit with the unit of this."""
+    """The name of a statistic, where it has a limit with the unit of this; that of a failure says what it is the probability of."""
+    if quantity.what == "failed" and name == "probability":
+        return "probability of no equilibrium"
     return name if quantity.unit == "1" else re.sub(r"^(probability (?:above|below) [^ ,]+)", rf"\1 {quantity.unit}", name)
 
 
@@ -521,10 +555,13 @@ def summary(study, rows, why, of_each, of_histories, of_chance=None):
                              *([with_unit(name, quantity), str(n), *map(number_text, numbers)] for name, n, *numbers in found["statistics"])])
         if of_shares:
             lines += in_columns([["", "value", "from", "to"],
-                                 *([f"{measure}, {name}", *map(number_text, numbers)] for name, measure, *numbers in of_shares)])
+                                 *([f"  of these, {name}" if is_part else f"{measure}, {name}", *map(number_text, numbers)]
+                                   for (name, measure, *numbers), is_part in with_parts(of_shares)),
+                                 *([f"{measure}, {name}", *map(number_text, numbers)]
+                                   for name, measure, *numbers in of_shares if measure == CORRELATION)])
     lines += ["", f"from, to: {CONFIDENCE:.0%} confidence interval; empty where the runs are too few or the design has none"]
     lines += [""] * bool(of_histories) + of_histories
-    notes = too_large + warning_words(rows)
+    notes = too_large + reduced_words(study) + warning_words(rows)
     if not study.design.directions:
         notes = incomplete_words(study, rows) + notes + missing_words(study, rows)
     return "\n".join(lines + [""] * bool(notes) + notes) + "\n"
@@ -554,13 +591,13 @@ def write(study, rows, given, why, estimates, of_histories, out):
             found.append((quantity, {"at": at, "statistics": of, "beyond": len(beyond), "values": len(values)}, shares(study, rows, given, at)))
     files.write_text(out / "answers.csv", files.csv_text(
         ["quantity", "unit", "statistic", "runs", "value", "low", "high"],
-        [(one.name, one.unit, *row) for one, of, _ in found for row in of["statistics"]]))
+        [(one.label(), one.unit, *row) for one, of, _ in found for row in of["statistics"]]))
     files.write_text(out / "convergence.csv", files.csv_text(
         ["quantity", "unit", "statistic", "runs", "value", "low", "high"],
-        [(one.name, one.unit, *row) for one, of, _ in found if not by_direction for row in convergence(study, rows, of["at"])]))
+        [(one.label(), one.unit, *row) for one, of, _ in found if not by_direction for row in convergence(study, rows, of["at"])]))
     files.write_text(out / "shares.csv", files.csv_text(
         ["quantity", "input", "measure", "value", "low", "high"],
-        [(one.name, *row) for one, _, of_shares in found for row in of_shares]))
+        [(one.label(), *row) for one, _, of_shares in found for row in of_shares]))
     files.write_text(out / "summary.txt", summary(study, rows, why, found, of_histories, chance_correlation(study, rows, given)))
     return found
 

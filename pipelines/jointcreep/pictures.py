@@ -45,8 +45,8 @@ def distribution(quantity, study, values, beyond=0):
     return plot
 
 
-def convergence(quantity, rows, stop, counted):
-    """Statistics over the number of runs, each with its interval."""
+def convergence(quantity, rows, stop, counted, order=""):
+    """Statistics over the number of runs, each with its interval. order: words on the order of the runs."""
     names = list(dict.fromkeys(name for name, *_ in rows))
     plot, panels = figure.plt.subplots(len(names), 1, figsize=(figure.ONE_COLUMN, 0.6 + 1.7 * len(names)), squeeze=False, sharex=True)
     for axes, name in zip(panels[:, 0], names):
@@ -74,7 +74,7 @@ def convergence(quantity, rows, stop, counted):
         if axes is panels[0, 0]:
             axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncol=3)
     of_what = "" if quantity.what == "failed" else " with a value" + " (or no equilibrium)" * any("no equilibrium" in name for name in names)
-    panels[-1, 0].set_xlabel(f"number of {counted}{of_what}")
+    panels[-1, 0].set_xlabel("\n".join(textwrap.wrap(f"number of {counted}{of_what}{order}", 44)))
     return plot
 
 
@@ -83,7 +83,7 @@ def parameters(quantity, study, values, run, given, of_shares):
     numeric = [column for column, one in enumerate(study.parameters) if not any(isinstance(value, str) for value in one.values)]
     numeric = numeric[:MOST_PANELS]
     correlations = [one for one in of_shares if one[1] == answers.CORRELATION]
-    kinds = [kind for kind in ([one for one in of_shares if one[1] != answers.CORRELATION], correlations) if kind]
+    kinds = [kind for kind in (answers.with_parts(of_shares), [(one, False) for one in correlations]) if kind]
     count = len(numeric) + len(kinds)
     columns = min(3, count)
     lines = -(-count // columns)
@@ -114,14 +114,20 @@ def share_in_classes(axes, of_runs, failed):
 
 
 def bars(axes, rows):
-    """Shares of the variance, indices or correlations (input, measure, value, low, high) as bars with their intervals."""
-    for place, (_, measure, value, low, high) in enumerate(rows):
-        axes.barh(place, value, color=figure.COLORS[0 if "total" not in measure else 4], height=0.6)
+    """Shares of the variance, indices or correlations, with their intervals, as bars. rows: (input, measure, value, low, high), and whether
+    this is a part of the bar above."""
+    parts = [is_part for _, is_part in rows]
+    rows = [row for row, _ in rows]
+    for place, ((_, measure, value, low, high), is_part) in enumerate(zip(rows, parts)):
+        axes.barh(place, value, color=figure.COLORS[0 if "total" not in measure and not is_part else 4], height=0.35 if is_part else 0.6)
         if low is not None:
             axes.plot([low, high], [place, place], color=figure.COLORS[1], linewidth=1.0, marker="|", markersize=4)
     measures = list(dict.fromkeys(measure for _, measure, *_ in rows))
     labels = [name if len(measures) == 1 else f"{name},\n{measure}" for name, measure, *_ in rows]
-    axes.set_yticks(range(len(rows)), ["\n".join(textwrap.wrap(label, 20)) for label in labels], fontsize=6)
+    labels = [f"of these: {label}" if is_part else label for label, is_part in zip(labels, parts)]
+    axes.set_yticks(range(len(rows)), ["\n".join(textwrap.wrap(label, 24)) for label in labels], fontsize=6)
+    for tick, is_part in zip(axes.get_yticklabels(), parts):
+        tick.set(color="0.35" if is_part else "k", style="italic" if is_part else "normal")
     middle, half = (len(rows) - 1) / 2, max(len(rows), FEWEST_BARS) / 2
     axes.set_ylim(middle + half, middle - half)
     axes.axvline(0, color="0.6", linewidth=0.6)
@@ -149,7 +155,8 @@ def write(study, rows, given, found, out):
             drawn["distribution"] = distribution(quantity, study, values, of.get("beyond", 0))
         over_runs = answers.convergence(study, rows, of["at"])
         if len({runs for name, runs, *_ in over_runs if name == over_runs[0][0]}) > 1:
-            drawn["convergence"] = convergence(quantity, over_runs, study.stop, study.design.counted())
+            order = ", network by network" * (study.design.kind == "networks x parameters")
+            drawn["convergence"] = convergence(quantity, over_runs, study.stop, study.design.counted(), order)
         if of_shares:
             drawn["parameters"] = parameters(quantity, study, values, run, given, of_shares)
         for name, picture in drawn.items():

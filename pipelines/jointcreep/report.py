@@ -361,7 +361,7 @@ def of_study(out, programs, folder):
                  "design has none.</p>")
     pictures = plan.parsed((out / "pictures.json").read_bytes(), out / "pictures.json")
     for quantity in study.quantities:
-        of = [row for row in found_answers if row["quantity"] == quantity.name]
+        of = [row for row in found_answers if row["quantity"] == quantity.label()]
         parts.append(f"<h3>{escaped(quantity.title())}</h3>")
         if not of:
             parts.append("<p>No run has this value.</p>")
@@ -369,7 +369,7 @@ def of_study(out, programs, folder):
         parts.append(table(["", study.design.counted(), "value", "from", "to"],
                            [(answers.with_unit(row["statistic"], quantity), row["runs"], row["value"], row["low"], row["high"]) for row in of]))
         of_shares = [(row["input"], row["measure"], row["value"], row["low"], row["high"]) for row in shares
-                     if row["quantity"] == quantity.name]
+                     if row["quantity"] == quantity.label()]
         if of_shares:
             parts.append(table(["what it depends on", "", "value", "from", "to"], of_shares))
         for name in pictures.get(quantity.name, []):

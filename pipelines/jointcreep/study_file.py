@@ -73,11 +73,13 @@ class Quantity:
     below: list
     place: str
 
+    def label(self):
+        """Its name in tables; of a factor of safety also its end."""
+        return f"{self.name}, {ENDS[0]}" if self.statistic == ENDS[0] else self.name
+
     def title(self):
-        """Name and unit; of a factor of safety also its end."""
-        if self.statistic == ENDS[0]:
-            return f"{self.name}, {ENDS[0]}"
-        return self.name if self.unit == "1" else f"{self.name} ({self.unit})"
+        """Label and unit."""
+        return self.label() if self.unit == "1" else f"{self.label()} ({self.unit})"
 
 
 @dataclasses.dataclass

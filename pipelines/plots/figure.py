@@ -10,6 +10,7 @@ import datetime
 import os
 import re
 import sys
+import textwrap
 import tomllib
 from pathlib import Path
 
@@ -196,12 +197,26 @@ def day_of(file, time):
     return f"day {time:.5g}"
 
 
+def wrapped(text, width):
+    """Lines of a text, without a break inside of a date as day_of() has it."""
+    kept = re.sub(r"\b(\d{1,2}) ([A-Z][a-z]+) (\d{4})\b|\b(day) (\d)", lambda found: found[0].replace(" ", "\u00a0"), text)
+    return [line.replace("\u00a0", " ") for line in textwrap.wrap(kept, width)]
+
+
 def ending_of(file):
     """What a title says of a run that found no equilibrium; nothing of others."""
     if "/failure" not in file:
         return ""
     stage, day = texts(file, "/failure/stage")[0], day_of(file, array(file, "/failure/time")[0])
     return f'stage "{stage}" found no equilibrium on {day}' if stage else f"no equilibrium on {day}"
+
+
+def creep_of(file):
+    """"with creep" or "without creep" of a run whose scene has creep; nothing of others."""
+    options = texts(file, "/provenance/options") if "/provenance/options" in file else [""]
+    if "creep" not in scene_of(file):
+        return ""
+    return "without creep" if "--no-creep" in options[-1].split() else "with creep"
 
 
 def strength_factor_of(file):
@@ -328,10 +343,23 @@ def legend_below(axes, *groups):
                 borderaxespad=0)
 
 
+CLOSE = 0.045  # part of the axes' width that names of stages need, so that they do not overlap
+
+
 def mark_stages(axes, places, names, with_names=True):
-    """Lines across the axes where stages are, and their names over the axes."""
-    for place, name in zip(places, names):
+    """Lines across the axes where stages are, and their names over the axes. Stages that are too close for a name each share one."""
+    low, high = axes.get_xlim()
+    groups = []
+    for place, name in sorted(zip(places, names), key=lambda one: one[0]):
         axes.axvline(place, color="0.6", linewidth=0.6, zorder=0)
+        if groups and place - groups[-1][-1][0] < CLOSE * (high - low) and place - groups[-1][0][0] < 2 * CLOSE * (high - low):
+            groups[-1].append((place, name))
+        else:
+            groups.append([(place, name)])
+    for group in groups:
+        place, name = group[0]
+        if len(group) > 1:
+            name = ", ".join(one for _, one in group) if len(group) < 4 else f"{name} to {group[-1][1]} ({len(group)} stages)"
         if with_names:
             axes.annotate(name, (place, 1.01), xycoords=("data", "axes fraction"), rotation=25, ha="left",
                           va="bottom", rotation_mode="anchor", fontsize=6.5)

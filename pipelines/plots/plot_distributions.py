@@ -87,7 +87,23 @@ def draw_law(axes, law, values, weights, what, color):
                   textcoords="offset points", ha="right", va="top", fontsize=7)
 
 
-def draw_areas(axes, area):
+def jointed(file):
+    """Which blocks are those between joints: not those that have parts of the border of a region of joint sets (region_m), which belong to
+    the rock without joints around it; all, if the sets have no regions or nothing else is left."""
+    regions = {tuple(map(tuple, one["region_m"])) for one in figure.scene_of(file).get("joint_set", []) if "region_m" in one}
+    if not regions or any("region_m" not in one for one in figure.scene_of(file).get("joint_set", [])):
+        return np.ones(len(figure.array(file, "/blocks/area")), bool)
+    first, corner = figure.array(file, "/blocks/first_ring"), figure.array(file, "/rings/first_corner")
+    position, vertex = figure.array(file, "/vertices/position"), figure.array(file, "/rings/vertex")
+    paths = [matplotlib.path.Path(corners) for corners in regions]
+    small = 1e-6 * np.max(np.ptp(position, axis=0))
+    of_vertex = np.any([path.contains_points(position, radius=small) | path.contains_points(position, radius=-small) for path in paths], axis=0)
+    inside = np.array([of_vertex[vertex[corner[begin]:corner[end]]].all() for begin, end in zip(first[:-1], first[1:])])
+    return inside if inside.any() else ~inside
+
+
+def draw_areas(axes, area, left_out):
+    """left_out: area of rock without joints around the sets, which is not in the histogram [m2]."""
     order = np.sort(area)
     low = order[np.searchsorted(np.cumsum(order), 0.001 * order.sum())]
     bins = np.geomspace(low, order[-1] * 1.0001, 31) if order[-1] > low else np.array([low / 2, low * 2])
@@ -95,7 +111,8 @@ def draw_areas(axes, area):
     look = {"color": figure.COLORS[1], "linewidth": 1.2, "histtype": "step"}
     axes.hist(area, bins, weights=100 * area / area.sum(), **look)
     axes.set_xscale("log")
-    axes.set_xlabel("block area (m²)")
+    without = f"; without {left_out:.0f} m² of blocks outside of region_m" if left_out > 0 else ""
+    axes.set_xlabel(f"block area (m²){without}")
     axes.set_ylabel("share of a class (%)")
     axes.legend(handles=[matplotlib.patches.Patch(label=f"of the {len(area)} blocks", **BARS),
                          matplotlib.lines.Line2D([], [], color=look["color"], linewidth=1.2, label="of their area")],
@@ -126,7 +143,8 @@ def draw(file):
             panels[-1].legend(handles=[matplotlib.patches.Patch(label="in the section", **BARS),
                                        matplotlib.lines.Line2D([], [], label="law of the scene", **LAW)],
                               loc="lower right", bbox_to_anchor=(1, 0.98), ncol=2)
-    draw_areas(plot.add_subplot(grid[count, :]), area)
+    chosen = jointed(file)
+    draw_areas(plot.add_subplot(grid[count, :]), area[chosen], area[~chosen].sum())
     return plot
 
 

@@ -9,6 +9,7 @@ Of a run that found no equilibrium, the last state is that before the stage that
 after it: the rock that was excavated, and the moving blocks, with arrows along their motion. The title says why the run ended.
 """
 
+import re
 import textwrap
 
 import matplotlib.colors
@@ -25,6 +26,7 @@ from suited import surroundings
 
 MOVING = "#dfaaa0"  # fill of moving blocks
 STUCK, SLIPPING, OPEN = 1, 2, 3  # /states/contact_status
+ROUND_A_FORCE = 0.25  # of the section's larger side, of the picture around an unbalanced force
 SLIPPED = 1e-3  # of the largest slip; below, a contact counts as one that has not slipped
 COMPONENTS = {
     "major": "larger principal stress",
@@ -165,8 +167,10 @@ def round_below(value):
 
 
 def add_key(axes, arrows, value, unit):
-    """How long an arrow, or a cross, of some size is: in the corner above the section."""
-    axes.quiverkey(arrows, 0.9, 0.965, value, f"{value:g} {unit}", labelpos="W", labelsep=0.06).text.set_path_effects(figure.HALO)
+    """How long an arrow, or a cross, of some size is: above the axes, under the title, where nothing else is."""
+    height = axes.figure.get_figheight() - 0.7  # of the axes, about [in]
+    axes.quiverkey(arrows, 0.93, 1 + 0.09 / height, value, f"{value:g} {unit}", labelpos="W", labelsep=0.06).text.set_path_effects(figure.HALO)
+    axes.has_key = True
 
 
 def principal(stress):
@@ -250,6 +254,12 @@ def contact_lines(file, section):
     return np.reshape(lines, (-1, 2, 2)), np.array(of_contact, int)
 
 
+def extensions(file):
+    """Which edges are joint edges without a part of a joint trace: rock bridges, and extensions of joints."""
+    kind, fraction = figure.array(file, "/edges/kind"), figure.array(file, "/edges/joint_fraction")
+    return (kind == 1) & (fraction == 0)
+
+
 def draw_contacts(file, state, section, axes):
     status = figure.array(file, "/states/contact_status")[state]
     opening, shear = np.abs(figure.array(file, "/states/relative_displacement")[state].T)  # since the in-situ state
@@ -262,7 +272,10 @@ def draw_contacts(file, state, section, axes):
     centre = figure.array(file, "/mesh/contact_centre")
     seen = np.all((low <= centre) & (centre <= high), axis=1) if section.window else np.full(len(status), True)
     entries = []
-    for chosen, label, look in (((status == STUCK) & ~slipped, "contacts sticking", {"color": "0.65", "linewidth": 0.5}),
+    extended = extensions(file)[figure.array(file, "/mesh/contact_edge")]  # of contacts
+    for chosen, label, look in (((status == STUCK) & ~slipped & ~extended, "contacts sticking", {"color": "0.65", "linewidth": 0.5}),
+                                ((status == STUCK) & ~slipped & extended, "sticking, in rock (no joint trace)",
+                                 {"color": "0.78", "linewidth": 0.5, "linestyle": (0, (2, 2))}),
                                 (slipped, "sticking, slipped earlier", {"color": "#87a9cf", "linewidth": 1.2})):
         axes.add_collection(LineCollection(lines[chosen[of_contact]], zorder=2, **look))
         if label == "contacts sticking" or np.any(chosen):
@@ -289,9 +302,14 @@ def draw_contacts(file, state, section, axes):
             entry.set(color="w", linewidth=0.45 * size, path_effects=[
                 matplotlib.patheffects.Stroke(linewidth=size, foreground=color), matplotlib.patheffects.Normal()])
         entries.append(entry)
-    if np.any((status > STUCK) & seen):
-        entries.append(matplotlib.lines.Line2D([], [], color="0.3", linewidth=thin,
-                                               label="thinnest: no displacement since the in-situ state"))
+    for code, color in ((SLIPPING, figure.COLORS[0]), (OPEN, figure.COLORS[1])):
+        if np.any((status == code) & seen):
+            entries.append(matplotlib.lines.Line2D([], [], color=color, linewidth=thin,
+                                                   label="thinnest: no displacement since the in-situ state"))
+            if code == OPEN:
+                entries[-1].set(color="w", linewidth=0.45 * thin, path_effects=[
+                    matplotlib.patheffects.Stroke(linewidth=thin, foreground=color), matplotlib.patheffects.Normal()])
+            break
     return entries + figure.draw_region_borders(figure.scene_of(file), axes)
 
 
@@ -351,13 +369,36 @@ def draw_failure(file, section, axes):
     return entries
 
 
+def largest_unbalanced(file):
+    """Place {x, y} of the largest unbalanced force of a run that ended without an answer, from the reason it gives; None if it gives none."""
+    reason = figure.texts(file, "/failure/reason")[0] if "/failure" in file else ""
+    found = re.search(r"largest unbalanced force is at \[(\S+), (\S+?)\] m", reason)
+    return np.array([float(found[1]), float(found[2])]) if found else None
+
+
+def draw_unbalanced(file, section, axes):
+    """Marks that place, if no block is known to move. Returns legend entries."""
+    place = largest_unbalanced(file)
+    if place is None or len(figure.array(file, "/failure/block")):
+        return []
+    look = {"marker": "o", "markersize": 11, "markerfacecolor": "none", "markeredgecolor": figure.COLORS[1], "markeredgewidth": 1.4,
+            "linestyle": "none", "label": "largest unbalanced force (no block is known to move)"}
+    axes.plot(*place, zorder=8, **look)
+    return [matplotlib.lines.Line2D([], [], **{**look, "markersize": 6})]
+
+
 def window_of_failure(file, section):
-    """The surroundings of the blocks that move in the end of a run without equilibrium, x0, y0, x1, y1 [m]. None if nothing moves, or
-    they are a large part of the section."""
+    """The surroundings of the blocks that move in the end of a run without equilibrium, x0, y0, x1, y1 [m]; where none moves, of the largest
+    unbalanced force. None if they are a large part of the section, or nothing is known."""
     block = figure.array(file, "/mesh/zone_block")[section.there]
     moving = np.isin(block, figure.array(file, "/failure/block")) if "/failure" in file else []
     if not np.any(moving):
-        return None
+        place, corners = largest_unbalanced(file), figure.array(file, "/mesh/gridpoint_position")
+        if place is None:
+            return None
+        low, high = corners.min(axis=0), corners.max(axis=0)
+        half = ROUND_A_FORCE / 2 * np.max(high - low)
+        return [*np.maximum(low, place - half), *np.minimum(high, place + half)]
     return surroundings(section.position[section.zones[moving]].reshape(-1, 2), section.position)
 
 
@@ -384,22 +425,31 @@ def draw(file, state="last", field="displacement", component="major", since_rese
     time, ending = figure.array(file, "/states/time"), figure.ending_of(file)
     is_end = bool(ending) and state == len(time) - 1
     title, stages = name_of(file, state), [name for name in figure.texts(file, "/states/event")[:state + 1] if name]
+    is_last = state == len(time) - 1
+    if is_last and not is_end:
+        title += " (end)" if figure.texts(file, "/states/event")[state] else f", end{', after ' + stages[-1] if stages else ''}"
     if is_end:
-        title = f"{figure.day_of(file, time[state])}, {'after ' + stages[-1] if stages else 'before the first stage'}"
+        day = figure.day_of(file, time[state])
+        title = f"{day}, {'after ' + stages[-1] if stages else 'before the first stage'}"
+        ending = ending.removesuffix(f" on {day}")  # which the title has already
     if ending:
         title += f"; {ending}"
+    if is_last and figure.creep_of(file):
+        title += f"; {figure.creep_of(file)}"
     if magnify:
         title += "; positions displaced" + (f" {magnify:g} times" if magnify != 1 else "")
     factor = figure.strength_factor_of(file)
     title = f"Strengths / {factor:.4g}: {title}" if factor != 1 else title
     plot.says_factor = True
     if is_end:
-        entries += draw_failure(file, section, axes)
+        entries += draw_failure(file, section, axes) + draw_unbalanced(file, section, axes)
         reason = figure.texts(file, "/failure/reason")[0].removeprefix("no equilibrium: ")
         title += f"\n{reason}"
-    lines = [part for line in title.splitlines() for part in textwrap.wrap(line, int(15 * plot.get_figwidth()))]
+    lines = [part for line in title.splitlines() for part in figure.wrapped(line, int(15 * plot.get_figwidth()))]
     plot.set_figheight(plot.get_figheight() + 0.13 * (len(lines) - 1))
-    axes.set_title("\n".join(lines), loc="left")
+    if getattr(axes, "has_key", False):
+        plot.set_figheight(plot.get_figheight() + 0.15)
+    axes.set_title("\n".join(lines), loc="left", pad=17 if getattr(axes, "has_key", False) else None)
     if entries:
         figure.legend_below(axes, entries)
     return plot
@@ -417,7 +467,8 @@ if __name__ == "__main__":
         (["--since-reset"], {"action": "store_true", "help": "displacements since the last stage that resets them"}),
         figure.WINDOW,
         (["--around-failure"], {"action": "store_true",
-                                "help": "draw the surroundings of the moving blocks of a run without equilibrium, if they are small"}),
+                                "help": "draw the surroundings of the moving blocks of a run without equilibrium, if they are small; "
+                                        "of the largest unbalanced force if none is known to move"}),
         (["--magnify"], {"type": float, "default": 0, "metavar": "TIMES",
                          "help": "draw the rock displaced so many times; default: 0"}),
         (["--range"], {"dest": "limits", "nargs": 2, "type": float, "metavar": ("LOW", "HIGH"),

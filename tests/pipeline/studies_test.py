@@ -660,6 +660,11 @@ values = [1, 2, 6]
         study.correlations = [("a", "b", 0.5)]
         self.assertEqual(len(answers.crossed_shares(study, rows, given, 0)), 3)
 
+    def test_parts_of_all_parameters_follow_it(self):
+        rows = [(name, "share of variance", 0.1, 0, 1) for name in ("network", answers.ALL_PARAMETERS, "network with parameters", "a", "b")]
+        self.assertEqual([(row[0], is_part) for row, is_part in answers.with_parts([*rows, ("a", answers.CORRELATION, 0.1, 0, 1)])],
+                         [("network", False), (answers.ALL_PARAMETERS, False), ("a", True), ("b", True), ("network with parameters", False)])
+
     def test_incomplete_networks(self):
         """All runs with a value count, the rank correlations are of the parameters' effects, and the summary says so."""
         networks, parameters, chance = 6, 12, np.random.default_rng(8)
@@ -1110,7 +1115,7 @@ class FactorsOfSafety(Studies):
         from jointcreep import pictures
         pictures.write(study, rows, given, found, out)
         with open(out / "answers.csv", encoding="utf-8") as file:
-            return {row["statistic"]: row for row in csv.DictReader(file) if row["quantity"] == "F"}, out
+            return {row["statistic"]: row for row in csv.DictReader(file) if row["quantity"] == "F, lower end"}, out
 
     def test_equal_brackets(self):
         """The scatter is only known to be less than the width of the brackets."""
