@@ -80,7 +80,7 @@ def draw(file, line=(), readings=False, anchor=False):
                 ax.plot(1e3 * moved[row, :, i], distance, label=label, **look(number, len(rows)))
             ax.axvline(0, color="0.6", linewidth=0.5, zorder=0)
             ax.xaxis.set_major_locator(matplotlib.ticker.MaxNLocator(5))
-            ax.set_xlabel(("across the line, + to the right of\nthe way to its last point (mm)", "along the line,\n+ toward its last point (mm)")[i])
+            ax.set_xlabel(("across the line, + to the right\nas seen toward its last point (mm)", "along the line,\n+ toward its last point (mm)")[i])
         pair[0].set_title(one["name"], loc="left")
         pair[0].set_ylabel("distance from the first end (m)")
         if one["to_m"][1] - one["from_m"][1] < -abs(one["to_m"][0] - one["from_m"][0]):  # as it goes down

@@ -263,7 +263,7 @@ class Plots(ChainTest):
         import matplotlib
         from jointcreep import plots
         drawn = plots.draw("line", result)
-        self.assertEqual(drawn.axes[0].get_xlabel(), "across the line (mm)")
+        self.assertTrue(drawn.axes[0].get_xlabel().startswith("across the line, + to the right"))
         self.assertEqual(drawn._suptitle.get_text(), "displacements since the in-situ equilibrium")
         drawn.canvas.draw()
         self.assertFalse(matplotlib.transforms.Bbox.intersection(*(axes.xaxis.label.get_window_extent() for axes in drawn.axes)))
@@ -494,6 +494,17 @@ class Plots(ChainTest):
         for window, whole in (((0, 0, 10, 10), [True, True, False, False, False]), ((4, 4, 5, 5), [True] * 5)):
             _, axes = figure.section_axes(None, window)
             self.assertEqual(plot_blocks.whole_blocks(squares, axes).tolist(), whole)
+
+    def test_names_of_close_stages_and_dates_in_titles(self):
+        """Stages within a small part of the axis share one name; a line of a title does not break inside a date."""
+        import figure
+        axes = figure.plt.figure().add_subplot()
+        axes.set_xlim(0, 3650)
+        figure.mark_stages(axes, [10, 60, 120, 2000], ["heading", "bench 1", "bench 2", "lining"])
+        self.assertEqual([text.get_text() for text in axes.texts], ["heading, bench 1, bench 2", "lining"])
+        for width in range(20, 40):
+            lines = figure.wrapped("stage found no equilibrium on 31 August 2002, after bench 3, day 548", width)
+            self.assertEqual((sum("31 August 2002" in line for line in lines), sum("day 548" in line for line in lines)), (1, 1))
 
     def test_many_stages_share_an_entry_of_the_legend(self):
         import figure
