@@ -77,7 +77,7 @@ Curve read_curve(const Arguments& arguments)
     const std::string& input = arguments.input();
     if (arguments.inputs().size() > 1)
         throw input_error(
-            "several files are given, and --measurements is not; wanted one curve, or networks with "
+            "several files are given, and --measurements is not; expected one curve, or networks with "
             "--measurements");
     const std::string text = text_of(input);
     if (text.starts_with("\x89HDF"))
@@ -305,7 +305,7 @@ void fit_curve(const Arguments& arguments)
     estimation::Errors errors = errors_in(arguments);
     if (errors.offset && !curve.readings.elastic_part)
         throw input_error(
-            "--offset of a curve is the elastic part's; wanted --elastic-mm with it, or no --offset");
+            "--offset of a curve is the elastic part's; expected --elastic-mm with it, or no --offset");
     for (double& step : errors.steps) {
         step -= curve.load;
         if (!(step > curve.readings.time.front() && step <= curve.readings.time.back()))

@@ -66,14 +66,15 @@ std::vector<double> steps_in(const std::string& text)
         double day = 0;
         char rest = 0;
         if (!(number >> day) || number >> rest || !(std::abs(day) <= 1e7) || text.ends_with(','))
-            throw input_error("--steps is \"" + text + "\"; wanted days separated by commas, as in 12,30.5");
+            throw input_error("--steps is \"" + text +
+                              "\"; expected days separated by commas, as in 12,30.5");
         steps.push_back(day * unit::day);
         if (days.eof())
             break;
     }
     std::sort(steps.begin(), steps.end());
     if (const auto twice = std::adjacent_find(steps.begin(), steps.end()); twice != steps.end())
-        throw input_error("--steps has day " + shown(*twice / unit::day) + " twice; wanted each once");
+        throw input_error("--steps has day " + shown(*twice / unit::day) + " twice; expected each once");
     return steps;
 }
 
@@ -84,7 +85,7 @@ estimation::Errors errors_in(const Arguments& arguments)
                               .robust = arguments.has("robust"),
                               .correlated = arguments.has("correlated-noise")};
     if (errors.robust && errors.correlated)
-        throw input_error("--robust and --correlated-noise do not go together; wanted one of them");
+        throw input_error("--robust and --correlated-noise do not go together; expected one of them");
     if (const auto steps = arguments.text("steps"))
         errors.steps = steps_in(*steps);
     return errors;

@@ -22,7 +22,7 @@ std::vector<double> steps_in(const std::string& text);
 
 // Why there is no fit where weights or correlation change with every repetition, and what to do.
 inline constexpr std::string_view not_settled =
-    "weights of readings, or their correlation, change with every repetition of the fit\nwanted no --robust or "
+    "weights of readings, or their correlation, change with every repetition of the fit\nexpected no --robust or "
     "--correlated-noise, fewer factors, or readings without those that cannot be right";
 
 // What a fit found, and how its series and readings are called: "A, y" and "A, y on day 12".

@@ -77,7 +77,7 @@ void set_bounds(back_analysis::Factor& factor, const std::string& option, const 
     const double low = numbers.empty() ? 0 : numbers.front(), high = numbers.empty() ? 0 : numbers.back();
     if (numbers.size() < 2 || colon != 0 || bounds >> rest || !(low < high) || low < 1e-6 || high > 1e6)
         throw input_error("--fit: the bounds of " + option + " are \"" + text +
-                          "\"; wanted two factors LOW:HIGH with 1e-6 <= LOW < HIGH <= 1e6, perhaps "
+                          "\"; expected two factors LOW:HIGH with 1e-6 <= LOW < HIGH <= 1e6, perhaps "
                           "LOW:START:HIGH");
     factor.low = low;
     factor.high = high;
@@ -128,7 +128,7 @@ Factors factors_in(const std::string& text)
         begin = end + 1;
         if (item.empty())
             throw input_error(trimmed(text).empty()
-                                  ? "--fit is empty; wanted one factor at least"
+                                  ? "--fit is empty; expected one factor at least"
                                   : "--fit: \"" + text + "\" has nothing before or after a comma");
         const std::size_t equals = item.find('=');
         const std::string option = trimmed(item.substr(0, equals));

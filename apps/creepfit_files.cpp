@@ -23,7 +23,7 @@ std::string text_of(const std::string& path)
     if (!text.view().starts_with("\x89HDF") && text.view().find("[section]") != std::string_view::npos)
         throw input_error(
             path +
-            ": this is a scene; wanted a table of readings (.csv). Run jointgen and strength-averaging "
+            ": this is a scene; expected a table of readings (.csv). Run jointgen and strength-averaging "
             "first, and give joints.h5 with --measurements READINGS.csv");
     return std::move(text).str();
 }

@@ -419,7 +419,7 @@ std::string why_not_converged(const Found& found, const Factors& factors)
                (found.without_answer.empty()
                     ? ""
                     : "\nruns without an answer: " + shown_without_answer(found, factors)) +
-               "\nwanted narrower bounds in --fit, or a larger --ensemble";
+               "\nexpected narrower bounds in --fit, or a larger --ensemble";
     std::vector<double> wanted;
     for (std::size_t i = 0; i < factors.size(); ++i)
         wanted.push_back(found.factors[i] * std::exp(minimum.left[static_cast<Eigen::Index>(i)]));
@@ -431,9 +431,9 @@ std::string why_not_converged(const Found& found, const Factors& factors)
     if (!found.without_answer.empty())
         why += "\nruns without an answer: " + shown_without_answer(found, factors);
     return why + (found.members > 0
-                      ? "\nwanted a larger --ensemble, narrower bounds in --fit, or fewer factors"
-                  : minimum.has_stalled ? "\nwanted other bounds in --fit, or fewer factors"
-                                        : "\nwanted more --runs");
+                      ? "\nexpected a larger --ensemble, narrower bounds in --fit, or fewer factors"
+                  : minimum.has_stalled ? "\nexpected other bounds in --fit, or fewer factors"
+                                        : "\nexpected more --runs");
 }
 
 void report(const Arguments& arguments, const Found& found, const Measurements& measurements,

@@ -31,13 +31,13 @@ namespace
 back_analysis::Settings settings_of(const Arguments& arguments)
 {
     if (!arguments.has("fit"))
-        throw input_error("--fit is not given; wanted the factors to find");
+        throw input_error("--fit is not given; expected the factors to find");
     const estimation::Errors errors = errors_in(arguments);
     if (arguments.has("since-first-reading") && (errors.offset || errors.robust || errors.correlated))
         throw input_error(std::string("--since-first-reading does not go with --") +
                           (errors.offset   ? "offset, which contains it"
-                           : errors.robust ? "robust; wanted --offset in its place"
-                                           : "correlated-noise; wanted --offset in its place"));
+                           : errors.robust ? "robust; expected --offset in its place"
+                                           : "correlated-noise; expected --offset in its place"));
     Factors factors = factors_in(*arguments.text("fit"));
     std::optional<estimation::EnsembleSearch> ensemble;
     if (const auto members = arguments.whole_number("ensemble", 4, 100000)) {
@@ -46,13 +46,14 @@ back_analysis::Settings settings_of(const Arguments& arguments)
                 throw input_error("--ensemble does not go with --" + std::string(option));
         const Eigen::Index least = estimation::least_members(static_cast<Eigen::Index>(factors.size()));
         if (static_cast<Eigen::Index>(*members) < least)
-            throw input_error("--ensemble is " + std::to_string(*members) + "; wanted at least " +
+            throw input_error("--ensemble is " + std::to_string(*members) + "; expected at least " +
                               std::to_string(least) + ": twice the number of factors and 2 more");
         for (const back_analysis::Factor& factor : factors)
             if (factor.start != usual_start(factor.low, factor.high))
-                throw input_error("--fit: " + option_of(factor) +
-                                  " has a start, and --ensemble starts from the middle of the bounds; wanted "
-                                  "LOW:HIGH");
+                throw input_error(
+                    "--fit: " + option_of(factor) +
+                    " has a start, and --ensemble starts from the middle of the bounds; expected "
+                    "LOW:HIGH");
         ensemble = {.members = static_cast<int>(*members)};
     }
     return {.factors = std::move(factors),
@@ -69,14 +70,14 @@ Measurements read_measurements(const std::string& path, const Scene& scene,
 {
     const std::string text = text_of(path);
     if (text.starts_with("\x89HDF"))
-        throw input_error(path + ": this is an HDF5 file; wanted a table of measurements (.csv)");
+        throw input_error(path + ": this is an HDF5 file; expected a table of measurements (.csv)");
     Measurements measurements = of_file(path, [&] { return scene::measurements_in_csv(text, scene); });
     if (measurements.size() <= settings.factors.size())
         throw input_error(path + ": " + std::to_string(measurements.size()) + " readings for " +
-                          std::to_string(settings.factors.size()) + " factors; wanted more readings");
+                          std::to_string(settings.factors.size()) + " factors; expected more readings");
     if (settings.ensemble && !measurements.front().deviation)
         throw input_error(path +
-                          ": no sigma_mm; wanted the standard deviation of each reading with --ensemble");
+                          ": no sigma_mm; expected the standard deviation of each reading with --ensemble");
     return measurements;
 }
 
@@ -142,7 +143,7 @@ void fit_networks(const Arguments& arguments, const std::string& measured,
         const std::string& its = section.file.provenance.scene;
         if (!found.empty() && its != text)
             throw input_error(input + ": its scene is not that of " + arguments.inputs().front() +
-                              "; wanted networks of one scene, as jointgen --realization makes them");
+                              "; expected networks of one scene, as jointgen --realization makes them");
         text = its;
         const Joints& joints = section.file.network.joints;
         if (const auto same = std::ranges::find_if(
@@ -150,7 +151,7 @@ void fit_networks(const Arguments& arguments, const std::string& measured,
             same != joints_before.end())
             throw input_error(input + ": the same network as " +
                               arguments.inputs()[static_cast<std::size_t>(same - joints_before.begin())] +
-                              "; wanted each network once");
+                              "; expected each network once");
         joints_before.push_back(joints);
         const Measurements measurements = read_measurements(measured, section.scene, settings);
         knows_deviations = measurements.front().deviation.has_value() && !settings.errors.robust &&

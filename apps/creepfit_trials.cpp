@@ -61,7 +61,7 @@ public:
     {
         const std::vector<std::string> words = split(text, ',');
         if (words.size() != 3 + n_factors)
-            throw input_error('"' + text + "\": wanted DEGREE,RUNS,CHECKS and bounds of each factor");
+            throw input_error('"' + text + "\": expected DEGREE,RUNS,CHECKS and bounds of each factor");
         for (std::size_t i = 0; i < n_factors; ++i) {
             const std::vector<std::string> bounds = split(words[3 + i], ':');
             low_.push_back(std::log(std::stod(bounds.at(0))));
@@ -303,7 +303,7 @@ void fit(const Trial& trial, std::deque<NetworkFits>& networks, back_analysis::S
 void fit_all(const std::vector<std::string>& arguments)
 {
     if (arguments.size() < 3)
-        throw input_error("wanted FACTORS RESPONSE joints.h5 ... < LIST");
+        throw input_error("expected FACTORS RESPONSE joints.h5 ... < LIST");
     const back_analysis::Settings settings{.factors = creepfit::factors_in(arguments[0])};
     std::deque<NetworkFits> networks;
     for (std::size_t k = 2; k < arguments.size(); ++k) {
@@ -332,7 +332,7 @@ void fit_all(const std::vector<std::string>& arguments)
     for (std::string line; std::getline(std::cin, line);) {
         std::vector<std::string> words = split(line, ' ');
         if (words.size() < 2)
-            throw input_error('"' + line + "\": wanted READINGS.csv NETWORKS and options");
+            throw input_error('"' + line + "\": expected READINGS.csv NETWORKS and options");
         Trial trial{words[0], {}};
         read_options({words.begin() + 2, words.end()}, trial);
         for (const std::string& number : split(words[1], ','))

@@ -129,7 +129,7 @@ std::optional<store::CheckpointFile> Files::kept_in(const std::string& path, con
     check_same_run(path, reduction, kept.provenance);
     if (kept.checkpoint.time > scene.end)
         throw input_error(path + ": /checkpoint/time is day " + shown(kept.checkpoint.time / unit::day) +
-                          "; wanted not after --until " + shown(scene.end / unit::day));
+                          "; expected not after --until " + shown(scene.end / unit::day));
     return kept;
 }
 
@@ -141,7 +141,7 @@ void Files::check_same_run(const std::string& path, const StrengthReduction& red
                            const std::vector<std::string>& of_here, const std::string& wanted) {
         if (of_kept != of_here)
             throw input_error(path + ": " + dataset + " is \"" + (of_kept.empty() ? "" : of_kept.back()) +
-                              "\"; wanted " + wanted + ". Delete the checkpoint to start again");
+                              "\"; expected " + wanted + ". Delete the checkpoint to start again");
     };
     check("/provenance/input_sha256", kept.input_sha256, here.input_sha256,
           "that of " + input_ + ", \"" + here.input_sha256.back() + '"');

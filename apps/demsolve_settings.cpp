@@ -240,7 +240,7 @@ std::string replace_settings(const Arguments& arguments, Scene& scene)
         for (const char* option : {"factor-of-safety", "checkpoint"})
             if (arguments.has(option))
                 throw input_error("--" + std::string(option) +
-                                  " does not go with increments chosen by error; wanted --increments N");
+                                  " does not go with increments chosen by error; expected --increments N");
     if (arguments.has("no-creep")) {
         scene.creep.reset();
         noted.add("no-creep");
@@ -298,11 +298,11 @@ StrengthReduction strength_reduction(const Arguments& arguments, const Scene& sc
                 ", which separates equilibrium from movement");
     if (scene.equilibrium.engine == EngineChoice::implicit)
         throw input_error("--factor-of-safety: the implicit engine cannot show that blocks are moving; "
-                          "wanted --engine auto or relaxation");
+                          "expected --engine auto or relaxation");
     if (scene.large_displacements)
         throw input_error(
             "--factor-of-safety: the scene has [large_displacements], where rock that fails reaches a new equilibrium; "
-            "wanted a scene without");
+            "expected a scene without");
     return {factor, demsolve::SafetySearch{width, runs_away, !arguments.has("no-mesh-estimate"),
                                            arguments.threads("runs-at-once")}};
 }

@@ -285,7 +285,7 @@ std::string what_is_done(const Which& which, const analysis::Progress& progress,
         const double ratio = progress.search->unbalanced_force_ratio;
         rest += is_brief ? ", ratio " + power_of_ten(ratio) + " of " + power_of_ten(progress.tolerance)
                          : ": " + std::to_string(progress.search->steps) + " steps, unbalanced force ratio " +
-                               in_digits("%.1e", ratio) + " (wanted " +
+                               in_digits("%.1e", ratio) + " (expected " +
                                in_digits("%.0e", progress.tolerance) + ')';
     }
     if (!is_brief)

@@ -40,7 +40,7 @@ struct Which {
     std::string brief; // "F 1.5 (1 to 2), "
 };
 
-// What a run does at the moment: "bench 2, day 200: 400 steps, unbalanced force ratio 3e-04 (wanted 1e-06)". On a terminal
+// What a run does at the moment: "bench 2, day 200: 400 steps, unbalanced force ratio 3e-04 (expected 1e-06)". On a terminal
 // "bench 2, day 200, ratio 3e-4 of 1e-6", with a shorter name of the stage where it is wider than `most` columns.
 std::string what_is_done(const Which& which, const analysis::Progress& progress, bool has_days,
                          std::size_t most);

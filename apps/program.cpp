@@ -349,7 +349,7 @@ int Arguments::threads(const std::string& option) const
         const std::string started = std::to_string(team.size() + 1);
         all.count_down();
         throw input_error("--" + option + " " + std::to_string(wanted) + ": only " + started +
-                          " could be started here (" + error.code().message() + "); wanted fewer");
+                          " could be started here (" + error.code().message() + "); expected fewer");
     } catch (...) {
         all.count_down();
         throw;

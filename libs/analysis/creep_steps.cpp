@@ -30,8 +30,8 @@ void check_number_of_steps(double from, double to, const CreepSettings& creep)
     if (creep.step && (to - from) / *creep.step > most)
         throw input_error("creep step of " + shown(*creep.step / unit::day) + " day: that makes " +
                           shown(std::ceil((to - from) / *creep.step)) + " steps from day " +
-                          shown(from / unit::day) + " to day " + shown(to / unit::day) + "; wanted at most " +
-                          shown(most));
+                          shown(from / unit::day) + " to day " + shown(to / unit::day) +
+                          "; expected at most " + shown(most));
 }
 
 // The published scheme is stable below a step length that depends on joints and rocks; beyond it results are wrong. A

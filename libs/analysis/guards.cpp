@@ -91,7 +91,7 @@ std::string broken_guard(double unbalanced_force_ratio, double energy_error, dou
 {
     if (!(unbalanced_force_ratio <= tolerance))
         return "the unbalanced force ratio of an equilibrium is " + rounded(unbalanced_force_ratio) +
-               ", wanted " + shown(tolerance);
+               ", expected " + shown(tolerance);
     if (!(energy_error <= most_energy_error))
         return "the energy balance of an equilibrium is off by " + rounded(energy_error) + " of its terms";
     return "";

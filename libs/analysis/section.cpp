@@ -22,10 +22,10 @@ void check_sensitivities(const Scene& scene, const Recording& recording)
 {
     if (scene.large_displacements)
         throw input_error(
-            "sensitivities are of small displacements; wanted a scene without [large_displacements]");
+            "sensitivities are of small displacements; expected a scene without [large_displacements]");
     if (scene.equilibrium.engine == EngineChoice::relaxation || recording.step_history_every > 0)
         throw input_error(
-            "sensitivities are found by the implicit engine; wanted an equilibrium.engine other "
+            "sensitivities are found by the implicit engine; expected an equilibrium.engine other "
             "than \"relaxation\", and no step history");
 }
 

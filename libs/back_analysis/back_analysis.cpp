@@ -102,7 +102,7 @@ Chosen chosen(const Scene& scene, const std::vector<scene::Measurement>& measure
             if (std::abs(measurement.displacement) > 1e-9)
                 refuse(scene, measurement,
                        "it is the first reading, from which measurements count, and " +
-                           shown(measurement.displacement) + " m; wanted 0");
+                           shown(measurement.displacement) + " m; expected 0");
             continue;
         }
         found.measurement.push_back(m);
@@ -212,7 +212,7 @@ public:
             Evaluation at = compared(found);
             // Before the first stage nothing moves, whatever the factors.
             if (is_first && !settings_.ensemble && at.jacobian.norm() == 0)
-                throw input_error("no factor changes any of the readings; wanted readings from the first "
+                throw input_error("no factor changes any of the readings; expected readings from the first "
                                   "stage on that depend on the factors");
             done_.push_back(
                 {logarithms, std::move(found.displacement), std::move(found.interpolation_error)});
@@ -411,7 +411,7 @@ Found fit(const Scene& scene, const Section& section, const std::vector<scene::M
         throw input_error(std::to_string(readings.measurement.size()) + " readings for " +
                           std::to_string(settings.factors.size()) + " factors and " +
                           std::to_string(instruments.unknowns()) +
-                          " unknown errors of instruments; wanted more readings, or fewer of both");
+                          " unknown errors of instruments; expected more readings, or fewer of both");
     const estimation::Bounds bounds{low, high};
     estimation::InstrumentFit fitted;
     std::optional<estimation::Prior> prior;

@@ -114,40 +114,40 @@ void check_boundaries(const Scene& scene, const Source& source)
         const Given given = source.in_list("boundary", i);
         if (!given.find("fix") && !given.find("joint") && !given.find("traction_MPa"))
             given.refuse("fix",
-                         "wanted fix = \"x\", \"y\", \"xy\" or \"normal\", or joint = a joint material, or "
+                         "expected fix = \"x\", \"y\", \"xy\" or \"normal\", or joint = a joint material, or "
                          "traction_MPa");
         if (given.find("joint") && (all[i].traction || all[i].displacement))
-            given.refuse("joint", "wanted no traction_MPa or displacement_mm beside joint");
+            given.refuse("joint", "expected no traction_MPa or displacement_mm beside joint");
         if (all[i].displacement && (!given.find("fix") || !given.find("load_history")))
-            given.refuse("displacement_mm", "wanted fix and load_history beside it");
+            given.refuse("displacement_mm", "expected fix and load_history beside it");
         if (all[i].displacement && all[i].fix_normal)
-            given.refuse("displacement_mm", "wanted fix = \"x\", \"y\" or \"xy\" beside it");
+            given.refuse("displacement_mm", "expected fix = \"x\", \"y\" or \"xy\" beside it");
         if (all[i].displacement && ((!all[i].fix_x && all[i].displacement->x() != 0) ||
                                     (!all[i].fix_y && all[i].displacement->y() != 0)))
-            given.refuse("displacement_mm", "wanted 0 in the direction that is not fixed");
+            given.refuse("displacement_mm", "expected 0 in the direction that is not fixed");
         if (all[i].traction &&
             ((all[i].fix_x && all[i].traction->x() != 0) || (all[i].fix_y && all[i].traction->y() != 0)))
-            given.refuse("traction_MPa", "wanted 0 in a direction that is fixed");
+            given.refuse("traction_MPa", "expected 0 in a direction that is fixed");
         if (all[i].traction && all[i].fix_normal && !is_along(*all[i].traction, all[i].to - all[i].from))
-            given.refuse("traction_MPa", "wanted a traction along the segment, whose normal is fixed");
+            given.refuse("traction_MPa", "expected a traction along the segment, whose normal is fixed");
         if (given.find("load_history") && !all[i].traction && !all[i].displacement)
-            given.refuse("load_history", "wanted traction_MPa or displacement_mm beside it");
+            given.refuse("load_history", "expected traction_MPa or displacement_mm beside it");
         if (given.find("fix") && given.find("joint"))
-            given.refuse("fix", "wanted either fix or joint, not both");
+            given.refuse("fix", "expected either fix or joint, not both");
         const double length = (all[i].to - all[i].from).norm();
         if (!(length > tolerance))
-            given.refuse("to_m", "wanted another point than from_m");
+            given.refuse("to_m", "expected another point than from_m");
         double on_sides = length_on_sides(scene.outline, all[i].from, all[i].to, tolerance);
         for (const Polygon& hole : scene.holes)
             on_sides += length_on_sides(hole, all[i].from, all[i].to, tolerance);
         if (on_sides < length - 2 * tolerance)
-            given.refuse("to_m", "wanted from_m and to_m on one straight piece of the section's outline");
+            given.refuse("to_m", "expected from_m and to_m on one straight piece of the section's outline");
         // Their common gridpoint would be moved off the rollers.
         for (std::size_t j = 0; j < all.size(); ++j)
             if (all[i].displacement && is_on_inclined_rollers(all[j]) &&
                 have_a_common_end(all[i], all[j], tolerance))
                 given.refuse("displacement_mm",
-                             "wanted no common point with the rollers (fix = \"normal\") of line " +
+                             "expected no common point with the rollers (fix = \"normal\") of line " +
                                  std::to_string(source.in_list("boundary", j).table.line));
         for (std::size_t j = 0; j < i; ++j)
             if (common_length(all[i].from, all[i].to, all[j].from, all[j].to, tolerance) > 2 * tolerance)

@@ -101,7 +101,7 @@ Confidence confidence_of(const Minimum& minimum, bool deviations_are_known)
     const auto degrees = static_cast<double>(found.readings - found.parameters);
     if (degrees < 1)
         throw input_error(std::to_string(found.readings) + " readings for " +
-                          std::to_string(found.parameters) + " parameters; wanted more readings");
+                          std::to_string(found.parameters) + " parameters; expected more readings");
 
     if (deviations_are_known && found.sum_of_squares > 0)
         found.p_value = statistics::chi_squared_above(found.sum_of_squares, degrees);

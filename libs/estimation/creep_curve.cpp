@@ -20,7 +20,7 @@ namespace
 constexpr double shortest_share = 0.05, longest_share = 100;
 
 constexpr const char* same_way =
-    " m; wanted both in one direction, as those of a joint under one load are (count displacements from "
+    " m; expected both in one direction, as those of a joint under one load are (count displacements from "
     "before the load, not from a reading after it)";
 
 double shortest_interval(const CreepCurve& curve)
@@ -38,7 +38,7 @@ void check(const CreepCurve& curve)
 {
     const std::size_t wanted = curve.elastic_part ? 3 : 4;
     if (curve.time.size() < wanted)
-        throw input_error(std::to_string(curve.time.size()) + " readings; wanted at least " +
+        throw input_error(std::to_string(curve.time.size()) + " readings; expected at least " +
                           std::to_string(wanted));
     if (!(curve.time.back() > 0))
         throw input_error("all readings are of the moment when the load changed");
@@ -331,7 +331,7 @@ CurveFit fit_curve(const CreepCurve& curve, const Errors& errors)
         curve.time.size() <= wanted)
         throw input_error(std::to_string(curve.time.size()) + " readings for " + std::to_string(wanted) +
                           " unknowns, " + std::to_string(instruments.unknowns()) +
-                          " of them errors of instruments; wanted more readings");
+                          " of them errors of instruments; expected more readings");
     const auto [minimum, raw, is_settled] = best_fit(curve, u, instruments);
     const VectorXd& p = minimum.parameters;
     CurveFit fit;
@@ -358,9 +358,10 @@ ClosedEstimate closed_estimate(const CreepCurve& curve, double end)
 {
     check(curve);
     if (!(end > curve.time.front()) || end > curve.time.back())
-        throw input_error("creep is taken to be over on day " + shown(end / unit::day) +
-                          " after the load; wanted a time after the first reading and not after the last, " +
-                          shown(curve.time.back() / unit::day));
+        throw input_error(
+            "creep is taken to be over on day " + shown(end / unit::day) +
+            " after the load; expected a time after the first reading and not after the last, " +
+            shown(curve.time.back() / unit::day));
     ClosedEstimate found{};
     found.end = end;
     found.elastic_part = curve.elastic_part.value_or(curve.displacement.front());

@@ -49,7 +49,7 @@ Inversion invert(const Residuals& model, const Independent& independent, const P
     const Eigen::Index n = prior.mean.size(), least = least_members(n), members = search.members;
     if (members < least)
         throw input_error(std::to_string(members) + " members for " + std::to_string(n) +
-                          " parameters; wanted " + std::to_string(least) + " or more");
+                          " parameters; expected " + std::to_string(least) + " or more");
     const MatrixXd z = draws(n, members, search.seed);
     const MatrixXd information = prior.deviation.array().square().inverse().matrix().asDiagonal();
 
@@ -102,7 +102,7 @@ Inversion invert(const Residuals& model, const Independent& independent, const P
             }
         if (static_cast<Eigen::Index>(answered.size()) < least)
             return fail("only " + std::to_string(answered.size()) + " of " + std::to_string(members) +
-                        " members have an answer; wanted " + std::to_string(least) + " or more");
+                        " members have an answer; expected " + std::to_string(least) + " or more");
 
         // 2. Residuals as a linear function of the parameters.
         MatrixXd terms(static_cast<Eigen::Index>(answered.size()), n + 1);

@@ -153,7 +153,7 @@ struct BartonBandisOf {
                     return complaint;
                 if (value(parameters::friction_angle) >= steepest)
                     return Complaint{parameters::friction_angle,
-                                     "wanted less than 70 of a Barton-Bandis joint"};
+                                     "expected less than 70 of a Barton-Bandis joint"};
                 return {};
             }};
         return info;

@@ -50,7 +50,7 @@ void check_sensitivities(const Contacts& contacts, const Scene& /*scene*/)
         if (const LawInfo& info = laws()[law.index()]; !info.no_sensitivities.empty()) {
             const std::string joints = std::string(info.name) + " joints";
             throw input_error("no sensitivities of " + joints + ": " + std::string(info.no_sensitivities) +
-                              "; wanted a scene without " + joints);
+                              "; expected a scene without " + joints);
         }
 }
 

@@ -169,9 +169,9 @@ struct ContinuouslyYieldingOf {
                     return complaint;
                 for (const Parameter& some : {shear_stiffness, parameters::friction_angle})
                     if (value(some) == 0)
-                        return Complaint{some, "wanted more than 0 of a continuously yielding joint"};
+                        return Complaint{some, "expected more than 0 of a continuously yielding joint"};
                 if (value(initial_friction_angle) < value(parameters::friction_angle))
-                    return Complaint{initial_friction_angle, "wanted at least friction_angle_deg"};
+                    return Complaint{initial_friction_angle, "expected at least friction_angle_deg"};
                 return {};
             }};
         return info;

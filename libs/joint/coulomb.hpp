@@ -201,9 +201,9 @@ struct CoulombOf {
     {
         using namespace parameters;
         if (value(dilation_angle) > value(friction_angle))
-            return Complaint{dilation_angle, "wanted at most friction_angle_deg"};
+            return Complaint{dilation_angle, "expected at most friction_angle_deg"};
         if (value(dilation_angle) > 0 && value(shear_stiffness) == 0)
-            return Complaint{dilation_angle, "wanted 0 of a smooth joint, which has no shear stiffness"};
+            return Complaint{dilation_angle, "expected 0 of a smooth joint, which has no shear stiffness"};
         return {};
     }
 

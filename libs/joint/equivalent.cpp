@@ -374,7 +374,7 @@ void refuse_bridges(const Network& network, std::size_t edge, const JointMateria
                           rounded(1 - persistence) + " of " + place_of(network.blocks, edge) +
                           ", and its joint material \"" + material.name + "\" is one of " +
                           std::string(law.name) +
-                          ", which has no average with rock; wanted a persistence of 1");
+                          ", which has no average with rock; expected a persistence of 1");
 }
 
 // Sums of strengths times lengths.

@@ -28,7 +28,7 @@ inline std::optional<Complaint> complaint_of_more_than_friction(std::string_view
     for (const Parameter& none :
          {parameters::cohesion, parameters::tensile_strength, dilation_angle, parameters::dilation_until})
         if (value(none) != 0)
-            return Complaint{none, "wanted 0 of a " + std::string(law) + " joint, which has none"};
+            return Complaint{none, "expected 0 of a " + std::string(law) + " joint, which has none"};
     return {};
 }
 

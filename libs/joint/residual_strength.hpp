@@ -58,14 +58,14 @@ struct ResidualStrength : Coulomb {
                 if (auto complaint = Coulomb::check(value))
                     return complaint;
                 if (value(parameters::residual_cohesion) > value(parameters::cohesion))
-                    return Complaint{parameters::residual_cohesion, "wanted at most cohesion_MPa"};
+                    return Complaint{parameters::residual_cohesion, "expected at most cohesion_MPa"};
                 if (value(residual_friction_angle) > value(friction_angle))
-                    return Complaint{residual_friction_angle, "wanted at most friction_angle_deg"};
+                    return Complaint{residual_friction_angle, "expected at most friction_angle_deg"};
                 if (value(residual_friction_angle) < value(dilation_angle))
-                    return Complaint{residual_friction_angle, "wanted at least dilation_angle_deg"};
+                    return Complaint{residual_friction_angle, "expected at least dilation_angle_deg"};
                 if (value(shear_stiffness) == 0)
                     return Complaint{residual_friction_angle,
-                                     "wanted none of a smooth joint, which has no shear strength"};
+                                     "expected none of a smooth joint, which has no shear strength"};
                 return {};
             }};
         return info;

@@ -123,13 +123,13 @@ void check_joint_materials(const Scene& scene, const Source& source)
     for (std::size_t i = 0; i < scene.joint_materials.size(); ++i) {
         const Given given = source.in_list("joint_material", i);
         if (given.find("kelvin_chain") && given.find("normal_kelvin_stiffness_MPa_per_m"))
-            given.refuse("kelvin_chain", "wanted either it, or the four keys of one Kelvin unit, not both");
+            given.refuse("kelvin_chain", "expected either it, or the four keys of one Kelvin unit, not both");
         const JointMaterial& material = scene.joint_materials[i];
         const LawInfo& law = laws()[static_cast<std::size_t>(material.law)];
         for (const LawInfo& other : laws())
             for (const std::string_view name : other.own)
                 if (material.own.contains(name) && std::ranges::count(law.own, name) == 0)
-                    given.refuse(name_of_key(name), "wanted keys of one joint law; those of \"" +
+                    given.refuse(name_of_key(name), "expected keys of one joint law; those of \"" +
                                                         std::string(law.name) + "\" are given, too");
         if (!law.creeps)
             for (const char* const key : {"kelvin_chain", "normal_kelvin_stiffness_MPa_per_m",

@@ -116,7 +116,7 @@ struct WearingDilationOf : CoulombOf<T> {
                                   .check = [](const ValueOf& value) -> std::optional<Complaint> {
                                       if (value(parameters::dilation_until) != 0)
                                           return Complaint{parameters::dilation_until,
-                                                           "wanted 0 of a joint whose dilation wears off"};
+                                                           "expected 0 of a joint whose dilation wears off"};
                                       return CoulombOf<T>::check(value);
                                   }};
         return info;

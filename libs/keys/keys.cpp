@@ -121,8 +121,8 @@ void Place::refuse(const KeyInfo& key, const TomlValue& value, const std::string
 {
     const bool has_unit = !key.unit.symbol.empty() && as_number(value);
     refuse(value.line, table + (table.empty() ? "" : " ") + key.name + " = " + shown(value) +
-                           (has_unit ? " " + std::string(key.unit.symbol) : "") + ": wanted " + key.wanted() +
-                           (more.empty() ? "" : "; " + more));
+                           (has_unit ? " " + std::string(key.unit.symbol) : "") + ": expected " +
+                           key.wanted() + (more.empty() ? "" : "; " + more));
 }
 
 double read_number(const KeyInfo& key, const TomlValue& value, const Place& place)
@@ -256,7 +256,7 @@ void check_keys(const TomlValue& value, const std::vector<const KeyInfo*>& known
 {
     const auto* const entries = std::get_if<TomlValue::Table>(&value.content);
     if (!entries)
-        place.refuse(value.line, place.table + " is " + shown(value) + ": wanted a table");
+        place.refuse(value.line, place.table + " is " + shown(value) + ": expected a table");
     std::vector<std::string> names;
     for (const KeyInfo* const key : known)
         names.push_back(key->name);
@@ -285,11 +285,11 @@ void check_present(const TomlValue& value, const std::vector<const KeyInfo*>& kn
         const TomlValue* const found = value.find(key.name);
         if (found && !key.in_place_of.empty() && given.contains(key.in_place_of))
             place.refuse(found->line, place.table + " " + key.name + " = " + shown(*found) +
-                                          ": wanted either " + key.name + " or the " + key.in_place_of +
+                                          ": expected either " + key.name + " or the " + key.in_place_of +
                                           " keys (" + given[key.in_place_of] + ", ...), not both");
         if (found || misspelt.contains(key.name))
             return;
-        const auto missing = place.table + " has no " + key.name + ": wanted " + key.wanted();
+        const auto missing = place.table + " has no " + key.name + ": expected " + key.wanted();
         if (key.need == Need::required)
             place.refuse(value.line, missing);
         if (key.need == Need::together && given.contains(key.group) && !elsewhere.contains(key.group))
@@ -308,14 +308,14 @@ const TomlValue::List& list_of(const TableInfo& info, const TomlValue& root, con
     if (!value && info.need == Need::optional)
         return none;
     if (!value)
-        place.refuse(1, the_whole + " has no " + info.shown() + ": wanted one at least");
+        place.refuse(1, the_whole + " has no " + info.shown() + ": expected one at least");
     const auto* const list = std::get_if<TomlValue::List>(&value->content);
     if (!list || list->empty())
         place.refuse(value->line,
-                     info.name + " is " + shown(*value) + ": wanted tables under " + info.shown());
+                     info.name + " is " + shown(*value) + ": expected tables under " + info.shown());
     if (list->size() > most_tables)
         place.refuse(value->line, the_whole + " has " + std::to_string(list->size()) + " " + info.shown() +
-                                      ": wanted at most " + std::to_string(most_tables));
+                                      ": expected at most " + std::to_string(most_tables));
     return *list;
 }
 

@@ -95,7 +95,7 @@ struct Place {
     std::string table; // as the user writes it: "[section]", "[[rock]]", "[[joint_set]] spacing"
 
     [[noreturn]] void refuse(std::int64_t line, const std::string& what) const;
-    // "[[rock]] poissons_ratio = 0.7: wanted a number in [0, 0.5)", with more words behind the key's own.
+    // "[[rock]] poissons_ratio = 0.7: expected a number in [0, 0.5)", with more words behind the key's own.
     [[noreturn]] void refuse(const KeyInfo& key, const TomlValue& value, const std::string& more = "") const;
 };
 

@@ -81,14 +81,14 @@ void check_reference(const Given& given, const std::string& key, const std::stri
     const auto meant = nearest(name, {known.begin(), known.end()});
     const TomlValue* const value = given.find(key);
     const bool is_in_list = value && std::holds_alternative<TomlValue::List>(value->content);
-    given.report(key, (is_in_list ? "has \"" + name + "\"; " : "") + "wanted the name of a " + what + ": " +
+    given.report(key, (is_in_list ? "has \"" + name + "\"; " : "") + "expected the name of a " + what + ": " +
                           all + (meant.empty() ? "" : "; did you mean \"" + meant + "\"?"));
 }
 
 void check_polygon(const Given& given, const std::string& key, const Polygon& polygon)
 {
     if (const auto fault = polygon_fault(polygon); !fault.empty())
-        given.refuse(key, fault + "; wanted a simple polygon of at least 3 corners, not closed");
+        given.refuse(key, fault + "; expected a simple polygon of at least 3 corners, not closed");
 }
 
 } // namespace jointcreep::keys

@@ -102,10 +102,10 @@ private:
     {
         const auto length = utf8_length(rest_);
         if (!length)
-            refuse(name_, line_, "a byte that is not UTF-8; wanted UTF-8 text");
+            refuse(name_, line_, "a byte that is not UTF-8; expected UTF-8 text");
         const char c = rest_.front();
         if (!at_line_end() && ((c >= 0 && c < 0x20 && c != '\t') || c == 0x7f))
-            refuse(name_, line_, "a control character (code " + std::to_string(c) + "); wanted text");
+            refuse(name_, line_, "a control character (code " + std::to_string(c) + "); expected text");
         if (*length > 1 && in_ == In::plain)
             refuse(name_, line_,
                    "the character " + std::string(rest_.substr(0, *length)) +
@@ -185,7 +185,7 @@ private:
         auto inside = rest_.substr(rest_.starts_with("[[") ? 2 : 1);
         inside.remove_prefix(std::min(inside.find_first_not_of(" \t"), inside.size()));
         if (inside.empty() || !is_name(inside.front()))
-            refuse(name_, line_, "a table without a name; wanted [name] or [[name]]");
+            refuse(name_, line_, "a table without a name; expected [name] or [[name]]");
     }
 
     std::size_t pass_string(char quote)

@@ -527,8 +527,8 @@ void Dynamics::check_rounding(double of_springs, double rounding) const
 {
     if (now_.largest_mean <= of_springs || rounding <= most_rounding * now_.largest_mean)
         return;
-    const std::string where =
-        "; the stiffest gridpoint is at " + shown(assembly_.position[now_.stiffest_gridpoint]) + ": wanted ";
+    const std::string where = "; the stiffest gridpoint is at " +
+                              shown(assembly_.position[now_.stiffest_gridpoint]) + ": expected ";
     if (of_springs > most_rounding * now_.largest_mean)
         throw equilibrium_error(
             "dynamic analysis: forces by rounding errors of positions are not small compared with the mean "

@@ -32,7 +32,7 @@ std::string_view without_byte_order_mark(std::string_view text)
     const bool is_marked = text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff");
     const bool has_zero = text.size() > 1 && (text[0] == '\0') != (text[1] == '\0'); // ASCII in UTF-16
     if (is_marked || has_zero)
-        throw input_error("the text is UTF-16; wanted UTF-8. Save the file as UTF-8");
+        throw input_error("the text is UTF-16; expected UTF-8. Save the file as UTF-8");
     if (text.starts_with("\xef\xbb\xbf"))
         text.remove_prefix(3);
     return text;

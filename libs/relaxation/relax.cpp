@@ -540,10 +540,11 @@ public:
     std::string reason(const Relaxation& relaxation) const
     {
         std::string text = "after " + std::to_string(report.steps) + " steps the unbalanced force ratio is " +
-                           rounded(report.unbalanced_force_ratio) + ", wanted " + shown(settings_.tolerance);
+                           rounded(report.unbalanced_force_ratio) + ", expected " +
+                           shown(settings_.tolerance);
         if (report.remaining_displacement > 0)
             text += ", and by estimate " + shown_length(report.remaining_displacement) +
-                    " of displacement remain, wanted " +
+                    " of displacement remain, expected " +
                     shown_length(enough(settings_.tolerance) * relaxation.reference_displacement());
         if (unsupported_.displacement > 0)
             text += "; contacts do not carry the weight and the loads of the rock at " +

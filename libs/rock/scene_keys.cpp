@@ -151,14 +151,14 @@ void check_rocks(const Scene& scene, const Source& source)
             source.in_list("rock", i).refuse("law", "it needs cohesion_MPa, friction_angle_deg and "
                                                     "tensile_strength_MPa beside it");
         if (rock.law == RockLaw::mohr_coulomb && (rock.kelvin || rock.maxwell_viscosity))
-            source.in_list("rock", i).refuse("law", "wanted \"elastic\" of rock that creeps");
+            source.in_list("rock", i).refuse("law", "expected \"elastic\" of rock that creeps");
         if (rock.dilation_angle > 0 && !rock.strength)
             source.in_list("rock", i).refuse("dilation_angle_deg",
                                              "it needs cohesion_MPa, friction_angle_deg and "
                                              "tensile_strength_MPa beside it");
         if (rock.dilation_angle > 0 && rock.dilation_angle > rock.strength->friction_angle)
             source.in_list("rock", i).refuse("dilation_angle_deg",
-                                             "wanted at most friction_angle_deg, beside it");
+                                             "expected at most friction_angle_deg, beside it");
     }
 }
 
@@ -198,7 +198,7 @@ void check_below_ground(const Scene& scene, const Given& given)
     if (highest > tolerance)
         given.refuse("ground_m", "the section's outline is " + shown(highest) +
                                      " m above it at x = " + shown(at) +
-                                     " m; wanted the ground as it is before any excavation, "
+                                     " m; expected the ground as it is before any excavation, "
                                      "nowhere below the section's top");
 }
 
@@ -207,14 +207,14 @@ void check_in_situ_stress(const Scene& scene, const Source& source)
     const Given given = source.once("in_situ_stress");
     const auto& ground = scene.in_situ_stress.ground;
     if (given.find("ground_m") && given.find("elevation_m"))
-        given.refuse("ground_m", "wanted either it or elevation_m, not both");
+        given.refuse("ground_m", "expected either it or elevation_m, not both");
     if (!given.find("ground_m") && !given.find("elevation_m"))
-        given.refuse("elevation_m", "wanted it, or ground_m");
+        given.refuse("elevation_m", "expected it, or ground_m");
     if (!given.find("profile") && !given.find("compression_xx_MPa") && !given.find("horizontal_stress_ratio"))
-        given.refuse("compression_xx_MPa", "wanted the keys of a linear law (compression_xx_MPa, ...), a "
+        given.refuse("compression_xx_MPa", "expected the keys of a linear law (compression_xx_MPa, ...), a "
                                            "horizontal_stress_ratio, or a profile");
     if (given.find("profile") && given.find("horizontal_stress_ratio"))
-        given.refuse("horizontal_stress_ratio", "wanted either it or profile, not both");
+        given.refuse("horizontal_stress_ratio", "expected either it or profile, not both");
     if (ground.empty())
         return;
     const double tolerance = outline_tolerance(scene.outline);
@@ -222,7 +222,7 @@ void check_in_situ_stress(const Scene& scene, const Source& source)
         std::minmax_element(scene.outline.begin(), scene.outline.end(),
                             [](const auto& one, const auto& other) { return one.x() < other.x(); });
     if (ground.front().x() > left->x() + tolerance || ground.back().x() < right->x() - tolerance)
-        given.refuse("ground_m", "wanted a line across the whole section, from x = " + shown(left->x()) +
+        given.refuse("ground_m", "expected a line across the whole section, from x = " + shown(left->x()) +
                                      " to " + shown(right->x()) + " m");
     check_below_ground(scene, given);
 }

@@ -44,7 +44,7 @@ void check_sensitivities(const Zones& /*zones*/, const Scene& scene)
     for (const Rock& rock : scene.rocks)
         if (rock.law != RockLaw::elastic)
             throw input_error(
-                "sensitivities are those of elastic rock; wanted law = \"elastic\" of [[rock]] \"" +
+                "sensitivities are those of elastic rock; expected law = \"elastic\" of [[rock]] \"" +
                 rock.name + "\"");
 }
 

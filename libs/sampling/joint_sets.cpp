@@ -300,7 +300,7 @@ void Sampler::add(const MappedSet& mapped, Index index)
     const std::string name = "mapped set \"" + mapped.name + "\"";
     for (const MappedTrace& trace : mapped.traces) {
         if (trace.id < 0 || trace.id > most_mapped_ids)
-            throw input_error(name + ": a trace has the id " + std::to_string(trace.id) + "; wanted 0 to " +
+            throw input_error(name + ": a trace has the id " + std::to_string(trace.id) + "; expected 0 to " +
                               std::to_string(most_mapped_ids));
         Index piece = 0;
         for (const Polygon& polyline : trace.polylines)

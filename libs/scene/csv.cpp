@@ -36,7 +36,7 @@ std::vector<std::string_view> fields_of(std::string_view line, std::size_t numbe
             field = line.substr(1, end - 1);
             line = trimmed(line.substr(end + 1));
             if (!line.empty() && line.front() != ',')
-                refuse_line(number, "wanted a comma after a field in double quotes");
+                refuse_line(number, "expected a comma after a field in double quotes");
         } else {
             field = trimmed(line.substr(0, line.find(',')));
             line.remove_prefix(std::min(line.size(), line.find(',')));
@@ -69,14 +69,14 @@ Csv::Csv(std::string_view text)
             head_ = line;
         } else {
             if (row.field.size() != columns_.size())
-                refuse_line(line, "has " + std::to_string(row.field.size()) + " fields; wanted " +
+                refuse_line(line, "has " + std::to_string(row.field.size()) + " fields; expected " +
                                       std::to_string(columns_.size()) + ", as in line " +
                                       std::to_string(head_));
             rows.push_back(std::move(row));
         }
     }
     if (rows.empty())
-        throw input_error("wanted a line of column names, and rows");
+        throw input_error("expected a line of column names, and rows");
     for (const std::string_view name : columns_)
         if (std::count(columns_.begin(), columns_.end(), name) > 1)
             refuse_line(head_, "has the column " + std::string(name) + " more than once");
@@ -89,7 +89,7 @@ void Csv::allow_only(const std::vector<std::string>& names) const
             std::string all;
             for (const std::string& name : names)
                 all += (all.empty() ? "" : ", ") + name;
-            refuse_line(head_, "has a column " + std::string(column) + "; wanted none but " + all);
+            refuse_line(head_, "has a column " + std::string(column) + "; expected none but " + all);
         }
 }
 
@@ -102,7 +102,7 @@ std::size_t Csv::column(std::string_view name) const
 {
     const auto found = std::find(columns_.begin(), columns_.end(), name);
     if (found == columns_.end())
-        refuse_line(head_, "wanted a column " + std::string(name));
+        refuse_line(head_, "expected a column " + std::string(name));
     return static_cast<std::size_t>(found - columns_.begin());
 }
 
@@ -115,8 +115,8 @@ double Csv::number(const Row& row, std::string_view name, const Range& range) co
     double value = 0;
     const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
     if (error != std::errc{} || end != digits.data() + digits.size() || !range.holds(value))
-        refuse_line(row.line, std::string(name) + " is \"" + std::string(field) + "\"; wanted a number in " +
-                                  keys::shown(range, no_unit));
+        refuse_line(row.line, std::string(name) + " is \"" + std::string(field) +
+                                  "\"; expected a number in " + keys::shown(range, no_unit));
     return value;
 }
 

@@ -46,7 +46,7 @@ constexpr Range coordinate_range = keys::coordinates;
 std::vector<FoundTrace> traces_in_csv(const Csv& csv, const TraceFilter& filter)
 {
     if (!filter.layer.empty())
-        throw input_error("is CSV, which has no layers; wanted no layer");
+        throw input_error("is CSV, which has no layers; expected no layer");
     const auto value_of = [&](const Csv::Row& row) {
         return filter.property.empty() ? std::string() : std::string(row.field[csv.column(filter.property)]);
     };
@@ -82,7 +82,7 @@ std::vector<FoundTrace> traces_in_csv(const Csv& csv, const TraceFilter& filter)
             ++place;
             if (!seen.insert(row.field[id]).second)
                 refuse_line(row.line, "id \"" + std::string(row.field[id]) +
-                                          "\" comes again; wanted the rows of a trace together");
+                                          "\" comes again; expected the rows of a trace together");
         }
         if (taken(row)) {
             if (begins)
@@ -113,11 +113,11 @@ Polygon polyline_of(const json& coordinates, const std::string& where)
             !place[1].is_number())
             throw input_error(
                 where + " has the coordinates " + place.dump().substr(0, 60) +
-                "; wanted [x, y], in metres of the section (a third one, the height, is not used)");
+                "; expected [x, y], in metres of the section (a third one, the height, is not used)");
         const Vector2d at(place[0].get<double>(), place[1].get<double>());
         if (!coordinate_range.holds(at.x()) || !coordinate_range.holds(at.y()))
             throw input_error(where + " has the coordinates " + place.dump().substr(0, 60) +
-                              "; wanted numbers in " + keys::shown(coordinate_range, metres));
+                              "; expected numbers in " + keys::shown(coordinate_range, metres));
         polyline.push_back(at);
     }
     return polyline;
@@ -136,7 +136,7 @@ std::string chosen_layer(const json& layers, const TraceFilter& filter)
 {
     if (!layers.is_object()) {
         if (!filter.layer.empty())
-            throw input_error("is GeoJSON, which has no layers; wanted no layer");
+            throw input_error("is GeoJSON, which has no layers; expected no layer");
         return {};
     }
     std::string names;
@@ -145,7 +145,7 @@ std::string chosen_layer(const json& layers, const TraceFilter& filter)
     if (filter.layer.empty() && layers.size() == 1)
         return layers.begin().key();
     if (filter.layer.empty())
-        throw input_error("has lines in several layers; wanted layer = one of " + names);
+        throw input_error("has lines in several layers; expected layer = one of " + names);
     if (!layers.contains(filter.layer))
         throw input_error("has no lines in a layer \"" + filter.layer + "\"; it has some in " + names);
     return filter.layer;
@@ -156,7 +156,7 @@ std::vector<FoundTrace> traces_in_geojson(std::string_view text, const TraceFilt
     constexpr int deepest = 32; // a feature's coordinates are at 6
     const auto not_too_deep = [](int depth, json::parse_event_t, const json&) {
         if (depth > deepest)
-            throw input_error("is nested too deeply; wanted GeoJSON");
+            throw input_error("is nested too deeply; expected GeoJSON");
         return true;
     };
     json all;
@@ -196,7 +196,7 @@ std::vector<FoundTrace> traces_in_geojson(std::string_view text, const TraceFilt
                 trace.polylines.push_back(polyline_of(line, where));
         } else {
             throw input_error(where + " is of the type " + kind.dump().substr(0, 60) +
-                              "; wanted a LineString or a MultiLineString");
+                              "; expected a LineString or a MultiLineString");
         }
         for (const json& id : {member(feature, "id"), member(member(feature, "properties"), "id")})
             if (!trace.id && id.is_number_integer())

@@ -36,7 +36,7 @@ Column column_of(const Csv& csv, const std::string& name)
     for (const LengthUnit& unit : units)
         if (const std::string full = name + std::string(unit.suffix); csv.has(full)) {
             if (!found.name.empty())
-                refuse_line(csv.head(), "has the columns " + found.name + " and " + full + "; wanted one");
+                refuse_line(csv.head(), "has the columns " + found.name + " and " + full + "; expected one");
             found = {full, unit.in_m};
         }
     return found;
@@ -80,7 +80,7 @@ public:
                                               "\" has a reading of " +
                                               (measurement.component == 0 ? "x" : "y") + " on day " +
                                               shown(measurement.time / unit::day) + " in line " +
-                                              std::to_string(other->second) + " already; wanted one");
+                                              std::to_string(other->second) + " already; expected one");
         list.push_back(measurement);
     }
     std::vector<Measurement> list;
@@ -98,7 +98,7 @@ std::vector<Measurement> listed(const Csv& csv, const Scene& scene)
 {
     const Column displacement = column_of(csv, "displacement"), sigma = column_of(csv, "sigma");
     if (displacement.name.empty())
-        refuse_line(csv.head(), "wanted a column " + column_names("displacement"));
+        refuse_line(csv.head(), "expected a column " + column_names("displacement"));
     for (const char* needed : {"time_day", "component"})
         csv.column(needed);
     csv.allow_only({"time_day", "event", "point", "component", displacement.name,
@@ -112,7 +112,7 @@ std::vector<Measurement> listed(const Csv& csv, const Scene& scene)
         if (point == scene.points.end())
             refuse_line(row.line, "point is \"" + std::string(name) + "\"; the scene has no such point");
         if (component != "x" && component != "y")
-            refuse_line(row.line, "component is \"" + std::string(component) + "\"; wanted x or y");
+            refuse_line(row.line, "component is \"" + std::string(component) + "\"; expected x or y");
         Measurement measurement{.point = static_cast<std::size_t>(point - scene.points.begin()),
                                 .component = component == "x" ? 0 : 1,
                                 .time = time_in(csv, row, scene.end),
@@ -157,14 +157,14 @@ std::vector<Measurement> tabled(const Csv& csv, const Scene& scene)
         if (!known.contains(column))
             refuse_line(csv.head(),
                         "has a column \"" + std::string(column) +
-                            "\", which is none of a monitoring point of the scene; wanted POINT_x_mm, "
+                            "\", which is none of a monitoring point of the scene; expected POINT_x_mm, "
                             "POINT_y_mm, POINT_x_sigma_mm, POINT_y_sigma_mm or POINT_present");
     if (places.empty())
         refuse_line(csv.head(),
-                    "has no column of a monitoring point; wanted POINT_x_mm, say, or the columns point, "
+                    "has no column of a monitoring point; expected POINT_x_mm, say, or the columns point, "
                     "component and displacement_mm");
     if (any_sigma && !all_sigma)
-        refuse_line(csv.head(), "has sigma of some displacements only; wanted it of all or of none");
+        refuse_line(csv.head(), "has sigma of some displacements only; expected it of all or of none");
     Readings readings;
     for (const Csv::Row& row : csv.rows)
         for (const Place& place : places) {
@@ -201,7 +201,7 @@ std::vector<Measurement> creep_curve_in_csv(std::string_view text)
     const Csv csv(text);
     const Column displacement = column_of(csv, "displacement"), sigma = column_of(csv, "sigma");
     if (displacement.name.empty())
-        refuse_line(csv.head(), "wanted a column " + column_names("displacement"));
+        refuse_line(csv.head(), "expected a column " + column_names("displacement"));
     csv.allow_only({"time_day", displacement.name, sigma.name.empty() ? "sigma_mm" : sigma.name});
     std::vector<Measurement> measurements;
     for (const Csv::Row& row : csv.rows) {
@@ -209,7 +209,7 @@ std::vector<Measurement> creep_curve_in_csv(std::string_view text)
         if (!measurements.empty() && time < measurements.back().time)
             refuse_line(row.line, "time_day is \"" + std::string(row.field[csv.column("time_day")]) +
                                       "\", before that of line " + std::to_string(measurements.back().line) +
-                                      "; wanted times that rise");
+                                      "; expected times that rise");
         Measurement measurement{.point = 0,
                                 .component = 0,
                                 .time = time,

@@ -73,7 +73,7 @@ std::string as_toml(const std::string& text, const std::string& begin = "\n")
 std::string read_text_file(const std::string& path, const std::string& wanted)
 {
     if (std::error_code ignored; std::filesystem::is_directory(path, ignored))
-        throw file_error(path + ": is a directory; wanted " + wanted);
+        throw file_error(path + ": is a directory; expected " + wanted);
     const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"), std::fclose);
     if (!file)
         throw file_error(path + ": cannot be opened: " + std::strerror(errno));
@@ -82,9 +82,9 @@ std::string read_text_file(const std::string& path, const std::string& wanted)
     while (const std::size_t count = std::fread(part.data(), 1, part.size(), file.get())) {
         text.append(part.data(), count);
         if (text.starts_with("\x89HDF\r\n"))
-            throw input_error(path + ": this is an HDF5 file; wanted " + wanted + ", which is text");
+            throw input_error(path + ": this is an HDF5 file; expected " + wanted + ", which is text");
         if (text.size() > largest_text)
-            throw input_error(path + ": is larger than 16 MiB; wanted " + wanted);
+            throw input_error(path + ": is larger than 16 MiB; expected " + wanted);
     }
     if (std::ferror(file.get()))
         throw file_error(path + ": cannot be read: " + std::strerror(errno));
@@ -156,7 +156,7 @@ void check_areas(const std::string& path, const Blocks& blocks)
         const double stored = blocks.block_area[block];
         if (!(std::abs(area - stored) <= 1e-6 * stored + 1e-9 * perimeter))
             throw input_error(path + ": /blocks/area[" + std::to_string(block) + "] is " + shown(stored) +
-                              " m2; wanted " + shown(area) + " m2, which its corners enclose");
+                              " m2; expected " + shown(area) + " m2, which its corners enclose");
     }
 }
 
@@ -177,14 +177,14 @@ SceneText read_scene(const std::string& path)
 {
     SceneText scene{read_text_file(path, "a scene file (.toml)"), {}};
     if (scene.text.empty())
-        throw input_error(path + ": is empty; wanted a scene");
+        throw input_error(path + ": is empty; expected a scene");
     scene.text = written_out(scene.text, path);
     for (const FileBeside& file : files_beside(path, scene.text)) {
         scene.text += table_of(file);
         scene.files.push_back(file.path);
     }
     if (scene.text.size() > largest_text)
-        throw input_error(path + ": is larger than 16 MiB with the files that it names; wanted a scene");
+        throw input_error(path + ": is larger than 16 MiB with the files that it names; expected a scene");
     return scene;
 }
 
@@ -198,7 +198,7 @@ std::string read_field_data(const std::string& path)
         }
     std::string text = read_text_file(path, "poles or traces of a scene");
     if (text.find_first_not_of(" \t\r\n") == std::string::npos)
-        throw input_error(path + ": is empty; wanted poles or traces of a scene");
+        throw input_error(path + ": is empty; expected poles or traces of a scene");
     return text;
 }
 

@@ -111,7 +111,7 @@ private:
                 if (!known.insert(in.rock).second)
                     in_list("joint_set", i)
                         .report("material_in",
-                                "wanted each rock once, and \"" + in.rock + "\" is there twice");
+                                "expected each rock once, and \"" + in.rock + "\" is there twice");
             }
         }
         for (std::size_t i = 0; i < scene_.mapped.size(); ++i)
@@ -165,8 +165,8 @@ private:
         for (const Polygon& hole : scene_.holes)
             outside = outside || (apart(hole) && inside(fine, hole));
         if (outside)
-            once("zones").refuse("fine_m",
-                                 "it is outside the section; wanted a polygon that has a part of it inside");
+            once("zones").refuse(
+                "fine_m", "it is outside the section; expected a polygon that has a part of it inside");
     }
 
     void check_holes() const
@@ -178,13 +178,13 @@ private:
             const std::string which = "hole " + std::to_string(i + 1);
             if (sides_come_near(scene_.outline, holes[i], tolerance()) ||
                 !covers(scene_.outline, holes[i][0], 0))
-                section.refuse("holes_m", which + " is not inside outline_m; wanted one that is, and does "
+                section.refuse("holes_m", which + " is not inside outline_m; expected one that is, and does "
                                                   "not touch it");
             for (std::size_t j = 0; j < i; ++j)
                 if (sides_come_near(holes[i], holes[j], tolerance()) || covers(holes[i], holes[j][0], 0) ||
                     covers(holes[j], holes[i][0], 0))
                     section.refuse("holes_m", which + " meets hole " + std::to_string(j + 1) +
-                                                  "; wanted holes apart from each other");
+                                                  "; expected holes apart from each other");
         }
     }
 
@@ -194,7 +194,7 @@ private:
     {
         for (std::size_t i = 0; i < scene_.joints.size(); ++i)
             if (scene_.joints[i].from == scene_.joints[i].to)
-                in_list("joint", i).report("to_m", "wanted another point than from_m");
+                in_list("joint", i).report("to_m", "expected another point than from_m");
     }
 
     // Refuses a place that is not in the rock.
@@ -204,9 +204,9 @@ private:
         const std::string place = whose + "[" + shown(at.x()) + ", " + shown(at.y()) + "] is ";
         for (const Polygon& hole : scene_.holes)
             if (covers(hole, at, 0) && distance_to_sides(hole, at) > tolerance())
-                return given.report(key, place + "in a hole of the section; wanted a point in the rock");
+                return given.report(key, place + "in a hole of the section; expected a point in the rock");
         if (!covers(scene_.outline, at, tolerance()))
-            given.report(key, place + "outside the section's outline; wanted a point inside");
+            given.report(key, place + "outside the section's outline; expected a point inside");
     }
 
     // Points that are given one by one, and then those of the lines.
@@ -237,7 +237,7 @@ private:
             });
         for (std::size_t line = 0; line < scene_.lines.size(); ++line)
             if (!((scene_.lines[line].to - scene_.lines[line].from).norm() > tolerance()))
-                in_list("monitoring_line", line).report("to_m", "wanted another point than from_m");
+                in_list("monitoring_line", line).report("to_m", "expected another point than from_m");
         for (std::size_t i = 0; i < scene_.gauges.size(); ++i)
             check_place(in_list("gauge", i), "at_m", scene_.gauges[i].at, "");
     }
@@ -246,10 +246,10 @@ private:
 
     void check_orientation(const JointSet& set, const Given& given) const
     {
-        const std::string wanted = "wanted one of trace_angle, orientation, or dip and dip_direction";
+        const std::string wanted = "expected one of trace_angle, orientation, or dip and dip_direction";
         const bool by_poles = set.orientation || !set.poles.empty();
         if (set.kind == SetKind::discs && set.trace_angle)
-            given.refuse("trace_angle", "discs lie in space: wanted orientation, or dip and dip_direction");
+            given.refuse("trace_angle", "discs lie in space: expected orientation, or dip and dip_direction");
         if ((set.trace_angle || by_poles) && (set.dip || set.dip_direction))
             given.refuse(set.dip ? "dip" : "dip_direction", wanted + ", not both");
         if (set.trace_angle && by_poles)
@@ -274,7 +274,7 @@ private:
         if (std::sqrt(std::max(0.0, 1 - across * across)) <= least_trace)
             given.refuse(set.orientation ? "orientation" : "dip_direction",
                          "the set's mean plane is parallel to the section, or nearly so, and leaves no "
-                         "trace; wanted another dip or direction, or no such set");
+                         "trace; expected another dip or direction, or no such set");
     }
 
     // Keys that a kind of set needs, and those it does not take.
@@ -304,7 +304,7 @@ private:
         if (!given.find("persistence") && !given.find("bridge_length_m"))
             given.refuse("persistence", "a set of lines needs it, or bridge_length_m");
         if (given.find("persistence") && given.find("bridge_length_m"))
-            given.refuse("bridge_length_m", "wanted either it or persistence, not both");
+            given.refuse("bridge_length_m", "expected either it or persistence, not both");
         if (given.find("bridge_length_m") && !set.length)
             given.refuse("length", "a bridge_length_m needs it");
     }
@@ -317,7 +317,7 @@ private:
         const Measure measure = set.density->measure;
         if (measure == Measure::p20 && set.kind == SetKind::lines)
             given.refuse("density",
-                         "lines have no number per area; wanted P10_per_m, P21_per_m or P32_per_m");
+                         "lines have no number per area; expected P10_per_m, P21_per_m or P32_per_m");
         if (measure == Measure::p30 && set.kind != SetKind::discs)
             given.refuse("density", "only discs have a number per volume");
         const bool in_space =
@@ -333,7 +333,7 @@ private:
     void check_terminations(const JointSet& set, const Given& given) const
     {
         if (given.find("termination_probability") && set.terminates_at.empty())
-            given.refuse("termination_probability", "wanted terminates_at beside it");
+            given.refuse("termination_probability", "expected terminates_at beside it");
         std::set<std::string> others;
         for (const auto& names :
              {names_of(scene_.joint_sets), names_of(scene_.joints), names_of(scene_.mapped)})
@@ -350,8 +350,9 @@ private:
                     reached.insert(other.terminates_at.begin(), other.terminates_at.end());
         }
         if (reached.contains(set.name))
-            given.refuse("terminates_at", "sets end at each other in a circle; wanted an order in which each "
-                                          "ends at earlier ones only");
+            given.refuse("terminates_at",
+                         "sets end at each other in a circle; expected an order in which each "
+                         "ends at earlier ones only");
     }
 
     void check_joint_sets() const
@@ -364,7 +365,7 @@ private:
             check_density(set, given);
             check_terminations(set, given);
             if (set.region && !set.rocks.empty())
-                given.refuse("rocks", "wanted either it or region_m, not both");
+                given.refuse("rocks", "expected either it or region_m, not both");
             if (set.kind != SetKind::lines)
                 return;
             if (!set.length && set.persistence > 0 && set.persistence < 1)
@@ -388,23 +389,24 @@ private:
     void check_times() const
     {
         if (!(scene_.end > 0))
-            once("schedule").report("end", "it is " + days(scene_.end) + "; wanted an end after the start");
+            once("schedule").report("end", "it is " + days(scene_.end) + "; expected an end after the start");
         double before = 0;
         for (std::size_t i = 0; i < scene_.stages.size(); ++i) {
             const double time = scene_.stages[i].time;
             if (!(time > before))
                 in_list("stage", i)
-                    .report("date", "it is " + days(time) + "; wanted later than " +
+                    .report("date", "it is " + days(time) + "; expected later than " +
                                         (i == 0 ? "the start" : "the stage before, " + days(before)));
             if (time > scene_.end)
                 in_list("stage", i)
                     .report("date",
-                            "it is " + days(time) + "; wanted not after the end, " + days(scene_.end));
+                            "it is " + days(time) + "; expected not after the end, " + days(scene_.end));
             before = time;
         }
         const auto check_reading = [this](const Given& given, double time) {
             if (!(time >= 0 && time <= scene_.end))
-                given.report("first_reading", "it is " + days(time) + "; wanted from the start to the end, " +
+                given.report("first_reading", "it is " + days(time) +
+                                                  "; expected from the start to the end, " +
                                                   days(scene_.end));
         };
         for_each_point([&](const Given& given,
@@ -428,9 +430,9 @@ private:
             return;
         const std::string wanted = "less than the extent of the section, " + shown(extent_of_section) + " m";
         if (cutting.find("shortest_edge_m"))
-            cutting.refuse("shortest_edge_m", "wanted " + wanted);
+            cutting.refuse("shortest_edge_m", "expected " + wanted);
         once("zones").refuse("size_m", "edges shorter than 0.02 x size_m, " + shown(shortest) +
-                                           " m, are merged; wanted " + wanted +
+                                           " m, are merged; expected " + wanted +
                                            ". Set a smaller size_m, or [cutting] shortest_edge_m");
     }
 
@@ -440,7 +442,7 @@ private:
         check_shortest_edge(cutting);
         if (scene_.cutting.shortest_edge > scene_.zone_size)
             cutting.refuse("shortest_edge_m",
-                           "wanted at most [zones] size_m, " + shown(scene_.zone_size) + " m");
+                           "expected at most [zones] size_m, " + shown(scene_.zone_size) + " m");
 
         if (scene_.cutting.dangling_ends == DanglingEnds::extend)
             for (const Rock& rock : scene_.rocks)
@@ -454,10 +456,10 @@ private:
     void check_zones() const
     {
         if (scene_.zones_are_quadratic() && scene_.large_displacements)
-            once("zones").report("kind", "wanted \"constant strain\" with [large_displacements]");
+            once("zones").report("kind", "expected \"constant strain\" with [large_displacements]");
         if (scene_.zone_size_at_faces.value_or(0) > scene_.zone_size)
             once("zones").report("size_at_faces_m",
-                                 "wanted at most size_m, " + shown(scene_.zone_size) + " m");
+                                 "expected at most size_m, " + shown(scene_.zone_size) + " m");
     }
 
     void check_equilibrium() const
@@ -466,15 +468,16 @@ private:
         const Damping damping = scene_.equilibrium.damping;
         if (damping == Damping::mass && scene_.equilibrium.masses != Masses::real)
             equilibrium.refuse("damping",
-                               "wanted masses = \"real\" beside it: scaled masses have no frequency of "
+                               "expected masses = \"real\" beside it: scaled masses have no frequency of "
                                "their own");
         if (damping != Damping::mass && equilibrium.find("stiffness_damping_s"))
-            equilibrium.refuse("stiffness_damping_s", "wanted damping = \"mass\" beside it");
+            equilibrium.refuse("stiffness_damping_s", "expected damping = \"mass\" beside it");
         if ((damping == Damping::mass) != (equilibrium.find("mass_damping_per_s") != nullptr))
             equilibrium.refuse("mass_damping_per_s", "damping = \"mass\" needs it, and nothing else does");
         if (damping == Damping::mass &&
             scene_.equilibrium.mass_damping + scene_.equilibrium.stiffness_damping == 0)
-            equilibrium.refuse("mass_damping_per_s", "wanted more than 0, or stiffness_damping_s beside it");
+            equilibrium.refuse("mass_damping_per_s",
+                               "expected more than 0, or stiffness_damping_s beside it");
         if (damping != Damping::local && damping != Damping::combined && equilibrium.find("local_damping"))
             equilibrium.refuse("local_damping", "only damping = \"local\" and \"combined\" use it");
     }
@@ -486,19 +489,19 @@ private:
         const CreepSettings& creep = *scene_.creep;
         const Given given = once("creep");
         if (creep.step && creep.tolerance)
-            given.refuse("tolerance_m", "wanted either it or step_days, not both");
+            given.refuse("tolerance_m", "expected either it or step_days, not both");
         if (!creep.step && !creep.tolerance)
-            given.refuse("step_days", "wanted it, or tolerance_m");
+            given.refuse("step_days", "expected it, or tolerance_m");
         for (const char* key : {"first_step_days", "shortest_step_days", "longest_step_days"})
             if (given.find(key) && !creep.tolerance)
                 given.refuse(key, "only tolerance_m uses it; with step_days all steps are that long");
         const double shortest = creep.shortest_step.value_or(0);
         if (creep.longest_step && *creep.longest_step < shortest)
-            given.refuse("longest_step_days", "wanted at least shortest_step_days");
+            given.refuse("longest_step_days", "expected at least shortest_step_days");
         if (creep.first_step && *creep.first_step < shortest)
-            given.refuse("first_step_days", "wanted at least shortest_step_days");
+            given.refuse("first_step_days", "expected at least shortest_step_days");
         if (creep.first_step && creep.longest_step && *creep.first_step > *creep.longest_step)
-            given.refuse("first_step_days", "wanted at most longest_step_days");
+            given.refuse("first_step_days", "expected at most longest_step_days");
     }
 
     void check_large_displacements() const
@@ -508,31 +511,31 @@ private:
         for (std::size_t i = 0; i < scene_.boundaries.size(); ++i)
             if (scene_.boundaries[i].fix_normal)
                 in_list("boundary", i)
-                    .refuse("fix", "wanted \"x\", \"y\" or \"xy\" with [large_displacements]");
+                    .refuse("fix", "expected \"x\", \"y\" or \"xy\" with [large_displacements]");
         if (scene_.creep)
             check_creep_at_large_displacements();
         if (scene_.large_displacements->release >= scene_.large_displacements->longest)
             once("large_displacements")
-                .refuse("release_s", "wanted less than longest_s, " +
+                .refuse("release_s", "expected less than longest_s, " +
                                          shown(scene_.large_displacements->longest) +
                                          " s; no rest is possible before");
         if (scene_.large_displacements->stop && scene_.stages.empty())
             once("large_displacements")
-                .refuse("stop_s", "wanted a [[stage]]: this key ends the dynamic analysis of the last one");
+                .refuse("stop_s", "expected a [[stage]]: this key ends the dynamic analysis of the last one");
         if (scene_.large_displacements->stop > scene_.large_displacements->longest)
             once("large_displacements")
                 .refuse("stop_s",
-                        "wanted at most longest_s, " + shown(scene_.large_displacements->longest) + " s");
+                        "expected at most longest_s, " + shown(scene_.large_displacements->longest) + " s");
         if (scene_.large_displacements->stop &&
             *scene_.large_displacements->stop <= scene_.large_displacements->release)
             once("large_displacements")
-                .refuse("stop_s", "wanted more than release_s, " +
+                .refuse("stop_s", "expected more than release_s, " +
                                       shown(scene_.large_displacements->release) +
                                       " s, in which the forces of the excavated rock decrease to 0");
         if (scene_.equilibrium.unloading_increments > 1)
             once("equilibrium")
                 .refuse("unloading_increments",
-                        "with [large_displacements] a stage excavates its rock at once; wanted 1, and "
+                        "with [large_displacements] a stage excavates its rock at once; expected 1, and "
                         "[large_displacements] release_s for forces that decrease to 0 slowly");
         if (scene_.equilibrium.increments_tolerance)
             once("equilibrium")
@@ -552,14 +555,15 @@ private:
         const Given given = once("large_displacements");
         if (!(large.release > 0))
             given.refuse("release_s",
-                         "wanted more than 0 with [creep]: the creep of a step is added in this time");
+                         "expected more than 0 with [creep]: the creep of a step is added in this time");
         if (large.stop)
-            given.refuse("stop_s", "wanted no such key with [creep]: creep begins when the rock is at rest");
+            given.refuse("stop_s",
+                         "expected no such key with [creep]: creep begins when the rock is at rest");
         for (std::size_t i = 0; i < scene_.rocks.size(); ++i)
             if (scene_.rocks[i].kelvin || scene_.rocks[i].maxwell_viscosity)
                 in_list("rock", i).refuse("name",
                                           "with [large_displacements] joints creep, and rock does not: "
-                                          "wanted no creep of rock");
+                                          "expected no creep of rock");
         for (std::size_t i = 0; i < scene_.joint_materials.size(); ++i) {
             const JointMaterial& material = scene_.joint_materials[i];
             if ((!material.kelvin.empty() || material.maxwell) && joint::remembers(joint::law_of(material)))
@@ -585,7 +589,7 @@ void check_names(const Source& source, const std::vector<std::string>& tables, c
             const std::string wanted = row < of_file.size() ? '"' + of_file[row] + '"' : "no more of them";
             if (row >= of_file.size() || std::get<std::string>(given.find("name")->content) != of_file[row])
                 given.refuse("name",
-                             "wanted " + wanted + ", as " + dataset + " of the file has" + other_scene);
+                             "expected " + wanted + ", as " + dataset + " of the file has" + other_scene);
         }
     }
     if (row < of_file.size())

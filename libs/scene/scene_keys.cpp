@@ -304,7 +304,7 @@ void check_range(const WrittenLaw& law, const TomlValue& value, const Place& pla
 {
     if (law.longest <= law.shortest)
         place.refuse(value.line, place.table + " longest_m = " + shown(law.longest) +
-                                     " m: wanted above shortest_m, " + shown(law.shortest) + " m");
+                                     " m: expected above shortest_m, " + shown(law.shortest) + " m");
     if (law.kind == Kind::power && law.shortest * widest_range < law.longest)
         place.refuse(value.line, place.table + " shortest_m = " + shown(law.shortest) +
                                      " m: the law \"power\" needs at least 1e-6 of longest_m, here " +
@@ -372,7 +372,7 @@ const std::string& text_of_file(const std::string& file, const TomlValue& key_va
     if (found == place.reading.files.end())
         place.refuse(
             key_value.line,
-            place.table + " " + key + " = " + shown(key_value) + ": wanted the name of " +
+            place.table + " " + key + " = " + shown(key_value) + ": expected the name of " +
                 (is_beside_scene(file)
                      ? "a file beside the scene that can be read, or of a [[file]] in it"
                      : "a file in the folder of the scene, or in a folder there, without \"..\". Copy the "
@@ -398,7 +398,7 @@ void read_bootstrap(const TomlValue& value, const Place& place, WrittenOrientati
     const bool measured_on_line = value.find("scanline_trend_deg") != nullptr;
     if (!measured_on_line && value.find("blind_zone_deg"))
         place.refuse(value.find("blind_zone_deg")->line,
-                     place.table + " blind_zone_deg: wanted scanline_trend_deg beside it");
+                     place.table + " blind_zone_deg: expected scanline_trend_deg beside it");
     constexpr double usual_blind_zone = 10 * unit::deg;
     if (measured_on_line)
         correct_for_scanline(law.poles, law.scanline, law.blind_zone > 0 ? law.blind_zone : usual_blind_zone);
@@ -505,12 +505,12 @@ Density read_density(const Table<WrittenDensity>& table, const TomlValue& value,
     for (const auto& [measure, amount] : measures)
         if (amount) {
             if (density)
-                place.refuse(value.line, place.table + " = " + shown(value) + ": wanted one measure alone");
+                place.refuse(value.line, place.table + " = " + shown(value) + ": expected one measure alone");
             density = Density{measure, *amount, written.scanline};
         }
     if (!density)
         place.refuse(value.line, place.table + " = " + shown(value) +
-                                     ": wanted one of P10_per_m, P20_per_m2, P21_per_m, P30_per_m3 and "
+                                     ": expected one of P10_per_m, P20_per_m2, P21_per_m, P30_per_m3 and "
                                      "P32_per_m");
     const bool angle = value.find("scanline_angle_deg"), trend = value.find("scanline_trend_deg");
     if (density->measure == Measure::p10 && angle == trend)
@@ -780,7 +780,7 @@ Table<Scene> zones()
              "much at the same size. Quadratic zones are for small displacements.")
              .optional("quadratic by the implicit engine, without [large_displacements], if a rock has law "
                        "\"Mohr-Coulomb\" or there are no [[joint_set]] and [[mapped]]; else constant strain"),
-         number("size_m", &Scene::zone_size, metres, zone_sizes, "Longest zone side wanted."),
+         number("size_m", &Scene::zone_size, metres, zone_sizes, "Longest zone side."),
          polygon("fine_m", &Scene::fine_zones,
                  "Where zones have the size size_m; outside they are larger. Without it they have this "
                  "size everywhere.")
@@ -789,10 +789,9 @@ Table<Scene> zones()
                 "Distance over which the zone size grows by size_m: at this distance from fine_m zones are "
                 "twice as large, and at two times this distance three times.")
              .together("coarsening"),
-         number(
-             "size_at_faces_m", &Scene::zone_size_at_faces, metres, lengths,
-             "Longest zone side wanted on faces that stages excavate, at points and at gauges. From there it "
-             "grows by 0.3 m per metre, up to the size that the other keys give. At most size_m.")
+         number("size_at_faces_m", &Scene::zone_size_at_faces, metres, lengths,
+                "Longest zone side on faces that stages excavate, at points and at gauges. From there it "
+                "grows by 0.3 m per metre, up to the size that the other keys give. At most size_m.")
              .optional()}};
 }
 

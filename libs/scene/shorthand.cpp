@@ -41,12 +41,12 @@ public:
             return static_cast<double>(*whole);
         if (const auto* const number = std::get_if<double>(&written.content)) {
             if (!std::isfinite(*number))
-                refuse(written, title, "wanted a finite number");
+                refuse(written, title, "expected a finite number");
             return *number;
         }
         const auto* const text = std::get_if<std::string>(&written.content);
         if (!text)
-            refuse(written, title, "wanted a number, or a text with names of [variables]");
+            refuse(written, title, "expected a number, or a text with names of [variables]");
         Sum sum{*this, written, title, *text};
         const double value = sum.read();
         if (!std::isfinite(value))
@@ -67,13 +67,13 @@ public:
         const auto* const entries = std::get_if<TomlValue::Table>(&table_->content);
         if (!entries)
             Place{reading_, ""}.refuse(table_->line,
-                                       "variables is " + shown(*table_) + ": wanted a table [variables]");
+                                       "variables is " + shown(*table_) + ": expected a table [variables]");
         for (const TomlEntry& entry : *entries) {
             const bool is_name = !entry.key.empty() && std::ranges::all_of(entry.key, is_of_name) &&
                                  !is_digit(entry.key.front()) && entry.key.front() != '_';
             if (!is_name)
                 refuse(entry.value, "[variables] " + shown(TomlValue{.content = entry.key}),
-                       "wanted a name of letters, digits and _ that begins with a letter");
+                       "expected a name of letters, digits and _ that begins with a letter");
             named(entry.key, entry.value, "[variables] " + entry.key);
         }
     }
@@ -351,7 +351,7 @@ private:
     {
         const TomlValue* const value = shape.find(key);
         if (!value)
-            variables_.refuse(shape, title, "has no " + std::string(key) + ": wanted " + wanted);
+            variables_.refuse(shape, title, "has no " + std::string(key) + ": expected " + wanted);
         return *value;
     }
 
@@ -359,7 +359,7 @@ private:
     {
         const auto* const list = std::get_if<TomlValue::List>(&value.content);
         if (!list || list->size() != 2)
-            variables_.refuse(value, title, "wanted a point [x, y]");
+            variables_.refuse(value, title, "expected a point [x, y]");
         return {variables_.value_of(list->front(), title), variables_.value_of(list->back(), title)};
     }
 
@@ -374,7 +374,7 @@ private:
         const double least = share < 1 ? 1 : 3;
         if (!(sides >= least && sides <= most_sides) || sides != std::round(sides))
             variables_.refuse(*given, title + " sides",
-                              "wanted a whole number from " + shown(least) + " to " +
+                              "expected a whole number from " + shown(least) + " to " +
                                   std::to_string(most_sides));
         return std::llround(sides);
     }
@@ -384,18 +384,18 @@ private:
     {
         for (const TomlEntry& entry : std::get<TomlValue::Table>(shape.content))
             if (std::ranges::find(known, entry.key) == known.end())
-                variables_.refuse(shape, title, "has a key " + entry.key + ": wanted " + wanted);
+                variables_.refuse(shape, title, "has a key " + entry.key + ": expected " + wanted);
     }
 
     void write_circle(const TomlValue& circle, const std::string& title)
     {
-        const std::string wanted = "a circle { center_m = [x, y], radius_m = r }, with sides = n if wanted";
+        const std::string wanted = "a circle { center_m = [x, y], radius_m = r }, with sides = n if needed";
         check_keys_of(circle, title, {"center_m", "radius_m", "sides"}, wanted);
         const Point center = point_of(key_of(circle, "center_m", title, wanted), title + " center_m");
         const TomlValue& written = key_of(circle, "radius_m", title, wanted);
         const double radius = variables_.value_of(written, title + " radius_m");
         if (!(radius > 0))
-            variables_.refuse(written, title + " radius_m", "wanted a radius above 0 m");
+            variables_.refuse(written, title + " radius_m", "expected a radius above 0 m");
         const std::int64_t sides = sides_of(circle, title, 1);
         std::string corners;
         for (std::int64_t i = 0; i < sides; ++i)
@@ -412,7 +412,7 @@ private:
     Point write_arc(const TomlValue& arc, const Point& from, const std::string& title,
                     const std::optional<Point>& first)
     {
-        const std::string wanted = "an arc { through_m = [x, y], to_m = [x, y] }, with sides = n if wanted";
+        const std::string wanted = "an arc { through_m = [x, y], to_m = [x, y] }, with sides = n if needed";
         check_keys_of(arc, title, {"through_m", "to_m", "sides"}, wanted);
         const Point through = point_of(key_of(arc, "through_m", title, wanted), title + " through_m");
         Point to = point_of(key_of(arc, "to_m", title, wanted), title + " to_m");
@@ -421,7 +421,7 @@ private:
         if (!(radius < 1e4 * ((through - from).norm() + (to - through).norm())))
             variables_.refuse(arc, title,
                               "its three points " + text_of(from) + ", " + text_of(through) + " and " +
-                                  text_of(to) + " are on a straight line; wanted an arc, or corners");
+                                  text_of(to) + " are on a straight line; expected an arc, or corners");
         const auto angle = [&](const Point& p) { return std::atan2((p - center).y(), (p - center).x()); };
         const auto turned = [](double by) { return by < 0 ? by + 2 * std::numbers::pi : by; };
         const double begin = angle(from), whole = turned(angle(to) - begin);
@@ -459,7 +459,7 @@ private:
                 before = write_arc(corner, *before, title,
                                    may_be_circle && &corner == &list->back() ? first : std::nullopt);
             else
-                variables_.refuse(corner, title, "wanted a corner before the first arc, where it begins");
+                variables_.refuse(corner, title, "expected a corner before the first arc, where it begins");
         }
     }
 };

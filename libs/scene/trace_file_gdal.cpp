@@ -116,7 +116,7 @@ void check_units(const OGRSpatialReference* reference, const std::string& layer)
         return;
     const char* const name = reference->GetName();
     const std::string in = "layer \"" + layer + "\" has coordinates in ",
-                      wanted = "; wanted metres of the section, x to the right and y up";
+                      wanted = "; expected metres of the section, x to the right and y up";
     if (name && std::string_view(name).starts_with("Undefined"))
         return;
     if (reference->IsGeographic())
@@ -142,7 +142,7 @@ void check_units_of_dxf(const std::string& path)
         const int unit = std::atoi(value.c_str());
         if (unit != 0 && unit != 6)
             throw input_error("has $INSUNITS " + std::to_string(unit) + (unit == 4 ? ", millimetres" : "") +
-                              "; wanted metres of the section, 6, or 0, no unit");
+                              "; expected metres of the section, 6, or 0, no unit");
         return;
     }
 }
@@ -185,7 +185,7 @@ std::string lines_of(const std::string& path)
             all[name] = {{"type", "FeatureCollection"}, {"features", std::move(found.features)}};
         }
     if (all.empty())
-        throw input_error("has no lines; wanted joint traces");
+        throw input_error("has no lines; expected joint traces");
     return json{{"layers", std::move(all)}}.dump(-1, ' ', false, json::error_handler_t::replace);
 }
 

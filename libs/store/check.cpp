@@ -37,7 +37,7 @@ Fault size_fault(const Field& field, Dimensions& dimensions)
     for (const std::string& name : field.dimensions) {
         if (!dimensions.has(name)) {
             if (count > 0 && (expected == 0 || count % expected != 0))
-                return field.path + " has " + std::to_string(count) + " rows; wanted a multiple of " +
+                return field.path + " has " + std::to_string(count) + " rows; expected a multiple of " +
                        std::to_string(expected) + " (" + shape + ")";
             return dimensions.fault(field, field.dimensions.size() - 1, count == 0 ? 0 : count / expected);
         }
@@ -46,8 +46,8 @@ Fault size_fault(const Field& field, Dimensions& dimensions)
     }
     if (count == expected)
         return {};
-    return field.path + " has " + std::to_string(count) + " rows; wanted " + std::to_string(expected) + " (" +
-           shape + ")";
+    return field.path + " has " + std::to_string(count) + " rows; expected " + std::to_string(expected) +
+           " (" + shape + ")";
 }
 
 // "[row, column]" of a value in the flat array.
@@ -89,7 +89,7 @@ Fault value_fault(const Field& field, const Dimensions& dimensions, std::span<Nu
     const auto [least, most] = bounds(limits, dimensions);
     const auto fault = [&](std::size_t at) {
         std::string text = field.path + position(field, dimensions, at) + " is " + shown(values[at]) +
-                           "; wanted " + wanted(limits);
+                           "; expected " + wanted(limits);
         if (!limits.index_of.empty())
             text += " (there are " + std::to_string(dimensions.size(limits.index_of)) + ")";
         if (limits.ascending && at > 0)
@@ -116,7 +116,7 @@ Fault value_fault(const Field& field, const Dimensions& dimensions, std::span<st
 {
     for (std::size_t at = 0; at < values.size(); ++at)
         if (values[at].find('\0') != std::string::npos)
-            return field.path + position(field, dimensions, at) + " holds a zero byte; wanted text";
+            return field.path + position(field, dimensions, at) + " holds a zero byte; expected text";
     return {};
 }
 
@@ -127,7 +127,7 @@ Fault Dimensions::fault(const Field& field, std::size_t axis, std::size_t size)
     const auto [dimension, more] = axis_of(field.dimensions[axis]);
     const auto message = [&](const std::string& expected) {
         return field.path + " has " + std::to_string(size) + " rows along " + field.dimensions[axis] +
-               "; wanted " + expected;
+               "; expected " + expected;
     };
     if (size < more)
         return message("at least " + std::to_string(more));

@@ -104,7 +104,7 @@ FileKind checked_kind(const hdf5::Source& source)
     const std::string type = source.text("filetype");
     const Index major = source.integers("format_version", 2)[0];
     if (!type.starts_with("jointcreep "))
-        throw input_error("this is a \"" + type + "\" file; wanted one of jointcreep's");
+        throw input_error("this is a \"" + type + "\" file; expected one of jointcreep's");
     if (major != schema::major_version)
         throw input_error("the file has format version " + std::to_string(major) +
                           "; this program reads version " + std::to_string(schema::major_version));
@@ -123,7 +123,7 @@ hdf5::Source open(const std::string& path, FileKind kind)
     hdf5::Source source(path);
     const FileKind actual = checked_kind(source);
     if (actual < kind)
-        throw input_error("this is a \"" + schema::file_type(actual) + "\" file; wanted a \"" +
+        throw input_error("this is a \"" + schema::file_type(actual) + "\" file; expected a \"" +
                           schema::file_type(kind) + "\" file, which " + schema::maker(kind) + " makes");
     return source;
 }

@@ -364,11 +364,11 @@ bool is_text(const std::string& path)
 Object open_for_reading(const std::string& path)
 {
     if (path.ends_with(".toml"))
-        throw input_error("is a scene; wanted a file of the chain. First run: jointgen " + path +
+        throw input_error("is a scene; expected a file of the chain. First run: jointgen " + path +
                           " -o network.h5, then strength-averaging network.h5 -o joints.h5");
     if (is_text(path))
         throw file_error(
-            "this is a text file; wanted a file of the chain, which is HDF5 (network.h5, joints.h5, result.h5)");
+            "this is a text file; expected a file of the chain, which is HDF5 (network.h5, joints.h5, result.h5)");
     begin();
     const Object access = properties(H5P_FILE_ACCESS);
     ok(H5Pset_file_locking(access, false, true), "set up HDF5"); // files are never changed in place
@@ -386,7 +386,7 @@ bool exists(hid_t file, const std::string& path)
         H5L_info_t link;
         ok(H5Lget_info(file, part.c_str(), &link, H5P_DEFAULT), "look for " + path);
         if (link.type == H5L_TYPE_EXTERNAL)
-            throw input_error(part + " is a link to another file; wanted it in this one");
+            throw input_error(part + " is a link to another file; expected it in this one");
     }
     return true;
 }
@@ -397,7 +397,7 @@ void require_own_values(hid_t dataset, const std::string& path)
     const Object creation(H5Dget_create_plist(dataset), H5Pclose, "read the layout of " + path);
     if (H5Pget_layout(creation) == H5D_VIRTUAL ||
         ok(H5Pget_external_count(creation), "read the layout of " + path) > 0)
-        throw input_error(path + " has its values in another file; wanted them in this one");
+        throw input_error(path + " has its values in another file; expected them in this one");
 }
 
 struct TypeCheck {
@@ -409,7 +409,7 @@ struct TypeCheck {
     void want(bool holds, const char* wanted) const
     {
         if (!holds)
-            throw input_error(path + " is of the wrong type; wanted " + wanted);
+            throw input_error(path + " is of the wrong type; expected " + wanted);
     }
 };
 
@@ -451,7 +451,8 @@ hsize_t checked_count(const Field& field, hid_t space, Dimensions& dimensions)
     const std::size_t inner = fields::components(field.values);
     const std::size_t rank = axes + (inner > 1 ? 1 : 0);
     if (H5Sget_simple_extent_type(space) != H5S_SIMPLE || H5Sget_simple_extent_ndims(space) != int(rank))
-        throw input_error(field.path + " has the wrong number of dimensions; wanted " + std::to_string(rank));
+        throw input_error(field.path + " has the wrong number of dimensions; expected " +
+                          std::to_string(rank));
     std::vector<hsize_t> extents(rank);
     ok(H5Sget_simple_extent_dims(space, extents.data(), nullptr), "read the shape of " + field.path);
     hsize_t elements = 1;
@@ -463,10 +464,10 @@ hsize_t checked_count(const Field& field, hid_t space, Dimensions& dimensions)
         if (const schema::Fault fault = dimensions.fault(field, axis, extents[axis]))
             throw input_error(*fault);
     if (field.dimensions.empty() && extents[0] != 1)
-        throw input_error(field.path + " has " + std::to_string(extents[0]) + " values; wanted 1");
+        throw input_error(field.path + " has " + std::to_string(extents[0]) + " values; expected 1");
     if (inner > 1 && extents.back() != inner)
-        throw input_error(field.path + " has rows of " + std::to_string(extents.back()) + " values; wanted " +
-                          std::to_string(inner));
+        throw input_error(field.path + " has rows of " + std::to_string(extents.back()) +
+                          " values; expected " + std::to_string(inner));
     return elements;
 }
 
@@ -640,7 +641,7 @@ void Source::read(const Field& field, Dimensions& dimensions) const
     const Object space(H5Dget_space(dataset), H5Sclose, "read the shape of " + path);
     std::visit(TypeCheck{path, type}, fields::flat(field.values));
     if (const std::string units = text_attribute(dataset, "units", path); units != field.units)
-        throw input_error(path + " is in " + units + "; wanted " + field.units);
+        throw input_error(path + " is in " + units + "; expected " + field.units);
     const hsize_t elements = checked_count(field, space, dimensions);
     if (elements > 0)
         require_stored(field, dataset, type, elements, size_);

@@ -164,7 +164,7 @@ void require_place(const std::string& path)
     const bool is_system = path.starts_with("/dev/") || path.starts_with("/proc/");
     if (is_system && !path.starts_with("/dev/shm/")) // /dev/stdout is a link, which renaming would replace
         throw file_error(
-            "cannot write: names in /dev and /proc are no files; wanted a file, or - for text on standard output");
+            "cannot write: names in /dev and /proc are no files; expected a file, or - for text on standard output");
     if (::stat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode))
         throw file_error(std::string("cannot write: there is a ") +
                          (S_ISDIR(status.st_mode) ? "folder" : "device or pipe") + " of this name");

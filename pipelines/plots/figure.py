@@ -255,7 +255,7 @@ def section_axes(outline, window=None):
     if window:
         outline = np.reshape(window, (2, 2))
         if not np.all(outline[0] < outline[1]):
-            raise NotWanted("--window: wanted X0 below X1, and Y0 below Y1")
+            raise NotWanted("--window: expected X0 below X1, and Y0 below Y1")
     low, high = np.min(outline, axis=0), np.max(outline, axis=0)
     width, height = high - low
     scale = min((TWO_COLUMNS - 0.8) / width, 5.5 / height)

@@ -64,7 +64,7 @@ class OfPairs:
         for pair in pairs:
             one, other = (figure.name_index(names, name, "point") for name in pair)
             if one == other:
-                raise figure.NotWanted(f"--pair: '{pair[0]}' is there twice; wanted two points")
+                raise figure.NotWanted(f"--pair: '{pair[0]}' is there twice; expected two points")
             relative = moves[:, one] - moves[:, other]
             apart = place[one] - place[other]
             values.append(np.linalg.norm(apart) - np.linalg.norm(apart + relative, axis=1) if component == "closure" else
@@ -117,10 +117,10 @@ def histories_without(path, file, *options):
         if figure.texts(other, "/scene") != figure.texts(file, "/scene"):
             raise figure.NotWanted(f"this was made from another scene than {file.filename}")
         if "creep" in figure.scene_of(file) and "--no-creep" not in figure.texts(other, "/provenance/options")[-1].split():
-            raise figure.NotWanted("this run has creep; wanted one of demsolve --no-creep")
+            raise figure.NotWanted("this run has creep; expected one of demsolve --no-creep")
         if figure.strength_factor_of(other) != figure.strength_factor_of(file):
             raise figure.NotWanted(f"this run has strengths / {figure.strength_factor_of(other):.4g}, and {file.filename} has strengths / "
-                                   f"{figure.strength_factor_of(file):.4g}; wanted the same")
+                                   f"{figure.strength_factor_of(file):.4g}; expected the same")
         return Histories(other, *options)
 
 
@@ -130,7 +130,7 @@ def draw(file, component=None, point=(), readings=False, since_reset=False, with
     (the default), "x" or "y"."""
     component = component or ("closure" if pair else "y")
     if component not in (OF_PAIRS if pair else LABELS):
-        raise figure.NotWanted(f"--component {component} is not of {'pairs' if pair else 'single points'}; wanted "
+        raise figure.NotWanted(f"--component {component} is not of {'pairs' if pair else 'single points'}; expected "
                                f"{', '.join(OF_PAIRS if pair else LABELS)}")
     if pair and (point or readings or since_reset or without or closed_form):
         raise figure.NotWanted("--pair goes with --component only")
@@ -173,7 +173,7 @@ def draw(file, component=None, point=(), readings=False, since_reset=False, with
     if readings or since_reset:
         since = "since each point's first reading" if readings else "since the last reset"
     if readings and since_reset:
-        raise figure.NotWanted("wanted either --readings or --since-reset, not both")
+        raise figure.NotWanted("expected either --readings or --since-reset, not both")
     figure.label_time(file, axes, figure.ending_of(file))
     axes.set_ylabel(f"{(OF_PAIRS if pair else LABELS)[component]},\n{since} (mm)")
     if exact:  # its title is long

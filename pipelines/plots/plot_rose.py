@@ -25,7 +25,7 @@ def draw(file, width=5):
     """Figure of the directions of joint traces, in classes of `width` degrees."""
     joints = joint_sets.Joints(file)
     if not 1 <= width <= 90 or 180 % width != 0:
-        raise figure.NotWanted(f"--width {width}: wanted a part of 180 degrees, from 1 to 90")
+        raise figure.NotWanted(f"--width {width}: expected a part of 180 degrees, from 1 to 90")
     bins = round(180 / width)
     length = np.array([sum(high - low for low, high in joint_sets.inside([joints.outline], *ends))
                        if np.any(ends[0] != ends[1]) else 0.0 for ends in joints.traces])

@@ -130,7 +130,7 @@ def stress(which):
         try:
             a, b, decay = map(float, which.split(","))
         except ValueError:
-            raise NotWanted(f"--stress {which}: wanted low, mid, high or A,B,DECAY") from None
+            raise NotWanted(f"--stress {which}: expected low, mid, high or A,B,DECAY") from None
 
     def change(table, _, key, value):
         return stress_profile(value, a, b, decay) if (table, key) == ("in_situ_stress", "profile") else None

@@ -61,7 +61,7 @@ def main():
     there = np.all([np.isfinite(moves) for moves, _ in found.values()], axis=0)
     fine, fine_seconds = found[choices[0][0]]
     fine = fine[there]
-    print(f"{there.sum()} networks that all choices have; wanted error of the mean: {100 * arguments.error:g} percent\n")
+    print(f"{there.sum()} networks that all choices have; expected error of the mean: {100 * arguments.error:g} percent\n")
     print("| choice | mean (mm) | difference to the reference (percent) | seconds a run | runs | hours |\n|---|---|---|---|---|---|")
     for name, (moves, seconds) in found.items():
         moves = moves[there]

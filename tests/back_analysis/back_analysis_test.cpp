@@ -430,7 +430,7 @@ TEST(back_analysis, an_ensemble_without_enough_answers_keeps_the_best)
     };
     const Found found = back_analysis::fit(section.scene, hardly, readings, settings);
     EXPECT_FALSE(found.minimum.is_converged);
-    EXPECT_EQ(found.failure, "only 0 of 12 members have an answer; wanted 8 or more");
+    EXPECT_EQ(found.failure, "only 0 of 12 members have an answer; expected 8 or more");
     EXPECT_EQ(found.minimum.evaluations, 25);
     EXPECT_EQ(found.without_answer.size(), 12U);
     ASSERT_EQ(found.computed.size(), readings.size());

@@ -121,7 +121,7 @@ TEST(ensemble, goes_on_without_members_that_have_no_answer)
     calls = 3; // the prior's mean has an answer
     const Inversion failed = invert(hardly, as_they_are, prior, {.members = 15});
     EXPECT_FALSE(failed.is_converged);
-    EXPECT_EQ(failed.failure, "only 3 of 15 members have an answer; wanted 8 or more");
+    EXPECT_EQ(failed.failure, "only 3 of 15 members have an answer; expected 8 or more");
     // The best of the four that had one.
     EXPECT_EQ(failed.raw.residual, *linear(failed.mean));
     const auto sum = [&](const VectorXd& x) { return linear(x)->squaredNorm() + x.squaredNorm(); };

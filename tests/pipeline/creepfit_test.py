@@ -76,7 +76,7 @@ class Creepfit(ChainTest):
         for more in [], ["-q"]:
             done = self.chain.answer("creepfit", *command, "--runs", "2", *more)
             self.assertEqual((done.returncode, done.stdout), (3, ""))
-            for words in "no fit was found in 2 runs", "wanted more --runs", str(folder / "factors.failed.csv"):
+            for words in "no fit was found in 2 runs", "expected more --runs", str(folder / "factors.failed.csv"):
                 self.assertIn(words, done.stderr)
             self.assertEqual({path.name for path in folder.iterdir()}, {"factors.failed.csv", "fitted.failed.csv"})
             for row in table(folder / "factors.failed.csv"):
@@ -179,7 +179,7 @@ class Creepfit(ChainTest):
         done = self.chain.answer("creepfit", self.joints, "--measurements", self.readings(), "--fit",
                                  "kelvin-stiffness=0.05:0.2,kelvin-viscosity=0.01:2", "--ensemble", "6", "-o", folder / "f.csv", "--readings", folder / "r.csv")
         self.assertEqual(done.returncode, 3, done.stderr)
-        self.assertIn("of 6 members have an answer; wanted 6 or more", done.stderr)
+        self.assertIn("of 6 members have an answer; expected 6 or more", done.stderr)
         self.assertIn(str(folder / "f.failed.csv"), done.stderr)
         self.assertEqual({path.name for path in folder.iterdir()}, {"f.failed.csv", "r.failed.csv"})
         for row in table(folder / "f.failed.csv"):
@@ -421,7 +421,7 @@ class Creepfit(ChainTest):
             with self.subTest(line):
                 self.refused([self.joints, "--measurements", path, "--fit", "joint-stiffness"], str(path), *wanted)
         for text, wanted in [("time_day,C_z_mm\n1,2\n", '"C_z_mm"'), ("time_day,event\n1,\n", "no column of a monitoring"),
-                             ("", "wanted a line of column names"), (f"{head}\n{good[0]}\n", "wanted more readings"),
+                             ("", "expected a line of column names"), (f"{head}\n{good[0]}\n", "expected more readings"),
                              ("time_day,C_x_mm,C_y_mm,C_y_sigma_mm\n1,2,3,4\n", "sigma of some")]:
             path = self.chain.new_folder() / "readings.csv"
             path.write_text(text)
@@ -435,7 +435,7 @@ class Creepfit(ChainTest):
         path.write_text("\n".join(["time_day,point,component,displacement_mm,sigma_mm", *rows, ""]))
         fit = ["--fit", ",".join(TRUTH), "--offset", "--drift", "--steps", "6"]
         self.refused([self.joints, "--measurements", path, *fit],
-                     "12 readings for 3 factors and 9 unknown errors of instruments; wanted more readings")
+                     "12 readings for 3 factors and 9 unknown errors of instruments; expected more readings")
         curve = self.chain.new_folder() / "curve.csv"
         curve.write_text("time_day,displacement_mm\n" + "".join(f"{day},{1 + day / 10}\n" for day in range(5)))
         self.refused([curve, "--drift", "--steps", "3"], f"{curve}: 5 readings for 5 unknowns, 2 of them errors of instruments")
@@ -455,14 +455,14 @@ class Creepfit(ChainTest):
             (["--fit", "joint-stiffness", "--steps", "3,3"], "twice"),
             (["--fit", "joint-stiffness", "--steps", "39.5"], "no point has readings before and after the step on day 39.5"),
             (["--fit", "joint-stiffness", "--robust", "--correlated-noise"], "do not go together"),
-            (["--fit", "joint-stiffness", "--since-first-reading", "--robust"], "wanted --offset"),
+            (["--fit", "joint-stiffness", "--since-first-reading", "--robust"], "expected --offset"),
             (["--fit", "joint-stiffness", "--readings", readings], f"--readings {readings} is the same file as --measurements"),
         ]:
             with self.subTest(options):
                 self.refused([self.joints, "--measurements", readings, *options], wanted)
         for options, wanted in [(["--fit", "joint-stiffness"], "--fit goes with"), (["--stiffness", "-1"], "--stiffness is -1"),
                                 (["--load-day", "200"], "no reading from then on"), (["--elastic-mm", "0"], "must not be 0"),
-                                (["--converged-day", "500"], "taken to be over"), (["--offset"], "wanted --elastic-mm"),
+                                (["--converged-day", "500"], "taken to be over"), (["--offset"], "expected --elastic-mm"),
                                 (["--steps", "500"], "no readings before and after the step on day 500")]:
             with self.subTest(options):
                 self.refused([curve, *options], wanted)
@@ -476,7 +476,7 @@ class Creepfit(ChainTest):
         bare = self.chain.new_folder() / "bare.csv"
         with open(readings) as file, open(bare, "w") as other:
             other.writelines(",".join(line.rstrip("\n").split(",")[:4]) + "\n" for line in file)
-        for path, options, wanted in ((readings, ["--ensemble", "5"], "--ensemble is 5; wanted at least 6"),
+        for path, options, wanted in ((readings, ["--ensemble", "5"], "--ensemble is 5; expected at least 6"),
                                       (readings, ["--ensemble", "8", "--robust"], "does not go with --robust"),
                                       (readings, ["--ensemble", "8", "--fit", "joint-stiffness=0.5:0.9:2"], "joint-stiffness has a start"),
                                       (bare, ["--ensemble", "8"], "bare.csv: no sigma_mm")):

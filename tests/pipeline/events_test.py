@@ -141,7 +141,7 @@ class Events(ChainTest):
     def test_too_many_creep_steps_are_refused(self):
         code, message = self.refusal(self.column(), "--creep-step", "1e-12")
         self.assertEqual(code, 2)
-        self.assertIn("wanted at most 1e+06", message)
+        self.assertIn("expected at most 1e+06", message)
 
     def test_a_stage_that_removes_nothing_is_refused(self):
         text = self.column((r"^remove_m = \[\[\[0, 10\].*", "remove_m = [[[20, 0], [30, 0], [30, 10]]]"))

@@ -190,9 +190,9 @@ class WearingDilation(ChainTest):
         self.assertAlmostEqual(low / wanted, 1, delta=0.02)
 
     def test_what_does_not_go_together_is_refused(self):
-        one_law = "wanted keys of one joint law"
+        one_law = "expected keys of one joint law"
         for more, *messages in (
-                ("dilation_until_m = 1", "dilation_until_m", "wanted 0 of a joint whose dilation wears off"),
+                ("dilation_until_m = 1", "dilation_until_m", "expected 0 of a joint whose dilation wears off"),
                 ("residual_cohesion_MPa = 0\nresidual_friction_angle_deg = 30", "residual_cohesion_MPa", one_law),
                 ("joint_roughness_coefficient = 8\njoint_wall_strength_MPa = 50\nlargest_closure_mm = 0.3",
                  "joint_roughness_coefficient", one_law),
@@ -341,7 +341,7 @@ class ContinuouslyYielding(ChainTest):
         done = self.chain.answer("creepfit", joints, "--measurements", readings, "--fit", "joint-stiffness", "-o", output)
         self.assertEqual(done.returncode, 2, done.stderr)
         self.assertIn("no sensitivities of continuously yielding joints: their plastic displacement has a shear stiffness "
-                      "that is not differentiated; wanted a scene without continuously yielding joints", done.stderr)
+                      "that is not differentiated; expected a scene without continuously yielding joints", done.stderr)
         self.assertFalse(output.exists())
 
     def test_factor_of_safety(self):

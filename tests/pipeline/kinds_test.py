@@ -79,7 +79,7 @@ class Kinds(ChainTest):
     def test_files_that_are_wrong_or_missing_are_refused(self):
         traces = self.chain.text("tests/pipeline/kinds/traces.geojson")
         cases = {
-            "wanted the name of a file beside the scene": {"poles": None},
+            "expected the name of a file beside the scene": {"poles": None},
             "line 4: dip_deg is \"x\"": {"poles": "# a\ndip_deg,dip_direction_deg\n1,2\nx,3\n"},
             "is not JSON": {"traces": traces[:-9]},
             "feature 0 has the coordinates": {"traces": traces.replace("[20, 21]", "[20, 21, 0, 1]", 1)},
@@ -122,7 +122,7 @@ class Kinds(ChainTest):
                     path.write_text(path.read_text(), encoding=code)
                     done = self.chain.answer("jointgen", scene, "-o", scene.with_name("network.h5"))
                     self.assertEqual(done.returncode, 2, done.stderr)
-                    self.assertIn(f"{path}: the text is UTF-16; wanted UTF-8", done.stderr)
+                    self.assertIn(f"{path}: the text is UTF-16; expected UTF-8", done.stderr)
                     self.assertFalse(scene.with_name("network.h5").exists())
 
     def test_files_are_beside_the_scene(self):
@@ -143,7 +143,7 @@ class Kinds(ChainTest):
                     scene.write_text(text.replace(f'"{name}"', f'"{path}"'))
                     done = self.chain.answer("jointgen", scene, "--check")
                     self.assertEqual(done.returncode, 2, done.stderr)
-                    self.assertRegex(done.stderr, rf"scene\.toml, line {line}: .*wanted the name of a file in the folder")
+                    self.assertRegex(done.stderr, rf"scene\.toml, line {line}: .*expected the name of a file in the folder")
 
     def test_other_sets_stay_the_same(self):
         """Byte for byte, when a set changes, comes, goes or moves; but traces end at other traces."""

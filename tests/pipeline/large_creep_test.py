@@ -194,8 +194,8 @@ class Refused(ChainTest):
         text = incline(30, 35, more="release_s = 0.2\n") + "[creep]\nstep_days = 1\n"
         unit = "".join(f"{key} = {of}\n" for key, of in kelvin(100, 1).items())
         for scene_text, message in (
-                (text.replace("release_s = 0.2", ""), r"release_s.*wanted more than 0 with \[creep\]"),
-                (text.replace("release_s = 0.2", "release_s = 0.2\nstop_s = 5"), r"stop_s = 5: wanted no such key with \[creep\]"),
+                (text.replace("release_s = 0.2", ""), r"release_s.*expected more than 0 with \[creep\]"),
+                (text.replace("release_s = 0.2", "release_s = 0.2\nstop_s = 5"), r"stop_s = 5: expected no such key with \[creep\]"),
                 (text.replace('poissons_ratio = 0.25', "poissons_ratio = 0.25\nkelvin_shear_modulus_GPa = 5\n"
                               "kelvin_shear_viscosity_GPa_day = 50"), r"joints creep, and rock does not"),
                 (text.replace("tensile_strength_MPa = 0\n", "tensile_strength_MPa = 0\ninitial_friction_angle_deg = 40\n"

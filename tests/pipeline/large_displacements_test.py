@@ -326,12 +326,12 @@ class Blocks(ChainTest):
 
     def test_what_does_not_go_together_is_refused(self):
         text = incline(30, 25)
-        for more, message in (('[creep]\nstep_days = 1\n', r"wanted more than 0 with \[creep\]"),
+        for more, message in (('[creep]\nstep_days = 1\n', r"expected more than 0 with \[creep\]"),
                               ("[equilibrium]\nunloading_increments = 2\n",
-                               r"unloading_increments = 2: with \[large_displacements\] a stage excavates its rock at once; wanted 1"),
-                              ("", r"release_s = 5: wanted less than longest_s, 5 s"),
-                              ("", r"stop_s = 0.1: wanted more than release_s, 0.2 s"), ("", r"stop_s = 100: wanted at most longest_s, 60 s"),
-                              ("", r"rigid_rocks.*wanted the name of a \[\[rock\]\]"), ("", "new_contacts = .clay")):
+                               r"unloading_increments = 2: with \[large_displacements\] a stage excavates its rock at once; expected 1"),
+                              ("", r"release_s = 5: expected less than longest_s, 5 s"),
+                              ("", r"stop_s = 0.1: expected more than release_s, 0.2 s"), ("", r"stop_s = 100: expected at most longest_s, 60 s"),
+                              ("", r"rigid_rocks.*expected the name of a \[\[rock\]\]"), ("", "new_contacts = .clay")):
             scene = text + more
             if "rigid" in message:
                 scene = scene.replace("record_every_s", 'rigid_rocks = ["granite"]\nrecord_every_s')

@@ -91,7 +91,7 @@ class QuadraticZones(ChainTest):
         path.write_text(text)
         done = self.chain.answer("jointgen", path, "--check")
         self.assertEqual(done.returncode, 2)
-        self.assertRegex(done.stderr, r'scene.toml, line [0-9]+: \[zones\] kind = "quadratic": wanted "constant strain" with '
+        self.assertRegex(done.stderr, r'scene.toml, line [0-9]+: \[zones\] kind = "quadratic": expected "constant strain" with '
                                       r'\[large_displacements\]')
 
     def test_exports_have_their_six_gridpoints(self):

@@ -159,13 +159,13 @@ class Refusals(ChainTest):
         result = self.files["result"]
         text = self.chain.new_folder() / "text.h5"
         text.write_text("time_day,displacement_mm\n0,1\n")
-        self.assert_refuses(BAD_INPUT, "jointgen", result, says=f"{result}: this is an HDF5 file; wanted a scene file (.toml), which is text\n")
+        self.assert_refuses(BAD_INPUT, "jointgen", result, says=f"{result}: this is an HDF5 file; expected a scene file (.toml), which is text\n")
         self.assert_refuses(BAD_INPUT, "creepfit", scene, output="out.csv",
-                            says=["scene.toml: this is a scene; wanted a table of readings (.csv). Run jointgen and strength-averaging first"])
+                            says=["scene.toml: this is a scene; expected a table of readings (.csv). Run jointgen and strength-averaging first"])
         self.assert_refuses(BAD_INPUT, "creepfit", self.files["demsolve"], "--fit", "joint-stiffness", "--measurements", result,
-                            output="out.csv", says="this is an HDF5 file; wanted a table of measurements (.csv)")
-        self.assert_refuses(BAD_FILE, "demsolve", text, says="text.h5: this is a text file; wanted a file of the chain, which is HDF5")
-        self.assert_refuses(BAD_INPUT, "demsolve", scene, says="is a scene; wanted a file of the chain. First run: jointgen ")
+                            output="out.csv", says="this is an HDF5 file; expected a table of measurements (.csv)")
+        self.assert_refuses(BAD_FILE, "demsolve", text, says="text.h5: this is a text file; expected a file of the chain, which is HDF5")
+        self.assert_refuses(BAD_INPUT, "demsolve", scene, says="is a scene; expected a file of the chain. First run: jointgen ")
         done = self.chain.answer("jointcreep", "report", scene, "-o", text.with_name("report.html"))
         self.assertEqual(done.returncode, BAD_INPUT, done.stderr)
         self.assertIn(f"is a scene; expected a result file of demsolve, or a study's folder. First run: jointcreep run {scene} -o FOLDER",
@@ -229,7 +229,7 @@ class Refusals(ChainTest):
     def test_threads_that_cannot_start(self):
         def little_memory():
             resource.setrlimit(resource.RLIMIT_AS, (500 * 2**20, 500 * 2**20))
-        says = ["--threads 1000: only ", " could be started here (", "); wanted fewer"]
+        says = ["--threads 1000: only ", " could be started here (", "); expected fewer"]
         self.assert_refuses(BAD_INPUT, "demsolve", self.files["demsolve"], "--threads", "1000", says=says, limit=little_memory)
 
     def test_zones_without_end(self):
@@ -317,15 +317,15 @@ class Refusals(ChainTest):
         for what, old, new, at, says in [
             ("not TOML", '^rock = "rock"', 'rock = "rock', 'rock = "rock', "without its closing quote"),
             ("an unknown key", "^density_kg_per_m3", "densty_kg_per_m3", "densty", "did you mean"),
-            ("another rock", '"rock"$', '"stone"', 'name = "stone"', '[[rock]] "stone" name = "stone": wanted "rock", as /names/rock'),
-            ("another material", '"base joint"', '"base"', 'name = "base"', 'wanted "base joint", as /names/joint_material'),
+            ("another rock", '"rock"$', '"stone"', 'name = "stone"', '[[rock]] "stone" name = "stone": expected "rock", as /names/rock'),
+            ("another material", '"base joint"', '"base"', 'name = "base"', 'expected "base joint", as /names/joint_material'),
             ("another joint", '^name = "joint under block 2"', 'name = "F1"', 'name = "F1"',
-             'wanted "joint under block 2", as /names/joint_set'),
+             'expected "joint under block 2", as /names/joint_set'),
             ("a joint less", r'\[\[joint\]\]\nname = "joint under block 3" .*\n(.+\n)+\n', "", "", 'has no "joint under block 3", which /names/joint_set'),
             ("a stage less", r'\[\[stage\]\]\nname = "block 3 removed"\n(.+\n)+\n', "", "", '"block 3 removed"'),
-            ("another stage", '^name = "block 3 removed"', 'name = "3"', 'name = "3"', 'wanted "block 3 removed"'),
+            ("another stage", '^name = "block 3 removed"', 'name = "3"', 'name = "3"', 'expected "block 3 removed"'),
             ("a stage more", r"^\[\[gauge\]\]", '[[stage]]\nname = "4"\ndate = 30\nremove_m = [[[0, 0], [9, 0], [9, 9]]]\n\n[[gauge]]',
-             'name = "4"', "wanted no more of them"),
+             'name = "4"', "expected no more of them"),
             ("a boundary less", r'\[\[boundary\]\]\nfrom_m = \[0, 0\]\nto_m = \[0, 10\]\n.*\n', "", "from_m = [0, 0]",
              "/edges/boundary of the file has 2"),
             ("a wider section", r"^outline_m = .*", "outline_m = [[0, 0], [12, 0], [12, 40], [0, 40]]", "outline_m = ",
@@ -365,7 +365,7 @@ class Refusals(ChainTest):
                     for key, value in attributes.items() if make(file) else ():
                         file[name].attrs[key] = value
                 self.assert_refuses(BAD_INPUT, "demsolve", copy, says=f"{copy}: {name} ")
-                self.assert_refuses(BAD_INPUT, "demsolve", copy, says=" another file; wanted ")
+                self.assert_refuses(BAD_INPUT, "demsolve", copy, says=" another file; expected ")
 
     def test_corners_that_do_not_enclose_a_blocks_area(self):
         joints = self.chain.joints(self.chain.text(COLUMN))
@@ -373,7 +373,7 @@ class Refusals(ChainTest):
             copy = shutil.copy(joints, self.chain.new_folder() / "changed.h5")
             with h5py.File(copy, "r+", libver=("v110", "v110")) as file:
                 file["/vertices/position"][at] = place
-            self.assert_refuses(BAD_INPUT, "demsolve", copy, says=[f"{copy}: /blocks/area[", " m2; wanted "])
+            self.assert_refuses(BAD_INPUT, "demsolve", copy, says=[f"{copy}: /blocks/area[", " m2; expected "])
 
     def test_what_shows_only_in_a_run_names_the_file(self):
         text = changed(self.chain.text(COLUMN), "^step_days = 1", "step_days = 1e-6")

@@ -281,13 +281,13 @@ class Restart(ChainTest):
         kept, result = joints.with_name("kept.h5"), joints.with_name("result.h5")
         self.chain.run("demsolve", joints, result, "--checkpoint", kept, "--no-creep", "--until", 17)
         other = self.chain.joints(changed(SCENE, "^date = 25", "date = 26"))
-        self.assertRegex(self.refusal(other, kept, "--no-creep"), r"kept.h5: /provenance/input_sha256 is .*; wanted that of ")
-        self.assertRegex(self.refusal(joints, kept), r'kept.h5: /provenance/options is "--no-creep"; wanted the same')
+        self.assertRegex(self.refusal(other, kept, "--no-creep"), r"kept.h5: /provenance/input_sha256 is .*; expected that of ")
+        self.assertRegex(self.refusal(joints, kept), r'kept.h5: /provenance/options is "--no-creep"; expected the same')
         self.assertRegex(self.refusal(joints, kept, "--no-creep", "--until", 15.5),
-                         r"kept.h5: /checkpoint/time is day 16; wanted not after --until 15.5")
-        self.assertIn('this is a "jointcreep result" file; wanted a "jointcreep checkpoint" file',
+                         r"kept.h5: /checkpoint/time is day 16; expected not after --until 15.5")
+        self.assertIn('this is a "jointcreep result" file; expected a "jointcreep checkpoint" file',
                       self.refusal(joints, result, "--no-creep", "--until", 17))
-        self.assertRegex(self.refusal(joints, kept, "--no-creep", "--factor-of-safety"), "/provenance/options is .*; wanted the same")
+        self.assertRegex(self.refusal(joints, kept, "--no-creep", "--factor-of-safety"), "/provenance/options is .*; expected the same")
         alone = self.chain.answer("demsolve", joints, "-o", result, "--checkpoint-every", 5)
         self.assertEqual(alone.returncode, 2)
         self.assertIn("--checkpoint-every goes with --checkpoint only", alone.stderr)
@@ -298,7 +298,7 @@ class Restart(ChainTest):
         with h5py.File(kept, "r+", libver=("v110", "v110")) as file:
             version = file["/provenance/version"]
             version[-1] = b"0.0.1"
-        self.assertRegex(self.refusal(joints, kept, "--no-creep"), r"/provenance/version is .*0.0.1.*; wanted .*version of this program")
+        self.assertRegex(self.refusal(joints, kept, "--no-creep"), r"/provenance/version is .*0.0.1.*; expected .*version of this program")
 
     def test_a_damaged_checkpoint_is_refused(self):
         joints = self.chain.joints(SCENE)
@@ -323,7 +323,7 @@ class Restart(ChainTest):
         shutil.copyfile(kept, copy)
         with h5py.File(copy, "r+", libver=("v110", "v110")) as file:
             file["checkpoint/slip"][3] = np.nan
-        self.assertRegex(self.refusal(joints, copy, "--no-creep"), r"copy.h5: /checkpoint/slip\[3\] is nan; wanted finite")
+        self.assertRegex(self.refusal(joints, copy, "--no-creep"), r"copy.h5: /checkpoint/slip\[3\] is nan; expected finite")
         self.chain.run("demsolve", joints, joints.with_name("with-creep.h5"), "--checkpoint", creeping := kept.with_name("creeping.h5"))
         shutil.copyfile(creeping, copy)
         with h5py.File(copy, "r+", libver=("v110", "v110")) as file:

@@ -136,7 +136,7 @@ class Files(TracesTest):
     def test_layers(self):
         more = {**self.GEOPACKAGE, "dykes": (PLAIN, [(1, "D", wkb(2, [(1, 1), (2, 2)]))])}
         path = write_geopackage(self.new("t.gpkg"), more)
-        self.assert_refused(path, 'several layers; wanted layer = one of "dykes", "faults"')
+        self.assert_refused(path, 'several layers; expected layer = one of "dykes", "faults"')
         self.assert_refused(path, 'no lines in a layer "blocks"; it has some in "dykes", "faults"', options=["--layer", "blocks"])
         self.assertEqual(self.traces(path, "--layer", "dykes")[0], {(1, 0): [(1, 1), (2, 2)]})
 
@@ -342,7 +342,7 @@ class Fits(ChainTest):
         for options, says in (([], "--window"), (["--window", "0,0,1"], "--window"), (["--window", "nothing.toml"], "nothing.toml"),
                               (["--window", "0,0,9,0,1,1,0,9"], "not convex"), (["--window", "0,0,1,1"], "0 traces"),
                               ([*steep, "--law", "gamma"], "negative exponential"), ([*steep, "--azimuth", "20"], "--poles"),
-                              ([*steep, "--property", "no"], "twice"), (["--window", self.WINDOW, "--property", "no"], "wanted a column no"),
+                              ([*steep, "--property", "no"], "twice"), (["--window", self.WINDOW, "--property", "no"], "expected a column no"),
                               ([*steep, "--law", "power"], "--shortest"), ([*steep, "--shortest", "5", "--longest", "2"], "--longest"),
                               (["--window", self.WINDOW, "--layer", "a"], "no layers")):
             with self.subTest(options=options):

@@ -270,7 +270,7 @@ void measure(const std::string& path, double zone_size, int steps, int rounds)
     const Mesh mesh = zoning::zone(scene, file.network.blocks);
     Assembly section = mechanics::assemble(scene, file.network, file.equivalent, mesh);
     if (!section.tied.empty())
-        throw std::runtime_error("the bare loop knows no tied gridpoints; wanted a section without");
+        throw std::runtime_error("the bare loop knows no tied gridpoints; expected a section without");
     mechanics::excavate(section, file.network.blocks, mesh, mechanics::Loading(scene, mesh), 0);
 
     std::vector<Way> ways;

@@ -562,7 +562,7 @@ TEST(SampleJoints, RefusesKindsWithoutWhatTheyNeed)
     expect_refusal(scene_of({set, segment_set("b", 1, 0, .3)}), {"\"a\"", "lines"});
     set = segment_set("a", 0, 0, .3);
     set.terminates_at = {"b"};
-    expect_refusal(scene_of({set}), {"\"a\"", "\"b\"", "none"});
+    expect_refusal(scene_of({set}), {"\"a\"", "\"b\"", "expected the name of a joint set"});
     JointSet other = segment_set("b", 1, 0, .3);
     other.terminates_at = {"a"};
     expect_refusal(scene_of({set, other}), {"circle"});

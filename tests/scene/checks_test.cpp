@@ -41,13 +41,13 @@ TEST(checks, the_scene_is_valid)
 TEST(checks, a_value_is_refused_with_its_unit_and_range)
 {
     expect_refused("gravity_m_per_s2 = 9.81", "gravity_m_per_s2 = -1",
-                   "[section] gravity_m_per_s2 = -1 m/s2: wanted a number in [0, 100] m/s2");
+                   "[section] gravity_m_per_s2 = -1 m/s2: expected a number in [0, 100] m/s2");
     expect_refused("poissons_ratio = 0.3", "poissons_ratio = 0.5",
-                   "[[rock]] \"soft\" poissons_ratio = 0.5: wanted a number in [0, 0.5)");
+                   "[[rock]] \"soft\" poissons_ratio = 0.5: expected a number in [0, 0.5)");
     expect_refused("density_kg_per_m3 = 2400", "density_kg_per_m3 = 0",
-                   "[[rock]] \"soft\" density_kg_per_m3 = 0 kg/m3: wanted a number in (0, 30000] kg/m3");
+                   "[[rock]] \"soft\" density_kg_per_m3 = 0 kg/m3: expected a number in (0, 30000] kg/m3");
     expect_refused("mean_deg = 70", "mean_deg = 91",
-                   "[[joint_set]] dip mean_deg = 91 deg: wanted a number in [0, 90] deg");
+                   "[[joint_set]] dip mean_deg = 91 deg: expected a number in [0, 90] deg");
 }
 
 TEST(checks, an_unknown_key_is_refused_with_the_nearest)
@@ -70,14 +70,14 @@ TEST(checks, a_word_of_earlier_versions_is_refused_with_its_new_name)
     expect_refused("[zones]\n", "[motion]\nrelease_s = 0\n\n[zones]\n",
                    "the scene has no key \"motion\": it is now called large_displacements");
     expect_refused("engine = \"relaxation\"", "engine = \"explicit\"",
-                   "[equilibrium] engine = \"explicit\": wanted \"auto\" | \"relaxation\" | \"implicit\"; "
+                   "[equilibrium] engine = \"explicit\": expected \"auto\" | \"relaxation\" | \"implicit\"; "
                    "\"explicit\" is now called \"relaxation\"");
 }
 
 TEST(checks, a_missing_key_is_refused_at_its_table)
 {
     expect_refused("[zones]\nkind = \"constant strain\"\nsize_m = 4\n", "[zones]\n",
-                   "[zones] has no size_m: wanted a number");
+                   "[zones] has no size_m: expected a number");
     expect_refused("cohesion_MPa = 0.5\n", "", "has no cohesion_MPa", "[[rock]]\nname = \"soft\"");
     expect_part(refusal(replaced(text, "shear_kelvin_stiffness_MPa_per_m = 8000\n", "")),
                 "comes together with");
@@ -97,8 +97,8 @@ TEST(checks, missing_tables)
 
 TEST(checks, tables_in_the_wrong_brackets)
 {
-    expect_refused("[zones]", "[[zones]]", "[zones] is a list of 1: wanted a table");
-    expect_refused("[[region]]", "[region]", "region is a table: wanted tables under [[region]]");
+    expect_refused("[zones]", "[[zones]]", "[zones] is a list of 1: expected a table");
+    expect_refused("[[region]]", "[region]", "region is a table: expected tables under [[region]]");
 }
 
 TEST(checks, names)
@@ -108,16 +108,16 @@ TEST(checks, names)
     expect_refused("name = \"steep\"", "name = \"flat\"", "the name is taken",
                    "name = \"flat\"\nmaterial = \"joint\"\ntrace");
     expect_refused("name = \"lower\"", "name = \"upper\" # again", "the name is taken");
-    expect_refused("name = \"crest\"", "name = \"\"", "wanted a text");
+    expect_refused("name = \"crest\"", "name = \"\"", "expected a text");
     expect_refused("name = \"fault\"", "name = \"flat\" # too", "the name is taken in line");
 }
 
 TEST(checks, references)
 {
     expect_refused("rock = \"soft\"", "rock = \"sofft\"",
-                   "wanted the name of a [[rock]]: \"hard\", \"soft\"; did you mean \"soft\"?");
+                   "expected the name of a [[rock]]: \"hard\", \"soft\"; did you mean \"soft\"?");
     expect_refused("rock = \"hard\"", "rock = \"marble\"",
-                   "wanted the name of a [[rock]]: \"hard\", \"soft\"");
+                   "expected the name of a [[rock]]: \"hard\", \"soft\"");
     expect_refused("material = \"gouge\"\nfrom", "material = \"guoge\"\nfrom",
                    "[[joint]] \"fault\" material = \"guoge\"");
     expect_refused("material = \"joint\"\nmaterial_in", "material = \"jiont\"\nmaterial_in",
@@ -125,11 +125,11 @@ TEST(checks, references)
     const std::string in_soft = "{ rock = \"soft\", material = \"gouge\" }";
     expect_refused(
         in_soft, "{ rock = \"sofft\", material = \"gouge\" }",
-        "[[joint_set]] \"steep\" material_in = a list of 1: has \"sofft\"; wanted the name of a [[rock]]");
+        "[[joint_set]] \"steep\" material_in = a list of 1: has \"sofft\"; expected the name of a [[rock]]");
     expect_refused(in_soft, "{ rock = \"soft\", material = \"gauge\" }", "did you mean \"gouge\"?");
-    expect_refused(in_soft, in_soft + ", " + in_soft, "wanted each rock once, and \"soft\" is there twice");
+    expect_refused(in_soft, in_soft + ", " + in_soft, "expected each rock once, and \"soft\" is there twice");
     expect_refused(in_soft, "{ rock = \"soft\" }", "material");
-    expect_refused("[" + in_soft + "]", "[]", "wanted rocks and materials; at most 100");
+    expect_refused("[" + in_soft + "]", "[]", "expected rocks and materials; at most 100");
     expect_refused("joint = \"joint\"", "joint = \"jiont\"", "[[boundary]] joint = \"jiont\"");
 }
 
@@ -154,27 +154,27 @@ TEST(checks, polygons)
 
 TEST(checks, joints_and_boundaries)
 {
-    expect_refused("to_m = [40, 8]", "to_m = [0, 12]", "wanted another point than from_m");
-    expect_refused("to_m = [0, 20]\nfix", "to_m = [0, 0]\nfix", "wanted another point than from_m");
+    expect_refused("to_m = [40, 8]", "to_m = [0, 12]", "expected another point than from_m");
+    expect_refused("to_m = [0, 20]\nfix", "to_m = [0, 0]\nfix", "expected another point than from_m");
     expect_refused("to_m = [0, 20]\nfix", "to_m = [1, 20]\nfix", "one straight piece");
     expect_refused("to_m = [0, 20]\nfix", "to_m = [0, 21]\nfix", "one straight piece");
     expect_refused("to_m = [40, 20]\nfix", "to_m = [20, 0] # over\nfix", "runs over the boundary of line");
     expect_refused("fix = \"x\"", "fix = \"x\"\njoint = \"joint\"", "not both");
-    expect_refused("fix = \"x\"\n", "", "wanted fix", "[[boundary]]\nfrom_m = [0, 0]\nto_m = [0, 20]");
+    expect_refused("fix = \"x\"\n", "", "expected fix", "[[boundary]]\nfrom_m = [0, 0]\nto_m = [0, 20]");
 }
 
 TEST(checks, orientations)
 {
     const std::string dip = "dip = { law = \"normal\", mean_deg = 70, deviation_deg = 3 }";
     expect_refused(dip, dip + " # first\ntrace_angle = { law = \"constant\", mean_deg = 1 }", "not both");
-    expect_refused(dip + "\n", "", "has no dip: wanted one of trace_angle",
+    expect_refused(dip + "\n", "", "has no dip: expected one of trace_angle",
                    "[[joint_set]]\nname = \"steep\"");
     expect_refused("trace_angle = { law = \"normal\", mean_deg = 10, deviation_deg = 2 }\n", "",
                    "has no trace_angle", "[[joint_set]]\nname = \"flat\"");
     expect_refused("azimuth_deg = 20\n", "", "the dip of [[joint_set]] \"steep\" needs the bearing",
                    "[section]");
     expect_refused("\"normal\", mean_deg = 70", "\"lognormal\", mean_deg = 70",
-                   "wanted \"normal\" | \"uniform\" | \"constant\"");
+                   "expected \"normal\" | \"uniform\" | \"constant\"");
     const std::string pole =
         "orientation = { law = \"Fisher\", mean_dip_deg = 50, mean_dip_direction_deg = 30, "
         "concentration = 60 }";
@@ -182,7 +182,7 @@ TEST(checks, orientations)
                    "dip = { law = \"constant\", mean_deg = 1 }");
     expect_refused(pole, "trace_angle = { law = \"constant\", mean_deg = 1 }\n" + pole, "not both", pole);
     expect_refused("concentration = 60", "concentration = 4",
-                   "[[joint_set]] orientation concentration = 4: wanted a number in [5, 1e+06]",
+                   "[[joint_set]] orientation concentration = 4: expected a number in [5, 1e+06]",
                    "orientation = {");
     expect_refused(pole,
                    "orientation = { law = \"Fisher\", mean_dip_deg = 90, "
@@ -221,17 +221,18 @@ TEST(checks, laws)
     expect_refused(spacing, "spacing = { law = \"uniform\", mean_m = 1, shortest_m = 1, longest_m = 2 }",
                    "mean_m = 1: the law \"uniform\" does not take it");
     expect_refused(spacing, "spacing = { law = \"uniform\", shortest_m = 2, longest_m = 2 }",
-                   "longest_m = 2 m: wanted above shortest_m, 2 m");
+                   "longest_m = 2 m: expected above shortest_m, 2 m");
     expect_refused(spacing, "spacing = { law = \"constant\", mean_m = 2, longest_m = 2 }",
                    "longest_m = 2: the law \"constant\" does not take it");
     const auto power = [](const std::string& keys) { return "spacing = { law = \"power\", " + keys + " }"; };
     expect_refused(spacing, power("shortest_m = 1, longest_m = 2"),
                    "has no exponent: the law \"power\" needs it");
-    expect_refused(spacing, power("exponent = 2, shortest_m = 1, longest_m = 1"), "wanted above shortest_m");
+    expect_refused(spacing, power("exponent = 2, shortest_m = 1, longest_m = 1"),
+                   "expected above shortest_m");
     expect_refused(spacing, power("exponent = 2, shortest_m = 0.9e-6, longest_m = 1"),
                    "shortest_m = 9e-07 m: the law \"power\" needs at least 1e-6 of longest_m, here 1e-06 m");
     expect_refused(spacing, power("exponent = 21, shortest_m = 1, longest_m = 2"),
-                   "wanted a number in [0, 20]");
+                   "expected a number in [0, 20]");
     expect_refused(spacing, power("exponent = 2, mean_m = 1, shortest_m = 1, longest_m = 2"),
                    "mean_m = 1: the law \"power\" does not take it");
     EXPECT_EQ(
@@ -242,7 +243,7 @@ TEST(checks, laws)
                    "trace_angle = { law = \"uniform\"");
     expect_refused("deviation_deg = 3", "half_width_deg = 3", "has no deviation_deg",
                    "dip = { law = \"normal\"");
-    expect_refused(spacing, "spacing = 6", "[[joint_set]] spacing is 6: wanted a table");
+    expect_refused(spacing, "spacing = 6", "[[joint_set]] spacing is 6: expected a table");
     EXPECT_EQ(refusal(replaced(text, spacing, "spacing = { law = \"normal\", mean_m = 3, deviation_m = 1 }")),
               "accepted");
 }
@@ -261,13 +262,14 @@ TEST(checks, rock_bridges)
 
 TEST(checks, dilation)
 {
-    expect_refused("dilation_angle_deg = 5", "dilation_angle_deg = 26",
-                   "[[joint_material]] \"gouge\" dilation_angle_deg = 26: wanted at most friction_angle_deg");
+    expect_refused(
+        "dilation_angle_deg = 5", "dilation_angle_deg = 26",
+        "[[joint_material]] \"gouge\" dilation_angle_deg = 26: expected at most friction_angle_deg");
     expect_refused("shear_stiffness_MPa_per_m = 400\n", "shear_stiffness_MPa_per_m = 0\n",
-                   "[[joint_material]] \"gouge\" dilation_angle_deg = 5: wanted 0 of a smooth joint",
+                   "[[joint_material]] \"gouge\" dilation_angle_deg = 5: expected 0 of a smooth joint",
                    "dilation_angle_deg = 5");
     expect_refused("dilation_angle_deg = 8", "dilation_angle_deg = 36",
-                   "[[rock]] \"soft\" dilation_angle_deg = 36: wanted at most friction_angle_deg");
+                   "[[rock]] \"soft\" dilation_angle_deg = 36: expected at most friction_angle_deg");
     auto weak = text;
     for (const char* key :
          {"cohesion_MPa = 0.5\n", "friction_angle_deg = 35\n", "tensile_strength_MPa = 0.2\n"})
@@ -281,15 +283,15 @@ TEST(checks, residual_strength)
 {
     const std::string gouge = "[[joint_material]] \"gouge\" ";
     expect_refused("residual_cohesion_MPa = 0.05", "residual_cohesion_MPa = 0.11",
-                   gouge + "residual_cohesion_MPa = 0.11: wanted at most cohesion_MPa");
+                   gouge + "residual_cohesion_MPa = 0.11: expected at most cohesion_MPa");
     expect_refused("residual_friction_angle_deg = 20", "residual_friction_angle_deg = 25.5",
-                   gouge + "residual_friction_angle_deg = 25.5: wanted at most friction_angle_deg");
+                   gouge + "residual_friction_angle_deg = 25.5: expected at most friction_angle_deg");
     expect_refused("residual_friction_angle_deg = 20", "residual_friction_angle_deg = 4",
-                   gouge + "residual_friction_angle_deg = 4: wanted at least dilation_angle_deg");
+                   gouge + "residual_friction_angle_deg = 4: expected at least dilation_angle_deg");
     expect_part(refusal(replaced(text, "residual_cohesion_MPa = 0.05\n", "")), "residual");
     expect_part(refusal(replaced(replaced(text, "dilation_angle_deg = 5\n", ""),
                                  "shear_stiffness_MPa_per_m = 400\n", "shear_stiffness_MPa_per_m = 0\n")),
-                gouge + "residual_friction_angle_deg = 20: wanted none of a smooth joint");
+                gouge + "residual_friction_angle_deg = 20: expected none of a smooth joint");
 }
 
 TEST(checks, fine_zones)
@@ -309,18 +311,18 @@ TEST(checks, fine_zones)
 TEST(checks, size_at_faces)
 {
     expect_refused("size_at_faces_m = 2", "size_at_faces_m = 4.1",
-                   "[zones] size_at_faces_m = 4.1: wanted at most size_m, 4 m");
+                   "[zones] size_at_faces_m = 4.1: expected at most size_m, 4 m");
     EXPECT_EQ(refusal(replaced(text, "size_at_faces_m = 2", "size_at_faces_m = 4")), "accepted");
 }
 
 TEST(checks, times)
 {
-    expect_refused("end = 1994-07-01", "end = 1994-06-01", "wanted an end after the start");
-    expect_refused("date = 1994-06-06", "date = 1994-06-01", "wanted later than the start");
-    expect_refused("date = 14", "date = 5", "wanted later than the stage before, 5 days");
-    expect_refused("date = 14", "date = 30.5", "wanted not after the end");
+    expect_refused("end = 1994-07-01", "end = 1994-06-01", "expected an end after the start");
+    expect_refused("date = 1994-06-06", "date = 1994-06-01", "expected later than the start");
+    expect_refused("date = 14", "date = 5", "expected later than the stage before, 5 days");
+    expect_refused("date = 14", "date = 30.5", "expected not after the end");
     expect_refused("first_reading = 1994-06-07", "first_reading = 1994-05-31",
-                   "wanted from the start to the end");
+                   "expected from the start to the end");
     EXPECT_EQ(refusal(replaced(text, "date = 14", "date = 30")), "accepted") << "a stage at the end";
 }
 
@@ -336,12 +338,12 @@ TEST(checks, monitoring_lines)
     expect_refused("to_m = [2, 14]", "to_m = [2, 26]",
                    "[[monitoring_line]] \"inclinometer\" to_m = [2, 26]: its point \"inclinometer 4\" at "
                    "[2, 26] is outside the section's outline");
-    expect_refused("to_m = [2, 14]", "to_m = [2, 2]", "wanted another point than from_m");
+    expect_refused("to_m = [2, 14]", "to_m = [2, 2]", "expected another point than from_m");
     expect_part(
         refusal(replaced(text, "name = \"crest\"", "name = \"inclinometer 2\"")),
         "[[monitoring_line]] \"inclinometer\" name = \"inclinometer\": its point \"inclinometer 2\" has the "
         "name of another point");
-    expect_refused("first_reading = 7", "first_reading = 31", "wanted from the start to the end, 30 days");
+    expect_refused("first_reading = 7", "first_reading = 31", "expected from the start to the end, 30 days");
     EXPECT_EQ(refusal(replaced(text, "first_reading = 7", "first_reading = 31")).find('\n'),
               std::string::npos)
         << "once";
@@ -371,7 +373,7 @@ TEST(checks, all_faults_are_told_at_once)
     const std::string places = refusal(wrong);
     EXPECT_EQ(lines(places), 2) << places;
     expect_part(places, "outside the section's outline");
-    expect_part(places, "wanted not after the end");
+    expect_part(places, "expected not after the end");
     // Dates mean nothing without the start: those of the same table alone are told.
     EXPECT_EQ(lines(refusal(replaced(text, "start = 1994-06-01", "start = true"))), 2);
 }
@@ -388,7 +390,7 @@ TEST(checks, places)
 
 TEST(checks, numbers_that_depend_on_others)
 {
-    expect_refused("shortest_edge_m = 0.2", "shortest_edge_m = 5", "wanted at most [zones] size_m, 4 m");
+    expect_refused("shortest_edge_m = 0.2", "shortest_edge_m = 5", "expected at most [zones] size_m, 4 m");
     expect_refused("mass_damping_per_s = 20\n", "", "has no mass_damping_per_s", "[equilibrium]");
     expect_refused("damping = \"mass\"", "damping = \"adaptive\"", "stiffness_damping_s = 1e-05",
                    "stiffness_damping_s = 1e-5");
@@ -403,11 +405,11 @@ TEST(checks, numbers_that_depend_on_others)
 
 TEST(checks, loads)
 {
-    expect_refused("traction_MPa = [0, -0.01]", "", "wanted fix = ", "[[boundary]]\nfrom_m = [0, 20]");
-    expect_refused("load_history = [[1, 0], [4, 1]]", "", "wanted fix and load_history",
+    expect_refused("traction_MPa = [0, -0.01]", "", "expected fix = ", "[[boundary]]\nfrom_m = [0, 20]");
+    expect_refused("load_history = [[1, 0], [4, 1]]", "", "expected fix and load_history",
                    "displacement_mm = [-0.1, 0]");
-    expect_refused("displacement_mm = [-0.1, 0]", "displacement_mm = [-0.1, 1]", "wanted 0 in the direction",
-                   "displacement_mm = [-0.1, 1]");
+    expect_refused("displacement_mm = [-0.1, 0]", "displacement_mm = [-0.1, 1]",
+                   "expected 0 in the direction", "displacement_mm = [-0.1, 1]");
     expect_refused("load_history = [[1, 0], [4, 1]]", "load_history = [[4, 0], [1, 1]]",
                    "dates in increasing order", "load_history = [[4, 0]");
     expect_refused("joint = \"joint\"\n\n[[boundary]]",
@@ -416,7 +418,7 @@ TEST(checks, loads)
     expect_refused("traction_MPa = [0, -0.01]", "fix = \"x\"\nload_history = [[0, 1]]", "beside it",
                    "load_history = [[0, 1]]");
     expect_refused("fix = \"x\"\n\n", "fix = \"x\"\ntraction_MPa = [0.1, -1]\n\n",
-                   "wanted 0 in a direction that is fixed", "traction_MPa = [0.1, -1]");
+                   "expected 0 in a direction that is fixed", "traction_MPa = [0.1, -1]");
     const auto fine = replaced(text, "fix = \"x\"\n\n", "fix = \"x\"\ntraction_MPa = [0, -1]\n\n");
     EXPECT_EQ(refusal(fine), "accepted");
 }
@@ -427,9 +429,9 @@ TEST(checks, rollers)
     EXPECT_EQ(refusal(replaced(text, left, "fix = \"normal\"\n\n")), "accepted");
     EXPECT_EQ(refusal(replaced(text, left, "fix = \"normal\"\ntraction_MPa = [0, -1]\n\n")), "accepted");
     expect_refused(left, "fix = \"normal\"\ntraction_MPa = [0.1, -1]\n\n",
-                   "wanted a traction along the segment", "traction_MPa = [0.1, -1]");
+                   "expected a traction along the segment", "traction_MPa = [0.1, -1]");
     expect_refused("fix = \"x\"\ndisplacement_mm", "fix = \"normal\"\ndisplacement_mm",
-                   "wanted fix = \"x\", \"y\" or \"xy\" beside it", "displacement_mm");
+                   "expected fix = \"x\", \"y\" or \"xy\" beside it", "displacement_mm");
     expect_refused(left, "fix = \"normal\"\n\n[large_displacements]\nnew_contacts = \"joint\"\n\n",
                    "with [large_displacements]", "fix = \"normal\"");
     // Upright and level rollers may meet a support that moves, others not.
@@ -439,7 +441,7 @@ TEST(checks, rollers)
     const auto sloping = replaced(
         replaced(replaced(text, top, roof), "[40, 20], [0, 20]]\nholes", "[40, 20], [0, 21]]\nholes"),
         "from_m = [0, 20]\nto_m = [40, 20]", "from_m = [0, 21]\nto_m = [40, 20]");
-    expect_part(refusal(sloping), "wanted no common point with the rollers");
+    expect_part(refusal(sloping), "expected no common point with the rollers");
 }
 
 TEST(checks, files)
@@ -463,29 +465,29 @@ TEST(checks, a_joint_has_one_kelvin_unit_or_a_chain)
                    "normal_kelvin_stiffness_MPa_per_m = 1\nnormal_kelvin_viscosity_MPa_day_per_m = 1\n"
                    "shear_kelvin_stiffness_MPa_per_m = 1\nshear_kelvin_viscosity_MPa_day_per_m = 1\n"
                    "kelvin_chain = [{",
-                   "wanted either it, or the four keys of one Kelvin unit, not both", "kelvin_chain = [{");
+                   "expected either it, or the four keys of one Kelvin unit, not both", "kelvin_chain = [{");
     expect_refused("normal_maxwell_viscosity_MPa_day_per_m = 1e6\n", "",
                    "as it comes together with shear_maxwell_viscosity_MPa_day_per_m",
                    "[[joint_material]]\nname = \"gouge\"");
     expect_refused("kelvin_chain = [{", "kelvin_chain = [3, {",
-                   "[[joint_material]] kelvin_chain is 3: wanted a table");
+                   "[[joint_material]] kelvin_chain is 3: expected a table");
 }
 
 TEST(checks, creep_steps_are_fixed_or_chosen_by_a_tolerance)
 {
     expect_refused("step_days = 5", "step_days = 5\ntolerance_m = 1e-5",
-                   "wanted either it or step_days, not both", "tolerance_m = 1e-5");
+                   "expected either it or step_days, not both", "tolerance_m = 1e-5");
     expect_part(refusal(replaced(text, "step_days = 5\n", "")),
-                line_of(text, "[creep]") + " [creep] has no step_days: wanted it, or tolerance_m");
+                line_of(text, "[creep]") + " [creep] has no step_days: expected it, or tolerance_m");
     expect_refused("step_days = 5", "step_days = 5\nlongest_step_days = 9", "only tolerance_m uses it",
                    "longest_step_days");
     const std::string steps = "tolerance_m = 1e-5\nshortest_step_days = 2\n";
-    expect_refused("step_days = 5", steps + "longest_step_days = 1", "wanted at least shortest_step_days",
+    expect_refused("step_days = 5", steps + "longest_step_days = 1", "expected at least shortest_step_days",
                    "longest_step_days");
-    expect_refused("step_days = 5", steps + "first_step_days = 1", "wanted at least shortest_step_days",
+    expect_refused("step_days = 5", steps + "first_step_days = 1", "expected at least shortest_step_days",
                    "first_step_days");
     expect_refused("step_days = 5", steps + "longest_step_days = 3\nfirst_step_days = 4",
-                   "wanted at most longest_step_days", "first_step_days");
+                   "expected at most longest_step_days", "first_step_days");
     EXPECT_EQ(refusal(replaced(text, "step_days = 5", steps + "first_step_days = 2\nlongest_step_days = 2")),
               "accepted");
 }
@@ -496,7 +498,7 @@ TEST(checks, kinds_of_sets)
     expect_refused(persistence, "", "has no persistence: a set of lines needs it",
                    "[[joint_set]]\nname = \"steep\"");
     expect_refused(persistence, persistence + "bridge_length_m = 2\n",
-                   "bridge_length_m = 2: wanted either it or persistence, not both", "bridge_length_m = 2");
+                   "bridge_length_m = 2: expected either it or persistence, not both", "bridge_length_m = 2");
     expect_refused("length = { law = \"uniform\", shortest_m = 1, longest_m = 9 }\n", "",
                    "has no length: a bridge_length_m needs it", "[[joint_set]]\nname = \"even\"");
     expect_refused("density = { P20_per_m2 = 0.004 }",
@@ -516,7 +518,7 @@ TEST(checks, kinds_of_sets)
                    "trace_angle = { law = \"constant\", mean_deg = 4 }", "discs lie in space");
     expect_refused("rocks = [\"hard\"]", "rocks = [\"hardd\"]", "did you mean \"hard\"?");
     expect_refused("rocks = [\"hard\"]", "region_m = [[0, 0], [9, 0], [9, 9]]\nrocks = [\"hard\"]",
-                   "wanted either it or region_m", "rocks = [\"hard\"]");
+                   "expected either it or region_m", "rocks = [\"hard\"]");
 }
 
 TEST(checks, densities)
@@ -526,7 +528,7 @@ TEST(checks, densities)
     expect_refused(density, "density = { P10_per_m = 0.05 }", "P10_per_m needs either");
     expect_refused(density, "density = { P10_per_m = 0.05, P21_per_m = 1, scanline_angle_deg = 0 }",
                    "one measure alone");
-    expect_refused(density, "density = { scanline_angle_deg = 0 }", "wanted one of P10_per_m");
+    expect_refused(density, "density = { scanline_angle_deg = 0 }", "expected one of P10_per_m");
     expect_refused(density, "density = { P20_per_m2 = 1 }", "lines have no number per area");
     expect_refused(density, "density = { P30_per_m3 = 1 }", "only discs");
     expect_refused(density, "density = { P32_per_m = 1 }", "no orientation in space");
@@ -540,9 +542,9 @@ TEST(checks, terminations)
 {
     const std::string ends = "terminates_at = [\"fault\", \"flat\"]";
     expect_refused(ends, "terminates_at = [\"fault\", \"flatt\"]", "did you mean \"flat\"?");
-    expect_refused(ends, "terminates_at = [\"measured\"]", "wanted the name of a [[joint_set]]");
+    expect_refused(ends, "terminates_at = [\"measured\"]", "expected the name of a [[joint_set]]");
     expect_refused(ends, "terminates_at = [\"flat\", \"flat\"]", "each name once");
-    expect_refused(ends + "\n", "", "wanted terminates_at beside it", "termination_probability = 0.7");
+    expect_refused(ends + "\n", "", "expected terminates_at beside it", "termination_probability = 0.7");
     expect_refused("persistence = 0.6\n", "persistence = 0.6\nterminates_at = [\"fault\"]\n",
                    "a set of lines does not take it", "terminates_at = [\"fault\"]\n");
     EXPECT_EQ(refusal(replaced(text, ends, "terminates_at = [\"on the map\", \"coins\"]")), "accepted");
@@ -560,13 +562,13 @@ TEST(checks, orientation_laws)
                    "orientation = { law = \"bootstrap\", poles = \"poles.csv\", poles_deg = [[1, 2]] }",
                    "has both poles_deg and poles");
     expect_refused(bootstrap, "orientation = { law = \"bootstrap\", poles = \"pole.csv\" }",
-                   "wanted the name of a file beside the scene");
+                   "expected the name of a file beside the scene");
     expect_refused(bootstrap,
                    "orientation = { law = \"bootstrap\", poles = \"poles.csv\", concentration = 9 }",
                    "does not take it");
     expect_refused(bootstrap,
                    "orientation = { law = \"bootstrap\", poles = \"poles.csv\", blind_zone_deg = 9 }",
-                   "wanted scanline_trend_deg");
+                   "expected scanline_trend_deg");
     expect_refused(bootstrap, "orientation = { law = \"Fisher\", concentration = 9 }",
                    "has no mean_dip_deg: the law \"Fisher\" needs it");
     expect_refused("[[60, 40], [64, 52]", "[[60, 40], [94, 52]", "94");
@@ -575,9 +577,9 @@ TEST(checks, orientation_laws)
 TEST(checks, files_that_a_scene_names)
 {
     expect_part(refusal(replaced(text, "75,200,1", "95,200,1")),
-                "line 2: dip_deg is \"95\"; wanted a number in [0, 90]");
+                "line 2: dip_deg is \"95\"; expected a number in [0, 90]");
     expect_part(refusal(replaced(text, "dip_direction_deg,weight", "dip_direction,weight")),
-                "wanted a column dip_direction_deg");
+                "expected a column dip_direction_deg");
     expect_part(refusal(replaced(text, "value = \"F\"", "value = \"H\"")), "has no trace whose set is \"H\"");
     expect_part(refusal(replaced(text, "name = \"poles.csv\"", "name = \"traces.csv\"")), "is taken");
 

@@ -76,12 +76,13 @@ TEST(dates, no_such_day)
     const auto broken = replaced(text, "date = 1994-06-06", "date = 1994-02-29");
     expect_part(refusal(broken), line_of(broken, "date = 1994-02-29"));
     expect_part(refusal(replaced(text, "date = 1994-06-06", "date = 1994-06-06T12:00:00")),
-                "date = a time: wanted a date");
+                "date = a time: expected a date");
 }
 
 TEST(dates, too_far_away)
 {
-    expect_part(refusal(replaced(text, "end = 1994-07-01", "end = 9999-07-01")), "end = 9999-07-01: wanted");
+    expect_part(refusal(replaced(text, "end = 1994-07-01", "end = 9999-07-01")),
+                "end = 9999-07-01: expected");
 }
 
 } // namespace

@@ -32,7 +32,7 @@ std::string refusal(const std::function<void()>& read)
 void expect_refused(const std::string& text, const std::string& part, const TraceFilter& filter = {})
 {
     const std::string message = refusal([&] { mapped_traces(text, filter); });
-    EXPECT_NE(message.find(part), std::string::npos) << message << "\nwanted in it: " << part;
+    EXPECT_NE(message.find(part), std::string::npos) << message << "\nexpected in it: " << part;
 }
 
 std::string feature(const std::string& geometry, const std::string& more = "\"properties\": {}")
@@ -79,7 +79,7 @@ TEST(MappedTraces, MayBeginWithAByteOrderMark)
 
 TEST(MappedTraces, AreNotReadFromUtf16)
 {
-    const std::string wanted = "the text is UTF-16; wanted UTF-8";
+    const std::string wanted = "the text is UTF-16; expected UTF-8";
     for (const std::string& text : {std::string("\xff\xfe{\0", 4), std::string("\xfe\xff\0{", 4),
                                     std::string("{\0\"\0", 4), std::string("\0{\0\"", 4)}) {
         expect_refused(text, wanted);
@@ -118,11 +118,11 @@ TEST(MappedTraces, AreReadFromCsv)
 
 TEST(MappedTraces, RefusesWhatIsWrong)
 {
-    expect_refused("", "wanted a line of column names");
+    expect_refused("", "expected a line of column names");
     expect_refused("x1_m,y1_m,x2_m,y2_m\n", "and rows");
-    expect_refused("x1_m,y1_m,x2_m\n1,2,3\n", "wanted a column y2_m");
-    expect_refused("x_m,y_m\n1,2\n", "wanted a column id");
-    expect_refused("x1_m,y1_m,x2_m,y2_m\n1,2,3\n", "line 2: has 3 fields; wanted 4");
+    expect_refused("x1_m,y1_m,x2_m\n1,2,3\n", "expected a column y2_m");
+    expect_refused("x_m,y_m\n1,2\n", "expected a column id");
+    expect_refused("x1_m,y1_m,x2_m,y2_m\n1,2,3\n", "line 2: has 3 fields; expected 4");
     for (const std::string wrong : {"nan", "inf", "1e7", "3 m", "", "1.5.2"})
         expect_refused("x1_m,y1_m,x2_m,y2_m\n1,2,3," + wrong + "\n", "line 2: y2_m is \"" + wrong + "\"");
     expect_refused("id,x_m,y_m\n1,0,0\n1,1,1\n2,0,0\n2,3,3\n1,5,5\n", "line 6: id \"1\" comes again");
@@ -166,7 +166,7 @@ TEST(MappedTraces, AreThoseOfALayer)
     EXPECT_EQ(mapped_traces(two, {.layer = "a"}).size(), 1u);
     EXPECT_EQ(mapped_traces(two, {.layer = "b"}).size(), 2u);
     EXPECT_EQ(mapped_traces(R"({"layers": {"a": )" + line + "}}", {}).size(), 1u);
-    expect_refused(two, R"(several layers; wanted layer = one of "a", "b")");
+    expect_refused(two, R"(several layers; expected layer = one of "a", "b")");
     expect_refused(two, R"(no lines in a layer "c"; it has some in "a", "b")", {.layer = "c"});
     expect_refused(line, "is GeoJSON, which has no layers", {.layer = "a"});
     expect_refused("x1_m,y1_m,x2_m,y2_m\n1,2,3,4\n", "is CSV, which has no layers", {.layer = "a"});
@@ -186,13 +186,13 @@ TEST(MappedTraces, CarryTheValueOfTheirProperty)
     EXPECT_EQ(csv.value, (std::vector<std::string>{"A", "B"}));
     EXPECT_EQ(csv.trace.size(), 2u);
     expect_refused("id,x_m,y_m,s\n1,0,0,A\n1,1,1,B\n", "more than one s", {.property = "s"});
-    expect_refused("x1_m,y1_m,x2_m,y2_m\n1,2,3,4\n", "wanted a column s", {.property = "s"});
+    expect_refused("x1_m,y1_m,x2_m,y2_m\n1,2,3,4\n", "expected a column s", {.property = "s"});
 }
 
 TEST(MeasuredPoles, HaveNoColumnsBesideTheirOwn)
 {
     const std::string message = refusal([] { poles_in_csv("dip_deg,dip_direction_deg,wieght\n10,20,3\n"); });
-    EXPECT_NE(message.find("line 1: has a column wieght; wanted none but dip_deg"), std::string::npos)
+    EXPECT_NE(message.find("line 1: has a column wieght; expected none but dip_deg"), std::string::npos)
         << message;
 }
 

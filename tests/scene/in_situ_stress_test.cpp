@@ -46,7 +46,7 @@ TEST(in_situ_stress, a_ratio_is_the_linear_law_of_the_rock_s_weight)
         EXPECT_EQ(stress[2], 0);
     }
     const auto both = replaced(every_key_text(), linear, linear + "horizontal_stress_ratio = 0.7\n");
-    expect_part(refusal(both), "wanted either horizontal_stress_ratio or the linear keys");
+    expect_part(refusal(both), "expected either horizontal_stress_ratio or the linear keys");
 }
 
 // The linear law from -10 m to 30 m, over ground at 25 m.
@@ -96,12 +96,12 @@ TEST(in_situ_stress, either_this_or_that)
     const auto by = [&](const std::string& keys) { return refusal(replaced(text, linear, keys)); };
     const std::string profile = "profile = [" + level(0, 1, 0, 0) + ", " + level(9, 1, 0, 0) + "]\n";
     expect_part(by(linear + "ground_m = [[0, 20], [40, 20]]\n"), "either it or elevation_m");
-    expect_part(by(profile), "has no elevation_m: wanted it, or ground_m");
-    const auto either = "wanted either profile or the linear keys (";
+    expect_part(by(profile), "has no elevation_m: expected it, or ground_m");
+    const auto either = "expected either profile or the linear keys (";
     expect_part(by(linear + profile), either);
     expect_part(by("elevation_m = 20\n" + profile + "compression_xx_MPa = 0\n"), either);
     expect_part(by("elevation_m = 20\nshear_xy_gradient_MPa_per_m = 0\n" + profile), either);
-    expect_part(by("elevation_m = 20\n"), "wanted the keys of a linear law");
+    expect_part(by("elevation_m = 20\n"), "expected the keys of a linear law");
     expect_part(by("elevation_m = 20\nshear_xy_MPa = 0\n"), "has no compression_xx_MPa");
     expect_part(by("ground_m = [[0, 20], [39, 20]]\n" + profile),
                 "across the whole section, from x = 0 to 40 m");
@@ -114,9 +114,9 @@ TEST(in_situ_stress, either_this_or_that)
     expect_part(by("elevation_m = 20\nprofile = [" + level(-2, 1, 0, 0) + ", " + level(2, 1, 0, 0) + "]\n"),
                 "[in_situ_stress] profile depth_m = -2");
     expect_part(by("ground_m = 20\n" + profile),
-                "ground_m = 20 m: wanted a line [[x, y], [x, y], ...] of numbers");
+                "ground_m = 20 m: expected a line [[x, y], [x, y], ...] of numbers");
     expect_part(by("elevation_m = 20\nprofile = 3\n"),
-                "profile = 3: wanted levels [{ depth_m = 0, compression_xx_MPa");
+                "profile = 3: expected levels [{ depth_m = 0, compression_xx_MPa");
     EXPECT_EQ(by("ground_m = [[0, 20], [40, 20]]\n" + profile), "accepted");
 }
 

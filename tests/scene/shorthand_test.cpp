@@ -83,12 +83,12 @@ TEST(shorthand, what_names_and_sums_cannot_be_is_refused)
     expect_part(refused("\"height,5\""), "is no part of a sum");
     expect_part(refused("\"" + std::string(300, '(') + "height\""), "nested too deep");
     expect_part(error_of("[variables]\na = \"b\"\nb = \"a\"\n"), "depends on itself");
-    expect_part(error_of("[variables]\n\"a b\" = 1\n"), "wanted a name of letters");
-    expect_part(error_of("[variables]\na = true\n"), "wanted a number, or a text with names");
-    expect_part(error_of("variables = 3\n"), "wanted a table [variables]");
-    expect_part(error_of("[variables]\n\"\" = 1\n"), "wanted a name of letters");
+    expect_part(error_of("[variables]\n\"a b\" = 1\n"), "expected a name of letters");
+    expect_part(error_of("[variables]\na = true\n"), "expected a number, or a text with names");
+    expect_part(error_of("variables = 3\n"), "expected a table [variables]");
+    expect_part(error_of("[variables]\n\"\" = 1\n"), "expected a name of letters");
     expect_part(error_of("[variables]\n_a = 1\n"), "begins with a letter");
-    expect_part(error_of("[variables]\na = inf\n"), "wanted a finite number");
+    expect_part(error_of("[variables]\na = inf\n"), "expected a finite number");
     EXPECT_TRUE(written_out("[variables]\nH = 10\n[random]\nseed = \"H * 1e5\"\n", "scene")
                     .ends_with("seed = 1000000\n"));
     std::string chain = "[variables]\n";
@@ -116,7 +116,7 @@ TEST(shorthand, texts_without_a_name_stay)
     const std::string quoted =
         "[variables]\nH = 4\n" + replaced(plain, "end = 1994-07-01", "end = \"1994-07-01\"");
     expect_part(refusal(written_out(quoted.substr(quoted.find("[section]")), "scene")),
-                "end = \"1994-07-01\": wanted a date");
+                "end = \"1994-07-01\": expected a date");
 }
 
 TEST(shorthand, quarters_and_halves_of_circles_have_their_share_of_sides)
@@ -179,10 +179,10 @@ TEST(shorthand, circles_and_arcs_that_are_none_are_refused)
 {
     const auto refused = [](const std::string& shape) { return error_of("[section]\noutline_m = " + shape); };
     expect_part(refused("{ center_m = [0, 0], radius_m = 0 }"), "radius above 0 m");
-    expect_part(refused("{ center_m = [0, 0] }"), "has no radius_m: wanted a circle");
-    expect_part(refused("{ center_m = [0, 0], radius = 1 }"), "has a key radius: wanted a circle");
+    expect_part(refused("{ center_m = [0, 0] }"), "has no radius_m: expected a circle");
+    expect_part(refused("{ center_m = [0, 0], radius = 1 }"), "has a key radius: expected a circle");
     expect_part(refused("{ center_m = [0, 0], radius_m = 1, sides = 2 }"), "whole number from 3 to 1000");
-    expect_part(refused("[{ through_m = [0, 0], to_m = [1, 1] }, [2, 2]]"), "wanted a corner before");
+    expect_part(refused("[{ through_m = [0, 0], to_m = [1, 1] }, [2, 2]]"), "expected a corner before");
     expect_part(refused("[[0, 0], { through_m = [1, 0], to_m = [2, 0] }]"), "on a straight line");
     expect_part(refused("[[0, 0], { through_m = [1, 0], to_m = [0, 0] }]"), "on a straight line");
 }

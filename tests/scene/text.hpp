@@ -47,7 +47,7 @@ inline std::string refusal(const std::string& text)
 
 inline void expect_part(const std::string& message, const std::string& part)
 {
-    EXPECT_NE(message.find(part), std::string::npos) << "message: " << message << "\nwanted in it: " << part;
+    EXPECT_NE(message.find(part), std::string::npos) << "message: " << message << "\nexpected in it: " << part;
 }
 
 } // namespace jointcreep::scene

@@ -76,7 +76,7 @@ TEST(units, integers_are_numbers)
 TEST(units, an_integer_is_not_any_number)
 {
     expect_part(refusal(replaced(every_key_text(), "most_steps = 100000", "most_steps = 1e5")),
-                "wanted an integer");
+                "expected an integer");
 }
 
 } // namespace

@@ -110,7 +110,7 @@ TEST_F(Refusal, OfTheWrongKind)
 {
     write_network(path, file.provenance, file.network);
     EXPECT_SAYS(message(),
-                "this is a \"jointcreep network\" file; wanted a \"jointcreep result\" file, which "
+                "this is a \"jointcreep network\" file; expected a \"jointcreep result\" file, which "
                 "demsolve makes");
     EXPECT_THROW(read_joints(path), input_error);
     EXPECT_SAYS(after([](hid_t opened) { set_text(opened, "filetype", "jointcreep movie"); }), "movie");
@@ -161,25 +161,25 @@ TEST_F(Refusal, OfAnotherUnit)
                     set_text(set, "units", "mm");
                     H5Dclose(set);
                 }),
-                "/history/displacement is in mm; wanted m");
+                "/history/displacement is in mm; expected m");
 }
 
 TEST_F(Refusal, OfAnotherTypeOrShape)
 {
     const hsize_t edges = file.network.blocks.edge_kind.size();
     EXPECT_SAYS(after([&](hid_t opened) { replace(opened, "/edges/kind", H5T_IEEE_F64LE, {edges}); }),
-                "/edges/kind is of the wrong type; wanted int32");
+                "/edges/kind is of the wrong type; expected int32");
     EXPECT_SAYS(after([&](hid_t opened) {
                     replace(opened, "/edges/kind", H5T_STD_I32LE, {edges, 1});
                 }),
-                "/edges/kind has the wrong number of dimensions; wanted 1");
+                "/edges/kind has the wrong number of dimensions; expected 1");
     EXPECT_SAYS(after([&](hid_t opened) { replace(opened, "/edges/kind", H5T_STD_I32LE, {edges + 1}); }),
-                "/edges/kind has " + std::to_string(edges + 1) + " rows along edge; wanted " +
+                "/edges/kind has " + std::to_string(edges + 1) + " rows along edge; expected " +
                     std::to_string(edges));
     EXPECT_SAYS(after([&](hid_t opened) {
                     replace(opened, "/edges/vertex", H5T_STD_I32LE, {edges, 3});
                 }),
-                "/edges/vertex has rows of 3 values; wanted 2");
+                "/edges/vertex has rows of 3 values; expected 2");
 }
 
 // A shape that the file cannot fill must not be believed: these would be 8 GB, and more than anything.
@@ -194,20 +194,21 @@ TEST_F(Refusal, OfImpossibleSizes)
 
 TEST_F(Refusal, OfValuesOutOfRange)
 {
-    EXPECT_SAYS(with_first<Index>("/edges/kind", H5T_NATIVE_INT32, 3), "/edges/kind[0] is 3; wanted 0 to 2");
+    EXPECT_SAYS(with_first<Index>("/edges/kind", H5T_NATIVE_INT32, 3),
+                "/edges/kind[0] is 3; expected 0 to 2");
     write(path, file);
     EXPECT_SAYS(with_first<Index>("/edges/vertex", H5T_NATIVE_INT32, 100),
-                "/edges/vertex[0, 0] is 100; wanted index of vertex (there are " +
+                "/edges/vertex[0, 0] is 100; expected index of vertex (there are " +
                     std::to_string(file.network.blocks.vertex.size()) + ")");
     write(path, file);
-    EXPECT_SAYS(with_first<Index>("/edges/block", H5T_NATIVE_INT32, -2), "wanted index of block or -1");
+    EXPECT_SAYS(with_first<Index>("/edges/block", H5T_NATIVE_INT32, -2), "expected index of block or -1");
     write(path, file);
     EXPECT_SAYS(with_first("/states/stress", H5T_NATIVE_DOUBLE, std::nan("")),
-                "/states/stress[0, 0, 0] is nan; wanted finite");
+                "/states/stress[0, 0, 0] is nan; expected finite");
     write(path, file);
-    EXPECT_SAYS(with_first("/blocks/area", H5T_NATIVE_DOUBLE, 0.0), "/blocks/area[0] is 0; wanted > 0");
+    EXPECT_SAYS(with_first("/blocks/area", H5T_NATIVE_DOUBLE, 0.0), "/blocks/area[0] is 0; expected > 0");
     write(path, file);
-    EXPECT_SAYS(with_first("/equivalent/cohesion", H5T_NATIVE_DOUBLE, -1.0), "wanted >= 0");
+    EXPECT_SAYS(with_first("/equivalent/cohesion", H5T_NATIVE_DOUBLE, -1.0), "expected >= 0");
     write(path, file);
     EXPECT_SAYS(with_first("/history/time", H5T_NATIVE_DOUBLE, 1e300), "/history/time[1]");
     write(path, file);

@@ -182,7 +182,7 @@ TEST(Saving, RefusesRecordsThatBreakTheSchema)
         change(file);
         const std::string message = message_of([&] { write(path, file); });
         EXPECT_TRUE(message.starts_with(path) && message.find(expected) != std::string::npos)
-            << message << "\nwanted: " << expected;
+            << message << "\nexpected: " << expected;
         EXPECT_TRUE(folder.files().empty());
     };
     refused([](ResultFile& f) { f.result.states.stress[1][2] = std::nan(""); },
