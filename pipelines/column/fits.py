@@ -33,6 +33,7 @@ import h5py
 import numpy as np
 
 import column_closed_form
+from jointcreep import chain
 
 TRUTH = {"kelvin-stiffness": 0.8, "kelvin-viscosity": 1.25, "joint-stiffness": 1.1}
 SIGMA = 0.5  # mm
@@ -72,14 +73,10 @@ def run(*command):
     subprocess.run([*map(str, command)], check=True)
 
 
-def joints_of(programs, text, path, realization=0):
-    """Path of the joints file of a scene."""
-    path = path.with_suffix(".toml")
-    path.write_text(text)
-    network, joints = path.with_suffix(".network.h5"), path.with_suffix(".joints.h5")
-    run(programs / "jointgen", "-q", path, "--realization", realization, "-o", network)
-    run(programs / "strength-averaging", "-q", network, "-o", joints)
-    return joints
+def joints_of(programs, text, folder, realization=0):
+    """Path of the joints file of a scene, in a folder of its own."""
+    folder.mkdir(exist_ok=True)
+    return chain.joints_of(programs, text, folder, "--realization", realization)
 
 
 class Column:

@@ -25,6 +25,7 @@ import tempfile
 import time
 
 from chain import Chain
+from jointcreep import files
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 
@@ -147,13 +148,11 @@ class Campaign:
         version = ended([self.programs / "jointgen", "--version"], 60).out.split()[-1]
         about = {"n": about_n, "seed": self.seed, "seconds": round(time.monotonic() - self.begin), "version": version,
                  "date": datetime.date.today().isoformat(), "machine": machine()}
-        partial = self.out / f"{self.name}.csv.partial"
-        with partial.open("w", newline="") as file:
+        with files.replaced(self.out / f"{self.name}.csv") as partial, partial.open("w", newline="") as file:
             rows = csv.writer(file, lineterminator="\n")
             rows.writerow([self.subject, *self.outcomes, *about])
             for subject, count in self.counts.items():
                 rows.writerow([subject, *(count[outcome] for outcome in self.outcomes), *about.values()])
-        partial.rename(self.out / f"{self.name}.csv")
         self.written = time.monotonic()
 
 
