@@ -225,7 +225,7 @@ class Run(ChainTest):
         os.rename(self.folder / "away.h5", self.out / "result.failed.h5")
         self.assertEqual(plots.draw("histories", self.out / "result.h5")._suptitle.get_text(), f"strengths / {low:.4g}")
         title = plots.draw("state", self.out / "result.failed.h5").axes[0].get_title(loc="left").replace("\n", " ")
-        self.assertRegex(title, r'^Strengths / 0\.\d+: day \S+, before the first stage; stage "bench" found no equilibrium on day ')
+        self.assertRegex(title, r'^Strengths / 0\.\d+: day \S+, before the first stage; stage "bench" found no equilibrium; without creep the rock at ')
         plots.figure.plt.close("all")
 
     def fakes(self, script):
