@@ -121,7 +121,7 @@ class Job:
         done = self.run(folder)
         if done.code != self.code:
             return str(done)
-        if kept and "continued from" not in done.out:
+        if kept and done.code == 0 and "continued from" not in done.out:
             return "it did not go on from its checkpoint"
         found = files(folder)
         names = [name for name in sorted(found.keys() | self.whole.keys()) if found.get(name) != self.whole.get(name)]
