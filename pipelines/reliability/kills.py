@@ -130,6 +130,14 @@ class Job:
         return f"not as in a run undisturbed: {', '.join(names)}" if names else ""
 
 
+def can_trace():
+    """Whether this machine lets programs trace others; some containers do not. Without it all kills are at a time."""
+    traces = shutil.which("strace") and subprocess.run(["strace", "-o", "/dev/null", "true"], stderr=subprocess.DEVNULL, check=False).returncode == 0
+    if not traces:
+        print("kills: strace cannot trace programs here: all kills are at a time")
+    return bool(traces)
+
+
 def traced(log, alone=False):
     """What a command stands behind whose system calls are logged; `alone`: not those of its children."""
     return ["strace", *([] if alone else ["-f"]), "-y", "-s", "0", "-o", str(log),
@@ -261,9 +269,10 @@ def trial(campaign, job, case):
 
 def body(campaign):
     every = list(jobs(campaign.chain, every=True))
-    few = campaign.n < len(every)
+    few, traces = campaign.n < len(every), can_trace()
     for job in campaign.random("programs").sample(every[:-1], campaign.n) if few else every:  # strace slows studies down
-        job.undisturbed(campaign.chain.new_folder(), None if few and "study" in job.name else campaign.chain.new_folder() / "log")
+        is_traced = traces and not (few and "study" in job.name)
+        job.undisturbed(campaign.chain.new_folder(), campaign.chain.new_folder() / "log" if is_traced else None)
         kills = case = 0
         while kills < campaign.n / len(every):
             kills += trial(campaign, job, case)
