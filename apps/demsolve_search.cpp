@@ -296,7 +296,8 @@ std::unique_ptr<Trial> bracket_safety(const StrengthReduction& reduction, const 
             "percent; use zones of kind \"quadratic\"");
     files.write_result(*run, bracket.trials);
     if (failed)
-        summary.add("  at this factor", files.write_failed(*failed, bracket.trials));
+        summary.add("run without equilibrium, strengths / " + shown(*bracket.not_above),
+                    files.write_failed(*failed, bracket.trials));
     files.stop("stopped; the factor of safety is " + in_words(bracket) + ", and its files are written");
     if (estimate)
         add_mesh_estimate(summary, bracket, *estimate);
