@@ -507,14 +507,20 @@ def incomplete_words(study, rows):
     return lines
 
 
-def reduced_words(study):
-    """A warning of displacements that are those of runs with reduced strengths."""
+def strength_factors(study):
+    """What strengths are divided by in all runs, as written; none if they are as in the scene."""
     options = [*study.demsolve_options, *study.design.fine_options, *study.design.coarse_options]
     factors = [options[place + 1] for place, one in enumerate(options[:-1]) if one == "--strength-factor"] + \
         [one.partition("=")[2] for one in options if one.startswith("--strength-factor=")]
+    return list(dict.fromkeys(factors))
+
+
+def reduced_words(study):
+    """A warning of displacements that are those of runs with reduced strengths."""
+    factors = strength_factors(study)
     if not factors or all(one.what != "displacement" for one in study.quantities):
         return []
-    return [f"warning: all strengths are divided by {', '.join(dict.fromkeys(factors))} (--strength-factor), so the displacements are not "
+    return [f"warning: all strengths are divided by {', '.join(factors)} (--strength-factor), so the displacements are not "
             "those of the rock; collect them in a study without this option"]
 
 
@@ -542,6 +548,8 @@ def summary(study, rows, why, of_each, of_histories, of_chance=None):
     other = sum(row["exit_code"] not in (0, NO_EQUILIBRIUM) for row in rows)
     lines = [study.title] * bool(study.title)
     of_all = "" if study.design.directions else f" of {study.design.runs}"
+    factors = strength_factors(study)
+    lines += [f"strengths            divided by {', '.join(factors)} (--strength-factor)"] * bool(factors)
     lines += [f"design               {study.design.kind}",
               f"runs                 {len(rows)}" + (f"{of_all}, ended {why}" if why else ""),
               f"without equilibrium  {len(without)}"]
