@@ -91,7 +91,9 @@ std::unique_ptr<Trial> run_once(const demsolve::StrengthReduction& reduction, co
                                      : run_with(std::move(of));
     if (run->is_stopped())
         files.stop("stopped; " + files.write_failed(*run) +
-                   ". With --checkpoint FILE a stopped run can continue");
+                   (scene.equilibrium.increments_tolerance
+                        ? ""
+                        : ". With --checkpoint FILE a stopped run can continue"));
     if (run->outcome().ending != Ending::stands)
         throw equilibrium_error(run->message() + '\n' + files.write_failed(*run) +
                                 demsolve::warning_lines(*run));

@@ -337,7 +337,7 @@ double DynamicStage::energy_error()
     const bool is_creep = section_.stage.empty() && section_.now > 0;
     if (!(off <= error_to_tell))
         section_.findings.energy_off[is_creep ? "creep to " + day_of(section_.now) : section_.stage] =
-            static_cast<Index>(std::lround(100 * std::min(off, 1e6)));
+            static_cast<Index>(std::lround(off < 1e6 ? 100 * off : 1e8));
     return off;
 }
 

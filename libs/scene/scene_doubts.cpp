@@ -226,10 +226,10 @@ private:
             const double grows = std::string(direction) == "xx" ? stress.gradient_xx : stress.gradient_yy;
             return given.find(gradient) == nullptr ? key : value && grows >= 0 ? at_datum : gradient;
         };
-        if (at[0] > 0 || at[1] > 0)
-            add(given, of_key(at[1] > 0 ? "yy" : "xx"),
-                std::string("the ") + (at[1] > 0 ? "vertical" : "horizontal") + " stress" + where +
-                    " is tension, " + shown(rounded(std::max(at[0], at[1]) / unit::MPa)) +
+        if (const bool is_vertical = at[1] > 0; is_vertical || at[0] > 0)
+            add(given, of_key(is_vertical ? "yy" : "xx"),
+                std::string("the ") + (is_vertical ? "vertical" : "horizontal") + " stress" + where +
+                    " is tension, " + shown(rounded((is_vertical ? at[1] : at[0]) / unit::MPa)) +
                     " MPa; compression is positive here, expected a positive number");
         else if (at[1] < 0 && !usual(at[0] / at[1], least_ratio, most_ratio))
             add(given,

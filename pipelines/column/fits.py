@@ -548,7 +548,7 @@ def main():
         heads = TABLES | ({"fits": [*TABLES["fits"], "not resolved: E, eta, K"]} if name in ("slope", "lock") else {})
         SECTIONS[name](given, {table: Table(given.out / f"{table}-{name}.md", head) for table, head in heads.items()}, failed)
     if failed:
-        sys.exit("fits.py: not as wanted: " + "; ".join(failed))
+        sys.exit("fits.py: not as expected: " + "; ".join(failed))
 
 
 if __name__ == "__main__":

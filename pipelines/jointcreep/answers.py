@@ -96,12 +96,13 @@ def beyond_search(study, rows, at):
 
 
 def bracket_width(study, rows, at):
-    """The largest width of the brackets that a factor of safety is known by; None for other quantities."""
+    """The largest width of the brackets that a factor of safety is known by: infinite where a run has no upper end. None for other
+    quantities."""
     if study.quantities[at].what != "factor of safety":
         return None
     ends = lower_end(study, at)
-    return max((row["values"][ends + 1] - row["values"][ends] for row in rows
-                if row["values"][ends] is not None and row["values"][ends + 1] is not None), default=None)
+    brackets = [row["values"][ends:ends + 2] for row in rows if row["values"][ends] is not None and not is_beyond(study, row, at)]
+    return max((math.inf if high is None else high - low for low, high in brackets), default=None)
 
 
 def crossed_table(study, values, run):
@@ -174,9 +175,14 @@ def correlation(values, others):
 
 def quantile(values, beyond, part):
     """Quantile with its interval, of values and of as many more that are larger than all of them; None what depends on these."""
-    with np.errstate(invalid="ignore"):
-        found = intervals.quantile(np.append(values, np.full(beyond, np.inf)), part)
-    return [one if one is not None and math.isfinite(one) else None for one in found]
+    largest = np.max(values, initial=0.0)
+    larger, much_larger = (intervals.quantile(np.append(values, np.full(beyond, largest + more)), part) for more in (1, 2))
+    return [one if one == other else None for one, other in zip(larger, much_larger)]
+
+
+def finite(value):
+    """The value; None, an empty field, if it is infinite."""
+    return value if math.isfinite(value) else None
 
 
 def statistics(study, quantity, values, run, coarse=None, without=(), beyond=(), width=None):
@@ -187,14 +193,14 @@ def statistics(study, quantity, values, run, coarse=None, without=(), beyond=(),
     if quantity.what != "failed" and n > 0:
         *mean, error = mean_with_interval(study, values, run, coarse)
         only_bound = n > 1 and bool(width) and np.ptp(values) == 0
-        found += [("mean", n, mean[0], None, None), ("standard error of the mean, less than", n, width, None, None)] if only_bound else \
+        found += [("mean", n, mean[0], None, None), ("standard error of the mean, less than", n, finite(width), None, None)] if only_bound else \
             [("mean", n, *mean), ("standard error of the mean", n, error, None, None)]
         if coarse is not None:
             found.append(("mean of fine runs alone", n, *intervals.mean(values)[:3]))
             found.append(("fine less coarse", n, *intervals.mean(values - coarse[:, 0])[:3]))
             found.append(("correlation of fine and coarse", n, correlation(values, coarse[:, 0]), None, None))
         deviation = float(np.std(values, ddof=1)) if n > 1 else None
-        found.append(("standard deviation, less than", n, width, None, None) if only_bound else
+        found.append(("standard deviation, less than", n, finite(width), None, None) if only_bound else
                      ("standard deviation", n, deviation, None, None))
     if quantity.what != "failed":
         for part in QUANTILES:
@@ -500,7 +506,8 @@ def incomplete_words(study, rows):
     """Warnings of the quantities of networks x parameters that some runs of a network have and others do not."""
     lines = []
     for at, one in enumerate(study.quantities if study.design.kind == "networks x parameters" else []):
-        of_network = collections.Counter(row["run"] // study.design.parameters for row in rows if value_of(study, row, at) is None)
+        of_network = collections.Counter(row["run"] // study.design.parameters for row in rows
+                                         if row["values"][at] is None and not is_beyond(study, row, at))
         if of_network:
             lines.append(f"warning: {one.title()}: {sum(of_network.values())} of {len(rows)} runs, of {len(of_network)} networks, have no "
                          "value; answers are of the other runs")

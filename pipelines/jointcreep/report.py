@@ -112,7 +112,7 @@ def failure_in_words(file):
     reason = texts(file, "/failure/reason")[0]
     stage, day = texts(file, "/failure/stage")[0], figure.day_of(file, file["/failure/time"][0])
     when = f'stage "{stage}", {day}' if stage else f"{day}, before the first stage" if not file["/failure/time"][0] else day
-    undecided = "" if file["/failure/moves_on"][0] else \
+    undecided = "" if file["/failure/moves_on"][0] or not figure.has_no_equilibrium(file) else \
         " It is not known whether there is an equilibrium: the search ended without an answer."
     return f"<b>{escaped(when)}</b>: {escaped(reason)}.{undecided}"
 

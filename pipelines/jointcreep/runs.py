@@ -28,6 +28,7 @@ MAKEFILE = """# The groups of runs of a study; jointcreep study calls it. Names 
 .SUFFIXES:
 MAKEFLAGS += --no-builtin-rules
 .PHONY: all
+.PRECIOUS: groups/%.rows
 all: {targets}
 groups/%.rows:
 	@exec setpriv --pdeathsig KILL "$$JOINTCREEP_PYTHON" -m jointcreep.group $*

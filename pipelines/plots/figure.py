@@ -208,7 +208,14 @@ def ending_of(file):
     if "/failure" not in file:
         return ""
     stage, day = texts(file, "/failure/stage")[0], day_of(file, array(file, "/failure/time")[0])
+    if not has_no_equilibrium(file):
+        return f'ended in stage "{stage}" on {day}' if stage else f"ended on {day}"
     return f'stage "{stage}" found no equilibrium on {day}' if stage else f"no equilibrium on {day}"
+
+
+def has_no_equilibrium(file):
+    """Whether a run that did not end found no equilibrium; others were stopped, or a guard ended them."""
+    return not texts(file, "/failure/reason")[0].startswith(("stopped by a signal", "the energy balance", "the result is wrong"))
 
 
 def creep_of(file):

@@ -223,7 +223,8 @@ def is_crowded(names, axes, taken):
 def draw_letters(names, axes, taken):
     """Letters in place of the names of places. Returns legend entries that say what they stand for."""
     entries = []
-    for letter, (name, place) in zip(LETTERS, names):
+    letters = [*LETTERS, *(first + second for first in LETTERS for second in LETTERS)]
+    for letter, (name, place) in zip(letters, names):
         others = [points_of(other, axes) for _, other in names if tuple(other) != tuple(place)]
         write_around(letter, place, axes, np.array([6, 8]), taken, others, ha="center", va="center", zorder=6, fontsize=7,
                      path_effects=figure.HALO)

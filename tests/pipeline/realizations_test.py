@@ -169,10 +169,6 @@ class Small(Realizations):
         for days, text in ((3.0000000000000004, "3"), (10 + 1 / 3, "10.33333333333"), (0.1 + 0.2, "0.3"), (0, "0"), (1e6, "1000000"),
                            (3.00000000001, "3.00000000001")):
             self.assertEqual(files.day_text(days), text)
-        self.assertEqual(float(last["time_day"]), found["/history/time"][-1])
-        for days, text in ((3.0000000000000004, "3"), (10 + 1 / 3, "10.33333333333"), (0.1 + 0.2, "0.3"), (0, "0"), (1e6, "1000000"),
-                           (3.00000000001, "3.00000000001")):
-            self.assertEqual(files.day_text(days), text)
         self.assertEqual(float(last["mean_m"]), found["/displacement_since_first_reading/mean"][-1, -1, 1])
         for name in ("ensemble.png", "ensemble-y.png"):
             self.assertEqual((out / name).read_bytes()[:4], b"\x89PNG")

@@ -134,6 +134,11 @@ TEST(doubts, gravity_and_stress)
     const auto gravity = doubts_of(replaced(sound, "gravity_m_per_s2 = 9.81", "gravity_m_per_s2 = 0.981"));
     ASSERT_EQ(gravity.size(), 2u);
     expect_part(gravity[0], "on Earth it is 9.81 m/s2");
+    const auto both = doubts_of(replaced(replaced(sound, "compression_xx_MPa = 0", "compression_xx_MPa = -5"),
+                                         "compression_yy_MPa = 0", "compression_yy_MPa = -1.5"));
+    ASSERT_FALSE(both.empty());
+    expect_part(both[0],
+                "compression_yy_MPa = -1.5: the vertical stress at 40 m of depth is tension, 0.441 MPa");
     const std::string weightless = replaced(sound, "gravity_m_per_s2 = 9.81", "gravity_m_per_s2 = 0");
     const auto grows = doubts_of(weightless);
     ASSERT_EQ(grows.size(), 1u);
