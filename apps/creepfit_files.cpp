@@ -2,6 +2,8 @@
 
 #include "store/files.hpp"
 
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -19,7 +21,7 @@ std::string text_of(const std::string& path)
     std::ostringstream text;
     text << file.rdbuf();
     if (!file)
-        throw file_error(path + ": cannot be read");
+        throw file_error(path + ": cannot be read: " + std::strerror(errno));
     if (!text.view().starts_with("\x89HDF") && text.view().find("[section]") != std::string_view::npos)
         throw input_error(
             path +

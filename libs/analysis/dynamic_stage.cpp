@@ -347,9 +347,10 @@ void DynamicStage::check_energy()
     const double off = energy_error(), tolerance = section_.scene.large_displacements->energy_tolerance;
     if (!(off <= tolerance))
         fail(section_,
-             {.reason = energy_said(off) + "; allowed: " + rounded(100 * tolerance) +
-                        ". Smaller zones ([zones] size_m), or more stiffness damping, reduce the error; "
-                        "[large_displacements] energy_tolerance allows it"},
+             {.reason =
+                  energy_said(off) + "; allowed: " + rounded(100 * tolerance) +
+                  " percent. Smaller zones ([zones] size_m), or more stiffness damping, reduce the error; "
+                  "[large_displacements] energy_tolerance allows it"},
              section_.now);
 }
 
