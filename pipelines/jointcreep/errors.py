@@ -12,7 +12,7 @@ class NotDone(Exception):
     """Runs could not be made, though the study is right: exit code 4. The same command makes those that are missing."""
 
 
-BUFFER = 160 * 2**20  # bytes; the largest that OpenBLAS asks for, with a margin
+NEEDED = 400 * 2**20  # bytes of address space: OpenBLAS's buffer, and libraries that are loaded later
 
 
 def lacks_memory(error):
@@ -22,8 +22,8 @@ def lacks_memory(error):
 
 
 def have_linear_algebra():
-    """Makes NumPy's linear algebra get its memory now. Without enough, OpenBLAS would ask for it again and again without an end; here that
-    is an OSError."""
+    """Makes NumPy's linear algebra get its memory now. Without enough, OpenBLAS would ask for it again and again without an end, and
+    other libraries may crash; here that is an OSError."""
     import numpy
-    mmap.mmap(-1, BUFFER).close()
+    mmap.mmap(-1, NEEDED).close()
     numpy.linalg.solve(numpy.eye(1), numpy.ones(1))
