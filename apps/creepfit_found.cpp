@@ -46,12 +46,13 @@ ErrorsFound errors_of(const Found& found, const Measurements& measurements, cons
             }};
 }
 
-// Names of factors that the readings do not resolve, separated by commas.
-std::string unresolved(const Found& found, const Factors& factors)
+// Names of the factors for whose number this holds, separated by commas.
+template <class Holds>
+std::string names_where(const Factors& factors, const Holds& holds)
 {
     std::string names;
     for (std::size_t i = 0; i < factors.size(); ++i)
-        if (!found.is_resolved[i])
+        if (holds(i))
             names += (names.empty() ? "" : ", ") + option_of(factors[i]);
     return names;
 }
@@ -235,10 +236,10 @@ void warn_of_disagreement(Summary& summary, const Found& found, const Factors& f
 // Factors whose intervals are hardly more than what the bounds say.
 void warn_of_bounds(Summary& summary, const Found& found, const Factors& factors)
 {
-    std::string names;
-    for (std::size_t i = 0; i < found.is_by_bounds.size(); ++i)
-        if (found.is_by_bounds[i] && found.is_resolved[i])
-            names += (names.empty() ? "" : ", ") + option_of(factors[i]);
+    if (found.is_by_bounds.empty())
+        return;
+    const std::string names =
+        names_where(factors, [&](std::size_t i) { return found.is_by_bounds[i] && found.is_resolved[i]; });
     if (!names.empty())
         summary.warn("the bounds determine more than the readings: " + names +
                      ". The interval is right only if the bounds are");
@@ -466,7 +467,8 @@ void report(const Arguments& arguments, const Found& found, const Measurements& 
     warn_of_ends_not_found(summary, found, settings);
     warn_of_disagreement(summary, found, factors);
     warn_of_bounds(summary, found, factors);
-    const std::string not_resolved = unresolved(found, factors);
+    const std::string not_resolved =
+        names_where(factors, [&](std::size_t i) { return !found.is_resolved[i]; });
     if (!not_resolved.empty() && !found.better)
         summary.warn(
             "not resolved by these readings: " + not_resolved +
@@ -533,13 +535,11 @@ void report_networks(const Arguments& arguments, const Networks& networks, const
     summary.add("networks", networks.found.size());
     for (std::size_t k = 0; k < networks.found.size(); ++k)
         summary.add(networks.file[k], in_words(factors, networks.found[k].factors));
-    std::string not_resolved;
+    const std::string not_resolved = names_where(factors, [&](std::size_t i) { return !networks.across[i]; });
     for (std::size_t i = 0; i < factors.size(); ++i) {
         const auto& of = networks.across[i];
-        if (!of) {
-            not_resolved += (not_resolved.empty() ? "" : ", ") + option_of(factors[i]);
+        if (!of)
             continue;
-        }
         const auto times = [](const Interval& by) {
             return shown_interval({std::exp(by.low), std::exp(by.high)});
         };

@@ -20,12 +20,9 @@ namespace
 // "at least 1, below 1.5"
 std::string in_words(const Bracket& bracket)
 {
-    const Safety& trials = bracket.trials;
     std::string words = bracket.stands ? "at least " + shown(*bracket.stands) : "";
     if (bracket.not_above) {
-        const auto found = std::find(trials.factor.begin(), trials.factor.end(), *bracket.not_above);
-        const bool fails = trials.stands[found - trials.factor.begin()] == 0;
-        words += (words.empty() ? "" : ", ") + std::string(fails ? "below " : "undecided at ") +
+        words += (words.empty() ? "" : ", ") + std::string(bracket.fails() ? "below " : "undecided at ") +
                  shown(*bracket.not_above);
     }
     return words;
@@ -51,11 +48,8 @@ std::string in_brief(const Safety& trials)
     const std::string lower = has_lower ? rounded(*bracket.stands) : "";
     if (!bracket.not_above)
         return has_lower ? " (at least " + lower + ')' : "";
-    const bool fails =
-        trials.stands[std::find(trials.factor.begin(), trials.factor.end(), *bracket.not_above) -
-                      trials.factor.begin()] == 0;
     return " (" + (has_lower ? lower + " to " : std::string("below ")) + rounded(*bracket.not_above) +
-           (fails ? ")" : "?)");
+           (bracket.fails() ? ")" : "?)");
 }
 
 // "run 4, strengths / 1.5: fails; factor of safety at least 1, below 1.5". The first run is the reference of displacements.
@@ -97,6 +91,12 @@ public:
         const std::lock_guard lock(mutex_);
         next_ = factor;
         before_ = before;
+        const std::string known = known_so_far();
+        which_ = {of_what_ + strengths_by(factor) +
+                      (known.empty() ? "" : " (factor of safety " + known + ")") + ", ",
+                  (of_what_.empty() ? "" : "coarse, ") +
+                      (factor < 1 && before.factor.empty() ? strengths_by(factor) : "F " + rounded(factor)) +
+                      in_brief(before) + ", "};
     }
 
     void has_ended(const Safety& so_far) override
@@ -132,15 +132,7 @@ protected:
                 .most_displacement = most_displacement,
                 .which = [this, factor]() -> std::optional<Which> {
                     const std::lock_guard lock(mutex_);
-                    if (next_ != factor)
-                        return std::nullopt;
-                    const std::string known = known_so_far();
-                    return Which{of_what_ + strengths_by(factor) +
-                                     (known.empty() ? "" : " (factor of safety " + known + ")") + ", ",
-                                 (of_what_.empty() ? "" : "coarse, ") +
-                                     (factor < 1 && before_.factor.empty() ? strengths_by(factor)
-                                                                           : "F " + rounded(factor)) +
-                                     in_brief(before_) + ", "};
+                    return next_ == factor ? std::optional(which_) : std::nullopt;
                 }};
     }
 
@@ -150,6 +142,7 @@ protected:
     std::string of_what_;
     std::mutex mutex_;
     double next_ = 0;
+    Which which_{};                                  // what the next one is called
     Safety before_{};                                // runs before the next one
     std::map<double, std::unique_ptr<Trial>> run_{}; // by factor
 };

@@ -202,9 +202,7 @@ void add_safety(Summary& summary, const analysis::Bracket& bracket, const std::s
         summary.add("factor of safety, below", "none found: equilibrium at every factor tried");
         return;
     }
-    const auto upper =
-        std::find(trials.factor.begin(), trials.factor.end(), *bracket.not_above) - trials.factor.begin();
-    const bool fails = trials.stands[upper] == 0;
+    const bool fails = bracket.fails();
     summary.add(fails ? "factor of safety, below" : "undecided at", shown(*bracket.not_above));
     add_lines(summary, "  at this factor", what_moves);
     if (fails)

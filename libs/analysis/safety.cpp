@@ -76,6 +76,12 @@ Outcome Trial::outcome() const
             rock::largest_plastic_strain(analysis_.assembly().zones)};
 }
 
+bool Bracket::fails() const
+{
+    const auto at = std::find(trials.factor.begin(), trials.factor.end(), *not_above);
+    return trials.stands[at - trials.factor.begin()] == 0;
+}
+
 Bracket bracket_of(Safety trials)
 {
     Bracket bracket{{}, {}, std::move(trials)};

@@ -62,6 +62,8 @@ struct Bracket {
     std::optional<double> stands;    // largest factor of a run that did not fail [-]; none if all failed
     std::optional<double> not_above; // smallest factor of a run that failed; none if none failed
     Safety trials;                   // in the order they were made
+
+    bool fails() const; // the run at not_above, which there must be; otherwise it is undecided
 };
 
 // The bracket after these runs.

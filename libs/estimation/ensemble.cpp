@@ -45,7 +45,6 @@ Inversion invert(const Residuals& model, const Independent& independent, const P
                  const EnsembleSearch& search)
 {
     constexpr int tempered = 4;
-    constexpr double small_step = 0.1, smallest_step = 1e-5;
     const Eigen::Index n = prior.mean.size(), least = least_members(n), members = search.members;
     if (members < least)
         throw input_error(std::to_string(members) + " members for " + std::to_string(n) +
@@ -117,9 +116,9 @@ Inversion invert(const Residuals& model, const Independent& independent, const P
         found.step = -found.covariance * (t * linear.jacobian.transpose() * linear.residual +
                                           information * (found.mean - prior.mean));
         found.mean += found.step;
-        found.is_converged =
-            t == 1 && (found.step.lpNorm<Eigen::Infinity>() <= smallest_step ||
-                       found.step.dot(found.covariance.llt().solve(found.step)) <= small_step * small_step);
+        found.is_converged = t == 1 && (found.step.lpNorm<Eigen::Infinity>() <= converged_step ||
+                                        found.step.dot(found.covariance.llt().solve(found.step)) <=
+                                            converged_errors * converged_errors);
     }
     const auto residual = answer(found.mean);
     if (!residual)

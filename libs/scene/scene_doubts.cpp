@@ -173,16 +173,14 @@ private:
     // Of a Kelvin unit [s].
     void look_at_retardation(double time, const Given& given, const std::string& key)
     {
-        if (scene_.creep && time > most_of_duration * scene_.end)
+        const char* const how = time > most_of_duration * scene_.end    ? "hardly creeps"
+                                : time < least_of_duration * scene_.end ? "creeps at once"
+                                                                        : nullptr;
+        if (scene_.creep && how)
             add(given, key,
                 "the retardation time, viscosity over stiffness, is " + shown(rounded(time / unit::day)) +
-                    " days, and the scene lasts " + shown(rounded(scene_.end / unit::day)) +
-                    ": this unit hardly creeps; is the viscosity in the unit of its key?");
-        if (scene_.creep && time < least_of_duration * scene_.end)
-            add(given, key,
-                "the retardation time, viscosity over stiffness, is " + shown(rounded(time / unit::day)) +
-                    " days, and the scene lasts " + shown(rounded(scene_.end / unit::day)) +
-                    ": this unit creeps at once; is the viscosity in the unit of its key?");
+                    " days, and the scene lasts " + shown(rounded(scene_.end / unit::day)) + ": this unit " +
+                    how + "; is the viscosity in the unit of its key?");
     }
 
     // Above the datum a stress that grows with depth is tension.
@@ -218,16 +216,17 @@ private:
                 "the vertical compression grows by " + shown(rounded(vertical / unit::MPa)) + " MPa" + where +
                     ", and the weight of the rock above is " + shown(rounded(least / unit::MPa)) +
                     (most > least ? " to " + shown(rounded(most / unit::MPa)) : "") + " MPa");
-        const auto of_key = [&](const char* direction) {
-            const std::string at_datum = std::string("compression_") + direction + "_MPa",
-                              gradient = std::string("compression_") + direction + "_gradient_MPa_per_m";
+        const auto of_key = [&](bool is_vertical) {
+            const std::string of = is_vertical ? "compression_yy" : "compression_xx", at_datum = of + "_MPa",
+                              gradient = of + "_gradient_MPa_per_m";
             // The gradient, unless it is compression and the stress at the datum is not.
-            const TomlValue* const value = given.find(at_datum);
-            const double grows = std::string(direction) == "xx" ? stress.gradient_xx : stress.gradient_yy;
-            return given.find(gradient) == nullptr ? key : value && grows >= 0 ? at_datum : gradient;
+            const double grows = is_vertical ? stress.gradient_yy : stress.gradient_xx;
+            return given.find(gradient) == nullptr      ? key
+                   : given.find(at_datum) && grows >= 0 ? at_datum
+                                                        : gradient;
         };
         if (const bool is_vertical = at[1] > 0; is_vertical || at[0] > 0)
-            add(given, of_key(is_vertical ? "yy" : "xx"),
+            add(given, of_key(is_vertical),
                 std::string("the ") + (is_vertical ? "vertical" : "horizontal") + " stress" + where +
                     " is tension, " + shown(rounded((is_vertical ? at[1] : at[0]) / unit::MPa)) +
                     " MPa; compression is positive here, expected a positive number");

@@ -873,19 +873,16 @@ void add_whole_lengths(Statistics& statistics, const JointSet& set, const std::v
 // Of traces that a region or other sets cut off: what is there of them, which no law says. Not judged.
 void add_visible_lengths(Statistics& statistics, const JointSet& set, const SeenTraces& seen)
 {
-    double total = 0;
-    std::size_t count = 0;
+    std::vector<double> visible;
     for (const auto& [number, length] : seen.inside)
-        if (length > 0) {
-            total += length;
-            ++count;
-        }
-    if (count > 0)
+        if (length > 0)
+            visible.push_back(length);
+    if (!visible.empty())
         add(statistics, set.name,
             {.quantity = "trace length inside, mean",
              .unit = "m",
-             .achieved = total / static_cast<double>(count),
-             .sample_size = count});
+             .achieved = mean_of(visible),
+             .sample_size = visible.size()});
 }
 
 // A set of segments or discs: traces about Poisson points, /joints/point. Those whose point is inside are a

@@ -366,13 +366,14 @@ Object open_for_reading(const std::string& path)
     if (path.ends_with(".toml"))
         throw input_error("is a scene; expected a file of the chain. First run: jointgen " + path +
                           " -o network.h5, then strength-averaging network.h5 -o joints.h5");
-    if (is_text(path))
-        throw file_error(
-            "this is a text file; expected a file of the chain, which is HDF5 (network.h5, joints.h5, result.h5)");
     begin();
     const Object access = properties(H5P_FILE_ACCESS);
     ok(H5Pset_file_locking(access, false, true), "set up HDF5"); // files are never changed in place
-    return {H5Fopen(path.c_str(), H5F_ACC_RDONLY, access), H5Fclose, "read as HDF5"};
+    const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDONLY, access);
+    if (file < 0 && is_text(path))
+        throw file_error(
+            "this is a text file; expected a file of the chain, which is HDF5 (network.h5, joints.h5, result.h5)");
+    return {file, H5Fclose, "read as HDF5"};
 }
 
 // A link for every part of the path; H5Lexists wants all but the last to be there. None may lead to another file.

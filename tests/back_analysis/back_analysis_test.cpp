@@ -281,6 +281,38 @@ TEST(back_analysis, an_ensemble_finds_what_least_squares_find)
     }
 }
 
+namespace
+{
+
+// A fit by an ensemble, of a section that has no sensitivities.
+Found by_ensemble_only(const JointedSection& section, const std::vector<Truth>& truth, double noise,
+                       back_analysis::Settings settings)
+{
+    std::mt19937_64 random(3);
+    const std::vector<Measurement> readings = noisy(made(section, truth), noise, random, true);
+    const auto fit = [&] {
+        return back_analysis::fit(section.scene, section.network, section.joints, readings, settings);
+    };
+    EXPECT_THROW(fit(), input_error);
+    settings.ensemble = {.members = 12};
+    Found found = fit();
+    EXPECT_TRUE(found.minimum.is_converged);
+    return found;
+}
+
+// Each factor is in its interval, which is narrower than that.
+void expect_within(const Found& found, const std::vector<Truth>& truth, double widest)
+{
+    for (std::size_t i = 0; i < truth.size(); ++i) {
+        const auto [low, high] = found.interval(i);
+        EXPECT_LT(low, std::log(truth[i].factor)) << i;
+        EXPECT_GT(high, std::log(truth[i].factor)) << i;
+        EXPECT_LT(high - low, widest) << i;
+    }
+}
+
+} // namespace
+
 // Rock with a strength has no sensitivities.
 TEST(back_analysis, an_ensemble_needs_no_sensitivities)
 {
@@ -288,22 +320,7 @@ TEST(back_analysis, an_ensemble_needs_no_sensitivities)
     section.scene.rocks[0].strength =
         RockStrength{.cohesion = 2e5, .friction_angle = .6, .tensile_strength = 1e5};
     section.scene.rocks[0].law = RockLaw::mohr_coulomb;
-    std::mt19937_64 random(3);
-    const std::vector<Measurement> readings = noisy(made(section, three), 1e-6, random, true);
-    back_analysis::Settings settings = settings_for(three);
-    const auto fit = [&] {
-        return back_analysis::fit(section.scene, section.network, section.joints, readings, settings);
-    };
-    EXPECT_THROW(fit(), input_error);
-    settings.ensemble = {.members = 12};
-    const Found found = fit();
-    EXPECT_TRUE(found.minimum.is_converged);
-    for (std::size_t i = 0; i < three.size(); ++i) {
-        const auto [low, high] = found.interval(i);
-        EXPECT_LT(low, std::log(three[i].factor));
-        EXPECT_GT(high, std::log(three[i].factor));
-        EXPECT_LT(high - low, 1);
-    }
+    expect_within(by_ensemble_only(section, three, 1e-6, settings_for(three)), three, 1);
 }
 
 // Nor have Barton-Bandis joints, which do not creep.
@@ -324,27 +341,14 @@ TEST(back_analysis, an_ensemble_finds_the_stiffness_of_barton_bandis_joints)
           &joints.shear_kelvin_viscosity, &joints.cohesion, &joints.tensile_strength})
         none->assign(edges, 0);
     const std::vector<Truth> truth{{Scaled::joint_stiffness, 1.25}, {Scaled::horizontal_stress, .9}};
-    std::mt19937_64 random(3);
-    const std::vector<Measurement> readings = noisy(made(section, truth), 5e-7, random, true);
     back_analysis::Settings settings = settings_for(truth);
-    const auto fit = [&] {
-        return back_analysis::fit(section.scene, section.network, section.joints, readings, settings);
-    };
-    EXPECT_THROW(fit(), input_error);
-    settings.ensemble = {.members = 12};
     for (back_analysis::Factor& factor : settings.factors) {
         factor.low = .5;
         factor.high = 2;
     }
-    const Found found = fit();
-    EXPECT_TRUE(found.minimum.is_converged);
+    const Found found = by_ensemble_only(section, truth, 5e-7, settings);
     EXPECT_TRUE(found.doubts.empty());
-    for (std::size_t i = 0; i < truth.size(); ++i) {
-        const auto [low, high] = found.interval(i);
-        EXPECT_LT(low, std::log(truth[i].factor)) << i;
-        EXPECT_GT(high, std::log(truth[i].factor)) << i;
-        EXPECT_LT(high - low, .3) << i;
-    }
+    expect_within(found, truth, .3);
 }
 
 // Readings that scatter three times as much as they say: intervals are as wide as if they said so.
