@@ -310,9 +310,11 @@ def chance_correlation(study, rows, given):
     run = [row["run"] for row in rows if study.design.level(row["run"]) != "fine"]
     if study.design.kind == "networks x parameters":
         run = [one for one in run if one < study.design.parameters]
+    numeric = numeric_columns(study)
+    if len(run) < 3 or len(numeric) < 2:
+        return None
     from scipy import stats  # takes long to load
-    columns = [(study.parameters[column].name, stats.rankdata([given[one]["given"][column] for one in run]))
-               for column in numeric_columns(study)] if len(run) > 2 else []
+    columns = [(study.parameters[column].name, stats.rankdata([given[one]["given"][column] for one in run])) for column in numeric]
     wanted = [{one, other} for one, other, _ in study.correlations]
     found = [((name, other), correlation(values, others)) for (name, values), (other, others) in itertools.combinations(columns, 2)
              if {name, other} not in wanted]

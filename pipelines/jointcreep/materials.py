@@ -12,13 +12,15 @@ LAW_WORDS = {"mean": "mean", "deviation": "standard deviation", "half_width": "h
              "exponent": "exponent", "mean_dip": "mean dip", "mean_dip_direction": "mean dip direction", "concentration": "concentration"}
 
 
+def stem_and_unit(key):
+    """A key without the unit at its end, and this unit; "" if it has none."""
+    return next(((key.removesuffix(f"_{ending}"), unit) for ending, unit in UNITS.items() if key.endswith(f"_{ending}")), (key, ""))
+
+
 def name_and_unit(key):
     """Name in words and unit ("" if it has none) of a key."""
-    for ending, unit in UNITS.items():
-        if key.endswith(f"_{ending}"):
-            stem = key.removesuffix(f"_{ending}")
-            return NAMES.get(stem, stem.replace("_", " ").replace("kelvin", "Kelvin").replace("maxwell", "Maxwell")), unit
-    return NAMES.get(key, key.replace("_", " ")), ""
+    stem, unit = stem_and_unit(key)
+    return NAMES.get(stem, stem.replace("_", " ").replace("kelvin", "Kelvin").replace("maxwell", "Maxwell")), unit
 
 
 def number(value):
@@ -35,8 +37,7 @@ def law_in_words(law):
     for key, value in law.items():
         if key == "law":
             continue
-        stem = next((key.removesuffix(f"_{ending}") for ending in UNITS if key.endswith(f"_{ending}")), key)
-        unit = name_and_unit(key)[1]
+        stem, unit = stem_and_unit(key)
         if isinstance(value, list):
             words.append(f"{len(value)} {stem.replace('_', ' ')}")
         else:
@@ -64,8 +65,8 @@ def of_materials(tables):
 
 def density_in_words(density):
     """ "P21 0.3 1/m"; its scanline, if it has one."""
-    return ", ".join(with_unit(value, unit) for key, value in density.items() for stem, unit in [name_and_unit(key)]
-                     for value in [f"{stem} {number(value)}"])
+    named = ((*name_and_unit(key), value) for key, value in density.items())
+    return ", ".join(f"{name} {with_unit(value, unit)}" for name, unit, value in named)
 
 
 def value_in_words(key, value, unit):

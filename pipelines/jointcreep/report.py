@@ -128,13 +128,14 @@ def by_stage(file):
     at_stages = [row for row in range(len(time)) if events[row]]
     ends = [] if last in at_stages else [last]
     for row in [*at_stages, *ends]:
+        day = figure.day_of(file, time[row])
         for point in chosen:
             if names[point] in gone:
                 continue
             note = "" if present[row, point] else "excavated; its last displacement"
             if note:
                 gone.add(names[point])
-            rows.append((events[row] or "end of the run", figure.day_of(file, time[row]), names[point],
+            rows.append((events[row] or "end of the run", day, names[point],
                          *(float(one) for one in moves[row, point]), note))
     return ["<h3>Displacements of the points by stage</h3>",
             "<p>Displacements just after the excavation of each stage, and at the end of the run. They count from the in-situ equilibrium; x is to "
@@ -283,16 +284,16 @@ def relative_displacements(source, folder, wanted):
     if not rows:
         return []
     count = len(rows)
+    by_size = rows if wanted else sorted(rows, key=lambda row: -np.hypot(*row[4:6]))
     if not wanted and count > MOST_PAIRS:
-        rows = sorted(rows, key=lambda row: -np.hypot(*row[4:6]))[:MOST_PAIRS]
-    largest = sorted(rows, key=lambda row: -np.hypot(*row[4:6]))[:DRAWN_PAIRS] if not wanted else rows[:DRAWN_PAIRS]
+        rows = by_size[:MOST_PAIRS]
     which = f" The {MOST_PAIRS} of {count} pairs that move most against each other; --pairs of jointcreep report chooses others." \
         if len(rows) < count else "" if wanted else " --pairs of jointcreep report chooses pairs."
     return ["<h3>Relative displacements</h3>",
             "<p>Closure: by how much the distance of two points has become smaller, as a tape measures it; negative where they move apart. "
             f"Relative x, y: displacement of the first point less that of the second.{escaped(which)}</p>",
             table(["point", "other point", "distance (m)", "closure (mm)", "relative x (mm)", "relative y (mm)", ""], rows),
-            drawn("histories", source, folder, "Closure of pairs of points.", pair=[row[:2] for row in largest])]
+            drawn("histories", source, folder, "Closure of pairs of points.", pair=[row[:2] for row in by_size[:DRAWN_PAIRS]])]
 
 
 def checks(source, programs):

@@ -354,19 +354,13 @@ def until_ended(words, lock):
         signal.signal(signal.SIGINT, signal.SIG_IGN)
 
     parent = os.getpid()
-    before = {number: signal.signal(number, stop) for number in (signal.SIGTERM, signal.SIGHUP)
-              if signal.getsignal(number) is not signal.SIG_IGN}
-    try:
-        with subprocess.Popen(words, stdin=subprocess.DEVNULL, pass_fds=[lock.fileno()], preexec_fn=prepared) as running:
-            try:
-                return running.wait()
-            except BaseException:
-                running.terminate()
-                running.wait()
-                raise
-    finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)
+    with runs.stoppable(stop), subprocess.Popen(words, stdin=subprocess.DEVNULL, pass_fds=[lock.fileno()], preexec_fn=prepared) as running:
+        try:
+            return running.wait()
+        except BaseException:
+            running.terminate()
+            running.wait()
+            raise
 
 
 def load_plots():

@@ -62,12 +62,13 @@ def exit_code_of(interrupt):
     return interrupt.code if isinstance(interrupt, Stopped) else 128 + signal.SIGINT
 
 
-@contextlib.contextmanager
-def stoppable():
-    """SIGTERM and SIGHUP stop a study as Ctrl-C does. Signals that are ignored (nohup) stay so."""
-    def stop(number, _):
-        raise Stopped(128 + number)
+def raise_stopped(number, _):
+    raise Stopped(128 + number)
 
+
+@contextlib.contextmanager
+def stoppable(stop=raise_stopped):
+    """SIGTERM and SIGHUP stop a study as Ctrl-C does, or call `stop`. Signals that are ignored (nohup) stay so."""
     before = {number: signal.signal(number, stop) for number in (signal.SIGTERM, signal.SIGHUP)
               if signal.getsignal(number) is not signal.SIG_IGN}
     try:
@@ -137,11 +138,13 @@ class Ended:
     """How long the runs took that have ended, of a study's folder; what is new in the groups' files is read at each look."""
 
     def __init__(self, out):
-        self.folder, self.read_to, self.seconds = out / "groups", {}, {}
+        self.folder, self.read_to, self.seconds, self.complete = out / "groups", {}, {}, set()
 
     def look(self, names):
         """[(seconds, exit code)] of the runs that have ended."""
         for name in names:
+            if name in self.complete:
+                continue
             for path in (self.folder / f"{name}.rows", self.folder / f"{name}.rows.part"):  # the same file, before and after
                 with contextlib.suppress(OSError), open(path, "rb") as file:
                     file.seek(self.read_to.get(name, 0))
@@ -151,6 +154,8 @@ class Ended:
                         if "seconds" in row:
                             self.seconds[row["run"]] = row["seconds"], row["exit_code"]
                     self.read_to[name] = self.read_to.get(name, 0) + len(whole)
+                    if path.suffix == ".rows":
+                        self.complete.add(name)
                     break
         return list(self.seconds.values())
 

@@ -33,6 +33,7 @@ import numpy as np
 
 LOOK = 5  # one more when pictures look different: those of docs/pictures are stale then (docs/pictures.py)
 
+BOUNDARY, JOINT, WELDED = 0, 1, 2  # /edges/kind
 ONE_COLUMN = 3.35  # [in]
 TWO_COLUMNS = 6.9  # [in]
 
@@ -176,6 +177,11 @@ def array(file, path):
     if path not in file:
         raise NotWanted(f"there is no {path} in this {file_type(file)} file")
     return file[path][()]
+
+
+def untraced_edges(file):
+    """Which edges are joint edges without a part of a joint trace: rock bridges, and extensions of joints."""
+    return (array(file, "/edges/kind") == JOINT) & (array(file, "/edges/joint_fraction") == 0)
 
 
 def texts(file, path):

@@ -16,7 +16,6 @@ from matplotlib.collections import LineCollection, PathCollection
 
 import figure
 
-BOUNDARY, JOINT, WELDED = 0, 1, 2  # /edges/kind
 EXTENDED = -1  # of these, joint edges without a part of a joint trace
 LARGER = "0.72"  # than the scale has
 
@@ -66,12 +65,12 @@ def draw_edges(file, axes):
     vertex = figure.array(file, "/edges/vertex")
     kind = figure.array(file, "/edges/kind")
     few = len(vertex) < 2000
-    kind = np.where((kind == JOINT) & (figure.array(file, "/edges/joint_fraction") == 0), EXTENDED, kind)
+    kind = np.where(figure.untraced_edges(file), EXTENDED, kind)
     looks = {
         EXTENDED: ("no joint trace: extension or rock bridge", {"color": "0.55", "linewidth": 0.5 if few else 0.3, "linestyle": (0, (2, 2))}),
-        JOINT: ("joint", {"color": "k", "linewidth": 0.7 if few else 0.3}),
-        WELDED: ("bonded edge, no joint", {"color": "k", "linewidth": 0.5, "linestyle": (0, (4, 2))}),
-        BOUNDARY: ("outline", {"color": "k", "linewidth": 1.3}),
+        figure.JOINT: ("joint", {"color": "k", "linewidth": 0.7 if few else 0.3}),
+        figure.WELDED: ("bonded edge, no joint", {"color": "k", "linewidth": 0.5, "linestyle": (0, (4, 2))}),
+        figure.BOUNDARY: ("outline", {"color": "k", "linewidth": 1.3}),
     }
     entries = []
     for code, (label, look) in looks.items():

@@ -254,10 +254,10 @@ def contact_lines(file, section):
     return np.reshape(lines, (-1, 2, 2)), np.array(of_contact, int)
 
 
-def extensions(file):
-    """Which edges are joint edges without a part of a joint trace: rock bridges, and extensions of joints."""
-    kind, fraction = figure.array(file, "/edges/kind"), figure.array(file, "/edges/joint_fraction")
-    return (kind == 1) & (fraction == 0)
+def with_gap(entry, size, color):
+    """Shows a legend entry as an open contact is drawn: two walls with a gap between them."""
+    entry.set(color="w", linewidth=0.45 * size, path_effects=[
+        matplotlib.patheffects.Stroke(linewidth=size, foreground=color), matplotlib.patheffects.Normal()])
 
 
 def draw_contacts(file, state, section, axes):
@@ -272,7 +272,7 @@ def draw_contacts(file, state, section, axes):
     centre = figure.array(file, "/mesh/contact_centre")
     seen = np.all((low <= centre) & (centre <= high), axis=1) if section.window else np.full(len(status), True)
     entries = []
-    extended = extensions(file)[figure.array(file, "/mesh/contact_edge")]  # of contacts
+    extended = figure.untraced_edges(file)[figure.array(file, "/mesh/contact_edge")]  # of contacts
     for chosen, label, look in (((status == STUCK) & ~slipped & ~extended, "contacts sticking", {"color": "0.65", "linewidth": 0.5}),
                                 ((status == STUCK) & ~slipped & extended, "sticking, in rock (no joint trace)",
                                  {"color": "0.78", "linewidth": 0.5, "linestyle": (0, (2, 2))}),
@@ -299,16 +299,14 @@ def draw_contacts(file, state, section, axes):
         if code == OPEN:  # two walls with a gap between them, in grey print too
             axes.add_collection(LineCollection(lines[chosen], color="w", linewidth=0.45 * width, capstyle="round",
                                                zorder=code + 1.5))
-            entry.set(color="w", linewidth=0.45 * size, path_effects=[
-                matplotlib.patheffects.Stroke(linewidth=size, foreground=color), matplotlib.patheffects.Normal()])
+            with_gap(entry, size, color)
         entries.append(entry)
     for code, color in ((SLIPPING, figure.COLORS[0]), (OPEN, figure.COLORS[1])):
         if np.any((status == code) & seen):
             entries.append(matplotlib.lines.Line2D([], [], color=color, linewidth=thin,
                                                    label="thinnest: no displacement since the in-situ state"))
             if code == OPEN:
-                entries[-1].set(color="w", linewidth=0.45 * thin, path_effects=[
-                    matplotlib.patheffects.Stroke(linewidth=thin, foreground=color), matplotlib.patheffects.Normal()])
+                with_gap(entries[-1], thin, color)
             break
     return entries + figure.draw_region_borders(figure.scene_of(file), axes)
 

@@ -14,16 +14,19 @@ import sys
 import tarfile
 import tempfile
 
+from jointcreep import files
+
+LONGEST = 20  # s, that one input may take
+MOST_MEMORY = 4096  # MB; what a reader leaves behind where it cannot throw adds up
 SANITIZERS = "allocator_may_return_null=1:detect_leaks=0"
-SECONDS = 20  # that one input may take
 
 
 def unpack(archive, folder):
     """The inputs of an archive, if there is one, into a folder."""
     if archive.exists():
-        with tarfile.open(archive) as files:
-            for member in files.getmembers():
-                (folder / pathlib.Path(member.name).name).write_bytes(files.extractfile(member).read())
+        with tarfile.open(archive) as packed:
+            for member in packed.getmembers():
+                (folder / pathlib.Path(member.name).name).write_bytes(packed.extractfile(member).read())
 
 
 def bare(member):
@@ -39,7 +42,7 @@ def merge(fuzzer, corpus, archive):
         before.mkdir()
         least.mkdir()
         unpack(archive, before)
-        options = ["-merge=1", f"-timeout={SECONDS}", "-rss_limit_mb=4096", "-max_len=262144"]
+        options = ["-merge=1", f"-timeout={LONGEST}", f"-rss_limit_mb={MOST_MEMORY}", "-max_len=262144"]
         done = subprocess.run([fuzzer, *options, least, before, corpus], check=False, stdout=subprocess.DEVNULL,
                               stderr=subprocess.PIPE, env=dict(os.environ, ASAN_OPTIONS=SANITIZERS))
         paths = sorted(least.iterdir())
@@ -47,11 +50,9 @@ def merge(fuzzer, corpus, archive):
             said = done.stderr[-500:].decode(errors="replace")
             raise SystemExit(f"corpus: {fuzzer} -merge=1 ended with exit code {done.returncode}: {said}")
         archive.parent.mkdir(parents=True, exist_ok=True)
-        partial = archive.with_name(f"{archive.name}.partial")
-        with tarfile.open(partial, "w:xz", preset=9) as files:
+        with files.replaced(archive) as partial, tarfile.open(partial, "w:xz", preset=9) as packed:
             for path in paths:
-                files.add(path, path.name, filter=bare)
-        partial.rename(archive)
+                packed.add(path, path.name, filter=bare)
         return len(paths), archive.stat().st_size
 
 

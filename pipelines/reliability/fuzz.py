@@ -15,10 +15,8 @@ import subprocess
 import tempfile
 
 from campaign import ROOT, Campaign
-from corpus import unpack
+from corpus import LONGEST, MOST_MEMORY, unpack
 
-LONGEST = 20  # s, that one input may take
-MOST_MEMORY = 4096  # MB; what a reader leaves behind where it cannot throw adds up
 RUN = 600  # s, after which what a target has done is counted, and it is started again
 MOST_FAULTS = 20
 LAST = 100000  # bytes of what a target says
