@@ -1,5 +1,6 @@
 #include "analysis/guards.hpp"
 
+#include "joint/continuously_yielding.hpp"
 #include "model/error.hpp"
 
 #include <algorithm>
@@ -43,6 +44,14 @@ double weight_error(const Section& section)
     return all == 0 ? std::abs(loads) : std::abs(loads + present) / std::abs(all);
 }
 
+// Where a continuously yielding joint shears back, its plastic displacement is against its traction at first.
+bool slip_gives_back(const Scene& scene)
+{
+    return std::ranges::any_of(scene.joint_materials, [](const JointMaterial& material) {
+        return material.own.contains(joint::parameters::roughness_length.name);
+    });
+}
+
 } // namespace
 
 GuardedState guarded_state(const Section& section)
@@ -69,7 +78,8 @@ double energy_error(const mechanics::Convergence& convergence, double stored)
         sum += part;
         size += std::abs(part);
     }
-    const double error = std::abs(sum) - 1e-12 * (std::abs(stored) + std::abs(convergence.stored));
+    const double error =
+        std::abs(sum) + convergence.created - 1e-12 * (std::abs(stored) + std::abs(convergence.stored));
     return error > 0 ? error / size : std::isnan(error) ? 1.0 : 0.0;
 }
 
@@ -97,14 +107,16 @@ std::string broken_guard(double unbalanced_force_ratio, double energy_error, dou
     return "";
 }
 
-// The energy balance of the implicit engine holds by definition; that of a dynamic analysis is checked over its whole
-// length, by DynamicStage.
+// The sum of the energy balance of the implicit engine holds by definition: it has bounds in its place. That of a dynamic
+// analysis is checked over its whole length, by DynamicStage.
 void Guards::check_equilibrium()
 {
-    const mechanics::Convergence& found = section_.settled.convergence;
-    const bool is_relaxation = !found.is_implicit && section_.result.dynamics.time.empty() &&
-                               section_.assembly.contacts.state_by_faces.empty();
-    const double error = is_relaxation ? energy_error(found, stored_energy(section_.assembly)) : 0.0;
+    mechanics::Convergence found = section_.settled.convergence;
+    const bool is_dynamic =
+        !section_.result.dynamics.time.empty() || !section_.assembly.contacts.state_by_faces.empty();
+    if (found.is_implicit && !slip_gives_back(section_.scene))
+        found.created = std::max(found.created, -found.dissipated);
+    const double error = is_dynamic ? 0.0 : energy_error(found, stored_energy(section_.assembly));
     end_if(broken_guard(found.unbalanced_force_ratio, error, section_.scene.equilibrium.tolerance));
 }
 

@@ -20,8 +20,8 @@ struct GuardedState {
 };
 GuardedState guarded_state(const Section& section);
 
-// Energy that is missing or too much in the balance of an equilibrium, over the sum of its terms [-]. What is stored
-// is a small difference of all that is `stored` [J/m]; its rounding does not count.
+// Energy that is missing or too much in the balance of an equilibrium, or has no source, over the sum of its terms [-].
+// What is stored is a small difference of all that is `stored` [J/m]; its rounding does not count.
 double energy_error(const mechanics::Convergence& convergence, double stored);
 
 // What is not kept to, in words; empty if all is.

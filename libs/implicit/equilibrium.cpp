@@ -362,9 +362,11 @@ std::optional<Convergence> Solver::equilibrate(Assembly& assembly, const Equilib
         reason_ = "forces are no finite numbers";
         return give_up();
     }
+    const std::vector<Vector2d> force_at_start = assembly.force;
+    const double stored_at_start = stored_energy(assembly);
+    const bool is_beyond_strength = dissipated(assembly, start) != 0;
     const bool is_balanced =
         balance_of(assembly, stiffest_, 0, settings.tolerance).ratio() <= settings.tolerance;
-    const double stored_at_start = stored_energy(assembly);
     if (!guess.empty() && !is_balanced) {
         for (std::size_t g = 0; g < guess.size(); ++g)
             assembly.displacement[g] += free_part(assembly, g, guess[g]);
@@ -400,7 +402,22 @@ std::optional<Convergence> Solver::equilibrate(Assembly& assembly, const Equilib
     convergence.dissipated = dissipated(assembly, start);
     convergence.work_of_loads = work_of_loads(assembly, start.displacement);
     convergence.damped = convergence.work_of_loads - convergence.stored - convergence.dissipated;
+    if (!is_beyond_strength)
+        convergence.created = created_energy(assembly, start, force_at_start, convergence);
     return convergence;
+}
+
+double created_energy(const Assembly& assembly, const mechanics::State& start,
+                      const std::vector<Vector2d>& force_at_start, const Convergence& found)
+{
+    double released = found.damped, most = 0;
+    for (std::size_t g = 0; g < assembly.displacement.size(); ++g) {
+        const Vector2d moved = assembly.displacement[g] - start.displacement[g];
+        released -= assembly.force[g].dot(moved);
+        most += (force_at_start[g] - assembly.force[g]).dot(moved);
+    }
+    const double too_little = std::max(0.0, -released);
+    return found.dissipated == 0 ? std::max(too_little, released - most) : too_little;
 }
 
 // What a search needs to know of the assembly.

@@ -11,7 +11,7 @@
 // (implicit/flow.cpp).
 //
 // The energy balance is that of backward Euler, too: slip is at the final traction. Energy that is neither stored nor
-// dissipated counts as damped.
+// dissipated counts as damped. So the sum holds by definition, and bounds are checked in its place; see created_energy.
 
 #pragma once
 
@@ -24,6 +24,18 @@
 
 namespace jointcreep::implicit
 {
+
+// Energy that the laws of rock and joints cannot have given in an equilibrium found by the implicit engine [J/m]; 0 where
+// there is none. A spring whose force changes from f0 to f1 on a straight path du takes the work f1 du. It stores less,
+// because its energy E is convex: f1 du - (E1 - E0) >= 0. Where nothing is dissipated, the difference is at most
+// (f1 - f0) du. Both hold for every spring, and therefore for the section, with the unbalanced forces F0 at the start
+// and F1 at the end [N/m]:
+//
+//     0 <= damped - F1 du <= (F0 - F1) du
+//
+// Not where the start is beyond the strength: forces return to it before anything moves, and lose energy that is in no sum.
+double created_energy(const Assembly& assembly, const mechanics::State& start,
+                      const std::vector<Vector2d>& force_at_start, const mechanics::Convergence& found);
 
 class Solver
 {

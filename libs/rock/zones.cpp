@@ -358,9 +358,17 @@ void begin_search(Zones& zones, bool damps_stiffness)
         zones.last_stress = zones.stress;
 }
 
-double dissipated(const Zones& zones, const ZonesState& /*start*/)
+double dissipated(const Zones& zones, const ZonesState& start)
 {
-    return dissipated(zones);
+    double sum = 0;
+    for (std::size_t z = 0; z < zones.yielding_number.size(); ++z)
+        if (const Index number = zones.yielding_number[z]; number >= 0) {
+            const YieldingZone& zone = zones.yielding[number];
+            const Vector3d& now = zones.stress[z];
+            const Eigen::Vector4d more = zone.plastic - start.yielding[number].plastic;
+            sum += zones.area[z] * (now.dot(Vector3d(more[0], more[1], more[3])) + zone.stress_zz * more[2]);
+        }
+    return sum;
 }
 
 double dissipated(const Zones& zones)

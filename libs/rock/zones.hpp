@@ -154,7 +154,8 @@ double stored_energy(const Zones& zones);
 // Before a search for equilibrium: counts dissipated energy from here. `damps_stiffness`: the search has stiffness
 // damping.
 void begin_search(Zones& zones, bool damps_stiffness);
-// Energy lost by yielding since then [J/m]: along the path, or straight from the state at the start, which is the same.
+// Energy lost by yielding since then [J/m]: along the path; or straight from the state at the start, under the stress at the
+// end.
 double dissipated(const Zones& zones);
 double dissipated(const Zones& zones, const ZonesState& start);
 

@@ -140,6 +140,8 @@ TEST(guards, contacts_and_equilibria_are_guarded)
     balance.damped = 0;
     EXPECT_NEAR(energy_error(balance, 100), 1.0 / 19, 1e-9);
     EXPECT_EQ(energy_error({.stored = 1e-12}, 10), 0); // rounding of what is stored
+    balance = {.work_of_loads = 10, .stored = 6, .dissipated = 3, .damped = 1, .created = 1e-4};
+    EXPECT_NEAR(energy_error(balance, 100), 1e-4 / 20, 1e-9);
     balance.damped = std::numeric_limits<double>::quiet_NaN();
     EXPECT_NE(analysis::broken_guard(0, energy_error(balance, 100), 1e-6), "");
 }
