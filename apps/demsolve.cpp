@@ -118,6 +118,9 @@ void solve(const Arguments& arguments)
     const std::string where = input + (arguments.has("zone-size") ? ", --zone-size" : ": /scene");
     if (const std::string cost = zoning::check_cost(scene, file.network.blocks, where); !cost.empty())
         files.warn(cost);
+    if (reduction.search || reduction.factor != 1)
+        if (const std::string merged = demsolve::merging_warning(scene, file.network.blocks); !merged.empty())
+            files.warn(merged);
 
     // 2. Recording, and the state of a checkpoint, if there is one.
     const analysis::Recording recording = demsolve::recording(arguments);

@@ -26,6 +26,17 @@ namespace
 // Above these a run is warned of.
 constexpr double much_plastic_strain = 0.05; // [-]
 constexpr double large_displacement = 0.02;  // over the diagonal of the section [-]
+constexpr double much_merged = 2e-4;         // area of blocks merged into others, over the jointed rock [-]
+
+// Area of the rock where joint sets are [m2]: at most the sum of their regions.
+double jointed_area(const Scene& scene)
+{
+    const double whole = area_of(scene.outline);
+    double regions = 0;
+    for (const JointSet& set : scene.joint_sets)
+        regions += set.region ? area_of(*set.region) : whole;
+    return regions > 0 ? std::min(regions, whole) : whole;
+}
 
 std::int64_t sum_of(const std::vector<Index>& numbers)
 {
@@ -223,6 +234,17 @@ void add_mesh_estimate(Summary& summary, const analysis::Bracket& bracket, const
     summary.add(what, !share           ? "none: block edges set the size of zones"
                       : *share > width ? in_percent(*share)
                                        : "below " + in_percent(std::max(width, -*share)));
+}
+
+std::string merging_warning(const Scene& scene, const Blocks& blocks)
+{
+    const double merged = blocks.report.merged_block_area, share = merged / jointed_area(scene);
+    return share > much_merged
+               ? "blocks of " + rounded(merged) + " m2, " + rounded(1000 * share, 2) +
+                     " thousandths of the jointed rock, are merged into others, which can change the factor of "
+                     "safety. Compare with a third of [cutting] shortest_edge_m, " +
+                     shown(scene.cutting.shortest_edge) + " m"
+               : "";
 }
 
 std::string mesh_warning(const analysis::Bracket& bracket, const MeshEstimate& estimate)

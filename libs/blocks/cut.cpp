@@ -693,7 +693,7 @@ Blocks cut(const Scene& scene, const Joints& joints, Subdivision subdivision)
                 (is_merged_away(scene, s)
                      ? "its rock is merged with that beside it, as [cutting] shortest_edge_m is " +
                            shown(scene.cutting.shortest_edge) +
-                           " m; expected a smaller one (0.02 x [zones] size_m where it is not given)"
+                           " m; expected a smaller one (where it is not given, 0.02 x the smaller size of [zones])"
                      : "its remove_m contains no rock that earlier stages leave"));
     if (std::ranges::find(blocks.block_stage, Index{-1}) == blocks.block_stage.end())
         throw input_error("stage \"" + scene.stages.back().name +

@@ -431,9 +431,10 @@ private:
         const std::string wanted = "less than the extent of the section, " + shown(extent_of_section) + " m";
         if (cutting.find("shortest_edge_m"))
             cutting.refuse("shortest_edge_m", "expected " + wanted);
-        once("zones").refuse("size_m", "edges shorter than 0.02 x size_m, " + shown(shortest) +
-                                           " m, are merged; expected " + wanted +
-                                           ". Set a smaller size_m, or [cutting] shortest_edge_m");
+        const std::string size = scene_.zone_size_at_faces ? "size_at_faces_m" : "size_m";
+        once("zones").refuse(size, "edges shorter than 0.02 x " + size + ", " + shown(shortest) +
+                                       " m, are merged; expected " + wanted + ". Set a smaller " + size +
+                                       ", or [cutting] shortest_edge_m");
     }
 
     void check_cutting() const

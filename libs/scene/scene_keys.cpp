@@ -23,7 +23,7 @@ constexpr KeyUnit per_s{"1/s", 1 / unit::s};
 constexpr KeyUnit seconds{"s", unit::s};
 constexpr KeyUnit mm_per_day{"mm/day", unit::mm / unit::day};
 
-constexpr double usual_shortest_edge = 0.02; // of the zone size
+constexpr double usual_shortest_edge = 0.02; // of the smallest zone size
 constexpr double usual_local_damping = 0.8;
 
 struct Schedule {
@@ -804,7 +804,7 @@ Table<Cutting> cutting()
              "shortest_edge_m", &Cutting::shortest_edge, metres, above(0).to(farthest_metre),
              "Vertices that are closer to each other than this are merged, and vertices that are closer to "
              "an edge than half of it. At most the zone size, and less than the extent of the section.")
-             .optional("0.02 x zones.size_m"),
+             .optional("0.02 x zones.size_at_faces_m, or x zones.size_m without that key"),
          number("smallest_angle_deg", &Cutting::smallest_angle, degrees, from(0).to(30),
                 "Narrower wedges between edges are closed where vertices move little.")
              .or_else(std::int64_t{1}),
@@ -1047,7 +1047,7 @@ Parts schedule_parts()
 Parts settings_parts()
 {
     const auto read_cutting = [table = cutting()](const TomlValue& root, Reading& reading, Scene& scene) {
-        scene.cutting.shortest_edge = usual_shortest_edge * scene.zone_size;
+        scene.cutting.shortest_edge = usual_shortest_edge * scene.smallest_zone_size();
         read_once(table, root, reading, scene.cutting);
     };
     const auto read_equilibrium = [table = equilibrium()](const TomlValue& root, Reading& reading,

@@ -102,7 +102,8 @@ class Blocks(ChainTest):
         on_joint = joint >= 0
         ends = network["/vertices/position"][network["/edges/vertex"]][on_joint]
         start, end = (network["/joints/" + name][joint[on_joint]] for name in ("from", "to"))
-        shortest_edge = scene.get("cutting", {}).get("shortest_edge_m", 0.02 * scene["zones"]["size_m"])
+        shortest_edge = scene.get("cutting", {}).get(
+            "shortest_edge_m", 0.02 * scene["zones"].get("size_at_faces_m", scene["zones"]["size_m"]))
         longer = shortest_edge * (end - start) / numpy.linalg.norm(end - start, axis=1)[:, None]
         largest_move = network["/cutting/largest_move"][0]
         self.assertLess(distance_to_segments(ends, start - longer, end + longer).max(), largest_move + 1e-9)

@@ -260,6 +260,21 @@ class Safety(ChainTest):
         self.assertRegex(done.stdout, "factor of safety, at least +64\nruns +8\nfactor of safety, below +none found")
         self.assertFalse(output.with_name("result.failed.h5").exists())
 
+    def test_merged_blocks_are_told(self):
+        """Only runs with reduced strengths tell them, and only if their area is not small."""
+        text = self.chain.text("tests/pipeline/random_slope.toml")
+        for shortest in 0.6, 0.1:
+            network = self.chain.network(changed(text, "^shortest_edge_m = .*", f"shortest_edge_m = {shortest}"))
+            joints = self.chain.run("strength-averaging", network, network.with_name("joints.h5"))
+            area = datasets(network)["/cutting/merged_block_area"][0]
+            told = (f"blocks of {area:.4g} m2, [0-9.]+ thousandths of the jointed rock, are merged into others, which can change the factor "
+                    f"of safety. Compare with a third of .cutting. shortest_edge_m, {shortest} m")
+            for options in ("--strength-factor", "1.01"), ("--factor-of-safety", "--safety-width", "1"), ():
+                with self.subTest(shortest=shortest, options=options):
+                    done = self.chain.answer("demsolve", joints, "-q", "--no-creep", *options, "-o", joints.with_name("result.h5"))
+                    self.assertEqual(done.returncode, 0, done.stderr)
+                    (self.assertRegex if shortest == 0.6 and options else self.assertNotRegex)(done.stderr, told)
+
     def test_refusals(self):
         joints = self.chain.joints(HANGING)
         for options, said in ((("--strength-factor", "0"), "must be at least"),

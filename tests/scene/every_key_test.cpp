@@ -221,7 +221,7 @@ TEST(every_key, optional_tables_may_be_left_out)
     const Scene scene = parse_scene(text, "scene.toml");
     EXPECT_FALSE(scene.creep);
     EXPECT_TRUE(scene.stages.empty() && scene.points.empty() && scene.gauges.empty());
-    EXPECT_EQ(scene.cutting.shortest_edge, 0.02 * 4);
+    EXPECT_EQ(scene.cutting.shortest_edge, 0.02 * 2) << "of size_at_faces_m";
     EXPECT_EQ(scene.averaging.over, AverageOver::edge);
     EXPECT_EQ(scene.averaging.stiffness, StiffnessRule::joint);
     EXPECT_EQ(scene.equilibrium.tolerance, 1e-6);
