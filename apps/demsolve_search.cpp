@@ -52,24 +52,30 @@ std::string in_brief(const Safety& trials)
            (bracket.fails() ? ")" : "?)");
 }
 
-// "run 4, strengths / 1.5: fails; factor of safety at least 1, below 1.5". The first run is the reference of displacements.
-std::string last_run_in_words(const Safety& so_far)
+// "run 4, strengths / 1.5: fails; factor of safety at least 1, below 1.5; at most 5 more runs". The first
+// run is the reference of displacements.
+std::string last_run_in_words(const Safety& so_far, const analysis::Search& search)
 {
+    const std::optional<int> left = is_reference_only(so_far) ? std::nullopt : search.runs_left(so_far);
     const Index stands = so_far.stands.back();
     return "run " + std::to_string(so_far.factor.size()) + ", " + strengths_by(so_far.factor.back()) +
            (stands > 0    ? ": stable"
             : stands == 0 ? ": fails"
                           : ": undecided") +
            (is_reference_only(so_far) ? ", for comparison"
-                                      : "; factor of safety " + in_words(analysis::bracket_of(so_far)));
+                                      : "; factor of safety " + in_words(analysis::bracket_of(so_far))) +
+           (left.value_or(0) == 0 ? ""
+            : *left == 1          ? "; at most 1 more run"
+                                  : "; at most " + std::to_string(*left) + " more runs");
 }
 
 // The runs of a search. The progress of the next one is shown.
 class SaidRuns : public analysis::Runs
 {
 public:
-    SaidRuns(const Scene& scene, const RunWith& run_with, const Files& files, std::string of_what)
-        : scene_(scene), run_with_(run_with), files_(files), of_what_(std::move(of_what))
+    SaidRuns(const analysis::Search& search, const Scene& scene, const RunWith& run_with, const Files& files,
+             std::string of_what)
+        : search_(search), scene_(scene), run_with_(run_with), files_(files), of_what_(std::move(of_what))
     {
     }
 
@@ -102,7 +108,7 @@ public:
     void has_ended(const Safety& so_far) override
     {
         const std::lock_guard lock(mutex_);
-        files_.say(of_what_ + last_run_in_words(so_far));
+        files_.say(of_what_ + last_run_in_words(so_far, search_));
         const Bracket bracket = analysis::bracket_of(so_far);
         for (const double factor : so_far.factor) // results are large, and only those of these two are needed
             if (factor != bracket.stands && factor != bracket.not_above)
@@ -136,6 +142,7 @@ protected:
                 }};
     }
 
+    const analysis::Search search_;
     const Scene& scene_;
     const RunWith& run_with_;
     const Files& files_;
@@ -151,9 +158,9 @@ protected:
 class KeptRuns : public SaidRuns
 {
 public:
-    KeptRuns(const StrengthReduction& reduction, const Scene& scene, const RunWith& run_with,
-             const Files& files, std::optional<store::CheckpointFile> from)
-        : SaidRuns(scene, run_with, files, ""), reduction_(reduction), from_(std::move(from))
+    KeptRuns(const StrengthReduction& reduction, const analysis::Search& search, const Scene& scene,
+             const RunWith& run_with, const Files& files, std::optional<store::CheckpointFile> from)
+        : SaidRuns(search, scene, run_with, files, ""), reduction_(reduction), from_(std::move(from))
     {
     }
 
@@ -212,9 +219,9 @@ std::optional<MeshEstimate> estimate_mesh(const Scene& scene, const RunWith& run
         return std::nullopt;
     Scene with_coarse = scene;
     set_zone_size(with_coarse, 2 * scene.zone_size);
-    SaidRuns runs(with_coarse, run_with, files, "with zones twice as large, ");
-    Bracket coarse =
-        analysis::bracket_by({search.width, search.runs_away, *bracket.stands}, runs, search.at_once);
+    const analysis::Search near{search.width, search.runs_away, *bracket.stands};
+    SaidRuns runs(near, with_coarse, run_with, files, "with zones twice as large, ");
+    Bracket coarse = analysis::bracket_by(near, runs, search.at_once);
     const auto any = runs.run_of(coarse.stands.value_or(coarse.not_above.value_or(0)));
     return MeshEstimate{std::move(coarse),
                         static_cast<double>(any->analysis().result().mesh.zone_gridpoint.size()) /
@@ -230,8 +237,8 @@ std::unique_ptr<Trial> bracket_safety(const StrengthReduction& reduction, const 
     const analysis::Search search{reduction.search->width, reduction.search->runs_away};
     const Safety made_before = kept ? kept->safety : Safety{};
     if (!made_before.factor.empty())
-        files.say("from " + files.checkpoint() + ": " + last_run_in_words(made_before));
-    KeptRuns runs(reduction, scene, run_with, files, std::move(kept));
+        files.say("from " + files.checkpoint() + ": " + last_run_in_words(made_before, search));
+    KeptRuns runs(reduction, search, scene, run_with, files, std::move(kept));
     Bracket bracket;
     try {
         bracket = analysis::bracket_by(search, runs, reduction.search->at_once, made_before);

@@ -131,6 +131,16 @@ std::optional<double> Search::next_factor(const Safety& so_far) const
     return (*bracket.stands + *bracket.not_above) / 2;
 }
 
+std::optional<int> Search::runs_left(Safety so_far) const
+{
+    if (const Bracket bracket = bracket_of(so_far); !bracket.stands || !bracket.not_above)
+        return std::nullopt;
+    int left = 0; // most of them if all fail: the width is over the lower end
+    for (std::optional<double> factor; (factor = next_factor(so_far)); ++left)
+        add(so_far, *factor, {Ending::moves});
+    return left;
+}
+
 double Search::most_displacement(const Safety& so_far) const
 {
     const auto& displacement = so_far.largest_displacement;

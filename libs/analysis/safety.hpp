@@ -79,6 +79,8 @@ struct Search {
 
     // The factor of the run after these; none: the search has ended.
     std::optional<double> next_factor(const Safety& so_far) const;
+    // Runs after these, at most; none as long as the bracket has no upper end.
+    std::optional<int> runs_left(Safety so_far) const;
     // A run after these fails if its displacement is more than that [m].
     double most_displacement(const Safety& so_far) const;
 };

@@ -88,7 +88,7 @@ class Progress(ChainTest):
             code, said, failed = self.stopped(self.chain.joints(SCENE), *SEARCH, "--runs-at-once", at_once,
                                               when=lambda said, _: b"run 3, " in said)
             self.check_stopped(code, said, failed)
-            known = re.findall("^demsolve: run .*; factor of safety (.*)$", said, re.MULTILINE)[-1]
+            known = re.findall("^demsolve: run .*; factor of safety ([^;\n]*)", said, re.MULTILINE)[-1]
             self.assertTrue(said.endswith(f"\ndemsolve: stopped; the factor of safety is {known}. "
                                           "With --checkpoint FILE a stopped search can continue\n"), said)
             self.assertFalse(failed.exists())

@@ -189,6 +189,9 @@ class Safety(ChainTest):
             low, high = said[-1][3].split(", below ")
             self.assertEqual((float(low), float(high)), (data["/safety/factor"][data["/safety/stands"] == 1].max(),
                                                          data["/safety/factor"][data["/safety/stands"] == 0].min()))
+            left = [re.search(r"; at most (\d+) more runs?$", bracket) for _, _, _, bracket in said]
+            self.assertTrue(all(n is None or int(n[1]) >= len(left) - i for i, n in enumerate(left, start=1)), said)
+            self.assertTrue(any(left) and left[-1] is None, said)
             self.assertEqual("demsolve: with zones twice as large, run 1, " in done.stderr, path == cut)
         self.assertEqual(self.chain.answer("demsolve", joints, "-q", "--no-creep", "--factor-of-safety", "-o",
                                            joints.with_name("quiet.h5")).stderr, "")
