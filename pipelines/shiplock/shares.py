@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""31 assumed inputs of the shiplock at once, and the network: whose variance is it?
+"""33 assumed inputs of the shiplock at once, and the network: whose variance is it?
 
     shares.py PROGRAMS SCENE.toml TARGETS.toml -n SETS [-j JOBS] -o OUT
 
@@ -21,6 +21,7 @@ if its scene changes. Blocks and zones are coarser than the scene's: COARSE.
 
 import argparse
 import csv
+import datetime
 import hashlib
 import io
 import json
@@ -88,6 +89,8 @@ INPUTS = {
     "box": Input("jointed box, to each side", 150, 330, "m", 220),
     "domain": Input("domain, to each side", 900, 3600, "m", 1800),
     "rock": Input("Young's modulus of the rock, in Table 1's ranges", 0, 1, "of 1", 0.5),
+    "azimuth": Input("azimuth of the section", 11, 31, "deg", 21),
+    "dates": Input("days of all stages", -60, 60, "days", 0),
     "readings": Input("days of first readings", -60, 60, "days", 0),
 }
 
@@ -161,7 +164,14 @@ def scene_of(text, values):
             depth = values["cover"] + (0 if record["rock"] == "cover" else values["weak"])
             return [*ground, *([x, round(y - depth, 4)] for x, y in reversed(ground))]
 
-    tables = {"joint_set": of_set, "joint_material": of_material, "rock": of_rock, "region": of_region}
+    def of_stage(_, key, value):
+        return value + datetime.timedelta(round(values["dates"])) if key == "date" else None
+
+    def of_section(_, key, __):
+        return values["azimuth"] if key == "azimuth_deg" else None
+
+    tables = {"joint_set": of_set, "joint_material": of_material, "rock": of_rock, "region": of_region, "stage": of_stage,
+              "section": of_section}
 
     def change(table, record, key, value):
         if (table, key) == ("in_situ_stress", "profile"):
